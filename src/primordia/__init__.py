@@ -1,0 +1,1 @@
+"""Primordia: evolutionary self-replication in any simulator."""

@@ -1,0 +1,98 @@
+"""Habitats: the simulator side of a task, vectorised over cells.
+
+A habitat knows nothing of energy, ages, neighbours or other organisms. It reports what befell its
+bodies in physical units; what that means for a life is the law's.
+
+`name` in a task's `[habitat]` table is one of those listed here, or `module:Class` of anything
+that keeps the contract below. The other keys of the table are the class's own settings.
+"""
+
+from importlib import import_module
+from typing import Any, NamedTuple, Protocol, TypeAlias
+
+import numpy as np
+from jax import Array
+
+from primordia.motor import Continuous, Discrete
+
+KNOWN = {"cartpole": "primordia.habitats.cartpole:CartPole"}
+
+Bodies: TypeAlias = Any
+"""A tree of arrays, each with cells as its first axis."""
+
+
+class Outcome(NamedTuple):
+    """What befell the bodies in one tick. None is: this habitat never has any of it."""
+
+    fatal: Array
+    """bool (N,): this body cannot live on."""
+    food: Array | None = None
+    """float32 (N,): what was gathered, in the task's unit (metres, points, targets)."""
+    effort: Array | None = None
+    """float32 (N,): what was exerted, in the habitat's unit."""
+
+
+class Habitat(Protocol):
+    """A habitat in JAX: pure functions, fused with the law into one compiled loop.
+
+    Elementwise over cells, the same bits for every N, and no random source but `words`.
+    """
+
+    senses_size: int
+    action: Discrete | Continuous
+    words: int
+    """How many random uint32 words a birth needs."""
+
+    def reset(self, words: Array) -> Bodies:
+        """Fresh bodies from random words uint32 (N, words)."""
+
+    def sense(self, bodies: Bodies) -> Array:
+        """What the organisms perceive, scaled, float32 (N, senses_size)."""
+
+    def step(self, bodies: Bodies, action: Array) -> tuple[Bodies, Outcome]:
+        """All bodies one tick on. What it gives for a cell nobody lives in is not used."""
+
+
+class HostHabitat(Protocol):
+    """A habitat that runs on the host, stepped between two halves of the law.
+
+    It owns its bodies. Cells that are not `alive` are not stepped.
+    """
+
+    senses_size: int
+    action: Discrete | Continuous
+    words: int
+
+    def open(self, cells: int) -> None:
+        """Make room for so many bodies."""
+
+    def reset(self, born: np.ndarray, words: np.ndarray) -> np.ndarray:
+        """Fresh bodies in cells born (K,) from words uint32 (K, words) -> their senses (K, S)."""
+
+    def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
+        """Step the bodies in cells alive (N,) -> senses float32 (N, S), outcome."""
+
+    def save(self) -> dict[str, np.ndarray]:
+        """The bodies as arrays: all that is needed to go on exactly."""
+
+    def load(self, arrays: dict[str, np.ndarray]) -> None:
+        """Take back what `save` gave."""
+
+
+def find(name: str) -> type:
+    """The habitat class called `name`.
+
+    Raises:
+        LookupError: no such name, module or class; the message says which.
+    """
+    path = KNOWN.get(name, name)
+    module, _, attribute = path.partition(":")
+    if not attribute:
+        raise LookupError(f"no habitat named {name!r}; known: {', '.join(KNOWN)}, or module:Class")
+    try:
+        found = getattr(import_module(module), attribute)
+    except (ImportError, AttributeError) as error:
+        raise LookupError(f"habitat {name!r} cannot be loaded: {error}") from error
+    if not isinstance(found, type):
+        raise LookupError(f"habitat {name!r} is not a class")
+    return found
