@@ -30,6 +30,8 @@ class Outcome(NamedTuple):
     """float32 (N,): what was gathered, in the task's unit (metres, points, targets)."""
     effort: Array | None = None
     """float32 (N,): what was exerted, in the habitat's unit."""
+    fault: Array | None = None
+    """bool (N,): the simulation of this body has failed; NaN and infinity are found by the law."""
 
 
 class Habitat(Protocol):

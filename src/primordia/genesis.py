@@ -1,0 +1,82 @@
+"""Beginnings: worlds before anything has lived, and the random words newborn bodies are made of."""
+
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from primordia.keys import Purpose, bits, bits_if, stream
+from primordia.law import Law
+from primordia.metabolism import Metabolism, Rates
+from primordia.seasons import ratchets
+from primordia.wide import Wide, never, wide, zero
+from primordia.world import Cause, Climate, Looks, Organisms, World, Worlds
+
+
+def begin(law: Law, seeds: list[int], tick: int = 0, births: int = 0) -> World:
+    """Worlds in which nothing has ever lived. `settle` puts founders into them before the first tick.
+
+    `tick` and `births` are what the counts start at.
+    """
+    count, each = len(seeds), law.worlds * law.cells
+    worlds = Worlds(
+        seed=wide(np.array(seeds, np.uint64)),
+        tick=wide(np.full(count, tick, np.uint64)),
+        births=wide(np.full(count, births, np.uint64)),
+        deaths=zero((count, len(Cause))),
+        extinctions=zero((count,)),
+        organism_ticks=zero((count,)),
+        food=zero((count,)),
+        calm=jnp.zeros(count, jnp.int32),
+        sample_wait=jnp.full(count, law.sample_every - tick % law.sample_every, jnp.int32),
+        saturated=never((count,)),
+        saturated_births=never((count,)),
+        fixed=never((count,)),
+        fixed_births=never((count,)),
+        climate=_climate(law, count),
+        looks=_looks(law, count, tick),
+    )
+    genome = {
+        name: jnp.zeros((each, *shape), jnp.float32) for name, shape in law.brain.blocks.items()
+    }
+    organisms = Organisms(
+        alive=jnp.zeros(each, bool),
+        genome=genome,
+        memory=jnp.zeros((each, law.brain.memory), jnp.float32),
+        energy=jnp.zeros(each, jnp.int32),
+        eaten=jnp.zeros(each, jnp.int32),
+        faulty=jnp.zeros(each, bool),
+        born=zero((each,)),
+        number=zero((each,)),
+        branch=zero((each,)),
+    )
+    return World(organisms, worlds)
+
+
+def birth_words(law: Law, worlds: Worlds, needed: Array, words: int) -> Array:
+    """Random words for bodies born in this tick, uint32 (C, words); zeros unless needed, bool ()."""
+    key = law.per_cell(stream(worlds.seed, Purpose.BODY, worlds.tick))
+    draws = jnp.arange(-(-words // 2), dtype=jnp.uint32)
+    key = Wide(key.hi[:, None], key.lo[:, None])
+    pairs = bits_if(needed, key, law.cell_numbers[:, None], draws)
+    return jnp.concatenate(pairs, axis=1)[:, :words]
+
+
+def _climate(law: Law, count: int) -> Climate:
+    def each(values: float | list[float]) -> Array:
+        return jnp.asarray(np.tile(np.array(values, np.float32), (count, 1)).reshape(count, *np.shape(values)))
+
+    rates = law.metabolism or Metabolism()
+    return Climate(
+        replication=each(law.replication),
+        hazard=each(law.hazard),
+        mutation_probability=each(law.mutation.probabilities(law.blocks)),
+        mutation_scale=each(law.mutation.scales(law.blocks)),
+        metabolism=Rates(*(each(getattr(rates, name)) for name in Rates._fields)),
+    )
+
+
+def _looks(law: Law, count: int, tick: int) -> Looks:
+    every = [ratchet.every for ratchet in ratchets(law.seasons)]
+    wait = np.array([e - tick % e for e in every], np.int32)
+    none = zero((count, len(every)))
+    return Looks(jnp.asarray(np.tile(wait, (count, 1))), none, none)

@@ -1,0 +1,119 @@
+"""Mutation: genome -> genome with a key; and founders, genomes from nothing.
+
+Noise is read from a table of 65,536 Gaussian quantiles, made on the host in float32, by 16 random
+bits a weight. A child weight is one IEEE product (quantile x scale) and one IEEE sum, so that it can
+be rebuilt bit for bit anywhere. The tails end at +-4.32 standard deviations.
+"""
+
+import hashlib
+from functools import cache
+from statistics import NormalDist
+from typing import NamedTuple
+
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+from pydantic import Field
+
+from primordia.keys import Purpose, bits, chance, stream
+from primordia.settings import Settings
+from primordia.wide import Wide
+
+QUANTILES_SHA256 = "1cfbba1e07e34386a57626f82aeb43e6ed54ba70a3ea6b7d964dc66a841074a8"
+
+
+class BlockMutation(Settings):
+    """Mutation of one block of weights; what is not given is as for the whole genome."""
+
+    probability: float | None = Field(None, ge=0, le=1, description="chance that a child's block mutates")
+    scale: float | None = Field(None, ge=0, description="standard deviation of the block's noise")
+
+
+class Mutation(Settings):
+    """Gaussian noise on every weight of a block, in a share of the births.
+
+    One uniform draw a birth decides for all blocks: block b mutates if the draw is below
+    its probability. A child none of whose blocks mutates is a `copy`.
+    """
+
+    probability: float = Field(0.5, ge=0, le=1, description="chance that a child is mutated")
+    scale: float = Field(0.01, ge=0, description="standard deviation of the noise on each weight")
+    founder_scale: float = Field(
+        0.01, ge=0, description="standard deviation of a founder's weights around zero"
+    )
+    blocks: dict[str, BlockMutation] = Field(
+        {}, description="other values for single blocks of weights (input, recurrent, output)"
+    )
+
+    def probabilities(self, names: list[str]) -> list[float]:
+        """The probability of each named block."""
+        given = [self.blocks.get(name, BlockMutation()).probability for name in names]
+        return [self.probability if p is None else p for p in given]
+
+    def scales(self, names: list[str]) -> list[float]:
+        """The scale of each named block."""
+        given = [self.blocks.get(name, BlockMutation()).scale for name in names]
+        return [self.scale if s is None else s for s in given]
+
+
+@cache
+def quantiles() -> np.ndarray:
+    """The standard Gaussian's quantiles at (i + 1/2) / 65536, float32 (65536,), increasing."""
+    inverse = NormalDist().inv_cdf
+    upper = np.array([inverse((i + 0.5) / 65536) for i in range(32768, 65536)], np.float32)
+    table = np.concatenate([-upper[::-1], upper])
+    if hashlib.sha256(table.astype("<f4").tobytes()).hexdigest() != QUANTILES_SHA256:
+        raise RuntimeError("this machine's C library gives other Gaussian quantiles: genomes would differ")
+    return table
+
+
+class Streams(NamedTuple):
+    """The streams that newborns' genomes come from, (K,), each of the newborn's world and tick."""
+
+    mutate: Wide
+    noise: Wide
+    founder: Wide
+
+
+def streams(seed: Wide, tick: Wide) -> Streams:
+    """The streams of worlds with these seeds at these ticks."""
+    purposes = Purpose.MUTATE, Purpose.NOISE, Purpose.FOUNDER
+    return Streams(*(stream(seed, purpose, tick) for purpose in purposes))
+
+
+def mutates(streams: Streams, cells: Array, probability: Array) -> Array:
+    """Which blocks of the genomes born in these cells (K,) take noise: bool (K, B)."""
+    return chance(bits(streams.mutate, cells).hi[:, None], probability)
+
+
+def noise_index(stream: Wide, cells: Array, length: int) -> Array:
+    """Where in the table each weight's noise stands, for a stream and cells (K,): int32 (K, length).
+
+    With m = ceil(length / 4), weight i takes the (i // m)-th 16 bits of draw i % m.
+    """
+    draws = jnp.arange(-(-length // 4), dtype=jnp.uint32)
+    a, b = bits(Wide(stream.hi[:, None], stream.lo[:, None]), cells[:, None], draws)
+    low, high = np.uint32(0xFFFF), np.uint32(16)
+    quarters = jnp.concatenate([a & low, a >> high, b & low, b >> high], axis=1)
+    return quarters[:, :length].astype(jnp.int32)
+
+
+def newborns(
+    parents: Array, standard: Array, takes: Array, scale: Array, founder: Array, founder_scale: float
+) -> Array:
+    """Genomes (K, P) of children of `parents` (K, P) and of founders.
+
+    Args:
+        parents: float32 (K, P).
+        standard: standard Gaussian noise, float32 (K, P).
+        takes: which weights take it, bool (K, P).
+        scale: its standard deviation for children, float32 (K, P).
+        founder: who is made from nothing, bool (K,).
+        founder_scale: standard deviation of a founder's weights.
+
+    A weight is one product and one sum, each rounded. The selection between the two keeps
+    compilers from contracting them into a fused multiply-add, which would round once.
+    """
+    change = jnp.where(takes, standard * scale, 0)
+    inherited = jnp.where(takes, parents + change, parents)
+    return jnp.where(founder[:, None], standard * np.float32(founder_scale), inherited)

@@ -1,0 +1,159 @@
+"""Placement: which cell a child goes to, and who wins a cell that several parents want.
+
+All parents of a tick act at once: each that replicates picks a cell, and of several on one cell
+the one with the smallest (random bits, cell number) wins. For blind placement this equals the
+paper's one-after-another in random order. Cells are numbered within their world, and a child
+never leaves it. Arrays are (W, N): worlds, cells.
+"""
+
+import math
+from collections.abc import Callable
+from typing import Literal
+
+import jax.numpy as jnp
+import numpy as np
+from jax import Array, lax
+from pydantic import Field
+
+from primordia.keys import below
+from primordia.settings import Settings
+from primordia.wide import Wide
+
+OFFSETS = {
+    "ring": ((0, -1), (0, 1)),
+    "torus4": ((0, -1), (0, 1), (-1, 0), (1, 0)),
+    "torus8": ((0, -1), (0, 1), (-1, 0), (1, 0), (-1, -1), (-1, 1), (1, -1), (1, 1)),
+}
+
+Draw = Callable[[Array], Wide]
+"""Two random words for every cell (W, N) in a given round of one tick's placement."""
+
+
+class Placement(Settings):
+    """Neighbourhood of a cell, and what happens if the picked cell is occupied.
+
+    blind: nothing is born (Schmidgall & Hays 2021, "Evolutionary self-replication", rule c);
+    empty-only: parents pick among their empty neighbours, losers of a contest pick again;
+    replacing: the occupant dies and makes room (as in Avida). A replaced organism may still copy
+    itself elsewhere in the tick of its death.
+    """
+
+    topology: Literal["ring", "torus4", "torus8", "well-mixed"] = Field(
+        "ring", description="neighbours: two on a ring, 4 or 8 on a torus, or any cell of the world"
+    )
+    rule: Literal["blind", "empty-only", "replacing"] = Field(
+        "blind", description="where an occupied cell is picked: no birth; not picked; replaced"
+    )
+    rows: int | None = Field(
+        None, ge=2, description="rows of a torus (default: as nearly square as the cells allow)"
+    )
+
+    def shape(self, cells: int) -> tuple[int, int]:
+        """Rows and columns of a world of so many cells.
+
+        Raises:
+            ValueError: no torus of two or more rows and columns has this many cells.
+        """
+        if not self.topology.startswith("torus"):
+            return 1, cells
+        if self.rows is not None:
+            rows = self.rows if cells % self.rows == 0 else 1
+        else:
+            rows = max(r for r in range(1, math.isqrt(cells) + 1) if cells % r == 0)
+        if rows < 2 or cells // rows < 2:
+            raise ValueError(f"{cells} cells do not make a torus; choose rows x columns, both 2 or more")
+        return rows, cells // rows
+
+    def room(self, occupied: Array) -> Array:
+        """Where a parent could have a child at all: a cell within its reach would take one."""
+        if self.rule == "replacing":
+            return jnp.ones_like(occupied)
+        if self.topology == "well-mixed":
+            return jnp.broadcast_to(~occupied.all(axis=1, keepdims=True), occupied.shape)
+        return jnp.stack(self._neighbours(~occupied)).any(axis=0)
+
+    def parents(self, draw: Draw, wants: Array, occupied: Array) -> Array:
+        """For each cell the cell of its newborn's parent, or -1: int32 (W, N)."""
+        if self.rule == "empty-only":
+            return self._in_rounds(draw, wants, occupied)
+        choice, priority = draw(jnp.uint32(0))
+        target = self._any_target(choice)
+        if self.rule == "blind":
+            wants = wants & ~jnp.take_along_axis(occupied, target, axis=1)
+        return _contest(wants, target, priority)
+
+    def _in_rounds(self, draw: Draw, wants: Array, occupied: Array) -> Array:
+        """Contests until no parent that still wants a child has an empty neighbour."""
+
+        def open_parents(wants: Array, occupied: Array) -> Array:
+            return wants & self.room(occupied)
+
+        def again(carry: tuple[Array, ...]) -> Array:
+            _, wants, occupied, _ = carry
+            return open_parents(wants, occupied).any()
+
+        def contest(carry: tuple[Array, ...]) -> tuple[Array, ...]:
+            number, wants, occupied, parent = carry
+            choice, priority = draw(number)
+            target = self._empty_target(choice, ~occupied)
+            won = _contest(open_parents(wants, occupied), target, priority)
+            satisfied = jnp.take_along_axis(won, target, axis=1) == _cells(wants)
+            parent = jnp.maximum(parent, won)
+            return number + 1, wants & ~satisfied, occupied | (won >= 0), parent
+
+        nobody = jnp.full(wants.shape, -1, jnp.int32)
+        return lax.while_loop(again, contest, (jnp.uint32(0), wants, occupied, nobody))[3]
+
+    def _any_target(self, word: Array) -> Array:
+        """A neighbour, each equally likely: int32 (W, N)."""
+        cells = _cells(word)
+        if self.topology == "well-mixed":
+            other = below(word, word.shape[1] - 1)
+            return other + (other >= cells)
+        offsets = np.array(OFFSETS[self.topology], np.int32)
+        return self._reach(cells, below(word, len(offsets)), offsets)
+
+    def _empty_target(self, word: Array, empty: Array) -> Array:
+        """An empty neighbour, each equally likely; any cell where there is none: int32 (W, N)."""
+        cells = _cells(word)
+        if self.topology == "well-mixed":
+            rank = jnp.where(empty, jnp.cumsum(empty, axis=1) - 1, word.shape[1])
+            worlds = jnp.arange(len(word))[:, None]
+            listed = jnp.zeros_like(cells).at[worlds, rank].set(cells, mode="drop")
+            nth = below(word, empty.sum(axis=1, keepdims=True))
+            return jnp.take_along_axis(listed, nth, axis=1)
+        offsets = np.array(OFFSETS[self.topology], np.int32)
+        is_empty = jnp.stack(self._neighbours(empty))
+        nth = below(word, is_empty.sum(axis=0))
+        chosen = (jnp.cumsum(is_empty, axis=0) > nth).argmax(axis=0)
+        return self._reach(cells, chosen, offsets)
+
+    def _reach(self, cells: Array, direction: Array, offsets: np.ndarray) -> Array:
+        rows, columns = self.shape(cells.shape[1])
+        step = jnp.asarray(offsets)[direction]
+        row, column = cells // columns + step[..., 0], cells % columns + step[..., 1]
+        return row % rows * columns + column % columns
+
+    def _neighbours(self, values: Array) -> list[Array]:
+        """The values (W, N) of each cell's neighbours, one array a direction."""
+        grid = values.reshape(len(values), *self.shape(values.shape[1]))
+        offsets = OFFSETS[self.topology]
+        return [jnp.roll(grid, (-r, -c), (1, 2)).reshape(values.shape) for r, c in offsets]
+
+
+def _cells(like: Array) -> Array:
+    return lax.broadcasted_iota(jnp.int32, like.shape, 1)
+
+
+def _contest(wants: Array, target: Array, priority: Array) -> Array:
+    """The parent that wins each cell, or -1: the smallest (priority, cell) of those targeting it."""
+    worlds, cells = wants.shape
+    nowhere = worlds * cells
+    slot = target + cells * lax.broadcasted_iota(jnp.int32, wants.shape, 0)
+    slot = jnp.where(wants, slot, nowhere).ravel()
+    priority = priority.ravel()
+    best = jnp.full(nowhere, np.uint32(2**32 - 1)).at[slot].min(priority, mode="drop")
+    ahead = priority == best.at[slot].get(mode="fill", fill_value=0)
+    first = jnp.full(nowhere, cells, jnp.int32)
+    first = first.at[jnp.where(ahead, slot, nowhere)].min(_cells(wants).ravel(), mode="drop")
+    return jnp.where(first < cells, first, -1).reshape(worlds, cells)

@@ -1,0 +1,119 @@
+"""Unsigned 64-bit counts as (hi, lo) pairs of uint32: ticks, births and numbers of organisms.
+
+JAX without its x64 flag has no 64-bit integers, and an int32 age overflows within hours. On the
+host a count is an int or a uint64 array.
+"""
+
+from typing import NamedTuple
+
+import jax.numpy as jnp
+import numpy as np
+from jax import Array, lax
+
+
+class Wide(NamedTuple):
+    """A count modulo 2^64, split in two uint32 arrays of one shape."""
+
+    hi: Array
+    lo: Array
+
+    def __add__(self, other: "Wide") -> "Wide":  # type: ignore[override]
+        lo = self.lo + other.lo
+        return Wide(self.hi + other.hi + (lo < other.lo).astype(jnp.uint32), lo)
+
+    def __sub__(self, other: "Wide") -> "Wide":
+        borrow = (self.lo < other.lo).astype(jnp.uint32)
+        return Wide(self.hi - other.hi - borrow, self.lo - other.lo)
+
+    def __getitem__(self, index: object) -> "Wide":  # type: ignore[override]
+        return Wide(self.hi[index], self.lo[index])
+
+    def plus(self, n: Array) -> "Wide":
+        """Add a bool or non-negative integer array."""
+        n = n.astype(jnp.uint32)
+        return self + Wide(jnp.zeros_like(n), n)
+
+    def at_least(self, other: "Wide") -> Array:
+        """Elementwise self >= other."""
+        return (self.hi > other.hi) | ((self.hi == other.hi) & (self.lo >= other.lo))
+
+    def until(self, later: "Wide") -> Array:
+        """Ticks until a later one, int32, at most 2^31 - 1; that many also if it is not later."""
+        far = np.uint32(2**31 - 1)
+        gap = later - self
+        near = ~self.at_least(later) & (gap.hi == 0)
+        return jnp.where(near, jnp.minimum(gap.lo, far), far).astype(jnp.int32)
+
+    def equals(self, other: "Wide") -> Array:
+        """Elementwise self == other."""
+        return (self.hi == other.hi) & (self.lo == other.lo)
+
+
+def wide(values: object) -> Wide:
+    """From ints or integer arrays on the host; negative ones wrap (two's complement)."""
+    whole = np.asarray(values)
+    whole = whole.astype(np.int64).view(np.uint64) if whole.dtype.kind == "i" else whole
+    whole = whole.astype(np.uint64)
+    hi, lo = whole >> np.uint64(32), whole & np.uint64(0xFFFFFFFF)
+    return Wide(jnp.asarray(hi.astype(np.uint32)), jnp.asarray(lo.astype(np.uint32)))
+
+
+def to_host(value: Wide) -> np.ndarray:
+    """As a uint64 array on the host."""
+    hi, lo = np.asarray(value.hi), np.asarray(value.lo)
+    return (hi.astype(np.uint64) << np.uint64(32)) | lo
+
+
+def select(condition: Array, yes: Wide, no: Wide) -> Wide:
+    """Elementwise choice."""
+    return Wide(jnp.where(condition, yes.hi, no.hi), jnp.where(condition, yes.lo, no.lo))
+
+
+def total(value: Wide, axis: int) -> Wide:
+    """Sum along an axis, exact modulo 2^64."""
+    zero = jnp.uint32(0)
+    hi, lo = lax.reduce(tuple(value), (zero, zero), lambda a, b: tuple(Wide(*a) + Wide(*b)), (axis,))
+    return Wide(hi, lo)
+
+
+def largest(value: Wide, axis: int) -> Wide:
+    """Maximum along an axis."""
+    hi = value.hi.max(axis, keepdims=True)
+    lo = jnp.where(value.hi == hi, value.lo, jnp.uint32(0)).max(axis)
+    return Wide(jnp.squeeze(hi, axis), lo)
+
+
+def times(a: Array, b: Array) -> Wide:
+    """The whole product of two uint32 or non-negative int32 arrays."""
+    a, b = a.astype(jnp.uint32), b.astype(jnp.uint32)
+    half, mask = np.uint32(16), np.uint32(0xFFFF)
+    low = (a & mask) * (b & mask)
+    middle = (a >> half) * (b & mask) + (low >> half)
+    cross = (a & mask) * (b >> half) + (middle & mask)
+    return Wide((a >> half) * (b >> half) + (middle >> half) + (cross >> half), a * b)
+
+
+def signed(value: Array) -> Wide:
+    """An int32 array, sign-extended."""
+    return Wide((value >> 31).astype(jnp.uint32), value.astype(jnp.uint32))
+
+
+def zero(shape: tuple[int, ...]) -> Wide:
+    """Counts at zero."""
+    return Wide(jnp.zeros(shape, jnp.uint32), jnp.zeros(shape, jnp.uint32))
+
+
+def never(shape: tuple[int, ...]) -> Wide:
+    """2^64 - 1: ticks that do not come, numbers of nobody."""
+    ones = jnp.full(shape, np.uint32(2**32 - 1))
+    return Wide(ones, ones)
+
+
+def happened(value: Wide) -> Array:
+    """Whether a tick is not `never`."""
+    return (value.hi & value.lo) != np.uint32(2**32 - 1)
+
+
+def to_float(value: Wide) -> Array:
+    """As float32, taken as two's complement. A product with 2^32 is exact, so the sum rounds once."""
+    return value.hi.astype(jnp.int32).astype(jnp.float32) * np.float32(2**32) + value.lo
