@@ -78,5 +78,5 @@ def _climate(law: Law, count: int) -> Climate:
 def _looks(law: Law, count: int, tick: int) -> Looks:
     every = [ratchet.every for ratchet in ratchets(law.seasons)]
     wait = np.array([e - tick % e for e in every], np.int32)
-    none = zero((count, len(every)))
-    return Looks(jnp.asarray(np.tile(wait, (count, 1))), none, none)
+    nothing = (zero((count, len(every))) for _ in range(2))
+    return Looks(jnp.asarray(np.tile(wait, (count, 1))), *nothing)

@@ -105,8 +105,7 @@ def zero(shape: tuple[int, ...]) -> Wide:
 
 def never(shape: tuple[int, ...]) -> Wide:
     """2^64 - 1: ticks that do not come, numbers of nobody."""
-    ones = jnp.full(shape, np.uint32(2**32 - 1))
-    return Wide(ones, ones)
+    return Wide(*(jnp.full(shape, np.uint32(2**32 - 1)) for _ in range(2)))
 
 
 def happened(value: Wide) -> Array:
