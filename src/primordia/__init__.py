@@ -1,1 +1,18 @@
-"""Primordia: evolutionary self-replication in any simulator."""
+"""Primordia: neural organisms that live, die and copy themselves in any simulator."""
+
+from importlib import import_module
+from typing import Any
+
+from primordia.device import configure
+
+configure()
+
+_HOMES = {"run": "api", "Run": "api", "InputError": "errors", "Trouble": "errors"}
+__all__ = list(_HOMES)
+
+
+def __getattr__(name: str) -> Any:
+    """Load what is public when first asked for: JAX takes a second."""
+    if name not in _HOMES:
+        raise AttributeError(f"module 'primordia' has no attribute {name!r}")
+    return getattr(import_module(f"primordia.{_HOMES[name]}"), name)

@@ -190,14 +190,17 @@ def _count(
     born = law.by_world(births.born).sum(axis=1, dtype=jnp.uint32)
     had_lived = (worlds.organism_ticks.hi | worlds.organism_ticks.lo) > 0
     total = worlds.births.plus(born)
-    newly = _one_branch(law, organisms) & ~happened(worlds.fixed)
+    began_anew = never(extinct.shape)
+    fixed = select(extinct, began_anew, worlds.fixed)
+    fixed_births = select(extinct, began_anew, worlds.fixed_births)
+    newly = _one_branch(law, organisms) & ~happened(fixed)
     return worlds._replace(
         births=total,
         deaths=worlds.deaths.plus(deaths),
         extinctions=worlds.extinctions.plus(extinct & had_lived),
         calm=jnp.where((born > 0) | (deaths.sum(axis=1) > 0), 0, worlds.calm),
-        fixed=select(newly, worlds.tick, worlds.fixed),
-        fixed_births=select(newly, total, worlds.fixed_births),
+        fixed=select(newly, worlds.tick, fixed),
+        fixed_births=select(newly, total, fixed_births),
     )
 
 

@@ -107,7 +107,10 @@ class Worlds(NamedTuple):
     saturated_births: Wide
     """... births until then; `wide.never` before it happens"""
     fixed: Wide
+    """tick at which all the living first descended from one organism born after the founder; a
+    world that goes extinct begins anew, and ..."""
     fixed_births: Wide
+    """... births until then"""
     climate: Climate
     looks: Looks
 

@@ -1,0 +1,58 @@
+"""What a run is computed by: instruction set, versions, device. Exactness holds within one of each."""
+
+import os
+import platform
+from importlib.metadata import version
+from pathlib import Path
+
+PACKAGES = ("primordia", "jax", "jaxlib", "numpy")
+ISA_FLAG = "--xla_cpu_max_isa"
+
+
+def configure() -> None:
+    """Prepare XLA; must run before JAX makes its first array.
+
+    Vector instructions are held to AVX2, so that x86-64 machines with and without AVX-512 give
+    the same bits (measured: no slower). A choice made in XLA_FLAGS stands.
+    """
+    flags = os.environ.get("XLA_FLAGS", "")
+    if ISA_FLAG not in flags:
+        os.environ["XLA_FLAGS"] = f"{flags} {ISA_FLAG}=AVX2".strip()
+
+
+def select(name: str | None) -> None:
+    """Compute on the named platform (`cpu`, `gpu`); None leaves the choice to the caller's setup.
+
+    Raises:
+        LookupError: JAX has no such device here.
+    """
+    import jax
+
+    wanted = name or "cpu"
+    try:
+        jax.config.update("jax_default_device", jax.devices(wanted)[0])
+    except RuntimeError:
+        raise LookupError(f"JAX finds no {wanted!r} device here") from None
+
+
+def instruction_set() -> str:
+    """Architecture, and the vector instructions XLA may use."""
+    machine = platform.machine()
+    if machine not in ("x86_64", "AMD64"):
+        return machine
+    allowed = os.environ.get("XLA_FLAGS", "").rpartition(ISA_FLAG + "=")[2].split(" ")[0]
+    cpu = Path("/proc/cpuinfo")
+    has_avx2 = "avx2" in cpu.read_text() if cpu.exists() else True
+    return f"{machine} {allowed or 'native'}" + ("" if has_avx2 else " (this machine has no AVX2)")
+
+
+def versions() -> dict[str, str]:
+    """What must be equal for a run to go on bit for bit."""
+    import jax
+
+    default = jax.config.jax_default_device or jax.devices()[0]
+    return {
+        **{name: version(name) for name in PACKAGES},
+        "device": default.device_kind if default.platform != "cpu" else "cpu",
+        "instruction_set": instruction_set(),
+    }

@@ -1,0 +1,67 @@
+"""Digests: two runs that lived the same have the same digest, however they were computed and stored.
+
+Records enter as a sum of row hashes, so that a digest grows with its run and does not depend on the order
+of rows, chunks or segments. The state enters as it stands, empty cells left out.
+"""
+
+import hashlib
+
+import numpy as np
+
+LANES = (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F)
+BLOCK = 65536
+
+
+def row_hashes(rows: np.ndarray) -> np.ndarray:
+    """128 bits for each row uint32 (n, fields), as uint64 (n, 2).
+
+    Each word is stirred in by the finaliser of MurmurHash3 (Appleby 2011).
+    """
+    hashes = np.empty((len(rows), len(LANES)), np.uint64)
+    for lane, start in enumerate(LANES):
+        h = np.full(len(rows), start, np.uint64)
+        for column in rows.T:
+            h = _stir(h ^ column.astype(np.uint64)) * np.uint64(start)
+        hashes[:, lane] = _stir(h)
+    return hashes
+
+
+def _stir(h: np.ndarray) -> np.ndarray:
+    h = (h ^ (h >> np.uint64(33))) * np.uint64(0xFF51AFD7ED558CCD)
+    h = (h ^ (h >> np.uint64(33))) * np.uint64(0xC4CEB9FE1A85EC53)
+    return h ^ (h >> np.uint64(33))
+
+
+def digests(
+    records: dict[str, np.ndarray], arrays: dict[str, np.ndarray], worlds: int
+) -> list[str]:
+    """Digest of each world, hexadecimal.
+
+    Args:
+        records: of each table the sums of row hashes, uint64 (W, 2).
+        arrays: the state by name, first axis worlds or cells; open tails are not part of it.
+        worlds: how many there are.
+    """
+    state = {name: array for name, array in arrays.items() if not name.startswith("tail.")}
+    return [_world_digest(records, state, world, worlds) for world in range(worlds)]
+
+
+def _world_digest(
+    records: dict[str, np.ndarray], arrays: dict[str, np.ndarray], world: int, worlds: int
+) -> str:
+    digest = hashlib.sha256()
+    for name in sorted(records):
+        digest.update(records[name][world].astype("<u8").tobytes())
+    alive = np.split(np.asarray(arrays["world.organisms.alive"]), worlds)[world]
+    for name in sorted(arrays):
+        digest.update(name.encode())
+        array = arrays[name]
+        if name.startswith("world.worlds."):
+            digest.update(np.ascontiguousarray(array[world]).tobytes())
+            continue
+        mine = array[world * len(alive) : (world + 1) * len(alive)]
+        for start in range(0, len(alive), BLOCK):
+            living = mine[start : start + BLOCK][alive[start : start + BLOCK]]
+            digest.update(np.ascontiguousarray(living).tobytes())
+    digest.update(np.packbits(alive).tobytes())
+    return digest.hexdigest()

@@ -1,0 +1,55 @@
+"""Files that are either whole or not there: temporary name, fsync, rename, fsync of the folder."""
+
+import hashlib
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+from primordia.errors import Trouble
+
+TEMPORARY = ".writing-"
+"""Prefix of names that mean nothing yet."""
+
+
+def write(path: Path, fill: Callable[[Path], None]) -> None:
+    """Make `path` from what `fill` writes to the temporary path it is given.
+
+    Raises:
+        Trouble: it cannot be written (disk full, no permission, ...).
+    """
+    temporary = path.with_name(TEMPORARY + path.name)
+    try:
+        fill(temporary)
+        sync(temporary)
+        temporary.rename(path)
+        sync(path.parent)
+    except OSError as error:
+        temporary.unlink(missing_ok=True)
+        raise Trouble(f"{path} cannot be written: {error.strerror or error}") from None
+
+
+def sync(path: Path) -> None:
+    """Wait until a file or folder is on the disk."""
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+def seal(path: Path) -> dict[str, object]:
+    """Size and checksum of a file, as manifests keep them."""
+    with path.open("rb") as file:
+        digest = hashlib.file_digest(file, "sha256").hexdigest()
+    return {"bytes": path.stat().st_size, "sha256": digest}
+
+
+def fault_in(path: Path, sealed: dict[str, object]) -> str | None:
+    """What is wrong with a file that should be as it was sealed, or None."""
+    if not path.is_file():
+        return f"{path} is missing"
+    if path.stat().st_size != sealed["bytes"]:
+        return f"{path} has {path.stat().st_size} bytes instead of {sealed['bytes']}"
+    if seal(path) != {key: sealed[key] for key in ("bytes", "sha256")}:
+        return f"{path} is damaged: its checksum does not hold"
+    return None

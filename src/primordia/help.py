@@ -1,0 +1,88 @@
+"""Text for people: settings explained, progress, and what happened."""
+
+import json
+import time
+from typing import Any
+
+from pydantic_core import PydanticUndefined
+
+from primordia.config import Config, setting_fields, tasks
+from primordia.habitats import KNOWN, find
+from primordia.loop import Status
+from primordia.wide import to_host
+
+
+def setting_rows(task: str | None) -> list[tuple[str, str]]:
+    """Each setting with its value in a task (or by default), and what it means."""
+    values = tasks().get(task or "", {})
+    fields = setting_fields(Config)
+    name = values.get("habitat", {}).get("name")
+    for habitat in [name] if name else KNOWN:
+        fields |= setting_fields(find(habitat), "habitat.")
+    hidden = {"about", "task", "habitat"}
+    return [
+        (f"--{path}", f"{field.description or ''} [{_shown(values, path, field)}]")
+        for path, field in fields.items()
+        if path not in hidden
+    ]
+
+
+def _shown(values: dict[str, Any], path: str, field: Any) -> str:
+    value: Any = values
+    for part in path.split("."):
+        value = value.get(part, PydanticUndefined) if isinstance(value, dict) else PydanticUndefined
+    value = field.default if value is PydanticUndefined else value
+    return "none" if value is None else json.dumps(value)
+
+
+class Lines:
+    """A listener that prints a plain line now and then."""
+
+    EVERY = 2.0
+    """seconds"""
+
+    def __init__(self) -> None:
+        self._next = time.perf_counter() + self.EVERY
+
+    def __call__(self, status: Status) -> None:
+        if time.perf_counter() < self._next:
+            return
+        self._next = time.perf_counter() + self.EVERY
+        worlds, organisms = status.engine.state.world.worlds, status.engine.state.world.organisms
+        ticks, births = to_host(worlds.tick), to_host(worlds.births)
+        alive = int(organisms.alive.sum())
+        rate = to_host(worlds.organism_ticks).sum() / max(status.wall_s, 1e-9)
+        print(
+            f"{status.wall_s:6.1f} s  tick {ticks.max():,}  alive {alive:,}  births {births.sum():,}"
+            f"  {rate / 1e6:.2f} M organism-ticks/s",
+            flush=True,
+        )
+
+
+def summary(info: dict[str, Any]) -> str:
+    """What happened, in a few lines."""
+    worlds = info["worlds"]
+    lines = [f"{info['task']}: {len(worlds)} world{'s' * (len(worlds) > 1)} of {info['cells']} cells"]
+    for world in worlds[:10]:
+        lines.append(_world_line(world))
+    if len(worlds) > 10:
+        saturated = sum(world["saturation"] is not None for world in worlds)
+        lines.append(f"  ... and {len(worlds) - 10} more; {saturated} of {len(worlds)} saturated")
+    if not info["exact"]:
+        lines.append("  not exact: parts of this run cannot be repeated bit for bit")
+    return "\n".join(lines)
+
+
+def _world_line(world: dict[str, Any]) -> str:
+    causes = [f"{count:,} {cause}" for cause, count in world["deaths_by_cause"].items() if count]
+    saturation = world["saturation"]
+    end = (
+        f"saturated at tick {saturation['tick']:,} after {saturation['births']:,} births"
+        if saturation
+        else "not saturated"
+    )
+    age = f"mean age {world['mean_age']:,.0f}, oldest {world['oldest_age']:,}" if world["alive"] else ""
+    return (
+        f"  seed {world['seed']}: {world['ticks']:,} ticks, {world['births']:,} births, deaths: "
+        f"{', '.join(causes) or 'none'}; {world['alive']} alive, {age}; {end}"
+    )

@@ -1,0 +1,276 @@
+"""The loop: advance, record, checkpoint; and how a run begins, goes on, and is done again.
+
+A run is a directory. Everything in it is a function of `config.toml`; see `record` and `checkpoint`.
+"""
+
+import json
+import signal
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+from filelock import FileLock, Timeout
+
+from primordia import checkpoint, device, events, files, sample
+from primordia.checkpoint import Progress
+from primordia.chunk import Fused, Limits, State, running
+from primordia.config import Config, from_toml, validated
+from primordia.errors import InputError, Trouble
+from primordia.genesis import begin
+from primordia.hosted import Hosted
+from primordia.record import TABLES, Recorder
+from primordia.wide import wide
+
+FORMAT = 1
+"""Of run directories; a higher one is refused."""
+CHUNK_SECONDS = 0.2
+"""Aimed at, so that Ctrl-C is heard in time."""
+
+
+class Engine:
+    """A run in memory: law, habitat and where they stand."""
+
+    def __init__(self, config: Config) -> None:
+        self.config = config
+        habitat = config.build_habitat()
+        self.law = config.build_law(habitat)
+        kind = Hosted if hasattr(habitat, "open") else Fused
+        self.chunks = kind(self.law, habitat)
+        seeds = [config.seed + world for world in range(config.seeds)]
+        self.state: State = self.chunks.begin(begin(self.law, seeds))
+        cells = config.cells * config.seeds
+        self._events = events.empty(cells, config.seeds, sample.width(self.law.blocks))
+        self._ticks = 1
+
+    def advance(self, limits: Limits) -> events.Events:
+        """One chunk of about CHUNK_SECONDS -> what happened."""
+        start = time.perf_counter()
+        self.state, self._events, done = self.chunks.advance(
+            self.state, self._events, limits, self._ticks
+        )
+        spent = time.perf_counter() - start
+        if done:
+            fitting = int(done * CHUNK_SECONDS / spent)
+            self._ticks = min(max(fitting, 1), 4 * self._ticks, 2**30)
+        return self._events
+
+    def any_running(self, limits: Limits) -> bool:
+        """Whether some world has not come to a limit."""
+        return bool(running(self.state.world.worlds, limits).any())
+
+    def limits(self, stop: dict[str, Any], ticks: np.ndarray | None = None) -> Limits:
+        """Limits for all worlds alike; `ticks` (W,) if each has its own."""
+        every = np.ones(self.config.seeds, np.uint64)
+        most = np.uint64(2**64 - 1)
+        each = every * np.uint64(stop.get("ticks") or most) if ticks is None else ticks
+        births = every * np.uint64(stop.get("births") or most)
+        return Limits(wide(each), wide(births), jnp.bool_(stop.get("until") == "saturation"))
+
+    def arrays(self) -> dict[str, np.ndarray]:
+        """The state by name."""
+        return self.chunks.save(self.state)
+
+    def load(self, arrays: dict[str, np.ndarray]) -> None:
+        """Stand where `arrays` say."""
+        self.state = self.chunks.load(self.state, arrays)
+
+
+@dataclass
+class Status:
+    """What a listener is told after each chunk."""
+
+    engine: Engine
+    wall_s: float
+    """of this session"""
+
+
+Listener = Callable[[Status], None]
+
+
+def start(
+    config: Config, run: Path, *, checkpoint_every: float = 60.0, listen: Listener | None = None
+) -> None:
+    """Begin a run in a new directory and drive it until it stops or is interrupted.
+
+    Args:
+        config: what to run.
+        run: its directory, which must not exist, or be empty.
+        checkpoint_every: seconds from one checkpoint to the next.
+        listen: called after each chunk.
+
+    Raises:
+        InputError: the directory is taken.
+        Trouble: something cannot be written.
+    """
+    if run.exists() and (not run.is_dir() or any(run.iterdir())):
+        raise InputError(f"{run} exists already; choose another --out, or `primordia resume {run}`")
+    try:
+        for name in (*TABLES, "checkpoints"):
+            (run / name).mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise Trouble(f"{run} cannot be made: {error.strerror}") from None
+    with locked(run):
+        _write_text(run / "versions.json", json.dumps({"format": FORMAT, **device.versions()}, indent=1))
+        _write_text(run / "config.toml", config.to_toml())
+        engine = Engine(config)
+        recorder = Recorder(run, config.seeds, config.cells, engine.law.blocks)
+        progress = Progress(config.stop.model_dump(), 0.0, engine.chunks.exact)
+        _drive(engine, recorder, run, progress, checkpoint_every, listen)
+
+
+def resume(
+    run: Path,
+    limits: dict[str, Any] | None = None,
+    *,
+    inexact: bool = False,
+    checkpoint_every: float = 60.0,
+    listen: Listener | None = None,
+) -> list[str]:
+    """Go on where a run stopped, was interrupted, or was killed.
+
+    Args:
+        run: its directory.
+        limits: new values of `ticks`, `births` or `until`.
+        inexact: go on although versions differ from those recorded; marks the run.
+        checkpoint_every: seconds from one checkpoint to the next.
+        listen: called after each chunk.
+
+    Returns:
+        what was wrong with newer checkpoints that had to be passed over.
+
+    Raises:
+        InputError: this is no run, one in use, or one of other versions.
+        Trouble: something cannot be written.
+    """
+    config = read_config(run)
+    same = _check_versions(run, inexact)
+    with locked(run):
+        last, faults = checkpoint.newest(run)
+        if last is None and faults:
+            raise Trouble(f"no checkpoint of {run} is whole: {faults[0]}")
+        checkpoint.remove_what_does_not_count(run, last)
+        engine = Engine(config)
+        recorder = Recorder(run, config.seeds, config.cells, engine.law.blocks)
+        progress = Progress(config.stop.model_dump(), 0.0, engine.chunks.exact)
+        if last is not None:
+            arrays = last.arrays()
+            recorder.resume(last.manifest["segments"], last.digests, arrays)
+            engine.load(arrays)
+            progress = last.progress
+        progress.limits |= {name: value for name, value in (limits or {}).items() if value}
+        progress.exact &= same and engine.chunks.exact
+        _drive(engine, recorder, run, progress, checkpoint_every, listen)
+    return faults
+
+
+def _drive(
+    engine: Engine,
+    recorder: Recorder,
+    run: Path,
+    progress: Progress,
+    checkpoint_every: float,
+    listen: Listener | None,
+) -> None:
+    limits, before = engine.limits(progress.limits), progress.wall_s
+    began = saved = time.perf_counter()
+
+    def save() -> None:
+        progress.wall_s = before + time.perf_counter() - began
+        checkpoint.save(run, engine.arrays(), recorder, progress)
+
+    with interruptible() as interrupted:
+        while engine.any_running(limits) and not interrupted:
+            recorder.append(engine.advance(limits))
+            if listen is not None:
+                listen(Status(engine, time.perf_counter() - began))
+            if time.perf_counter() - saved >= checkpoint_every:
+                save()
+                saved = time.perf_counter()
+        if not interrupted:
+            recorder.finish()
+        save()
+    if interrupted:
+        raise KeyboardInterrupt
+
+
+def read_config(run: Path) -> Config:
+    """The configuration of a run directory.
+
+    Raises:
+        InputError: this is no run directory, or one this version cannot read.
+    """
+    path = run / "versions.json"
+    try:
+        recorded = json.loads(path.read_text())
+        made_by = recorded["format"]
+    except (OSError, ValueError, KeyError, TypeError):
+        raise InputError(f"{run} is not a run of primordia: it has no readable versions.json") from None
+    if made_by > FORMAT:
+        raise InputError(
+            f"{run} was made by a newer primordia (format {made_by}, this one reads {FORMAT}); upgrade"
+        )
+    return validated(from_toml(run / "config.toml"), source=str(run / "config.toml"))
+
+
+def _check_versions(run: Path, inexact: bool) -> bool:
+    recorded = json.loads((run / "versions.json").read_text())
+    differ = [
+        f"{name} {recorded.get(name)} then, {now} now"
+        for name, now in device.versions().items()
+        if recorded.get(name) != now
+    ]
+    if differ and not inexact:
+        raise InputError(
+            f"{run} cannot go on bit for bit: {'; '.join(differ)}. Restore that, or add --inexact"
+        )
+    return not differ
+
+
+@contextmanager
+def locked(run: Path) -> Iterator[None]:
+    """Hold the run's lock: one writer at a time; it is released even by kill -9.
+
+    Raises:
+        InputError: another process holds it.
+    """
+    lock = FileLock(run / "lock")
+    try:
+        lock.acquire(timeout=0)
+    except Timeout:
+        raise InputError(f"{run} is being written by another process") from None
+    except OSError as error:
+        raise Trouble(f"{run} cannot be written: {error.strerror}") from None
+    try:
+        yield
+    finally:
+        lock.release()
+
+
+@contextmanager
+def interruptible() -> Iterator[list[int]]:
+    """A list that stays empty until Ctrl-C or SIGTERM."""
+    heard: list[int] = []
+
+    def hear(number: int, _: object) -> None:
+        heard.append(number)
+
+    signals = (signal.SIGINT, signal.SIGTERM)
+    try:
+        before = [signal.signal(each, hear) for each in signals]
+    except ValueError:  # not in the main thread, where signals go anyway
+        yield heard
+        return
+    try:
+        yield heard
+    finally:
+        for each, handler in zip(signals, before, strict=True):
+            signal.signal(each, handler)
+
+
+def _write_text(path: Path, text: str) -> None:
+    files.write(path, lambda temporary: temporary.write_text(text) and None)

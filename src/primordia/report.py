@@ -1,0 +1,123 @@
+"""What a run directory tells: read only, without running anything."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from primordia import checkpoint
+from primordia.checkpoint import Checkpoint
+from primordia.config import Config
+from primordia.digest import digests
+from primordia.errors import InputError, Trouble
+from primordia.record import TABLES, Recorder
+from primordia.loop import read_config
+from primordia.world import Cause
+
+NEVER = 2**64 - 1
+
+
+def info(run: Path) -> dict[str, Any]:
+    """A run in one object.
+
+    `saturation` and `fixation` are None, or the tick and the births (founders counted) at which they
+    came. Ages are those of the living, in ticks. With one world its fields also stand at the top.
+    """
+    config, last = opened(run)
+    arrays = last.arrays()
+    each = digests(last.digests, arrays, config.seeds)
+    worlds = [_world(config, arrays, world, digest) for world, digest in enumerate(each)]
+    recorded = json.loads((run / "versions.json").read_text())
+    whole = {
+        "task": config.task,
+        "cells": config.cells,
+        "seeds": config.seeds,
+        "worlds": worlds,
+        "wall_s": last.progress.wall_s,
+        "exact": last.progress.exact,
+        "limits": last.progress.limits,
+        "versions": recorded,
+    }
+    return whole if config.seeds > 1 else {**worlds[0], **whole}
+
+
+def opened(run: Path) -> tuple[Config, Checkpoint]:
+    """Configuration and newest good checkpoint.
+
+    Raises:
+        InputError: this is no run, or it has no checkpoint yet.
+        Trouble: none of its checkpoints is whole.
+    """
+    config = read_config(run)
+    last, faults = checkpoint.newest(run)
+    if last is None and faults:
+        raise Trouble(f"no checkpoint of {run} is whole: {faults[0]}")
+    if last is None:
+        raise InputError(f"{run} has no checkpoint yet")
+    return config, last
+
+
+def table(run: Path, name: str) -> pa.Table:
+    """`births`, `deaths` or `metrics`: closed segments and open tail, in the order of events."""
+    config, last = opened(run)
+    return _table(run, name, config, last)
+
+
+def _table(run: Path, name: str, config: Config, last: Checkpoint) -> pa.Table:
+    assert name in TABLES
+    parts = [pq.read_table(run / name / each["name"]) for each in last.manifest["segments"][name]]
+    blocks = config.build_law(config.build_habitat()).blocks
+    recorder = Recorder(None, config.seeds, config.cells, blocks)
+    parts.append(recorder.arrow(name, last.arrays()[f"tail.{name}"]))
+    return pa.concat_tables(parts)
+
+
+def _world(
+    config: Config, arrays: dict[str, np.ndarray], world: int, digest: str
+) -> dict[str, Any]:
+    def count(name: str) -> Any:
+        hi, lo = arrays[f"world.worlds.{name}.hi"][world], arrays[f"world.worlds.{name}.lo"][world]
+        return ((hi.astype(np.uint64) << np.uint64(32)) | lo).tolist()
+
+    here = slice(world * config.cells, (world + 1) * config.cells)
+    alive = arrays["world.organisms.alive"][here]
+    born = arrays["world.organisms.born.hi"][here].astype(np.int64) << 32
+    born |= arrays["world.organisms.born.lo"][here]
+    tick = count("tick")
+    ages = tick - born[alive]
+    deaths = count("deaths")
+    names = [cause.name.lower().replace("_", "-") for cause in Cause]
+    found = {
+        "seed": config.seed + world,
+        "ticks": tick,
+        "alive": int(alive.sum()),
+        "births": count("births"),
+        "deaths": sum(deaths),
+        "deaths_by_cause": dict(zip(names, deaths, strict=True)),
+        "extinctions": count("extinctions"),
+        "cell_ticks": tick * config.cells,
+        "organism_ticks": count("organism_ticks"),
+        "mean_age": float(ages.mean()) if len(ages) else None,
+        "oldest_age": int(ages.max()) if len(ages) else None,
+        "saturation": _moment(count("saturated"), count("saturated_births")),
+        "fixation": _moment(count("fixed"), count("fixed_births")),
+        "digest": digest,
+    }
+    if config.seasons:
+        found["climate"] = _climate(arrays, world)
+    return found
+
+
+def _moment(tick: int, births: int) -> dict[str, int] | None:
+    return None if tick == NEVER else {"tick": tick, "births": births}
+
+
+def _climate(arrays: dict[str, np.ndarray], world: int) -> dict[str, float]:
+    return {
+        name.removeprefix("world.worlds.climate."): array[world].tolist()
+        for name, array in arrays.items()
+        if name.startswith("world.worlds.climate.")
+    }

@@ -1,0 +1,1 @@
+"""One TOML file a task: the paper's experiments as data."""

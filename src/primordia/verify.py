@@ -1,0 +1,43 @@
+"""Verification: a run is lived again from its beginning, and must come out the same."""
+
+import time
+from pathlib import Path
+
+import numpy as np
+
+from primordia import checkpoint
+from primordia.digest import digests
+from primordia.errors import InputError
+from primordia.record import Recorder
+from primordia.loop import Engine, Listener, Status, read_config
+
+
+def verify(run: Path, listen: Listener | None = None) -> list[str]:
+    """Do a run again from its beginning, without writing, and compare -> what differs (empty: nothing).
+
+    Raises:
+        InputError: this is no run, or there is nothing in it to compare with.
+    """
+    config = read_config(run)
+    last, faults = checkpoint.newest(run)
+    if faults:
+        return faults
+    if last is None:
+        raise InputError(f"{run} has no checkpoint yet, so there is nothing to verify")
+    arrays = last.arrays()
+    tick = np.stack([arrays["world.worlds.tick.hi"], arrays["world.worlds.tick.lo"]]).astype(np.uint64)
+    engine = Engine(config)
+    limits = engine.limits({}, tick[0] << np.uint64(32) | tick[1])
+    again = Recorder(None, config.seeds, config.cells, engine.law.blocks)
+    began = time.perf_counter()
+    while engine.any_running(limits):
+        again.append(engine.advance(limits))
+        if listen is not None:
+            listen(Status(engine, time.perf_counter() - began))
+    old = digests(last.digests, arrays, config.seeds)
+    new = digests(again.digests(), engine.arrays(), config.seeds)
+    return [
+        f"world {world} (seed {config.seed + world}) differs: {a[:16]}... recorded, {b[:16]}... now"
+        for world, (a, b) in enumerate(zip(old, new, strict=True))
+        if a != b
+    ]

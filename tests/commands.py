@@ -1,0 +1,59 @@
+"""The command line as a user meets it: in a process of its own."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+HERE = Path(__file__).parent.parent
+COMMAND = [sys.executable, "-m", "primordia"]
+
+
+def environment(cache: Path | None = None) -> dict[str, str]:
+    """Finds the tests' own habitats; compiled code is kept for the next process."""
+    extra = {"PYTHONPATH": str(HERE)}
+    if cache is not None:
+        extra |= {
+            "JAX_COMPILATION_CACHE_DIR": str(cache),
+            "JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS": "0.2",
+        }
+    return {**os.environ, **extra}
+
+
+def primordia(*words: object, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+    """Run a command to its end."""
+    return subprocess.run(
+        [*COMMAND, *map(str, words)],
+        env=environment(CACHE),
+        capture_output=True,
+        text=True,
+        cwd=cwd,
+        timeout=300,
+    )
+
+
+def begin(*words: object) -> subprocess.Popen[str]:
+    """Start a command and leave it running."""
+    pipes: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    return subprocess.Popen([*COMMAND, *map(str, words)], env=environment(CACHE), **pipes)
+
+
+def info(run: Path) -> dict[str, Any]:
+    """`info --json`."""
+    done = primordia("info", run, "--json")
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def complains(done: subprocess.CompletedProcess[str], status: int, *parts: str) -> None:
+    """One clear line on stderr, the exit status, no traceback."""
+    assert done.returncode == status, done.stderr + done.stdout
+    assert len(done.stderr.strip().splitlines()) == 1, done.stderr
+    assert done.stderr.startswith("primordia: ")
+    for part in parts:
+        assert part in done.stderr, done.stderr
+
+
+CACHE: Path | None = None

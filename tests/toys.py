@@ -1,0 +1,128 @@
+"""Habitats for tests: simple enough to know what must happen, on both sides of the contract."""
+
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from primordia.habitats import Outcome
+from primordia.habitats.cartpole import COORDINATES, CartPole
+from primordia.motor import Continuous, Discrete
+from primordia.settings import Settings
+
+
+class Meadow(Settings):
+    """Nothing moves. Bodies have a clock; food and effort are constant; death comes at an age."""
+
+    lifespan: int = 2**30
+    food: float = 0.0
+    effort: float = 0.0
+    broken_at: int = 2**30
+    """the clock at which a body's simulation gives NaN"""
+
+    senses_size: int = 2
+    action: Any = Discrete(2)
+    words: int = 1
+
+    def reset(self, words: Array) -> Array:
+        return jnp.zeros((len(words), 2), jnp.float32)
+
+    def sense(self, bodies: Array) -> Array:
+        return jnp.ones_like(bodies)
+
+    def step(self, bodies: Array, action: Array) -> tuple[Array, Outcome]:
+        clock = bodies[:, 0] + 1
+        broken = jnp.where(clock >= self.broken_at, jnp.nan, 0.0)
+        same = jnp.ones(len(bodies), jnp.float32)
+        outcome = Outcome(clock >= self.lifespan, same * self.food, same * self.effort)
+        return jnp.stack([clock, broken], axis=1), outcome
+
+
+class Mill(Settings):
+    """A wheel that a continuous action turns; food is how far, and it wears out at random."""
+
+    senses_size: int = 3
+    action: Any = Continuous(2)
+    words: int = 2
+
+    def reset(self, words: Array) -> Array:
+        return (words >> np.uint32(8)).astype(jnp.float32) * np.float32(2**-24)
+
+    def sense(self, bodies: Array) -> Array:
+        return jnp.concatenate([bodies, bodies[:, :1] * bodies[:, 1:]], axis=1)
+
+    def step(self, bodies: Array, action: Array) -> tuple[Array, Outcome]:
+        turn = jnp.clip(action[:, 0], -1, 1)
+        angle = jnp.sin(bodies[:, 0] + turn)
+        after = jnp.stack([angle, jnp.cos(bodies[:, 1] + action[:, 1])], axis=1)
+        return after, Outcome(angle > 0.999, food=turn, effort=jnp.abs(action[:, 1]))
+
+
+class Mirror:
+    """Any habitat in JAX, made to keep the contract of those on the host."""
+
+    def __init__(self, inner: str = "cartpole", **options: Any) -> None:
+        kinds = {"cartpole": CartPole, "mill": Mill, "meadow": Meadow}
+        self.inner = kinds[inner](**options)
+        self.senses_size, self.action = self.inner.senses_size, self.inner.action
+        self.words = self.inner.words
+        self._step, self._reset = jax.jit(self.inner.step), jax.jit(self.inner.reset)
+        self._sense = jax.jit(self.inner.sense)
+
+    def open(self, cells: int) -> None:
+        self.bodies = np.array(self._reset(np.zeros((cells, self.words), np.uint32)))
+
+    def reset(self, born: np.ndarray, words: np.ndarray) -> np.ndarray:
+        fresh = np.asarray(self._reset(words))
+        self.bodies[born] = fresh
+        return np.asarray(self._sense(fresh))
+
+    def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
+        stepped, outcome = self._step(self.bodies, action)
+        self.bodies[alive] = np.asarray(stepped)[alive]
+        fault = ~np.isfinite(self.bodies).all(axis=1)
+        return np.array(self._sense(self.bodies)), outcome._replace(fault=fault)
+
+    def save(self) -> dict[str, np.ndarray]:
+        return {"mirror": self.bodies}
+
+    def load(self, arrays: dict[str, np.ndarray]) -> None:
+        self.bodies = np.array(arrays["mirror"])
+
+
+class HostCartPole:
+    """CartPole in plain NumPy, float64, a loop over cells: a simulator as people write them."""
+
+    senses_size, action, words = 4, Discrete(2), len(COORDINATES)
+
+    def open(self, cells: int) -> None:
+        self.state = np.zeros((cells, 4))
+
+    def reset(self, born: np.ndarray, words: np.ndarray) -> np.ndarray:
+        self.state[born] = words / 2**32 * 0.1 - 0.05
+        return self.state[born].astype(np.float32)
+
+    def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
+        for cell in np.flatnonzero(alive):
+            self.state[cell] = self._one(*self.state[cell], push=10.0 if action[cell] else -10.0)
+        fatal = (np.abs(self.state[:, 0]) > 2.4) | (np.abs(self.state[:, 2]) > np.deg2rad(12))
+        return self.state.astype(np.float32), Outcome(fatal)
+
+    def _one(self, x: float, x_dot: float, theta: float, theta_dot: float, push: float) -> list:
+        cos, sin = np.cos(theta), np.sin(theta)
+        temp = (push + 0.05 * theta_dot**2 * sin) / 1.1
+        theta_acc = (9.8 * sin - cos * temp) / (0.5 * (4.0 / 3.0 - 0.1 * cos**2 / 1.1))
+        x_acc = temp - 0.05 * theta_acc * cos / 1.1
+        return [x + 0.02 * x_dot, x_dot + 0.02 * x_acc,
+                theta + 0.02 * theta_dot, theta_dot + 0.02 * theta_acc]  # fmt: skip
+
+    def save(self) -> dict[str, np.ndarray]:
+        return {"cartpole": self.state}
+
+    def load(self, arrays: dict[str, np.ndarray]) -> None:
+        self.state = np.array(arrays["cartpole"])
+
+
+HOST_CARTPOLE = {"name": "tests.toys:HostCartPole"}

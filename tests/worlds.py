@@ -1,0 +1,82 @@
+"""Short ways to make and run worlds in tests."""
+
+from typing import Any
+
+import numpy as np
+
+from primordia.chunk import Fused
+from primordia.config import Config, load, merged, validated
+from primordia.digest import digests
+from primordia.loop import Engine
+from primordia.record import Recorder
+
+MEADOW: dict[str, Any] = {"task": "meadow", "habitat": {"name": "tests.toys:Meadow"}, "cells": 16}
+MILL: dict[str, Any] = {
+    "task": "mill",
+    "habitat": {"name": "tests.toys:Mill"},
+    "motor": {"kind": "gaussian", "sd": 0.3},
+    "cells": 24,
+    "metabolism": {"store": 40.0, "gain": 3.0, "effort_cost": 0.25, "cap": 80.0},
+    "mutation": {"probability": 0.5, "scale": 0.2, "founder_scale": 0.5},
+    "hazard": 0.002,
+    "sample_every": 100,
+    "seasons": [
+        {"kind": "ratchet", "setting": "metabolism.gain", "when": "mean_age", "above": 12.0,
+         "factor": 0.9, "every": 70},
+        {"kind": "schedule", "setting": "mutation.scale", "at": 333, "value": 0.05},
+        {"kind": "ratchet", "setting": "replication", "when": "food", "above": 0.1,
+         "factor": 1.01, "every": 50},
+    ],
+}  # fmt: skip
+
+
+def config(base: str | dict[str, Any] = "CartPole-survival", **settings: Any) -> Config:
+    """A task by name or as values, with some settings changed."""
+    if isinstance(base, str):
+        return load(base, settings)
+    return validated(merged(base, settings), source=base["task"])
+
+
+_compiled: dict[str, Fused] = {}
+
+
+def engine(config: Config) -> Engine:
+    """An Engine, with what was compiled for another that differs in seed and limits only."""
+    made = Engine(config)
+    if isinstance(made.chunks, Fused):
+        key = config.model_copy(update={"seed": 0, "stop": None}).model_dump_json(warnings=False)
+        made.chunks = _compiled.setdefault(key, made.chunks)
+    return made
+
+
+class Lived:
+    """A run in memory, driven for some ticks, with its records."""
+
+    def __init__(self, config: Config, ticks: int, chunk: int | None = None, **stop: Any) -> None:
+        self.config, self.engine = config, engine(config)
+        self.recorder = Recorder(None, config.seeds, config.cells, self.engine.law.blocks)
+        self.rows: dict[str, list[np.ndarray]] = {"births": [], "deaths": [], "metrics": []}
+        self.on(ticks, chunk, **stop)
+
+    def on(self, ticks: int, chunk: int | None = None, **stop: Any) -> None:
+        """Drive on to a tick."""
+        limits = self.engine.limits({"ticks": ticks, **stop})
+        while self.engine.any_running(limits):
+            if chunk is not None:
+                self.engine._ticks = chunk
+            happened = self.engine.advance(limits)
+            self.recorder.append(happened)
+            for name, list_ in zip(self.rows, happened, strict=True):
+                self.rows[name].append(np.asarray(list_.rows[: int(list_.count)]))
+
+    def table(self, name: str) -> dict[str, np.ndarray]:
+        """Columns of a table as NumPy arrays."""
+        arrow = self.recorder.arrow(name, np.concatenate(self.rows[name]))
+        return {
+            column: arrow[column].to_numpy(zero_copy_only=False)
+            for column in arrow.column_names
+        }
+
+    def digests(self) -> list[str]:
+        """Of each world."""
+        return digests(self.recorder.digests(), self.engine.arrays(), self.config.seeds)
