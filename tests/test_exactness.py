@@ -69,7 +69,9 @@ def test_a_hosted_habitat_lives_under_the_same_law(fused: str | dict, inner: str
     changed = {"seeds": 2, "habitat": {"name": "tests.toys:Mirror", "inner": inner}}
     one, other = Lived(config(fused, seeds=2), 500), Lived(config(fused, **changed), 500, chunk=77)
     for name in ("births", "deaths", "metrics"):
-        np.testing.assert_array_equal(np.concatenate(one.rows[name]), np.concatenate(other.rows[name]))
+        np.testing.assert_array_equal(
+            np.concatenate(one.rows[name]), np.concatenate(other.rows[name])
+        )
     a, b = one.engine.arrays(), other.engine.arrays()
     alive = a["world.organisms.alive"]
     assert alive.any()
@@ -88,7 +90,7 @@ def test_a_numpy_habitat_is_exact_in_chunks_of_any_length() -> None:
 
 @pytest.mark.parametrize("kind", ["recurrent", "feed-forward"])
 @pytest.mark.parametrize("habitat", [CartPole(), Mill()])
-def test_brains_and_bodies_do_not_depend_on_how_many_there_are(kind: str, habitat) -> None:  # noqa: ANN001
+def test_brains_and_bodies_do_not_depend_on_how_many_there_are(kind: str, habitat) -> None:
     brain = BrainSettings(kind=kind).build(habitat.senses_size, habitat.action.size)
     rng = np.random.default_rng(0)
     genome = {n: rng.normal(size=(1024, *s)).astype(np.float32) for n, s in brain.blocks.items()}

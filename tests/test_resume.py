@@ -90,7 +90,9 @@ def test_ctrl_c_saves_and_says_how_to_go_on(through: list[str], tmp_path: Path) 
     assert digests(run) == through
 
 
-@pytest.mark.parametrize("junk", ["checkpoints/.writing-000007/state.npz", "births/.writing-000003.parquet"])
+@pytest.mark.parametrize(
+    "junk", ["checkpoints/.writing-000007/state.npz", "births/.writing-000003.parquet"]
+)
 def test_half_written_files_do_not_exist(through: list[str], tmp_path: Path, junk: str) -> None:
     run = tmp_path / "run"
     assert primordia("run", *WHAT, "--ticks", 5_000, "--out", run).returncode == 0

@@ -73,8 +73,7 @@ class Lived:
         """Columns of a table as NumPy arrays."""
         arrow = self.recorder.arrow(name, np.concatenate(self.rows[name]))
         return {
-            column: arrow[column].to_numpy(zero_copy_only=False)
-            for column in arrow.column_names
+            column: arrow[column].to_numpy(zero_copy_only=False) for column in arrow.column_names
         }
 
     def digests(self) -> list[str]:

@@ -1,11 +1,11 @@
 """The Python interface; the command line uses nothing else.
 
-    import primordia
+import primordia
 
-    run = primordia.run("CartPole-survival", out="runs/first", seed=1)
-    print(run.info()["saturation"])
-    run.resume(ticks=200_000)
-    genome = run.rebuild(organism=17)
+run = primordia.run("CartPole-survival", out="runs/first", seed=1)
+print(run.info()["saturation"])
+run.resume(ticks=200_000)
+genome = run.rebuild(organism=17)
 """
 
 from dataclasses import dataclass
@@ -15,8 +15,7 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from primordia import config, lineage, report
-from primordia import loop
+from primordia import config, lineage, loop, report
 from primordia.loop import Listener
 from primordia.verify import verify
 
@@ -41,7 +40,9 @@ class Run:
 
     def resume(self, inexact: bool = False, **options: Any) -> list[str]:
         """Go on, with new `ticks`, `births` or `until` if given; see `loop.resume`."""
-        limits = {name: options.pop(name) for name in ("ticks", "births", "until") if name in options}
+        limits = {
+            name: options.pop(name) for name in ("ticks", "births", "until") if name in options
+        }
         return loop.resume(self.path, limits, inexact=inexact, **options)
 
     def verify(self, listen: Listener | None = None) -> list[str]:

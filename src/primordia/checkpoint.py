@@ -1,7 +1,7 @@
 """Checkpoints: all that is needed to go on, written so that a crash at any instant leaves a good one.
 
-    RUN/checkpoints/000012/state.npz        the state's arrays, and `tail.*`: rows in no segment yet
-                           manifest.json    written last: checksums, the segments that count, progress
+RUN/checkpoints/000012/state.npz        the state's arrays, and `tail.*`: rows in no segment yet
+                       manifest.json    written last: checksums, the segments that count, progress
 """
 
 import json
@@ -55,9 +55,7 @@ class Checkpoint:
         return {name: np.array(v, np.uint64) for name, v in self.manifest["digests"].items()}
 
 
-def save(
-    run: Path, arrays: dict[str, np.ndarray], recorder: Recorder, progress: Progress
-) -> None:
+def save(run: Path, arrays: dict[str, np.ndarray], recorder: Recorder, progress: Progress) -> None:
     """Write a checkpoint and drop those no longer needed.
 
     Raises:

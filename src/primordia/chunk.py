@@ -16,7 +16,7 @@ from primordia import events as log
 from primordia.events import Events
 from primordia.genesis import birth_words
 from primordia.habitats import Bodies, Habitat
-from primordia.law import Fates, Law, eventful, judge, keys_of, quiet_ticks, settle, think
+from primordia.law import Fates, Law, judge, keys_of, no_fates, quiet_ticks, rest, settle, think
 from primordia.wide import Wide, happened
 from primordia.world import World, Worlds
 
@@ -119,28 +119,27 @@ def _quiet(
     law: Law, habitat: Habitat, state: State, live_worlds: Array, at_most: Array
 ) -> tuple[State, Fates, Array]:
     """Ticks up to and with the first eventful one, at most so many -> state, fates, ticks."""
-    first, bodies = state
+    first = state.world
     active = first.organisms.alive & law.per_cell(live_worlds)
 
     def go_on(carry: tuple) -> Array:
-        *_, passed, eventful_now = carry
-        return (passed < at_most) & ~eventful_now
+        _, _, fates, _, passed = carry
+        return (passed < at_most) & ~fates.eventful
 
     def tick(carry: tuple) -> tuple:
-        world, bodies, _, keys, passed, _ = carry
-        world, action = think(law, world, habitat.sense(bodies), keys, active)
-        stepped, outcome = habitat.step(bodies, action)
-        fault = broken(stepped) if outcome.fault is None else broken(stepped) | outcome.fault
+        world, bodies, _, keys, passed = carry
+        world, action = think(law, world, habitat.sense(bodies), keys)
+        bodies, outcome = habitat.step(bodies, action)
+        fault = broken(bodies) if outcome.fault is None else broken(bodies) | outcome.fault
         world, fates = judge(law, world, outcome._replace(fault=fault), keys, active)
-        bodies = choose(active, stepped, bodies)
-        next_keys = keys_of(first.worlds, passed + 2)
-        return world, bodies, fates, next_keys, passed + 1, eventful(law, first, fates)
+        return world, bodies, fates, keys_of(first.worlds, passed + 2), passed + 1
 
-    nothing = Fates(jnp.full(active.shape, -1, jnp.int32), jnp.zeros_like(active))
     keys = keys_of(first.worlds, jnp.int32(1))
-    carry = (first, bodies, nothing, keys, jnp.int32(0), jnp.zeros((), bool))
-    world, bodies, fates, _, passed, _ = lax.while_loop(go_on, tick, carry)
-    return State(world, bodies), fates, passed
+    carry = (first, state.bodies, no_fates(law), keys, jnp.int32(0))
+    world, bodies, fates, _, passed = lax.while_loop(go_on, tick, carry)
+    organisms = rest(first.organisms, world.organisms, active)
+    bodies = choose(active, bodies, state.bodies)
+    return State(World(organisms, world.worlds), bodies), fates, passed
 
 
 def _embody(law: Law, habitat: Habitat, world: World, bodies: Bodies, born: Array) -> Bodies:
@@ -165,5 +164,5 @@ def choose(cells: Array, yes: Bodies, no: Bodies) -> Bodies:
 def broken(bodies: Bodies) -> Array:
     """Which bodies (C,) have a coordinate that is no finite number."""
     leaves = [leaf for leaf in jax.tree.leaves(bodies) if jnp.issubdtype(leaf.dtype, jnp.floating)]
-    flat = [~jnp.isfinite(leaf.reshape(len(leaf), -1)).all(axis=1) for leaf in leaves]
+    flat = [(~jnp.isfinite(leaf.reshape(len(leaf), -1))).any(axis=1) for leaf in leaves]
     return jnp.stack(flat).any(axis=0) if flat else jnp.zeros((), bool)

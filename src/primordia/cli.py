@@ -34,7 +34,9 @@ class RunCommand(click.Command):
 
         words = [word for word in sys.argv[2:] if not word.startswith("-")]
         task = words[0] if words else None
-        with formatter.section(f"Settings, as in TOML ({'values of ' + task if task else 'defaults'})"):
+        with formatter.section(
+            f"Settings, as in TOML ({'values of ' + task if task else 'defaults'})"
+        ):
             formatter.write_dl(setting_rows(task))
 
 
@@ -47,7 +49,9 @@ class RunCommand(click.Command):
 @click.option("--births", "stop_births", help="Stop each world after so many births.")
 @click.option("--until", "stop_until", help="'saturation': stop each world once it is saturated.")
 @click.option("--checkpoint-every", type=float, default=60.0, show_default=True, metavar="SECONDS")
-@click.option("--device", default="cpu", show_default=True, help="What JAX computes on: cpu or gpu.")
+@click.option(
+    "--device", default="cpu", show_default=True, help="What JAX computes on: cpu or gpu."
+)
 @click.option("--quiet", is_flag=True, help="Print nothing while running.")
 @click.pass_context
 def run(ctx: click.Context, task: str, out: Path | None, **options: Any) -> None:
@@ -67,9 +71,13 @@ def run(ctx: click.Context, task: str, out: Path | None, **options: Any) -> None
             _put(settings, path, _value(given))
     chosen = config.load(task, settings)
     path = out or fresh_directory(chosen)
-    _drive(path, options["quiet"], lambda listen: start(
-        chosen, path, checkpoint_every=options["checkpoint_every"], listen=listen
-    ))
+    _drive(
+        path,
+        options["quiet"],
+        lambda listen: start(
+            chosen, path, checkpoint_every=options["checkpoint_every"], listen=listen
+        ),
+    )
 
 
 @main_group.command()
@@ -78,7 +86,9 @@ def run(ctx: click.Context, task: str, out: Path | None, **options: Any) -> None
 @click.option("--births", type=int, help="New limit of births.")
 @click.option("--until", type=click.Choice(["saturation"]), help="Stop once saturated.")
 @click.option("--checkpoint-every", type=float, default=60.0, show_default=True, metavar="SECONDS")
-@click.option("--device", default="cpu", show_default=True, help="What JAX computes on: cpu or gpu.")
+@click.option(
+    "--device", default="cpu", show_default=True, help="What JAX computes on: cpu or gpu."
+)
 @click.option("--inexact", is_flag=True, help="Go on although versions or machine differ.")
 @click.option("--quiet", is_flag=True, help="Print nothing while running.")
 def resume(run: Path, quiet: bool, inexact: bool, checkpoint_every: float, **options: Any) -> None:
@@ -112,7 +122,9 @@ def info(run: Path, as_json: bool) -> None:
 
 @main_group.command()
 @click.argument("run", type=click.Path(path_type=Path))
-@click.option("--device", default="cpu", show_default=True, help="What JAX computes on: cpu or gpu.")
+@click.option(
+    "--device", default="cpu", show_default=True, help="What JAX computes on: cpu or gpu."
+)
 def verify(run: Path, device: str) -> None:
     """Live a run again from its beginning and compare: every birth, death and genome."""
     from primordia import device as devices

@@ -27,9 +27,12 @@ class Stop(Settings):
     """When a world stops; it then stays as it is while others of the run go on."""
 
     ticks: int | None = Field(None, ge=1, lt=2**63, description="after so many ticks")
-    births: int | None = Field(None, ge=1, lt=2**63, description="after so many births, founders counted")
+    births: int | None = Field(
+        None, ge=1, lt=2**63, description="after so many births, founders counted"
+    )
     until: Literal["saturation"] | None = Field(
-        None, description="saturation: once all cells have been occupied, without a death, for long enough"
+        None,
+        description="saturation: once all cells have been occupied, without a death, for long enough",
     )
 
 
@@ -53,11 +56,18 @@ class Config(Settings):
     genesis: Literal["one", "fill"] = Field(
         "one", description="life starts, and restarts, with one founder in a random cell, or in all"
     )
-    hazard: float = Field(0.0, ge=0, le=1, description="probability of death in a tick, whoever it is")
+    hazard: float = Field(
+        0.0, ge=0, le=1, description="probability of death in a tick, whoever it is"
+    )
     metabolism: Metabolism | None = Field(None, description="none: nobody starves")
-    seasons: tuple[Season, ...] = Field((), strict=False, description="settings that change with time")
+    seasons: tuple[Season, ...] = Field(
+        (), strict=False, description="settings that change with time"
+    )
     saturation_ticks: int = Field(
-        10_000, ge=1, lt=2**31, description="a full world without a death for so many ticks is saturated"
+        10_000,
+        ge=1,
+        lt=2**31,
+        description="a full world without a death for so many ticks is saturated",
     )
     sample_every: int = Field(
         1000, ge=1, lt=2**31, description="ticks from one row of metrics to the next"
@@ -190,7 +200,9 @@ def _check(config: Config) -> None:
     if config.cells * config.seeds > 2**26:
         raise InputError(f"cells x seeds: {config.cells * config.seeds} cells are more than 2^26")
     if config.motor.kind == "gaussian" and not isinstance(habitat.action, Continuous):
-        raise InputError("motor.kind: this habitat's actions are discrete, so a gaussian motor has no use")
+        raise InputError(
+            "motor.kind: this habitat's actions are discrete, so a gaussian motor has no use"
+        )
     columns = config.build_law(habitat).columns
     for name in config.mutation.blocks:
         if f"mutation.blocks.{name}.scale" not in columns:
@@ -216,7 +228,9 @@ def setting_fields(model: type[BaseModel], prefix: str = "") -> dict[str, Any]:
 
 
 def _model_in(annotation: Any) -> type[BaseModel] | None:
-    options = get_args(annotation) if get_origin(annotation) in (Union, UnionType) else (annotation,)
+    options = (
+        get_args(annotation) if get_origin(annotation) in (Union, UnionType) else (annotation,)
+    )
     models = [o for o in options if isinstance(o, type) and issubclass(o, BaseModel)]
     return models[0] if models else None
 

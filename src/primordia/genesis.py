@@ -4,11 +4,11 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from primordia.keys import Purpose, bits, bits_if, stream
+from primordia.keys import Purpose, bits_if, stream
 from primordia.law import Law
 from primordia.metabolism import Metabolism, Rates
 from primordia.seasons import ratchets
-from primordia.wide import Wide, never, wide, zero
+from primordia.wide import never, wide, zero
 from primordia.world import Cause, Climate, Looks, Organisms, World, Worlds
 
 
@@ -54,16 +54,18 @@ def begin(law: Law, seeds: list[int], tick: int = 0, births: int = 0) -> World:
 
 def birth_words(law: Law, worlds: Worlds, needed: Array, words: int) -> Array:
     """Random words for bodies born in this tick, uint32 (C, words); zeros unless needed, bool ()."""
-    key = law.per_cell(stream(worlds.seed, Purpose.BODY, worlds.tick))
-    draws = jnp.arange(-(-words // 2), dtype=jnp.uint32)
-    key = Wide(key.hi[:, None], key.lo[:, None])
-    pairs = bits_if(needed, key, law.cell_numbers[:, None], draws)
-    return jnp.concatenate(pairs, axis=1)[:, :words]
+    key = stream(worlds.seed, Purpose.BODY, worlds.tick).map(law.per_cell)
+    draws = jnp.arange(-(-words // 2), dtype=jnp.uint32)[:, None]
+    # Cells on the last axis, which compilers turn into vector instructions.
+    pairs = bits_if(needed, key, law.cell_numbers, draws)
+    return jnp.concatenate(pairs, axis=0)[:words].T
 
 
 def _climate(law: Law, count: int) -> Climate:
     def each(values: float | list[float]) -> Array:
-        return jnp.asarray(np.tile(np.array(values, np.float32), (count, 1)).reshape(count, *np.shape(values)))
+        return jnp.asarray(
+            np.tile(np.array(values, np.float32), (count, 1)).reshape(count, *np.shape(values))
+        )
 
     rates = law.metabolism or Metabolism()
     return Climate(

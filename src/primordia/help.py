@@ -62,7 +62,9 @@ class Lines:
 def summary(info: dict[str, Any]) -> str:
     """What happened, in a few lines."""
     worlds = info["worlds"]
-    lines = [f"{info['task']}: {len(worlds)} world{'s' * (len(worlds) > 1)} of {info['cells']} cells"]
+    lines = [
+        f"{info['task']}: {len(worlds)} world{'s' * (len(worlds) > 1)} of {info['cells']} cells"
+    ]
     for world in worlds[:10]:
         lines.append(_world_line(world))
     if len(worlds) > 10:
@@ -81,7 +83,11 @@ def _world_line(world: dict[str, Any]) -> str:
         if saturation
         else "not saturated"
     )
-    age = f"mean age {world['mean_age']:,.0f}, oldest {world['oldest_age']:,}" if world["alive"] else ""
+    age = (
+        f"mean age {world['mean_age']:,.0f}, oldest {world['oldest_age']:,}"
+        if world["alive"]
+        else ""
+    )
     return (
         f"  seed {world['seed']}: {world['ticks']:,} ticks, {world['births']:,} births, deaths: "
         f"{', '.join(causes) or 'none'}; {world['alive']} alive, {age}; {end}"

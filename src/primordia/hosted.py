@@ -18,7 +18,7 @@ from primordia.chunk import Limits, State, named_leaves, running
 from primordia.events import Events
 from primordia.genesis import birth_words
 from primordia.habitats import HostHabitat, Outcome
-from primordia.law import Fates, Law, judge, keys_of, lifeless, settle, think
+from primordia.law import Law, judge, keys_of, lifeless, no_fates, rest, settle, think
 from primordia.world import World
 
 
@@ -70,7 +70,7 @@ class Hosted:
         events = Events(*(rows._replace(count=jnp.int32(0)) for rows in events))
         world, events, decision = self._genesis(state.world, events, limits)
         senses = self._embody(np.array(state.bodies), decision)
-        thought, done = self._think(world, senses, limits), 0
+        thought, done = self._think(world, senses), 0
         while done < ticks and decision.go_on:
             action = np.asarray(thought.action)
             senses, outcome = self._habitat.step(action, np.asarray(decision.active))
@@ -79,7 +79,7 @@ class Hosted:
             )
             if np.asarray(decision.born).any():
                 senses = self._embody(senses, decision)
-                thought = self._think(world, senses, limits)
+                thought = self._think(world, senses)
             done += 1
         return State(world, senses), events, done
 
@@ -93,7 +93,9 @@ class Hosted:
         """All that is needed to go on exactly, by name."""
         bodies = {f"bodies.{name}": array for name, array in self._habitat.save().items()}
         bodies["bodies.senses"] = np.asarray(state.bodies)
-        return {f"world.{name}": np.asarray(leaf) for name, leaf in named_leaves(state.world)} | bodies
+        return {
+            f"world.{name}": np.asarray(leaf) for name, leaf in named_leaves(state.world)
+        } | bodies
 
     def load(self, template: State, arrays: dict[str, np.ndarray]) -> State:
         """Take back what `save` gave; `template` is any state of the same run."""
@@ -105,9 +107,8 @@ class Hosted:
         return State(jax.tree.unflatten(jax.tree.structure(template.world), leaves), senses)
 
 
-def _think(law: Law, world: World, senses: Array, limits: Limits) -> Thought:
-    active = world.organisms.alive & law.per_cell(running(world.worlds, limits))
-    after, action = think(law, world, senses, keys_of(world.worlds, jnp.int32(1)), active)
+def _think(law: Law, world: World, senses: Array) -> Thought:
+    after, action = think(law, world, senses, keys_of(world.worlds, jnp.int32(1)))
     return Thought(after.organisms.memory, after.organisms.faulty, action)
 
 
@@ -116,11 +117,10 @@ def _genesis(
 ) -> tuple[World, Events, Decision]:
     """Founders where a running world is empty, before the first tick; else nothing."""
     nobody = jnp.zeros_like(world.organisms.alive)
-    fates = Fates(jnp.full(nobody.shape, -1, jnp.int32), nobody)
     live_worlds = running(world.worlds, limits)
     world, events, born = lax.cond(
         lifeless(law, world, live_worlds).any(),
-        lambda world, events: settle(law, world, events, fates, jnp.int32(0), live_worlds),
+        lambda world, events: settle(law, world, events, no_fates(law), jnp.int32(0), live_worlds),
         lambda world, events: (world, events, nobody),
         world,
         events,
@@ -144,11 +144,12 @@ def _tick(
     lost = ~jnp.isfinite(senses).all(axis=1)
     fault = lost if outcome.fault is None else lost | outcome.fault
     keys = keys_of(world.worlds, jnp.int32(1))
-    world = World(organisms, world.worlds)
-    world, fates = judge(law, world, outcome._replace(fault=fault), keys, active)
+    after = World(organisms, world.worlds)
+    after, fates = judge(law, after, outcome._replace(fault=fault), keys, active)
+    world = World(rest(world.organisms, after.organisms, active), after.worlds)
     world, events, born = settle(law, world, events, fates, jnp.int32(1), live_worlds)
     decision = _decide(law, words, world, events, born, limits)
-    return world, events, _think(law, world, senses, limits), decision
+    return world, events, _think(law, world, senses), decision
 
 
 def _decide(

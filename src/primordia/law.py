@@ -1,12 +1,13 @@
 """The law of life, once, for every habitat: pure functions with the habitat between them.
 
-    think(law, world, senses, keys, active)           -> world, action
+    think(law, world, senses, keys)                   -> world, action
     judge(law, world, outcome, keys, active)          -> world, fates
+    rest(before, after, active)                       -> world
     settle(law, world, events, fates, ticks, running) -> world, events, born
 
-Brains think and fates are judged in every tick. Births, deaths, counts and seasons are settled when
-a tick has an event, or something falls due; until then ticks only pass. A tick bears the
-number of ticks its world has then lived through: an organism born in tick b that dies in tick d lived
+Brains think and fates are judged in every tick. When a tick has an event, or something falls due,
+those that should not have moved are put back, and births, deaths, counts and seasons are settled;
+until then ticks only pass. A tick bears the number of ticks its world has then lived through: an organism born in tick b that dies in tick d lived
 d - b ticks, and acted for the first time in tick b + 1.
 """
 
@@ -60,10 +61,8 @@ class Law:
         """(C, ...) -> (W, N, ...)."""
         return per_cell.reshape(self.worlds, self.cells, *per_cell.shape[1:])
 
-    def per_cell(self, per_world: Array | Wide) -> Array | Wide:
+    def per_cell(self, per_world: Array) -> Array:
         """(W,) -> (C,)."""
-        if isinstance(per_world, Wide):
-            return Wide(self.per_cell(per_world.hi), self.per_cell(per_world.lo))
         return jnp.broadcast_to(per_world[:, None], (self.worlds, self.cells)).ravel()
 
     @cached_property
@@ -81,7 +80,9 @@ class Law:
         """Which blocks each setting under `mutation` governs."""
         found: Columns = {}
         for field in ("probability", "scale"):
-            own = [getattr(self.mutation.blocks.get(b), field, None) is not None for b in self.blocks]
+            own = [
+                getattr(self.mutation.blocks.get(b), field, None) is not None for b in self.blocks
+            ]
             found[f"mutation.{field}"] = [i for i, is_own in enumerate(own) if not is_own]
             for i, block in enumerate(self.blocks):
                 found[f"mutation.blocks.{block}.{field}"] = [i]
@@ -115,29 +116,33 @@ class Fates(NamedTuple):
     """int32: of its death, or -1"""
     wants: Array
     """bool: lives on, and would copy itself now if there is room"""
+    eventful: Array
+    """bool (): somebody dies, or may be born"""
 
 
-def think(
-    law: Law, world: World, senses: Array, keys: Keys, active: Array
-) -> tuple[World, Array]:
-    """Brains, one tick.
+def no_fates(law: Law) -> Fates:
+    """Nothing happens to anybody."""
+    cells = law.worlds * law.cells
+    nobody = jnp.zeros(cells, bool)
+    return Fates(jnp.full(cells, -1, jnp.int32), nobody, jnp.zeros((), bool))
+
+
+def think(law: Law, world: World, senses: Array, keys: Keys) -> tuple[World, Array]:
+    """Brains of all cells, one tick; `rest` then undoes what is not to be.
 
     Args:
         law: the law.
         world: before the tick.
         senses: float32 (C, S).
         keys: of the tick.
-        active: who lives in a world that runs, bool (C,).
 
     Returns:
-        world with the active's memories advanced; action, int32 (C,) or float32 (C, A).
+        world with memories advanced; action, int32 (C,) or float32 (C, A).
     """
     organisms, worlds = world
     memory, output = law.brain(organisms.genome, organisms.memory, senses)
-    organisms = organisms._replace(
-        memory=jnp.where(active[:, None], memory, organisms.memory),
-        faulty=~jnp.isfinite(output).all(axis=1),
-    )
+    faulty = (~jnp.isfinite(output)).any(axis=1)
+    organisms = organisms._replace(memory=memory, faulty=faulty)
     return World(organisms, worlds), _act(law, keys.motor, output)
 
 
@@ -147,7 +152,7 @@ def _act(law: Law, key: Wide, output: Array) -> Array:
     if law.motor.kind == "direct":
         return output
     table = jnp.asarray(quantiles() * np.float32(law.motor.sd))
-    return output + table[noise_index(law.per_cell(key), law.cell_numbers, law.action.size)]
+    return output + table[noise_index(key.map(law.per_cell), law.cell_numbers, law.action.size)]
 
 
 def judge(
@@ -169,7 +174,10 @@ def judge(
     cause = _deaths(law, organisms, worlds, outcome, keys.hazard)
     cause = jnp.where(active, cause, -1)
     replicates = _drawn(law, keys.replicate, worlds.climate.replication)
-    return World(organisms, worlds), Fates(cause, replicates & active & (cause < 0))
+    wants = replicates & active & (cause < 0)
+    room = law.placement.room(law.by_world(organisms.alive)).ravel()
+    eventful = ((cause >= 0) | (wants & room)).any()
+    return World(organisms, worlds), Fates(cause, wants, eventful)
 
 
 def _eat(law: Law, world: World, outcome: Outcome, active: Array) -> World:
@@ -177,11 +185,11 @@ def _eat(law: Law, world: World, outcome: Outcome, active: Array) -> World:
     if law.metabolism is not None:
         rates = Rates(*(law.per_cell(rate) for rate in worlds.climate.metabolism))
         energy = metabolise(organisms.energy, outcome.food, outcome.effort, rates)
-        organisms = organisms._replace(energy=jnp.where(active, energy, organisms.energy))
+        organisms = organisms._replace(energy=energy)
     if outcome.food is not None:
         food = jnp.where(active, fixed(outcome.food), 0)
         organisms = organisms._replace(eaten=add(organisms.eaten, food))
-        by_world = Wide(*(law.by_world(word) for word in signed(food)))
+        by_world = signed(food).map(law.by_world)
         worlds = worlds._replace(food=worlds.food + total(by_world, axis=1))
     return World(organisms, worlds)
 
@@ -207,14 +215,22 @@ def _deaths(
 
 def _drawn(law: Law, key: Wide, probability: Array) -> Array:
     """An event of given probability (W,) for every cell: bool (C,)."""
-    word = bits(Wide(key.hi[:, None], key.lo[:, None]), jnp.arange(law.cells)[None]).hi
+    word = bits(key.take(np.s_[:, None]), jnp.arange(law.cells)[None]).hi
     return chance(word, probability[:, None]).ravel()
 
 
-def eventful(law: Law, world: World, fates: Fates) -> Array:
-    """Whether something dies, or may be born, bool ()."""
-    room = law.placement.room(law.by_world(world.organisms.alive)).ravel()
-    return ((fates.cause >= 0) | (fates.wants & room)).any()
+def rest(before: Organisms, after: Organisms, active: Array) -> Organisms:
+    """Who is not active, in an empty cell or a world that has stopped, stays as before."""
+
+    def keep(new: Array, old: Array) -> Array:
+        return jnp.where(active.reshape(-1, *[1] * (new.ndim - 1)), new, old)
+
+    return before._replace(
+        memory=keep(after.memory, before.memory),
+        energy=keep(after.energy, before.energy),
+        eaten=keep(after.eaten, before.eaten),
+        faulty=keep(after.faulty, before.faulty),
+    )
 
 
 def lifeless(law: Law, world: World, running: Array) -> Array:
@@ -229,7 +245,7 @@ def settle(
 
     Args:
         law: the law.
-        world: its organisms as `judge` left them after those ticks.
+        world: its organisms as `rest` left them after those ticks.
         events: lists with room for one tick (`events.have_room`).
         fates: of the last tick.
         ticks: int32 (), at most as many as `quiet_ticks` said; 0 for genesis.
@@ -250,7 +266,7 @@ def settle(
     )
     nobody = jnp.zeros_like(organisms.alive)
     world, events, born = lax.cond(
-        eventful(law, world, fates) | lifeless(law, world, running).any(),
+        fates.eventful | lifeless(law, world, running).any(),
         lambda world, events: turnover(law, world, events, running, fates.wants, fates.cause),
         lambda world, events: (world, events, nobody),
         World(organisms, worlds),
@@ -266,7 +282,9 @@ def quiet_ticks(law: Law, world: World, running: Array) -> Array:
     """
     worlds, far = world.worlds, 2**31 - 1
     due = [worlds.sample_wait, *worlds.looks.wait.T]
-    due.append(jnp.where(worlds.calm < law.saturation_ticks, law.saturation_ticks - worlds.calm, far))
+    due.append(
+        jnp.where(worlds.calm < law.saturation_ticks, law.saturation_ticks - worlds.calm, far)
+    )
     for season in law.seasons:
         if isinstance(season, Schedule):
             due.append(worlds.tick.until(wide(season.at)))

@@ -115,12 +115,14 @@ def start(
     except OSError as error:
         raise Trouble(f"{run} cannot be made: {error.strerror}") from None
     with locked(run):
-        _write_text(run / "versions.json", json.dumps({"format": FORMAT, **device.versions()}, indent=1))
+        _write_text(
+            run / "versions.json", json.dumps({"format": FORMAT, **device.versions()}, indent=1)
+        )
         _write_text(run / "config.toml", config.to_toml())
         engine = Engine(config)
         recorder = Recorder(run, config.seeds, config.cells, engine.law.blocks)
         progress = Progress(config.stop.model_dump(), 0.0, engine.chunks.exact)
-        _drive(engine, recorder, run, progress, checkpoint_every, listen)
+        drive(engine, recorder, run, progress, checkpoint_every, listen)
 
 
 def resume(
@@ -164,11 +166,11 @@ def resume(
             progress = last.progress
         progress.limits |= {name: value for name, value in (limits or {}).items() if value}
         progress.exact &= same and engine.chunks.exact
-        _drive(engine, recorder, run, progress, checkpoint_every, listen)
+        drive(engine, recorder, run, progress, checkpoint_every, listen)
     return faults
 
 
-def _drive(
+def drive(
     engine: Engine,
     recorder: Recorder,
     run: Path,
@@ -209,7 +211,9 @@ def read_config(run: Path) -> Config:
         recorded = json.loads(path.read_text())
         made_by = recorded["format"]
     except (OSError, ValueError, KeyError, TypeError):
-        raise InputError(f"{run} is not a run of primordia: it has no readable versions.json") from None
+        raise InputError(
+            f"{run} is not a run of primordia: it has no readable versions.json"
+        ) from None
     if made_by > FORMAT:
         raise InputError(
             f"{run} was made by a newer primordia (format {made_by}, this one reads {FORMAT}); upgrade"

@@ -54,9 +54,7 @@ class Rates(NamedTuple):
     cap: Array
 
 
-def metabolise(
-    energy: Array, food: Array | None, effort: Array | None, rates: Rates
-) -> Array:
+def metabolise(energy: Array, food: Array | None, effort: Array | None, rates: Rates) -> Array:
     """One tick of every organism's energy, int32 (N,), before death by starvation is judged."""
     change = -fixed(rates.drain)
     if effort is not None:

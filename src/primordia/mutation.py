@@ -25,7 +25,9 @@ QUANTILES_SHA256 = "1cfbba1e07e34386a57626f82aeb43e6ed54ba70a3ea6b7d964dc66a8410
 class BlockMutation(Settings):
     """Mutation of one block of weights; what is not given is as for the whole genome."""
 
-    probability: float | None = Field(None, ge=0, le=1, description="chance that a child's block mutates")
+    probability: float | None = Field(
+        None, ge=0, le=1, description="chance that a child's block mutates"
+    )
     scale: float | None = Field(None, ge=0, description="standard deviation of the block's noise")
 
 
@@ -63,7 +65,9 @@ def quantiles() -> np.ndarray:
     upper = np.array([inverse((i + 0.5) / 65536) for i in range(32768, 65536)], np.float32)
     table = np.concatenate([-upper[::-1], upper])
     if hashlib.sha256(table.astype("<f4").tobytes()).hexdigest() != QUANTILES_SHA256:
-        raise RuntimeError("this machine's C library gives other Gaussian quantiles: genomes would differ")
+        raise RuntimeError(
+            "this machine's C library gives other Gaussian quantiles: genomes would differ"
+        )
     return table
 
 
@@ -92,14 +96,19 @@ def noise_index(stream: Wide, cells: Array, length: int) -> Array:
     With m = ceil(length / 4), weight i takes the (i // m)-th 16 bits of draw i % m.
     """
     draws = jnp.arange(-(-length // 4), dtype=jnp.uint32)
-    a, b = bits(Wide(stream.hi[:, None], stream.lo[:, None]), cells[:, None], draws)
+    a, b = bits(stream.take(np.s_[:, None]), cells[:, None], draws)
     low, high = np.uint32(0xFFFF), np.uint32(16)
     quarters = jnp.concatenate([a & low, a >> high, b & low, b >> high], axis=1)
     return quarters[:, :length].astype(jnp.int32)
 
 
 def newborns(
-    parents: Array, standard: Array, takes: Array, scale: Array, founder: Array, founder_scale: float
+    parents: Array,
+    standard: Array,
+    takes: Array,
+    scale: Array,
+    founder: Array,
+    founder_scale: float,
 ) -> Array:
     """Genomes (K, P) of children of `parents` (K, P) and of founders.
 

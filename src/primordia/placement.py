@@ -61,7 +61,9 @@ class Placement(Settings):
         else:
             rows = max(r for r in range(1, math.isqrt(cells) + 1) if cells % r == 0)
         if rows < 2 or cells // rows < 2:
-            raise ValueError(f"{cells} cells do not make a torus; choose rows x columns, both 2 or more")
+            raise ValueError(
+                f"{cells} cells do not make a torus; choose rows x columns, both 2 or more"
+            )
         return rows, cells // rows
 
     def room(self, occupied: Array) -> Array:

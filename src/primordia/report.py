@@ -13,8 +13,8 @@ from primordia.checkpoint import Checkpoint
 from primordia.config import Config
 from primordia.digest import digests
 from primordia.errors import InputError, Trouble
-from primordia.record import TABLES, Recorder
 from primordia.loop import read_config
+from primordia.record import TABLES, Recorder
 from primordia.world import Cause
 
 NEVER = 2**64 - 1

@@ -1,6 +1,7 @@
 """Samples: a row a world at fixed ticks, and whenever a season changes its climate."""
 
 import jax.numpy as jnp
+import numpy as np
 from jax import Array, lax
 
 from primordia.events import Rows
@@ -55,13 +56,13 @@ def _columns(world: World) -> list[Array]:
     alive = organisms.alive.reshape(count, -1)
 
     def by_world(value: Wide) -> Wide:
-        return Wide(value.hi.reshape(count, -1), value.lo.reshape(count, -1))
+        return value.map(lambda words: words.reshape(count, -1))
 
     energy = signed(jnp.where(organisms.alive, organisms.energy, 0))
     pairs = [
         worlds.tick,
         worlds.births,
-        *(worlds.deaths[:, cause] for cause in Cause),
+        *(worlds.deaths.take(np.s_[:, cause]) for cause in Cause),
         worlds.extinctions,
         worlds.organism_ticks,
         ages_total(world),

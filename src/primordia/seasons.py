@@ -80,8 +80,8 @@ def _measure(season: Ratchet, s: int, world: World) -> Array:
         return population / np.float32(alive.shape[1])
     if season.when == "mean_age":
         return to_float(ages_total(world)) / population
-    lived = worlds.organism_ticks - worlds.looks.organism_ticks[:, s]
-    food = worlds.food - worlds.looks.food[:, s]
+    lived = worlds.organism_ticks - worlds.looks.organism_ticks.take(np.s_[:, s])
+    food = worlds.food - worlds.looks.food.take(np.s_[:, s])
     return to_float(food) / np.float32(ONE) / to_float(lived)
 
 
@@ -89,7 +89,7 @@ def _looked(worlds: Worlds, season: Ratchet, s: int, look: Array) -> Looks:
     looks = worlds.looks
 
     def note(then: Wide, now: Wide) -> Wide:
-        new = select(look, now, then[:, s])
+        new = select(look, now, then.take(np.s_[:, s]))
         return Wide(then.hi.at[:, s].set(new.hi), then.lo.at[:, s].set(new.lo))
 
     return Looks(
@@ -112,5 +112,7 @@ def _change(climate: Climate, season: Schedule | Ratchet, columns: Columns, due:
     if group == "mutation":
         field = "mutation_" + name.rpartition(".")[2]
         which, old = np.array(columns[season.setting], int), getattr(climate, field)
-        return climate._replace(**{field: old.at[:, which].set(new(old[:, which]))})
-    return climate._replace(**{group: new(getattr(climate, group))})
+        changed = {field: old.at[:, which].set(new(old[:, which]))}
+        return climate._replace(**changed)  # type: ignore[arg-type]
+    which = {group: new(getattr(climate, group))}
+    return climate._replace(**which)  # type: ignore[arg-type]

@@ -7,14 +7,15 @@ genome is done per birth; the rest is cheap enough to do for all cells at once.
 from typing import TYPE_CHECKING, NamedTuple
 
 import jax.numpy as jnp
-from jax import Array, lax
+import numpy as np
+from jax import Array
 
 from primordia import events as log
 from primordia.brain import split
 from primordia.events import Events, Rows
 from primordia.keys import Purpose, below, bits, bits_if, stream
 from primordia.metabolism import fixed
-from primordia.mutation import mutates, newborns, noise_index, quantiles, streams
+from primordia.mutation import Streams, mutates, newborns, noise_index, quantiles, streams
 from primordia.wide import Wide, happened, largest, never, select, zero
 from primordia.world import Cause, Organisms, Origin, World, Worlds
 
@@ -69,7 +70,7 @@ def turnover(
 def _place(law: "Law", worlds: Worlds, wants: Array, alive: Array) -> Array:
     """The parent (on the axis of all cells) of each newborn, or -1: int32 (C,)."""
     key = stream(worlds.seed, Purpose.PLACE, worlds.tick)
-    key, cells = Wide(key.hi[:, None], key.lo[:, None]), jnp.arange(law.cells)[None]
+    key, cells = key.take(np.s_[:, None]), jnp.arange(law.cells)[None]
 
     def draw(number: Array) -> Wide:
         return bits_if(wants.any(), key, cells, number)
@@ -91,16 +92,25 @@ def _genesis(law: "Law", worlds: Worlds, extinct: Array) -> Array:
 def _births(law: "Law", worlds: Worlds, parent: Array, founded: Array) -> Births:
     born = (parent >= 0) | founded
     rank = jnp.cumsum(law.by_world(born), axis=1, dtype=jnp.int32).ravel() - 1
-    number = law.per_cell(worlds.births).plus(jnp.maximum(rank, 0))
+    number = worlds.births.map(law.per_cell).plus(jnp.maximum(rank, 0))
     return Births(born, founded, jnp.maximum(parent, 0), number)
 
 
-def _note_deaths(law: "Law", organisms: Organisms, worlds: Worlds, cause: Array, deaths: Rows) -> Rows:
-    tick = law.per_cell(worlds.tick)
+def _note_deaths(
+    law: "Law", organisms: Organisms, worlds: Worlds, cause: Array, deaths: Rows
+) -> Rows:
+    tick = worlds.tick.map(law.per_cell)
 
     def note(cells: Array, valid: Array, carry: tuple[Rows]) -> tuple[Rows]:
-        who, when = organisms.number[cells], tick[cells]
-        columns = [cells, *who, *when, cause[cells], organisms.energy[cells], organisms.eaten[cells]]
+        who, when = organisms.number.take(cells), tick.take(cells)
+        columns = [
+            cells,
+            *who,
+            *when,
+            cause[cells],
+            organisms.energy[cells],
+            organisms.eaten[cells],
+        ]
         return (log.append(carry[0], columns, valid),)
 
     return log.for_each(cause >= 0, (deaths,), note)[0]
@@ -117,7 +127,7 @@ def _inherit(law: "Law", world: World, births: Births, listed: Rows) -> tuple[Or
         genome, listed = carry
         of, parent = cells // law.cells, births.parent[cells]
         founder = births.founded[cells] | (law.inheritance == "founder")
-        mine = type(drawn)(*(each[of] for each in drawn))
+        mine = Streams(*(each.take(of) for each in drawn))
         within = cells % law.cells
         source = select(founder, mine.founder, mine.noise)
         mutated = mutates(mine, within, climate.mutation_probability[of]) & ~founder[:, None]
@@ -140,7 +150,9 @@ def _inherit(law: "Law", world: World, births: Births, listed: Rows) -> tuple[Or
             name: genome[name].at[where].set(block, mode="drop")
             for name, block in split(law.brain, children).items()
         }
-        listed = log.append(listed, _birth_columns(law, world, births, cells, founder, mutated), valid)
+        listed = log.append(
+            listed, _birth_columns(law, world, births, cells, founder, mutated), valid
+        )
         return genome, listed
 
     genome, listed = log.for_each(births.born, (before, listed), one_batch)
@@ -152,12 +164,12 @@ def _birth_columns(
 ) -> list[Array]:
     """Columns of events.BIRTH_FIELDS; a parent of all ones is nobody."""
     organisms, worlds = world
-    parent = organisms.number[births.parent[cells]]
+    parent = organisms.number.take(births.parent[cells])
     parent = select(births.founded[cells], never(cells.shape), parent)
     cause = jnp.where(mutated.any(axis=1), Origin.MUTANT, Origin.COPY)
     cause = jnp.where(founder, Origin.FOUNDER, cause)
-    tick = worlds.tick[cells // law.cells]
-    return [cells, *births.number[cells], *parent, *tick, cause]
+    tick = worlds.tick.take(cells // law.cells)
+    return [cells, *births.number.take(cells), *parent, *tick, cause]
 
 
 def _begin_lives(
@@ -165,7 +177,7 @@ def _begin_lives(
 ) -> Organisms:
     """Set everything but the genome of the newborn."""
     born = births.born
-    parent_branch = organisms.branch[births.parent]
+    parent_branch = organisms.branch.take(births.parent)
     founders_child = (parent_branch.hi | parent_branch.lo) == 0
     branch = select(founders_child, births.number.plus(jnp.ones_like(born)), parent_branch)
     branch = select(births.founded, zero(born.shape), branch)
@@ -176,7 +188,7 @@ def _begin_lives(
         energy=jnp.where(born, store, organisms.energy),
         eaten=jnp.where(born, 0, organisms.eaten),
         faulty=organisms.faulty & ~born,
-        born=select(born, law.per_cell(worlds.tick), organisms.born),
+        born=select(born, worlds.tick.map(law.per_cell), organisms.born),
         number=select(born, births.number, organisms.number),
         branch=select(born, branch, organisms.branch),
     )
@@ -207,7 +219,7 @@ def _count(
 def _one_branch(law: "Law", organisms: Organisms) -> Array:
     """Whether all the living of a world descend from one child of a founder: bool (W,)."""
     alive = law.by_world(organisms.alive)
-    branch = Wide(*(law.by_world(word) for word in organisms.branch))
+    branch = organisms.branch.map(law.by_world)
     one = largest(select(alive, branch, zero(alive.shape)), axis=1)
-    same = branch.equals(Wide(one.hi[:, None], one.lo[:, None])) | ~alive
+    same = branch.equals(one.take(np.s_[:, None])) | ~alive
     return same.all(axis=1) & ((one.hi | one.lo) > 0)

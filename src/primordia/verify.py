@@ -8,8 +8,8 @@ import numpy as np
 from primordia import checkpoint
 from primordia.digest import digests
 from primordia.errors import InputError
-from primordia.record import Recorder
 from primordia.loop import Engine, Listener, Status, read_config
+from primordia.record import Recorder
 
 
 def verify(run: Path, listen: Listener | None = None) -> list[str]:
@@ -25,7 +25,9 @@ def verify(run: Path, listen: Listener | None = None) -> list[str]:
     if last is None:
         raise InputError(f"{run} has no checkpoint yet, so there is nothing to verify")
     arrays = last.arrays()
-    tick = np.stack([arrays["world.worlds.tick.hi"], arrays["world.worlds.tick.lo"]]).astype(np.uint64)
+    tick = np.stack([arrays["world.worlds.tick.hi"], arrays["world.worlds.tick.lo"]]).astype(
+        np.uint64
+    )
     engine = Engine(config)
     limits = engine.limits({}, tick[0] << np.uint64(32) | tick[1])
     again = Recorder(None, config.seeds, config.cells, engine.law.blocks)

@@ -4,7 +4,8 @@ JAX without its x64 flag has no 64-bit integers, and an int32 age overflows with
 host a count is an int or a uint64 array.
 """
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import jax.numpy as jnp
 import numpy as np
@@ -25,7 +26,12 @@ class Wide(NamedTuple):
         borrow = (self.lo < other.lo).astype(jnp.uint32)
         return Wide(self.hi - other.hi - borrow, self.lo - other.lo)
 
-    def __getitem__(self, index: object) -> "Wide":  # type: ignore[override]
+    def map(self, change: Callable[[Array], Array]) -> "Wide":
+        """The same rearrangement of both words."""
+        return Wide(change(self.hi), change(self.lo))
+
+    def take(self, index: Any) -> "Wide":
+        """Those at an index of the arrays."""
         return Wide(self.hi[index], self.lo[index])
 
     def plus(self, n: Array) -> "Wide":
@@ -72,7 +78,9 @@ def select(condition: Array, yes: Wide, no: Wide) -> Wide:
 def total(value: Wide, axis: int) -> Wide:
     """Sum along an axis, exact modulo 2^64."""
     zero = jnp.uint32(0)
-    hi, lo = lax.reduce(tuple(value), (zero, zero), lambda a, b: tuple(Wide(*a) + Wide(*b)), (axis,))
+    hi, lo = lax.reduce(
+        tuple(value), (zero, zero), lambda a, b: tuple(Wide(*a) + Wide(*b)), (axis,)
+    )
     return Wide(hi, lo)
 
 
@@ -114,5 +122,5 @@ def happened(value: Wide) -> Array:
 
 
 def to_float(value: Wide) -> Array:
-    """As float32, taken as two's complement. A product with 2^32 is exact, so the sum rounds once."""
+    """As float32, taken as two's complement; the product with 2^32 is exact, the sum rounds once."""
     return value.hi.astype(jnp.int32).astype(jnp.float32) * np.float32(2**32) + value.lo

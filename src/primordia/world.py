@@ -126,10 +126,10 @@ def ages(world: World) -> Wide:
     """Ticks since birth of each cell's organism (C,), 0 where nobody lives."""
     organisms, worlds = world
     each = organisms.alive.size // worlds.calm.size
-    now = Wide(jnp.repeat(worlds.tick.hi, each), jnp.repeat(worlds.tick.lo, each))
+    now = worlds.tick.map(lambda words: jnp.repeat(words, each))
     return select(organisms.alive, now - organisms.born, zero(organisms.alive.shape))
 
 
 def ages_total(world: World) -> Wide:
     """Sum of the ages of the living of each world (W,)."""
-    return total(Wide(*(word.reshape(world.worlds.calm.size, -1) for word in ages(world))), axis=1)
+    return total(ages(world).map(lambda words: words.reshape(world.worlds.calm.size, -1)), axis=1)

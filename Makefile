@@ -1,0 +1,44 @@
+# Needs Python >= 3.11, git and make; everything else is installed into .venv by these targets.
+PYTHON ?= python3
+BIN := .venv/bin
+
+.PHONY: demo test slow check format bench clean
+
+demo: .venv/installed  ## evolve pole balancers, and say what happened
+	$(BIN)/primordia run CartPole-survival
+
+test: .venv/installed-dev  ## under 10 minutes on two cores
+	$(BIN)/python -m pytest --numprocesses 2 --dist loadfile
+
+slow: .venv/installed-dev  ## long campaigns: fifty kills, and what else is marked slow
+	$(BIN)/python -m pytest --numprocesses 2 -m slow
+
+check: .venv/installed-dev  ## format, lint, types, tests
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(MAKE) test
+
+format: .venv/installed-dev
+	$(BIN)/ruff format .
+	$(BIN)/ruff check --fix .
+
+bench: .venv/installed-dev  ## every figure; `make bench JSON=file.json` keeps them
+	$(BIN)/python benchmarks/bench.py $(if $(JSON),--json $(JSON))
+
+clean:
+	rm -rf .venv
+
+.venv/bin/python:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
+	  || { echo "Primordia needs Python 3.11 or newer; try: make PYTHON=python3.12 demo" >&2; exit 2; }
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --upgrade pip
+
+.venv/installed: .venv/bin/python pyproject.toml
+	$(BIN)/python -m pip install --quiet --editable .
+	@touch $@
+
+.venv/installed-dev: .venv/installed
+	$(BIN)/python -m pip install --quiet --group dev
+	@touch $@

@@ -1,0 +1,100 @@
+"""Cost by number of cells, memory at a million of them, records, and the way from the shell."""
+
+import json
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+SIZES = [32, 256, 1024, 4096, 16_384, 65_536, 262_144, 1_048_576]
+
+
+def cost_by_cells() -> list[dict]:
+    """Each size in a process of its own, since peak memory is of a process."""
+    rows = []
+    for cells in SIZES:
+        command = [sys.executable, __file__, str(cells)]
+        done = subprocess.run(command, capture_output=True, text=True, check=True)
+        rows.append(json.loads(done.stdout))
+    return rows
+
+
+def _one_size(cells: int) -> dict:
+    """Fill a world, live for some seconds in each phase, and say what it took."""
+    from worlds import RANDOM, engine, rate
+
+    base = _peak_bytes(warm=True)
+    made = engine(cells, **RANDOM | {"mutation": {"founder_scale": 0.01}})
+    seconds = 1.0 if cells < 200_000 else 6.0
+    lived = rate(made, seconds)
+    arrays = made.arrays()
+    held = ("world.organisms.genome", "world.organisms.memory", "bodies")
+    state = sum(a.nbytes for name, a in arrays.items() if name.startswith(held))
+    genome = sum(a.nbytes for name, a in arrays.items() if name.startswith(held[0]))
+    moved = (genome + 2 * (state - genome)) / cells
+    return {
+        "cells": cells,
+        "organism_ticks_per_s": lived,
+        "ns_per_organism_tick": 1e9 / lived,
+        "occupied": float(arrays["world.organisms.alive"].mean()),
+        "bytes_per_cell_tick": moved,
+        "gigabytes_per_s": moved * lived / float(arrays["world.organisms.alive"].mean()) / 1e9,
+        "state_bytes": state,
+        "peak_over_state": (_peak_bytes() - base) / state,
+    }
+
+
+def _peak_bytes(warm: bool = False) -> int:
+    """Peak resident memory; `warm` first loads and compiles a small world, the runtime's baseline."""
+    if warm:
+        from worlds import engine
+
+        small = engine(32)
+        small.advance(small.limits({}))
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+
+
+def shell_to_saturation() -> list[float]:
+    """Seconds from shell command to a finished run, compilation included, for five seeds."""
+    taken = []
+    for seed in range(5):
+        with tempfile.TemporaryDirectory() as folder:
+            words = ["run", "CartPole-survival", "--seed", str(seed), "--out", f"{folder}/run"]
+            began = time.perf_counter()
+            subprocess.run(
+                [sys.executable, "-m", "primordia", *words], capture_output=True, check=True
+            )
+            taken.append(time.perf_counter() - began)
+    return taken
+
+
+def births_recorded_per_second() -> float:
+    """From rows as the law gives them to closed, checksummed segments on disk."""
+    import jax.numpy as jnp
+
+    from primordia.events import BIRTH_FIELDS, DEATH_FIELDS, Events, Rows
+    from primordia.record import Recorder, sample_fields
+
+    blocks = ["input", "recurrent", "output"]
+    rng, rows, chunks = np.random.default_rng(0), 2**18, 24
+    births = rng.integers(0, 1000, (rows, len(BIRTH_FIELDS)), dtype=np.uint32)
+    births[:, 7] %= 3
+    nothing = [np.zeros((1, n), np.uint32) for n in (len(DEATH_FIELDS), len(sample_fields(blocks)))]
+    events = Events(Rows(births, jnp.int32(rows)), *(Rows(r, jnp.int32(0)) for r in nothing))
+    with tempfile.TemporaryDirectory() as folder:
+        for name in ("births", "deaths", "metrics"):
+            Path(folder, name).mkdir()
+        recorder = Recorder(Path(folder), 32, 32, blocks)
+        began = time.perf_counter()
+        for _ in range(chunks):
+            recorder.append(events)
+        recorder.finish()
+        return rows * chunks / (time.perf_counter() - began)
+
+
+if __name__ == "__main__":
+    print(json.dumps(_one_size(int(sys.argv[1]))))

@@ -1,0 +1,84 @@
+"""How fast the law is: against the arithmetic limit, and against a plain loop over objects."""
+
+import tempfile
+import time
+from pathlib import Path
+
+import jax
+
+import published
+from limit import limit, start
+from primordia.checkpoint import Progress
+from primordia.config import load
+from primordia.loop import Engine, drive
+from primordia.record import Recorder
+from worlds import median, organism_ticks, random_phase, rate, saturated_phase
+
+SHAPES = {"1 x 32": (32, 1), "16 x 32": (32, 16), "1 x 1,024": (1024, 1)}
+ROUNDS = 7
+SECONDS = 0.7
+
+
+def against_the_limit() -> list[dict]:
+    """Rates of limit, saturated and random phase in turn, round by round."""
+    rows = []
+    for name, (cells, worlds) in SHAPES.items():
+        phases = {
+            "saturated": saturated_phase(cells, worlds),
+            "random": random_phase(cells, worlds),
+        }
+        measured: dict[str, list[float]] = {"limit": [], "saturated": [], "random": []}
+        for _ in range(ROUNDS):
+            measured["limit"].append(limit_rate(cells * worlds))
+            for phase, made in phases.items():
+                measured[phase].append(rate(made, SECONDS))
+        fraction = {
+            phase: median([a / b for a, b in zip(measured[phase], measured["limit"], strict=True)])
+            for phase in phases
+        }
+        rates = {phase: median(values) for phase, values in measured.items()}
+        rows.append({"worlds x cells": name, "rates": rates, "of limit": fraction})
+    return rows
+
+
+def limit_rate(cells: int) -> float:
+    """Organism-ticks per second of brains and bodies alone."""
+    genome, memory, bodies = start(cells)
+    ticks = max(int(3e6 / cells), 1)
+    memory, bodies = jax.block_until_ready(limit(genome, memory, bodies, ticks))
+    began, done = time.perf_counter(), 0
+    while time.perf_counter() - began < SECONDS:
+        memory, bodies = jax.block_until_ready(limit(genome, memory, bodies, ticks))
+        done += ticks
+    return cells * done / (time.perf_counter() - began)
+
+
+def against_the_plain_loop() -> dict:
+    """A whole run on disk, records and checkpoints on, against one object an organism."""
+    ratios, ours, theirs = [], [], []
+    with tempfile.TemporaryDirectory() as folder:
+        for number in range(ROUNDS):
+            theirs.append(_plain(number))
+            ours.append(_on_disk(Path(folder, str(number)), seed=number))
+            ratios.append(ours[-1] / theirs[-1])
+    return {"plain loop": median(theirs), "on disk": median(ours), "ratio": median(ratios)}
+
+
+def _plain(seed: int) -> float:
+    began = time.perf_counter()
+    lived = published.organism_ticks(32, seed, 4000)
+    return lived / (time.perf_counter() - began)
+
+
+def _on_disk(run: Path, seed: int) -> float:
+    """Organism-ticks per second from genesis to tick 3,000,000, compilation apart."""
+    config = load("CartPole-survival", {"seed": seed})
+    for name in ("births", "deaths", "metrics", "checkpoints"):
+        (run / name).mkdir(parents=True)
+    warm, made = Engine(config), Engine(config)
+    warm.advance(warm.limits({}))
+    made.chunks = warm.chunks
+    recorder = Recorder(run, 1, config.cells, made.law.blocks)
+    began = time.perf_counter()
+    drive(made, recorder, run, Progress({"ticks": 3_000_000}, 0.0, True), 1.0, None)
+    return organism_ticks(made) / (time.perf_counter() - began)

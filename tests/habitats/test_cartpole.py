@@ -1,0 +1,123 @@
+"""CartPole is Gymnasium's, step for step."""
+
+import os
+import subprocess
+import sys
+
+import gymnasium
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from primordia.habitats.cartpole import CartPole
+
+LIMITS = np.array([2.4, np.inf, np.deg2rad(12), np.inf])
+
+
+@pytest.fixture
+def gym_cartpole() -> gymnasium.Env:
+    return gymnasium.make("CartPole-v1").unwrapped
+
+
+def random_states(count: int) -> np.ndarray:
+    rng = np.random.default_rng(7)
+    spread = np.array([2.6, 3.0, 0.25, 3.0])
+    return rng.uniform(-spread, spread, (count, 4)).astype(np.float32)
+
+
+def test_one_step_from_the_same_state_agrees_with_gymnasium(gym_cartpole: gymnasium.Env) -> None:
+    states = random_states(2000)
+    actions = np.arange(len(states)) % 2
+    after, outcome = CartPole().step(jnp.asarray(states), jnp.asarray(actions))
+    near_a_limit = 0
+    for i, state in enumerate(states):
+        gym_cartpole.reset()
+        gym_cartpole.state = state.astype(np.float64)
+        _, _, terminated, _, _ = gym_cartpole.step(int(actions[i]))
+        expected = np.array(gym_cartpole.state)
+        np.testing.assert_allclose(after[i], expected, rtol=1e-6, atol=1e-7)
+        if (np.abs(np.abs(expected) - LIMITS) < 1e-6).any():
+            near_a_limit += 1
+            continue
+        assert bool(outcome.fatal[i]) == terminated
+    assert near_a_limit < 5
+    assert 0.1 < np.mean(outcome.fatal) < 0.9
+
+
+EPISODES = """
+import gymnasium, jax, numpy as np
+from primordia.habitats.cartpole import CartPole
+gym, step = gymnasium.make("CartPole-v1").unwrapped, jax.jit(CartPole().step)
+rng, free, forced, lengths = np.random.default_rng(1), 0.0, 0.0, []
+
+def apart(mine, theirs):
+    return np.abs((mine - theirs) / np.maximum(np.abs(theirs), 1e-3)).max()
+
+for episode in range(60):
+    balance = episode % 2
+    gym.reset(seed=episode)
+    mine, done, ticks = np.array(gym.state)[None], False, 0
+    weights = rng.normal(size=4)
+    while not done and ticks < 500:
+        action = int(weights @ gym.state > 0) if balance else int(rng.integers(2))
+        before = np.array(gym.state)[None]
+        _, _, done, _, _ = gym.step(action)
+        one, outcome = step(before, np.array([action]))
+        assert one.dtype == np.float64 and bool(outcome.fatal[0]) == done
+        forced = max(forced, apart(np.asarray(one)[0], gym.state))
+        if not balance:
+            mine, outcome = step(mine, np.array([action]))
+            assert bool(outcome.fatal[0]) == done
+            free = max(free, apart(np.asarray(mine)[0], gym.state))
+        ticks += 1
+    lengths.append(ticks)
+print(free, forced, max(lengths[::2]), max(lengths))
+"""
+
+
+def test_in_float64_whole_episodes_agree() -> None:
+    """Running freely in episodes of random pushes; from each state of Gymnasium's in long ones.
+
+    A balanced pole multiplies any difference by e every 13 ticks, so that after 500 ticks the last
+    bit of a float64 has grown to the size of the track: there only single steps can agree.
+    """
+    environment = {**os.environ, "JAX_ENABLE_X64": "1"}
+    command = [sys.executable, "-c", EPISODES]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    free, forced, longest_free, longest = map(float, done.stdout.split())
+    assert max(free, forced) < 1e-12
+    assert longest_free > 40
+    assert longest > 200
+
+
+def test_bodies_start_uniform_within_the_spread() -> None:
+    words = np.random.default_rng(0).integers(0, 2**32, (100_000, 4), dtype=np.uint32)
+    bodies = np.asarray(CartPole().reset(words))
+    assert np.abs(bodies).max() <= 0.05
+    np.testing.assert_allclose(bodies.mean(axis=0), 0, atol=5 * 0.1 / np.sqrt(12 * 1e5))
+    np.testing.assert_allclose(bodies.std(axis=0), 0.1 / np.sqrt(12), rtol=0.01)
+    extremes = np.array([[0] * 4, [2**32 - 1] * 4], np.uint32)
+    np.testing.assert_allclose(CartPole().reset(extremes), [[-0.05] * 4, [0.05] * 4], atol=1e-7)
+
+
+def test_hidden_senses_are_positions_only() -> None:
+    states = jnp.asarray(random_states(5))
+    hidden = CartPole(senses=("x", "theta"))
+    assert hidden.senses_size == 2
+    np.testing.assert_array_equal(hidden.sense(states), states[:, [0, 2]])
+
+
+@pytest.mark.parametrize(
+    ("change", "state", "fatal"),
+    [
+        ({}, [0, 0, 0.2, 0], False),
+        ({}, [0, 0, 0.22, 0], True),
+        ({"angle_limit": 24.0}, [0, 0, 0.22, 0], False),
+        ({}, [2.5, 0, 0, 0], True),
+        ({"track_limit": 1e9}, [2.5, 0, 0, 0], False),
+    ],
+)
+def test_limits_are_settings(change: dict, state: list, fatal: bool) -> None:
+    _, outcome = CartPole(**change).step(jnp.array([state], jnp.float32), jnp.array([0]))
+    assert bool(outcome.fatal[0]) is fatal
