@@ -7,7 +7,6 @@ habitat can be faster, so `bench.py` quotes organism-ticks per second as a fract
 from functools import partial
 
 import jax
-import jax.numpy as jnp
 from jax import Array, lax
 
 from primordia.brain import BrainSettings, Genome
@@ -28,16 +27,3 @@ def limit(genome: Genome, memory: Array, bodies: tuple, ticks: int) -> tuple:
         return (memory, bodies), None
 
     return lax.scan(tick, (memory, bodies), None, length=ticks)[0]
-
-
-def start(cells: int) -> tuple:
-    """Random genomes (scale 0.1), empty memories and fresh bodies for `cells` organisms."""
-    habitat = CartPole()
-    brain = BrainSettings().build(habitat.senses_size, habitat.action.size)
-    keys = jax.random.split(jax.random.key(0), len(brain.blocks) + 1)
-    genome = {
-        name: 0.1 * jax.random.normal(key, (cells, *shape), jnp.float32)
-        for key, (name, shape) in zip(keys[1:], brain.blocks.items(), strict=True)
-    }
-    words = jax.random.bits(keys[0], (cells, habitat.words), jnp.uint32)
-    return genome, jnp.zeros((cells, brain.memory), jnp.float32), habitat.reset(words)

@@ -25,10 +25,10 @@ def cost_by_cells() -> list[dict]:
 
 def _one_size(cells: int) -> dict:
     """Fill a world, live for some seconds in each phase, and say what it took."""
-    from worlds import RANDOM, engine, rate
+    from worlds import engine, rate
 
     base = _peak_bytes(warm=True)
-    made = engine(cells, **RANDOM | {"mutation": {"founder_scale": 0.01}})
+    made = engine(cells, genesis="fill")
     seconds = 1.0 if cells < 200_000 else 6.0
     lived = rate(made, seconds)
     arrays = made.arrays()

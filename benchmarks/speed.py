@@ -7,48 +7,47 @@ from pathlib import Path
 import jax
 
 import published
-from limit import limit, start
+from limit import limit
 from primordia.checkpoint import Progress
 from primordia.config import load
 from primordia.loop import Engine, drive
 from primordia.record import Recorder
-from worlds import median, organism_ticks, random_phase, rate, saturated_phase
+from worlds import median, organism_ticks, random_phase, random_rate, rate, saturated_phase
 
 SHAPES = {"1 x 32": (32, 1), "16 x 32": (32, 16), "1 x 1,024": (1024, 1)}
-ROUNDS = 7
-SECONDS = 0.7
+ROUNDS = 5
+SECONDS = 0.5
 
 
 def against_the_limit() -> list[dict]:
     """Rates of limit, saturated and random phase in turn, round by round."""
     rows = []
     for name, (cells, worlds) in SHAPES.items():
-        phases = {
-            "saturated": saturated_phase(cells, worlds),
-            "random": random_phase(cells, worlds),
-        }
+        saturated, random = saturated_phase(cells, worlds), random_phase(cells, worlds)
+        random_rate(random, 0)
         measured: dict[str, list[float]] = {"limit": [], "saturated": [], "random": []}
-        for _ in range(ROUNDS):
-            measured["limit"].append(limit_rate(cells * worlds))
-            for phase, made in phases.items():
-                measured[phase].append(rate(made, SECONDS))
+        for number in range(ROUNDS):
+            measured["limit"].append(limit_rate(saturated))
+            measured["saturated"].append(rate(saturated, SECONDS))
+            measured["random"].append(random_rate(random, 1000 * (number + 1)))
         fraction = {
             phase: median([a / b for a, b in zip(measured[phase], measured["limit"], strict=True)])
-            for phase in phases
+            for phase in ("saturated", "random")
         }
         rates = {phase: median(values) for phase, values in measured.items()}
         rows.append({"worlds x cells": name, "rates": rates, "of limit": fraction})
     return rows
 
 
-def limit_rate(cells: int) -> float:
-    """Organism-ticks per second of brains and bodies alone."""
-    genome, memory, bodies = start(cells)
-    ticks = max(int(3e6 / cells), 1)
-    memory, bodies = jax.block_until_ready(limit(genome, memory, bodies, ticks))
+def limit_rate(made: Engine) -> float:
+    """Organism-ticks per second of these same brains and bodies alone."""
+    organisms, bodies = made.state.world.organisms, made.state.bodies + 0
+    memory, cells = organisms.memory + 0, len(organisms.memory)
+    ticks = max(int(2e6 / cells), 1)
+    memory, bodies = jax.block_until_ready(limit(organisms.genome, memory, bodies, ticks))
     began, done = time.perf_counter(), 0
     while time.perf_counter() - began < SECONDS:
-        memory, bodies = jax.block_until_ready(limit(genome, memory, bodies, ticks))
+        memory, bodies = jax.block_until_ready(limit(organisms.genome, memory, bodies, ticks))
         done += ticks
     return cells * done / (time.perf_counter() - began)
 

@@ -4,14 +4,13 @@ import statistics
 import time
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 
 from primordia.config import load
+from primordia.genesis import begin
 from primordia.loop import Engine
 from primordia.wide import to_host
-
-NO_END = {"until": None}
-
 
 def engine(cells: int, worlds: int = 1, **settings: object) -> Engine:
     """A CartPole-survival engine before genesis."""
@@ -19,24 +18,34 @@ def engine(cells: int, worlds: int = 1, **settings: object) -> Engine:
 
 
 def random_phase(cells: int, worlds: int) -> Engine:
-    """Worlds that never get anywhere: no heredity, and bodies that all die soon."""
-    return advanced(engine(cells, worlds, **RANDOM), 500)
+    """Worlds full of founders, before genesis."""
+    return engine(cells, worlds, genesis="fill")
 
 
-RANDOM = {
-    "inheritance": "founder",
-    "genesis": "fill",
-    "mutation": {"founder_scale": 1.0},  # of such founders none lives 10,000 ticks
-}
+def random_rate(made: Engine, first_seed: int, ticks: int = 2000) -> float:
+    """Organism-ticks per second of the first ticks of new worlds, while most still die young."""
+    seeds = range(first_seed, first_seed + made.config.seeds)
+    made.state = made.chunks.begin(begin(made.law, list(seeds)))
+    began = time.perf_counter()
+    advanced(made, ticks)
+    return organism_ticks(made) / (time.perf_counter() - began)
 
 
 def saturated_phase(cells: int, worlds: int) -> Engine:
-    """Worlds full of organisms that do not die any more."""
-    made = engine(cells, worlds, mutation={"probability": 0.0})
-    limits = made.limits({"until": "saturation", "ticks": 2_000_000})
-    while made.any_running(limits):
-        made.advance(limits)
-    return made
+    """Worlds full of copies of one organism that does not die, evolved in a world of 32 cells."""
+    small = engine(32)
+    limits = small.limits({"until": "saturation"})
+    while small.any_running(limits):
+        small.advance(limits)
+    made = advanced(engine(cells, worlds, genesis="fill", mutation={"probability": 0.0}), 1)
+    organisms = made.state.world.organisms
+    genome = {
+        name: jnp.broadcast_to(block[:1], organisms.genome[name].shape) + 0
+        for name, block in small.state.world.organisms.genome.items()
+    }
+    world = made.state.world._replace(organisms=organisms._replace(genome=genome))
+    made.state = made.state._replace(world=world)
+    return advanced(made, 2000)
 
 
 def advanced(made: Engine, ticks: int) -> Engine:

@@ -1,11 +1,16 @@
-"""The command line as a user meets it: in a process of its own."""
+"""The command line as a user meets it: in a process of its own, or faster, in this one."""
 
+import io
 import json
 import os
 import subprocess
 import sys
+from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
+
+from primordia import cli
 
 HERE = Path(__file__).parent.parent
 COMMAND = [sys.executable, "-m", "primordia"]
@@ -38,6 +43,18 @@ def begin(*words: object) -> subprocess.Popen[str]:
     """Start a command and leave it running."""
     pipes: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     return subprocess.Popen([*COMMAND, *map(str, words)], env=environment(CACHE), **pipes)
+
+
+def here(*words: object) -> subprocess.CompletedProcess[str]:
+    """Run a command in this process."""
+    argv, status = ["primordia", *map(str, words)], 0
+    out, err = io.StringIO(), io.StringIO()
+    with patch.object(sys, "argv", argv), redirect_stdout(out), redirect_stderr(err):
+        try:
+            cli.main()
+        except SystemExit as end:
+            status = int(end.code or 0)
+    return subprocess.CompletedProcess(argv, status, out.getvalue(), err.getvalue())
 
 
 def info(run: Path) -> dict[str, Any]:

@@ -1,8 +1,10 @@
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from tests import commands
+from primordia import loop, verify
+from tests import commands, worlds
 
 
 @pytest.fixture(autouse=True, scope="session")
@@ -11,3 +13,12 @@ def _compiled_code(tmp_path_factory: pytest.TempPathFactory) -> None:
     root = tmp_path_factory.getbasetemp()
     shared = root.parent if root.name.startswith("popen") else root
     commands.CACHE = Path(shared) / "compiled"
+
+
+@pytest.fixture(scope="module")
+def compiled_once() -> Iterator[None]:
+    """Runs in this process share what is compiled where only seeds and limits differ."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(loop, "Engine", worlds.engine)
+        patch.setattr(verify, "Engine", worlds.engine)
+        yield

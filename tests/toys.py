@@ -60,6 +60,26 @@ class Mill(Settings):
         return after, Outcome(angle > 0.999, food=turn, effort=jnp.abs(action[:, 1]))
 
 
+class Echo(Settings):
+    """Food is the first number of the action, effort the second; at a given clock food is infinite."""
+
+    rotten_at: int = 2**30
+    senses_size: int = 1
+    action: Any = Continuous(2)
+    words: int = 1
+
+    def reset(self, words: Array) -> Array:
+        return jnp.zeros(len(words), jnp.int32)
+
+    def sense(self, bodies: Array) -> Array:
+        return jnp.ones((len(bodies), 1), jnp.float32)
+
+    def step(self, bodies: Array, action: Array) -> tuple[Array, Outcome]:
+        clock = bodies + 1
+        food = jnp.where(clock >= self.rotten_at, jnp.inf, action[:, 0])
+        return clock, Outcome(jnp.zeros_like(clock, bool), food, action[:, 1])
+
+
 class Mirror:
     """Any habitat in JAX, made to keep the contract of those on the host."""
 

@@ -7,6 +7,7 @@ import numpy as np
 from primordia.chunk import Fused
 from primordia.config import Config, load, merged, validated
 from primordia.digest import digests
+from primordia.genesis import begin
 from primordia.loop import Engine
 from primordia.record import Recorder
 
@@ -28,6 +29,17 @@ MILL: dict[str, Any] = {
          "factor": 1.01, "every": 50},
     ],
 }  # fmt: skip
+
+CLOCKWORK: dict[str, Any] = {
+    **MEADOW,
+    "brain": {"kind": "feed-forward", "hidden": 1},
+    "seeds": 2,
+    "replication": 0.0,
+    "genesis": "fill",
+    "metabolism": {"store": 30.5},
+    "sample_every": 10,
+}
+"""Every cell is filled, all starve in their 31st tick, every cell is filled: no draw matters."""
 
 
 def config(base: str | dict[str, Any] = "CartPole-survival", **settings: Any) -> Config:
@@ -52,8 +64,19 @@ def engine(config: Config) -> Engine:
 class Lived:
     """A run in memory, driven for some ticks, with its records."""
 
-    def __init__(self, config: Config, ticks: int, chunk: int | None = None, **stop: Any) -> None:
+    def __init__(
+        self,
+        config: Config,
+        ticks: int,
+        chunk: int | None = None,
+        begun: tuple[int, int] = (0, 0),
+        **stop: Any,
+    ) -> None:
+        """`begun`: what the counts of ticks and births start at."""
         self.config, self.engine = config, engine(config)
+        if any(begun):
+            seeds = [config.seed + world for world in range(config.seeds)]
+            self.engine.state = self.engine.chunks.begin(begin(self.engine.law, seeds, *begun))
         self.recorder = Recorder(None, config.seeds, config.cells, self.engine.law.blocks)
         self.rows: dict[str, list[np.ndarray]] = {"births": [], "deaths": [], "metrics": []}
         self.on(ticks, chunk, **stop)

@@ -26,6 +26,9 @@ class Run:
 
     path: Path
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "path", Path(self.path))
+
     def info(self) -> dict[str, Any]:
         """The run in one object; see `report.info`."""
         return report.info(self.path)
@@ -40,7 +43,7 @@ class Run:
 
     def resume(self, inexact: bool = False, **options: Any) -> list[str]:
         """Go on, with new `ticks`, `births` or `until` if given; see `loop.resume`."""
-        limits = {
+        limits: dict[str, Any] = {
             name: options.pop(name) for name in ("ticks", "births", "until") if name in options
         }
         return loop.resume(self.path, limits, inexact=inexact, **options)

@@ -76,6 +76,7 @@ class Recurrent:
         }
 
     def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:
+        """One tick; see `Brain`."""
         drive = self._input(genome["input"], senses)
         memory = jnp.tanh(drive + self._recurrent(genome["recurrent"], memory))
         return memory, self._output(genome["output"], memory)
@@ -91,6 +92,7 @@ class FeedForward:
         self.blocks = {"input": self._input.shape, "output": self._output.shape}
 
     def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:
+        """One tick; see `Brain`."""
         hidden = jnp.tanh(self._input(genome["input"], senses))
         return memory, self._output(genome["output"], hidden)
 
@@ -105,7 +107,7 @@ class BrainSettings(Settings):
 
     def build(self, senses: int, outputs: int) -> Brain:
         """The brain for a habitat with so many senses and a motor with so many outputs."""
-        make = {"recurrent": Recurrent, "feed-forward": FeedForward}[self.kind]
+        make = Recurrent if self.kind == "recurrent" else FeedForward
         return make(senses, outputs, self.hidden)
 
 

@@ -4,6 +4,7 @@ RUN/checkpoints/000012/state.npz        the state's arrays, and `tail.*`: rows i
                        manifest.json    written last: checksums, the segments that count, progress
 """
 
+import hashlib
 import json
 import shutil
 from dataclasses import dataclass
@@ -84,23 +85,39 @@ def _fill(
     files.sync(state)
     content = {
         "progress": vars(progress),
+        "config": files.seal(folder.parent.parent / "config.toml"),
         "state": files.seal(state),
         "segments": {table.name: table.segments for table in recorder.tables},
         "digests": {table.name: table.digest.tolist() for table in recorder.tables},
     }
-    manifest.write_text(json.dumps(content, indent=1))
+    manifest.write_text(json.dumps({**content, "sha256": _checksum(content)}, indent=1))
     files.sync(manifest)
     files.sync(folder)
 
 
+def _checksum(manifest: dict[str, Any]) -> str:
+    """Of a manifest's other entries."""
+    content = {name: value for name, value in manifest.items() if name != "sha256"}
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+def none_whole(run: Path, faults: list[str]) -> Trouble:
+    """The error of a run none of whose checkpoints is whole."""
+    return Trouble(
+        f"no checkpoint of {run} is whole: {faults[0]}; `primordia run {run / 'config.toml'}` lives"
+        " it again from its beginning"
+    )
+
+
 def numbered(run: Path) -> list[Path]:
     """The run's checkpoints, oldest first."""
-    return sorted(path for path in (run / "checkpoints").glob("[0-9]*") if path.name.isdigit())
+    found = (path for path in (run / "checkpoints").glob("[0-9]*") if path.name.isdigit())
+    return sorted(found, key=lambda path: int(path.name))
 
 
 def newest(run: Path) -> tuple[Checkpoint | None, list[str]]:
     """The newest checkpoint that is whole, segments included; and what is wrong with newer ones."""
-    faults = []
+    faults: list[str] = []
     for path in reversed(numbered(run)):
         found = _read(run, path)
         if isinstance(found, Checkpoint):
@@ -112,7 +129,12 @@ def newest(run: Path) -> tuple[Checkpoint | None, list[str]]:
 def _read(run: Path, path: Path) -> Checkpoint | str:
     try:
         manifest = json.loads((path / "manifest.json").read_text())
-        sealed = [(path / "state.npz", manifest["state"])]
+        if manifest["sha256"] != _checksum(manifest):
+            raise ValueError
+        sealed = [
+            (run / "config.toml", manifest["config"]),
+            (path / "state.npz", manifest["state"]),
+        ]
         for table in TABLES:
             sealed += [(run / table / each["name"], each) for each in manifest["segments"][table]]
     except (OSError, ValueError, KeyError, TypeError):
@@ -125,12 +147,19 @@ def _read(run: Path, path: Path) -> Checkpoint | str:
 
 def remove_what_does_not_count(run: Path, last: Checkpoint | None) -> None:
     """Delete whatever the given checkpoint does not name: what was being written in a crash."""
-    kept = [path for path in numbered(run) if last and path.name <= last.path.name]
+    kept = [path for path in numbered(run) if last and int(path.name) <= int(last.path.name)]
     for path in (run / "checkpoints").iterdir():
         if path not in kept:
-            shutil.rmtree(path)
+            _remove(path)
     for table in TABLES:
         named = {each["name"] for each in last.manifest["segments"][table]} if last else set()
         for path in (run / table).iterdir():
             if path.name not in named:
-                path.unlink()
+                _remove(path)
+
+
+def _remove(path: Path) -> None:
+    try:
+        shutil.rmtree(path) if path.is_dir() else path.unlink()
+    except OSError as error:
+        raise Trouble(f"{path} cannot be removed: {error.strerror}") from None

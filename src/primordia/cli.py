@@ -28,33 +28,51 @@ def main_group() -> None:
 class RunCommand(click.Command):
     """`run`: takes any setting of the task as a flag, and lists them all under --help."""
 
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Set aside the flags that are settings, as nested tables in `ctx.obj`."""
+        options = {name for option in self.get_params(ctx) for name in option.opts}
+        ctx.obj, own, rest = {}, [], list(args)
+        while rest:
+            word = rest.pop(0)
+            name, equals, text = word.partition("=")
+            if not name.startswith("--") or name in options:
+                own.append(word)
+                continue
+            if not equals:
+                if not rest or rest[0].startswith("--"):
+                    raise InputError(f"{name} needs a value")
+                text = rest.pop(0)
+            _put(ctx.obj, name.removeprefix("--"), _value(text))
+        ctx.meta["words"] = tuple(own)
+        return super().parse_args(ctx, own)
+
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Append every setting with its value in the task named, and what it means."""
+        from primordia.config import tasks
         from primordia.help import setting_rows
 
-        words = [word for word in sys.argv[2:] if not word.startswith("-")]
-        task = words[0] if words else None
+        known = tasks()
+        words = ctx.meta["words"]
+        task = next((word for word in words if word in known or word.endswith(".toml")), None)
         with formatter.section(
             f"Settings, as in TOML ({'values of ' + task if task else 'defaults'})"
         ):
             formatter.write_dl(setting_rows(task))
 
 
-@main_group.command(
-    cls=RunCommand, context_settings={"ignore_unknown_options": True, "allow_extra_args": True}
-)
+@main_group.command(cls=RunCommand)
 @click.argument("task", metavar="TASK|FILE.toml")
 @click.option("--out", type=click.Path(path_type=Path), help="Directory to make [runs/TASK-seedS].")
 @click.option("--ticks", "stop_ticks", help="Stop each world after so many ticks.")
 @click.option("--births", "stop_births", help="Stop each world after so many births.")
-@click.option("--until", "stop_until", help="'saturation': stop each world once it is saturated.")
+@click.option("--until", "stop_until", help="saturation: stop each world once saturated; or none.")
 @click.option("--checkpoint-every", type=float, default=60.0, show_default=True, metavar="SECONDS")
 @click.option(
     "--device", default="cpu", show_default=True, help="What JAX computes on: cpu or gpu."
 )
 @click.option("--quiet", is_flag=True, help="Print nothing while running.")
-@click.pass_context
-def run(ctx: click.Context, task: str, out: Path | None, **options: Any) -> None:
+@click.pass_obj
+def run(settings: dict[str, Any], /, task: str, out: Path | None, **options: Any) -> None:
     """Evolve in a new run directory.
 
     TASK is one of `primordia tasks`; a FILE.toml names its `task` and changes what it likes. Any
@@ -65,10 +83,9 @@ def run(ctx: click.Context, task: str, out: Path | None, **options: Any) -> None
     from primordia.loop import start
 
     _use(device, options["device"])
-    settings = _settings(ctx.args)
-    for name, path in SHORT.items():
+    for name, setting in SHORT.items():
         if (given := options[f"stop_{name}"]) is not None:
-            _put(settings, path, _value(given))
+            _put(settings, setting, _value(given))
     chosen = config.load(task, settings)
     path = out or fresh_directory(chosen)
     _drive(
@@ -82,9 +99,9 @@ def run(ctx: click.Context, task: str, out: Path | None, **options: Any) -> None
 
 @main_group.command()
 @click.argument("run", type=click.Path(path_type=Path))
-@click.option("--ticks", type=int, help="New limit of ticks.")
-@click.option("--births", type=int, help="New limit of births.")
-@click.option("--until", type=click.Choice(["saturation"]), help="Stop once saturated.")
+@click.option("--ticks", help="New limit of ticks, or none.")
+@click.option("--births", help="New limit of births, or none.")
+@click.option("--until", help="saturation: stop each world once saturated; or none.")
 @click.option("--checkpoint-every", type=float, default=60.0, show_default=True, metavar="SECONDS")
 @click.option(
     "--device", default="cpu", show_default=True, help="What JAX computes on: cpu or gpu."
@@ -97,13 +114,13 @@ def resume(run: Path, quiet: bool, inexact: bool, checkpoint_every: float, **opt
     from primordia.loop import resume as go_on
 
     _use(device, options.pop("device"))
+    limits = {name: _value(given) for name, given in options.items() if given is not None}
 
     def drive(listen: Any) -> None:
-        faults = go_on(
-            run, options, inexact=inexact, checkpoint_every=checkpoint_every, listen=listen
-        )
-        for fault in faults:
-            click.echo(f"primordia: passed over a bad checkpoint: {fault}", err=True)
+        for note in go_on(
+            run, limits, inexact=inexact, checkpoint_every=checkpoint_every, listen=listen
+        ):
+            _say(note)
 
     _drive(run, quiet, drive)
 
@@ -153,27 +170,12 @@ def _use(devices: Any, name: str) -> None:
         raise InputError(f"--device: {error.args[0]}") from None
 
 
-def _settings(words: list[str]) -> dict[str, Any]:
-    """Flags `--a.b value` and `--a.b=value` as nested tables."""
-    settings: dict[str, Any] = {}
-    rest = list(words)
-    while rest:
-        word = rest.pop(0)
-        if not word.startswith("--"):
-            raise InputError(f"{word!r} is not expected here; settings are given as --name value")
-        name, equals, text = word[2:].partition("=")
-        if not equals:
-            if not rest:
-                raise InputError(f"--{name} needs a value")
-            text = rest.pop(0)
-        _put(settings, name, _value(text))
-    return settings
-
-
 def _put(settings: dict[str, Any], path: str, value: Any) -> None:
     *groups, name = path.split(".")
     for group in groups:
         settings = settings.setdefault(group, {})
+        if not isinstance(settings, dict):
+            raise InputError(f"--{path}: --{group} was given a value of its own already")
     settings[name] = value
 
 
@@ -207,12 +209,20 @@ def main() -> None:
         sys.exit(done.exit_code)
     except click.Abort:
         sys.exit(130)
+    except click.exceptions.NoArgsIsHelpError as error:
+        error.show()
+        sys.exit(2)
     except click.ClickException as error:
-        click.echo(f"primordia: {' '.join(error.format_message().split())}", err=True)
+        _say(error.format_message())
         sys.exit(2)
     except InputError as error:
-        click.echo(f"primordia: {error}", err=True)
+        _say(error)
         sys.exit(2)
-    except Trouble as error:
-        click.echo(f"primordia: {error}", err=True)
+    except (Trouble, OSError) as error:
+        _say(error)
         sys.exit(1)
+
+
+def _say(message: object) -> None:
+    """One line on stderr."""
+    click.echo(f"primordia: {' '.join(map(str.strip, str(message).splitlines()))}", err=True)

@@ -22,6 +22,9 @@ from primordia.placement import Placement
 from primordia.seasons import Season
 from primordia.settings import Settings
 
+NONE = "none"
+"""How TOML and flags write None."""
+
 
 class Stop(Settings):
     """When a world stops; it then stays as it is while others of the run go on."""
@@ -88,8 +91,11 @@ class Config(Settings):
             built: Habitat | HostHabitat = kind(**options)
         except ValidationError as error:
             raise InputError(_first(error, "habitat", kind)) from None
-        except (LookupError, TypeError) as error:
-            raise InputError(f"habitat: {error.args[0]}") from None
+        except (LookupError, TypeError, ValueError) as error:
+            raise InputError(f"habitat: {error}") from None
+        for needed in ("senses_size", "action", "words", "reset", "step"):
+            if not hasattr(built, needed):
+                raise InputError(f"habitat: {kind.__name__} is no habitat: it has no {needed!r}")
         return built
 
     def build_law(self, habitat: Habitat | HostHabitat) -> Law:
@@ -113,8 +119,8 @@ class Config(Settings):
         )
 
     def to_toml(self) -> str:
-        """As TOML that `from_toml` takes back."""
-        return tomli_w.dumps(self.model_dump(mode="json", exclude_none=True))
+        """As TOML that `validated` takes back."""
+        return tomli_w.dumps(_replaced(self.model_dump(mode="json"), None, NONE))
 
 
 def tasks() -> dict[str, dict[str, Any]]:
@@ -135,7 +141,7 @@ def load(task: str, settings: dict[str, Any] | None = None) -> Config:
     Raises:
         InputError: no such task or file, or a setting that is unknown or out of range.
     """
-    return validated(merged(_values(task), settings or {}), source=task)
+    return validated(merged(values_of(task), settings or {}), source=task)
 
 
 def validated(values: dict[str, Any], source: str) -> Config:
@@ -145,7 +151,7 @@ def validated(values: dict[str, Any], source: str) -> Config:
         InputError: in one line, what is wrong and where.
     """
     try:
-        config = Config.model_validate(values)
+        config = Config.model_validate(_replaced(values, NONE, None))
     except ValidationError as error:
         raise InputError(f"{source}: {_first(error, '', Config)}") from None
     try:
@@ -153,6 +159,29 @@ def validated(values: dict[str, Any], source: str) -> Config:
     except (InputError, ValueError) as error:
         raise InputError(f"{source}: {error}") from None
     return config
+
+
+def limits(values: dict[str, Any]) -> dict[str, Any]:
+    """Settings of `stop`, checked.
+
+    Raises:
+        InputError: an unknown one, or one out of range.
+    """
+    values = _replaced(values, NONE, None)
+    try:
+        Stop.model_validate(values)
+    except ValidationError as error:
+        raise InputError(_first(error, "", Stop)) from None
+    return values
+
+
+def _replaced(values: Any, old: Any, new: Any) -> Any:
+    """Nested tables and lists with one value put for another."""
+    if isinstance(values, dict):
+        return {name: _replaced(value, old, new) for name, value in values.items()}
+    if isinstance(values, list | tuple):
+        return [_replaced(value, old, new) for value in values]
+    return new if type(values) is type(old) and values == old else values
 
 
 def from_toml(path: Path) -> dict[str, Any]:
@@ -178,13 +207,18 @@ def merged(base: dict[str, Any], change: dict[str, Any]) -> dict[str, Any]:
     return result
 
 
-def _values(task: str) -> dict[str, Any]:
+def values_of(task: str) -> dict[str, Any]:
+    """What a built-in task or a TOML file says.
+
+    Raises:
+        InputError: there is neither, or the file cannot be read.
+    """
     known = tasks()
     if task in known:
         return known[task]
     if task.endswith(".toml") or Path(task).is_file():
         values = from_toml(Path(task))
-        return merged(known.get(values.get("task", ""), {}), values)
+        return merged(known.get(str(values.get("task")), {}), values)
     raise InputError(
         f"there is no task {task!r}{_did_you_mean(task, list(known))}; `primordia tasks` lists them,"
         " or give a file FILE.toml"
@@ -243,6 +277,7 @@ def _first(error: ValidationError, prefix: str, model: type) -> str:
     more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
     if fault["type"] == "extra_forbidden":
         known = [f"{prefix}." * bool(prefix) + name for name in setting_fields(model)]
+        known += sorted({name.rpartition(".")[0] for name in known} - {""})
         return f"there is no setting {path!r}{_did_you_mean(path, known)}{more}"
     if fault["type"] == "missing":
         return f"{path} is missing{more}"

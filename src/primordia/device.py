@@ -30,7 +30,7 @@ def select(name: str | None) -> None:
 
     wanted = name or "cpu"
     try:
-        jax.config.update("jax_default_device", jax.devices(wanted)[0])
+        jax.config.update("jax_default_device", jax.devices(wanted)[0])  # type: ignore[no-untyped-call]
     except RuntimeError:
         raise LookupError(f"JAX finds no {wanted!r} device here") from None
 

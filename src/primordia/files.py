@@ -3,6 +3,7 @@
 import hashlib
 import os
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 from primordia.errors import Trouble
@@ -24,7 +25,8 @@ def write(path: Path, fill: Callable[[Path], None]) -> None:
         temporary.rename(path)
         sync(path.parent)
     except OSError as error:
-        temporary.unlink(missing_ok=True)
+        with suppress(OSError):
+            temporary.unlink()
         raise Trouble(f"{path} cannot be written: {error.strerror or error}") from None
 
 

@@ -4,21 +4,27 @@ import json
 import time
 from typing import Any
 
+from pydantic import Field
 from pydantic_core import PydanticUndefined
 
-from primordia.config import Config, setting_fields, tasks
+from primordia.config import NONE, Config, setting_fields, values_of
 from primordia.habitats import KNOWN, find
 from primordia.loop import Status
+from primordia.settings import Settings
 from primordia.wide import to_host
 
 
 def setting_rows(task: str | None) -> list[tuple[str, str]]:
     """Each setting with its value in a task (or by default), and what it means."""
-    values = tasks().get(task or "", {})
+    values = values_of(task) if task else {}
     fields = setting_fields(Config)
-    name = values.get("habitat", {}).get("name")
-    for habitat in [name] if name else KNOWN:
-        fields |= setting_fields(find(habitat), "habitat.")
+    try:
+        found = [find(values["habitat"]["name"])] if "habitat" in values else map(find, KNOWN)
+    except (LookupError, TypeError):
+        found = []
+    for habitat in found:
+        fields |= setting_fields(habitat, "habitat.") if issubclass(habitat, Settings) else {}
+    fields["habitat.name"] = Field(description=f"{', '.join(KNOWN)}, or module:Class")
     hidden = {"about", "task", "habitat"}
     return [
         (f"--{path}", f"{field.description or ''} [{_shown(values, path, field)}]")
@@ -32,7 +38,9 @@ def _shown(values: dict[str, Any], path: str, field: Any) -> str:
     for part in path.split("."):
         value = value.get(part, PydanticUndefined) if isinstance(value, dict) else PydanticUndefined
     value = field.default if value is PydanticUndefined else value
-    return "none" if value is None else json.dumps(value)
+    if value is None or value is PydanticUndefined:
+        return NONE
+    return json.dumps(value, default=str)
 
 
 class Lines:
@@ -84,11 +92,11 @@ def _world_line(world: dict[str, Any]) -> str:
         else "not saturated"
     )
     age = (
-        f"mean age {world['mean_age']:,.0f}, oldest {world['oldest_age']:,}"
+        f", mean age {world['mean_age']:,.0f}, oldest {world['oldest_age']:,}"
         if world["alive"]
         else ""
     )
     return (
         f"  seed {world['seed']}: {world['ticks']:,} ticks, {world['births']:,} births, deaths: "
-        f"{', '.join(causes) or 'none'}; {world['alive']} alive, {age}; {end}"
+        f"{', '.join(causes) or 'none'}; {world['alive']} alive{age}; {end}"
     )

@@ -19,7 +19,8 @@ from primordia.mutation import mutates, noise_index, quantiles, streams
 from primordia.report import opened, table
 from primordia.wide import wide
 
-STEPS_AT_A_TIME = 1024
+STEPS_AT_A_TIME = 64
+"""Births replayed together; always as many, since JAX compiles anew for every shape."""
 
 
 def rebuild(run: Path, organism: int, world: int = 0) -> np.ndarray:
@@ -38,7 +39,8 @@ def rebuild(run: Path, organism: int, world: int = 0) -> np.ndarray:
     line = descent(births, organism, world, str(run))
     law = config.build_law(config.build_habitat())
     climate = _climate_at(run, config, law, world, line["tick"])
-    return _replay(law, config, line, climate, world)
+    with np.errstate(over="ignore", invalid="ignore"):  # a genome may have come to infinity
+        return _replay(law, config, line, climate, world)
 
 
 def descent(births: pa.Table, organism: int, world: int, run: str) -> dict[str, np.ndarray]:
@@ -78,7 +80,10 @@ def _climate_at(
         "probability": config.mutation.probabilities(names),
         "scale": config.mutation.scales(names),
     }
-    found = {field: np.tile(np.float32(values), (len(ticks), 1)) for field, values in start.items()}
+    found = {
+        field: np.tile(np.array(values, np.float32), (len(ticks), 1))
+        for field, values in start.items()
+    }
     if config.seasons:
         metrics = table(run, "metrics")
         metrics = metrics.filter(pc.equal(metrics["world"], world))
@@ -97,20 +102,27 @@ def _replay(
     climate: tuple[np.ndarray, np.ndarray],
     world: int,
 ) -> np.ndarray:
-    seed = np.uint64(config.seed + world)
+    seed = np.uint64(config.seed + int(world))
     length = int(law.block_sizes.sum())
     genome = np.zeros(length, np.float32)
     for first in range(0, len(line["tick"]), STEPS_AT_A_TIME):
-        part = slice(first, first + STEPS_AT_A_TIME)
-        ticks, cells = line["tick"][part], jnp.asarray(line["cell"][part])
-        probability, scale = (np.repeat(each[part], law.block_sizes, axis=1) for each in climate)
+        ticks, cells = _filled(line["tick"], first), jnp.asarray(_filled(line["cell"], first))
+        probability, scale = (
+            np.repeat(_filled(each, first), law.block_sizes, axis=1) for each in climate
+        )
         drawn = streams(wide(np.full(len(ticks), seed)), wide(ticks))
         takes = np.asarray(mutates(drawn, cells, jnp.asarray(probability)))
         noise = quantiles()[np.asarray(noise_index(drawn.noise, cells, length))] * scale
-        for step, cause in enumerate(line["cause"][part]):
+        for step, cause in enumerate(line["cause"][first : first + STEPS_AT_A_TIME]):
             if cause == "founder":
                 index = noise_index(drawn.founder, cells, length)[step]
                 genome = quantiles()[np.asarray(index)] * np.float32(config.mutation.founder_scale)
             else:
                 genome = np.where(takes[step], genome + noise[step], genome)
     return genome
+
+
+def _filled(each: np.ndarray, first: int) -> np.ndarray:
+    """STEPS_AT_A_TIME entries from `first` on; past the end, some again."""
+    some = each[first : first + STEPS_AT_A_TIME]
+    return np.resize(some, (STEPS_AT_A_TIME, *some.shape[1:]))

@@ -20,6 +20,7 @@ from primordia import checkpoint, device, events, files, sample
 from primordia.checkpoint import Progress
 from primordia.chunk import Fused, Limits, State, running
 from primordia.config import Config, from_toml, validated
+from primordia.config import limits as valid_limits
 from primordia.errors import InputError, Trouble
 from primordia.genesis import begin
 from primordia.hosted import Hosted
@@ -107,13 +108,10 @@ def start(
         InputError: the directory is taken.
         Trouble: something cannot be written.
     """
+    _check_interval(checkpoint_every)
     if run.exists() and (not run.is_dir() or any(run.iterdir())):
         raise InputError(f"{run} exists already; choose another --out, or `primordia resume {run}`")
-    try:
-        for name in (*TABLES, "checkpoints"):
-            (run / name).mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise Trouble(f"{run} cannot be made: {error.strerror}") from None
+    _make_folders(run)
     with locked(run):
         _write_text(
             run / "versions.json", json.dumps({"format": FORMAT, **device.versions()}, indent=1)
@@ -143,18 +141,26 @@ def resume(
         listen: called after each chunk.
 
     Returns:
-        what was wrong with newer checkpoints that had to be passed over.
+        what the user should be told: checkpoints that had to be passed over, or that there was
+        nothing to do.
 
     Raises:
-        InputError: this is no run, one in use, or one of other versions.
-        Trouble: something cannot be written.
+        InputError: this is no run, one in use, or one of other versions; a limit makes no sense.
+        Trouble: something cannot be written, or no checkpoint is whole.
     """
+    _check_interval(checkpoint_every)
+    given = valid_limits(limits or {})
     config = read_config(run)
-    same = _check_versions(run, inexact)
+    differ = other_versions(run)
+    if differ and not inexact:
+        raise InputError(
+            f"{run} cannot go on bit for bit: {'; '.join(differ)}. Restore that, or add --inexact"
+        )
     with locked(run):
         last, faults = checkpoint.newest(run)
         if last is None and faults:
-            raise Trouble(f"no checkpoint of {run} is whole: {faults[0]}")
+            raise checkpoint.none_whole(run, faults)
+        _make_folders(run)
         checkpoint.remove_what_does_not_count(run, last)
         engine = Engine(config)
         recorder = Recorder(run, config.seeds, config.cells, engine.law.blocks)
@@ -164,10 +170,21 @@ def resume(
             recorder.resume(last.manifest["segments"], last.digests, arrays)
             engine.load(arrays)
             progress = last.progress
-        progress.limits |= {name: value for name, value in (limits or {}).items() if value}
-        progress.exact &= same and engine.chunks.exact
+        progress.limits |= given
+        progress.exact &= not differ and engine.chunks.exact
+        notes = [f"passed over a bad checkpoint: {fault}" for fault in faults]
+        if not engine.any_running(engine.limits(progress.limits)):
+            notes.append(_nothing_to_do(run, progress))
         drive(engine, recorder, run, progress, checkpoint_every, listen)
-    return faults
+    return notes
+
+
+def _nothing_to_do(run: Path, progress: Progress) -> str:
+    limits = ", ".join(f"{name} {value}" for name, value in progress.limits.items() if value)
+    return (
+        f"nothing to do: every world of {run} has come to a limit ({limits}); to go on, give it"
+        " another with --ticks, --births or --until, such as --ticks 1000000 --until none"
+    )
 
 
 def drive(
@@ -206,10 +223,8 @@ def read_config(run: Path) -> Config:
     Raises:
         InputError: this is no run directory, or one this version cannot read.
     """
-    path = run / "versions.json"
     try:
-        recorded = json.loads(path.read_text())
-        made_by = recorded["format"]
+        made_by = int(_recorded_versions(run)["format"])
     except (OSError, ValueError, KeyError, TypeError):
         raise InputError(
             f"{run} is not a run of primordia: it has no readable versions.json"
@@ -221,18 +236,32 @@ def read_config(run: Path) -> Config:
     return validated(from_toml(run / "config.toml"), source=str(run / "config.toml"))
 
 
-def _check_versions(run: Path, inexact: bool) -> bool:
-    recorded = json.loads((run / "versions.json").read_text())
-    differ = [
+def other_versions(run: Path) -> list[str]:
+    """What a run was begun with and is not so here; while this is empty it goes on bit for bit."""
+    recorded = _recorded_versions(run)
+    return [
         f"{name} {recorded.get(name)} then, {now} now"
         for name, now in device.versions().items()
         if recorded.get(name) != now
     ]
-    if differ and not inexact:
-        raise InputError(
-            f"{run} cannot go on bit for bit: {'; '.join(differ)}. Restore that, or add --inexact"
-        )
-    return not differ
+
+
+def _recorded_versions(run: Path) -> dict[str, Any]:
+    recorded: dict[str, Any] = json.loads((run / "versions.json").read_text())
+    return recorded
+
+
+def _check_interval(checkpoint_every: float) -> None:
+    if not checkpoint_every >= 0:
+        raise InputError(f"--checkpoint-every: seconds, 0 or more, not {checkpoint_every}")
+
+
+def _make_folders(run: Path) -> None:
+    try:
+        for name in (*TABLES, "checkpoints"):
+            (run / name).mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise Trouble(f"{run} cannot be written: {error.strerror}") from None
 
 
 @contextmanager

@@ -8,7 +8,7 @@ never leaves it. Arrays are (W, N): worlds, cells.
 
 import math
 from collections.abc import Callable
-from typing import Literal
+from typing import Any, Literal
 
 import jax.numpy as jnp
 import numpy as np
@@ -90,11 +90,11 @@ class Placement(Settings):
         def open_parents(wants: Array, occupied: Array) -> Array:
             return wants & self.room(occupied)
 
-        def again(carry: tuple[Array, ...]) -> Array:
+        def again(carry: Any) -> Array:
             _, wants, occupied, _ = carry
             return open_parents(wants, occupied).any()
 
-        def contest(carry: tuple[Array, ...]) -> tuple[Array, ...]:
+        def contest(carry: Any) -> Any:
             number, wants, occupied, parent = carry
             choice, priority = draw(number)
             target = self._empty_target(choice, ~occupied)

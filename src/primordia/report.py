@@ -12,7 +12,7 @@ from primordia import checkpoint
 from primordia.checkpoint import Checkpoint
 from primordia.config import Config
 from primordia.digest import digests
-from primordia.errors import InputError, Trouble
+from primordia.errors import InputError
 from primordia.loop import read_config
 from primordia.record import TABLES, Recorder
 from primordia.world import Cause
@@ -54,9 +54,9 @@ def opened(run: Path) -> tuple[Config, Checkpoint]:
     config = read_config(run)
     last, faults = checkpoint.newest(run)
     if last is None and faults:
-        raise Trouble(f"no checkpoint of {run} is whole: {faults[0]}")
+        raise checkpoint.none_whole(run, faults)
     if last is None:
-        raise InputError(f"{run} has no checkpoint yet")
+        raise InputError(f"{run} has no checkpoint yet; `primordia resume {run}` goes on with it")
     return config, last
 
 

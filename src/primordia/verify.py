@@ -8,7 +8,7 @@ import numpy as np
 from primordia import checkpoint
 from primordia.digest import digests
 from primordia.errors import InputError
-from primordia.loop import Engine, Listener, Status, read_config
+from primordia.loop import Engine, Listener, Status, other_versions, read_config
 from primordia.record import Recorder
 
 
@@ -16,7 +16,7 @@ def verify(run: Path, listen: Listener | None = None) -> list[str]:
     """Do a run again from its beginning, without writing, and compare -> what differs (empty: nothing).
 
     Raises:
-        InputError: this is no run, or there is nothing in it to compare with.
+        InputError: this is no run, or there is nothing in it that must come out the same.
     """
     config = read_config(run)
     last, faults = checkpoint.newest(run)
@@ -24,6 +24,8 @@ def verify(run: Path, listen: Listener | None = None) -> list[str]:
         return faults
     if last is None:
         raise InputError(f"{run} has no checkpoint yet, so there is nothing to verify")
+    if not last.progress.exact:
+        raise InputError(f"{run} is not exact (see `primordia info`): nothing can be verified")
     arrays = last.arrays()
     tick = np.stack([arrays["world.worlds.tick.hi"], arrays["world.worlds.tick.lo"]]).astype(
         np.uint64
@@ -38,8 +40,10 @@ def verify(run: Path, listen: Listener | None = None) -> list[str]:
             listen(Status(engine, time.perf_counter() - began))
     old = digests(last.digests, arrays, config.seeds)
     new = digests(again.digests(), engine.arrays(), config.seeds)
+    other = "".join(f"; {each}" for each in other_versions(run))
     return [
         f"world {world} (seed {config.seed + world}) differs: {a[:16]}... recorded, {b[:16]}... now"
+        + other
         for world, (a, b) in enumerate(zip(old, new, strict=True))
         if a != b
     ]

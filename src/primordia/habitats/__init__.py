@@ -87,13 +87,13 @@ def find(name: str) -> type:
     Raises:
         LookupError: no such name, module or class; the message says which.
     """
-    path = KNOWN.get(name, name)
+    path = KNOWN.get(name, name) if isinstance(name, str) else ""
     module, _, attribute = path.partition(":")
-    if not attribute:
+    if not module or not attribute:
         raise LookupError(f"no habitat named {name!r}; known: {', '.join(KNOWN)}, or module:Class")
     try:
         found = getattr(import_module(module), attribute)
-    except (ImportError, AttributeError) as error:
+    except Exception as error:
         raise LookupError(f"habitat {name!r} cannot be loaded: {error}") from error
     if not isinstance(found, type):
         raise LookupError(f"habitat {name!r} is not a class")

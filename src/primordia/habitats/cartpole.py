@@ -17,13 +17,15 @@ from primordia.habitats import Outcome
 from primordia.motor import Discrete
 from primordia.settings import Settings
 
+Coordinate = Literal["x", "x_dot", "theta", "theta_dot"]
+
 GRAVITY = 9.8  # m/s^2
 POLE_MASS = 0.1  # kg
 TOTAL_MASS = 1.1  # kg, cart and pole
 HALF_LENGTH = 0.5  # m, half the pole's length
 FORCE = 10.0  # N
 TAU = 0.02  # s per tick
-COORDINATES = ("x", "x_dot", "theta", "theta_dot")  # m, m/s, rad, rad/s
+COORDINATES: tuple[Coordinate, ...] = ("x", "x_dot", "theta", "theta_dot")  # m, m/s, rad, rad/s
 
 
 class CartPole(Settings):
@@ -32,7 +34,7 @@ class CartPole(Settings):
     Bodies are one array (N, 4) of COORDINATES; theta is the pole's angle from the vertical.
     """
 
-    senses: tuple[Literal["x", "x_dot", "theta", "theta_dot"], ...] = Field(
+    senses: tuple[Coordinate, ...] = Field(
         COORDINATES, min_length=1, strict=False, description="what is perceived, unscaled"
     )
     angle_limit: float = Field(12.0, gt=0, le=180, description="fatal angle, degrees")
@@ -45,14 +47,17 @@ class CartPole(Settings):
 
     @property
     def senses_size(self) -> int:
+        """How many senses."""
         return len(self.senses)
 
     @property
     def action(self) -> Discrete:
+        """Left or right."""
         return Discrete(2)
 
     @property
     def words(self) -> int:
+        """One for each coordinate."""
         return len(COORDINATES)
 
     def reset(self, words: Array) -> Array:
@@ -61,11 +66,13 @@ class CartPole(Settings):
         return (unit - np.float32(0.5)) * np.float32(2 * self.spread)
 
     def sense(self, bodies: Array) -> Array:
+        """The chosen coordinates, float32 (N, senses_size)."""
         if self.senses == COORDINATES:
             return bodies
         return bodies[:, np.array([COORDINATES.index(name) for name in self.senses])]
 
     def step(self, bodies: Array, action: Array) -> tuple[Array, Outcome]:
+        """One tick of 0.02 s."""
         x, x_dot, theta, theta_dot = (bodies[:, i] for i in range(len(COORDINATES)))
         cos, sin = jnp.cos(theta), jnp.sin(theta)
         force = jnp.where(action == 1, FORCE, -FORCE).astype(bodies.dtype)
