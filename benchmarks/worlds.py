@@ -12,6 +12,7 @@ from primordia.genesis import begin
 from primordia.loop import Engine
 from primordia.wide import to_host
 
+
 def engine(cells: int, worlds: int = 1, **settings: object) -> Engine:
     """A CartPole-survival engine before genesis."""
     return Engine(load("CartPole-survival", {"cells": cells, "seeds": worlds, **settings}))

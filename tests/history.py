@@ -132,7 +132,9 @@ class History:
         organisms = self.lived.engine.state.world.organisms
         mine = slice(self.world * self.cells, (self.world + 1) * self.cells)
         assert np.flatnonzero(organisms.alive[mine]).tolist() == sorted(occupant)
-        number, born = (to_host(w.map(lambda x: x[mine])) for w in (organisms.number, organisms.born))
+        number, born = (
+            to_host(w.map(lambda x: x[mine])) for w in (organisms.number, organisms.born)
+        )
         for cell, life in occupant.items():
             assert number[cell] == life.number + self.begun[1]
             assert born[cell] == life.born

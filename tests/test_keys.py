@@ -51,7 +51,9 @@ def test_every_part_of_a_draws_name_matters() -> None:
     seeds, ticks = [0, 1, 2**32, 2**64 - 1], [0, 1, 2**32, 10**12]
     names = np.array(list(product(seeds, list(Purpose), ticks)), object)
     keys = [
-        to_host(stream(wide(np.array(seeds, np.uint64)), purpose, wide(np.full(4, tick, np.uint64))))
+        to_host(
+            stream(wide(np.array(seeds, np.uint64)), purpose, wide(np.full(4, tick, np.uint64)))
+        )
         for purpose in Purpose
         for tick in ticks
     ]
@@ -87,7 +89,9 @@ def test_a_draw_does_not_depend_on_others_drawn_with_it(
 
 
 def test_bits_if_are_bits_or_nothing() -> None:
-    key = stream(wide(np.full((3, 1), 9, np.uint64)), Purpose.PLACE, wide(np.full((3, 1), 2, np.uint64)))
+    key = stream(
+        wide(np.full((3, 1), 9, np.uint64)), Purpose.PLACE, wide(np.full((3, 1), 2, np.uint64))
+    )
     cells, index = jnp.arange(5), jnp.uint32(4)
     needed = bits_if(jnp.bool_(True), key, cells, index)
     assert to_host(needed).tolist() == to_host(bits(key, cells, index)).tolist()

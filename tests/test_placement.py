@@ -22,6 +22,7 @@ RULES = ["blind", "empty-only", "replacing"]
 ALL = list(product(TOPOLOGIES, RULES))
 W, N = 2, 12  # a torus of 3 x 4
 
+
 @cache
 def compiled(topology: str, rule: str) -> Callable:
     """Parents (W, N) of words (rounds, 2, W, N), wants and occupied (W, N)."""

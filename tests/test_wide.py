@@ -30,7 +30,9 @@ TIMES, TO_FLOAT = jax.jit(times), jax.jit(to_float)
 
 def eight(most: int) -> st.SearchStrategy[list[int]]:
     """Eight numbers below `most`, often at the edges of words."""
-    edges = [n + d for n in (0, 2**16, 2**31, 2**32, 2**48, 2**63, 2**64) for d in (-2, -1, 0, 1, 2)]
+    edges = [
+        n + d for n in (0, 2**16, 2**31, 2**32, 2**48, 2**63, 2**64) for d in (-2, -1, 0, 1, 2)
+    ]
     near = st.sampled_from([n for n in edges if 0 <= n < most])
     return st.lists(st.one_of(near, st.integers(0, most - 1)), min_size=8, max_size=8)
 

@@ -90,7 +90,7 @@ class Lived:
             happened = self.engine.advance(limits)
             self.recorder.append(happened)
             for name, list_ in zip(self.rows, happened, strict=True):
-                self.rows[name].append(np.asarray(list_.rows[: int(list_.count)]))
+                self.rows[name].append(np.asarray(list_.rows[: int(list_.filled)]))
 
     def table(self, name: str) -> dict[str, np.ndarray]:
         """Columns of a table as NumPy arrays."""

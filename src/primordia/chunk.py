@@ -90,7 +90,7 @@ def _advance(
 ) -> tuple[State, Events, Array]:
     cells = law.worlds * law.cells
     none = jnp.int32(0)
-    events = Events(*(rows._replace(count=none) for rows in events))
+    events = Events(*(rows._replace(filled=none) for rows in events))
 
     def go_on(carry: tuple) -> Array:
         _, events, live_worlds, done = carry

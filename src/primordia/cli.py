@@ -1,4 +1,4 @@
-"""The command line. Every error a user can cause is one line on stderr; exit status 2, or 1 for trouble."""
+"""The command line. An error a user can cause is one line on stderr; exit status 2, or 1 for trouble."""
 
 import json
 import sys

@@ -50,7 +50,7 @@ def versions() -> dict[str, str]:
     """What must be equal for a run to go on bit for bit."""
     import jax
 
-    default = jax.config.jax_default_device or jax.devices()[0]
+    default = getattr(jax.config, "jax_default_device", None) or jax.devices()[0]
     return {
         **{name: version(name) for name in PACKAGES},
         "device": default.device_kind if default.platform != "cpu" else "cpu",

@@ -15,10 +15,10 @@ DEATH_FIELDS = ("cell", "id.hi", "id.lo", "tick.hi", "tick.lo", "cause", "energy
 
 
 class Rows(NamedTuple):
-    """A list of events: uint32 (capacity, fields), of which the first `count` are meant."""
+    """A list of events: uint32 (capacity, fields), of which the first `filled` are meant."""
 
     rows: Array
-    count: Array
+    filled: Array
     """int32 ()"""
 
 
@@ -54,7 +54,7 @@ def have_room(events: Events, cells: int, worlds: int) -> Array:
     spare = batch(cells)
 
     def fits(list_: Rows, most: int) -> Array:
-        return list_.count + most + spare <= len(list_.rows)
+        return list_.filled + most + spare <= len(list_.rows)
 
     return fits(events.births, cells) & fits(events.deaths, cells) & fits(events.samples, worlds)
 
@@ -81,5 +81,5 @@ def for_each(mask: Array, carry: tuple, act: Callable[[Array, Array, tuple], tup
 def append(list_: Rows, columns: list[Array], valid: Array) -> Rows:
     """Add a batch of rows given as columns (K,); those not valid will be written over."""
     block = jnp.stack([column.astype(jnp.uint32) for column in columns], axis=1)
-    rows = lax.dynamic_update_slice(list_.rows, block, (list_.count, jnp.int32(0)))
-    return Rows(rows, list_.count + valid.sum(dtype=jnp.int32))
+    rows = lax.dynamic_update_slice(list_.rows, block, (list_.filled, jnp.int32(0)))
+    return Rows(rows, list_.filled + valid.sum(dtype=jnp.int32))

@@ -53,6 +53,7 @@ class Lines:
         self._next = time.perf_counter() + self.EVERY
 
     def __call__(self, status: Status) -> None:
+        """Print how far it is, if it is time."""
         if time.perf_counter() < self._next:
             return
         self._next = time.perf_counter() + self.EVERY

@@ -67,7 +67,7 @@ class Hosted:
         Returns:
             state, what happened, ticks done.
         """
-        events = Events(*(rows._replace(count=jnp.int32(0)) for rows in events))
+        events = Events(*(rows._replace(filled=jnp.int32(0)) for rows in events))
         world, events, decision = self._genesis(state.world, events, limits)
         senses = self._embody(np.array(state.bodies), decision)
         thought, done = self._think(world, senses), 0

@@ -24,6 +24,7 @@ from primordia.config import limits as valid_limits
 from primordia.errors import InputError, Trouble
 from primordia.genesis import begin
 from primordia.hosted import Hosted
+from primordia.law import Law
 from primordia.record import TABLES, Recorder
 from primordia.wide import wide
 
@@ -40,8 +41,7 @@ class Engine:
         self.config = config
         habitat = config.build_habitat()
         self.law = config.build_law(habitat)
-        kind = Hosted if hasattr(habitat, "open") else Fused
-        self.chunks = kind(self.law, habitat)
+        self.chunks: Fused | Hosted = _chunks(self.law, habitat)
         seeds = [config.seed + world for world in range(config.seeds)]
         self.state: State = self.chunks.begin(begin(self.law, seeds))
         cells = config.cells * config.seeds
@@ -79,6 +79,11 @@ class Engine:
     def load(self, arrays: dict[str, np.ndarray]) -> None:
         """Stand where `arrays` say."""
         self.state = self.chunks.load(self.state, arrays)
+
+
+def _chunks(law: Law, habitat: Any) -> Fused | Hosted:
+    """By which of the two contracts the habitat keeps: only those on the host are opened."""
+    return Hosted(law, habitat) if hasattr(habitat, "open") else Fused(law, habitat)
 
 
 @dataclass
@@ -195,6 +200,11 @@ def drive(
     checkpoint_every: float,
     listen: Listener | None,
 ) -> None:
+    """Advance, record and checkpoint until every world stops, or Ctrl-C; see `start`.
+
+    Raises:
+        KeyboardInterrupt: on Ctrl-C or SIGTERM, after a checkpoint.
+    """
     limits, before = engine.limits(progress.limits), progress.wall_s
     began = saved = time.perf_counter()
 
@@ -306,4 +316,7 @@ def interruptible() -> Iterator[list[int]]:
 
 
 def _write_text(path: Path, text: str) -> None:
-    files.write(path, lambda temporary: temporary.write_text(text) and None)
+    def fill(temporary: Path) -> None:
+        temporary.write_text(text)
+
+    files.write(path, fill)

@@ -61,7 +61,7 @@ class Recorder:
             Trouble: a segment cannot be written.
         """
         for table, rows in zip(self.tables, events, strict=True):
-            count = int(rows.count)
+            count = int(rows.filled)
             if count:
                 self._add(table, np.asarray(rows.rows[:count]))
 

@@ -44,10 +44,10 @@ def width(blocks: list[str]) -> int:
 def note_samples(world: World, due: Array, samples: Rows) -> Rows:
     """Append a row for each world that is due, bool (W,)."""
     rows = jnp.stack(_columns(world), axis=1)
-    place = samples.count + jnp.cumsum(due, dtype=jnp.int32) - 1
+    place = samples.filled + jnp.cumsum(due, dtype=jnp.int32) - 1
     place = jnp.where(due, place, len(samples.rows))
     written = samples.rows.at[place].set(rows, mode="drop")
-    return Rows(written, samples.count + due.sum(dtype=jnp.int32))
+    return Rows(written, samples.filled + due.sum(dtype=jnp.int32))
 
 
 def _columns(world: World) -> list[Array]:

@@ -111,8 +111,6 @@ def _change(climate: Climate, season: Schedule | Ratchet, columns: Columns, due:
         return climate._replace(metabolism=rates._replace(**{name: new(getattr(rates, name))}))
     if group == "mutation":
         field = "mutation_" + name.rpartition(".")[2]
-        which, old = np.array(columns[season.setting], int), getattr(climate, field)
-        changed = {field: old.at[:, which].set(new(old[:, which]))}
-        return climate._replace(**changed)  # type: ignore[arg-type]
-    which = {group: new(getattr(climate, group))}
-    return climate._replace(**which)  # type: ignore[arg-type]
+        blocks, old = np.array(columns[season.setting], int), getattr(climate, field)
+        return climate._replace(**{field: old.at[:, blocks].set(new(old[:, blocks]))})
+    return climate._replace(**{group: new(getattr(climate, group))})  # type: ignore[arg-type]
