@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import jax.numpy as jnp
 import numpy as np
-from jax import Array
+from jax import Array, lax
 from pydantic import Field
 
 from primordia.keys import Purpose, bits, chance, stream
@@ -120,9 +120,19 @@ def newborns(
         founder: who is made from nothing, bool (K,).
         founder_scale: standard deviation of a founder's weights.
 
-    A weight is one product and one sum, each rounded. The selection between the two keeps
-    compilers from contracting them into a fused multiply-add, which would round once.
+    A weight is one product and one sum, each rounded.
     """
-    change = jnp.where(takes, standard * scale, 0)
-    inherited = jnp.where(takes, parents + change, parents)
+    inherited = jnp.where(takes, parents + _rounded_product(standard, scale), parents)
     return jnp.where(founder[:, None], standard * np.float32(founder_scale), inherited)
+
+
+def _rounded_product(a: Array, positive: Array) -> Array:
+    """a x positive in float32, rounded before anything is added to it.
+
+    Left alone, compilers contract product and sum into a fused multiply-add, which rounds once: then
+    24 of 60 weights differed from what two IEEE operations give. The sign bit of a number that is
+    never negative is a zero they cannot know, and an integer operation they cannot contract across.
+    """
+    product = lax.bitcast_convert_type(a * positive, jnp.uint32)
+    nothing = lax.bitcast_convert_type(positive, jnp.uint32) >> np.uint32(31)
+    return lax.bitcast_convert_type(product ^ nothing, jnp.float32)
