@@ -53,13 +53,13 @@ def test_samples_come_at_the_same_multiples(begun: tuple[int, int]) -> None:
 @pytest.mark.parametrize("begun", BEGINNINGS[:2])
 def test_late_worlds_keep_the_rules_of_every_world(begun: tuple[int, int]) -> None:
     """Random draws differ, as ticks do; rules do not."""
-    values = {"cells": 12, "seeds": 3, "replication": 0.2, "hazard": 0.05}
-    run = Lived(config(MEADOW, **values), begun[0] + 300, begun=begun)
+    values = {"cells": 12, "seeds": 3, "replication": 0.2, "hazard": 0.09}
+    run = Lived(config(MEADOW, **values), begun[0] + 500, begun=begun)
     worlds = [History(run, world, begun) for world in range(3)]
     for history in worlds:
         assert history.lives[0].born == begun[0]
-        assert history.now == begun[0] + 300
-        assert len(history.lives) > 150
+        assert history.now == begun[0] + 500
+        assert begun[1] + len(history.lives) > 2**32
         then, state = history.fixation(), run.engine.state.world.worlds.fixed
         fixed = int(state.hi[history.world]) << 32 | int(state.lo[history.world])
         assert fixed == (2**64 - 1 if then is None else then[0])

@@ -9,10 +9,10 @@ SOURCE = Path(__file__).parent.parent / "src" / "primordia"
 
 # A module imports from rows above its own only, so those of one row know nothing of each other.
 ORDER = """
-    device errors settings wide digest events tasks
+     errors settings wide digest events tasks
     keys files
     brain motor mutation placement metabolism
-    world habitats
+    world habitats device
     seasons sample habitats.*
     turnover
     law

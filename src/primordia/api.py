@@ -1,4 +1,4 @@
-"""The Python interface; the command line uses nothing else.
+"""The Python interface, which the command line is made of.
 
 import primordia
 
@@ -9,6 +9,7 @@ genome = run.rebuild(organism=17)
 """
 
 from dataclasses import dataclass
+from itertools import chain, count
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ import numpy as np
 import pyarrow as pa
 
 from primordia import config, lineage, loop, report
+from primordia import device as devices
 from primordia.loop import Listener
 from primordia.verify import verify
 
@@ -41,15 +43,24 @@ class Run:
         """An organism's genome, float32 (P,), from the birth records alone."""
         return lineage.rebuild(self.path, organism, world)
 
-    def resume(self, inexact: bool = False, **options: Any) -> list[str]:
+    def resume(
+        self,
+        *,
+        inexact: bool = False,
+        checkpoint_every: float = 60.0,
+        device: str = "cpu",
+        listen: Listener | None = None,
+        **limits: Any,
+    ) -> list[str]:
         """Go on, with new `ticks`, `births` or `until` if given; see `loop.resume`."""
-        limits: dict[str, Any] = {
-            name: options.pop(name) for name in ("ticks", "births", "until") if name in options
-        }
-        return loop.resume(self.path, limits, inexact=inexact, **options)
+        devices.select(device)
+        return loop.resume(
+            self.path, limits, inexact=inexact, checkpoint_every=checkpoint_every, listen=listen
+        )
 
-    def verify(self, listen: Listener | None = None) -> list[str]:
+    def verify(self, device: str = "cpu", listen: Listener | None = None) -> list[str]:
         """Do it again and compare -> what differs."""
+        devices.select(device)
         return verify(self.path, listen)
 
 
@@ -58,6 +69,7 @@ def run(
     out: str | Path | None = None,
     *,
     checkpoint_every: float = 60.0,
+    device: str = "cpu",
     listen: Listener | None = None,
     **settings: Any,
 ) -> Run:
@@ -67,6 +79,7 @@ def run(
         task: name of a built-in task, or a TOML file.
         out: directory to make; by default a new one under `runs/`.
         checkpoint_every: seconds from one checkpoint to the next.
+        device: what JAX computes on, `cpu` or `gpu`.
         listen: called after each chunk.
         settings: changed settings, tables as dicts: `cells=64, mutation={"scale": 0.02}`.
 
@@ -75,6 +88,7 @@ def run(
         Trouble: something cannot be written; what was checkpointed stays good.
         KeyboardInterrupt: on Ctrl-C, after a checkpoint.
     """
+    devices.select(device)
     chosen = config.load(task, settings)
     path = Path(out) if out is not None else fresh_directory(chosen)
     loop.start(chosen, path, checkpoint_every=checkpoint_every, listen=listen)
@@ -83,6 +97,6 @@ def run(
 
 def fresh_directory(chosen: config.Config) -> Path:
     """A path under `runs/` that is not taken, named after task and seed."""
-    name = f"{chosen.task}-seed{chosen.seed}"
-    candidates = [Path("runs", name), *(Path("runs", f"{name}-{i}") for i in range(2, 100_000))]
-    return next(path for path in candidates if not path.exists())
+    name = f"{chosen.task.replace('/', '-')}-seed{chosen.seed}"
+    others = (Path("runs", f"{name}-{i}") for i in count(2))
+    return next(path for path in chain([Path("runs", name)], others) if not path.exists())

@@ -78,23 +78,14 @@ def run(settings: dict[str, Any], /, task: str, out: Path | None, **options: Any
     TASK is one of `primordia tasks`; a FILE.toml names its `task` and changes what it likes. Any
     setting below can be given as a flag, such as --seed 3, --cells 64 or --mutation.scale 0.02.
     """
-    from primordia import config, device
-    from primordia.api import fresh_directory
-    from primordia.loop import start
+    from primordia import api, config
 
-    _use(device, options["device"])
     for name, setting in SHORT.items():
-        if (given := options[f"stop_{name}"]) is not None:
+        if (given := options.pop(f"stop_{name}")) is not None:
             _put(settings, setting, _value(given))
-    chosen = config.load(task, settings)
-    path = out or fresh_directory(chosen)
-    _drive(
-        path,
-        options["quiet"],
-        lambda listen: start(
-            chosen, path, checkpoint_every=options["checkpoint_every"], listen=listen
-        ),
-    )
+    path = out or api.fresh_directory(config.load(task, settings))
+    quiet = options.pop("quiet")
+    _drive(path, quiet, lambda listen: api.run(task, path, listen=listen, **options, **settings))
 
 
 @main_group.command()
@@ -108,18 +99,16 @@ def run(settings: dict[str, Any], /, task: str, out: Path | None, **options: Any
 )
 @click.option("--inexact", is_flag=True, help="Go on although versions or machine differ.")
 @click.option("--quiet", is_flag=True, help="Print nothing while running.")
-def resume(run: Path, quiet: bool, inexact: bool, checkpoint_every: float, **options: Any) -> None:
+def resume(run: Path, quiet: bool, **options: Any) -> None:
     """Go on with a run that stopped, was interrupted, or was killed."""
-    from primordia import device
-    from primordia.loop import resume as go_on
+    from primordia.api import Run
 
-    _use(device, options.pop("device"))
-    limits = {name: _value(given) for name, given in options.items() if given is not None}
+    for name in SHORT:
+        if (given := options.pop(name)) is not None:
+            options[name] = _value(given)
 
     def drive(listen: Any) -> None:
-        for note in go_on(
-            run, limits, inexact=inexact, checkpoint_every=checkpoint_every, listen=listen
-        ):
+        for note in Run(run).resume(listen=listen, **options):
             _say(note)
 
     _drive(run, quiet, drive)
@@ -144,11 +133,9 @@ def info(run: Path, as_json: bool) -> None:
 )
 def verify(run: Path, device: str) -> None:
     """Live a run again from its beginning and compare: every birth, death and genome."""
-    from primordia import device as devices
     from primordia.api import Run
 
-    _use(devices, device)
-    differences = Run(run).verify()
+    differences = Run(run).verify(device)
     if differences:
         raise Trouble(f"{run} does not hold: {differences[0]}")
     click.echo(f"{run} holds: lived again from its beginning, every world came out the same.")
@@ -161,13 +148,6 @@ def tasks() -> None:
 
     for name, values in known().items():
         click.echo(f"{name:28} {values.get('about', '')}")
-
-
-def _use(devices: Any, name: str) -> None:
-    try:
-        devices.select(name)
-    except LookupError as error:
-        raise InputError(f"--device: {error.args[0]}") from None
 
 
 def _put(settings: dict[str, Any], path: str, value: Any) -> None:
@@ -203,6 +183,7 @@ def _drive(path: Path, quiet: bool, go: Any) -> None:
 
 def main() -> None:
     """Entry point."""
+    sys.path.insert(0, "")  # habitats of the user's own, where the command is run
     try:
         main_group(standalone_mode=False)
     except click.exceptions.Exit as done:

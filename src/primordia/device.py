@@ -5,6 +5,8 @@ import platform
 from importlib.metadata import version
 from pathlib import Path
 
+from primordia.errors import InputError
+
 PACKAGES = ("primordia", "jax", "jaxlib", "numpy")
 ISA_FLAG = "--xla_cpu_max_isa"
 
@@ -20,19 +22,18 @@ def configure() -> None:
         os.environ["XLA_FLAGS"] = f"{flags} {ISA_FLAG}=AVX2".strip()
 
 
-def select(name: str | None) -> None:
-    """Compute on the named platform (`cpu`, `gpu`); None leaves the choice to the caller's setup.
+def select(name: str) -> None:
+    """Compute on the named platform, `cpu` or `gpu`.
 
     Raises:
-        LookupError: JAX has no such device here.
+        InputError: JAX has no such device here.
     """
     import jax
 
-    wanted = name or "cpu"
     try:
-        jax.config.update("jax_default_device", jax.devices(wanted)[0])  # type: ignore[no-untyped-call]
+        jax.config.update("jax_default_device", jax.devices(name)[0])  # type: ignore[no-untyped-call]
     except RuntimeError:
-        raise LookupError(f"JAX finds no {wanted!r} device here") from None
+        raise InputError(f"--device: JAX finds no {name!r} device here") from None
 
 
 def instruction_set() -> str:
