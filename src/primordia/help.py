@@ -50,20 +50,23 @@ class Lines:
     """seconds"""
 
     def __init__(self) -> None:
-        self._next = time.perf_counter() + self.EVERY
+        self._last: tuple[float, int] | None = None
 
     def __call__(self, status: Status) -> None:
-        """Print how far it is, if it is time."""
-        if time.perf_counter() < self._next:
+        """Print how far it is, if it is time. The first chunk is compilation, and not counted."""
+        worlds = status.engine.state.world.worlds
+        now, lived = time.perf_counter(), int(to_host(worlds.organism_ticks).sum())
+        if self._last is None:
+            self._last = now, lived
+        since, before = self._last
+        if now - since < self.EVERY:
             return
-        self._next = time.perf_counter() + self.EVERY
-        worlds, organisms = status.engine.state.world.worlds, status.engine.state.world.organisms
-        ticks, births = to_host(worlds.tick), to_host(worlds.births)
-        alive = int(organisms.alive.sum())
-        rate = to_host(worlds.organism_ticks).sum() / max(status.wall_s, 1e-9)
+        self._last = now, lived
         print(
-            f"{status.wall_s:6.1f} s  tick {ticks.max():,}  alive {alive:,}  births {births.sum():,}"
-            f"  {rate / 1e6:.2f} M organism-ticks/s",
+            f"{status.wall_s:6.1f} s  tick {to_host(worlds.tick).max():,}"
+            f"  alive {int(status.engine.state.world.organisms.alive.sum()):,}"
+            f"  births {to_host(worlds.births).sum():,}"
+            f"  {(lived - before) / (now - since) / 1e6:.2f} M organism-ticks/s",
             flush=True,
         )
 
@@ -86,18 +89,14 @@ def summary(info: dict[str, Any]) -> str:
 
 def _world_line(world: dict[str, Any]) -> str:
     causes = [f"{count:,} {cause}" for cause, count in world["deaths_by_cause"].items() if count]
-    saturation = world["saturation"]
-    end = (
-        f"saturated at tick {saturation['tick']:,} after {saturation['births']:,} births"
-        if saturation
-        else "not saturated"
-    )
-    age = (
-        f", mean age {world['mean_age']:,.0f}, oldest {world['oldest_age']:,}"
-        if world["alive"]
-        else ""
-    )
-    return (
+    extinct = f", extinct {world['extinctions']} times" * bool(world["extinctions"])
+    line = (
         f"  seed {world['seed']}: {world['ticks']:,} ticks, {world['births']:,} births, deaths: "
-        f"{', '.join(causes) or 'none'}; {world['alive']} alive{age}; {end}"
+        f"{', '.join(causes) or 'none'}{extinct}\n    {world['alive']} alive"
     )
+    if world["alive"]:
+        line += f", mean age {world['mean_age']:,.0f}, oldest {world['oldest_age']:,}"
+    if saturation := world["saturation"]:
+        tick, births = saturation["tick"], saturation["births"]
+        return f"{line}; saturated at tick {tick:,} after {births:,} births"
+    return f"{line}; not saturated"
