@@ -59,7 +59,7 @@ def test_a_schedule_is_felt_first_in_the_tick_after() -> None:
 
 RATCHETS = [
     ratchet("metabolism.gain", "mean_age", 12.0, 0.93, 20),
-    ratchet("replication", "saturation", 0.5, 0.9, 30),
+    ratchet("replication", "saturation", 0.1, 0.9, 30),
     ratchet("mutation.scale", "food", 0.12, 1.25, 40),
     ratchet("mutation.blocks.output.scale", "mean_age", 8.0, 0.5, 50),
     schedule("metabolism.gain", 205, 2.5),

@@ -53,11 +53,12 @@ def turn(
     """Apply the seasons at the end of a tick -> worlds, whose climate changed (bool (W,))."""
     worlds = world.worlds
     changed = jnp.zeros(running.shape, bool)
+    s = -1
     for season in seasons:
         if isinstance(season, Schedule):
             due = running & worlds.tick.equals(wide(season.at))
         else:
-            s = ratchets(seasons).index(season)
+            s += 1
             look = running & (worlds.looks.wait[:, s] == 0)
             due = look & (_measure(season, s, world) > season.above)
             worlds = worlds._replace(looks=_looked(worlds, season, s, look))

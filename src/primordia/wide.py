@@ -57,9 +57,7 @@ class Wide(NamedTuple):
 
 def wide(values: object) -> Wide:
     """From ints or integer arrays on the host; negative ones wrap (two's complement)."""
-    whole = np.asarray(values)
-    whole = whole.astype(np.int64).view(np.uint64) if whole.dtype.kind == "i" else whole
-    whole = whole.astype(np.uint64)
+    whole = np.asarray(np.asarray(values, dtype=object) % 2**64).astype(np.uint64)
     hi, lo = whole >> np.uint64(32), whole & np.uint64(0xFFFFFFFF)
     return Wide(jnp.asarray(hi.astype(np.uint32)), jnp.asarray(lo.astype(np.uint32)))
 
@@ -122,5 +120,8 @@ def happened(value: Wide) -> Array:
 
 
 def to_float(value: Wide) -> Array:
-    """As float32, taken as two's complement; the product with 2^32 is exact, the sum rounds once."""
-    return value.hi.astype(jnp.int32).astype(jnp.float32) * np.float32(2**32) + value.lo
+    """As float32, taken as two's complement; products with 2^32 are exact, so the sum rounds once."""
+    negative = value.hi >> np.uint32(31) == 1
+    size = select(negative, zero(value.lo.shape) - value, value)
+    magnitude = size.hi.astype(jnp.float32) * np.float32(2**32) + size.lo.astype(jnp.float32)
+    return jnp.where(negative, -magnitude, magnitude)
