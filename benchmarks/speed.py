@@ -74,6 +74,7 @@ def _on_disk(run: Path, seed: int) -> float:
     config = load("CartPole-survival", {"seed": seed})
     for name in ("births", "deaths", "metrics", "checkpoints"):
         (run / name).mkdir(parents=True)
+    (run / "config.toml").write_text(config.to_toml())
     warm, made = Engine(config), Engine(config)
     warm.advance(warm.limits({}))
     made.chunks = warm.chunks

@@ -2,6 +2,7 @@
 
 import math
 from collections import Counter, defaultdict
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -179,12 +180,21 @@ class History:
 
     def saturation(self) -> tuple[int, int] | None:
         """When the world was first full and without an event for long enough; births till then."""
-        calm = self.lived.config.saturation_ticks
-        ticks = [*self.living_after, self.now + 1]
-        for tick, following in pairwise(ticks):
-            if len(self.living_after[tick]) == self.cells and following > tick + calm:
-                return tick + calm, self.births_until(tick)
+        for tick in self._calm():
+            if len(self.living_after[tick]) == self.cells:
+                return tick + self.lived.config.saturation_ticks, self.births_until(tick)
         return None
+
+    def calm_but_not_full(self) -> bool:
+        """Whether before that it was as long without an event, with cells empty."""
+        first = next(self._calm(), None)
+        return first is not None and len(self.living_after[first]) < self.cells
+
+    def _calm(self) -> Iterator[int]:
+        """Ticks with an event after which there was none for long enough."""
+        for tick, following in pairwise([*self.living_after, self.now + 1]):
+            if following > tick + self.lived.config.saturation_ticks:
+                yield tick
 
     def births_until(self, tick: int) -> int:
         """Births up to the end of a tick."""

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from primordia.brain import join
-from primordia.wide import happened, to_host
+from primordia.mutation import noise_index, quantiles, streams
+from primordia.wide import happened, to_host, wide
 from tests.chance import binomial, even
 from tests.history import History
 from tests.worlds import CLOCKWORK, MEADOW, MILL, Lived, config
@@ -264,17 +265,47 @@ def test_a_front_moves_at_the_speed_of_its_rule(rule: str, speed: float) -> None
             assert binomial(moved, worlds * ticks // 2, speed)
 
 
-def test_founders_after_extinctions_appear_anywhere() -> None:
-    """One organism at a time, each living on with probability 1/2."""
-    history = History(Lived(config(MEADOW, **SMALL, replication=0.0, hazard=0.5), 3000))
-    assert binomial(len(history.dead), 3000, 0.5)
-    assert [life.died for life in history.dead] == history.extinctions
-    cells = np.array([life.cell for life in history.lives])
+def test_chance_in_worlds_that_go_extinct_all_the_time() -> None:
+    """Founders appear anywhere; death, and replication of those who live on, are independent."""
+    values = {"replication": 0.3, "hazard": 0.5}
+    history = History(Lived(config(MEADOW, **SMALL, **values), 4000))
+    assert binomial(len(history.dead), history.organism_ticks, 0.5)
+    founders = [life for life in history.lives if life.parent is None]
+    assert [life.born for life in founders] == [0, *history.extinctions]
+    cells = np.array([life.cell for life in founders])
     assert even(np.bincount(cells, minlength=16))
-    pairs = np.bincount(cells[1:] * 16 + cells[:-1], minlength=256)
-    assert pairs.max() < 40, "the next founder's cell depends on the last one's"
-    ages = np.bincount([life.age for life in history.dead])
-    assert binomial(int(ages[1]), len(history.dead), 0.5)
+    assert binomial(int((cells[1:] == cells[:-1]).sum()), len(cells) - 1, 1 / 16)
+    alone = survived = replicated = 0
+    living = history.living_after[0]
+    for tick in range(1, history.now + 1):
+        before, living = living, history.living_after.get(tick, living)
+        if len(before) == 1:
+            alone += 1
+            survived += before[0] in living
+            replicated += before[0] in living and len(living) == 2
+    assert binomial(survived, alone, 0.5)
+    assert binomial(replicated, survived, 0.3)
+
+
+def test_a_replaced_parent_passes_on_its_own_genome() -> None:
+    """Also where its cell is taken in the same tick, before its own child is written."""
+    values = {"genesis": "fill", "replication": 0.6, "mutation": {"probability": 0.0}, "cells": 64}
+    rule = {"placement": {"topology": "well-mixed", "rule": "replacing"}}
+    history = History(Lived(config(MEADOW, **SMALL, **values, **rule), 3))
+    organisms, worlds = history.lived.engine.state.world
+    key = streams(worlds.seed, wide(np.zeros(1, np.uint64))).founder
+    length = sum(history.lived.engine.law.block_sizes)
+    founders = quantiles()[np.asarray(noise_index(key, np.arange(64), length))] * np.float32(0.01)
+    living = sorted(history.living_after[3], key=lambda life: life.cell)
+    roots = []
+    for life in living:
+        while life.parent is not None:
+            life = life.parent
+        roots.append(life.cell)
+    assert 5 < len(set(roots)) < 50
+    np.testing.assert_array_equal(genomes(history.lived), founders[roots])
+    both = [life for life in history.lives if life.parent and life.parent.died == life.born]
+    assert len(both) > 5, "nobody was replaced while it replicated"
 
 
 def test_genesis_can_fill_every_cell() -> None:
@@ -291,12 +322,12 @@ def test_genesis_can_fill_every_cell() -> None:
     assert len(np.unique(genomes(run), axis=0)) == 32
 
 
-CALM = {"cells": 12, "seeds": 4, "replication": 0.3, "hazard": 0.002, "saturation_ticks": 40}
+CALM = {"cells": 12, "seeds": 4, "replication": 0.05, "hazard": 0.002, "saturation_ticks": 40}
 
 
 @pytest.fixture(scope="module")
 def calm() -> list[History]:
-    run = Lived(config(MEADOW, **SMALL, **CALM), 1500)
+    run = Lived(config(MEADOW, **SMALL, **CALM), 3000)
     return [History(run, world) for world in range(4)]
 
 
@@ -308,6 +339,7 @@ def test_saturation_is_noted_when_a_full_world_was_calm_for_long_enough(
     assert None not in expected
     assert len(set(expected)) > 1
     assert any(len(history.dead) for history in calm)
+    assert any(history.calm_but_not_full() for history in calm)
     assert to_host(worlds.saturated).tolist() == [tick for tick, _ in expected]
     assert to_host(worlds.saturated_births).tolist() == [births for _, births in expected]
 
@@ -319,7 +351,7 @@ def prefix(table: dict[str, np.ndarray], world: int, last: int) -> dict[str, lis
 
 @pytest.mark.parametrize("stop", [{"until": "saturation"}, {"births": 20}])
 def test_each_world_stops_in_its_own_tick(calm: list[History], stop: dict[str, Any]) -> None:
-    run = Lived(config(MEADOW, **SMALL, **CALM), 1500, **stop)
+    run = Lived(config(MEADOW, **SMALL, **CALM), 3000, **stop)
     worlds = run.engine.state.world.worlds
     for world, history in enumerate(calm):
         if "births" in stop:
@@ -330,7 +362,7 @@ def test_each_world_stops_in_its_own_tick(calm: list[History], stop: dict[str, A
         History(run, world)
         for name in ("births", "deaths"):
             free = prefix(history.lived.table(name), world, last)
-            stopped = prefix(run.table(name), world, 1500)
+            stopped = prefix(run.table(name), world, 3000)
             np.testing.assert_equal(stopped, free)
     assert len(set(to_host(worlds.tick).tolist())) > 1
 
