@@ -47,6 +47,8 @@ HISTORIES: dict[str, dict[str, Any]] = {
         "torus4",
         "replacing",
         hazard=0.02,
+        metabolism={"store": 20.0},
+        habitat=meadow(lifespan=20),
         inheritance="founder",
         mutation={"founder_scale": 0.5},
     ),
@@ -55,7 +57,7 @@ HISTORIES: dict[str, dict[str, Any]] = {
         "ring",
         "empty-only",
         metabolism={"store": 9.0},
-        habitat=meadow(lifespan=9),
+        habitat=meadow(lifespan=9, broken_at=9),
         mutation={"probability": 0.0},
     ),
 }
@@ -108,10 +110,10 @@ def test_fixation_is_as_the_pedigree_says(histories: dict[str, list[History]]) -
 def test_hazard_strikes_its_share_of_organism_ticks(
     histories: dict[str, list[History]], name: str
 ) -> None:
-    """Whoever starves may have been struck in the same tick as well; nobody can tell."""
+    """Who dies of something graver may have been struck in the same tick; nobody can tell."""
     worlds = histories[name]
     died = Counter(life.cause for history in worlds for life in history.dead)
-    at_risk = sum(history.organism_ticks for history in worlds) - died["starved"]
+    at_risk = sum(history.organism_ticks for history in worlds) - died["starved"] - died["fatal"]
     assert binomial(died["hazard"], at_risk, HISTORIES[name]["hazard"])
     assert (died["replaced"] > 100) == (HISTORIES[name]["placement"]["rule"] == "replacing")
 
@@ -128,10 +130,17 @@ def test_mutants_and_copies_are_told_apart(histories: dict[str, list[History]]) 
     assert half.count("copy") + half.count("mutant") == len(half)
 
 
-def test_a_lifespan_ends_on_its_tick(histories: dict[str, list[History]]) -> None:
-    """They would starve in the same tick, but the graver cause counts."""
+def test_of_several_causes_in_one_tick_the_gravest_counts(
+    histories: dict[str, list[History]],
+) -> None:
+    """A life that ends in its tick for two reasons, and one that ends for three."""
+    for history in histories["control"]:
+        at_the_end = [life.cause for life in history.dead if life.age == 20]
+        assert len(at_the_end) > 5
+        assert set(at_the_end) == {"fatal"}
+        assert max(life.age for life in history.dead) == 20
     for history in histories["short"]:
-        assert {(life.cause, life.age) for life in history.dead} == {("fatal", 9)}
+        assert {(life.cause, life.age) for life in history.dead} == {("fault", 9)}
         assert all(history.now - life.born < 9 for life in history.lives if life.died is None)
 
 
@@ -202,13 +211,6 @@ def test_nobody_holds_more_than_the_cap(histories: dict[str, list[History]]) -> 
     for life in dead:
         assert life.energy == min(10 + 2 * life.age, 25.5)
         assert life.food == life.age
-
-
-def test_a_broken_body_dies_of_a_fault_whatever_else_befalls_it() -> None:
-    values = {"metabolism": {"store": 9.0}, "habitat": meadow(broken_at=9, lifespan=9)}
-    history = History(Lived(config(MEADOW, **SMALL, **values, replication=0.3), 200))
-    assert len(history.dead) > 20
-    assert {(life.cause, life.age) for life in history.dead} == {("fault", 9)}
 
 
 @pytest.mark.parametrize("where", ["genome", "memory"])
@@ -292,7 +294,7 @@ def test_a_replaced_parent_passes_on_its_own_genome() -> None:
     values = {"genesis": "fill", "replication": 0.6, "mutation": {"probability": 0.0}, "cells": 64}
     rule = {"placement": {"topology": "well-mixed", "rule": "replacing"}}
     history = History(Lived(config(MEADOW, **SMALL, **values, **rule), 3))
-    organisms, worlds = history.lived.engine.state.world
+    worlds = history.lived.engine.state.world.worlds
     key = streams(worlds.seed, wide(np.zeros(1, np.uint64))).founder
     length = sum(history.lived.engine.law.block_sizes)
     founders = quantiles()[np.asarray(noise_index(key, np.arange(64), length))] * np.float32(0.01)
@@ -354,10 +356,7 @@ def test_each_world_stops_in_its_own_tick(calm: list[History], stop: dict[str, A
     run = Lived(config(MEADOW, **SMALL, **CALM), 3000, **stop)
     worlds = run.engine.state.world.worlds
     for world, history in enumerate(calm):
-        if "births" in stop:
-            last = history.lives[19].born
-        else:
-            last = history.saturation()[0]
+        last = history.lives[19].born if "births" in stop else history.saturation()[0]
         assert to_host(worlds.tick)[world] == last
         History(run, world)
         for name in ("births", "deaths"):
