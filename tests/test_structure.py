@@ -22,8 +22,8 @@ ORDER = """
     record
     checkpoint
     loop
-    report verify
-    lineage
+    report
+    verify lineage lives
     api help
     cli
     __main__

@@ -149,8 +149,8 @@ def _wide(rows: np.ndarray, column: int) -> np.ndarray:
 
 
 def _named(codes: np.ndarray, names: type[Origin] | type[Cause]) -> pa.Array:
-    words = [name.name.lower().replace("_", "-") for name in names]
-    return pa.DictionaryArray.from_arrays(pa.array(codes.astype(np.int8)), pa.array(words))
+    words = pa.array([each.label for each in names])
+    return pa.DictionaryArray.from_arrays(pa.array(codes.astype(np.int8)), words)
 
 
 def _units(steps: np.ndarray) -> np.ndarray:

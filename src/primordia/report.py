@@ -75,28 +75,34 @@ def _table(run: Path, name: str, config: Config, last: Checkpoint) -> pa.Table:
     return pa.concat_tables(parts)
 
 
+def world_ticks(arrays: dict[str, np.ndarray]) -> np.ndarray:
+    """Ticks each world has lived through, uint64 (W,), from a checkpoint's arrays."""
+    return _counts(arrays, "world.worlds.tick")
+
+
+def _counts(arrays: dict[str, np.ndarray], name: str) -> np.ndarray:
+    hi, lo = arrays[f"{name}.hi"].astype(np.uint64), arrays[f"{name}.lo"]
+    return (hi << np.uint64(32)) | lo
+
+
 def _world(
     config: Config, arrays: dict[str, np.ndarray], world: int, digest: str
 ) -> dict[str, Any]:
     def count(name: str) -> Any:
-        hi, lo = arrays[f"world.worlds.{name}.hi"][world], arrays[f"world.worlds.{name}.lo"][world]
-        return ((hi.astype(np.uint64) << np.uint64(32)) | lo).tolist()
+        return _counts(arrays, f"world.worlds.{name}")[world].tolist()
 
     here = slice(world * config.cells, (world + 1) * config.cells)
     alive = arrays["world.organisms.alive"][here]
-    born = arrays["world.organisms.born.hi"][here].astype(np.int64) << 32
-    born |= arrays["world.organisms.born.lo"][here]
     tick = count("tick")
-    ages = tick - born[alive]
+    ages = tick - _counts(arrays, "world.organisms.born")[here][alive].astype(np.int64)
     deaths = count("deaths")
-    names = [cause.name.lower().replace("_", "-") for cause in Cause]
     found = {
         "seed": config.seed + world,
         "ticks": tick,
         "alive": int(alive.sum()),
         "births": count("births"),
         "deaths": sum(deaths),
-        "deaths_by_cause": dict(zip(names, deaths, strict=True)),
+        "deaths_by_cause": dict(zip((cause.label for cause in Cause), deaths, strict=True)),
         "extinctions": count("extinctions"),
         "cell_ticks": tick * config.cells,
         "organism_ticks": count("organism_ticks"),

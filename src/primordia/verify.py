@@ -3,13 +3,12 @@
 import time
 from pathlib import Path
 
-import numpy as np
-
 from primordia import checkpoint
 from primordia.digest import digests
 from primordia.errors import InputError
 from primordia.loop import Engine, Listener, Status, other_versions, read_config
 from primordia.record import Recorder
+from primordia.report import world_ticks
 
 
 def verify(run: Path, listen: Listener | None = None) -> list[str]:
@@ -27,11 +26,8 @@ def verify(run: Path, listen: Listener | None = None) -> list[str]:
     if not last.progress.exact:
         raise InputError(f"{run} is not exact (see `primordia info`): nothing can be verified")
     arrays = last.arrays()
-    tick = np.stack([arrays["world.worlds.tick.hi"], arrays["world.worlds.tick.lo"]]).astype(
-        np.uint64
-    )
     engine = Engine(config)
-    limits = engine.limits({}, tick[0] << np.uint64(32) | tick[1])
+    limits = engine.limits({}, world_ticks(arrays))
     again = Recorder(None, config.seeds, config.cells, engine.law.blocks)
     began = time.perf_counter()
     while engine.any_running(limits):

@@ -15,7 +15,16 @@ from primordia.metabolism import Rates
 from primordia.wide import Wide, select, total, zero
 
 
-class Cause(IntEnum):
+class Named(IntEnum):
+    """Numbers that people read as words."""
+
+    @property
+    def label(self) -> str:
+        """As in records and messages: `time-limit`."""
+        return self.name.lower().replace("_", "-")
+
+
+class Cause(Named):
     """Cause of a death. Numbers are part of the format."""
 
     FATAL = 0
@@ -27,7 +36,7 @@ class Cause(IntEnum):
     RESTART = 6
 
 
-class Origin(IntEnum):
+class Origin(Named):
     """Cause of a birth. Numbers are part of the format."""
 
     FOUNDER = 0
