@@ -25,6 +25,8 @@ ORDER = """
     report
     verify lineage lives
     api help
+    cli.say cli.flags
+    cli.evolve cli.look
     cli
     __main__
 """

@@ -1,0 +1,81 @@
+"""Commands that let organisms live: they write a run directory."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import click
+
+from primordia.cli.flags import (
+    SettingsCommand,
+    checkpoint_option,
+    device_option,
+    limit_options,
+    limits_in,
+    out_option,
+    put,
+    quiet_option,
+    run_argument,
+)
+from primordia.cli.say import say
+
+
+@click.command(cls=SettingsCommand)
+@click.argument("task", metavar="TASK|FILE.toml")
+@out_option
+@limit_options
+@checkpoint_option
+@device_option
+@quiet_option
+@click.pass_obj
+def run(
+    settings: dict[str, Any], /, task: str, out: Path | None, quiet: bool, **options: Any
+) -> None:
+    """Evolve in a new run directory.
+
+    TASK is one of `primordia tasks`; a FILE.toml names its `task` and changes what it likes. Any
+    setting below can be given as a flag, such as --seed 3, --cells 64 or --mutation.scale 0.02.
+    """
+    from primordia import api, config
+
+    for name, value in limits_in(options).items():
+        put(settings, f"stop.{name}", value)
+    path = out or api.fresh_directory(config.load(task, settings))
+    _drive(path, quiet, lambda listen: api.run(task, path, listen=listen, **options, **settings))
+
+
+@click.command()
+@run_argument
+@limit_options
+@checkpoint_option
+@device_option
+@click.option("--inexact", is_flag=True, help="Go on although versions or machine differ.")
+@quiet_option
+def resume(run: Path, quiet: bool, **options: Any) -> None:
+    """Go on with a run that stopped, was interrupted, or was killed."""
+    from primordia.api import Run
+
+    limits = limits_in(options)
+
+    def drive(listen: Any) -> None:
+        for note in Run(run).resume(listen=listen, **options, **limits):
+            say(note)
+
+    _drive(run, quiet, drive)
+
+
+def _drive(path: Path, quiet: bool, go: Callable[[Any], object]) -> None:
+    from primordia.api import Run
+    from primordia.help import Lines, summary
+
+    try:
+        go(None if quiet else Lines())
+    except KeyboardInterrupt:
+        click.echo(f"Stopped and saved. Go on with: primordia resume {path}", err=True)
+        raise SystemExit(130) from None
+    if not quiet:
+        click.echo(summary(Run(path).info()))
+        click.echo(f"All of it is in {path}; `primordia info {path}` tells this again.")
+
+
+COMMANDS = (run, resume)

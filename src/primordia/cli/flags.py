@@ -1,0 +1,93 @@
+"""Flags: any setting of a task by its dotted name, beside a command's own options."""
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import click
+
+from primordia.errors import InputError
+
+run_argument = click.argument("run", type=click.Path(path_type=Path))
+out_option = click.option(
+    "--out", type=click.Path(path_type=Path), help="Directory to make [under runs/]."
+)
+device_option = click.option(
+    "--device", default="cpu", show_default=True, help="What JAX computes on: cpu or gpu."
+)
+checkpoint_option = click.option(
+    "--checkpoint-every", type=float, default=60.0, show_default=True, metavar="SECONDS"
+)
+quiet_option = click.option("--quiet", is_flag=True, help="Print nothing while running.")
+
+LIMITS = {
+    "ticks": "Stop each world after so many ticks, or none.",
+    "births": "Stop each world after so many births, or none.",
+    "until": "saturation: stop each world once saturated; or none.",
+}
+
+
+def limit_options(command: Any) -> Any:
+    """Add --ticks, --births and --until."""
+    for name, text in reversed(LIMITS.items()):
+        command = click.option(f"--{name}", help=text)(command)
+    return command
+
+
+def limits_in(options: dict[str, Any]) -> dict[str, Any]:
+    """Take those given out of a command's options -> their values."""
+    given = {name: options.pop(name) for name in LIMITS}
+    return {name: _value(text) for name, text in given.items() if text is not None}
+
+
+class SettingsCommand(click.Command):
+    """A command that takes any setting as a flag, and lists them all under --help."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Set aside the flags that are settings, as nested tables in `ctx.obj`."""
+        options = {name for option in self.get_params(ctx) for name in option.opts}
+        ctx.obj, own, rest = {}, [], list(args)
+        while rest:
+            word = rest.pop(0)
+            name, equals, text = word.partition("=")
+            if not name.startswith("--") or name in options:
+                own.append(word)
+                continue
+            if not equals:
+                if not rest or rest[0].startswith("--"):
+                    raise InputError(f"{name} needs a value")
+                text = rest.pop(0)
+            put(ctx.obj, name.removeprefix("--"), _value(text))
+        ctx.meta["words"] = tuple(own)
+        return super().parse_args(ctx, own)
+
+    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Append every setting with its value in the task named, and what it means."""
+        from primordia.config import tasks
+        from primordia.help import setting_rows
+
+        known = tasks()
+        words = ctx.meta["words"]
+        task = next((word for word in words if word in known or word.endswith(".toml")), None)
+        with formatter.section(
+            f"Settings, as in TOML ({'values of ' + task if task else 'defaults'})"
+        ):
+            formatter.write_dl(setting_rows(task))
+
+
+def put(settings: dict[str, Any], path: str, value: Any) -> None:
+    """Set what a dotted path names in nested tables."""
+    *groups, name = path.split(".")
+    for group in groups:
+        settings = settings.setdefault(group, {})
+        if not isinstance(settings, dict):
+            raise InputError(f"--{path}: --{group} was given a value of its own already")
+    settings[name] = value
+
+
+def _value(text: str) -> Any:
+    """A flag's value, read as TOML; what is no TOML is a string."""
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        return text

@@ -1,0 +1,46 @@
+"""Commands that look at run directories and leave them as they are."""
+
+import json
+from pathlib import Path
+
+import click
+
+from primordia.cli.flags import device_option, run_argument
+from primordia.errors import Trouble
+
+
+@click.command()
+@run_argument
+@click.option("--json", "as_json", is_flag=True, help="One JSON object.")
+def info(run: Path, as_json: bool) -> None:
+    """What happened in a run so far."""
+    from primordia.api import Run
+    from primordia.help import summary
+
+    found = Run(run).info()
+    click.echo(json.dumps(found) if as_json else summary(found))
+
+
+@click.command()
+@run_argument
+@device_option
+def verify(run: Path, device: str) -> None:
+    """Live a run again from its beginning and compare: every birth, death and genome."""
+    from primordia.api import Run
+
+    differences = Run(run).verify(device)
+    if differences:
+        raise Trouble(f"{run} does not hold: {differences[0]}")
+    click.echo(f"{run} holds: lived again from its beginning, every world came out the same.")
+
+
+@click.command()
+def tasks() -> None:
+    """The tasks that come with Primordia."""
+    from primordia.config import tasks as known
+
+    for name, values in known().items():
+        click.echo(f"{name:28} {values.get('about', '')}")
+
+
+COMMANDS = (info, verify, tasks)
