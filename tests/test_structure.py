@@ -11,9 +11,9 @@ SOURCE = Path(__file__).parent.parent / "src" / "primordia"
 ORDER = """
      errors settings wide digest events tasks
     keys files
-    brain motor mutation placement metabolism
+    brain motor mutation placement metabolism resample
     world habitats device
-    seasons sample habitats.*
+    seasons sample habitats.* contrast
     turnover
     law
     genesis
@@ -24,6 +24,7 @@ ORDER = """
     loop
     report
     verify lineage lives
+    survival
     api help
     cli.say cli.flags
     cli.evolve cli.look

@@ -1,0 +1,28 @@
+"""Worlds drawn again with replacement, for intervals: the same draws every time, from our own keys."""
+
+import numpy as np
+
+from primordia.keys import threefry
+from primordia.wide import Wide
+
+RESAMPLES = 1000
+COVERED = 0.95
+"""of resamples lie within an interval"""
+
+
+def resamples(worlds: int, stream: int = 0) -> np.ndarray:
+    """Numbers of the worlds in each resample, int64 (RESAMPLES, worlds).
+
+    Resamples of two runs that are compared come from different streams, so they are independent.
+    """
+    which, draw = np.indices((RESAMPLES, worlds), np.uint32)
+    key = Wide(np.full(1, stream, np.uint32), np.full(1, worlds, np.uint32))  # type: ignore[arg-type]
+    word = np.asarray(threefry(key, Wide(which, draw)).hi)  # type: ignore[arg-type]
+    return (word.astype(np.uint64) * np.uint64(worlds) >> np.uint64(32)).astype(np.int64)
+
+
+def interval(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Percentile interval of figures of resamples, on their first axis (Efron 1979)."""
+    ordered = np.sort(values, axis=0)
+    outside = round(len(values) * (1 - COVERED) / 2)
+    return ordered[outside], ordered[len(values) - 1 - outside]
