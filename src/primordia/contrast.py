@@ -77,20 +77,30 @@ class Contrast:
 
 def contrast(run: Figures, reference: Figures) -> Contrast:
     """Compare, worlds being independent of each other."""
-    larger, smaller = _exceeds(run, reference), _exceeds(reference, run).T
-    equal = (run.value[:, None] == reference.value) & (run.known[:, None] & reference.known)
-    medians = run.quantile(0.5), reference.quantile(0.5)
-    drawn = [
-        [_quantile(bound[resamples(len(bound), stream)], 0.5) for bound in (each.value, each.high)]
-        for stream, each in enumerate((run, reference))
-    ]
-    low, high = _ratio(*(tuple(each) for each in drawn))
+    larger = _pairs(reference.high, run.value)
+    smaller = _pairs(run.high, reference.value)
+    one, other = (each.value[each.known] for each in (run, reference))
+    equal = len(one) * len(other) - _pairs(one, other) - _pairs(other, one)
+    pairs = len(run.value) * len(reference.value)
+    low, high = _ratio(_medians(run, 0), _medians(reference, 1))
+    of_medians = _ratio(run.quantile(0.5), reference.quantile(0.5))
     return Contrast(
-        delta=float(larger.mean() - smaller.mean()),
-        decided=float((larger | smaller | equal).mean()),
-        ratio=tuple(float(each) for each in _ratio(*medians)),  # type: ignore[arg-type]
+        delta=(larger - smaller) / pairs,
+        decided=(larger + smaller + equal) / pairs,
+        ratio=(float(of_medians[0]), float(of_medians[1])),
         interval=(float(interval(low)[0]), float(interval(high)[1])),
     )
+
+
+def _pairs(small: np.ndarray, large: np.ndarray) -> int:
+    """How many pairs there are of a smaller one of `small` and a larger one of `large`."""
+    return int(np.searchsorted(np.sort(small), large, side="left").sum())
+
+
+def _medians(figures: Figures, stream: int) -> tuple[np.ndarray, np.ndarray]:
+    """Bounds of the median in each resample of the worlds."""
+    rows = resamples(len(figures.value), stream)
+    return _quantile(figures.value[rows], 0.5), _quantile(figures.high[rows], 0.5)
 
 
 def _quantile(values: np.ndarray, q: float) -> np.ndarray:
@@ -99,16 +109,6 @@ def _quantile(values: np.ndarray, q: float) -> np.ndarray:
     return np.partition(values, place, axis=-1)[..., place]
 
 
-def _exceeds(one: Figures, other: Figures) -> np.ndarray:
-    """Whose figure is known to be larger than whose, bool (W of one, W of other)."""
-    return one.value[:, None] > other.high
-
-
 def _ratio(run: tuple, reference: tuple) -> tuple[np.ndarray, np.ndarray]:
-    """Bounds of a ratio of two figures given by theirs: from nothing to infinity if need be."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        low = np.divide(run[0], reference[1])
-        high = np.divide(run[1], reference[0])
-    return np.nan_to_num(low, nan=0.0, posinf=np.inf), np.nan_to_num(
-        high, nan=np.inf, posinf=np.inf
-    )
+    """Bounds of a ratio from bounds of its terms, which are positive: 0 to infinity if need be."""
+    return np.divide(run[0], reference[1]), np.divide(run[1], reference[0])
