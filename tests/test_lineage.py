@@ -10,9 +10,10 @@ import pytest
 import primordia
 from primordia import checkpoint, loop, record
 from primordia.brain import join
+from primordia.directory import read_config
 from primordia.errors import InputError
 from primordia.lineage import descent, rebuild
-from primordia.loop import read_config
+from primordia.lives import lives
 from tests.worlds import MEADOW, MILL, config, merged
 
 pytestmark = pytest.mark.usefixtures("compiled_once")
@@ -73,7 +74,7 @@ def bits(genome: np.ndarray) -> np.ndarray:
 
 
 def depth(run: Path, organism: int, world: int = 0) -> int:
-    return len(descent(primordia.Run(run).table("births"), organism, world, "")["tick"]) - 1
+    return len(descent(lives(run), organism, world)) - 1
 
 
 @pytest.fixture(scope="module")

@@ -9,24 +9,25 @@ SOURCE = Path(__file__).parent.parent / "src" / "primordia"
 
 # A module imports from rows above its own only, so those of one row know nothing of each other.
 ORDER = """
-     errors settings wide digest events tasks
-    keys files
+     errors settings wide digest events tasks paint summary
+    keys files lines
     brain motor mutation placement metabolism resample
-    world habitats device
+    world habitats device genomes
     seasons sample habitats.* contrast
     turnover
     law
     genesis
     chunk
-    hosted config
-    record
-    checkpoint
+    hosted config census
+    record panel scene
+    checkpoint directory
     loop
-    report
-    verify lineage lives
-    survival
+    report live
+    verify climate lives
+    lineage survival
+    fork comparison
     api help
-    cli.say cli.flags
+    cli.say cli.flags cli.side_by_side
     cli.evolve cli.look
     cli
     __main__

@@ -16,7 +16,7 @@ import numpy as np
 import pyarrow.parquet
 import pytest
 
-from primordia import checkpoint, chunk, device, files, loop
+from primordia import checkpoint, chunk, device, directory, files, loop
 from primordia.errors import InputError, Trouble
 from tests import commands
 from tests.commands import begin, complains, here
@@ -243,7 +243,7 @@ def test_a_directory_that_is_no_run(command: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("command", ["info", "resume", "verify"])
 def test_a_run_made_by_a_newer_version(command: str, run: Path) -> None:
-    change_versions(run, format=loop.FORMAT + 1)
+    change_versions(run, format=directory.FORMAT + 1)
     before = contents(run)
     complains(here(command, run), 2, str(run), "newer primordia", "upgrade")
     assert contents(run) == before

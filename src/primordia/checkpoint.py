@@ -2,11 +2,14 @@
 
 RUN/checkpoints/000012/state.npz        the state's arrays, and `tail.*`: rows in no segment yet
                        manifest.json    written last: checksums, the segments that count, progress
+
+A fork begins at a checkpoint of its own, RUN/origin, which stays.
 """
 
 import hashlib
 import json
 import shutil
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -19,6 +22,9 @@ from primordia.record import TABLES, Recorder
 
 KEPT = 2
 """Checkpoints kept; should the newest be damaged, the one before serves."""
+ORIGIN = "origin"
+INPUTS = ("config.toml", "founders.safetensors")
+"""What a run cannot go on without, beside its checkpoints."""
 
 
 @dataclass
@@ -62,30 +68,54 @@ def save(run: Path, arrays: dict[str, np.ndarray], recorder: Recorder, progress:
     Raises:
         Trouble: it cannot be written; those before it stay good.
     """
-    folder = run / "checkpoints"
     number = 1 + max((int(path.name) for path in numbered(run)), default=-1)
-    temporary, final = folder / f"{files.TEMPORARY}{number:06d}", folder / f"{number:06d}"
+    final = run / "checkpoints" / f"{number:06d}"
+    _write(run, final, arrays, recorder, progress)
     try:
-        temporary.mkdir(parents=True)
-        _fill(temporary, arrays, recorder, progress)
-        temporary.rename(final)
-        files.sync(folder)
         for old in numbered(run)[:-KEPT]:
             shutil.rmtree(old)
+    except OSError as error:
+        raise Trouble(f"{old} cannot be removed: {error.strerror or error}") from None
+
+
+def save_origin(
+    run: Path, arrays: dict[str, np.ndarray], recorder: Recorder, progress: Progress
+) -> None:
+    """Write what a fork begins with; see `save`."""
+    _write(run, run / ORIGIN, arrays, recorder, progress)
+
+
+def _write(
+    run: Path,
+    final: Path,
+    arrays: dict[str, np.ndarray],
+    recorder: Recorder,
+    progress: Progress,
+) -> None:
+    temporary = final.with_name(files.TEMPORARY + final.name)
+    try:
+        temporary.mkdir(parents=True)
+        _fill(run, temporary, arrays, recorder, progress)
+        temporary.rename(final)
+        files.sync(final.parent)
     except OSError as error:
         shutil.rmtree(temporary, ignore_errors=True)
         raise Trouble(f"{final} cannot be written: {error.strerror or error}") from None
 
 
 def _fill(
-    folder: Path, arrays: dict[str, np.ndarray], recorder: Recorder, progress: Progress
+    run: Path,
+    folder: Path,
+    arrays: dict[str, np.ndarray],
+    recorder: Recorder,
+    progress: Progress,
 ) -> None:
     state, manifest = folder / "state.npz", folder / "manifest.json"
     np.savez(state, allow_pickle=False, **arrays, **recorder.tails())
     files.sync(state)
     content = {
         "progress": vars(progress),
-        "config": files.seal(folder.parent.parent / "config.toml"),
+        "inputs": {name: files.seal(run / name) for name in INPUTS if (run / name).exists()},
         "state": files.seal(state),
         "segments": {table.name: table.segments for table in recorder.tables},
         "digests": {table.name: table.digest.tolist() for table in recorder.tables},
@@ -118,12 +148,37 @@ def numbered(run: Path) -> list[Path]:
 def newest(run: Path) -> tuple[Checkpoint | None, list[str]]:
     """The newest checkpoint that is whole, segments included; and what is wrong with newer ones."""
     faults: list[str] = []
-    for path in reversed(numbered(run)):
-        found = _read(run, path)
+    for found in _newest_first(run):
         if isinstance(found, Checkpoint):
             return found, faults
         faults.append(found)
     return None, faults
+
+
+def whole(run: Path) -> list[Checkpoint]:
+    """All that are whole, newest first, a fork's origin last."""
+    return [found for found in _newest_first(run) if isinstance(found, Checkpoint)]
+
+
+def origin(run: Path) -> Checkpoint | None:
+    """What a fork began with; None if the run is no fork.
+
+    Raises:
+        Trouble: it is damaged.
+    """
+    if not (run / ORIGIN).exists():
+        return None
+    found = _read(run, run / ORIGIN)
+    if isinstance(found, str):
+        raise Trouble(found)
+    return found
+
+
+def _newest_first(run: Path) -> Iterator[Checkpoint | str]:
+    for path in reversed(numbered(run)):
+        yield _read(run, path)
+    if (run / ORIGIN).exists():
+        yield _read(run, run / ORIGIN)
 
 
 def _read(run: Path, path: Path) -> Checkpoint | str:
@@ -131,10 +186,8 @@ def _read(run: Path, path: Path) -> Checkpoint | str:
         manifest = json.loads((path / "manifest.json").read_text())
         if manifest["sha256"] != _checksum(manifest):
             raise ValueError
-        sealed = [
-            (run / "config.toml", manifest["config"]),
-            (path / "state.npz", manifest["state"]),
-        ]
+        sealed = [(run / name, seal) for name, seal in manifest["inputs"].items()]
+        sealed.append((path / "state.npz", manifest["state"]))
         for table in TABLES:
             sealed += [(run / table / each["name"], each) for each in manifest["segments"][table]]
     except (OSError, ValueError, KeyError, TypeError):
@@ -147,7 +200,8 @@ def _read(run: Path, path: Path) -> Checkpoint | str:
 
 def remove_what_does_not_count(run: Path, last: Checkpoint | None) -> None:
     """Delete whatever the given checkpoint does not name: what was being written in a crash."""
-    kept = [path for path in numbered(run) if last and int(path.name) <= int(last.path.name)]
+    before = numbered(run)
+    kept = before[: before.index(last.path) + 1] if last and last.path in before else []
     for path in (run / "checkpoints").iterdir():
         if path not in kept:
             _remove(path)

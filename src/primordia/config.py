@@ -10,8 +10,8 @@ from typing import Any, Literal, Union, get_args, get_origin
 import tomli_w
 from pydantic import BaseModel, Field, ValidationError
 
-from primordia import habitats
-from primordia.brain import BrainSettings
+from primordia import genomes, habitats
+from primordia.brain import Brain, BrainSettings
 from primordia.errors import InputError
 from primordia.habitats import Habitat, HostHabitat
 from primordia.law import Law
@@ -39,6 +39,13 @@ class Stop(Settings):
     )
 
 
+class ForkedFrom(Settings):
+    """Where a fork comes from. What it began with is in the run's directory, under `origin`."""
+
+    run: str = Field(description="the run it was forked from")
+    tick: int = Field(description="the tick at whose end")
+
+
 class Config(Settings):
     """All that a run depends on, except package versions and the device."""
 
@@ -53,6 +60,11 @@ class Config(Settings):
         0.05, ge=0, le=1, description="probability that an organism replicates in a tick"
     )
     mutation: Mutation = Mutation()
+    ancestors: tuple[Path, ...] = Field(
+        (),
+        strict=False,
+        description="genome files (`primordia export`) whose genomes founders take in turn",
+    )
     inheritance: Literal["parent", "founder"] = Field(
         "parent", description="parent: heredity; founder: every child is a founder (the control)"
     )
@@ -78,6 +90,7 @@ class Config(Settings):
     seed: int = Field(0, ge=0, lt=2**64, description="seed of the first world")
     seeds: int = Field(1, ge=1, le=2**16, description="worlds, with consecutive seeds")
     stop: Stop = Stop()
+    origin: ForkedFrom | None = Field(None, description="set by `primordia fork`")
 
     def build_habitat(self) -> Habitat | HostHabitat:
         """The habitat, from its class and settings.
@@ -98,16 +111,22 @@ class Config(Settings):
                 raise InputError(f"habitat: {kind.__name__} is no habitat: it has no {needed!r}")
         return built
 
+    def build_brain(self, habitat: Habitat | HostHabitat) -> Brain:
+        """The brain of this run's organisms."""
+        return self.brain.build(habitat.senses_size, habitat.action.size)
+
     def build_law(self, habitat: Habitat | HostHabitat) -> Law:
         """The law that holds in this run's worlds."""
+        brain = self.build_brain(habitat)
         return Law(
             worlds=self.seeds,
             cells=self.cells,
-            brain=self.brain.build(habitat.senses_size, habitat.action.size),
+            brain=brain,
             action=habitat.action,
             motor=self.motor,
             placement=self.placement,
             mutation=self.mutation,
+            ancestors=genomes.read(list(self.ancestors), brain) if self.ancestors else None,
             metabolism=self.metabolism,
             replication=self.replication,
             hazard=self.hazard,
@@ -185,17 +204,20 @@ def _replaced(values: Any, old: Any, new: Any) -> Any:
 
 
 def from_toml(path: Path) -> dict[str, Any]:
-    """The values in a TOML file.
+    """The values in a TOML file; genome files are looked for beside it.
 
     Raises:
         InputError: it cannot be read, or is not TOML.
     """
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        values = tomllib.loads(path.read_text(encoding="utf-8"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise InputError(f"{path} is not valid TOML: {error}") from None
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror}") from None
+    if isinstance(files := values.get("ancestors"), list):
+        values["ancestors"] = [str(path.parent / str(each)) for each in files]
+    return values
 
 
 def merged(base: dict[str, Any], change: dict[str, Any]) -> dict[str, Any]:

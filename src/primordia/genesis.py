@@ -32,8 +32,8 @@ def begin(law: Law, seeds: list[int], tick: int = 0, births: int = 0) -> World:
         saturated_births=never((count,)),
         fixed=never((count,)),
         fixed_births=never((count,)),
-        climate=_climate(law, count),
-        looks=_looks(law, count, tick),
+        climate=climate(law, count),
+        looks=looks(law, count, tick),
     )
     genome = {
         name: jnp.zeros((each, *shape), jnp.float32) for name, shape in law.brain.blocks.items()
@@ -61,7 +61,9 @@ def birth_words(law: Law, worlds: Worlds, needed: Array, words: int) -> Array:
     return jnp.concatenate(pairs, axis=0)[:words].T
 
 
-def _climate(law: Law, count: int) -> Climate:
+def climate(law: Law, count: int) -> Climate:
+    """The settings that seasons may change, as a run begins with them, in `count` worlds."""
+
     def each(values: float | list[float]) -> Array:
         return jnp.asarray(
             np.tile(np.array(values, np.float32), (count, 1)).reshape(count, *np.shape(values))
@@ -77,7 +79,8 @@ def _climate(law: Law, count: int) -> Climate:
     )
 
 
-def _looks(law: Law, count: int, tick: int) -> Looks:
+def looks(law: Law, count: int, tick: int) -> Looks:
+    """What ratchets remember that have not looked yet, in worlds that stand at a tick."""
     every = [ratchet.every for ratchet in ratchets(law.seasons)]
     wait = np.array([e - tick % e for e in every], np.int32)
     nothing = (zero((count, len(every))) for _ in range(2))

@@ -49,6 +49,8 @@ class Law:
     motor: Motor
     placement: Placement
     mutation: Mutation
+    ancestors: np.ndarray | None
+    """genomes that founders take in turn, float32 (K, P); None: founders are random"""
     metabolism: Metabolism | None
     replication: float
     hazard: float

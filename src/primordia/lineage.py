@@ -9,15 +9,18 @@ from pathlib import Path
 
 import jax.numpy as jnp
 import numpy as np
-import pyarrow as pa
-import pyarrow.compute as pc
 
+from primordia import checkpoint
+from primordia.brain import join
+from primordia.checkpoint import Checkpoint
+from primordia.climate import climate_at
 from primordia.config import Config
-from primordia.errors import InputError
 from primordia.law import Law
-from primordia.mutation import mutates, noise_index, quantiles, streams
-from primordia.report import opened, table
+from primordia.lives import Lives, lives
+from primordia.mutation import ancestor_of, mutates, noise_index, quantiles, streams
+from primordia.report import opened
 from primordia.wide import wide
+from primordia.world import Origin
 
 STEPS_AT_A_TIME = 64
 """Births replayed together; always as many, since JAX compiles anew for every shape."""
@@ -35,94 +38,80 @@ def rebuild(run: Path, organism: int, world: int = 0) -> np.ndarray:
         InputError: no such organism was born.
     """
     config, _ = opened(run)
-    births = table(run, "births")
-    line = descent(births, organism, world, str(run))
+    everyone = lives(run)
     law = config.build_law(config.build_habitat())
-    climate = _climate_at(run, config, law, world, line["tick"])
+    origin = checkpoint.origin(run)
+    line = everyone.take(descent(everyone, organism, world))
+    genome = np.zeros(int(law.block_sizes.sum()), np.float32)
+    if origin is not None:  # a fork: who lived when it began has its genome there
+        older = line.born <= config.origin.tick if config.origin else np.zeros(len(line), bool)
+        if older.any():
+            genome = genome_in(origin, law, line.take(older).id[-1], world)
+        line = line.take(~older)
+    climate = climate_at(run, config, law, world, line.born)
     with np.errstate(over="ignore", invalid="ignore"):  # a genome may have come to infinity
-        return _replay(law, config, line, climate, world)
+        return _replay(law, config, line, climate, genome)
 
 
-def descent(births: pa.Table, organism: int, world: int, run: str) -> dict[str, np.ndarray]:
-    """The births from a genome made from nothing down to an organism: tick, cell, cause, each (D,).
+def descent(everyone: Lives, organism: int, world: int) -> np.ndarray:
+    """Rows of an organism's line of descent, oldest first, down to itself, int64 (D,).
 
     Raises:
         InputError: no such organism was born.
     """
-    mine = births.filter(pc.equal(births["world"], world))
-    ids = mine["id"].to_numpy()
-    parents = mine["parent"].fill_null(-1).to_numpy()
-    causes = mine["cause"].combine_chunks().dictionary_decode().to_numpy(zero_copy_only=False)
-    line = []
-    at = organism
-    while True:
-        row = np.searchsorted(ids, at)
-        if row == len(ids) or ids[row] != at:
-            raise InputError(f"{run}: no organism {organism} was born in world {world}")
-        line.append(row)
-        if causes[row] == "founder":
+    rows = [everyone.row(organism, world)]
+    while everyone.origin[rows[-1]] != Origin.FOUNDER:
+        parent = int(everyone.parent_row[rows[-1]])
+        if parent < 0:  # it died before a fork, whose records begin with those then alive
             break
-        at = parents[row]
-    rows = np.array(line[::-1])
-    ticks, cells = mine["tick"].to_numpy()[rows], mine["cell"].to_numpy()[rows]
-    return {"tick": ticks, "cell": cells, "cause": causes[rows]}
+        rows.append(parent)
+    return np.array(rows[::-1])
 
 
-def _climate_at(
-    run: Path, config: Config, law: Law, world: int, ticks: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Mutation probability and scale (D, B) in force when these births happened.
-
-    A season that acts at the end of tick t is first felt in tick t + 1, and its sample bears t.
-    """
-    names = law.blocks
-    start = {
-        "probability": config.mutation.probabilities(names),
-        "scale": config.mutation.scales(names),
-    }
-    found = {
-        field: np.tile(np.array(values, np.float32), (len(ticks), 1))
-        for field, values in start.items()
-    }
-    if config.seasons:
-        metrics = table(run, "metrics")
-        metrics = metrics.filter(pc.equal(metrics["world"], world))
-        row = np.searchsorted(metrics["tick"].to_numpy(), ticks, side="left") - 1
-        for field, values in found.items():
-            for b, name in enumerate(names):
-                recorded = metrics[f"mutation.{name}.{field}"].to_numpy()
-                values[row >= 0, b] = recorded[row[row >= 0]]
-    return found["probability"], found["scale"]
+def genome_in(stored: Checkpoint, law: Law, organism: int, world: int) -> np.ndarray:
+    """The genome of somebody alive in a checkpoint, float32 (P,)."""
+    arrays = stored.arrays()
+    hi, lo = (arrays[f"world.organisms.number.{half}"].astype(np.int64) for half in ("hi", "lo"))
+    here = np.arange(len(hi)) // law.cells == world
+    (cell,) = np.flatnonzero(here & arrays["world.organisms.alive"] & (hi << 32 | lo == organism))
+    blocks = {name: arrays[f"world.organisms.genome.{name}"][[cell]] for name in law.blocks}
+    return join(law.brain, blocks)[0]
 
 
 def _replay(
-    law: Law,
-    config: Config,
-    line: dict[str, np.ndarray],
-    climate: tuple[np.ndarray, np.ndarray],
-    world: int,
+    law: Law, config: Config, line: Lives, climate: dict[str, np.ndarray], genome: np.ndarray
 ) -> np.ndarray:
-    seed = np.uint64(config.seed + int(world))
-    length = int(law.block_sizes.sum())
-    genome = np.zeros(length, np.float32)
-    for first in range(0, len(line["tick"]), STEPS_AT_A_TIME):
-        ticks, cells = _filled(line["tick"], first), jnp.asarray(_filled(line["cell"], first))
-        probability, scale = (
-            np.repeat(_filled(each, first), law.block_sizes, axis=1) for each in climate
+    """Births of one line (D,) in order, from a genome (P,) -> the last one's."""
+    columns = ("probability", "scale")
+    probability, scale = (
+        np.stack([climate[f"mutation.{block}.{each}"] for block in law.blocks], axis=1)
+        for each in columns
+    )
+    for first in range(0, len(line), STEPS_AT_A_TIME):
+        rows = np.arange(first, first + STEPS_AT_A_TIME) % len(line)  # past the end, some again
+        births, length = line.take(rows), len(genome)
+        seed = np.uint64(config.seed) + births.world.astype(np.uint64)
+        drawn, cells = streams(wide(seed), wide(births.born)), jnp.asarray(births.cell)
+        per_weight = (
+            np.repeat(each[rows], law.block_sizes, axis=1) for each in (probability, scale)
         )
-        drawn = streams(wide(np.full(len(ticks), seed)), wide(ticks))
-        takes = np.asarray(mutates(drawn, cells, jnp.asarray(probability)))
-        noise = quantiles()[np.asarray(noise_index(drawn.noise, cells, length))] * scale
-        for step, cause in enumerate(line["cause"][first : first + STEPS_AT_A_TIME]):
-            if cause == "founder":
-                index = noise_index(drawn.founder, cells, length)[step]
-                genome = quantiles()[np.asarray(index)] * np.float32(config.mutation.founder_scale)
+        chance, size = per_weight
+        takes = np.asarray(mutates(drawn, cells, jnp.asarray(chance)))
+        noise = quantiles()[np.asarray(noise_index(drawn.noise, cells, length))] * size
+        founders = _founders(law, config, births)
+        for step in range(min(STEPS_AT_A_TIME, len(line) - first)):
+            if births.origin[step] == Origin.FOUNDER:
+                genome = founders[step]
             else:
                 genome = np.where(takes[step], genome + noise[step], genome)
     return genome
 
 
-def _filled(each: np.ndarray, first: int) -> np.ndarray:
-    """STEPS_AT_A_TIME entries from `first` on; past the end, some again."""
-    some = each[first : first + STEPS_AT_A_TIME]
-    return np.resize(some, (STEPS_AT_A_TIME, *some.shape[1:]))
+def _founders(law: Law, config: Config, births: Lives) -> np.ndarray:
+    """The genomes these (D,) would have if they were founders, float32 (D, P)."""
+    seeds = wide(np.uint64(config.seed) + births.world.astype(np.uint64))
+    if law.ancestors is not None:
+        return law.ancestors[np.asarray(ancestor_of(seeds, wide(births.id), len(law.ancestors)))]
+    drawn, length = streams(seeds, wide(births.born)), int(law.block_sizes.sum())
+    index = noise_index(drawn.founder, jnp.asarray(births.cell), length)
+    return quantiles()[np.asarray(index)] * np.float32(config.mutation.founder_scale)

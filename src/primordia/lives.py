@@ -59,6 +59,17 @@ class Lives:
         first, last = np.searchsorted(self.world, [world, world + 1])
         return self.take(slice(first, last))
 
+    def row(self, organism: int, world: int = 0) -> int:
+        """Where an organism stands.
+
+        Raises:
+            InputError: no such organism was born.
+        """
+        row = int(np.searchsorted(_key(self.world, self.id), (world << 47) + organism))
+        if row == len(self) or (self.world[row], self.id[row]) != (world, organism):
+            raise InputError(f"no organism {organism} was born in world {world}")
+        return row
+
     def take(self, rows: slice | np.ndarray) -> "Lives":
         """Those in the given rows."""
         return Lives(**{each.name: getattr(self, each.name)[rows] for each in fields(self)})

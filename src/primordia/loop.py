@@ -3,7 +3,6 @@
 A run is a directory. Everything in it is a function of `config.toml`; see `record` and `checkpoint`.
 """
 
-import json
 import signal
 import time
 from collections.abc import Callable, Iterator
@@ -14,22 +13,19 @@ from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
-from filelock import FileLock, Timeout
 
-from primordia import checkpoint, device, events, files, sample
-from primordia.checkpoint import Progress
+from primordia import checkpoint, directory, events, sample
+from primordia.checkpoint import Checkpoint, Progress
 from primordia.chunk import Fused, Limits, State, running
-from primordia.config import Config, from_toml, validated
+from primordia.config import Config
 from primordia.config import limits as valid_limits
-from primordia.errors import InputError, Trouble
+from primordia.errors import InputError
 from primordia.genesis import begin
 from primordia.hosted import Hosted
 from primordia.law import Law
-from primordia.record import TABLES, Recorder
+from primordia.record import Recorder
 from primordia.wide import wide
 
-FORMAT = 1
-"""Of run directories; a higher one is refused."""
 CHUNK_SECONDS = 0.2
 """Aimed at, so that Ctrl-C is heard in time."""
 
@@ -45,20 +41,21 @@ class Engine:
         seeds = [config.seed + world for world in range(config.seeds)]
         self.state: State = self.chunks.begin(begin(self.law, seeds))
         cells = config.cells * config.seeds
-        self._events = events.empty(cells, config.seeds, sample.width(self.law.blocks))
+        self.events = events.empty(cells, config.seeds, sample.width(self.law.blocks))
+        """of the latest chunk"""
         self._ticks = 1
 
     def advance(self, limits: Limits) -> events.Events:
         """One chunk of about CHUNK_SECONDS -> what happened."""
         start = time.perf_counter()
-        self.state, self._events, done = self.chunks.advance(
-            self.state, self._events, limits, self._ticks
+        self.state, self.events, done = self.chunks.advance(
+            self.state, self.events, limits, self._ticks
         )
         spent = time.perf_counter() - start
         if done:
             fitting = int(done * CHUNK_SECONDS / spent)
             self._ticks = min(max(fitting, 1), 4 * self._ticks, 2**30)
-        return self._events
+        return self.events
 
     def any_running(self, limits: Limits) -> bool:
         """Whether some world has not come to a limit."""
@@ -93,6 +90,8 @@ class Status:
     engine: Engine
     wall_s: float
     """of this session"""
+    limits: Limits | None = None
+    """when each world stops, where that is known"""
 
 
 Listener = Callable[[Status], None]
@@ -114,14 +113,11 @@ def start(
         Trouble: something cannot be written.
     """
     _check_interval(checkpoint_every)
-    if run.exists() and (not run.is_dir() or any(run.iterdir())):
-        raise InputError(f"{run} exists already; choose another --out, or `primordia resume {run}`")
-    _make_folders(run)
-    with locked(run):
-        _write_text(
-            run / "versions.json", json.dumps({"format": FORMAT, **device.versions()}, indent=1)
+    if config.origin is not None:
+        raise InputError(
+            f"these are the settings of a fork, of {config.origin.run}; fork that again"
         )
-        _write_text(run / "config.toml", config.to_toml())
+    with directory.new(run, config):
         engine = Engine(config)
         recorder = Recorder(run, config.seeds, config.cells, engine.law.blocks)
         progress = Progress(config.stop.model_dump(), 0.0, engine.chunks.exact)
@@ -155,25 +151,27 @@ def resume(
     """
     _check_interval(checkpoint_every)
     given = valid_limits(limits or {})
-    config = read_config(run)
-    differ = other_versions(run)
+    config = directory.read_config(run)
+    differ = directory.other_versions(run)
     if differ and not inexact:
         raise InputError(
             f"{run} cannot go on bit for bit: {'; '.join(differ)}. Restore that, or add --inexact"
         )
-    with locked(run):
+    with directory.locked(run):
         last, faults = checkpoint.newest(run)
         if last is None and faults:
             raise checkpoint.none_whole(run, faults)
-        _make_folders(run)
+        if last is None and config.origin is not None:
+            raise InputError(
+                f"{run} is a fork that was cut off before it began; remove it, fork again"
+            )
+        directory.make_folders(run)
         checkpoint.remove_what_does_not_count(run, last)
         engine = Engine(config)
         recorder = Recorder(run, config.seeds, config.cells, engine.law.blocks)
         progress = Progress(config.stop.model_dump(), 0.0, engine.chunks.exact)
         if last is not None:
-            arrays = last.arrays()
-            recorder.resume(last.manifest["segments"], last.digests, arrays)
-            engine.load(arrays)
+            stand_at(engine, recorder, last)
             progress = last.progress
         progress.limits |= given
         progress.exact &= not differ and engine.chunks.exact
@@ -182,6 +180,13 @@ def resume(
             notes.append(_nothing_to_do(run, progress))
         drive(engine, recorder, run, progress, checkpoint_every, listen)
     return notes
+
+
+def stand_at(engine: Engine, recorder: Recorder, last: Checkpoint) -> None:
+    """Put an engine and a recorder where a checkpoint stands."""
+    arrays = last.arrays()
+    recorder.resume(last.manifest["segments"], last.digests, arrays)
+    engine.load(arrays)
 
 
 def _nothing_to_do(run: Path, progress: Progress) -> str:
@@ -216,7 +221,7 @@ def drive(
         while engine.any_running(limits) and not interrupted:
             recorder.append(engine.advance(limits))
             if listen is not None:
-                listen(Status(engine, time.perf_counter() - began))
+                listen(Status(engine, time.perf_counter() - began, limits))
             if time.perf_counter() - saved >= checkpoint_every:
                 save()
                 saved = time.perf_counter()
@@ -227,71 +232,9 @@ def drive(
         raise KeyboardInterrupt
 
 
-def read_config(run: Path) -> Config:
-    """The configuration of a run directory.
-
-    Raises:
-        InputError: this is no run directory, or one this version cannot read.
-    """
-    try:
-        made_by = int(_recorded_versions(run)["format"])
-    except (OSError, ValueError, KeyError, TypeError):
-        raise InputError(
-            f"{run} is not a run of primordia: it has no readable versions.json"
-        ) from None
-    if made_by > FORMAT:
-        raise InputError(
-            f"{run} was made by a newer primordia (format {made_by}, this one reads {FORMAT}); upgrade"
-        )
-    return validated(from_toml(run / "config.toml"), source=str(run / "config.toml"))
-
-
-def other_versions(run: Path) -> list[str]:
-    """What a run was begun with and is not so here; while this is empty it goes on bit for bit."""
-    recorded = _recorded_versions(run)
-    return [
-        f"{name} {recorded.get(name)} then, {now} now"
-        for name, now in device.versions().items()
-        if recorded.get(name) != now
-    ]
-
-
-def _recorded_versions(run: Path) -> dict[str, Any]:
-    recorded: dict[str, Any] = json.loads((run / "versions.json").read_text())
-    return recorded
-
-
 def _check_interval(checkpoint_every: float) -> None:
     if not checkpoint_every >= 0:
         raise InputError(f"--checkpoint-every: seconds, 0 or more, not {checkpoint_every}")
-
-
-def _make_folders(run: Path) -> None:
-    try:
-        for name in (*TABLES, "checkpoints"):
-            (run / name).mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise Trouble(f"{run} cannot be written: {error.strerror}") from None
-
-
-@contextmanager
-def locked(run: Path) -> Iterator[None]:
-    """Hold the run's lock: one writer at a time; it is released even by kill -9.
-
-    Raises:
-        InputError: another process holds it.
-    """
-    lock = FileLock(run / "lock")
-    try:
-        lock.acquire(timeout=0)
-    except Timeout:
-        raise InputError(f"{run} is being written by another process") from None
-    except OSError as error:
-        raise Trouble(f"{run} cannot be written: {error.strerror}") from None
-    try:
-        yield
-    finally:
-        lock.release()
 
 
 @contextmanager
@@ -313,10 +256,3 @@ def interruptible() -> Iterator[list[int]]:
     finally:
         for each, handler in zip(signals, before, strict=True):
             signal.signal(each, handler)
-
-
-def _write_text(path: Path, text: str) -> None:
-    def fill(temporary: Path) -> None:
-        temporary.write_text(text)
-
-    files.write(path, fill)

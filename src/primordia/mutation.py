@@ -17,7 +17,7 @@ from pydantic import Field
 
 from primordia.keys import Purpose, bits, chance, stream
 from primordia.settings import Settings
-from primordia.wide import Wide
+from primordia.wide import Wide, modulo
 
 QUANTILES_SHA256 = "1cfbba1e07e34386a57626f82aeb43e6ed54ba70a3ea6b7d964dc66a841074a8"
 
@@ -124,6 +124,11 @@ def newborns(
     """
     inherited = jnp.where(takes, parents + _rounded_product(standard, scale), parents)
     return jnp.where(founder[:, None], standard * np.float32(founder_scale), inherited)
+
+
+def ancestor_of(seed: Wide, number: Wide, count: int) -> Array:
+    """Which of `count` ancestors the founder with a birth number takes, int32: worlds start apart."""
+    return modulo(seed + number, count)
 
 
 def _rounded_product(a: Array, positive: Array) -> Array:

@@ -65,6 +65,10 @@ class Recorder:
             if count:
                 self._add(table, np.asarray(rows.rows[:count]))
 
+    def add(self, name: str, rows: np.ndarray) -> None:
+        """Take rows of one table, uint32 (n, fields)."""
+        self._add(self.tables[TABLES.index(name)], rows)
+
     def _add(self, table: Table, rows: np.ndarray) -> None:
         hashes, worlds = row_hashes(self._within_world(table, rows)), self.world_of(table, rows)
         np.add.at(table.digest, worlds, hashes)

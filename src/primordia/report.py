@@ -12,8 +12,8 @@ from primordia import checkpoint
 from primordia.checkpoint import Checkpoint
 from primordia.config import Config
 from primordia.digest import digests
+from primordia.directory import read_config
 from primordia.errors import InputError
-from primordia.loop import read_config
 from primordia.record import TABLES, Recorder
 from primordia.world import Cause
 
@@ -33,6 +33,7 @@ def info(run: Path) -> dict[str, Any]:
     recorded = json.loads((run / "versions.json").read_text())
     whole = {
         "task": config.task,
+        "inheritance": config.inheritance,
         "cells": config.cells,
         "seeds": config.seeds,
         "worlds": worlds,

@@ -15,7 +15,15 @@ from primordia.brain import split
 from primordia.events import Events, Rows
 from primordia.keys import Purpose, below, bits, bits_if, stream
 from primordia.metabolism import fixed
-from primordia.mutation import Streams, mutates, newborns, noise_index, quantiles, streams
+from primordia.mutation import (
+    Streams,
+    ancestor_of,
+    mutates,
+    newborns,
+    noise_index,
+    quantiles,
+    streams,
+)
 from primordia.wide import Wide, happened, largest, never, select, zero
 from primordia.world import Cause, Organisms, Origin, World, Worlds
 
@@ -145,6 +153,10 @@ def _inherit(law: "Law", world: World, births: Births, listed: Rows) -> tuple[Or
             founder,
             law.mutation.founder_scale,
         )
+        if law.ancestors is not None:
+            turn = ancestor_of(worlds.seed.take(of), births.number.take(cells), len(law.ancestors))
+            ancestral = jnp.asarray(law.ancestors)[turn]
+            children = jnp.where(founder[:, None], ancestral, children)
         where = jnp.where(valid, cells, len(births.born))
         genome = {
             name: genome[name].at[where].set(block, mode="drop")

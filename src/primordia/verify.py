@@ -5,8 +5,9 @@ from pathlib import Path
 
 from primordia import checkpoint
 from primordia.digest import digests
+from primordia.directory import other_versions, read_config
 from primordia.errors import InputError
-from primordia.loop import Engine, Listener, Status, other_versions, read_config
+from primordia.loop import Engine, Listener, Status, stand_at
 from primordia.record import Recorder
 from primordia.report import world_ticks
 
@@ -29,6 +30,8 @@ def verify(run: Path, listen: Listener | None = None) -> list[str]:
     engine = Engine(config)
     limits = engine.limits({}, world_ticks(arrays))
     again = Recorder(None, config.seeds, config.cells, engine.law.blocks)
+    if (beginning := checkpoint.origin(run)) is not None:
+        stand_at(engine, again, beginning)
     began = time.perf_counter()
     while engine.any_running(limits):
         again.append(engine.advance(limits))

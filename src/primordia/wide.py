@@ -99,6 +99,12 @@ def times(a: Array, b: Array) -> Wide:
     return Wide((a >> half) * (b >> half) + (middle >> half) + (cross >> half), a * b)
 
 
+def modulo(value: Wide, n: int) -> Array:
+    """The remainder after division by n, 1 to 2^16: int32."""
+    high = (value.hi % np.uint32(n)) * np.uint32(2**32 % n)
+    return ((high + value.lo % np.uint32(n)) % np.uint32(n)).astype(jnp.int32)
+
+
 def signed(value: Array) -> Wide:
     """An int32 array, sign-extended."""
     return Wide((value >> 31).astype(jnp.uint32), value.astype(jnp.uint32))
