@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from primordia import config, lineage, loop, report
+from primordia import comparison, config, lineage, loop, report
 from primordia import device as devices
 from primordia.loop import Listener
 from primordia.verify import verify
@@ -93,6 +93,17 @@ def run(
     path = Path(out) if out is not None else fresh_directory(chosen)
     loop.start(chosen, path, checkpoint_every=checkpoint_every, listen=listen)
     return Run(path)
+
+
+def compare(
+    *runs: Run | str | Path, births: int | None = None, ticks: int | None = None
+) -> comparison.Comparison:
+    """Put runs of one task side by side, the first as the reference; see `comparison.compare`.
+
+    `figures.comparison.save` draws what comes back.
+    """
+    paths = [each.path if isinstance(each, Run) else Path(each) for each in runs]
+    return comparison.compare(paths, births, ticks)
 
 
 def fresh_directory(chosen: config.Config) -> Path:

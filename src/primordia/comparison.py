@@ -1,0 +1,181 @@
+"""Runs side by side: how soon their worlds saturate, and how long organisms live in them.
+
+Worlds are the units. The first run is the reference that each other is held against. Worlds that
+stopped unsaturated count for what is known of them, and no more; see `contrast`.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from primordia import report
+from primordia.config import Config
+from primordia.contrast import Bounds, Contrast, Figures, contrast
+from primordia.directory import read_config
+from primordia.errors import InputError
+from primordia.lives import lives
+from primordia.survival import Survival, survival
+
+OUTCOMES = {
+    "births": "births to saturation",
+    "ticks": "ticks to saturation",
+    "lifespan": "mean lifespan",
+}
+
+
+@dataclass(frozen=True)
+class Arm:
+    """A run, as far as it is compared."""
+
+    name: str
+    settings: dict[str, Any]
+    """dotted name -> value, of those settings in which the runs differ"""
+    figures: dict[str, Figures]
+    """of each of OUTCOMES: births and ticks to saturation, founders counted; mean lifespan in a
+    world, in ticks, up to the age that all runs are followed to"""
+    survival: Survival
+
+    @property
+    def worlds(self) -> int:
+        """How many."""
+        return len(self.figures["births"].value)
+
+    @property
+    def saturated(self) -> int:
+        """How many worlds are known to be, within the horizons."""
+        return int((self.figures["births"].known & self.figures["ticks"].known).sum())
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Some runs of one task."""
+
+    task: str
+    arms: tuple[Arm, ...]
+    """the first is the reference"""
+    age: int
+    """ticks of age up to which lives count"""
+    births: int | None
+    """horizon, or None: as far as each world went"""
+    ticks: int | None
+    """horizon, or None: as far as each world went"""
+
+    def contrast(self, arm: Arm, outcome: str) -> Contrast:
+        """A run against the reference in one of OUTCOMES."""
+        return contrast(arm.figures[outcome], self.arms[0].figures[outcome])
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain values for JSON; a bound that is not known is None."""
+        whole = {"task": self.task, "age": self.age, "births": self.births, "ticks": self.ticks}
+        return {**whole, "runs": [self._arm(arm) for arm in self.arms]}
+
+    def _arm(self, arm: Arm) -> dict[str, Any]:
+        found: dict[str, Any] = {
+            "name": arm.name,
+            "settings": arm.settings,
+            "worlds": arm.worlds,
+            "saturated": arm.saturated,
+        }
+        for outcome, figures in arm.figures.items():
+            quartiles = [_plain(figures.quantile(q)) for q in (0.25, 0.5, 0.75)]
+            found[outcome] = dict(zip(("q1", "median", "q3"), quartiles, strict=True))
+            if arm is not self.arms[0]:
+                against = self.contrast(arm, outcome)
+                found[outcome]["against"] = {
+                    "delta": against.delta,
+                    "word": against.word,
+                    "decided": against.decided,
+                    "ratio": _plain(against.ratio),
+                    "interval": _plain(against.interval),
+                }
+        return found
+
+
+def compare(
+    runs: Sequence[Path], births: int | None = None, ticks: int | None = None
+) -> Comparison:
+    """Read runs and put them side by side.
+
+    Args:
+        runs: directories; the first is the reference.
+        births: horizon: a world saturates within it if it is saturated before having so many births.
+        ticks: the same in ticks.
+
+    Raises:
+        InputError: fewer than two runs, one given twice, different tasks, a run in which nothing has
+            lived, or a world that stopped, unsaturated, before a horizon.
+    """
+    if len(runs) < 2:
+        raise InputError(
+            "compare needs two runs or more; the first is what the others are held against"
+        )
+    if len({path.resolve() for path in runs}) < len(runs):
+        raise InputError("a run is given twice; there is nothing to compare it with")
+    configs = [read_config(path) for path in runs]
+    for path, config in zip(runs, configs, strict=True):
+        if config.task != configs[0].task:
+            raise InputError(
+                f"{runs[0]} is a run of {configs[0].task}, {path} one of {config.task}; only runs"
+                " of one task can be compared"
+            )
+    age = min(config.saturation_ticks for config in configs)
+    settings = differing(configs)
+    names = [path.resolve().name for path in runs]
+    arms = []
+    for path, config, name, own in zip(runs, configs, names, settings, strict=True):
+        survived = survival(lives(path), config.seeds, age)
+        figures = _figures(path, births, ticks)
+        figures["lifespan"] = Figures(survived.restricted_mean, np.ones(config.seeds, bool))
+        label = name if names.count(name) == 1 else str(path)
+        arms.append(Arm(label, own, figures, survived))
+    return Comparison(configs[0].task, tuple(arms), age, births, ticks)
+
+
+def differing(configs: Sequence[Config]) -> list[dict[str, Any]]:
+    """Of each configuration, the settings in which it is not as all the others."""
+    flat = [_flat(config.model_dump(mode="json", exclude={"about"})) for config in configs]
+    names = [name for each in flat for name in each]
+    several = [
+        name
+        for name in dict.fromkeys(names)
+        if any(each.get(name) != flat[0].get(name) for each in flat)
+    ]
+    return [{name: each.get(name) for name in several} for each in flat]
+
+
+def _figures(path: Path, births: int | None, ticks: int | None) -> dict[str, Figures]:
+    """Births and ticks to saturation, of each world of a run."""
+    worlds = report.info(path)["worlds"]
+    known = np.array([world["saturation"] is not None for world in worlds])
+    at = [
+        world["saturation"] or {"births": world["births"], "tick": world["ticks"]}
+        for world in worlds
+    ]
+    found = {
+        "births": Figures(np.array([each["births"] for each in at], float), known),
+        "ticks": Figures(np.array([each["tick"] for each in at], float), known),
+    }
+    for unit, horizon in (("births", births), ("ticks", ticks)):
+        if horizon is not None:
+            try:
+                found[unit] = found[unit].before(horizon)
+            except InputError as error:
+                raise InputError(f"--{unit} {horizon}: in {path}, {error}") from None
+    return found
+
+
+def _flat(values: dict[str, Any], prefix: str = "") -> dict[str, Any]:
+    """Nested tables as one, with dotted names."""
+    found: dict[str, Any] = {}
+    for name, value in values.items():
+        inner = isinstance(value, dict)
+        found |= _flat(value, f"{prefix}{name}.") if inner else {prefix + name: value}
+    return found
+
+
+def _plain(bounds: Bounds) -> list[float | None]:
+    """For JSON, which has no infinity."""
+    return [each if np.isfinite(each) else None for each in bounds]
