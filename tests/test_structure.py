@@ -9,7 +9,7 @@ SOURCE = Path(__file__).parent.parent / "src" / "primordia"
 
 # A module imports from rows above its own only, so those of one row know nothing of each other.
 ORDER = """
-     errors settings wide digest events tasks paint summary
+     errors settings wide digest events tasks paint summary clades
     keys files lines
     brain motor mutation placement metabolism resample
     world habitats device genomes
@@ -26,6 +26,9 @@ ORDER = """
     verify climate lives
     lineage survival
     fork comparison
+    figures.style figures.series
+    figures.*
+    figures
     api help
     cli.say cli.flags cli.side_by_side
     cli.evolve cli.look

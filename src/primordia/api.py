@@ -43,6 +43,12 @@ class Run:
         """An organism's genome, float32 (P,), from the birth records alone."""
         return lineage.rebuild(self.path, organism, world)
 
+    def plot(self, out: str | Path | None = None, world: int = 0) -> list[Path]:
+        """Draw its figures into a folder, by default its own -> the files; see `figures.plot`."""
+        from primordia import figures  # Matplotlib takes a second to load
+
+        return figures.plot(self.path, Path(out) if out is not None else None, world)
+
     def resume(
         self,
         *,

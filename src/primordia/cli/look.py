@@ -23,6 +23,18 @@ def info(run: Path, as_json: bool) -> None:
 
 @click.command()
 @run_argument
+@click.option("--out", type=click.Path(path_type=Path), help="Folder for them [RUN/figures].")
+@click.option("--world", default=0, help="Whose lines of descent are drawn [0].")
+def plot(run: Path, out: Path | None, world: int) -> None:
+    """Draw figures: ages, survival, population, and lines of descent in space and time."""
+    from primordia.api import Run
+
+    for path in Run(run).plot(out, world):
+        click.echo(path)
+
+
+@click.command()
+@run_argument
 @device_option
 def verify(run: Path, device: str) -> None:
     """Live a run again from its beginning and compare: every birth, death and genome."""
@@ -43,4 +55,4 @@ def tasks() -> None:
         click.echo(f"{name:28} {values.get('about', '')}")
 
 
-COMMANDS = (info, verify, tasks)
+COMMANDS = (info, plot, verify, tasks)

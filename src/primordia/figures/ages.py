@@ -1,0 +1,85 @@
+"""Do they live longer? The paper's figure both ways: ages of the living, lifespans of the dead."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from primordia.figures import series, style
+from primordia.lives import Lives
+
+DOTS = 3000
+"""Most lives drawn as dots, of the dead and of the living."""
+BINS, ENOUGH = 40, 30
+"""Most stretches of birth order that have quartiles of their own; about how many dead each needs."""
+
+
+def draw(lives: Lives) -> Figure:
+    """Mean age over time and over organisms, and lifespans of the dead by birth order."""
+    figure = Figure(figsize=(style.PAGE, 2.4))
+    over_time, over_births, dead = figure.subplots(1, 3, sharey=True)
+    worlds = [lives.of_world(world) for world in range(lives.worlds)]
+    _over_time(over_time, worlds)
+    _over_births(over_births, worlds)
+    _of_the_dead(dead, lives)
+    style.logarithmic(dead.yaxis)
+    dead.set_ylim(1, None)
+    return figure
+
+
+def _over_time(axes: Axes, worlds: list[Lives]) -> None:
+    ticks = series.moments(max(int(world.ended.max()) for world in worlds))
+    style.curves(axes, ticks, _positive(series.of_worlds(series.mean_age, worlds, ticks)))
+    style.time_axis(axes, int(ticks[-1]))
+    style.title(axes, "Mean age of the living over time", style.of_worlds(len(worlds)))
+    axes.set_ylabel("age (ticks)")
+
+
+def _over_births(axes: Axes, worlds: list[Lives]) -> None:
+    longest = max(map(len, worlds))
+    number = np.unique(np.linspace(1, longest, series.POINTS).astype(np.int64))
+    ages = np.full((len(worlds), len(number)), np.nan)
+    for row, world in zip(ages, worlds, strict=True):
+        here = number[number <= len(world)]
+        row[: len(here)] = series.mean_age(world, world.born[here - 1])
+    style.curves(axes, number, _positive(ages))
+    style.counted(axes.xaxis)
+    style.title(axes, "... and as organisms were born", style.of_worlds(len(worlds)))
+    axes.set(xlabel="organisms born so far", xlim=(0, longest + 1))
+
+
+def _of_the_dead(axes: Axes, lives: Lives) -> None:
+    number, lifespan, died = lives.id + 1, lives.lifespan, lives.died
+    for who, colour in ((died, style.SKY), (~died, style.ORANGE)):
+        some = np.flatnonzero(who)[:: int(who.sum()) // DOTS + 1]
+        axes.plot(
+            number[some], np.maximum(lifespan[some], 1), ".", color=colour, markersize=2.5,
+            markeredgewidth=0, alpha=0.6, rasterized=True,
+        )  # fmt: skip
+    style.counted(axes.xaxis)
+    axes.set(xlabel="organism, in order of birth", xlim=(0, number.max() + 1))
+    key = {"dead": style.SKY, "median and quartiles": style.BLUE, "still alive": style.ORANGE}
+    style.title(axes, "Lifespan of each", key)
+    if not died.any():
+        style.say(axes, "no deaths yet")
+        return
+    middle, quarter, half, three = quartiles(number[died], lifespan[died])
+    axes.fill_between(middle, quarter, three, color=style.BLUE, alpha=0.25, linewidth=0)
+    axes.plot(middle, half, color=style.BLUE)
+
+
+def quartiles(number: np.ndarray, lifespan: np.ndarray) -> np.ndarray:
+    """Of lifespans in stretches of birth order with equally many dead.
+
+    Returns:
+        Middle of each stretch, and its three quartiles, float64 (4, stretches).
+    """
+    order = np.argsort(number, kind="stable")
+    parts = np.array_split(order, np.clip(len(order) // ENOUGH, 1, BINS))
+    return np.array(
+        [(number[part].mean(), *np.percentile(lifespan[part], [25, 50, 75])) for part in parts]
+    ).T
+
+
+def _positive(values: np.ndarray) -> np.ndarray:
+    """What a logarithmic axis can show."""
+    return np.where(values > 0, values, np.nan)

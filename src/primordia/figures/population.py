@@ -1,0 +1,84 @@
+"""How many live, are born and die, and of what?"""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from primordia.figures import series, style
+from primordia.lives import Lives
+from primordia.world import Cause
+
+COLOURS = {
+    Cause.FATAL: style.VERMILION,
+    Cause.STARVED: style.ORANGE,
+    Cause.HAZARD: style.PURPLE,
+    Cause.REPLACED: style.SKY,
+    Cause.FAULT: style.INK,
+    Cause.TIME_LIMIT: style.YELLOW,
+    Cause.RESTART: style.GREEN,
+}
+LIVING = style.BLUE
+
+
+def draw(lives: Lives, cells: int) -> Figure:
+    """Population; what became of all who were born; births and deaths per tick."""
+    figure = Figure(figsize=(style.PAGE, 2.4))
+    living, fates, rates = figure.subplots(1, 3)
+    causes = [cause for cause in Cause if (lives.cause == cause).any()]
+    _living(living, lives, cells)
+    _fates(fates, lives, causes)
+    _rates(rates, lives, causes)
+    for axes in (living, fates, rates):
+        style.time_axis(axes, int(lives.ended.max()))
+    return figure
+
+
+def _living(axes: Axes, lives: Lives, cells: int) -> None:
+    worlds = [lives.of_world(world) for world in range(lives.worlds)]
+    ticks = series.moments(int(lives.ended.max()))
+    axes.axhline(cells, color=style.FAINT, linewidth=0.8, zorder=0)
+    axes.annotate(
+        f"all {cells:,} cells", (0.02, cells), (0, 2), color=style.SOFT,
+        xycoords=axes.get_yaxis_transform(), textcoords="offset points",
+    )  # fmt: skip
+    style.curves(axes, ticks, series.of_worlds(series.population, worlds, ticks), LIVING)
+    style.counted(axes.yaxis)
+    style.title(axes, "The living", style.of_worlds(lives.worlds))
+    axes.set(ylabel="organisms", ylim=(0, 1.12 * cells))
+
+
+def _fates(axes: Axes, lives: Lives, causes: list[Cause]) -> None:
+    """All worlds together; those that have stopped stay as they are."""
+    ticks = series.moments(int(lives.ended.max()))
+    born = series.until(np.sort(lives.born), ticks)
+    dead = [series.until(np.sort(lives.ended[lives.cause == cause]), ticks) for cause in causes]
+    alive = born - np.sum(dead, axis=0, dtype=np.int64)
+    colours = [*(COLOURS[cause] for cause in causes), LIVING]
+    axes.stackplot(ticks, *dead, alive, colors=colours, linewidth=0)
+    key = {"alive": LIVING} | _key("dead", causes) | style.together(lives.worlds)
+    style.title(axes, "All who were born, and their fate", key)
+    style.counted(axes.yaxis)
+    axes.set_ylim(0, None)
+
+
+def _rates(axes: Axes, lives: Lives, causes: list[Cause]) -> None:
+    """Per tick of one world: over all worlds' ticks in each bin."""
+    edges = series.bins(int(lives.ended.max()))
+    ends = np.array([lives.of_world(world).ended.max() for world in range(lives.worlds)])
+    ticks = series.exposure(np.zeros_like(ends), ends, edges)
+    deaths = [(lives.ended[lives.cause == cause], COLOURS[cause]) for cause in causes]
+    for at, colour in [(lives.born, style.INK), *deaths]:
+        rate = series.per_tick(at, ticks, edges)
+        axes.plot(series.middle(edges), rate, ".-", color=colour, markersize=3)
+    style.title(axes, "Births and deaths", {"births": style.INK} | _key("deaths", causes))
+    style.logarithmic(axes.yaxis)
+    axes.set_ylabel("per tick of a world" if lives.worlds > 1 else "per tick")
+
+
+def _key(of: str, causes: list[Cause]) -> dict[str, str]:
+    """Causes of death in their colours; the first says what they are causes of."""
+    starts = [f"{of}: ", *[""] * len(causes)]
+    return {
+        f"{start}{cause.label}": COLOURS[cause]
+        for start, cause in zip(starts, causes, strict=False)
+    }

@@ -1,0 +1,151 @@
+"""How figures look: sizes of a paper's columns, colours that the colour-blind tell apart, saving."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
+
+from primordia import files
+
+COLUMN, PAGE = 3.4, 7.0
+"""Widths in inches."""
+
+INK, SOFT, FAINT = "#222222", "#6b6b6b", "#d4d4d4"
+ORANGE, SKY, GREEN, YELLOW = "#e69f00", "#56b4e9", "#009e73", "#f0e442"
+BLUE, VERMILION, PURPLE = "#0072b2", "#d55e00", "#cc79a7"
+"""The palette of Okabe and Ito."""
+
+LOOK: Any = {
+    "font.family": "DejaVu Sans",
+    "font.size": 7,
+    "axes.titlesize": 8,
+    "axes.titlelocation": "left",
+    "axes.titlecolor": INK,
+    "axes.labelsize": 7,
+    "axes.labelcolor": INK,
+    "axes.edgecolor": SOFT,
+    "axes.linewidth": 0.6,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "text.color": INK,
+    "xtick.color": SOFT,
+    "ytick.color": SOFT,
+    "xtick.labelcolor": INK,
+    "ytick.labelcolor": INK,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "lines.linewidth": 1.2,
+    "lines.solid_capstyle": "butt",
+    "figure.dpi": 300,
+    "savefig.dpi": 300,
+    "figure.constrained_layout.use": True,
+    "svg.fonttype": "none",
+    "svg.hashsalt": "primordia",
+}
+
+
+@contextmanager
+def look() -> Iterator[None]:
+    """Within it, figures are drawn and saved in this style, whatever the user's own is."""
+    with matplotlib.rc_context():
+        matplotlib.rcdefaults()
+        matplotlib.rcParams.update(LOOK)
+        yield
+
+
+def save(figure: Figure, stem: Path) -> list[Path]:
+    """Write a figure as PNG and SVG, the same bytes each time -> their paths.
+
+    Raises:
+        Trouble: it cannot be written.
+    """
+    paths = [stem.with_suffix(".png"), stem.with_suffix(".svg")]
+    for path in paths:
+        files.write(path, _filling(figure, path.suffix))
+    return paths
+
+
+def _filling(figure: Figure, suffix: str) -> Callable[[Path], None]:
+    metadata = {"Date": None} if suffix == ".svg" else {}
+    return lambda path: figure.savefig(path, format=suffix[1:], metadata=metadata)
+
+
+def time_axis(axes: Axes, until: int, label: str = "time (ticks)") -> None:
+    """A logarithmic axis of ticks from 1: most of what happens, happens early."""
+    logarithmic(axes.xaxis)
+    axes.set_xlim(1, max(until, 10))
+    axes.set_xlabel(label)
+
+
+def logarithmic(axis: Any) -> None:
+    """Whole powers of ten around what was plotted, written 1, 10, 100, 1k, ..."""
+    axis.axes.set(**{f"{axis.axis_name}scale": "log"})
+    axis.set_major_locator(LogLocator(numticks=9))
+    axis.set_minor_locator(NullLocator())
+    axis.set_major_formatter(FuncFormatter(lambda value, _: short(value)))
+    low, high = axis.get_data_interval()
+    if np.isfinite(high) and low > 0:
+        floor, ceiling = np.floor(np.log10(low)), np.ceil(np.log10(high))
+        limits = 10**floor, 10 ** max(ceiling, floor + 1)
+        axis.axes.set(**{f"{axis.axis_name}lim": limits})
+
+
+def counted(axis: Any) -> None:
+    """Plain numbers, written 500, 1k, 1.5k, ..."""
+    axis.set_major_formatter(FuncFormatter(lambda value, _: short(value)))
+
+
+def short(value: float) -> str:
+    """A number in little room: 500, 1.5k, 2M; 0.5, and smaller yet, 1/100."""
+    if 0 < value < 0.1:
+        return f"1/{short(round(1 / value))}"
+    for size, unit in ((1e9, "G"), (1e6, "M"), (1e3, "k")):
+        if value >= size:
+            return f"{value / size:.3g}{unit}"
+    return f"{value:g}"
+
+
+def curves(axes: Axes, x: np.ndarray, ys: np.ndarray, colour: str = BLUE) -> None:
+    """A curve for each world (W, X), NaN where it has none.
+
+    Several worlds are faint, behind their median and quartiles, which end where fewer than half of
+    the worlds still have a value.
+    """
+    if len(ys) == 1:
+        axes.plot(x, ys[0], color=colour)
+        return
+    axes.plot(x, ys.T, color=colour, linewidth=0.4, alpha=min(0.3, 6 / len(ys)))
+    enough = np.isfinite(ys).mean(axis=0) >= 0.5
+    quarter, half, three = np.nanpercentile(ys[:, enough], [25, 50, 75], axis=0)
+    axes.fill_between(x[enough], quarter, three, color=colour, alpha=0.25, linewidth=0)
+    axes.plot(x[enough], half, color=colour)
+
+
+def title(axes: Axes, text: str, key: dict[str, str] | None = None) -> None:
+    """What a panel shows, and below, words in the colours of what they name."""
+    axes.set_title(text, pad=13)
+    place: dict[str, Any] = {"xy": (0, 1), "xytext": (0, 4), "xycoords": axes.transAxes}
+    for word, colour in (key or {}).items():
+        put = axes.annotate(word, **place, textcoords="offset points", color=colour)
+        place = {"xy": (1, 0), "xytext": (6, 0), "xycoords": put, "va": "bottom"}
+
+
+def of_worlds(count: int) -> dict[str, str]:
+    """What to say of `curves`, if there is more than one."""
+    return {f"median and quartiles of {count} worlds": BLUE} if count > 1 else {}
+
+
+def together(count: int) -> dict[str, str]:
+    """What to say of a panel that does not tell worlds apart, if there is more than one."""
+    return {f"{count} worlds together": SOFT} if count > 1 else {}
+
+
+def say(axes: Axes, text: str) -> None:
+    """A remark in the middle of a panel that has nothing else to show."""
+    axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", color=SOFT)

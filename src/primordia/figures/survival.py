@@ -1,0 +1,101 @@
+"""How long do they live? Survival by cohort of birth, and the risk of death by age and over time."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from scipy import stats
+
+from primordia.figures import series, style
+from primordia.lives import Lives
+
+COHORTS = {
+    "first quarter": "#d89000",
+    "second quarter": "#cc4f39",
+    "third quarter": "#8f2d75",
+    "last quarter": "#2a2f86",
+}
+"""Of a world's births, in order; from light to dark."""
+
+
+def draw(lives: Lives) -> Figure:
+    """Survival over a table of numbers at risk, and risks of death. All worlds together."""
+    figure = Figure(figsize=(style.PAGE, 2.8))
+    alive, by_age, over_time = figure.subplots(1, 3)
+    _alive(alive, lives)
+    _by_age(by_age, lives)
+    _over_time(over_time, lives)
+    for axes in (by_age, over_time):
+        style.logarithmic(axes.yaxis)
+        axes.set_ylabel("deaths per tick lived")
+        if not lives.died.any():
+            style.say(axes, "no deaths yet")
+    return figure
+
+
+def quarters(lives: Lives) -> list[Lives]:
+    """Those born in each quarter of their own world's births so far."""
+    births = np.bincount(lives.world)[lives.world]
+    quarter = lives.id * len(COHORTS) // births
+    return [lives.take(quarter == number) for number in range(len(COHORTS))]
+
+
+def survival(cohort: Lives, until: int) -> tuple[np.ndarray, np.ndarray]:
+    """Kaplan and Meier's estimate -> ages (A,) up to `until`, fraction alive after each (A,)."""
+    ended, died = cohort.lifespan, cohort.died
+    found = stats.ecdf(stats.CensoredData(uncensored=ended[died], right=ended[~died])).sf
+    alive = np.concatenate([[1.0], found.probabilities, found.probabilities[-1:]])
+    return np.concatenate([[0], found.quantiles, [until]]), alive
+
+
+def hazard(start: np.ndarray, stop: np.ndarray, died: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """Deaths per tick lived in each bin of age or time, float64; NaN where too few died."""
+    return series.per_tick(stop[died], series.exposure(start, stop, edges), edges)
+
+
+def _alive(axes: Axes, lives: Lives) -> None:
+    longest = int(lives.lifespan.max())
+    cohorts = quarters(lives)
+    for cohort, colour in zip(cohorts, COHORTS.values(), strict=True):
+        if len(cohort):
+            axes.step(*survival(cohort, longest), where="post", color=colour)
+    style.time_axis(axes, longest, "age (ticks)")
+    style.title(axes, "Alive at each age", style.together(lives.worlds))
+    axes.set(ylabel="fraction alive", ylim=(0, 1.02))
+    _at_risk(axes, cohorts)
+
+
+def _at_risk(axes: Axes, cohorts: list[Lives]) -> None:
+    """Below the axis: cohorts, and how many of each were still seen alive at each labelled age."""
+
+    def put(x: float, line: int, text: str, colour: str, align: str) -> None:
+        axes.annotate(
+            text, (x, 0), (0, -26 - 8 * line), xycoords=axes.get_xaxis_transform(),
+            textcoords="offset points", fontsize=6, ha=align, va="top", color=colour,
+        )  # fmt: skip
+
+    powers = int(np.log10(axes.get_xlim()[1])) + 1
+    put(0.3, 0, "at risk, of births in the", style.SOFT, "right")
+    for line, (cohort, (name, colour)) in enumerate(zip(cohorts, COHORTS.items(), strict=True), 1):
+        put(0.3, line, name, colour, "right")
+        for age in (10**power for power in range(powers)):
+            at_risk = int((cohort.lifespan >= age).sum())
+            put(age, line, style.short(at_risk), colour, "center")
+
+
+def _by_age(axes: Axes, lives: Lives) -> None:
+    longest = int(lives.lifespan.max())
+    edges = series.bins(longest)
+    for cohort, colour in zip(quarters(lives), COHORTS.values(), strict=True):
+        risk = hazard(np.zeros_like(cohort.lifespan), cohort.lifespan, cohort.died, edges)
+        axes.plot(series.middle(edges), risk, ".-", color=colour, markersize=3)
+    style.time_axis(axes, longest, "age (ticks)")
+    style.title(axes, "Risk of death by age", style.together(lives.worlds))
+
+
+def _over_time(axes: Axes, lives: Lives) -> None:
+    last = int(lives.ended.max())
+    edges = series.bins(last)
+    risk = hazard(lives.born, lives.ended, lives.died, edges)
+    axes.plot(series.middle(edges), risk, ".-", color=style.INK, markersize=3)
+    style.time_axis(axes, last)
+    style.title(axes, "Risk of death over time", style.together(lives.worlds))
