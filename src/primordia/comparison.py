@@ -1,7 +1,9 @@
 """Runs side by side: how soon their worlds saturate, and how long organisms live in them.
 
-Worlds are the units. The first run is the reference that each other is held against. Worlds that
-stopped unsaturated count for what is known of them, and no more; see `contrast`.
+Worlds are the units, taken to be independent. (Those of the same seed in two runs share random
+words, which makes them alike if anything; intervals are then too wide rather than too narrow.) The
+first run is the reference that each other is held against. Worlds that stopped unsaturated count for
+what is known of them, and no more; see `contrast`.
 """
 
 from collections.abc import Sequence
@@ -108,12 +110,25 @@ def compare(
         InputError: fewer than two runs, one given twice, different tasks, a run in which nothing has
             lived, or a world that stopped, unsaturated, before a horizon.
     """
+    configs = _configs(runs)
+    age = min(config.saturation_ticks for config in configs)
+    names = [path.resolve().name for path in runs]
+    arms = []
+    for path, config, name, own in zip(runs, configs, names, differing(configs), strict=True):
+        survived = survival(lives(path), config.seeds, age)
+        figures = _figures(path, births, ticks)
+        figures["lifespan"] = Figures(survived.restricted_mean, np.ones(config.seeds, bool))
+        label = name if names.count(name) == 1 else str(path)
+        arms.append(Arm(label, own, figures, survived))
+    return Comparison(configs[0].task, tuple(arms), age, births, ticks)
+
+
+def _configs(runs: Sequence[Path]) -> list[Config]:
+    """Settings of runs that can be compared."""
     if len(runs) < 2:
-        raise InputError(
-            "compare needs two runs or more; the first is what the others are held against"
-        )
+        raise InputError("compare needs two runs or more; the first is the reference of the others")
     if len({path.resolve() for path in runs}) < len(runs):
-        raise InputError("a run is given twice; there is nothing to compare it with")
+        raise InputError("a run is given twice; its worlds cannot be compared with themselves")
     configs = [read_config(path) for path in runs]
     for path, config in zip(runs, configs, strict=True):
         if config.task != configs[0].task:
@@ -121,17 +136,7 @@ def compare(
                 f"{runs[0]} is a run of {configs[0].task}, {path} one of {config.task}; only runs"
                 " of one task can be compared"
             )
-    age = min(config.saturation_ticks for config in configs)
-    settings = differing(configs)
-    names = [path.resolve().name for path in runs]
-    arms = []
-    for path, config, name, own in zip(runs, configs, names, settings, strict=True):
-        survived = survival(lives(path), config.seeds, age)
-        figures = _figures(path, births, ticks)
-        figures["lifespan"] = Figures(survived.restricted_mean, np.ones(config.seeds, bool))
-        label = name if names.count(name) == 1 else str(path)
-        arms.append(Arm(label, own, figures, survived))
-    return Comparison(configs[0].task, tuple(arms), age, births, ticks)
+    return configs
 
 
 def differing(configs: Sequence[Config]) -> list[dict[str, Any]]:
