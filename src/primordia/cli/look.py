@@ -55,4 +55,32 @@ def tasks() -> None:
         click.echo(f"{name:28} {values.get('about', '')}")
 
 
-COMMANDS = (info, plot, verify, tasks)
+@click.command()
+@click.argument("runs", nargs=-1, metavar="REFERENCE RUN...", type=click.Path(path_type=Path))
+@click.option("--births", type=click.IntRange(1), help="Look no further than so many births.")
+@click.option("--ticks", type=click.IntRange(1), help="Look no further than so many ticks.")
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path, file_okay=False),
+    default=Path(),
+    help="Folder for compare.png and compare.svg [the current one].",
+)
+@click.option("--json", "as_json", is_flag=True, help="One JSON object.")
+def compare(runs: tuple[Path, ...], out: Path, as_json: bool, **horizons: int | None) -> None:
+    """Runs of one task side by side: how soon worlds saturate, how long organisms live.
+
+    Each run is held against the first. Worlds are the units, so give runs many of them (--seeds).
+    """
+    from primordia import api
+    from primordia.cli.side_by_side import side_by_side
+    from primordia.figures.comparison import save
+
+    found = api.compare(*runs, **horizons)
+    click.echo(json.dumps(found.to_dict()) if as_json else side_by_side(found))
+    out.mkdir(parents=True, exist_ok=True)
+    pictures = save(found, out)
+    if not as_json:
+        click.echo(f"Figure: {' and '.join(map(str, pictures))}")
+
+
+COMMANDS = (info, plot, compare, verify, tasks)

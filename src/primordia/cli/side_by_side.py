@@ -41,7 +41,7 @@ def spread(arm: Arm, outcome: str) -> str:
 def effect(found: Contrast, outcome: str) -> str:
     """Delta with its word and direction."""
     direction = f" {DIRECTIONS[outcome][found.delta > 0]}" if found.delta else ""
-    known = f"; order known of {found.decided:.0%}" if found.decided < 1 else ""
+    known = f"; order known of {int(100 * found.decided)} %" if found.decided < 1 else ""
     return f"{found.delta:+.2f} {found.word}{direction}{known}"
 
 

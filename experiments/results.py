@@ -1,0 +1,88 @@
+"""What came out of an experiment: a table for people, one row a world for programs, a figure."""
+
+import csv
+import datetime
+import statistics
+from pathlib import Path
+from typing import Any
+
+import primordia
+from primordia.cli.side_by_side import effect, ratio, spread
+from primordia.comparison import OUTCOMES, Comparison
+from primordia.figures import style
+from primordia.figures.comparison import draw
+
+NOTE = (
+    "Medians over worlds (quartiles); a world that stopped unsaturated is known only to be at least"
+    " so late. Effects: Cliff's delta; ratio of medians (95 % interval over worlds)."
+)
+
+
+def write(stem: Path, question: str, runs: list[Path]) -> None:
+    """STEM.md, STEM.csv and STEM.png; the first run is the reference."""
+    stem.parent.mkdir(exist_ok=True)
+    compared = primordia.compare(*runs)
+    infos = [primordia.Run(run).info() for run in runs]
+    parts = [f"# {question}", summary(compared, infos), effects(compared), NOTE]
+    text = "\n\n".join([*parts, made(runs[0], infos[0])])
+    stem.with_suffix(".md").write_text(text + "\n", encoding="utf-8")
+    write_worlds(stem.with_suffix(".csv"), compared, infos)
+    with style.look():
+        draw(compared).savefig(stem.with_suffix(".png"), dpi=200)
+    print(f"{stem}: .md .csv .png")
+
+
+def summary(compared: Comparison, infos: list[dict[str, Any]]) -> str:
+    """A row an arm: medians over worlds, with quartiles."""
+    names = list(compared.arms[0].settings)
+    head = ["", *names, "worlds", "saturated", "extinctions (median)", *OUTCOMES.values()]
+    rows = [
+        [arm.name, *arm.settings.values(), arm.worlds, arm.saturated, f"{extinct(info):g}"]
+        + [spread(arm, outcome) for outcome in OUTCOMES]
+        for arm, info in zip(compared.arms, infos, strict=True)
+    ]
+    return table(head, rows)
+
+
+def extinct(info: dict[str, Any]) -> float:
+    """How often the median world did."""
+    return statistics.median(world["extinctions"] for world in info["worlds"])
+
+
+def effects(compared: Comparison) -> str:
+    """A row an arm: Cliff's delta against the reference, and the ratio of the medians."""
+    reference, *others = compared.arms
+    rows = []
+    for arm in others:
+        found = [(compared.contrast(arm, outcome), outcome) for outcome in OUTCOMES]
+        rows.append([arm.name, *(f"{effect(*each)}; {ratio(each[0])}" for each in found)])
+    return table([f"against {reference.name}", *OUTCOMES.values()], rows)
+
+
+def table(head: list[str], rows: list[list[Any]]) -> str:
+    """Markdown."""
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join(f"| {' | '.join(map(str, line))} |" for line in lines)
+
+
+def made(run: Path, info: dict[str, Any]) -> str:
+    """When, up to where and with what."""
+    begun = datetime.date.fromtimestamp((run / "versions.json").stat().st_mtime)
+    what = ", ".join(f"{name} {version}" for name, version in info["versions"].items())
+    limits = [f"{name} {value}" for name, value in info["limits"].items() if value is not None]
+    return f"Run on {begun} with {what}. Each world stopped at: {' or '.join(limits)}."
+
+
+def write_worlds(path: Path, compared: Comparison, infos: list[dict[str, Any]]) -> None:
+    """A row for each world of each arm; empty where it never saturated."""
+    with path.open("w", newline="", encoding="utf-8") as file:
+        rows = csv.writer(file, lineterminator="\n")
+        moments = ["saturated_births", "saturated_tick"]
+        rows.writerow(
+            ["arm", "seed", "ticks", "births", "extinctions", "alive", *moments, "mean_lifespan"]
+        )
+        for arm, info in zip(compared.arms, infos, strict=True):
+            for world, mean in zip(info["worlds"], arm.figures["lifespan"].value, strict=True):
+                at = world["saturation"] or {"births": "", "tick": ""}
+                counts = [world[n] for n in ("seed", "ticks", "births", "extinctions", "alive")]
+                rows.writerow([arm.name, *counts, at["births"], at["tick"], f"{mean:.1f}"])

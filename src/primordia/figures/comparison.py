@@ -1,0 +1,79 @@
+"""Runs side by side: how long organisms live, and how soon worlds saturate."""
+
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator
+
+from primordia.comparison import Arm, Comparison
+from primordia.figures import style
+
+
+def save(compared: Comparison, folder: Path) -> list[Path]:
+    """Write `compare.png` and `compare.svg` -> their paths.
+
+    Raises:
+        Trouble: they cannot be written.
+    """
+    with style.look():
+        return style.save(draw(compared), folder / "compare")
+
+
+def draw(compared: Comparison) -> Figure:
+    """Survival of all lives, and the share of worlds saturated, against births and against time."""
+    figure = Figure(figsize=(style.PAGE, 2.7))
+    alive, births, ticks = figure.subplots(1, 3)
+    for arm, colour in zip(compared.arms, colours(len(compared.arms)), strict=True):
+        _alive(alive, arm, colour)
+    style.time_axis(alive, compared.age, "age (ticks)")
+    alive.set(title="Alive at each age", ylabel="fraction of organisms", ylim=(0, 1.02))
+    _saturated(births, compared, "births")
+    births.set(title="Saturated, by births", xlabel="births", ylabel="fraction of worlds")
+    _saturated(ticks, compared, "ticks")
+    ticks.set(title="Saturated, by time", xlabel="time (ticks)")
+    figure.legend(
+        *alive.get_legend_handles_labels(),
+        loc="outside lower left", frameon=False, ncols=min(len(compared.arms), 4),
+    )  # fmt: skip
+    return figure
+
+
+def colours(arms: int) -> list[str]:
+    """Ink for the reference; for the others, in their order, from dark to light."""
+    shades = matplotlib.colormaps["plasma"](np.linspace(0.25, 0.88, max(arms - 1, 1)))
+    return [style.INK, *(matplotlib.colors.to_hex(each) for each in shades[: arms - 1])]
+
+
+def _alive(axes: Axes, arm: Arm, colour: str) -> None:
+    """Kaplan-Meier of all lives, with a band over resamples of worlds."""
+    survived = arm.survival
+    ages = np.concatenate([[1], survived.ages, [survived.limit]])
+    curve, low, high = (
+        np.concatenate([[1.0], each, each[-1:]]) for each in (survived.curve, *survived.band)
+    )
+    axes.fill_between(ages, low, high, step="post", color=colour, alpha=0.2, linewidth=0)
+    axes.step(ages, curve, where="post", color=colour, label=arm.name)
+
+
+def _saturated(axes: Axes, compared: Comparison, unit: str) -> None:
+    """Share of worlds known to be saturated; shaded, up to the share that may be."""
+    values = np.concatenate([arm.figures[unit].value for arm in compared.arms])
+    power = 10 ** np.floor(np.log10(max(values.min(), 1)))
+    first = power * (3 if values.min() >= 3 * power else 1)
+    last = 1.2 * values.max()
+    for arm, colour in zip(compared.arms, colours(len(compared.arms)), strict=True):
+        figures = arm.figures[unit]
+        at = np.concatenate([[first], np.unique(figures.value), [last]])
+        least, most = (
+            np.searchsorted(np.sort(each), at, side="right") / arm.worlds
+            for each in (figures.high, figures.value)
+        )
+        axes.fill_between(at, least, most, step="post", color=colour, alpha=0.12, linewidth=0)
+        axes.step(at, least, where="post", color=colour)
+    style.logarithmic(axes.xaxis)
+    if last / first < 100:  # too few powers of ten to read a value off
+        axes.xaxis.set_major_locator(LogLocator(subs=(1, 3)))
+    axes.set(xlim=(first, last), ylim=(0, 1.02))

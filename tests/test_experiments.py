@@ -1,0 +1,68 @@
+"""The experiments in the repository: their settings are good, and running one twice changes nothing."""
+
+import csv
+import tomllib
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+import tomli_w
+
+from primordia.config import load, merged
+from tests.worlds import MEADOW
+
+EXPERIMENTS = Path(__file__).parent.parent / "experiments"
+FILES = sorted(EXPERIMENTS.glob("*/*.toml"))
+
+
+@pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
+def test_settings_of_every_arm_are_good_and_limits_are_shared(file: Path) -> None:
+    values = tomllib.loads(file.read_text(encoding="utf-8"))
+    assert values.pop("question").endswith("?")
+    arms = values.pop("arms")
+    names = [arm.pop("name") for arm in arms]
+    assert len(set(names)) == len(names) > 1
+    configs = [load(values["task"], merged(values, arm)) for arm in arms]
+    assert len({config.to_tomli_w.dumps() for config in configs}) == len(configs)
+    assert {config.task for config in configs} == {"CartPole-survival"}
+    assert len({config.stop for config in configs}) == 1
+    assert min(config.seeds for config in configs) >= 20
+    assert configs[0].stop.ticks is not None
+
+
+@pytest.mark.usefixtures("compiled_once")
+def test_an_experiment_is_run_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(EXPERIMENTS))
+    monkeypatch.chdir(tmp_path)
+    script = import_module("run")
+    settings = {
+        **MEADOW,
+        "brain": {"hidden": 1},
+        "seeds": 3,
+        "saturation_ticks": 20,
+        "hazard": 0.01,
+    }
+    values = {"question": "Does the seed matter?", **settings, "stop": {"ticks": 200}}
+    file = tmp_path / "meadow" / "seeds.toml"
+    file.parent.mkdir()
+    (tmp_path / "meadow.toml").write_text(tomli_w.dumps(settings))
+    values = {**values, "task": str(tmp_path / "meadow.toml")}
+    file.write_text(tomli_w.dumps({**values, "arms": [{"name": "a"}, {"name": "b", "seed": 50}]}))
+    script.experiment(file)
+    results = {path.name: path.read_bytes() for path in (file.parent / "results").iterdir()}
+    assert set(results) == {"seeds.md", "seeds.csv", "seeds.png"}
+    rows = list(csv.DictReader(results["seeds.csv"].decode().splitlines()))
+    assert [(row["arm"], row["seed"]) for row in rows] == [
+        (arm, str(seed)) for arm, first in (("a", 0), ("b", 50)) for seed in range(first, first + 3)
+    ]
+    assert "Does the seed matter?" in results["seeds.md"].decode()
+    checkpoints = sorted(tmp_path.glob("runs/**/manifest.json"))
+    before = [path.stat().st_mtime_ns for path in checkpoints]
+    script.experiment(file)
+    assert [path.stat().st_mtime_ns for path in checkpoints] == before
+    assert results == {path.name: path.read_bytes() for path in (file.parent / "results").iterdir()}
+    file.write_text(
+        tomli_w.dumps({**values, "arms": [{"name": "a", "hazard": 0.5}, {"name": "b"}]})
+    )
+    with pytest.raises(SystemExit, match="other settings"):
+        script.experiment(file)
