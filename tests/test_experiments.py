@@ -23,7 +23,7 @@ def test_settings_of_every_arm_are_good_and_limits_are_shared(file: Path) -> Non
     names = [arm.pop("name") for arm in arms]
     assert len(set(names)) == len(names) > 1
     configs = [load(values["task"], merged(values, arm)) for arm in arms]
-    assert len({config.to_tomli_w.dumps() for config in configs}) == len(configs)
+    assert len({config.to_toml() for config in configs}) == len(configs)
     assert {config.task for config in configs} == {"CartPole-survival"}
     assert len({config.stop for config in configs}) == 1
     assert min(config.seeds for config in configs) >= 20
