@@ -6,10 +6,14 @@ import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator
 
 from primordia.comparison import Arm, Comparison
 from primordia.figures import style
+
+STOPPED = "|"
+"""Marks a world that stopped unsaturated, as censoring is marked in survival curves."""
 
 
 def save(compared: Comparison, folder: Path) -> list[Path]:
@@ -29,15 +33,12 @@ def draw(compared: Comparison) -> Figure:
     for arm, colour in zip(compared.arms, colours(len(compared.arms)), strict=True):
         _alive(alive, arm, colour)
     style.time_axis(alive, compared.age, "age (ticks)")
-    alive.set(title="Alive at each age", ylabel="fraction of organisms", ylim=(0, 1.02))
+    alive.set(title="Alive at each age", ylabel="fraction of organisms", ylim=(-0.03, 1.03))
     _saturated(births, compared, "births")
     births.set(title="Saturated, by births", xlabel="births", ylabel="fraction of worlds")
     _saturated(ticks, compared, "ticks")
     ticks.set(title="Saturated, by time", xlabel="time (ticks)")
-    figure.legend(
-        *alive.get_legend_handles_labels(),
-        loc="outside lower left", frameon=False, ncols=min(len(compared.arms), 4),
-    )  # fmt: skip
+    _legend(figure, alive, compared)
     return figure
 
 
@@ -59,7 +60,7 @@ def _alive(axes: Axes, arm: Arm, colour: str) -> None:
 
 
 def _saturated(axes: Axes, compared: Comparison, unit: str) -> None:
-    """Share of worlds known to be saturated; shaded, up to the share that may be."""
+    """Share of worlds known to be saturated; marks where worlds stopped that were not."""
     values = np.concatenate([arm.figures[unit].value for arm in compared.arms])
     power = 10 ** np.floor(np.log10(max(values.min(), 1)))
     first = power * (3 if values.min() >= 3 * power else 1)
@@ -67,13 +68,25 @@ def _saturated(axes: Axes, compared: Comparison, unit: str) -> None:
     for arm, colour in zip(compared.arms, colours(len(compared.arms)), strict=True):
         figures = arm.figures[unit]
         at = np.concatenate([[first], np.unique(figures.value), [last]])
-        least, most = (
-            np.searchsorted(np.sort(each), at, side="right") / arm.worlds
-            for each in (figures.high, figures.value)
+        stopped = np.unique(figures.value[~figures.known])
+        saturated = np.sort(figures.value[figures.known])
+        share, left = (
+            np.searchsorted(saturated, each, side="right") / arm.worlds for each in (at, stopped)
         )
-        axes.fill_between(at, least, most, step="post", color=colour, alpha=0.12, linewidth=0)
-        axes.step(at, least, where="post", color=colour)
+        axes.step(at, share, where="post", color=colour)
+        axes.plot(stopped, left, STOPPED, color=colour, markersize=4)
     style.logarithmic(axes.xaxis)
     if last / first < 100:  # too few powers of ten to read a value off
         axes.xaxis.set_major_locator(LogLocator(subs=(1, 3)))
-    axes.set(xlim=(first, last), ylim=(0, 1.02))
+    axes.set(xlim=(first, last), ylim=(-0.03, 1.03))
+
+
+def _legend(figure: Figure, axes: Axes, compared: Comparison) -> None:
+    """Names of the runs, and what the marks are if there are any."""
+    handles = axes.get_legend_handles_labels()[0]
+    if not all(arm.figures["births"].known.all() for arm in compared.arms):
+        handles.append(
+            Line2D([], [], ls="", marker=STOPPED, color=style.SOFT, label="stopped unsaturated")
+        )
+    columns = min(len(handles), 4)
+    figure.legend(handles=handles, loc="outside lower left", frameon=False, ncols=columns)
