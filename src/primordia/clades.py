@@ -1,6 +1,7 @@
 """Lines of descent, told apart anew whenever one of them has taken the world over."""
 
 from collections import Counter
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,13 +31,11 @@ def lines(
 ) -> Lines:
     """Lines of descent in one world.
 
-    Founders begin a line, and children are of their parent's. Each of the living begins a line of
-    its own, and lines are thereby told apart anew, after a tick that
-
-    - leaves at least `crowd` alive for the first time since life began from nothing; or later,
-    - leaves all of them in one line: it has taken the world over.
-
-    This goes through all events in their order, since where lines begin depends on all before.
+    Founders begin a line, and children are of their parent's. Lines are told apart anew, each of
+    the living beginning one, after a tick that leaves at least `crowd` alive for the first time
+    since life began from nothing; and later, after one that leaves all the living in one line: it
+    has taken the world over. Where lines begin depends on all that was before, so this is one pass
+    over all births and deaths in their order.
 
     Args:
         parent_row: row of each one's parent, or -1; int64 (L,), a parent before its children.
@@ -45,30 +44,22 @@ def lines(
         died: who did, bool (L,).
         crowd: how many make a world worth telling lines apart in, at least 1.
     """
-    dead = np.flatnonzero(died)
-    dead = dead[np.argsort(ended[dead], kind="stable")]
-    ticks = np.union1d(born, ended[dead])
-    births_by = np.searchsorted(born, ticks, side="right").tolist()
-    deaths_by = np.searchsorted(ended[dead], ticks, side="right").tolist()
-    parents, dying = parent_row.tolist(), dead.tolist()
-
-    line, first = list(range(len(parents))), list(range(len(parents)))
-    living, size, young = set[int](), Counter[int](), True
-    anew, takeover, births, deaths = [], [], 0, 0
-    for tick, births_now, deaths_now in zip(ticks.tolist(), births_by, deaths_by, strict=True):
-        for row in range(births, births_now):
+    parents, line = parent_row.tolist(), list(range(len(born)))
+    first, living, size, young = line.copy(), set[int](), Counter[int](), True
+    anew, takeover = [], []
+    for tick, newborn, dying in _events(born, ended, died):
+        for row in newborn:
             if parents[row] < 0:
                 young = True
             else:
                 first[row] = line[row] = line[parents[row]]
             size[line[row]] += 1
-            living.add(row)
-        for row in dying[deaths:deaths_now]:
-            living.remove(row)
+        for row in dying:
             size[line[row]] -= 1
             if not size[line[row]]:
                 del size[line[row]]
-        births, deaths = births_now, deaths_now
+        living.update(newborn)
+        living.difference_update(dying)
         if len(living) >= crowd if young else len(size) == 1:
             for row in living:
                 line[row] = row
@@ -77,3 +68,18 @@ def lines(
             takeover.append(not young)
             young = False
     return Lines(born, np.array(first), np.array(anew, np.int64), np.array(takeover, bool))
+
+
+def _events(
+    born: np.ndarray, ended: np.ndarray, died: np.ndarray
+) -> Iterator[tuple[int, range, list[int]]]:
+    """Ticks with births or deaths, in order: the rows of those born, and of those who died."""
+    dead = np.flatnonzero(died)
+    dead = dead[np.argsort(ended[dead], kind="stable")]
+    ticks = np.union1d(born, ended[dead])
+    births = np.searchsorted(born, ticks, side="right").tolist()
+    deaths = np.searchsorted(ended[dead], ticks, side="right").tolist()
+    dying, was_born, was_dead = dead.tolist(), 0, 0
+    for tick, by_birth, by_death in zip(ticks.tolist(), births, deaths, strict=True):
+        yield tick, range(was_born, by_birth), dying[was_dead:by_death]
+        was_born, was_dead = by_birth, by_death

@@ -85,15 +85,16 @@ def time_axis(axes: Axes, until: int, label: str = "time (ticks)") -> None:
 
 def logarithmic(axis: Any) -> None:
     """Whole powers of ten around what was plotted, written 1, 10, 100, 1k, ..."""
+    low, high = axis.get_data_interval()
+    if not 0 < low <= high < np.inf:
+        low, high = 1, 1  # nothing to show
+    floor, ceiling = np.floor(np.log10(low)), np.ceil(np.log10(high))
+    limits = 10**floor, 10 ** max(ceiling, floor + 1)
+    axis.axes.set(**{f"{axis.axis_name}lim": limits})
     axis.axes.set(**{f"{axis.axis_name}scale": "log"})
     axis.set_major_locator(LogLocator(numticks=9))
     axis.set_minor_locator(NullLocator())
     axis.set_major_formatter(FuncFormatter(lambda value, _: short(value)))
-    low, high = axis.get_data_interval()
-    if np.isfinite(high) and low > 0:
-        floor, ceiling = np.floor(np.log10(low)), np.ceil(np.log10(high))
-        limits = 10**floor, 10 ** max(ceiling, floor + 1)
-        axis.axes.set(**{f"{axis.axis_name}lim": limits})
 
 
 def counted(axis: Any) -> None:
@@ -122,9 +123,11 @@ def curves(axes: Axes, x: np.ndarray, ys: np.ndarray, colour: str = BLUE) -> Non
         return
     axes.plot(x, ys.T, color=colour, linewidth=0.4, alpha=min(0.3, 6 / len(ys)))
     enough = np.isfinite(ys).mean(axis=0) >= 0.5
-    quarter, half, three = np.nanpercentile(ys[:, enough], [25, 50, 75], axis=0)
-    axes.fill_between(x[enough], quarter, three, color=colour, alpha=0.25, linewidth=0)
-    axes.plot(x[enough], half, color=colour)
+    quartiles = np.full((3, len(x)), np.nan)
+    if enough.any():
+        quartiles[:, enough] = np.nanpercentile(ys[:, enough], [25, 50, 75], axis=0)
+    axes.fill_between(x, quartiles[0], quartiles[2], color=colour, alpha=0.25, linewidth=0)
+    axes.plot(x, quartiles[1], color=colour)
 
 
 def title(axes: Axes, text: str, key: dict[str, str] | None = None) -> None:

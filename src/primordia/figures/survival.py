@@ -28,6 +28,7 @@ def draw(lives: Lives) -> Figure:
         style.logarithmic(axes.yaxis)
         axes.set_ylabel("deaths per tick lived")
         if not lives.died.any():
+            axes.set_yticks([])
             style.say(axes, "no deaths yet")
     return figure
 

@@ -1,0 +1,91 @@
+"""Lines of descent are what their rule says, walked through one organism and one tick at a time."""
+
+import numpy as np
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from primordia.clades import Lines, lines
+
+FEW = st.lists(st.integers(0, 30), max_size=3)
+HISTORY = st.lists(st.tuples(FEW, FEW), max_size=30)
+"""For each tick: which of the living have a child, and which die."""
+
+
+class Walked:
+    """A small world's lives, and the living after each tick."""
+
+    def __init__(self, history: list[tuple[list[int], list[int]]]) -> None:
+        self.parent, self.born, self.ended = [-1], [0], [-1]
+        self.living = {0: [0]}
+        now = [0]
+        for tick, (mothers, dying) in enumerate(history, 1):
+            children = [self.birth(now[each % len(now)], tick) for each in mothers]
+            dead = {now[each % len(now)] for each in dying}
+            for each in dead:
+                self.ended[each] = tick
+            now = [each for each in now + children if each not in dead] or [self.birth(-1, tick)]
+            self.living[tick] = now
+
+    def birth(self, parent: int, tick: int) -> int:
+        self.parent.append(parent)
+        self.born.append(tick)
+        self.ended.append(-1)
+        return len(self.born) - 1
+
+    def line(self, row: int, since: int) -> int:
+        """Its ancestor after the tick `since`, or the founder born later."""
+        while self.born[row] > since and self.parent[row] >= 0:
+            row = self.parent[row]
+        return row
+
+    def lines(self, crowd: int) -> Lines:
+        columns = map(np.array, (self.parent, self.born, self.ended))
+        return lines(*columns, np.array(self.ended) >= 0, crowd)
+
+
+@given(history=HISTORY, crowd=st.integers(1, 4))
+@example(history=[], crowd=1)
+@example(history=[([0, 0], []), ([1], [0]), ([], [1, 2]), ([0], [])], crowd=3)
+def test_lines_are_those_alive_when_they_were_last_told_apart(
+    history: list[tuple[list[int], list[int]]], crowd: int
+) -> None:
+    world = Walked(history)
+    found = world.lines(crowd)
+    anew = dict(zip(found.anew.tolist(), found.takeover.tolist(), strict=True))
+    since, young = -1, True
+    for tick, living in world.living.items():
+        of_tick = found.of(np.array(living), np.array(tick))
+        young |= any(world.born[row] == tick and world.parent[row] < 0 for row in living)
+        left = {world.line(row, since) for row in living}
+        eventful = tick in world.born or tick in world.ended
+        if eventful and (len(living) >= crowd if young else len(left) == 1):
+            assert anew.pop(tick) is not young
+            since, young = tick, False
+        assert of_tick.tolist() == [world.line(row, since) for row in living]
+    assert not anew, "lines were told apart at no other time"
+
+
+def test_the_last_line_left_has_taken_over_and_is_told_apart_anew() -> None:
+    first, second, grandchild, nephew = 1, 2, 3, 4
+    world = Walked([([0, 0], []), ([1], [0]), ([1], [0, 2])])
+    assert world.parent == [-1, 0, 0, first, second]
+    found = world.lines(crowd=3)
+    assert found.anew.tolist() == [1, 3]
+    assert found.takeover.tolist() == [False, True]
+    assert found.of(np.array([first, second, grandchild]), np.array(2)).tolist() == [1, 2, 1]
+    assert found.first[nephew] == second
+    assert found.of(np.array([second, nephew]), np.array(3)).tolist() == [second, nephew]
+
+
+def test_rows_and_ticks_broadcast() -> None:
+    world = Walked([([0], [])] * 3)
+    found = world.lines(crowd=2)
+    rows, ticks = np.arange(2), np.array([[1], [3]])
+    assert found.of(rows, ticks).tolist() == [[0, 1], [0, 1]]
+
+
+def test_lines_of_a_world_that_never_was_crowded_are_its_founders() -> None:
+    world = Walked([([0], []), ([], [0, 1]), ([0], [])])
+    found = world.lines(crowd=5)
+    assert found.anew.tolist() == []
+    assert found.of(np.arange(4), np.array([0, 1, 2, 3])).tolist() == [0, 0, 2, 2]

@@ -1,0 +1,303 @@
+"""Figures show what the records say; whatever can be drawn of a run is drawn, always the same."""
+
+import re
+import shutil
+from dataclasses import fields
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from matplotlib.colors import to_rgb
+from matplotlib.text import Text
+
+import primordia
+from primordia import loop
+from primordia.figures import FIGURES, ages, population, series, spacetime, style, survival
+from primordia.lives import ALIVE, Lives, lives
+from primordia.world import Cause
+from tests.commands import complains, here
+from tests.worlds import MILL, config
+
+pytestmark = pytest.mark.usefixtures("compiled_once")
+
+WHAT: dict[str, Any] = {**MILL, "brain": {"hidden": 6}, "seeds": 3, "hazard": 0.02}
+LIFE = st.tuples(st.integers(0, 40), st.integers(0, 40), st.booleans())
+LIVED = st.lists(LIFE, min_size=1, max_size=20)
+
+
+def world_of(lived: list[tuple[int, int, bool]], until: int = 90) -> Lives:
+    """One world's lives from (born, lifespan, died), without descent; each in a cell of its own."""
+    born, lifespan, died = map(np.array, zip(*sorted(lived), strict=True))
+    number = np.arange(len(born))
+    return Lives(
+        world=np.zeros(len(born), np.int32),
+        id=number,
+        parent=np.full(len(born), -1),
+        cell=number.astype(np.int32),
+        origin=np.zeros(len(born), np.int8),
+        born=born,
+        ended=np.where(died, born + 1 + lifespan, until),
+        cause=np.where(died, Cause.FATAL, ALIVE).astype(np.int8),
+    )
+
+
+def alive(world: Lives, row: int, tick: int) -> bool:
+    return world.born[row] <= tick and not (world.died[row] and world.ended[row] <= tick)
+
+
+@pytest.fixture(scope="module")
+def run(compiled_once: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Three worlds with births, copies and deaths of several causes."""
+    where = tmp_path_factory.mktemp("figures") / "run"
+    loop.start(config(WHAT, stop={"ticks": 900}), where)
+    return where
+
+
+@given(lived=LIVED)
+def test_population_and_mean_age_are_those_of_every_tick(
+    lived: list[tuple[int, int, bool]],
+) -> None:
+    world = world_of(lived)
+    ticks = np.arange(90)
+    counted, mean = series.population(world, ticks), series.mean_age(world, ticks)
+    for tick in ticks.tolist():
+        found = [tick - world.born[row] for row in range(len(world)) if alive(world, row, tick)]
+        assert counted[tick] == len(found)
+        expected = np.mean(found) if found else np.nan
+        np.testing.assert_allclose(mean[tick], expected, rtol=1e-12)
+
+
+def test_population_and_mean_age_are_as_sampled_while_it_ran(run: Path) -> None:
+    metrics, everyone = primordia.Run(run).table("metrics"), lives(run)
+    columns = {
+        name: metrics[name].to_numpy() for name in ("world", "tick", "population", "mean_age")
+    }
+    for number in range(3):
+        mine = columns["world"] == number
+        world, ticks = everyone.of_world(number), columns["tick"][mine]
+        np.testing.assert_array_equal(series.population(world, ticks), columns["population"][mine])
+        np.testing.assert_allclose(
+            series.mean_age(world, ticks), columns["mean_age"][mine], rtol=1e-5
+        )
+
+
+@given(lived=LIVED, inner=st.sets(st.integers(1, 89)))
+def test_rates_are_deaths_over_ticks_lived(
+    lived: list[tuple[int, int, bool]], inner: set[int]
+) -> None:
+    world = world_of(lived)
+    edges = np.array([0, *sorted(inner), 90])
+    exposed = series.exposure(world.born, world.ended, edges)
+    risk = survival.hazard(world.born, world.ended, world.died, edges)
+    for number, (low, high) in enumerate(pairwise(edges.tolist())):
+        ticks = range(low + 1, high + 1)
+        expected = sum(
+            world.born[row] < tick <= world.ended[row]
+            for row in range(len(world))
+            for tick in ticks
+        )
+        died = sum(world.died[row] and world.ended[row] in ticks for row in range(len(world)))
+        assert exposed[number] == expected
+        assert (risk[number] == died / expected) if died >= series.FEW else np.isnan(risk[number])
+
+
+@given(last=st.integers(0, 10**7))
+def test_bins_begin_at_0_end_with_the_last_tick_and_rise(last: int) -> None:
+    edges = series.bins(last)
+    assert edges[0] == 0
+    assert edges[-1] == max(last, 1)
+    assert (np.diff(edges) > 0).all()
+    assert (np.diff(series.middle(edges)) > 0).all()
+
+
+@given(lived=LIVED)
+def test_survival_is_the_product_over_ages_of_who_lived_on(
+    lived: list[tuple[int, int, bool]],
+) -> None:
+    world = world_of(lived)
+    age, fraction = survival.survival(world, 90)
+    assert (age[0], fraction[0]) == (0, 1)
+    left = 1.0
+    for each in range(91):
+        at_risk = (world.lifespan >= each).sum()
+        died = (world.died & (world.lifespan == each)).sum()
+        left *= 1 - died / max(at_risk, 1)
+        found = fraction[np.searchsorted(age, each, side="right") - 1]
+        assert found == pytest.approx(left, abs=1e-12)
+
+
+def test_cohorts_are_quarters_of_each_worlds_births(run: Path) -> None:
+    everyone = lives(run)
+    cohorts = survival.quarters(everyone)
+    assert sum(map(len, cohorts)) == len(everyone)
+    for world in range(3):
+        parts = [cohort.of_world(world).id for cohort in cohorts]
+        assert np.concatenate(parts).tolist() == list(range(len(everyone.of_world(world))))
+        assert max(map(len, parts)) - min(map(len, parts)) <= 1
+
+
+def test_quartiles_are_of_stretches_with_equally_many_dead() -> None:
+    number = np.arange(4 * ages.ENOUGH)
+    middle, quarter, half, three = ages.quartiles(number, number % ages.ENOUGH)
+    assert middle.tolist() == [(k + 0.5) * ages.ENOUGH - 0.5 for k in range(4)]
+    assert set(half) == {(ages.ENOUGH - 1) / 2}
+    assert (quarter < half).all()
+    assert (half < three).all()
+
+
+def test_space_time_finds_who_lived_where(run: Path) -> None:
+    world = lives(run).of_world(1)
+    cells, ticks = np.arange(24), np.array([0, 1, 50, 333, 900])
+    found = spacetime.living(world, cells, ticks)
+    for place, tick in enumerate(ticks.tolist()):
+        expected = np.full(24, spacetime.NOBODY)
+        for row in range(len(world)):
+            if alive(world, row, tick):
+                expected[world.cell[row]] = row
+        np.testing.assert_array_equal(found[place], expected)
+
+
+def test_space_time_shows_lines_that_last_in_strong_colours(run: Path) -> None:
+    world = lives(run).of_world(0)
+    cells, ticks = np.arange(24), np.arange(901)
+    of = spacetime.told_apart(world)
+    found = spacetime.living(world, cells, ticks)
+    image = spacetime.picture(world, of, cells, ticks)
+    np.testing.assert_array_equal((image == 1).all(axis=-1), found == spacetime.NOBODY)
+    strong = {tuple(each) for each in spacetime.STRONG}
+    grey = to_rgb(spacetime.YOUNG)
+    assert {tuple(each) for each in image[-1][found[-1] >= 0]} <= strong
+    young = image[: of.anew[0]][found[: of.anew[0]] >= 0]
+    assert {tuple(each) for each in young if len(set(each)) > 1} == set()
+    assert grey in {tuple(each) for each in young}
+    one_line = of.of(found[-1], ticks[-1:]) == of.of(found[-1, :1], ticks[-1:])
+    same_colour = (image[-1] == image[-1, 0]).all(axis=-1)
+    assert not (one_line & ~same_colour)[found[-1] >= 0].any()
+
+
+@pytest.mark.parametrize(("cells", "shown"), [(24, 24), (512, 512), (513, 257), (1_000_000, 512)])
+def test_space_time_never_has_more_columns_than_a_screen(cells: int, shown: int) -> None:
+    world = world_of([(0, 10, True), (11, 0, False)])
+    with style.look():
+        figure = spacetime.draw(world, config(MILL, cells=cells), 0)
+    assert figure.axes[0].images[0].get_array().shape[1] == shown
+    assert ("shown" in figure.axes[0].get_xlabel()) == (shown < cells)
+
+
+@pytest.fixture(scope="module")
+def pictures(run: Path) -> list[Path]:
+    """Its figures, where they are put by default."""
+    before = primordia.Run(run).info()
+    found = primordia.Run(run).plot()
+    assert primordia.Run(run).info() == before
+    return found
+
+
+def test_plot_makes_every_figure_twice_in_the_runs_folder(run: Path, pictures: list[Path]) -> None:
+    names = [f"{name}.{kind}" for name in FIGURES for kind in ("png", "svg")]
+    assert pictures == [run / "figures" / name for name in names]
+    assert sorted(path.name for path in (run / "figures").iterdir()) == sorted(names)
+
+
+def test_svg_keeps_text_as_text_and_dots_as_a_picture(pictures: list[Path]) -> None:
+    for path in pictures:
+        if path.suffix == ".svg":
+            text = re.findall(r"<text[^>]*>([^<]+)</text>", path.read_text(encoding="utf-8"))
+            assert any("(ticks)" in each for each in text), path
+            assert path.stat().st_size < 2**19
+
+
+def test_same_bytes_each_time_whatever_the_users_style_but_for_the_world_asked_for(
+    run: Path, pictures: list[Path], tmp_path: Path
+) -> None:
+    with matplotlib.rc_context({"font.size": 30, "lines.linewidth": 9, "svg.fonttype": "path"}):
+        done = here("plot", run, "--out", tmp_path / "some" / "where", "--world", 2)
+        assert matplotlib.rcParams["font.size"] == 30
+    assert done.returncode == 0, done.stderr
+    again = [tmp_path / "some" / "where" / path.name for path in pictures]
+    assert done.stdout.split() == [str(path) for path in again]
+    same = [one.read_bytes() == two.read_bytes() for one, two in zip(pictures, again, strict=True)]
+    assert same == [True] * 6 + [False] * 2
+    assert "world 2 (of 3)" in again[-1].read_text(encoding="utf-8")
+
+
+def worlds_of(*lived: list[tuple[int, int, bool]], until: int) -> Lives:
+    """Several worlds of such lives."""
+    each = [world_of(one, until) for one in lived]
+    columns = {
+        field.name: np.concatenate([getattr(one, field.name) for one in each])
+        for field in fields(Lives)
+    }
+    numbers = np.repeat(np.arange(len(each), dtype=np.int32), list(map(len, each)))
+    return Lives(**{**columns, "world": numbers})
+
+
+@pytest.mark.parametrize(
+    "everyone",
+    [
+        world_of([(0, 0, False)], until=0),
+        world_of([(0, 0, False)], until=1),
+        world_of([(0, 0, False), (3, 0, False)], until=50),
+        world_of([(0, 4, True), (5, 0, True), (6, 0, False)], until=7),
+        worlds_of([(0, 0, False)], [(0, 0, False)], until=1),
+        worlds_of([(0, 2, True)] * 9, [(0, 70, True), (1, 0, False)], [(0, 0, False)], until=90),
+    ],
+    ids=["tick 0", "tick 1", "no deaths", "hardly any", "two worlds", "three worlds"],
+)
+def test_what_can_be_drawn_is_drawn(everyone: Lives) -> None:
+    settings = config(MILL, cells=24, seeds=everyone.worlds)
+    with style.look():
+        for name, draw in FIGURES.items():
+            figure = draw(everyone, settings, 0)
+            figure.draw_without_rendering()
+            said = {text.get_text() for text in figure.findobj(Text)}
+            remark = "no deaths yet" in said
+            assert remark == (name in {"ages", "survival"} and not everyone.died.any())
+
+
+@pytest.mark.parametrize(
+    ("placement", "says"),
+    [
+        ({}, "cell of the ring"),
+        ({"topology": "torus8"}, "torus, row after row"),
+        ({"topology": "well-mixed"}, "all are neighbours"),
+    ],
+)
+def test_space_time_says_what_the_order_of_cells_means(
+    placement: dict[str, Any], says: str
+) -> None:
+    with style.look():
+        figure = spacetime.draw(world_of([(0, 0, False)]), config(MILL, placement=placement), 0)
+    assert says in figure.axes[0].get_xlabel()
+
+
+def test_every_cause_of_death_has_a_colour_of_its_own() -> None:
+    assert set(population.COLOURS) == set(Cause)
+    assert len(set(population.COLOURS.values())) == len(Cause)
+
+
+@pytest.mark.parametrize(
+    ("number", "text"),
+    [(0, "0"), (0.5, "0.5"), (0.01, "1/100"), (1e-4, "1/10k"), (999, "999"), (1500, "1.5k"),
+     (1e6, "1M"), (2.5e9, "2.5G")],
+)  # fmt: skip
+def test_numbers_are_short(number: float, text: str) -> None:
+    assert style.short(number) == text
+
+
+def test_what_cannot_be_drawn_is_said_in_one_line(run: Path, tmp_path: Path) -> None:
+    complains(here("plot", tmp_path / "nothing"), 2, "nothing")
+    complains(here("plot", run, "--world", 3), 2, "no world 3", "0 to 2")
+    complains(here("plot", run, "--world", -1), 2, "no world -1")
+    (tmp_path / "file").write_text("")
+    complains(here("plot", run, "--out", tmp_path / "file" / "in"), 1, "cannot be made")
+    (tmp_path / "taken" / "ages.png").mkdir(parents=True)
+    complains(here("plot", run, "--out", tmp_path / "taken"), 1, "ages.png cannot be written")
+    empty = Path(shutil.copytree(run, tmp_path / "run"))
+    shutil.rmtree(empty / "checkpoints")
+    complains(here("plot", empty), 2, "no checkpoint yet")
