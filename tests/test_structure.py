@@ -11,6 +11,7 @@ SOURCE = Path(__file__).parent.parent / "src" / "primordia"
 ORDER = """
      errors settings wide digest events tasks paint summary clades
     keys files lines
+    video
     brain motor mutation placement metabolism resample
     world habitats device genomes
     seasons sample habitats.* contrast
@@ -25,7 +26,9 @@ ORDER = """
     report live
     verify climate lives
     lineage survival
-    fork comparison
+    fork life policy comparison
+    replay
+    organism
     figures.style figures.series
     figures.*
     figures

@@ -7,7 +7,14 @@ from primordia.device import configure
 
 configure()
 
-_HOMES = {"run": "api", "Run": "api", "compare": "api", "InputError": "errors", "Trouble": "errors"}
+_HOMES = {
+    "run": "api",
+    "load": "api",
+    "Run": "api",
+    "compare": "api",
+    "InputError": "errors",
+    "Trouble": "errors",
+}
 __all__ = list(_HOMES)
 
 

@@ -4,8 +4,8 @@ import primordia
 
 run = primordia.run("CartPole-survival", out="runs/first", seed=1)
 print(run.info()["saturation"])
-run.resume(ticks=200_000)
-genome = run.rebuild(organism=17)
+run.resume(ticks=200_000, until="none")
+policy = run.oldest().policy()
 """
 
 from dataclasses import dataclass
@@ -16,9 +16,15 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from primordia import comparison, config, lineage, loop, report
+from primordia import comparison, config, genomes, lineage, loop, report
 from primordia import device as devices
+from primordia.directory import read_config
+from primordia.errors import InputError
+from primordia.fork import fork
+from primordia.lives import Lives, lives
 from primordia.loop import Listener
+from primordia.organism import Organism
+from primordia.policy import Policy
 from primordia.verify import verify
 
 
@@ -39,6 +45,44 @@ class Run:
         """`births`, `deaths` or `metrics`, as an Arrow table."""
         return report.table(self.path, name)
 
+    def arrays(self, name: str) -> dict[str, np.ndarray]:
+        """The same as NumPy arrays, by column."""
+        columns = self.table(name)
+        return {each: columns[each].to_numpy(zero_copy_only=False) for each in columns.column_names}
+
+    def lives(self) -> Lives:
+        """Births and deaths joined: everyone who ever lived."""
+        return lives(self.path)
+
+    def organism(self, organism: int, world: int = 0) -> Organism:
+        """Somebody who lived, by birth number."""
+        everyone = self.lives()
+        return Organism(self.path, everyone, everyone.row(organism, world))
+
+    def oldest(self, world: int | None = None) -> Organism:
+        """Whoever lived longest, in one world or in all."""
+        everyone = self.lives()
+        if world is not None and len(everyone.of_world(world)) == 0:
+            raise InputError(f"{self.path} has no world {world}")
+        mine = everyone if world is None else everyone.of_world(world)
+        return Organism(self.path, mine, mine.oldest())
+
+    def policy(self) -> Policy:
+        """The brain of the longest-lived, as `policy(senses) -> action`."""
+        return self.oldest().policy()
+
+    def export(self, out: str | Path, *organisms: int, world: int = 0) -> None:
+        """Write genomes of organisms of a world to a safetensors file; see `genomes`."""
+        settings = read_config(self.path)
+        brain = settings.build_brain(settings.build_habitat())
+        about = {
+            "task": settings.task,
+            "seed": str(settings.seed + world),
+            "organisms": " ".join(map(str, organisms)),
+        }
+        found = np.stack([self.rebuild(each, world) for each in organisms])
+        genomes.write(Path(out), brain, found, about)
+
     def rebuild(self, organism: int, world: int = 0) -> np.ndarray:
         """An organism's genome, float32 (P,), from the birth records alone."""
         return lineage.rebuild(self.path, organism, world)
@@ -48,6 +92,23 @@ class Run:
         from primordia import figures  # Matplotlib takes a second to load
 
         return figures.plot(self.path, Path(out) if out is not None else None, world)
+
+    def fork(
+        self,
+        at: int,
+        out: str | Path | None = None,
+        *,
+        checkpoint_every: float = 60.0,
+        device: str = "cpu",
+        listen: Listener | None = None,
+        **settings: Any,
+    ) -> "Run":
+        """A new run that goes on from the end of tick `at`, with some settings changed; see `fork`."""
+        devices.select(device)
+        path = Path(out) if out is not None else fresh_directory(f"{self.path.name}-at{at}")
+        fork(self.path, at, path, settings)
+        loop.resume(path, checkpoint_every=checkpoint_every, listen=listen)
+        return Run(path)
 
     def resume(
         self,
@@ -96,7 +157,7 @@ def run(
     """
     devices.select(device)
     chosen = config.load(task, settings)
-    path = Path(out) if out is not None else fresh_directory(chosen)
+    path = Path(out) if out is not None else fresh_directory(default_name(chosen))
     loop.start(chosen, path, checkpoint_every=checkpoint_every, listen=listen)
     return Run(path)
 
@@ -112,8 +173,22 @@ def compare(
     return comparison.compare(paths, births, ticks)
 
 
-def fresh_directory(chosen: config.Config) -> Path:
-    """A path under `runs/` that is not taken, named after task and seed."""
-    name = f"{chosen.task.replace('/', '-')}-seed{chosen.seed}"
+def load(run: str | Path) -> Run:
+    """A run that exists.
+
+    Raises:
+        InputError: there is none.
+    """
+    read_config(Path(run))
+    return Run(Path(run))
+
+
+def default_name(chosen: config.Config) -> str:
+    """Of a run's directory, after task and seed."""
+    return f"{chosen.task.replace('/', '-')}-seed{chosen.seed}"
+
+
+def fresh_directory(name: str) -> Path:
+    """A path under `runs/` that is not taken."""
     others = (Path("runs", f"{name}-{i}") for i in count(2))
     return next(path for path in chain([Path("runs", name)], others) if not path.exists())

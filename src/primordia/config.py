@@ -60,7 +60,7 @@ class Config(Settings):
         0.05, ge=0, le=1, description="probability that an organism replicates in a tick"
     )
     mutation: Mutation = Mutation()
-    ancestors: tuple[Path, ...] = Field(
+    ancestors: tuple[str, ...] = Field(
         (),
         strict=False,
         description="genome files (`primordia export`) whose genomes founders take in turn",
@@ -126,7 +126,7 @@ class Config(Settings):
             motor=self.motor,
             placement=self.placement,
             mutation=self.mutation,
-            ancestors=genomes.read(list(self.ancestors), brain) if self.ancestors else None,
+            ancestors=genomes.read(self.ancestors, brain) if self.ancestors else None,
             metabolism=self.metabolism,
             replication=self.replication,
             hazard=self.hazard,

@@ -33,8 +33,8 @@ def new(run: Path, config: Config) -> Iterator[None]:
         _write_text(run / "versions.json", json.dumps(versions, indent=1))
         if config.ancestors:
             brain = config.build_brain(config.build_habitat())
-            genomes.write(run / FOUNDERS, brain, genomes.read(list(config.ancestors), brain), {})
-            config = config.model_copy(update={"ancestors": (Path(FOUNDERS),)})
+            genomes.write(run / FOUNDERS, brain, genomes.read(config.ancestors, brain), {})
+            config = config.model_copy(update={"ancestors": (FOUNDERS,)})
         _write_text(run / "config.toml", config.to_toml())
         yield
 

@@ -2,13 +2,13 @@
 
 import jax.numpy as jnp
 import numpy as np
-from jax import Array
+from jax import Array, lax
 
-from primordia.keys import Purpose, bits_if, stream
+from primordia.keys import Purpose, bits, stream
 from primordia.law import Law
 from primordia.metabolism import Metabolism, Rates
 from primordia.seasons import ratchets
-from primordia.wide import never, wide, zero
+from primordia.wide import Wide, never, wide, zero
 from primordia.world import Cause, Climate, Looks, Organisms, World, Worlds
 
 
@@ -55,9 +55,19 @@ def begin(law: Law, seeds: list[int], tick: int = 0, births: int = 0) -> World:
 def birth_words(law: Law, worlds: Worlds, needed: Array, words: int) -> Array:
     """Random words for bodies born in this tick, uint32 (C, words); zeros unless needed, bool ()."""
     key = stream(worlds.seed, Purpose.BODY, worlds.tick).map(law.per_cell)
+    return lax.cond(
+        needed,
+        lambda key: body_words(key, law.cell_numbers, words),
+        lambda _: jnp.zeros((law.worlds * law.cells, words), jnp.uint32),
+        key,
+    )
+
+
+def body_words(key: Wide, cells: Array, words: int) -> Array:
+    """Random words for bodies born in these cells (N,) of their worlds, with keys (N,): (N, words)."""
     draws = jnp.arange(-(-words // 2), dtype=jnp.uint32)[:, None]
     # Cells on the last axis, which compilers turn into vector instructions.
-    pairs = bits_if(needed, key, law.cell_numbers, draws)
+    pairs = bits(key, cells, draws)
     return jnp.concatenate(pairs, axis=0)[:words].T
 
 

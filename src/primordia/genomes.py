@@ -3,7 +3,7 @@
 A file holds one float32 tensor (K, *shape) for each block of the brain, for K genomes, in that order.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -33,13 +33,13 @@ def write(path: Path, brain: Brain, genomes: np.ndarray, about: dict[str, str]) 
     files.write(path, lambda temporary: save_file(blocks, temporary, metadata=about))
 
 
-def read(paths: list[Path], brain: Brain) -> np.ndarray:
+def read(paths: Sequence[str], brain: Brain) -> np.ndarray:
     """The genomes in some files, one after another, float32 (K, P).
 
     Raises:
         InputError: a file cannot be read, is no genome file, or is one of another brain.
     """
-    found = np.concatenate([_read(path, brain) for path in paths])
+    found = np.concatenate([_read(Path(path), brain) for path in paths])
     if len(found) > MOST:
         raise InputError(f"ancestors: {len(found)} genomes are more than {MOST}")
     return found

@@ -147,16 +147,19 @@ def think(law: Law, world: World, senses: Array, keys: Keys) -> tuple[World, Arr
     memory, output = law.brain(organisms.genome, organisms.memory, senses)
     faulty = (~jnp.isfinite(output)).any(axis=1)
     organisms = organisms._replace(memory=memory, faulty=faulty)
-    return World(organisms, worlds), _act(law, keys.motor, output)
+    return World(organisms, worlds), act(
+        law, keys.motor.map(law.per_cell), law.cell_numbers, output
+    )
 
 
-def _act(law: Law, key: Wide, output: Array) -> Array:
+def act(law: Law, key: Wide, cells: Array, output: Array) -> Array:
+    """What outputs (N, A) of brains in these cells (N,) of their worlds do, with motor keys (N,)."""
     if isinstance(law.action, Discrete):
         return argmax(output)
     if law.motor.kind == "direct":
         return output
     table = jnp.asarray(quantiles() * np.float32(law.motor.sd))
-    return output + table[noise_index(key.map(law.per_cell), law.cell_numbers, law.action.size)]
+    return output + table[noise_index(key, cells, law.action.size)]
 
 
 def judge(

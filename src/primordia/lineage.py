@@ -70,12 +70,18 @@ def descent(everyone: Lives, organism: int, world: int) -> np.ndarray:
 
 def genome_in(stored: Checkpoint, law: Law, organism: int, world: int) -> np.ndarray:
     """The genome of somebody alive in a checkpoint, float32 (P,)."""
+    arrays, cell = stored.arrays(), place_in(stored, law, organism, world)
+    blocks = {name: arrays[f"world.organisms.genome.{name}"][[cell]] for name in law.blocks}
+    return join(law.brain, blocks)[0]
+
+
+def place_in(stored: Checkpoint, law: Law, organism: int, world: int) -> int:
+    """The cell, on the axis of all worlds, of somebody alive in a checkpoint."""
     arrays = stored.arrays()
     hi, lo = (arrays[f"world.organisms.number.{half}"].astype(np.int64) for half in ("hi", "lo"))
     here = np.arange(len(hi)) // law.cells == world
     (cell,) = np.flatnonzero(here & arrays["world.organisms.alive"] & (hi << 32 | lo == organism))
-    blocks = {name: arrays[f"world.organisms.genome.{name}"][[cell]] for name in law.blocks}
-    return join(law.brain, blocks)[0]
+    return int(cell)
 
 
 def _replay(

@@ -59,6 +59,10 @@ class Lives:
         first, last = np.searchsorted(self.world, [world, world + 1])
         return self.take(slice(first, last))
 
+    def oldest(self) -> int:
+        """Row of the longest life, of equals the first."""
+        return int(np.argmax(self.lifespan))
+
     def row(self, organism: int, world: int = 0) -> int:
         """Where an organism stands.
 

@@ -23,13 +23,25 @@ from primordia.cli.say import say
 @click.command(cls=SettingsCommand)
 @click.argument("task", metavar="TASK|FILE.toml")
 @out_option
+@click.option(
+    "--ancestor",
+    multiple=True,
+    metavar="FILE",
+    help="Start from the genomes in a file (`primordia export`); may be repeated.",
+)
 @limit_options
 @checkpoint_option
 @device_option
 @quiet_option
 @click.pass_obj
 def run(
-    settings: dict[str, Any], /, task: str, out: Path | None, quiet: bool, **options: Any
+    settings: dict[str, Any],
+    /,
+    task: str,
+    out: Path | None,
+    ancestor: tuple[str, ...],
+    quiet: bool,
+    **options: Any,
 ) -> None:
     """Evolve in a new run directory.
 
@@ -40,7 +52,9 @@ def run(
 
     for name, value in limits_in(options).items():
         put(settings, f"stop.{name}", value)
-    path = out or api.fresh_directory(config.load(task, settings))
+    if ancestor:
+        put(settings, "ancestors", [str(file) for file in ancestor])
+    path = out or api.fresh_directory(api.default_name(config.load(task, settings)))
     _drive(path, quiet, lambda listen: api.run(task, path, listen=listen, **options, **settings))
 
 
@@ -64,18 +78,54 @@ def resume(run: Path, quiet: bool, **options: Any) -> None:
     _drive(run, quiet, drive)
 
 
+@click.command(cls=SettingsCommand)
+@run_argument
+@click.option("--at", type=int, required=True, metavar="TICK", help="At the end of which tick.")
+@out_option
+@limit_options
+@checkpoint_option
+@device_option
+@quiet_option
+@click.pass_obj
+def fork(
+    settings: dict[str, Any],
+    /,
+    run: Path,
+    at: int,
+    out: Path | None,
+    quiet: bool,
+    **options: Any,
+) -> None:
+    """Replay the tape from a tick of a RUN: a new run, with another --seed or other settings.
+
+    Without either it lives what the RUN lived. Any setting that leaves brains, senses and cells as
+    they are can be changed.
+    """
+    from primordia.api import Run, fresh_directory
+
+    for name, value in limits_in(options).items():
+        put(settings, f"stop.{name}", value)
+    path = out or fresh_directory(f"{run.name}-at{at}")
+    _drive(
+        path, quiet, lambda listen: Run(run).fork(at, path, listen=listen, **options, **settings)
+    )
+
+
 def _drive(path: Path, quiet: bool, go: Callable[[Any], object]) -> None:
     from primordia.api import Run
-    from primordia.help import Lines, summary
+    from primordia.live import watching
+    from primordia.summary import summary
 
     try:
-        go(None if quiet else Lines())
+        with watching(quiet) as listen:
+            go(listen)
     except KeyboardInterrupt:
         click.echo(f"Stopped and saved. Go on with: primordia resume {path}", err=True)
         raise SystemExit(130) from None
     if not quiet:
         click.echo(summary(Run(path).info()))
-        click.echo(f"All of it is in {path}; `primordia info {path}` tells this again.")
+        click.echo(f"Figures: primordia plot {path}")
+        click.echo(f"Video of the longest life: primordia replay {path}")
 
 
-COMMANDS = (run, resume)
+COMMANDS = (run, resume, fork)

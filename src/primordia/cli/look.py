@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -15,7 +16,7 @@ from primordia.errors import Trouble
 def info(run: Path, as_json: bool) -> None:
     """What happened in a run so far."""
     from primordia.api import Run
-    from primordia.help import summary
+    from primordia.summary import summary
 
     found = Run(run).info()
     click.echo(json.dumps(found) if as_json else summary(found))
@@ -31,6 +32,53 @@ def plot(run: Path, out: Path | None, world: int) -> None:
 
     for path in Run(run).plot(out, world):
         click.echo(path)
+
+
+@click.command()
+@run_argument
+@click.option("--organism", type=int, help="Birth number [who lived longest].")
+@click.option(
+    "--world", type=int, help="Where it lived [0, or of all where somebody lived longest]."
+)
+@click.option("--from", "begin", type=int, help="First age shown, in ticks.")
+@click.option("--to", "end", type=int, help="Last age shown.")
+@click.option(
+    "--out", type=click.Path(path_type=Path), help="An .mp4 or .gif file [under RUN/videos]."
+)
+def replay(
+    run: Path, begin: int | None, end: int | None, out: Path | None, **who: int | None
+) -> None:
+    """A life on video: all of it, or the first and last 30 seconds of a long one."""
+    from primordia.replay import replay as show
+
+    organism = _who(run, **who)
+    click.echo(show(run, organism.id, organism.world, out, (begin, end)))
+
+
+@click.command()
+@run_argument
+@click.option(
+    "--organism", "organisms", type=int, multiple=True, help="Birth number; may be repeated."
+)
+@click.option("--world", type=int, default=0, help="Where they lived [0].")
+@click.argument("file", type=click.Path(path_type=Path))
+def export(run: Path, organisms: tuple[int, ...], world: int, file: Path) -> None:
+    """Write genomes to a safetensors FILE, which `primordia run --ancestor` takes.
+
+    Without --organism that of the longest life.
+    """
+    from primordia.api import Run
+
+    chosen = organisms or (Run(run).oldest(world).id,)
+    Run(run).export(file, *chosen, world=world)
+    click.echo(f"{file}: organism {', '.join(map(str, chosen))}")
+
+
+def _who(run: Path, organism: int | None, world: int | None) -> Any:
+    """The organism asked for."""
+    from primordia.api import Run
+
+    return Run(run).oldest(world) if organism is None else Run(run).organism(organism, world or 0)
 
 
 @click.command()
@@ -83,4 +131,4 @@ def compare(runs: tuple[Path, ...], out: Path, as_json: bool, **horizons: int | 
         click.echo(f"Figure: {' and '.join(map(str, pictures))}")
 
 
-COMMANDS = (info, plot, compare, verify, tasks)
+COMMANDS = (info, plot, replay, compare, export, verify, tasks)

@@ -8,12 +8,15 @@ that keeps the contract below. The other keys of the table are the class's own s
 """
 
 from importlib import import_module
-from typing import Any, NamedTuple, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
 from jax import Array
 
 from primordia.motor import Continuous, Discrete
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
 
 KNOWN = {"cartpole": "primordia.habitats.cartpole:CartPole"}
 
@@ -53,6 +56,16 @@ class Habitat(Protocol):
 
     def step(self, bodies: Bodies, action: Array) -> tuple[Bodies, Outcome]:
         """All bodies one tick on. What it gives for a cell nobody lives in is not used."""
+
+
+class Pictured(Protocol):
+    """What a habitat has besides, if its bodies can be seen (`primordia replay`)."""
+
+    rate: float
+    """ticks in a second, where time runs as it would in the world outside"""
+
+    def picture(self, body: Bodies, action: np.ndarray) -> "Image":
+        """A picture of one body (no first axis) and of the action that led there."""
 
 
 class HostHabitat(Protocol):

@@ -6,7 +6,7 @@ Physics, units and order of integration (explicit Euler) are those of Gymnasium'
 """
 
 import math
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import jax.numpy as jnp
 import numpy as np
@@ -16,6 +16,9 @@ from pydantic import Field
 from primordia.habitats import Outcome
 from primordia.motor import Discrete
 from primordia.settings import Settings
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
 
 Coordinate = Literal["x", "x_dot", "theta", "theta_dot"]
 
@@ -59,6 +62,17 @@ class CartPole(Settings):
     def words(self) -> int:
         """One for each coordinate."""
         return len(COORDINATES)
+
+    @property
+    def rate(self) -> float:
+        """Ticks in a second."""
+        return 1 / TAU
+
+    def picture(self, body: np.ndarray, action: np.ndarray) -> "Image":
+        """The cart, its pole, and the side it was pushed from."""
+        from primordia.habitats.cartpole_picture import draw
+
+        return draw(body, int(action), self.track_limit)
 
     def reset(self, words: Array) -> Array:
         """Bodies from words uint32 (N, 4); 24 bits of each become one coordinate."""

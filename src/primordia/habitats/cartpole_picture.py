@@ -1,0 +1,87 @@
+"""CartPole as one sees it: the cart on its track, the pole, and the push it is given."""
+
+import math
+
+import numpy as np
+from PIL import Image, ImageDraw
+
+WIDTH, HEIGHT = 640, 360
+FINE = 2
+"""Drawn this many times larger and reduced, for smooth edges."""
+SKY, TRACK, CART, POLE, PUSH, LIMIT = (
+    "#fbfaf7",
+    "#8a8a8a",
+    "#23395b",
+    "#c8553d",
+    "#e0a030",
+    "#cfcbc2",
+)
+GROUND = 280
+CART_SIZE = (74, 34)
+POLE_LENGTH = 150
+"""pixels, of a pole 1 m long"""
+
+
+def draw(body: np.ndarray, action: int, track_limit: float) -> Image.Image:
+    """A picture (640 x 360) of a body (x, x_dot, theta, theta_dot) pushed left (0) or right (1)."""
+    large = Image.new("RGB", (WIDTH * FINE, HEIGHT * FINE), SKY)
+    pen = _Pen(ImageDraw.Draw(large))
+    reach = track_limit if track_limit < 100 else 2.4
+    at = WIDTH / 2 + (WIDTH / 2 - 60) * float(body[0]) / reach
+    _track(pen, track_limit < 100)
+    _push(pen, at, action)
+    _cart_and_pole(pen, at, float(body[2]))
+    return large.reduce(FINE)
+
+
+class _Pen:
+    """Draws in pixels of the picture as it will be."""
+
+    def __init__(self, on: ImageDraw.ImageDraw) -> None:
+        self._on = on
+
+    def line(self, *points: tuple[float, float], width: float, colour: str) -> None:
+        self._on.line(_fine(points), fill=colour, width=round(width * FINE))
+
+    def polygon(self, *points: tuple[float, float], colour: str) -> None:
+        self._on.polygon(_fine(points), fill=colour)
+
+    def dot(self, x: float, y: float, radius: float, colour: str) -> None:
+        corners = _fine(((x - radius, y - radius), (x + radius, y + radius)))
+        self._on.ellipse(corners, fill=colour)
+
+    def box(self, x: float, y: float, width: float, height: float, colour: str) -> None:
+        corners = _fine(((x - width / 2, y - height), (x + width / 2, y)))
+        self._on.rounded_rectangle(corners, radius=6 * FINE, fill=colour)
+
+
+def _fine(points: tuple[tuple[float, float], ...]) -> list[tuple[float, float]]:
+    return [(x * FINE, y * FINE) for x, y in points]
+
+
+def _track(pen: _Pen, limited: bool) -> None:
+    pen.line((0, GROUND), (WIDTH, GROUND), width=2, colour=TRACK)
+    for x in (60, WIDTH - 60) if limited else ():
+        pen.line((x, GROUND - 10), (x, GROUND + 10), width=3, colour=TRACK)
+    pen.line((WIDTH / 2, GROUND + 2), (WIDTH / 2, GROUND + 8), width=2, colour=LIMIT)
+
+
+def _push(pen: _Pen, at: float, action: int) -> None:
+    """An arrow at the side that is pushed."""
+    side = -1 if action == 1 else 1
+    tip, tail = at + side * (CART_SIZE[0] / 2 + 6), at + side * (CART_SIZE[0] / 2 + 34)
+    y = GROUND - CART_SIZE[1] / 2 - 8
+    pen.line((tail, y), (tip + side * 8, y), width=5, colour=PUSH)
+    pen.polygon((tip, y), (tip + side * 12, y - 8), (tip + side * 12, y + 8), colour=PUSH)
+
+
+def _cart_and_pole(pen: _Pen, at: float, theta: float) -> None:
+    pivot = (at, GROUND - CART_SIZE[1] - 6)
+    end = (pivot[0] + POLE_LENGTH * math.sin(theta), pivot[1] - POLE_LENGTH * math.cos(theta))
+    for side in (-1, 1):
+        pen.dot(at + side * CART_SIZE[0] / 3, GROUND - 8, 8, CART)
+    pen.box(at, GROUND - 8, *CART_SIZE, CART)
+    pen.line(pivot, end, width=10, colour=POLE)
+    pen.dot(*end, 5, POLE)
+    pen.dot(*pivot, 7, POLE)
+    pen.dot(*pivot, 3, SKY)
