@@ -1,6 +1,6 @@
 """`make bench`: every figure that Primordia claims, measured in one run.
 
-    python benchmarks/bench.py [--json FILE] [--only paper,speed,plain,cells,shell,records]
+    python benchmarks/bench.py [--json FILE] [--only paper,speed,plain,live,cells,shell,records]
 
 Speeds are compared within this run only: machines differ, and the same machine from hour to hour.
 """
@@ -14,6 +14,7 @@ from pathlib import Path
 
 import paper
 import scale
+import show
 import speed
 from primordia.device import versions
 
@@ -21,6 +22,7 @@ SECTIONS = {
     "paper": paper.figure,
     "speed": speed.against_the_limit,
     "plain": speed.against_the_plain_loop,
+    "live": show.cost_of_the_live_view,
     "cells": scale.cost_by_cells,
     "shell": scale.shell_to_saturation,
     "records": scale.births_recorded_per_second,

@@ -1,0 +1,140 @@
+"""Cells as characters: colour or letter tells the line of descent, height or light the age."""
+
+import colorsys
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cache
+from itertools import groupby
+from math import log1p
+
+import numpy as np
+from rich.color import Color
+from rich.segment import Segment
+from rich.style import Style
+
+Row = list[Segment]
+"""A line of the terminal."""
+EMPTY = -1
+"""In place of the line of an empty cell."""
+HUES = 64
+EIGHTHS = " ▁▂▃▄▅▆▇█"
+FAINT = Style(color="grey50")
+GROUND = (45, 45, 45)
+"""of empty cells on a torus, red, green and blue"""
+LETTERS = "abcdefghijklmnopqrstuvwxyz"
+
+
+@dataclass(frozen=True)
+class Cells:
+    """What is drawn, (n,)."""
+
+    line: np.ndarray
+    """int64, or EMPTY"""
+    age: np.ndarray
+    """float64, 0 at birth to 1, on a logarithmic scale"""
+
+    @classmethod
+    def of(cls, line: np.ndarray, ticks: np.ndarray, full: int) -> "Cells":
+        """`ticks`: ages, int64; `full`: the age that is drawn as 1, as are higher ones."""
+        return cls(line, np.minimum(np.log1p(np.maximum(ticks, 0)) / log1p(full), 1.0))
+
+    def take(self, index: slice | np.ndarray) -> "Cells":
+        """Some of them."""
+        return Cells(self.line[index], self.age[index])
+
+
+def skyline(cells: Cells, wide: int, tall: int, letters: bool) -> list[Row]:
+    """Bars side by side, as high as their organisms are old: `tall` rows, `wide` columns a cell.
+
+    With `letters` a row beneath names the lines, since nothing else then tells them apart.
+    """
+    bar, gap = max(wide - 1, 1), " " * (wide > 1)
+    living = cells.line != EMPTY
+    most = 8 * tall - (tall == 1)  # single rows do not touch the row above
+    eighths = np.where(living, 1 + np.rint(cells.age * (most - 1)), 0).astype(int)
+    styles = [_hue(line) for line in cells.line.tolist()]
+    rows = []
+    for below in range(8 * (tall - 1), -1, -8):
+        heights = np.clip(eighths - below, 0, 8).tolist()
+        glyphs = [EIGHTHS[height] * bar + gap for height in heights]
+        if below == 0 and not letters:
+            glyphs = [
+                g if live else "·" * bar + gap for g, live in zip(glyphs, living, strict=True)
+            ]
+        rows.append(_joined(glyphs, styles))
+    if letters:
+        named = [_letter(line) * bar + gap for line in cells.line.tolist()]
+        rows.append(_joined(named, styles))
+    return rows
+
+
+def strip(cells: Cells, letters: bool) -> Row:
+    """One character a cell; with `letters`, those of the older half of ages are capitals."""
+    if not letters:
+        return skyline(cells, 1, 1, letters=False)[0]
+    old = (cells.age >= 0.5).tolist()
+    glyphs = [_letter(line, up) for line, up in zip(cells.line.tolist(), old, strict=True)]
+    return _joined(glyphs, [_hue(line) for line in cells.line.tolist()])
+
+
+def field(cells: Cells, columns: int, scale: int, letters: bool) -> list[Row]:
+    """Rows of so many cells as a picture, two rows to a line and lighter with age; or as `letters`.
+
+    A cell is `scale` characters wide, and half as many lines high.
+    """
+    rows = [slice(at, at + columns) for at in range(0, len(cells.line), columns)]
+    if letters:
+        return [strip(cells.take(row), letters) for row in rows]
+    shades = np.where(cells.line == EMPTY, EMPTY, cells.line % HUES * 4 + (cells.age * 3.99) // 1)
+    picture = np.kron(shades.reshape(-1, columns), np.ones((scale, scale))).astype(int)
+    if len(picture) % 2:
+        picture = np.vstack([picture, np.full_like(picture[:1], EMPTY - 1)])
+    return [
+        _joined(["▀"] * len(upper), map(_pixels, upper, lower))
+        for upper, lower in zip(picture[::2].tolist(), picture[1::2].tolist(), strict=True)
+    ]
+
+
+def _joined(glyphs: list[str], styles: Iterable[Style]) -> Row:
+    """One segment for each stretch of one style: terminals and rich are slow otherwise."""
+    runs = groupby(zip(glyphs, styles, strict=True), key=lambda pair: id(pair[1]))
+    parts = (list(run) for _, run in runs)
+    return [Segment("".join(glyph for glyph, _ in part), part[0][1]) for part in parts]
+
+
+def _letter(line: int, capital: bool = False) -> str:
+    if line == EMPTY:
+        return "·"
+    return (LETTERS.upper() if capital else LETTERS)[line % len(LETTERS)]
+
+
+@cache
+def _colour(hue: int) -> tuple[int, int, int]:
+    """Steps of the golden ratio around the colour circle: neighbours in number look different."""
+    light = 0.6 if hue % 2 else 0.7
+    red, green, blue = colorsys.hls_to_rgb(hue * 0.61803398875 % 1.0, light, 0.66)
+    return round(255 * red), round(255 * green), round(255 * blue)
+
+
+@cache
+def _style(hue: int) -> Style:
+    return Style(color=Color.from_rgb(*_colour(hue)))
+
+
+def _hue(line: int) -> Style:
+    return FAINT if line == EMPTY else _style(line % HUES)
+
+
+@cache
+def _pixels(upper: int, lower: int) -> Style:
+    """Two cells above each other, each 4 x hue + shade, EMPTY, or outside if lower still."""
+    below = None if lower < EMPTY else Color.from_rgb(*_shade(lower))
+    return Style(color=Color.from_rgb(*_shade(upper)), bgcolor=below)
+
+
+def _shade(code: int) -> tuple[float, float, float]:
+    if code == EMPTY:
+        return GROUND
+    light = (0.4, 0.6, 0.8, 1.0)[code % 4]
+    red, green, blue = _colour(code // 4)
+    return red * light, green * light, blue * light

@@ -1,0 +1,137 @@
+"""The numbers of the live view, laid out for any width."""
+
+from typing import NamedTuple
+
+import numpy as np
+from rich.segment import Segment
+from rich.style import Style
+
+from primordia.census import Census
+from primordia.config import Config
+from primordia.paint import FAINT, Row
+from primordia.world import Cause
+
+STRONG = Style(bold=True)
+FILLED = Style(color="green")
+CELL = 26
+"""columns of one number with its name, at least"""
+SHORTEST, LONGEST = 8, 24
+"""columns of a bar; a shorter one says nothing"""
+TOPOLOGIES = {"ring": "on a ring", "torus4": "on a torus", "torus8": "on a torus"}
+
+
+class Tempo(NamedTuple):
+    """How fast it goes, where known."""
+
+    organism_ticks_per_s: float | None
+    seconds_left: float | None
+
+
+def heading(config: Config, seconds: float, width: int) -> Row:
+    """What runs, and for how long."""
+    last = config.seed + config.seeds - 1
+    one = f"seed {config.seed}, {config.cells:,} cells"
+    many = f"{config.seeds:,} worlds, seeds {config.seed} to {last}, {config.cells:,} cells each"
+    place = TOPOLOGIES.get(config.placement.topology, "well-mixed")
+    task, clock = config.task, duration(seconds)
+    about = f"  {one if config.seeds == 1 else many} {place}"
+    about = about[: max(width - len(task) - len(clock) - 2, 0)]
+    gap = max(width - len(task) - len(about) - len(clock), 1)
+    return [Segment(task, STRONG), Segment(about, FAINT), Segment(" " * gap + clock, FAINT)]
+
+
+def numbers(
+    census: Census, cells: int, tempo: Tempo, takeovers: int | None, width: int
+) -> list[Row]:
+    """Counts in columns, what they died of, and how far saturation is.
+
+    Args:
+        census: the counts.
+        cells: of one world.
+        tempo: how fast it goes.
+        takeovers: of the worlds whose lines of descent are followed; None if none is.
+        width: of the terminal.
+    """
+    worlds = len(census.tick)
+    found = {
+        "tick": f"{census.tick.max():,}",
+        "alive": _of(int(census.alive.sum()), worlds * cells),
+        "mean age": f"{census.mean_age:,.0f}",
+        "births": f"{census.births.sum():,}",
+        "deaths": f"{census.deaths.sum():,}",
+        "oldest": f"{census.oldest:,}",
+        "extinctions": f"{census.extinctions.sum():,}",
+        "takeovers": "" if takeovers is None else f"{takeovers:,}",
+        "organism-ticks/s": short(tempo.organism_ticks_per_s),
+        "time left": duration(tempo.seconds_left) if tempo.seconds_left else "",
+    }
+    rows = _columns({name: value for name, value in found.items() if value}, width)
+    return [*rows, _causes(census, width)]
+
+
+def _of(some: int, most: int) -> str:
+    return f"{some:,} of {most:,}" if most < 10**6 else f"{short(some)} of {short(most)}"
+
+
+def _columns(found: dict[str, str], width: int) -> list[Row]:
+    """Names and values side by side, as many as fit."""
+    across = min(max(width // CELL, 1), 3)
+    each, gap = min(width // across, CELL + 6), 3 if across > 1 else 0
+    pairs = list(found.items())
+    rows = []
+    for at in range(0, len(pairs), across):
+        row: Row = []
+        for name, value in pairs[at : at + across]:
+            room = max(each - gap - len(name), len(value) + 1)
+            row += [Segment(name, FAINT), Segment(f"{value:>{room}}", STRONG), Segment(" " * gap)]
+        rows.append(row)
+    return rows
+
+
+def _causes(census: Census, width: int) -> Row:
+    counts = census.deaths.sum(axis=0).tolist()
+    causes = [f"{n:,} {cause.label}" for cause, n in zip(Cause, counts, strict=True) if n]
+    return [Segment("died of  ", FAINT), Segment((", ".join(causes) or "nothing yet")[: width - 9])]
+
+
+def saturation(census: Census, cells: int, calm_needed: int, width: int) -> Row:
+    """How far one world is, or how many of several are."""
+    worlds, done = len(census.tick), int((census.saturated >= 0).sum())
+    if worlds > 1:
+        return _bar(done / worlds, f"{done:,} of {worlds:,} worlds saturated", width)
+    if done:
+        return _bar(1.0, f"saturated at tick {census.saturated[0]:,}", width)
+    if census.alive[0] < cells:
+        return _bar(0.0, f"saturated once full, and calm for {calm_needed:,} ticks", width)
+    calm = min(int(census.calm[0]), calm_needed)
+    return _bar(calm / calm_needed, f"full, and calm for {calm:,} of {calm_needed:,} ticks", width)
+
+
+def _bar(share: float, text: str, width: int) -> Row:
+    length = min(width - len(text) - 2, LONGEST)
+    length = length if length >= SHORTEST else 0
+    filled = int(share * length)
+    return [
+        Segment("━" * filled, FILLED),
+        Segment("╌" * (length - filled), FAINT),
+        Segment(("  " * (length > 0) + text)[: width - length]),
+    ]
+
+
+def short(rate: float | None) -> str:
+    """A number a second: 12.3 M; a dash while it is not known."""
+    if rate is None:
+        return "-"
+    power = int(np.clip(np.log10(max(rate, 1)) // 3, 0, 3))
+    number = rate / 1000**power
+    return f"{number:.{1 if power and number < 100 else 0}f} {['', 'k', 'M', 'G'][power]}".strip()
+
+
+def duration(seconds: float) -> str:
+    """12 s, 3 min 20 s, 2 h 5 min."""
+    whole = round(seconds)
+    if whole < 60:
+        return f"{whole} s"
+    if whole < 3600:
+        return f"{whole // 60} min {whole % 60} s"
+    return f"{whole // 3600:,} h {whole % 3600 // 60} min"

@@ -1,0 +1,79 @@
+"""What happened in a run, in a few lines."""
+
+from collections import Counter
+from typing import Any
+
+import numpy as np
+
+FEW = 4
+"""so many worlds have lines of their own"""
+
+
+def summary(info: dict[str, Any]) -> str:
+    """Of `report.info`."""
+    worlds, heredity = info["worlds"], info["inheritance"] == "parent"
+    count = "1 world" if len(worlds) == 1 else f"{len(worlds):,} worlds"
+    lines = [
+        f"{info['task']}: {count} of {info['cells']:,} cells{', no heredity' * (not heredity)}"
+    ]
+    if len(worlds) <= FEW:
+        for world in worlds:
+            lines += _one(world)
+    else:
+        lines += _many(worlds)
+    if not info["exact"]:
+        lines.append("  not exact: parts of this run cannot be repeated bit for bit")
+    return "\n".join(lines)
+
+
+def _one(world: dict[str, Any]) -> list[str]:
+    extinct = f", extinct {world['extinctions']:,} times" * bool(world["extinctions"])
+    living = f"    {world['alive']:,} alive"
+    if world["alive"]:
+        living += f", mean age {world['mean_age']:,.0f}, oldest {world['oldest_age']:,}"
+    living += f"; {_when(world['saturation'], 'saturated')}"
+    lines = [
+        f"  seed {world['seed']}: {world['ticks']:,} ticks, {world['births']:,} births, "
+        f"deaths: {_causes([world])}{extinct}",
+        living,
+    ]
+    if world["fixation"]:
+        lines.append(f"    {_when(world['fixation'], 'came to descend from one ancestor')}")
+    return lines
+
+
+def _when(moment: dict[str, int] | None, what: str) -> str:
+    if moment is None:
+        return f"not {what}"
+    return f"{what} at tick {moment['tick']:,} after {moment['births']:,} births"
+
+
+def _many(worlds: list[dict[str, Any]]) -> list[str]:
+    def total(name: str) -> int:
+        return sum(world[name] for world in worlds)
+
+    extinct = f", {total('extinctions'):,} extinctions" * bool(total("extinctions"))
+    oldest = max(world["oldest_age"] or 0 for world in worlds)
+    return [
+        f"  seeds {worlds[0]['seed']} to {worlds[-1]['seed']}: {total('ticks'):,} ticks, "
+        f"{total('births'):,} births, deaths: {_causes(worlds)}{extinct}",
+        f"    {total('alive'):,} alive, oldest {oldest:,}",
+        f"    {_share(worlds, 'saturation', 'saturated')}",
+        f"    {_share(worlds, 'fixation', 'all of one ancestor')}",
+    ]
+
+
+def _causes(worlds: list[dict[str, Any]]) -> str:
+    counts = sum((Counter(world["deaths_by_cause"]) for world in worlds), Counter[str]())
+    return ", ".join(f"{count:,} {cause}" for cause, count in counts.items()) or "none"
+
+
+def _share(worlds: list[dict[str, Any]], name: str, what: str) -> str:
+    """How many worlds came to a moment, and after how many births; the others count as later."""
+    births = [world[name]["births"] if world[name] else np.inf for world in worlds]
+    came = f"{np.isfinite(births).sum():,} of {len(worlds):,} {what}"
+    low, middle, high = np.percentile(births, [25, 50, 75], method="lower")
+    if not np.isfinite(low):
+        return came
+    half, most = (f"{b:,.0f}" if np.isfinite(b) else "later" for b in (middle, high))
+    return f"{came}, births until then: median {half} (quartiles {low:,.0f}, {most})"

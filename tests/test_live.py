@@ -1,0 +1,383 @@
+"""The live view: lines of descent followed, what is drawn, plain lines elsewhere, and the last words."""
+
+import io
+import json
+import os
+import pty
+import re
+import select
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from rich.console import Console
+
+from primordia import live, loop
+from primordia.census import Census, Pace
+from primordia.chunk import State
+from primordia.lines import DIES, NOBODY, Lines, Turnover, turnovers
+from primordia.paint import EMPTY, Cells, Row, field, skyline, strip
+from primordia.panel import duration, short
+from primordia.summary import summary
+from primordia.wide import Wide, wide
+from primordia.world import World
+from tests import commands
+from tests.commands import COMMAND, environment, here
+from tests.worlds import MEADOW, config, engine
+
+# Lines of descent.
+
+Event = tuple[int, int, int]
+"""tick, birth number, parent or DIES"""
+
+
+@st.composite
+def histories(draw: st.DrawFn) -> list[Event]:
+    """What may happen in a small world: it begins and begins again with one founder or several."""
+    events: list[Event] = []
+    living: list[int] = []
+    born = 0
+    for tick in range(draw(st.integers(1, 40))):
+        parents = draw(st.lists(st.sampled_from(living), max_size=3)) if living else []
+        dying = draw(st.lists(st.sampled_from(living), unique=True)) if living else []
+        left = [each for each in living if each not in dying]
+        founders = 0 if left or parents else draw(st.integers(1, 3))
+        for parent in [*parents, *[NOBODY] * founders]:
+            events.append((tick, born, parent))
+            left.append(born)
+            born += 1
+        events += [(tick, number, DIES) for number in sorted(dying)]
+        living = left
+    return events
+
+
+def followed(events: list[Event], lines: Lines) -> Lines:
+    """Through a turnover, as the view does."""
+    births = [event for event in events if event[2] != DIES]
+    deaths = [event for event in events if event[2] == DIES]
+    ticks, born, parent = np.array(births, np.int64).reshape(-1, 3).T
+    dead_at, dead, _ = np.array(deaths, np.int64).reshape(-1, 3).T
+    lines.follow(Turnover(born, parent, ticks, dead, dead_at))
+    return lines
+
+
+def by_the_rule(events: list[Event]) -> tuple[dict[int, int], int]:
+    """The line of each of the living, and takeovers: walk up from everybody after every tick."""
+    parent = {number: of for _, number, of in events if of != DIES}
+    living: set[int] = set()
+    roots: set[int] = set()
+    takeovers = several = 0
+    for tick in sorted({tick for tick, _, _ in events}):
+        now = [event for event in events if event[0] == tick]
+        founders = {number for _, number, of in now if of == NOBODY}
+        living |= {number for _, number, of in now if of != DIES}
+        living -= {number for _, number, of in now if of == DIES}
+        roots |= founders
+        several *= not founders
+        if len({_root(number, parent, roots) for number in living}) == 1:
+            takeovers += several
+            roots = set(living)
+        several = len({_root(number, parent, roots) for number in living}) > 1
+    return {number: _root(number, parent, roots) for number in living}, takeovers
+
+
+def _root(number: int, parent: dict[int, int], roots: set[int]) -> int:
+    while number not in roots:
+        number = parent[number]
+    return number
+
+
+@settings(deadline=None)
+@given(histories(), st.lists(st.integers(0, 40), max_size=4))
+def test_lines_follow_the_rule_however_a_history_is_cut(
+    events: list[Event], cuts: list[int]
+) -> None:
+    lines, since = Lines([]), -1
+    for cut in [*sorted(cuts), 40]:
+        followed([event for event in events if since < event[0] <= cut], lines)
+        since = cut
+    assert (lines.of, lines.takeovers) == by_the_rule(events)
+
+
+def test_each_of_those_met_alive_is_a_line() -> None:
+    lines = followed([(9, 7, 3), (9, 3, DIES), (12, 8, 7)], Lines([3, 5]))
+    assert lines.of == {5: 5, 7: 3, 8: 3}
+    followed([(13, 5, DIES)], lines)
+    assert lines.of == {7: 7, 8: 8}
+    assert lines.takeovers == 1
+
+
+def test_a_founder_after_extinction_takes_nothing_over() -> None:
+    events = [(0, 0, NOBODY), (3, 1, 0), (5, 2, NOBODY), (5, 0, DIES), (5, 1, DIES)]
+    lines = followed(events, Lines([]))
+    assert lines.of == {2: 2}
+    assert lines.takeovers == 0
+
+
+# What is drawn.
+
+
+def text(rows: list[Row]) -> list[str]:
+    return ["".join(segment.text for segment in row) for row in rows]
+
+
+def cells(line: list[int], ticks: list[int]) -> Cells:
+    return Cells.of(np.array(line), np.array(ticks), full=1000)
+
+
+def test_bars_grow_with_age_and_empty_cells_are_dots() -> None:
+    some = cells([4, 4, EMPTY, 9, 9], [0, 30, 0, 1000, 10**9])
+    assert text(skyline(some, wide=2, tall=2, letters=False)) == ["      █ █ ", "▁ █ · █ █ "]
+    assert text(skyline(some, wide=1, tall=1, letters=True)) == ["▁▄ ▇▇", "ee·jj"]
+    assert text([strip(some, letters=False)]) == ["▁▄·▇▇"]
+    assert text([strip(some, letters=True)]) == ["ee·JJ"]
+
+
+def test_each_line_has_a_colour_of_its_own() -> None:
+    first, second, third = strip(cells([0, 1, 0], [9, 9, 9]), letters=False)
+    assert first.style == third.style != second.style
+
+
+def test_a_torus_is_a_picture_two_rows_to_a_line() -> None:
+    some = cells([1, 1, 2, 2, 3, EMPTY], [1000] * 6)
+    rows = field(some, columns=2, scale=1, letters=False)
+    assert text(rows) == ["▀▀", "▀▀"]
+    assert [len(row) for row in rows] == [1, 2], "a segment for each stretch of one style"
+    assert len(field(some, columns=2, scale=4, letters=False)) == 6
+    assert text(field(some, columns=2, scale=1, letters=True)) == ["BB", "CC", "D·"]
+
+
+def test_numbers_are_short() -> None:
+    assert [short(x) for x in (None, 0, 999, 1500, 1.234e6, 4.56e8)] == [
+        "-", "0", "999", "1.5 k", "1.2 M", "456 M",
+    ]  # fmt: skip
+    assert [duration(x) for x in (0.4, 75, 3725)] == ["0 s", "1 min 15 s", "1 h 2 min"]
+
+
+# The view as a whole.
+
+WORLDS: dict[str, dict[str, Any]] = {
+    "ring": {"cells": 30},
+    "torus": {"cells": 48, "placement": {"topology": "torus8"}},
+    "worlds": {"cells": 20, "seeds": 30},
+    "big": {"cells": 17_000, "genesis": "fill"},
+}
+
+
+def meadow(name: str) -> loop.Engine:
+    return engine(config(MEADOW, hazard=0.02, metabolism=None, **WORLDS[name]))
+
+
+@pytest.fixture(scope="module", params=WORLDS)
+def running(request: pytest.FixtureRequest) -> tuple[str, loop.Engine]:
+    """A world of each shape, on its way; some only made to look so, which spares compiling."""
+    name, made = request.param, meadow(request.param)
+    if name in ("ring", "worlds"):
+        made.advance(made.limits({}))
+    else:
+        world, bodies = made.state
+        cells = np.arange(len(world.organisms.alive), dtype=np.uint32)
+        number, born = (Wide(jnp.zeros_like(cells), jnp.asarray(n)) for n in (cells, cells % 999))
+        organisms = world.organisms._replace(alive=cells % 5 > 0, number=number, born=born)
+        worlds = world.worlds._replace(tick=wide([1000]), births=wide([len(cells)]))
+        made.state = State(World(organisms, worlds), bodies)
+        made.advance = lambda _: made.events  # type: ignore[method-assign]
+    return name, made
+
+
+def shown(made: loop.Engine, chunks: int = 2, **options: Any) -> tuple[str, list[str]]:
+    """What is written in a terminal, and the lines of the last frame."""
+    options = {"force_terminal": True, "color_system": "truecolor", **options}
+    console = Console(file=io.StringIO(), **options)
+    limits = made.limits({"ticks": 10**6})
+    with live.View(console) as view:
+        for _ in range(chunks):
+            made._ticks = 20
+            made.advance(limits)
+            view(loop.Status(made, 1.0, limits))
+    assert isinstance(console.file, io.StringIO)
+    written = console.file.getvalue()
+    frame = re.split(r"\x1b\[2K(?!\r?\x1b\[1A)", written)[-1]
+    return written, re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", frame).splitlines()
+
+
+@pytest.mark.parametrize(("width", "height"), [(80, 24), (40, 24), (200, 60), (20, 8), (3, 2)])
+def test_it_fits_any_terminal(running: tuple[str, loop.Engine], width: int, height: int) -> None:
+    for letters in (False, True):
+        _, frame = shown(running[1], width=width, height=height, no_color=letters)
+        assert 0 < len(frame) <= height
+        assert max(map(len, frame)) <= width
+
+
+def test_it_tells_what_is_going_on(running: tuple[str, loop.Engine]) -> None:
+    name, made = running
+    written, frame = shown(made, width=80, height=24)
+    text = "\n".join(frame)
+    assert "\x1b[38;2" in written
+    assert written.endswith("\x1b[?25h"), "the cursor is back"
+    census = Census.of(made.state.world)
+    for what in (f"{census.births.sum():,}", "died of", "oldest", "organism-ticks/s", "saturated"):
+        assert what in text
+    assert ("shown: the first" in text) == (name in ("worlds", "big"))
+    assert ("takeovers" in text) == (name in ("ring", "torus")), "only if all are followed"
+    colours = "branch of the founder" if name == "big" else "line of descent"
+    assert f"colour: {colours}" in text
+    assert int(made.state.world.organisms.alive.sum()) == census.alive.sum()
+
+
+def test_without_colours_letters_tell_the_lines(running: tuple[str, loop.Engine]) -> None:
+    written, frame = shown(running[1], width=80, height=24, no_color=True)
+    assert not re.search(r"\x1b\[[0-9;]*[34]8;", written)
+    assert "letter: " in "\n".join(frame)
+    assert any(re.search(r"[a-zA-Z·]{8}|([a-z·] ){8}", line) for line in frame[1:])
+
+
+@pytest.mark.parametrize(("name", "followed"), [("ring", 1), ("worlds", 24)])
+def test_who_is_followed_is_who_lives(name: str, followed: int) -> None:
+    made = meadow(name)
+    view = live.View(Console(file=io.StringIO(), force_terminal=True, width=80, height=24))
+    for _ in range(3):
+        made._ticks = 30
+        made.advance(made.limits({}))
+        view._follow(loop.Status(made, 1.0))
+    organisms, cells = made.state.world.organisms, made.law.cells
+    assert len(view._lines) == followed, "as many worlds as the terminal has lines, at most"
+    for world, lines in enumerate(view._lines):
+        here = slice(world * cells, (world + 1) * cells)
+        alive, number = np.asarray(organisms.alive)[here], np.asarray(organisms.number.lo)[here]
+        assert set(lines.of) == set(number[alive].tolist())
+
+
+def test_chunks_of_any_length_give_the_same_lines() -> None:
+    found = []
+    for ticks in (3, 400):
+        made = meadow("ring")
+        lines, limits = Lines([]), made.limits({"ticks": 400})
+        while made.any_running(limits):
+            made._ticks = ticks
+            lines.follow(turnovers(made.advance(limits), 30, 1)[0])
+        found.append((lines.of, lines.takeovers))
+    assert found[0] == found[1]
+    assert found[0][1] > 0
+
+
+def test_time_left_is_that_of_the_world_which_stops_last() -> None:
+    made = meadow("worlds")
+    pace = Pace()
+    limits = made.limits({"ticks": 500})
+    for now in (0.0, 2.0):
+        made._ticks = 100
+        made.advance(limits)
+        pace.see(now, Census.of(made.state.world))
+    assert pace.seconds_left(limits) == pytest.approx(6.0)
+    assert pace.seconds_left(made.limits({})) is None
+    assert pace.organism_ticks() is not None
+
+
+# Elsewhere than in a terminal.
+
+SMALL = ("CartPole-survival", "--cells", "8", "--hazard", "0.002", "--sample_every", "500")
+
+
+def test_plain_lines_where_there_is_no_terminal(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, compiled_once: None
+) -> None:
+    monkeypatch.setattr(live.Plain, "EVERY", 0.0)
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    done = here("run", *SMALL, "--ticks", 2000, "--out", tmp_path / "run")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "\x1b" not in done.stdout
+    assert re.search(r"^ +\d+\.\d s  tick \d+  alive \d  births \d+  \S.*/s$", done.stdout, re.M)
+    assert done.stdout.endswith(f"primordia replay {tmp_path / 'run'}\n")
+    quiet = here("resume", tmp_path / "run", "--ticks", 3000, "--until", "none", "--quiet")
+    assert (quiet.stdout, quiet.stderr) == ("", "")
+
+
+# The last words.
+
+
+def world(**changed: Any) -> dict[str, Any]:
+    return {
+        "seed": 0, "ticks": 5000, "births": 900, "alive": 8, "mean_age": 70.0, "oldest_age": 300,
+        "deaths_by_cause": {"fatal": 890, "hazard": 2, "fault": 0}, "extinctions": 0,
+        "saturation": {"tick": 4000, "births": 800}, "fixation": None, **changed,
+    }  # fmt: skip
+
+
+def told(worlds: list[dict[str, Any]], **changed: Any) -> str:
+    base = {"task": "T", "cells": 8, "inheritance": "parent", "exact": True}
+    return summary({**base, "worlds": worlds, **changed})
+
+
+def test_the_summary_of_one_world() -> None:
+    assert told([world(fixation={"tick": 70, "births": 9}, extinctions=2)]).splitlines() == [
+        "T: 1 world of 8 cells",
+        "  seed 0: 5,000 ticks, 900 births, deaths: 890 fatal, 2 hazard, extinct 2 times",
+        "    8 alive, mean age 70, oldest 300; saturated at tick 4,000 after 800 births",
+        "    came to descend from one ancestor at tick 70 after 9 births",
+    ]
+    empty = told([world(alive=0, saturation=None, mean_age=None, oldest_age=None)])
+    assert "    0 alive; not saturated" in empty
+    assert "no heredity" in told([world()], inheritance="founder")
+    assert "cannot be repeated" in told([world()], exact=False)
+
+
+def test_the_summary_of_many_worlds_gives_quartiles() -> None:
+    worlds = [world(seed=n, saturation={"tick": 9, "births": 100 * n}) for n in range(9)]
+    many = told(worlds)
+    assert "9 of 9 saturated, births until then: median 400 (quartiles 200, 600)" in many
+    assert "8,100 births" in many
+    assert len(many.splitlines()) <= 6
+    half = [world(saturation=None) for _ in range(9)]
+    assert "9 of 18 saturated, births until then: median 800 (quartiles 400, later)" in told(
+        worlds + half
+    )
+    assert "0 of 9 saturated\n" in told(half) + "\n"
+
+
+# A terminal, a process, and Ctrl-C.
+
+
+@pytest.fixture
+def terminal() -> Iterator[tuple[int, int]]:
+    """A pseudo-terminal of 80 x 24: our end, and the program's."""
+    ours, theirs = pty.openpty()
+    yield ours, theirs
+    for end in (ours, theirs):
+        os.close(end)
+
+
+def read_until(end: int, *parts: str, seconds: float = 60.0) -> str:
+    """What is written until all parts are in it."""
+    read = ""
+    while not all(part in read for part in parts):
+        assert select.select([end], [], [], seconds)[0], f"nothing more after {read[-500:]!r}"
+        read += os.read(end, 65536).decode(errors="replace")
+    return read
+
+
+def test_a_terminal_shows_the_strip_and_control_c_saves(
+    terminal: tuple[int, int], tmp_path: Path
+) -> None:
+    ours, theirs = terminal
+    words = (*SMALL, "--until", "none", "--out", str(tmp_path / "run"))
+    settings = {"TERM": "xterm-256color", "COLUMNS": "80", "LINES": "24", "COLORTERM": "truecolor"}
+    variables = environment(commands.CACHE) | settings
+    variables.pop("NO_COLOR", None)
+    process = subprocess.Popen(
+        ["sh", "-c", 'exec <"$0" >"$0" 2>&1 "$@"', os.ttyname(theirs), *COMMAND, "run", *words],
+        env=variables,
+        start_new_session=True,  # so that the terminal it opens is the one that Ctrl-C comes from
+    )
+    read_until(ours, "\x1b[?25l", "█", "line of descent", "takeovers", "\x1b[38;2")
+    os.write(ours, b"\x03")
+    read_until(ours, "\x1b[?25h", "Stopped and saved. Go on with: primordia resume")
+    assert process.wait(timeout=60) == 130
+    found = json.loads(here("info", tmp_path / "run", "--json").stdout)
+    assert found["births"] > 0
