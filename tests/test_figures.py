@@ -2,52 +2,35 @@
 
 import re
 import shutil
-from dataclasses import fields
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import matplotlib
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from matplotlib.colors import to_rgb
 from matplotlib.text import Text
 
 import primordia
 from primordia import loop
 from primordia.figures import FIGURES, ages, population, series, spacetime, style, survival
-from primordia.lives import ALIVE, Lives, lives
+from primordia.lives import Lives, lives
 from primordia.world import Cause
 from tests.commands import complains, here
-from tests.worlds import MILL, config
+from tests.synthetic import alive, world_of, worlds_of
+from tests.worlds import MEADOW, config
 
 pytestmark = pytest.mark.usefixtures("compiled_once")
 
-WHAT: dict[str, Any] = {**MILL, "brain": {"hidden": 6}, "seeds": 3, "hazard": 0.02}
-LIFE = st.tuples(st.integers(0, 40), st.integers(0, 40), st.booleans())
-LIVED = st.lists(LIFE, min_size=1, max_size=20)
-
-
-def world_of(lived: list[tuple[int, int, bool]], until: int = 90) -> Lives:
-    """One world's lives from (born, lifespan, died), without descent; each in a cell of its own."""
-    born, lifespan, died = map(np.array, zip(*sorted(lived), strict=True))
-    number = np.arange(len(born))
-    return Lives(
-        world=np.zeros(len(born), np.int32),
-        id=number,
-        parent=np.full(len(born), -1),
-        cell=number.astype(np.int32),
-        origin=np.zeros(len(born), np.int8),
-        born=born,
-        ended=np.where(died, born + 1 + lifespan, until),
-        cause=np.where(died, Cause.FATAL, ALIVE).astype(np.int8),
-    )
-
-
-def alive(world: Lives, row: int, tick: int) -> bool:
-    return world.born[row] <= tick and not (world.died[row] and world.ended[row] <= tick)
+WHAT: dict[str, Any] = {
+    **MEADOW,
+    "habitat": {"name": "tests.toys:Meadow", "lifespan": 90},
+    "cells": 24,
+    "seeds": 3,
+    "replication": 0.05,
+    "hazard": 0.01,
+    "sample_every": 100,
+}
 
 
 @pytest.fixture(scope="module")
@@ -56,20 +39,6 @@ def run(compiled_once: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
     where = tmp_path_factory.mktemp("figures") / "run"
     loop.start(config(WHAT, stop={"ticks": 900}), where)
     return where
-
-
-@given(lived=LIVED)
-def test_population_and_mean_age_are_those_of_every_tick(
-    lived: list[tuple[int, int, bool]],
-) -> None:
-    world = world_of(lived)
-    ticks = np.arange(90)
-    counted, mean = series.population(world, ticks), series.mean_age(world, ticks)
-    for tick in ticks.tolist():
-        found = [tick - world.born[row] for row in range(len(world)) if alive(world, row, tick)]
-        assert counted[tick] == len(found)
-        expected = np.mean(found) if found else np.nan
-        np.testing.assert_allclose(mean[tick], expected, rtol=1e-12)
 
 
 def test_population_and_mean_age_are_as_sampled_while_it_ran(run: Path) -> None:
@@ -84,51 +53,6 @@ def test_population_and_mean_age_are_as_sampled_while_it_ran(run: Path) -> None:
         np.testing.assert_allclose(
             series.mean_age(world, ticks), columns["mean_age"][mine], rtol=1e-5
         )
-
-
-@given(lived=LIVED, inner=st.sets(st.integers(1, 89)))
-def test_rates_are_deaths_over_ticks_lived(
-    lived: list[tuple[int, int, bool]], inner: set[int]
-) -> None:
-    world = world_of(lived)
-    edges = np.array([0, *sorted(inner), 90])
-    exposed = series.exposure(world.born, world.ended, edges)
-    risk = survival.hazard(world.born, world.ended, world.died, edges)
-    for number, (low, high) in enumerate(pairwise(edges.tolist())):
-        ticks = range(low + 1, high + 1)
-        expected = sum(
-            world.born[row] < tick <= world.ended[row]
-            for row in range(len(world))
-            for tick in ticks
-        )
-        died = sum(world.died[row] and world.ended[row] in ticks for row in range(len(world)))
-        assert exposed[number] == expected
-        assert (risk[number] == died / expected) if died >= series.FEW else np.isnan(risk[number])
-
-
-@given(last=st.integers(0, 10**7))
-def test_bins_begin_at_0_end_with_the_last_tick_and_rise(last: int) -> None:
-    edges = series.bins(last)
-    assert edges[0] == 0
-    assert edges[-1] == max(last, 1)
-    assert (np.diff(edges) > 0).all()
-    assert (np.diff(series.middle(edges)) > 0).all()
-
-
-@given(lived=LIVED)
-def test_survival_is_the_product_over_ages_of_who_lived_on(
-    lived: list[tuple[int, int, bool]],
-) -> None:
-    world = world_of(lived)
-    age, fraction = survival.survival(world, 90)
-    assert (age[0], fraction[0]) == (0, 1)
-    left = 1.0
-    for each in range(91):
-        at_risk = (world.lifespan >= each).sum()
-        died = (world.died & (world.lifespan == each)).sum()
-        left *= 1 - died / max(at_risk, 1)
-        found = fraction[np.searchsorted(age, each, side="right") - 1]
-        assert found == pytest.approx(left, abs=1e-12)
 
 
 def test_cohorts_are_quarters_of_each_worlds_births(run: Path) -> None:
@@ -162,29 +86,33 @@ def test_space_time_finds_who_lived_where(run: Path) -> None:
         np.testing.assert_array_equal(found[place], expected)
 
 
-def test_space_time_shows_lines_that_last_in_strong_colours(run: Path) -> None:
+def test_space_time_shows_lines_in_colours_that_say_what_became_of_them(run: Path) -> None:
     world = lives(run).of_world(0)
     cells, ticks = np.arange(24), np.arange(901)
     of = spacetime.told_apart(world)
     found = spacetime.living(world, cells, ticks)
     image = spacetime.picture(world, of, cells, ticks)
     np.testing.assert_array_equal((image == 1).all(axis=-1), found == spacetime.NOBODY)
-    strong = {tuple(each) for each in spacetime.STRONG}
-    grey = to_rgb(spacetime.YOUNG)
-    assert {tuple(each) for each in image[-1][found[-1] >= 0]} <= strong
-    young = image[: of.anew[0]][found[: of.anew[0]] >= 0]
-    assert {tuple(each) for each in young if len(set(each)) > 1} == set()
-    assert grey in {tuple(each) for each in young}
-    one_line = of.of(found[-1], ticks[-1:]) == of.of(found[-1, :1], ticks[-1:])
-    same_colour = (image[-1] == image[-1, 0]).all(axis=-1)
-    assert not (one_line & ~same_colour)[found[-1] >= 0].any()
+    young = colours_in(image[: of.anew[0]])
+    assert {len(set(each)) for each in young} == {1}, "greys"
+    assert to_rgb(spacetime.YOUNG) in young
+    at_the_end = found[-1] >= 0
+    assert colours_in(image[-1]) <= colours_in(spacetime.STRONG)
+    lines = of.of(found[-1][at_the_end], ticks[-1:])
+    shown = set(zip(lines.tolist(), map(tuple, image[-1][at_the_end].tolist()), strict=True))
+    assert len(shown) == len(set(lines.tolist())), "one colour each"
+
+
+def colours_in(image: np.ndarray) -> set[tuple[float, ...]]:
+    """But for white."""
+    return set(map(tuple, image.reshape(-1, 3).tolist())) - {(1.0, 1.0, 1.0)}
 
 
 @pytest.mark.parametrize(("cells", "shown"), [(24, 24), (512, 512), (513, 257), (1_000_000, 512)])
 def test_space_time_never_has_more_columns_than_a_screen(cells: int, shown: int) -> None:
     world = world_of([(0, 10, True), (11, 0, False)])
     with style.look():
-        figure = spacetime.draw(world, config(MILL, cells=cells), 0)
+        figure = spacetime.draw(world, config(WHAT, cells=cells), 0)
     assert figure.axes[0].images[0].get_array().shape[1] == shown
     assert ("shown" in figure.axes[0].get_xlabel()) == (shown < cells)
 
@@ -226,17 +154,6 @@ def test_same_bytes_each_time_whatever_the_users_style_but_for_the_world_asked_f
     assert "world 2 (of 3)" in again[-1].read_text(encoding="utf-8")
 
 
-def worlds_of(*lived: list[tuple[int, int, bool]], until: int) -> Lives:
-    """Several worlds of such lives."""
-    each = [world_of(one, until) for one in lived]
-    columns = {
-        field.name: np.concatenate([getattr(one, field.name) for one in each])
-        for field in fields(Lives)
-    }
-    numbers = np.repeat(np.arange(len(each), dtype=np.int32), list(map(len, each)))
-    return Lives(**{**columns, "world": numbers})
-
-
 @pytest.mark.parametrize(
     "everyone",
     [
@@ -250,7 +167,7 @@ def worlds_of(*lived: list[tuple[int, int, bool]], until: int) -> Lives:
     ids=["tick 0", "tick 1", "no deaths", "hardly any", "two worlds", "three worlds"],
 )
 def test_what_can_be_drawn_is_drawn(everyone: Lives) -> None:
-    settings = config(MILL, cells=24, seeds=everyone.worlds)
+    settings = config(WHAT, cells=24, seeds=everyone.worlds)
     with style.look():
         for name, draw in FIGURES.items():
             figure = draw(everyone, settings, 0)
@@ -272,7 +189,7 @@ def test_space_time_says_what_the_order_of_cells_means(
     placement: dict[str, Any], says: str
 ) -> None:
     with style.look():
-        figure = spacetime.draw(world_of([(0, 0, False)]), config(MILL, placement=placement), 0)
+        figure = spacetime.draw(world_of([(0, 0, False)]), config(WHAT, placement=placement), 0)
     assert says in figure.axes[0].get_xlabel()
 
 
