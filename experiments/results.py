@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import primordia
-from primordia.cli.side_by_side import effect, ratio, spread
+from primordia.cli.side_by_side import effect, ratio, setting, spread
 from primordia.comparison import OUTCOMES, Comparison
 from primordia.figures import style
 from primordia.figures.comparison import draw
@@ -37,7 +37,13 @@ def summary(compared: Comparison, infos: list[dict[str, Any]]) -> str:
     names = list(compared.arms[0].settings)
     head = ["", *names, "worlds", "saturated", "extinctions (median)", *OUTCOMES.values()]
     rows = [
-        [arm.name, *arm.settings.values(), arm.worlds, arm.saturated, f"{extinct(info):g}"]
+        [
+            arm.name,
+            *map(setting, arm.settings.values()),
+            arm.worlds,
+            arm.saturated,
+            f"{extinct(info):g}",
+        ]
         + [spread(arm, outcome) for outcome in OUTCOMES]
         for arm, info in zip(compared.arms, infos, strict=True)
     ]

@@ -76,7 +76,14 @@ def test_figures_of_worlds_are_what_brute_force_finds(
                 for row in born
                 if row["world"] == number
             ]
-            mean = restricted_mean(lives, QUICK["saturation_ticks"])
+            age = QUICK["saturation_ticks"]
+            long = [lived >= age for lived, _ in lives]
+            undecided = [lived < age and not dead for lived, dead in lives]
+            first = arm.figures["first"]
+            before = int(first.value[number]) - 1
+            assert not any(long[:before] + undecided[:before])
+            assert long[before] if first.known[number] else [*undecided, True][before]
+            mean = restricted_mean(lives, age)
             assert arm.figures["lifespan"].value[number] == pytest.approx(mean)
             seen += len(lives)
         assert arm.saturated == sum(world["saturation"] is not None for world in worlds)

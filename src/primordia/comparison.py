@@ -18,10 +18,11 @@ from primordia.config import Config
 from primordia.contrast import Bounds, Contrast, Figures, contrast
 from primordia.directory import read_config
 from primordia.errors import InputError
-from primordia.lives import lives
+from primordia.lives import Lives, lives
 from primordia.survival import Survival, survival
 
 OUTCOMES = {
+    "first": "births to first long life",
     "births": "births to saturation",
     "ticks": "ticks to saturation",
     "lifespan": "mean lifespan",
@@ -36,8 +37,8 @@ class Arm:
     settings: dict[str, Any]
     """dotted name -> value, of those settings in which the runs differ"""
     figures: dict[str, Figures]
-    """of each of OUTCOMES: births and ticks to saturation, founders counted; mean lifespan in a
-    world, in ticks, up to the age that all runs are followed to"""
+    """of each of OUTCOMES: which birth the first was that lived to the comparison's age; births and
+    ticks to saturation, founders counted; mean lifespan in a world, in ticks, up to that age"""
     survival: Survival
 
     @property
@@ -103,7 +104,7 @@ def compare(
 
     Args:
         runs: directories; the first is the reference.
-        births: horizon: a world saturates within it if it is saturated before having so many births.
+        births: horizon: only worlds that saturate before they have so many births count as saturated.
         ticks: the same in ticks.
 
     Raises:
@@ -115,9 +116,13 @@ def compare(
     names = [path.resolve().name for path in runs]
     arms = []
     for path, config, name, own in zip(runs, configs, names, differing(configs), strict=True):
-        survived = survival(lives(path), config.seeds, age)
-        figures = _figures(path, births, ticks)
-        figures["lifespan"] = Figures(survived.restricted_mean, np.ones(config.seeds, bool))
+        lived = lives(path)
+        survived = survival(lived, config.seeds, age)
+        figures = {
+            "first": first_long([lived.of_world(world) for world in range(config.seeds)], age),
+            **_saturation(path, births, ticks),
+            "lifespan": Figures(survived.restricted_mean, np.ones(config.seeds, bool)),
+        }
         label = name if names.count(name) == 1 else str(path)
         arms.append(Arm(label, own, figures, survived))
     return Comparison(configs[0].task, tuple(arms), age, births, ticks)
@@ -151,7 +156,23 @@ def differing(configs: Sequence[Config]) -> list[dict[str, Any]]:
     return [{name: each.get(name) for name in several} for each in flat]
 
 
-def _figures(path: Path, births: int | None, ticks: int | None) -> dict[str, Figures]:
+def first_long(worlds: Sequence[Lives], age: int) -> Figures:
+    """Which birth of each world was the first to live so long.
+
+    Known if all who were born before are dead; otherwise it is at least the first one's still alive.
+    """
+    value, known = [], []
+    for lived in worlds:
+        long = lived.lifespan >= age
+        first, open_ = (
+            int(each.argmax()) if each.any() else len(lived) for each in (long, ~long & ~lived.died)
+        )
+        value.append(min(first, open_) + 1)
+        known.append(first < open_)
+    return Figures(np.array(value, float), np.array(known))
+
+
+def _saturation(path: Path, births: int | None, ticks: int | None) -> dict[str, Figures]:
     """Births and ticks to saturation, of each world of a run."""
     worlds = report.info(path)["worlds"]
     known = np.array([world["saturation"] is not None for world in worlds])

@@ -105,8 +105,12 @@ def tasks() -> None:
 
 @click.command()
 @click.argument("runs", nargs=-1, metavar="REFERENCE RUN...", type=click.Path(path_type=Path))
-@click.option("--births", type=click.IntRange(1), help="Look no further than so many births.")
-@click.option("--ticks", type=click.IntRange(1), help="Look no further than so many ticks.")
+@click.option(
+    "--births", type=click.IntRange(1), help="Count as saturated only before so many births."
+)
+@click.option(
+    "--ticks", type=click.IntRange(1), help="Count as saturated only before so many ticks."
+)
 @click.option(
     "--out",
     type=click.Path(path_type=Path, file_okay=False),

@@ -11,6 +11,7 @@ from primordia.comparison import OUTCOMES, Arm, Comparison
 from primordia.contrast import Bounds, Contrast
 
 DIRECTIONS = {
+    "first": ("earlier", "later"),
     "births": ("earlier", "later"),
     "ticks": ("earlier", "later"),
     "lifespan": ("shorter", "longer"),
@@ -33,9 +34,9 @@ def side_by_side(compared: Comparison) -> str:
 
 
 def spread(arm: Arm, outcome: str) -> str:
-    """Median, and quartiles in brackets."""
+    """Median, and quartiles in brackets if they differ."""
     low, middle, high = (shown(arm.figures[outcome].quantile(q)) for q in (0.25, 0.5, 0.75))
-    return f"{middle} ({low} to {high})"
+    return f"{middle} ({low} to {high})" if low != high else middle
 
 
 def effect(found: Contrast, outcome: str) -> str:
@@ -61,6 +62,11 @@ def shown(bounds: Bounds) -> str:
     return f"{number(low)}..{number(high)}"
 
 
+def setting(value: Any) -> str:
+    """As TOML and flags write it."""
+    return "none" if value is None else str(value)
+
+
 def number(value: float) -> str:
     """Three digits at least, commas between thousands."""
     if math.isinf(value):
@@ -76,7 +82,7 @@ def _runs(compared: Comparison) -> Table:
     saturated = " ".join(["saturated", *["within"] * bool(within), " and ".join(within)]).strip()
     table = _table(compared.task, *settings, "worlds", saturated)
     for arm in compared.arms:
-        own = [_setting(value) for value in arm.settings.values()]
+        own = [setting(value) for value in arm.settings.values()]
         table.add_row(arm.name, *own, str(arm.worlds), str(arm.saturated))
     return table
 
@@ -96,15 +102,12 @@ def _table(*columns: str) -> Table:
     return Table(*columns, box=box.SIMPLE_HEAD, pad_edge=False)
 
 
-def _setting(value: Any) -> str:
-    return "none" if value is None else str(value)
-
-
 def _notes(compared: Comparison) -> list[str]:
     return [
         "Medians and intervals are over worlds. Of a world that stopped unsaturated, what is known"
         " counts.",
-        f"Mean lifespan: ticks, in each world, up to an age of {compared.age:,} (Kaplan-Meier).",
+        f"A long life: {compared.age:,} ticks. Mean lifespan: ticks, in each world, up to that age"
+        " (Kaplan-Meier).",
         "Delta: Cliff's; the share of pairs of worlds in which the run's figure is larger than the"
         " reference's,",
         "less the share in which it is smaller.",
