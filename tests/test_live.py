@@ -18,9 +18,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rich.console import Console
 
-from primordia import live, loop
+from primordia import clades, live, loop
 from primordia.census import Census, Pace
-from primordia.chunk import State
+from primordia.chunk import Limits, State
 from primordia.lines import DIES, NOBODY, Lines, Turnover, turnovers
 from primordia.paint import EMPTY, Cells, Row, field, skyline, strip
 from primordia.panel import duration, short
@@ -67,23 +67,23 @@ def followed(events: list[Event], lines: Lines) -> Lines:
     return lines
 
 
-def by_the_rule(events: list[Event]) -> tuple[dict[int, int], int]:
+def by_the_rule(events: list[Event], crowd: int) -> tuple[dict[int, int], int]:
     """The line of each of the living, and takeovers: walk up from everybody after every tick."""
     parent = {number: of for _, number, of in events if of != DIES}
     living: set[int] = set()
     roots: set[int] = set()
-    takeovers = several = 0
+    takeovers, young = 0, True
     for tick in sorted({tick for tick, _, _ in events}):
         now = [event for event in events if event[0] == tick]
         founders = {number for _, number, of in now if of == NOBODY}
         living |= {number for _, number, of in now if of != DIES}
         living -= {number for _, number, of in now if of == DIES}
         roots |= founders
-        several *= not founders
-        if len({_root(number, parent, roots) for number in living}) == 1:
-            takeovers += several
-            roots = set(living)
-        several = len({_root(number, parent, roots) for number in living}) > 1
+        young |= bool(founders)
+        lines = {_root(number, parent, roots) for number in living}
+        if len(living) >= crowd if young else len(lines) == 1:
+            takeovers += not young
+            roots, young = set(living), False
     return {number: _root(number, parent, roots) for number in living}, takeovers
 
 
@@ -94,19 +94,34 @@ def _root(number: int, parent: dict[int, int], roots: set[int]) -> int:
 
 
 @settings(deadline=None)
-@given(histories(), st.lists(st.integers(0, 40), max_size=4))
+@given(histories(), st.lists(st.integers(0, 40), max_size=4), st.integers(1, 4))
 def test_lines_follow_the_rule_however_a_history_is_cut(
-    events: list[Event], cuts: list[int]
+    events: list[Event], cuts: list[int], crowd: int
 ) -> None:
-    lines, since = Lines([]), -1
+    lines, since = Lines([], crowd), -1
     for cut in [*sorted(cuts), 40]:
         followed([event for event in events if since < event[0] <= cut], lines)
         since = cut
-    assert (lines.of, lines.takeovers) == by_the_rule(events)
+    assert (lines.of, lines.takeovers) == by_the_rule(events, crowd)
+
+
+@settings(deadline=None)
+@given(histories(), st.integers(1, 4))
+def test_they_are_those_of_the_figures(events: list[Event], crowd: int) -> None:
+    lines = followed(events, Lines([], crowd))
+    births = [event for event in events if event[2] != DIES]
+    born, _, parent = np.array(births, np.int64).T
+    ended = np.full(len(births), -1)
+    for tick, number, of in events:
+        ended[number] = tick if of == DIES else ended[number]
+    told = clades.lines(parent, born, ended, ended >= 0, crowd)
+    living = np.flatnonzero(ended < 0)
+    assert [lines.of[each] for each in living.tolist()] == told.of(living, np.int64(99)).tolist()
+    assert lines.takeovers == told.takeover.sum()
 
 
 def test_each_of_those_met_alive_is_a_line() -> None:
-    lines = followed([(9, 7, 3), (9, 3, DIES), (12, 8, 7)], Lines([3, 5]))
+    lines = followed([(9, 7, 3), (9, 3, DIES), (12, 8, 7)], Lines([3, 5], crowd=2))
     assert lines.of == {5: 5, 7: 3, 8: 3}
     followed([(13, 5, DIES)], lines)
     assert lines.of == {7: 7, 8: 8}
@@ -114,9 +129,11 @@ def test_each_of_those_met_alive_is_a_line() -> None:
 
 
 def test_a_founder_after_extinction_takes_nothing_over() -> None:
-    events = [(0, 0, NOBODY), (3, 1, 0), (5, 2, NOBODY), (5, 0, DIES), (5, 1, DIES)]
-    lines = followed(events, Lines([]))
-    assert lines.of == {2: 2}
+    events = [(0, 0, NOBODY), (3, 1, 0), (5, 2, NOBODY), (5, 0, DIES), (5, 1, DIES), (6, 3, 2)]
+    assert followed(events[:2], Lines([], crowd=2)).of == {0: 0, 1: 1}
+    assert followed(events[:2], Lines([], crowd=3)).of == {0: 0, 1: 0}
+    lines = followed(events, Lines([], crowd=3))
+    assert lines.of == {2: 2, 3: 2}
     assert lines.takeovers == 0
 
 
@@ -176,19 +193,25 @@ def meadow(name: str) -> loop.Engine:
 
 @pytest.fixture(scope="module", params=WORLDS)
 def running(request: pytest.FixtureRequest) -> tuple[str, loop.Engine]:
-    """A world of each shape, on its way; some only made to look so, which spares compiling."""
+    """A world of each shape, on its way; most only made to look so, which spares compiling."""
     name, made = request.param, meadow(request.param)
-    if name in ("ring", "worlds"):
+    if name == "ring":
         made.advance(made.limits({}))
     else:
-        world, bodies = made.state
-        cells = np.arange(len(world.organisms.alive), dtype=np.uint32)
-        number, born = (Wide(jnp.zeros_like(cells), jnp.asarray(n)) for n in (cells, cells % 999))
-        organisms = world.organisms._replace(alive=cells % 5 > 0, number=number, born=born)
-        worlds = world.worlds._replace(tick=wide([1000]), births=wide([len(cells)]))
-        made.state = State(World(organisms, worlds), bodies)
-        made.advance = lambda _: made.events  # type: ignore[method-assign]
+        look_alive(made)
     return name, made
+
+
+def look_alive(made: loop.Engine) -> None:
+    """Pose four fifths of the cells as organisms of many ages, to whom nothing happens."""
+    world, bodies = made.state
+    cells = np.arange(len(world.organisms.alive), dtype=np.uint32)
+    number, born = (Wide(jnp.zeros_like(cells), jnp.asarray(n)) for n in (cells, cells % 999))
+    organisms = world.organisms._replace(alive=cells % 5 > 0, number=number, born=born)
+    thousand = wide([1000] * made.law.worlds)
+    worlds = world.worlds._replace(tick=thousand, births=thousand)
+    made.state = State(World(organisms, worlds), bodies)
+    made.advance = lambda _: made.events  # type: ignore[method-assign]
 
 
 def shown(made: loop.Engine, chunks: int = 2, **options: Any) -> tuple[str, list[str]]:
@@ -238,16 +261,15 @@ def test_without_colours_letters_tell_the_lines(running: tuple[str, loop.Engine]
     assert any(re.search(r"[a-zA-Z·]{8}|([a-z·] ){8}", line) for line in frame[1:])
 
 
-@pytest.mark.parametrize(("name", "followed"), [("ring", 1), ("worlds", 24)])
-def test_who_is_followed_is_who_lives(name: str, followed: int) -> None:
-    made = meadow(name)
+def test_who_is_followed_is_who_lives(running: tuple[str, loop.Engine]) -> None:
+    name, made = running
     view = live.View(Console(file=io.StringIO(), force_terminal=True, width=80, height=24))
     for _ in range(3):
         made._ticks = 30
         made.advance(made.limits({}))
         view._follow(loop.Status(made, 1.0))
+    assert len(view._lines) == {"worlds": 24, "big": 0}.get(name, 1), "at most one for each row"
     organisms, cells = made.state.world.organisms, made.law.cells
-    assert len(view._lines) == followed, "as many worlds as the terminal has lines, at most"
     for world, lines in enumerate(view._lines):
         here = slice(world * cells, (world + 1) * cells)
         alive, number = np.asarray(organisms.alive)[here], np.asarray(organisms.number.lo)[here]
@@ -256,9 +278,9 @@ def test_who_is_followed_is_who_lives(name: str, followed: int) -> None:
 
 def test_chunks_of_any_length_give_the_same_lines() -> None:
     found = []
-    for ticks in (3, 400):
+    for ticks in (7, 2**20):
         made = meadow("ring")
-        lines, limits = Lines([]), made.limits({"ticks": 400})
+        lines, limits = Lines([], crowd=8), made.limits({"ticks": 5000})
         while made.any_running(limits):
             made._ticks = ticks
             lines.follow(turnovers(made.advance(limits), 30, 1)[0])
@@ -268,16 +290,27 @@ def test_chunks_of_any_length_give_the_same_lines() -> None:
 
 
 def test_time_left_is_that_of_the_world_which_stops_last() -> None:
-    made = meadow("worlds")
-    pace = Pace()
-    limits = made.limits({"ticks": 500})
-    for now in (0.0, 2.0):
-        made._ticks = 100
-        made.advance(limits)
-        pace.see(now, Census.of(made.state.world))
-    assert pace.seconds_left(limits) == pytest.approx(6.0)
-    assert pace.seconds_left(made.limits({})) is None
-    assert pace.organism_ticks() is not None
+    def census(tick: list[int], births: list[int]) -> Census:
+        each = np.zeros(2, np.int64)
+        return Census(
+            tick=np.array(tick), alive=each, births=np.array(births), deaths=each, calm=each,
+            extinctions=each, organism_ticks=10 * np.array(tick), saturated=np.array([-1, -1]),
+            mean_age=0.0, oldest=0,
+        )  # fmt: skip
+
+    def left(ticks: int, births: int) -> float | None:
+        saturation = jnp.bool_(False)
+        return pace.seconds_left(Limits(wide([ticks] * 2), wide([births] * 2), saturation))
+
+    pace, never = Pace(), 2**64 - 1
+    pace.see(10.0, census([0, 0], [10, 10]))
+    assert pace.organism_ticks() is None
+    assert left(500, never) is None
+    pace.see(12.0, census([100, 200], [20, 10]))
+    assert pace.organism_ticks() == 1500
+    assert left(500, never) == pytest.approx(8.0)
+    assert left(500, 40) == pytest.approx(4.0), "the second world comes to its 500 ticks in 3"
+    assert left(never, 40) is None, "the second world has no births"
 
 
 # Elsewhere than in a terminal.

@@ -1,7 +1,8 @@
-"""Lines of descent in a living world, followed event by event.
+"""Lines of descent in a living world, followed event by event; the rule is that of `clades`.
 
-A founder begins a line; children are of their parent's. When a tick leaves all the living in one line, it
-has taken over, and each of them begins a line. So at any time the lines are what is left of one
+A founder begins a line; children are of their parent's. When a tick leaves a crowd alive for the first
+time since a founder, each of the living begins a line; later, when a tick leaves all the living in
+one line, it has taken over, and each of them begins a line. So the lines are what is left of one
 moment's population, and how long chunks are does not matter.
 """
 
@@ -14,6 +15,8 @@ from primordia.events import BIRTH_FIELDS, DEATH_FIELDS, Events, Rows
 
 NOBODY, DIES = -1, -2
 """In place of a parent's number."""
+CROWD = 16
+"""The living that make a world worth telling lines apart in, or half its cells if that is less."""
 
 
 class Turnover(NamedTuple):
@@ -34,22 +37,21 @@ class Turnover(NamedTuple):
 class Lines:
     """Lines of the living of one world; a line bears the birth number of the one it began with."""
 
-    def __init__(self, living: list[int]) -> None:
+    def __init__(self, living: list[int], crowd: int) -> None:
         """Each of the `living`, by birth number, begins a line. Before genesis that is nobody."""
         self.of = {number: number for number in living}
         """line of everyone alive"""
         self.takeovers = 0
-        """how often one line was left of several"""
         self._size = dict.fromkeys(living, 1)
-        self._several = len(living) > 1
+        self._crowd, self._young = crowd, not living
 
     def follow(self, turnover: Turnover) -> None:
         """Live through what happened. In a tick births come first: parents may die in it."""
-        now = None
+        now = -1
         for tick, number, parent in _in_order(turnover):
-            if tick != now:
+            if tick != now and now >= 0:
                 self._end_of_tick()
-                now = tick
+            now = tick
             if parent == DIES:
                 line = self.of.pop(number)
                 if self._size[line] == 1:
@@ -57,20 +59,21 @@ class Lines:
                 else:
                     self._size[line] -= 1
             elif parent == NOBODY:
-                self._several = False  # all others die in this tick, and it is no takeover
+                self._young = True
                 self.of[number] = number
                 self._size[number] = 1
             else:
                 line = self.of[number] = self.of[parent]
                 self._size[line] += 1
-        self._end_of_tick()
+        if now >= 0:
+            self._end_of_tick()
 
     def _end_of_tick(self) -> None:
-        if len(self._size) == 1:
-            self.takeovers += self._several
+        if len(self.of) >= self._crowd if self._young else len(self._size) == 1:
+            self.takeovers += not self._young
             self.of = {number: number for number in self.of}
             self._size = dict.fromkeys(self.of, 1)
-        self._several = len(self._size) > 1
+            self._young = False
 
 
 def _in_order(turnover: Turnover) -> Iterator[tuple[int, int, int]]:

@@ -11,7 +11,7 @@ from rich.live import Live
 from rich.segment import Segment
 
 from primordia.census import Census, Pace
-from primordia.lines import Lines, Turnover, turnovers
+from primordia.lines import CROWD, Lines, Turnover, turnovers
 from primordia.loop import Listener, Status
 from primordia.paint import FAINT, Row
 from primordia.panel import Tempo, heading, numbers, saturation, short
@@ -149,14 +149,15 @@ class View:
 
 def _begun(status: Status, world: int, turnover: Turnover) -> Lines:
     """Lines of a world from here on; from its genesis, if that is in the latest chunk."""
+    organisms, cells = status.engine.state.world.organisms, status.engine.law.cells
+    crowd = min(CROWD, max(cells // 2, 1))
     if len(turnover.born) and turnover.born[0] == 0:
-        lines = Lines([])
+        lines = Lines([], crowd)
         lines.follow(turnover)
         return lines
-    organisms, cells = status.engine.state.world.organisms, status.engine.law.cells
     here = slice(world * cells, (world + 1) * cells)
     alive, number = np.asarray(organisms.alive)[here], to_host(organisms.number)[here]
-    return Lines(number[alive].tolist())
+    return Lines(number[alive].tolist(), crowd)
 
 
 class Rows:
