@@ -30,7 +30,8 @@ def side_by_side(compared: Comparison) -> str:
         for outcome in OUTCOMES:
             console.print(_against(compared, outcome))
     lines = [line.rstrip() for line in captured.get().splitlines()]
-    return "\n".join([*lines, *_notes(compared)])
+    text = "\n".join([*lines, *_notes(compared)])
+    return text.replace("\n\n\n", "\n\n").strip()
 
 
 def spread(arm: Arm, outcome: str) -> str:
