@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from rich.console import Console
+from rich.console import Console, ConsoleDimensions
 
 from primordia import clades, live, loop
 from primordia.census import Census, Pace
@@ -252,6 +252,19 @@ def test_it_tells_what_is_going_on(running: tuple[str, loop.Engine]) -> None:
     colours = "branch of the founder" if name == "big" else "line of descent"
     assert f"colour: {colours}" in text
     assert int(made.state.world.organisms.alive.sum()) == census.alive.sum()
+
+
+def test_a_terminal_may_change_its_size(running: tuple[str, loop.Engine]) -> None:
+    made = running[1]
+    console = Console(file=io.StringIO(), force_terminal=True, width=80, height=10)
+    with live.View(console) as view:
+        for size in ((80, 10), (40, 30), (40, 60), (90, 12)):
+            console.size = ConsoleDimensions(*size)
+            made.advance(made.limits({}))
+            view(loop.Status(made, 1.0))
+            rows = text(view._frame(loop.Status(made, 1.0)))
+            assert len(rows) < size[1]
+            assert size[0] // 2 < max(map(len, rows))
 
 
 def test_without_colours_letters_tell_the_lines(running: tuple[str, loop.Engine]) -> None:

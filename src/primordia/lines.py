@@ -43,7 +43,7 @@ class Lines:
         """line of everyone alive"""
         self.takeovers = 0
         self._size = dict.fromkeys(living, 1)
-        self._crowd, self._young = crowd, not living
+        self._crowd, self._young = crowd, len(living) < crowd
 
     def follow(self, turnover: Turnover) -> None:
         """Live through what happened. In a tick births come first: parents may die in it."""

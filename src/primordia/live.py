@@ -62,22 +62,20 @@ class View:
 
     SHARE = 0.01
     """of the time, at most, for drawing"""
-    CELLS, EVENTS = 2**14, 2**13
-    """lines of descent are not followed in more cells, nor through more births and deaths a chunk"""
+    CELLS, EVENTS = 2**14, 2**15
+    """lines of descent are not followed in more cells, nor through more births and deaths a second"""
 
     def __init__(self, console: Console) -> None:
         self._console = console
         self._letters = console.no_color or console.color_system in (None, "standard")
-        self._live = Live(console=console, auto_refresh=False)
+        self._live = Live(console=console, auto_refresh=False, redirect_stderr=sys.stderr.isatty())
         self._pace, self._lines = Pace(), list[Lines]()
-        self._missed = False
+        self._followed, self._missed = 0, False
         self._size, self._due = console.size, 0.0
         self._status: Status | None = None
 
     def __enter__(self) -> "View":
-        waiting = Segment(
-            "The world is being made: its laws are compiled, which takes seconds", FAINT
-        )
+        waiting = Segment("Compiling; that takes some seconds", FAINT)
         self._live.start()
         self._live.update(Rows([[waiting]]), refresh=True)
         return self
@@ -98,6 +96,9 @@ class View:
     def __call__(self, status: Status) -> None:
         """Follow a chunk; draw, if it is time."""
         self._status = status
+        if self._console.size != self._size:
+            self._console.clear()  # a terminal breaks lines anew when its width changes
+            self._size, self._due = self._console.size, 0.0
         self._follow(status)
         began = time.perf_counter()
         if began >= self._due:
@@ -108,13 +109,16 @@ class View:
     def _follow(self, status: Status) -> None:
         """Lines of descent of the worlds that may be shown, unless too much is going on."""
         law, events = status.engine.law, status.engine.events
-        shown = min(law.worlds, self._console.height)
+        shown = min(law.worlds, self._size.height)
         if shown * law.cells > self.CELLS:
-            return
-        happened = turnovers(events, law.cells, shown)
-        if sum(len(each.born) + len(each.dead) for each in happened) > self.EVENTS:
             self._lines, self._missed = [], True
             return
+        happened = turnovers(events, law.cells, shown)
+        count = sum(len(each.born) + len(each.dead) for each in happened)
+        if self._followed + count > self.EVENTS * (1 + status.wall_s):
+            self._lines, self._missed = [], True
+            return
+        self._followed += count
         for lines, turnover in zip(self._lines, happened, strict=False):
             lines.follow(turnover)
         for world in range(len(self._lines), shown):
@@ -122,9 +126,6 @@ class View:
         del self._lines[shown:]
 
     def _draw(self, status: Status) -> None:
-        if self._console.size != self._size:
-            self._console.clear()  # a terminal breaks lines anew when its width changes
-            self._size = self._console.size
         self._live.update(Rows(self._frame(status)), refresh=True)
 
     def _frame(self, status: Status) -> list[Row]:

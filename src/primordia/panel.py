@@ -30,12 +30,13 @@ class Tempo(NamedTuple):
 def heading(config: Config, seconds: float, width: int) -> Row:
     """What runs, and for how long."""
     last = config.seed + config.seeds - 1
-    one = f"seed {config.seed}, {config.cells:,} cells"
-    many = f"{config.seeds:,} worlds, seeds {config.seed} to {last}, {config.cells:,} cells each"
+    one = f"  seed {config.seed}, {config.cells:,} cells"
+    many = f"  {config.seeds:,} worlds, seeds {config.seed} to {last}, {config.cells:,} cells each"
+    what = one if config.seeds == 1 else many
     place = TOPOLOGIES.get(config.placement.topology, "well-mixed")
     task, clock = config.task, duration(seconds)
-    about = f"  {one if config.seeds == 1 else many} {place}"
-    about = about[: max(width - len(task) - len(clock) - 2, 0)]
+    spare = width - len(task) - len(clock) - 2
+    about = next((each for each in (f"{what} {place}", what) if len(each) <= spare), "")
     gap = max(width - len(task) - len(about) - len(clock), 1)
     return [Segment(task, STRONG), Segment(about, FAINT), Segment(" " * gap + clock, FAINT)]
 
@@ -102,9 +103,9 @@ def saturation(census: Census, cells: int, calm_needed: int, width: int) -> Row:
     if done:
         return _bar(1.0, f"saturated at tick {census.saturated[0]:,}", width)
     if census.alive[0] < cells:
-        return _bar(0.0, f"saturated once full, and calm for {calm_needed:,} ticks", width)
+        return _bar(0.0, f"saturated after {calm_needed:,} full, calm ticks", width)
     calm = min(int(census.calm[0]), calm_needed)
-    return _bar(calm / calm_needed, f"full, and calm for {calm:,} of {calm_needed:,} ticks", width)
+    return _bar(calm / calm_needed, f"full and calm for {calm:,} of {calm_needed:,} ticks", width)
 
 
 def _bar(share: float, text: str, width: int) -> Row:
