@@ -1,0 +1,108 @@
+"""One run's worlds against another's: pairs, bounds, intervals, whatever stopped the worlds."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy import stats
+
+from primordia.contrast import Figures, contrast
+from primordia.errors import InputError
+from primordia.resample import resamples
+
+WORLD = st.tuples(st.integers(1, 20), st.booleans())
+SOME = st.lists(WORLD, min_size=1, max_size=12)
+
+
+def figures(worlds: list[tuple[int, bool]]) -> Figures:
+    value, known = (np.array(column) for column in zip(*worlds, strict=True))
+    return Figures(value.astype(float), known)
+
+
+@given(SOME, SOME)
+def test_delta_counts_pairs_whose_order_is_known(run: list, reference: list) -> None:
+    found = contrast(figures(run), figures(reference))
+    balance = decided = 0
+    for value, known in run:
+        for other, other_known in reference:
+            larger, smaller = other_known and value > other, known and value < other
+            balance += larger - smaller
+            decided += larger or smaller or (known and other_known)
+    pairs = len(run) * len(reference)
+    assert found.delta == pytest.approx(balance / pairs)
+    assert found.decided == pytest.approx(decided / pairs)
+
+
+@given(SOME, SOME)
+def test_delta_turns_round_with_the_runs(run: list, reference: list) -> None:
+    one, other = figures(run), figures(reference)
+    assert contrast(one, other).delta == -contrast(other, one).delta
+    assert contrast(one, one).delta == 0
+    assert contrast(one, one).word == "negligible"
+
+
+@given(SOME, SOME, st.integers(1, 20))
+def test_delta_grows_with_the_figures(run: list, reference: list, by: int) -> None:
+    more = [(value + by, known) for value, known in run]
+    base = figures(reference)
+    assert contrast(figures(more), base).delta >= contrast(figures(run), base).delta
+    beyond = [(value + 20, known) for value, known in run]
+    if all(known for _, known in reference):
+        assert contrast(figures(beyond), base).delta == 1
+
+
+@given(SOME, st.lists(st.integers(0, 30), min_size=12, max_size=12))
+def test_bounds_hold_however_worlds_would_have_gone_on(run: list, on: list[int]) -> None:
+    later = [value + more * (not known) for (value, known), more in zip(run, on, strict=False)]
+    for q in (0.25, 0.5, 0.75):
+        low, high = figures(run).quantile(q)
+        assert low <= np.quantile(later, q, method="inverted_cdf") <= high
+    known = Figures(np.array(later, float), np.ones(len(later), bool))
+    base = figures([(5, True), (9, True), (12, True)])
+    sure, unsure = contrast(known, base), contrast(figures(run), base)
+    assert unsure.ratio[0] <= sure.ratio[0] == sure.ratio[1] <= unsure.ratio[1]
+    assert abs(sure.delta - unsure.delta) <= 1 - unsure.decided + 1e-9
+
+
+@given(SOME, st.integers(1, 25))
+def test_a_horizon_forgets_what_lies_beyond(run: list, horizon: int) -> None:
+    whole = figures(run)
+    if any(not known and value < horizon for value, known in run):
+        with pytest.raises(InputError, match="nothing can be said"):
+            whole.before(horizon)
+        return
+    near = whole.before(horizon)
+    assert near.known.sum() == sum(known and value < horizon for value, known in run)
+    assert near.value.max() <= horizon
+    others = figures([(value if value < horizon else horizon + 7, True) for value, _ in run])
+    assert contrast(near, others.before(horizon)).delta == 0
+
+
+def test_intervals_hold_the_true_ratio() -> None:
+    draws = np.random.default_rng(0)
+    held = 0
+    for _ in range(200):
+        one, other = (Figures(draws.lognormal(mean, 0.5, 40), np.ones(40, bool)) for mean in (1, 0))
+        low, high = contrast(one, other).interval
+        held += low <= np.e <= high
+    assert 180 <= held <= 200  # of 190 expected
+
+
+def test_resamples_are_even_and_independent() -> None:
+    drawn = resamples(20)
+    assert drawn.shape == (1000, 20)
+    counts = np.bincount(drawn.ravel(), minlength=20)
+    assert stats.chisquare(counts).pvalue > 0.001
+    assert (drawn == resamples(20)).all()
+    assert (drawn == resamples(20, stream=1)).mean() == pytest.approx(0.05, abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("delta", "word"), [(0.1, "negligible"), (0.2, "small"), (-0.4, "medium"), (-0.9, "large")]
+)
+def test_words_for_sizes(delta: float, word: str) -> None:
+    share = round((1 + delta) / 2 * 100)
+    run = figures([(3, True)] * share + [(1, True)] * (100 - share))
+    found = contrast(run, figures([(2, True)]))
+    assert found.delta == pytest.approx(delta, abs=0.02)
+    assert found.word == word
