@@ -12,7 +12,7 @@ TEMPORARY = ".writing-"
 """Prefix of names that mean nothing yet."""
 
 
-def write(path: Path, fill: Callable[[Path], None]) -> None:
+def write(path: Path, fill: Callable[[Path], object]) -> None:
     """Make `path` from what `fill` writes to the temporary path it is given.
 
     Raises:

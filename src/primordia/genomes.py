@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 from safetensors import SafetensorError
-from safetensors.numpy import load_file, save_file
+from safetensors.numpy import load_file, save
 
 from primordia import files
 from primordia.brain import Brain, join
@@ -30,7 +30,8 @@ def write(path: Path, brain: Brain, genomes: np.ndarray, about: dict[str, str]) 
         part = genomes[:, start : start + size].reshape(-1, *shape)
         blocks[name] = np.ascontiguousarray(part, np.float32)
         start += size
-    files.write(path, lambda temporary: save_file(blocks, temporary, metadata=about))
+    content = save(blocks, metadata=about)
+    files.write(path, lambda temporary: temporary.write_bytes(content))
 
 
 def read(paths: Sequence[str], brain: Brain) -> np.ndarray:
