@@ -6,9 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from primordia.contrast import Figures, contrast
+from primordia.comparison.contrast import Figures, contrast
+from primordia.comparison.resample import resamples
 from primordia.errors import InputError
-from primordia.resample import resamples
 
 WORLD = st.tuples(st.integers(1, 20), st.booleans())
 SOME = st.lists(WORLD, min_size=1, max_size=12)

@@ -9,12 +9,13 @@ SOURCE = Path(__file__).parent.parent / "src" / "primordia"
 
 # A module imports from rows above its own only, so those of one row know nothing of each other.
 ORDER = """
-     errors settings wide digest events tasks paint summary clades
+    errors settings wide digest events tasks paint summary clades
     keys files lines
     video
-    brain motor mutation placement metabolism resample
+    brain motor mutation placement metabolism
     world habitats device genomes
-    seasons sample habitats.* contrast
+    seasons sample habitats.cartpole_picture
+    habitats.*
     turnover
     law
     genesis
@@ -25,10 +26,13 @@ ORDER = """
     loop
     report live
     verify climate lives
-    lineage survival
-    fork life policy comparison
+    lineage
+    fork life policy
     replay
     organism
+    comparison.resample
+    comparison.contrast comparison.survival
+    comparison
     figures.style figures.series
     figures.*
     figures

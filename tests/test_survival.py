@@ -6,9 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
+from primordia.comparison.resample import interval, resamples
+from primordia.comparison.survival import survival
 from primordia.lives import ALIVE, Lives
-from primordia.resample import interval, resamples
-from primordia.survival import survival
 
 
 def restricted_mean(lives: list[tuple[int, bool]], limit: int) -> float:

@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.table import Table
 
 from primordia.comparison import OUTCOMES, Arm, Comparison
-from primordia.contrast import Bounds, Contrast
+from primordia.comparison.contrast import Bounds, Contrast
 
 DIRECTIONS = {
     "first": ("earlier", "later"),

@@ -14,12 +14,12 @@ from typing import Any
 import numpy as np
 
 from primordia import report
+from primordia.comparison.contrast import Bounds, Contrast, Figures, contrast
+from primordia.comparison.survival import Survival, survival
 from primordia.config import Config
-from primordia.contrast import Bounds, Contrast, Figures, contrast
 from primordia.directory import read_config
 from primordia.errors import InputError
 from primordia.lives import Lives, lives
-from primordia.survival import Survival, survival
 
 OUTCOMES = {
     "first": "births to first long life",

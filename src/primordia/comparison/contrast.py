@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from primordia.comparison.resample import interval, resamples
 from primordia.errors import InputError
-from primordia.resample import interval, resamples
 
 WORDS = ((0.147, "negligible"), (0.33, "small"), (0.474, "medium"))
 """What an absolute delta below this is called; above, "large" (Romano et al. 2006)."""

@@ -5,8 +5,8 @@ from functools import cached_property
 
 import numpy as np
 
+from primordia.comparison.resample import interval, resamples
 from primordia.lives import Lives
-from primordia.resample import interval, resamples
 
 
 @dataclass(frozen=True)
