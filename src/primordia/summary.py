@@ -27,39 +27,37 @@ def summary(info: dict[str, Any]) -> str:
 
 
 def _one(world: dict[str, Any]) -> list[str]:
-    extinct = f", extinct {world['extinctions']:,} times" * bool(world["extinctions"])
-    living = f"    {world['alive']:,} alive"
-    if world["alive"]:
-        living += f", mean age {world['mean_age']:,.0f}, oldest {world['oldest_age']:,}"
-    living += f"; {_when(world['saturation'], 'saturated')}"
+    times = world["extinctions"]
+    extinct = f", extinct {times:,} time{'s' * (times > 1)}" * bool(times)
     lines = [
         f"  seed {world['seed']}: {world['ticks']:,} ticks, {world['births']:,} births, "
         f"deaths: {_causes([world])}{extinct}",
-        living,
+        f"    {world['alive']:,} alive",
     ]
+    if world["alive"]:
+        lines[-1] += f", mean age {world['mean_age']:,.0f}, oldest {world['oldest_age']:,}"
     if world["fixation"]:
-        lines.append(f"    {_when(world['fixation'], 'came to descend from one ancestor')}")
-    return lines
+        lines.append(f"    came to descend from one ancestor {_when(world['fixation'])}")
+    if world["saturation"]:
+        return [*lines, f"    saturated {_when(world['saturation'])}"]
+    return [*lines, "    not saturated"]
 
 
-def _when(moment: dict[str, int] | None, what: str) -> str:
-    if moment is None:
-        return f"not {what}"
-    return f"{what} at tick {moment['tick']:,} after {moment['births']:,} births"
+def _when(moment: dict[str, int]) -> str:
+    return f"at tick {moment['tick']:,} after {moment['births']:,} births"
 
 
 def _many(worlds: list[dict[str, Any]]) -> list[str]:
     def total(name: str) -> int:
         return sum(world[name] for world in worlds)
 
-    extinct = f", {total('extinctions'):,} extinctions" * bool(total("extinctions"))
     oldest = max(world["oldest_age"] or 0 for world in worlds)
     return [
         f"  seeds {worlds[0]['seed']} to {worlds[-1]['seed']}: {total('ticks'):,} ticks, "
-        f"{total('births'):,} births, deaths: {_causes(worlds)}{extinct}",
-        f"    {total('alive'):,} alive, oldest {oldest:,}",
+        f"{total('births'):,} births, deaths: {_causes(worlds)}",
+        f"    {total('alive'):,} alive, oldest {oldest:,}; extinctions: {total('extinctions'):,}",
+        f"    {_share(worlds, 'fixation', 'of one ancestor')}",
         f"    {_share(worlds, 'saturation', 'saturated')}",
-        f"    {_share(worlds, 'fixation', 'all of one ancestor')}",
     ]
 
 
