@@ -1,4 +1,4 @@
-"""The live view: lines of descent followed, what is drawn, plain lines elsewhere, and the last words."""
+"""The live view: what is drawn, in terminals of any size; plain lines elsewhere; Ctrl-C."""
 
 import io
 import json
@@ -14,128 +14,18 @@ from typing import Any
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from rich.console import Console, ConsoleDimensions
 
-from primordia import clades, live, loop
+from primordia import live, loop
 from primordia.census import Census, Pace
 from primordia.chunk import Limits, State
-from primordia.lines import DIES, NOBODY, Lines, Turnover, turnovers
 from primordia.paint import EMPTY, Cells, Row, field, skyline, strip
 from primordia.panel import duration, short
-from primordia.summary import summary
 from primordia.wide import Wide, wide
 from primordia.world import World
 from tests import commands
 from tests.commands import COMMAND, environment, here
 from tests.worlds import MEADOW, config, engine
-
-# Lines of descent.
-
-Event = tuple[int, int, int]
-"""tick, birth number, parent or DIES"""
-
-
-@st.composite
-def histories(draw: st.DrawFn) -> list[Event]:
-    """What may happen in a small world: it begins and begins again with one founder or several."""
-    events: list[Event] = []
-    living: list[int] = []
-    born = 0
-    for tick in range(draw(st.integers(1, 40))):
-        parents = draw(st.lists(st.sampled_from(living), max_size=3)) if living else []
-        dying = draw(st.lists(st.sampled_from(living), unique=True)) if living else []
-        left = [each for each in living if each not in dying]
-        founders = 0 if left or parents else draw(st.integers(1, 3))
-        for parent in [*parents, *[NOBODY] * founders]:
-            events.append((tick, born, parent))
-            left.append(born)
-            born += 1
-        events += [(tick, number, DIES) for number in sorted(dying)]
-        living = left
-    return events
-
-
-def followed(events: list[Event], lines: Lines) -> Lines:
-    """Through a turnover, as the view does."""
-    births = [event for event in events if event[2] != DIES]
-    deaths = [event for event in events if event[2] == DIES]
-    ticks, born, parent = np.array(births, np.int64).reshape(-1, 3).T
-    dead_at, dead, _ = np.array(deaths, np.int64).reshape(-1, 3).T
-    lines.follow(Turnover(born, parent, ticks, dead, dead_at))
-    return lines
-
-
-def by_the_rule(events: list[Event], crowd: int) -> tuple[dict[int, int], int]:
-    """The line of each of the living, and takeovers: walk up from everybody after every tick."""
-    parent = {number: of for _, number, of in events if of != DIES}
-    living: set[int] = set()
-    roots: set[int] = set()
-    takeovers, young = 0, True
-    for tick in sorted({tick for tick, _, _ in events}):
-        now = [event for event in events if event[0] == tick]
-        founders = {number for _, number, of in now if of == NOBODY}
-        living |= {number for _, number, of in now if of != DIES}
-        living -= {number for _, number, of in now if of == DIES}
-        roots |= founders
-        young |= bool(founders)
-        lines = {_root(number, parent, roots) for number in living}
-        if len(living) >= crowd if young else len(lines) == 1:
-            takeovers += not young
-            roots, young = set(living), False
-    return {number: _root(number, parent, roots) for number in living}, takeovers
-
-
-def _root(number: int, parent: dict[int, int], roots: set[int]) -> int:
-    while number not in roots:
-        number = parent[number]
-    return number
-
-
-@settings(deadline=None)
-@given(histories(), st.lists(st.integers(0, 40), max_size=4), st.integers(1, 4))
-def test_lines_follow_the_rule_however_a_history_is_cut(
-    events: list[Event], cuts: list[int], crowd: int
-) -> None:
-    lines, since = Lines([], crowd), -1
-    for cut in [*sorted(cuts), 40]:
-        followed([event for event in events if since < event[0] <= cut], lines)
-        since = cut
-    assert (lines.of, lines.takeovers) == by_the_rule(events, crowd)
-
-
-@settings(deadline=None)
-@given(histories(), st.integers(1, 4))
-def test_they_are_those_of_the_figures(events: list[Event], crowd: int) -> None:
-    lines = followed(events, Lines([], crowd))
-    births = [event for event in events if event[2] != DIES]
-    born, _, parent = np.array(births, np.int64).T
-    ended = np.full(len(births), -1)
-    for tick, number, of in events:
-        ended[number] = tick if of == DIES else ended[number]
-    told = clades.lines(parent, born, ended, ended >= 0, crowd)
-    living = np.flatnonzero(ended < 0)
-    assert [lines.of[each] for each in living.tolist()] == told.of(living, np.int64(99)).tolist()
-    assert lines.takeovers == told.takeover.sum()
-
-
-def test_each_of_those_met_alive_is_a_line() -> None:
-    lines = followed([(9, 7, 3), (9, 3, DIES), (12, 8, 7)], Lines([3, 5], crowd=2))
-    assert lines.of == {5: 5, 7: 3, 8: 3}
-    followed([(13, 5, DIES)], lines)
-    assert lines.of == {7: 7, 8: 8}
-    assert lines.takeovers == 1
-
-
-def test_a_founder_after_extinction_takes_nothing_over() -> None:
-    events = [(0, 0, NOBODY), (3, 1, 0), (5, 2, NOBODY), (5, 0, DIES), (5, 1, DIES), (6, 3, 2)]
-    assert followed(events[:2], Lines([], crowd=2)).of == {0: 0, 1: 1}
-    assert followed(events[:2], Lines([], crowd=3)).of == {0: 0, 1: 0}
-    lines = followed(events, Lines([], crowd=3))
-    assert lines.of == {2: 2, 3: 2}
-    assert lines.takeovers == 0
-
 
 # What is drawn.
 
@@ -289,19 +179,6 @@ def test_who_is_followed_is_who_lives(running: tuple[str, loop.Engine]) -> None:
         assert set(lines.of) == set(number[alive].tolist())
 
 
-def test_chunks_of_any_length_give_the_same_lines() -> None:
-    found = []
-    for ticks in (7, 2**20):
-        made = meadow("ring")
-        lines, limits = Lines([], crowd=8), made.limits({"ticks": 5000})
-        while made.any_running(limits):
-            made._ticks = ticks
-            lines.follow(turnovers(made.advance(limits), 30, 1)[0])
-        found.append((lines.of, lines.takeovers))
-    assert found[0] == found[1]
-    assert found[0][1] > 0
-
-
 def test_time_left_is_that_of_the_world_which_stops_last() -> None:
     def census(tick: list[int], births: list[int]) -> Census:
         each = np.zeros(2, np.int64)
@@ -343,49 +220,6 @@ def test_plain_lines_where_there_is_no_terminal(
     assert done.stdout.endswith(f"primordia replay {tmp_path / 'run'}\n")
     quiet = here("resume", tmp_path / "run", "--ticks", 3000, "--until", "none", "--quiet")
     assert (quiet.stdout, quiet.stderr) == ("", "")
-
-
-# The last words.
-
-
-def world(**changed: Any) -> dict[str, Any]:
-    return {
-        "seed": 0, "ticks": 5000, "births": 900, "alive": 8, "mean_age": 70.0, "oldest_age": 300,
-        "deaths_by_cause": {"fatal": 890, "hazard": 2, "fault": 0}, "extinctions": 0,
-        "saturation": {"tick": 4000, "births": 800}, "fixation": None, **changed,
-    }  # fmt: skip
-
-
-def told(worlds: list[dict[str, Any]], **changed: Any) -> str:
-    base = {"task": "T", "cells": 8, "inheritance": "parent", "exact": True}
-    return summary({**base, "worlds": worlds, **changed})
-
-
-def test_the_summary_of_one_world() -> None:
-    assert told([world(fixation={"tick": 70, "births": 9}, extinctions=2)]).splitlines() == [
-        "T: 1 world of 8 cells",
-        "  seed 0: 5,000 ticks, 900 births, deaths: 890 fatal, 2 hazard, extinct 2 times",
-        "    8 alive, mean age 70, oldest 300",
-        "    came to descend from one ancestor at tick 70 after 9 births",
-        "    saturated at tick 4,000 after 800 births",
-    ]
-    empty = told([world(alive=0, saturation=None, mean_age=None, oldest_age=None)])
-    assert empty.endswith("    0 alive\n    not saturated")
-    assert "no heredity" in told([world()], inheritance="founder")
-    assert "cannot be repeated" in told([world()], exact=False)
-
-
-def test_the_summary_of_many_worlds_gives_quartiles() -> None:
-    worlds = [world(seed=n, saturation={"tick": 9, "births": 100 * n}) for n in range(9)]
-    many = told(worlds)
-    assert "9 of 9 saturated, births until then: median 400 (quartiles 200, 600)" in many
-    assert "8,100 births" in many
-    assert len(many.splitlines()) <= 6
-    half = [world(saturation=None) for _ in range(9)]
-    assert "9 of 18 saturated, births until then: median 800 (quartiles 400, later)" in told(
-        worlds + half
-    )
-    assert "0 of 9 saturated\n" in told(half) + "\n"
 
 
 # A terminal, a process, and Ctrl-C.

@@ -1,0 +1,45 @@
+"""What is said at the end of a run."""
+
+from typing import Any
+
+from primordia.summary import summary
+
+
+def world(**changed: Any) -> dict[str, Any]:
+    return {
+        "seed": 0, "ticks": 5000, "births": 900, "alive": 8, "mean_age": 70.0, "oldest_age": 300,
+        "deaths_by_cause": {"fatal": 890, "hazard": 2, "fault": 0}, "extinctions": 0,
+        "saturation": {"tick": 4000, "births": 800}, "fixation": None, **changed,
+    }  # fmt: skip
+
+
+def told(worlds: list[dict[str, Any]], **changed: Any) -> str:
+    base = {"task": "T", "cells": 8, "inheritance": "parent", "exact": True}
+    return summary({**base, "worlds": worlds, **changed})
+
+
+def test_the_summary_of_one_world() -> None:
+    assert told([world(fixation={"tick": 70, "births": 9}, extinctions=2)]).splitlines() == [
+        "T: 1 world of 8 cells",
+        "  seed 0: 5,000 ticks, 900 births, deaths: 890 fatal, 2 hazard, extinct 2 times",
+        "    8 alive, mean age 70, oldest 300",
+        "    came to descend from one ancestor at tick 70 after 9 births",
+        "    saturated at tick 4,000 after 800 births",
+    ]
+    empty = told([world(alive=0, saturation=None, mean_age=None, oldest_age=None)])
+    assert empty.endswith("    0 alive\n    not saturated")
+    assert "no heredity" in told([world()], inheritance="founder")
+    assert "cannot be repeated" in told([world()], exact=False)
+
+
+def test_the_summary_of_many_worlds_gives_quartiles() -> None:
+    worlds = [world(seed=n, saturation={"tick": 9, "births": 100 * n}) for n in range(9)]
+    many = told(worlds)
+    assert "9 of 9 saturated, births until then: median 400 (quartiles 200, 600)" in many
+    assert "8,100 births" in many
+    assert len(many.splitlines()) <= 6
+    half = [world(saturation=None) for _ in range(9)]
+    assert "9 of 18 saturated, births until then: median 800 (quartiles 400, later)" in told(
+        worlds + half
+    )
+    assert "0 of 9 saturated\n" in told(half) + "\n"
