@@ -4,8 +4,11 @@ BIN := .venv/bin
 
 .PHONY: demo test slow check format bench clean
 
-demo: .venv/installed  ## evolve pole balancers, and say what happened
-	$(BIN)/primordia run CartPole-survival
+demo: .venv/installed  ## evolve pole balancers; draw what happened, and film the longest life
+	rm -rf runs/demo
+	$(BIN)/primordia run CartPole-survival --out runs/demo
+	$(BIN)/primordia plot runs/demo
+	$(BIN)/primordia replay runs/demo
 
 test: .venv/installed-dev  ## under 10 minutes on two cores
 	$(BIN)/python -m pytest --numprocesses 2 --dist loadfile

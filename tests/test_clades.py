@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from primordia.clades import Lines, lines
+from primordia.clades import Clades, clades
 
 FEW = st.lists(st.integers(0, 30), max_size=3)
 HISTORY = st.lists(st.tuples(FEW, FEW), max_size=30)
@@ -38,9 +38,9 @@ class Walked:
             row = self.parent[row]
         return row
 
-    def lines(self, crowd: int) -> Lines:
+    def lines(self, crowd: int) -> Clades:
         columns = map(np.array, (self.parent, self.born, self.ended))
-        return lines(*columns, np.array(self.ended) >= 0, crowd)
+        return clades(*columns, np.array(self.ended) >= 0, crowd)
 
 
 @given(history=HISTORY, crowd=st.integers(1, 4))

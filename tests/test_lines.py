@@ -1,10 +1,9 @@
-"""Lines of descent as the live view follows them are what their rule says, and those of the figures."""
+"""Lines of descent as the live view follows them are what their rule says."""
 
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from primordia import clades
 from primordia.lines import DIES, NOBODY, Lines, Turnover, turnovers
 from tests import worlds
 
@@ -77,22 +76,7 @@ def test_lines_follow_the_rule_however_a_history_is_cut(
     for cut in [*sorted(cuts), 40]:
         followed([event for event in events if since < event[0] <= cut], lines)
         since = cut
-    assert (lines.of, lines.takeovers) == by_the_rule(events, crowd)
-
-
-@settings(deadline=None)
-@given(histories(), st.integers(1, 4))
-def test_they_are_those_of_the_figures(events: list[Event], crowd: int) -> None:
-    lines = followed(events, Lines([], crowd))
-    births = [event for event in events if event[2] != DIES]
-    born, _, parent = np.array(births, np.int64).T
-    ended = np.full(len(births), -1)
-    for tick, number, of in events:
-        ended[number] = tick if of == DIES else ended[number]
-    told = clades.lines(parent, born, ended, ended >= 0, crowd)
-    living = np.flatnonzero(ended < 0)
-    assert [lines.of[each] for each in living.tolist()] == told.of(living, np.int64(99)).tolist()
-    assert lines.takeovers == told.takeover.sum()
+    assert (lines.of, len(lines.takeovers)) == by_the_rule(events, crowd)
 
 
 def test_each_of_those_met_alive_is_a_line() -> None:
@@ -100,7 +84,7 @@ def test_each_of_those_met_alive_is_a_line() -> None:
     assert lines.of == {5: 5, 7: 3, 8: 3}
     followed([(13, 5, DIES)], lines)
     assert lines.of == {7: 7, 8: 8}
-    assert lines.takeovers == 1
+    assert lines.takeovers == [13]
 
 
 def test_a_founder_after_extinction_takes_nothing_over() -> None:
@@ -109,7 +93,7 @@ def test_a_founder_after_extinction_takes_nothing_over() -> None:
     assert followed(events[:2], Lines([], crowd=3)).of == {0: 0, 1: 0}
     lines = followed(events, Lines([], crowd=3))
     assert lines.of == {2: 2, 3: 2}
-    assert lines.takeovers == 0
+    assert lines.takeovers == []
 
 
 def test_chunks_of_any_length_give_the_same_lines() -> None:
@@ -122,4 +106,4 @@ def test_chunks_of_any_length_give_the_same_lines() -> None:
             lines.follow(turnovers(made.advance(limits), 16, 1)[0])
         found.append((lines.of, lines.takeovers))
     assert found[0] == found[1]
-    assert found[0][1] > 0
+    assert found[0][1]

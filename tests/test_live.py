@@ -17,10 +17,10 @@ import pytest
 from rich.console import Console, ConsoleDimensions
 
 from primordia import live, loop
-from primordia.census import Census, Pace
 from primordia.chunk import Limits, State
-from primordia.paint import EMPTY, Cells, Row, field, skyline, strip
-from primordia.panel import duration, short
+from primordia.live.census import Census, Pace
+from primordia.live.paint import EMPTY, Cells, Row, field, skyline, strip
+from primordia.live.panel import duration, short
 from primordia.wide import Wide, wide
 from primordia.world import World
 from tests import commands

@@ -9,8 +9,9 @@ SOURCE = Path(__file__).parent.parent / "src" / "primordia"
 
 # A module imports from rows above its own only, so those of one row know nothing of each other.
 ORDER = """
-    errors settings wide digest events tasks paint summary clades
+    errors settings wide digest events tasks live.paint summary
     keys files lines
+    clades
     video
     brain motor mutation placement metabolism
     world habitats device genomes
@@ -20,8 +21,8 @@ ORDER = """
     law
     genesis
     chunk
-    hosted config census
-    record panel scene
+    hosted config live.census
+    record live.panel live.scene
     checkpoint directory
     loop
     report live

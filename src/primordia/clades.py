@@ -1,14 +1,14 @@
-"""Lines of descent, told apart anew whenever one of them has taken the world over."""
+"""Lines of descent throughout the recorded past of a world; the rule is that of `lines`."""
 
-from collections import Counter
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
+from primordia.lines import Lines, Turnover
+
 
 @dataclass(frozen=True)
-class Lines:
+class Clades:
     """Who was of which line. A line is named by the row of the one that began it."""
 
     born: np.ndarray
@@ -26,16 +26,10 @@ class Lines:
         return np.where(self.born[rows] <= latest, rows, self.first[rows])
 
 
-def lines(
+def clades(
     parent_row: np.ndarray, born: np.ndarray, ended: np.ndarray, died: np.ndarray, crowd: int
-) -> Lines:
-    """Lines of descent in one world.
-
-    Founders begin a line, and children are of their parent's. Lines are told apart anew, each of
-    the living beginning one, after a tick that leaves at least `crowd` alive for the first time
-    since life began from nothing; and later, after one that leaves all the living in one line: it
-    has taken the world over. Where lines begin depends on all that was before, so this is one pass
-    over all births and deaths in their order.
+) -> Clades:
+    """Lines of descent in one world, from its beginning.
 
     Args:
         parent_row: row of each one's parent, or -1; int64 (L,), a parent before its children.
@@ -44,42 +38,7 @@ def lines(
         died: who did, bool (L,).
         crowd: how many make a world worth telling lines apart in, at least 1.
     """
-    parents, line = parent_row.tolist(), list(range(len(born)))
-    first, living, size, young = line.copy(), set[int](), Counter[int](), True
-    anew, takeover = [], []
-    for tick, newborn, dying in _events(born, ended, died):
-        for row in newborn:
-            if parents[row] < 0:
-                young = True
-            else:
-                first[row] = line[row] = line[parents[row]]
-            size[line[row]] += 1
-        for row in dying:
-            size[line[row]] -= 1
-            if not size[line[row]]:
-                del size[line[row]]
-        living.update(newborn)
-        living.difference_update(dying)
-        if len(living) >= crowd if young else len(size) == 1:
-            for row in living:
-                line[row] = row
-            size = Counter(living)
-            anew.append(tick)
-            takeover.append(not young)
-            young = False
-    return Lines(born, np.array(first), np.array(anew, np.int64), np.array(takeover, bool))
-
-
-def _events(
-    born: np.ndarray, ended: np.ndarray, died: np.ndarray
-) -> Iterator[tuple[int, range, list[int]]]:
-    """Ticks with births or deaths, in order: the rows of those born, and of those who died."""
-    dead = np.flatnonzero(died)
-    dead = dead[np.argsort(ended[dead], kind="stable")]
-    ticks = np.union1d(born, ended[dead])
-    births = np.searchsorted(born, ticks, side="right").tolist()
-    deaths = np.searchsorted(ended[dead], ticks, side="right").tolist()
-    dying, was_born, was_dead = dead.tolist(), 0, 0
-    for tick, by_birth, by_death in zip(ticks.tolist(), births, deaths, strict=True):
-        yield tick, range(was_born, by_birth), dying[was_dead:by_death]
-        was_born, was_dead = by_birth, by_death
+    lines, dead = Lines([], crowd), np.flatnonzero(died)
+    first = lines.follow(Turnover(np.arange(len(born)), parent_row, born, dead, ended[dead]))
+    anew = np.array(lines.anew, np.int64)
+    return Clades(born, np.array(first, np.int64), anew, np.isin(anew, lines.takeovers))

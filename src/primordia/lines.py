@@ -1,4 +1,4 @@
-"""Lines of descent in a living world, followed event by event; the rule is that of `clades`.
+"""Lines of descent, followed event by event: in a living world, or through the records of one.
 
 A founder begins a line; children are of their parent's. When a tick leaves a crowd alive for the first
 time since a founder, each of the living begins a line; later, when a tick leaves all the living in
@@ -41,16 +41,22 @@ class Lines:
         """Each of the `living`, by birth number, begins a line. Before genesis that is nobody."""
         self.of = {number: number for number in living}
         """line of everyone alive"""
-        self.takeovers = 0
+        self.takeovers: list[int] = []
+        """ticks after which one line was all that was left"""
+        self.anew: list[int] = []
+        """ticks after which each of the living began a line, takeovers among them"""
         self._size = dict.fromkeys(living, 1)
         self._crowd, self._young = crowd, len(living) < crowd
 
-    def follow(self, turnover: Turnover) -> None:
-        """Live through what happened. In a tick births come first: parents may die in it."""
-        now = -1
+    def follow(self, turnover: Turnover) -> list[int]:
+        """Live through what happened -> line that each one born was born into.
+
+        In a tick births come first: parents may die in it.
+        """
+        now, first = -1, []
         for tick, number, parent in _in_order(turnover):
             if tick != now and now >= 0:
-                self._end_of_tick()
+                self._end_of_tick(now)
             now = tick
             if parent == DIES:
                 line = self.of.pop(number)
@@ -62,15 +68,20 @@ class Lines:
                 self._young = True
                 self.of[number] = number
                 self._size[number] = 1
+                first.append(number)
             else:
                 line = self.of[number] = self.of[parent]
                 self._size[line] += 1
+                first.append(line)
         if now >= 0:
-            self._end_of_tick()
+            self._end_of_tick(now)
+        return first
 
-    def _end_of_tick(self) -> None:
+    def _end_of_tick(self, tick: int) -> None:
         if len(self.of) >= self._crowd if self._young else len(self._size) == 1:
-            self.takeovers += not self._young
+            self.anew.append(tick)
+            if not self._young:
+                self.takeovers.append(tick)
             self.of = {number: number for number in self.of}
             self._size = dict.fromkeys(self.of, 1)
             self._young = False

@@ -62,8 +62,8 @@ class Recorder:
         """
         for table, rows in zip(self.tables, events, strict=True):
             count = int(rows.filled)
-            if count:
-                self._add(table, np.asarray(rows.rows[:count]))
+            if count:  # cut on the host: JAX would compile a slice anew for every count
+                self._add(table, np.asarray(rows.rows)[:count].copy())
 
     def add(self, name: str, rows: np.ndarray) -> None:
         """Take rows of one table, uint32 (n, fields)."""

@@ -6,9 +6,10 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter
 
-from primordia.clades import Lines, lines
+from primordia.clades import Clades, clades
 from primordia.config import Config
 from primordia.figures import series, style
+from primordia.lines import CROWD
 from primordia.lives import Lives
 
 ROWS, COLUMNS = 800, 512
@@ -19,8 +20,6 @@ HUES = (
 )  # fmt: skip
 STRONG = np.concatenate([share * np.array([to_rgb(hue) for hue in HUES]) for share in (1, 0.6)])
 YOUNG = "#a0a0a0"
-CROWD = 16
-"""So many are first told apart: about as many lines as colours can tell."""
 PALE = 0.7
 """Share of white in the colour of a line that died out."""
 NAMED = 8
@@ -47,9 +46,9 @@ def draw(lives: Lives, config: Config, world: int) -> Figure:
     return figure
 
 
-def told_apart(lives: Lives) -> Lines:
+def told_apart(lives: Lives) -> Clades:
     """Lines of one world."""
-    return lines(lives.parent_row, lives.born, lives.ended, lives.died, crowd(lives))
+    return clades(lives.parent_row, lives.born, lives.ended, lives.died, crowd(lives))
 
 
 def crowd(lives: Lives) -> int:
@@ -70,7 +69,7 @@ def living(lives: Lives, cells: np.ndarray, ticks: np.ndarray) -> np.ndarray:
     return np.where(there, row, NOBODY)
 
 
-def picture(lives: Lives, of: Lines, cells: np.ndarray, ticks: np.ndarray) -> np.ndarray:
+def picture(lives: Lives, of: Clades, cells: np.ndarray, ticks: np.ndarray) -> np.ndarray:
     """Colour of each cell after each tick, float64 (T, N, 3); white where nobody lives."""
     found = living(lives, cells, ticks)
     lived = found != NOBODY
@@ -82,7 +81,7 @@ def picture(lives: Lives, of: Lines, cells: np.ndarray, ticks: np.ndarray) -> np
     return image
 
 
-def shades(lives: Lives, of: Lines, named: np.ndarray, size: np.ndarray) -> np.ndarray:
+def shades(lives: Lives, of: Clades, named: np.ndarray, size: np.ndarray) -> np.ndarray:
     """Colours of lines, float64 (K, 3), by their names from `_name` and sizes in the picture.
 
     Lines that were told apart together take the colours in turn, the largest first. Those that
@@ -103,7 +102,7 @@ def shades(lives: Lives, of: Lines, named: np.ndarray, size: np.ndarray) -> np.n
     return np.where(lasted[:, None], colour, 1 - (1 - colour) * (1 - PALE))
 
 
-def _name(lives: Lives, of: Lines, rows: np.ndarray, ticks: np.ndarray) -> np.ndarray:
+def _name(lives: Lives, of: Clades, rows: np.ndarray, ticks: np.ndarray) -> np.ndarray:
     """Of lines (T, N), each time they are told apart anew: era x number of lives + line."""
     era = np.searchsorted(of.anew, ticks, side="right")[:, None]
     return era * len(lives) + of.of(rows, ticks[:, None])
@@ -138,7 +137,7 @@ def _time(axes: Axes, lives: Lives) -> None:
     right.spines["right"].set_visible(False)
 
 
-def _point_out(axes: Axes, lives: Lives, of: Lines) -> None:
+def _point_out(axes: Axes, lives: Lives, of: Clades) -> None:
     """Where lines were told apart anew, and why."""
     for number, (tick, takeover) in enumerate(zip(of.anew, of.takeover, strict=True)):
         if number and (not takeover or of.takeover[:number].sum() >= NAMED):

@@ -6,9 +6,9 @@ import numpy as np
 from rich.segment import Segment
 from rich.style import Style
 
-from primordia.census import Census
 from primordia.config import Config
-from primordia.paint import FAINT, Row
+from primordia.live.census import Census
+from primordia.live.paint import FAINT, Row
 from primordia.world import Cause
 
 STRONG = Style(bold=True)

@@ -10,12 +10,12 @@ from rich.console import Console, ConsoleOptions, RenderResult
 from rich.live import Live
 from rich.segment import Segment
 
-from primordia.census import Census, Pace
 from primordia.lines import CROWD, Lines, Turnover, turnovers
+from primordia.live.census import Census, Pace
+from primordia.live.paint import FAINT, Row
+from primordia.live.panel import Tempo, heading, numbers, saturation, short
+from primordia.live.scene import Room, scene
 from primordia.loop import Listener, Status
-from primordia.paint import FAINT, Row
-from primordia.panel import Tempo, heading, numbers, saturation, short
-from primordia.scene import Room, scene
 from primordia.wide import to_host
 
 
@@ -136,7 +136,7 @@ class View:
         left = self._pace.seconds_left(status.limits) if status.limits else None
         tempo = Tempo(self._pace.organism_ticks(), left)
         known = len(self._lines) == law.worlds and not self._missed
-        takeovers = sum(lines.takeovers for lines in self._lines) if known else None
+        takeovers = sum(len(lines.takeovers) for lines in self._lines) if known else None
         below = numbers(census, law.cells, tempo, takeovers, width)
         below.append(saturation(census, law.cells, law.saturation_ticks, width))
         spare = height - len(below) - 3

@@ -7,7 +7,7 @@ from rich.segment import Segment
 
 from primordia.law import Law
 from primordia.lines import Lines
-from primordia.paint import EMPTY, FAINT, Cells, Row, field, skyline, strip
+from primordia.live.paint import EMPTY, FAINT, Cells, Row, field, skyline, strip
 from primordia.wide import Wide, to_host
 from primordia.world import World
 

@@ -1,0 +1,77 @@
+"""Every command and block of code in README and docs is run, in order, as a reader would."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from primordia.config import load
+from tests import commands
+
+HERE = Path(__file__).parent.parent
+PAGES = [HERE / "README.md", *sorted((HERE / "docs").glob("*.md"))]
+BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+FILE = re.compile(r"# ([\w-]+\.\w+)\n")
+"""A block that begins so is the file of that name."""
+
+
+def blocks(page: Path) -> list[tuple[str, str]]:
+    return BLOCK.findall(page.read_text(encoding="utf-8"))
+
+
+def with_blocks() -> list[Path]:
+    return [page for page in PAGES if blocks(page)]
+
+
+def environment() -> dict[str, str]:
+    here = commands.environment(commands.CACHE)
+    return {**here, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
+
+
+def run(words: list[str], where: Path) -> None:
+    done = subprocess.run(
+        words, cwd=where, env=environment(), capture_output=True, text=True, timeout=300
+    )
+    assert done.returncode == 0, f"{words[-1]}\n{done.stdout}{done.stderr}"
+
+
+def try_out(kind: str, text: str, where: Path) -> None:
+    """Do what a reader does with a block."""
+    if named := FILE.match(text):
+        (where / named[1]).write_text(text)
+    if kind == "sh" and text.startswith("make "):
+        for line in text.splitlines():
+            run(["make", "-n", "-C", str(HERE), line.split()[1]], where)
+    elif kind == "sh":
+        run(["bash", "-ec", text], where)
+    elif kind == "python":
+        run([sys.executable, "-c", text], where)
+    elif kind == "toml":
+        file = where / "block.toml"
+        file.write_text(text)
+        sys.path.insert(0, str(where))  # where a habitat of the page's own may be
+        load(str(file))
+        sys.path.remove(str(where))
+
+
+@pytest.mark.parametrize("page", with_blocks(), ids=lambda page: page.stem)
+def test_everything_a_page_says_to_do_works(page: Path, tmp_path: Path) -> None:
+    for kind, text in blocks(page):
+        assert kind in {"sh", "python", "toml", "text"}, f"{page}: what is a block of {kind}?"
+        try_out(kind, text, tmp_path)
+
+
+def test_pages_link_to_what_is_there() -> None:
+    for page in PAGES:
+        text = page.read_text(encoding="utf-8")
+        for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)|src=\"([^\":]+)\"", text):
+            path = page.parent / (target[0] or target[1])
+            assert path.exists(), f"{page.name} links to {path}"
+
+
+def test_the_pictures_of_the_readme_are_small() -> None:
+    pictures = list((HERE / "docs" / "pictures").iterdir())
+    assert sum(picture.stat().st_size for picture in pictures) < 1_000_000
