@@ -1,24 +1,27 @@
 from collections.abc import Iterator
 from pathlib import Path
 
+import jax
 import pytest
 
-from primordia import loop, verify
+from primordia import fork, loop, verify
 from tests import commands, worlds
 
 
 @pytest.fixture(autouse=True, scope="session")
 def _compiled_code(tmp_path_factory: pytest.TempPathFactory) -> None:
-    """One cache of compiled code for all commands that tests run."""
+    """One cache of compiled code for all processes of the tests and all commands they run."""
     root = tmp_path_factory.getbasetemp()
     shared = root.parent if root.name.startswith("popen") else root
     commands.CACHE = Path(shared) / "compiled"
+    jax.config.update("jax_compilation_cache_dir", str(commands.CACHE))
+    jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.2)
 
 
 @pytest.fixture(scope="module")
 def compiled_once() -> Iterator[None]:
     """Runs in this process share what is compiled where only seeds and limits differ."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(loop, "Engine", worlds.engine)
-        patch.setattr(verify, "Engine", worlds.engine)
+        for module in (loop, verify, fork):
+            patch.setattr(module, "Engine", worlds.engine)
         yield
