@@ -10,7 +10,9 @@ SOURCE = Path(__file__).parent.parent / "src" / "primordia"
 # A module imports from rows above its own only, so those of one row know nothing of each other.
 ORDER = """
     errors settings wide digest events tasks live.paint summary
-    keys files lines
+    keys files lines pool.board conditions
+    pool.worker pool.arcade
+    pool
     clades
     video
     brain motor mutation placement metabolism

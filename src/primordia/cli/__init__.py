@@ -9,14 +9,23 @@ from primordia.cli.say import say
 from primordia.errors import InputError, Trouble
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+class Commands(click.Group):
+    """Lists its commands in the order in which one needs them."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """As they were added."""
+        return list(self.commands)
+
+
+@click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(package_name="primordia")
 def commands() -> None:
     """Natural selection in any simulator: no reward, no fitness, no generations.
 
     \b
     primordia run CartPole-survival      evolve; Ctrl-C stops it, nothing is lost
-    primordia info runs/...              what happened
+    primordia plot runs/...              figures of what happened
+    primordia replay runs/...            the longest life on video
     primordia resume runs/...            go on
     """
 

@@ -78,7 +78,7 @@ def resume(run: Path, quiet: bool, **options: Any) -> None:
     _drive(run, quiet, drive)
 
 
-@click.command(cls=SettingsCommand)
+@click.command(cls=SettingsCommand, short_help="Replay the tape of a run from a tick.")
 @run_argument
 @click.option("--at", type=int, required=True, metavar="TICK", help="At the end of which tick.")
 @out_option

@@ -22,7 +22,7 @@ def info(run: Path, as_json: bool) -> None:
     click.echo(json.dumps(found) if as_json else summary(found))
 
 
-@click.command()
+@click.command(short_help="Draw figures of a run.")
 @run_argument
 @click.option("--out", type=click.Path(path_type=Path), help="Folder for them [RUN/figures].")
 @click.option("--world", default=0, help="Whose lines of descent are drawn [0].")
@@ -34,7 +34,7 @@ def plot(run: Path, out: Path | None, world: int) -> None:
         click.echo(path)
 
 
-@click.command()
+@click.command(short_help="A life on video.")
 @run_argument
 @click.option("--organism", type=int, help="Birth number [who lived longest].")
 @click.option(
@@ -55,7 +55,7 @@ def replay(
     click.echo(show(run, organism.id, organism.world, out, (begin, end)))
 
 
-@click.command()
+@click.command(short_help="Write genomes to a file, to start from.")
 @run_argument
 @click.option(
     "--organism", "organisms", type=int, multiple=True, help="Birth number; may be repeated."
@@ -81,7 +81,7 @@ def _who(run: Path, organism: int | None, world: int | None) -> Any:
     return Run(run).oldest(world) if organism is None else Run(run).organism(organism, world or 0)
 
 
-@click.command()
+@click.command(short_help="Live a run again, and compare.")
 @run_argument
 @device_option
 def verify(run: Path, device: str) -> None:
@@ -103,7 +103,7 @@ def tasks() -> None:
         click.echo(f"{name:28} {values.get('about', '')}")
 
 
-@click.command()
+@click.command(short_help="Runs of one task side by side.")
 @click.argument("runs", nargs=-1, metavar="REFERENCE RUN...", type=click.Path(path_type=Path))
 @click.option(
     "--births", type=click.IntRange(1), help="Count as saturated only before so many births."

@@ -18,7 +18,10 @@ from primordia.motor import Continuous, Discrete
 if TYPE_CHECKING:
     from PIL.Image import Image
 
-KNOWN = {"cartpole": "primordia.habitats.cartpole:CartPole"}
+KNOWN = {
+    "cartpole": "primordia.habitats.cartpole:CartPole",
+    "atari": "primordia.habitats.atari:Atari",
+}
 
 Bodies: TypeAlias = Any
 """A tree of arrays, each with cells as its first axis."""

@@ -1,0 +1,230 @@
+"""Any Atari game as a habitat, sensed through the console's memory.
+
+Schmidgall & Hays 2021, "Atari": RAM as sense, one frame a tick, the game's minimal action set, no sticky
+actions. What is fatal and what is food are conditions on RAM, points and lives. The game is the Arcade
+Learning Environment's (extra `primordia[atari]`).
+"""
+
+import difflib
+from collections.abc import Mapping
+from functools import cache, cached_property
+from typing import Any
+
+import numpy as np
+from pydantic import Field, PrivateAttr, field_validator, model_validator
+
+from primordia import conditions
+from primordia.conditions import Expression, Names
+from primordia.habitats import Outcome
+from primordia.motor import Discrete
+from primordia.pool import Pool
+from primordia.pool.arcade import FIELDS, RAM
+from primordia.settings import Settings
+
+NAMES: Names = {
+    "ram": RAM,
+    "points": "amount",
+    "lives": "amount",
+    "lives_lost": "amount",
+    "game_over": "condition",
+}
+"""What conditions can speak of: RAM and lives after the tick, points and lives lost in it."""
+
+
+class Atari(Settings):
+    """A game as a habitat: senses are bytes of RAM, (byte - 128) / 128."""
+
+    game: str = Field(description="the game's name, such as pong or space_invaders")
+    senses: tuple[int, ...] = Field(
+        (), strict=False, description="addresses perceived, 0 to 127; none given: all 128"
+    )
+    blind: bool = Field(False, description="senses are constant (a control)")
+    fatal: str = Field("game_over", description="condition that ends a life")
+    food: str = Field("0", description="amount gathered in a tick")
+    actions: str = Field(
+        "minimal", description="minimal, full, or names with spaces between, such as NOOP UPFIRE"
+    )
+    frame_skip: int = Field(1, ge=1, le=100, description="frames a tick")
+    sticky: float = Field(
+        0.0, ge=0, lt=1, description="probability that a frame repeats the last button"
+    )
+    noops: int = Field(0, ge=0, le=10_000, description="a life begins after up to so many no-ops")
+    mode: int | None = Field(None, ge=0, description="the game's mode")
+    difficulty: int | None = Field(None, ge=0, description="the game's difficulty")
+
+    _pool: Pool = PrivateAttr()
+    _lives: np.ndarray = PrivateAttr()
+    """of the tick before, (N,)"""
+
+    @field_validator("senses")
+    @classmethod
+    def _addresses(cls, senses: tuple[int, ...]) -> tuple[int, ...]:
+        for address in senses:
+            if not 0 <= address < RAM:
+                raise ValueError(f"RAM goes from 0 to {RAM - 1}; there is no address {address}")
+        return senses
+
+    @model_validator(mode="after")
+    def _can_be_played(self) -> "Atari":
+        known = minimal_actions(self.game)
+        if lacking := [name for name in self._names if name not in legal_actions()]:
+            raise ValueError(
+                f"actions: there is no {', '.join(lacking)}; {self.game} takes {', '.join(known)}"
+            )
+        for option in ("mode", "difficulty"):
+            value, available = getattr(self, option), available_options(self.game)[option]
+            if value is not None and value not in available:
+                raise ValueError(f"{option}: {self.game} has {available}, not {value}")
+        assert self._is_fatal
+        assert self._is_food
+        return self
+
+    @cached_property
+    def _is_fatal(self) -> Expression:
+        return conditions.parse(self.fatal, "condition", NAMES)
+
+    @cached_property
+    def _is_food(self) -> Expression:
+        return conditions.parse(self.food, "amount", NAMES)
+
+    @property
+    def senses_size(self) -> int:
+        """How many bytes are perceived."""
+        return len(self._addresses_seen)
+
+    @cached_property
+    def _addresses_seen(self) -> np.ndarray:
+        return np.array(self.senses or range(RAM))
+
+    @property
+    def _names(self) -> list[str]:
+        """Of the actions, in order."""
+        if self.actions in ("minimal", "full"):
+            known = minimal_actions(self.game) if self.actions == "minimal" else legal_actions()
+            return list(known)
+        return self.actions.split()
+
+    @cached_property
+    def _buttons(self) -> list[int]:
+        """Codes of the actions."""
+        return [legal_actions()[name] for name in self._names]
+
+    @property
+    def action(self) -> Discrete:
+        """A button."""
+        return Discrete(len(self._buttons))
+
+    @property
+    def words(self) -> int:
+        """For no-ops and sticky actions."""
+        return 2
+
+    def open(self, cells: int) -> None:
+        """Start the emulators."""
+        settings = {
+            **self.model_dump(
+                include={"game", "mode", "difficulty", "frame_skip", "sticky", "noops"}
+            ),
+            "actions": self._buttons,
+        }
+        self._pool = Pool("primordia.pool.arcade:Arcade", settings, FIELDS, cells)
+        self._lives = np.zeros(cells, np.int32)
+
+    def reset(self, born: np.ndarray, words: np.ndarray) -> np.ndarray:
+        """A game from its start for each newborn."""
+        pool, todo = self._pool, np.zeros(len(self._lives), bool)
+        todo[born] = True
+        pool.arrays["words"][born] = words
+        pool.reset(todo)
+        self._lives[born] = pool.arrays["lives"][born]
+        return self._sensed()[born]
+
+    def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
+        """One tick of the games that are played."""
+        pool = self._pool
+        pool.arrays["action"][:] = action
+        pool.step(alive)
+        values = {name: pool.arrays[name] for name in ("ram", "points", "lives", "game_over")}
+        values["lives_lost"] = np.maximum(self._lives - values["lives"], 0)
+        self._lives[:] = values["lives"]
+        values["ram"] = values["ram"].astype(np.int32)
+        fatal: Any = np.broadcast_to(self._is_fatal(values), alive.shape)
+        food: Any = np.broadcast_to(np.asarray(self._is_food(values), np.float32), alive.shape)
+        return self._sensed(), Outcome(fatal, food)
+
+    def _sensed(self) -> np.ndarray:
+        """Float32 (N, S)."""
+        seen = self._pool.arrays["ram"][:, self._addresses_seen]
+        if self.blind:
+            return np.ones(seen.shape, np.float32)
+        return (seen.astype(np.float32) - np.float32(128)) * np.float32(1 / 128)
+
+    def save(self) -> dict[str, np.ndarray]:
+        """Serialised states, padded to one length: uint8 (N, L), and their lengths."""
+        states = self._pool.save()
+        lengths = np.array([len(state) for state in states])
+        padded = np.zeros((len(states), lengths.max()), np.uint8)
+        for row, state in zip(padded, states, strict=True):
+            row[: len(state)] = np.frombuffer(state, np.uint8)
+        return {"states": padded, "lengths": lengths, "lives": self._lives.copy()}
+
+    def load(self, arrays: dict[str, np.ndarray]) -> None:
+        """Take back what `save` gave."""
+        pairs = zip(arrays["states"], arrays["lengths"], strict=True)
+        self._pool.load([row[:length].tobytes() for row, length in pairs])
+        self._lives[:] = arrays["lives"]
+
+
+@cache
+def _ale() -> Any:
+    """The ale_py package.
+
+    Raises:
+        ValueError: it is not installed.
+    """
+    try:
+        import ale_py
+    except ImportError:
+        raise ValueError("Atari games need ale-py: pip install 'primordia[atari]'") from None
+    return ale_py
+
+
+@cache
+def games() -> list[str]:
+    """Names of the games there are."""
+    return sorted(_ale().roms.get_all_rom_ids())
+
+
+@cache
+def _facts(game: str) -> tuple[Mapping[str, int], Mapping[str, list[int]]]:
+    """Minimal action set; modes and difficulties.
+
+    Raises:
+        ValueError: there is no such game.
+    """
+    from primordia.pool.arcade import console
+
+    if game not in games():
+        close = difflib.get_close_matches(game.lower().replace("-", "_"), games(), 3)
+        known = f"did you mean {', '.join(close)}?" if close else f"known: {', '.join(games())}"
+        raise ValueError(f"there is no game {game!r}; {known}")
+    ale = console(game)
+    minimal = {action.name: int(action.value) for action in ale.getMinimalActionSet()}
+    options = {"mode": ale.getAvailableModes(), "difficulty": ale.getAvailableDifficulties()}
+    return minimal, {name: list(map(int, values)) for name, values in options.items()}
+
+
+def minimal_actions(game: str) -> Mapping[str, int]:
+    """Names and codes of the actions that do something in a game."""
+    return _facts(game)[0]
+
+
+def available_options(game: str) -> Mapping[str, list[int]]:
+    """Its modes and difficulties."""
+    return _facts(game)[1]
+
+
+@cache
+def legal_actions() -> Mapping[str, int]:
+    """Names and codes of all 18 actions."""
+    return {name: int(action.value) for name, action in _ale().Action.__members__.items()}

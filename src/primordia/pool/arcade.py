@@ -1,0 +1,128 @@
+"""One Atari game a cell, on the Arcade Learning Environment (Bellemare et al. 2013); runs in workers.
+
+A life begins in the state after the game's reset, which is cloned once and restored at each birth (a
+reset takes as long as some 60 frames), plus no-ops if asked for. The emulator itself draws nothing at
+random: sticky actions are ours, from a counter that begins with the organism's random words.
+"""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from ale_py import ALEInterface
+
+RAM = 128
+"""bytes of an Atari 2600"""
+FIELDS = {
+    "action": ("int32", ()),
+    "words": ("uint32", (2,)),
+    "ram": ("uint8", (RAM,)),
+    "points": ("float32", ()),
+    "lives": ("int32", ()),
+    "game_over": ("bool", ()),
+}
+NOOP = 0
+
+
+def console(
+    game: str, mode: int | None = None, difficulty: int | None = None, seed: int = 0
+) -> "ALEInterface":
+    """A fresh emulator with a game: no frame skip, no sticky actions, no time limit of its own."""
+    from ale_py import ALEInterface, LoggerMode, roms
+
+    ALEInterface.setLoggerMode(LoggerMode.Error)
+    ale = ALEInterface()
+    ale.setInt("random_seed", seed)
+    ale.setFloat("repeat_action_probability", 0.0)
+    ale.setInt("frame_skip", 1)
+    ale.setInt("max_num_frames_per_episode", 0)
+    ale.loadROM(str(roms.get_rom_path(game)))
+    if mode is not None:
+        ale.setMode(mode)
+    if difficulty is not None:
+        ale.setDifficulty(difficulty)
+    ale.reset_game()
+    return ale
+
+
+class Arcade:
+    """The emulators of one worker's cells."""
+
+    def __init__(
+        self,
+        arrays: dict[str, np.ndarray],
+        cells: range,
+        game: str,
+        actions: list[int],
+        mode: int | None,
+        difficulty: int | None,
+        frame_skip: int,
+        sticky: float,
+        noops: int,
+    ) -> None:
+        self._arrays, self._actions = arrays, actions
+        self._skip, self._sticky, self._noops = frame_skip, round(sticky * 2**32), noops
+        self._ale = {cell: console(game, mode, difficulty) for cell in cells}
+        self._ram = {cell: arrays["ram"][cell] for cell in cells}
+        self._start = next(iter(self._ale.values())).cloneState()
+        self._dice = dict.fromkeys(cells, 0)
+        self._held = dict.fromkeys(cells, NOOP)
+
+    def step(self, cell: int) -> None:
+        """Frames of one tick; points are summed over them."""
+        ale, arrays = self._ale[cell], self._arrays
+        action, points = self._actions[arrays["action"][cell]], 0
+        for _ in range(self._skip):
+            if self._sticky:
+                action = self._pressed(cell, action)
+            points += ale.act(action)
+        ale.getRAM(self._ram[cell])
+        arrays["points"][cell] = points
+        arrays["lives"][cell] = ale.lives()
+        arrays["game_over"][cell] = ale.game_over(with_truncation=False)
+
+    def _pressed(self, cell: int, action: int) -> int:
+        """The button that is down in this frame: with some probability still the one before."""
+        self._dice[cell], word = _next(self._dice[cell])
+        if word >= self._sticky:
+            self._held[cell] = action
+        return self._held[cell]
+
+    def reset(self, cell: int) -> None:
+        """From the start, or after up to `noops` frames of waiting."""
+        ale, words = self._ale[cell], self._arrays["words"][cell].tolist()
+        ale.restoreState(self._start)
+        for _ in range(words[0] % (self._noops + 1)):
+            ale.act(NOOP)
+        self._dice[cell], self._held[cell] = words[0] << 32 | words[1], NOOP
+        self._show(cell)
+
+    def _show(self, cell: int) -> None:
+        """Fill the cell's row with how things stand, no points made."""
+        ale, arrays = self._ale[cell], self._arrays
+        ale.getRAM(self._ram[cell])
+        arrays["points"][cell] = 0
+        arrays["lives"][cell] = ale.lives()
+        arrays["game_over"][cell] = ale.game_over(with_truncation=False)
+
+    def save(self, cell: int) -> bytes:
+        """Dice, the button held, and the emulator's serialised state."""
+        state = self._ale[cell].cloneState().serialize()
+        return self._dice[cell].to_bytes(8, "little") + bytes([self._held[cell]]) + state
+
+    def load(self, cell: int, state: bytes) -> None:
+        """Take back what `save` gave."""
+        from ale_py import ALEState
+
+        self._dice[cell], self._held[cell] = int.from_bytes(state[:8], "little"), state[8]
+        self._ale[cell].restoreState(ALEState(state[9:]))
+        self._show(cell)
+
+
+def _next(dice: int) -> tuple[int, int]:
+    """SplitMix64 (Steele, Lea & Flood 2014): the next state, and 32 random bits."""
+    dice = (dice + 0x9E3779B97F4A7C15) % 2**64
+    z = ((dice ^ dice >> 30) * 0xBF58476D1CE4E5B9) % 2**64
+    z = ((z ^ z >> 27) * 0x94D049BB133111EB) % 2**64
+    return dice, (z ^ z >> 31) >> 32

@@ -1,0 +1,95 @@
+"""A worker process: keeps the simulators of its cells, and does with them what the run asks for.
+
+    python -m primordia.pool.worker
+
+Asked by single bytes on standard input, answered by single bytes on standard output. When the run is
+gone, whatever became of it, standard input ends, and so does the worker. JAX is not loaded here.
+"""
+
+import json
+import mmap
+import os
+import signal
+import sys
+from importlib import import_module
+from typing import Any, Protocol
+
+import numpy as np
+
+from primordia.pool import board
+from primordia.pool.board import LOAD, READY, RESET, SAVE, STEP
+
+
+class Simulator(Protocol):
+    """What a worker keeps: the simulators of some cells. Rows of `arrays` are theirs to fill."""
+
+    def __init__(self, arrays: dict[str, np.ndarray], cells: range, **settings: Any) -> None: ...
+
+    def step(self, cell: int) -> None:
+        """One tick, with what the cell's row says."""
+
+    def reset(self, cell: int) -> None:
+        """A new life, from the cell's random words."""
+
+    def save(self, cell: int) -> bytes:
+        """All that is needed to go on exactly."""
+
+    def load(self, cell: int, state: bytes) -> None:
+        """Take back what `save` gave."""
+
+
+def main() -> None:
+    """Set up as the first line says, then do as asked until the run is gone."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the run's to hear
+    asked, answers = sys.stdin.buffer, os.fdopen(os.dup(1), "wb", buffering=0)
+    os.dup2(2, 1)  # what libraries print is not an answer
+    setup = json.loads(asked.readline())
+    cells = range(setup["first"], setup["cells"], setup["every"])
+    memory = mmap.mmap(setup["memory"], setup["size"])
+    arrays = board.arrays(memory, setup["fields"], setup["cells"])
+    module, _, name = setup["simulator"].partition(":")
+    simulator = getattr(import_module(module), name)(arrays, cells, **setup["settings"])
+    answers.write(READY)
+    serve(simulator, arrays["todo"], cells, asked, answers)
+
+
+def serve(simulator: Simulator, todo: np.ndarray, cells: range, asked: Any, answers: Any) -> None:
+    """Answer until nothing more is asked."""
+    unbuffered = asked.fileno()
+    own = np.arange(cells.start, cells.stop, cells.step)
+    while command := os.read(unbuffered, 1):
+        if command == STEP:
+            for cell in own[todo[own]].tolist():
+                simulator.step(cell)
+        elif command == RESET:
+            for cell in own[todo[own]].tolist():
+                simulator.reset(cell)
+        elif command == SAVE:
+            for cell in own.tolist():
+                state = simulator.save(cell)
+                _write(answers, len(state).to_bytes(4, "little") + state)
+        elif command == LOAD:
+            for cell in own.tolist():
+                length = int.from_bytes(_read(unbuffered, 4), "little")
+                simulator.load(cell, _read(unbuffered, length))
+        answers.write(READY)
+
+
+def _write(answers: Any, data: bytes) -> None:
+    while data:
+        data = data[answers.write(data) :]
+
+
+def _read(descriptor: int, count: int) -> bytes:
+    parts, left = [], count
+    while left:
+        part = os.read(descriptor, left)
+        if not part:
+            raise EOFError
+        parts.append(part)
+        left -= len(part)
+    return b"".join(parts)
+
+
+if __name__ == "__main__":
+    main()

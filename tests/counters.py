@@ -1,0 +1,43 @@
+"""A simulator for tests of the pool: each cell counts, and can be told to fail."""
+
+import os
+import time
+
+import numpy as np
+
+FIELDS = {"add": ("int64", ()), "total": ("int64", ()), "who": ("int64", ())}
+
+
+class Counters:
+    """`total` grows by `add`; adding -1 raises, -2 ends the process, -3 sleeps."""
+
+    def __init__(self, arrays: dict[str, np.ndarray], cells: range, start: int) -> None:
+        self._arrays, self._start = arrays, start
+        self._total = dict.fromkeys(cells, 0)
+
+    def step(self, cell: int) -> None:
+        add = int(self._arrays["add"][cell])
+        if add == -1:
+            raise ValueError("told to fail")
+        if add == -2:
+            os._exit(7)
+        if add == -3:
+            time.sleep(100)
+        self._total[cell] += add
+        self._show(cell)
+
+    def _show(self, cell: int) -> None:
+        self._arrays["total"][cell] = self._total[cell]
+        self._arrays["who"][cell] = os.getpid()
+
+    def reset(self, cell: int) -> None:
+        self._total[cell] = self._start
+        self._show(cell)
+
+    def save(self, cell: int) -> bytes:
+        return str(self._total[cell]).encode() * (cell + 1)
+
+    def load(self, cell: int, state: bytes) -> None:
+        text = state.decode()
+        self._total[cell] = int(text[: len(text) // (cell + 1)])
+        self._show(cell)

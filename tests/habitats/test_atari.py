@@ -1,0 +1,191 @@
+"""Atari games as habitats: exact states, what is sensed, what is fatal, what is food, and bad input."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import primordia
+from primordia.habitats.atari import Atari, games
+from primordia.pool import board
+from primordia.pool.arcade import FIELDS, Arcade, console
+from primordia.verify import verify
+from tests.commands import complains, here
+
+ale_py = pytest.importorskip("ale_py")
+
+PAPERS = ["pong", "boxing", "space_invaders", "battle_zone", "breakout", "freeway"]
+
+
+@pytest.mark.parametrize("game", PAPERS)
+def test_a_clone_goes_on_as_the_original(game: str) -> None:
+    """Clone, serialise, restore elsewhere, go on: the same RAM and points for 2,000 frames."""
+    one, other = console(game), console(game)
+    buttons = [action.value for action in one.getMinimalActionSet()]
+    for frame in range(500):
+        one.act(buttons[frame * 7 % len(buttons)])
+    other.restoreState(ale_py.ALEState(one.cloneState().serialize()))
+    for frame in range(2000):
+        button = buttons[(frame * frame // 3) % len(buttons)]
+        assert one.act(button) == other.act(button)
+        assert np.array_equal(one.getRAM(), other.getRAM()), frame
+        assert one.lives() == other.lives()
+    assert one.cloneState().serialize() == other.cloneState().serialize()
+
+
+def arcade(cells: int = 2, **options: Any) -> tuple[Arcade, dict[str, np.ndarray]]:
+    """Emulators in this process."""
+    arrays = {name: np.zeros((cells, *shape), dtype) for name, (dtype, shape) in FIELDS.items()}
+    settings = {"game": "pong", "actions": [0, 2, 3], "mode": None, "difficulty": None,
+                "frame_skip": 1, "sticky": 0.0, "noops": 0} | options  # fmt: skip
+    return Arcade(arrays, range(cells), **settings), arrays
+
+
+def played(made: Arcade, arrays: dict[str, np.ndarray], ticks: int, cell: int = 0) -> list[bytes]:
+    """RAM after each tick of some fixed play."""
+    seen = []
+    for tick in range(ticks):
+        arrays["action"][cell] = tick // 9 % 3
+        made.step(cell)
+        seen.append(arrays["ram"][cell].tobytes())
+    return seen
+
+
+def test_a_life_depends_on_its_words_alone() -> None:
+    """Whatever was played in the cell before, and in whichever cell."""
+    options = {"sticky": 0.25, "noops": 30, "frame_skip": 2}
+    (one, a), (other, b) = arcade(**options), arcade(**options)
+    played(other, b, 70, cell=1)
+    for cell, arrays, made in ((0, a, one), (1, b, other)):
+        arrays["words"][cell] = (17, 12345)
+        made.reset(cell)
+    assert a["ram"][0].tobytes() == b["ram"][1].tobytes()
+    assert played(one, a, 300, cell=0) == played(other, b, 300, cell=1)
+
+
+def test_saved_lives_go_on_elsewhere() -> None:
+    options = {"sticky": 0.25}
+    (one, a), (other, b) = arcade(**options), arcade(**options)
+    a["words"][0] = (1, 2)
+    one.reset(0)
+    played(one, a, 100)
+    other.load(1, one.save(0))
+    assert played(one, a, 300, cell=0) == played(other, b, 300, cell=1)
+    assert one.save(0) == other.save(1)
+
+
+def test_no_ops_are_drawn_from_none_to_all() -> None:
+    made, arrays = arcade(noops=3)
+    frames = set()
+    for word in range(40):
+        arrays["words"][0] = (word, 0)
+        made.reset(0)
+        frames.add(made._ale[0].getEpisodeFrameNumber())
+    assert len(frames) == 4
+
+
+def test_sticky_buttons_stay_down_as_often_as_asked() -> None:
+    made, _ = arcade(sticky=0.25)
+    asked = np.random.default_rng(0).integers(0, 3, 20_000).tolist()
+    changed = sum(made._pressed(0, action) == action for action in asked)
+    # A button is as asked when it is not stuck, or stuck at the same by chance (1 in 3).
+    assert changed / len(asked) == pytest.approx(0.75 + 0.25 / 3, abs=0.02)
+
+
+class Played:
+    """A habitat with two cells in a pool."""
+
+    def __init__(self, **settings: Any) -> None:
+        self.habitat = Atari(**settings)
+        self.habitat.open(2)
+        both = np.array([0, 1])
+        self.senses = self.habitat.reset(both, np.zeros((2, 2), np.uint32))
+
+    def until(self, name: str, most: int = 3000) -> tuple[int, Any]:
+        """Step, doing nothing, until the first body has it."""
+        for tick in range(1, most):
+            _, outcome = self.habitat.step(np.zeros(2, np.int32), np.ones(2, bool))
+            if np.asarray(getattr(outcome, name))[0]:
+                return tick, outcome
+        raise AssertionError(f"no {name} in {most} ticks")
+
+
+def test_senses_are_the_bytes_asked_for_scaled() -> None:
+    some, all_, blind = (
+        Played(game="pong", **each) for each in ({"senses": [51, 49]}, {}, {"blind": True})
+    )
+    ram = all_.habitat._pool.arrays["ram"][0].astype(float)
+    np.testing.assert_array_equal(all_.senses[0], (ram - 128) / 128)
+    np.testing.assert_array_equal(some.senses, all_.senses[:, [51, 49]])
+    assert some.habitat.senses_size == 2
+    assert (blind.senses == 1).all()
+    assert blind.senses.shape == (2, 128)
+
+
+def test_a_point_against_is_fatal_if_it_is_said_to_be() -> None:
+    first, _ = Played(game="pong", fatal="points < 0").until("fatal")
+    second, _ = Played(game="pong", fatal="ram[13] == 2").until("fatal")
+    assert first < second  # the opponent's score stands in RAM 13
+
+
+def test_food_is_what_is_said_to_be() -> None:
+    tick, outcome = Played(game="pong", food="3 * max(-points, 0)").until("food")
+    assert outcome.food[0] == 3.0
+    assert tick > 10
+    assert outcome.food.dtype == np.float32
+
+
+def test_a_life_lost_is_noticed() -> None:
+    played_ = Played(game="breakout", fatal="lives_lost > 0", actions="FIRE")
+    tick, _ = played_.until("fatal")
+    assert tick > 20
+
+
+def test_runs_are_exact(tmp_path: Path) -> None:
+    """In chunks, over a resume, and lived again."""
+    settings = {"cells": 4, "habitat": {"sticky": 0.1, "noops": 5}, "hazard": 0.005}
+    whole = primordia.run("Pong-survival", tmp_path / "whole", **settings, stop={"ticks": 300})
+    half = primordia.run("Pong-survival", tmp_path / "half", **settings, stop={"ticks": 130})
+    half.resume(ticks=300)
+    assert half.info()["digest"] == whole.info()["digest"]
+    assert verify(half.path) == []
+    fork = whole.fork(200, tmp_path / "fork")
+    assert fork.info()["births"] == whole.info()["births"]
+
+
+@pytest.mark.parametrize(
+    ("flags", "says"),
+    [
+        (["--habitat.game", "pongg"], "there is no game 'pongg'; did you mean pong"),
+        (["--habitat.game", "xyzzy"], "known: adventure"),
+        (["--habitat.senses", "[3, 128]"], "there is no address 128"),
+        (["--habitat.fatal", "points <"], "'points <' cannot be read at column"),
+        (["--habitat.fatal", "ram[200] == 1"], "ram goes from ram[0] to ram[127]"),
+        (["--habitat.food", "lives and points"], "where a condition is needed"),
+        (["--habitat.actions", "NOOP JUMP"], "there is no JUMP; pong takes NOOP, FIRE"),
+        (["--habitat.mode", "77"], "mode: pong has [0, 1], not 77"),
+        (["--habitat.sticky", "1.5"], "habitat.sticky"),
+    ],
+)
+def test_bad_input(flags: list[str], says: str, tmp_path: Path) -> None:
+    complains(here("run", "Pong-survival", *flags, "--out", tmp_path / "run"), 2, says)
+    assert not (tmp_path / "run").exists()
+
+
+def test_without_the_extra(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    import sys
+
+    from primordia.habitats import atari
+
+    for cached in (atari._ale, atari.games, atari._facts, atari.legal_actions):
+        cached.cache_clear()
+    monkeypatch.setitem(sys.modules, "ale_py", None)
+    done = here("run", "Pong-survival", "--out", tmp_path / "run")
+    complains(done, 2, "pip install 'primordia[atari]'")
+
+
+def test_games_are_many() -> None:
+    assert {"pong", "battle_zone", "space_invaders"} < set(games())
+    assert len(games()) > 100
+    assert board.size(FIELDS, 2) > 0
