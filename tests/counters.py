@@ -15,7 +15,11 @@ class Counters:
         self._arrays, self._start = arrays, start
         self._total = dict.fromkeys(cells, 0)
 
-    def step(self, cell: int) -> None:
+    def step(self, cells: list[int]) -> None:
+        for cell in cells:
+            self._step(cell)
+
+    def _step(self, cell: int) -> None:
         add = int(self._arrays["add"][cell])
         if add == -1:
             raise ValueError("told to fail")

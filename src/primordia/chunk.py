@@ -98,7 +98,7 @@ def _advance(
 
     def until_something_happens(carry: tuple) -> tuple:
         state, events, live_worlds, done = carry
-        at_most = jnp.minimum(ticks - done, _ticks_left(law, state.world, limits, live_worlds))
+        at_most = jnp.minimum(ticks - done, ticks_left(law, state.world, limits, live_worlds))
         state, fates, passed = _quiet(law, habitat, state, live_worlds, at_most)
         world, events, born = settle(law, state.world, events, fates, passed, live_worlds)
         state = State(world, _embody(law, habitat, world, state.bodies, born))
@@ -109,7 +109,7 @@ def _advance(
     return state, events, done
 
 
-def _ticks_left(law: Law, world: World, limits: Limits, live_worlds: Array) -> Array:
+def ticks_left(law: Law, world: World, limits: Limits, live_worlds: Array) -> Array:
     """Ticks until a limit or something else falls due in a running world, int32 ()."""
     to_limit = jnp.where(live_worlds, world.worlds.tick.until(limits.ticks), 2**31 - 1).min()
     return jnp.minimum(to_limit, quiet_ticks(law, world, live_worlds))

@@ -1,8 +1,8 @@
 """Chunks with a habitat that runs on the host: one compiled call a tick, the habitat between them.
 
-The call settles a tick and at once thinks the next one for those who live on; that thought is not yet
-part of the state, so a chunk may end anywhere. Only ticks with births take a second call, for
-the newborn's first thought.
+The call judges a tick and at once thinks the next one. A quiet tick needs no more; one with an event, or
+in which something falls due, is settled by a second call, and the newborn take a third for their first
+thought. What ticks change is kept beside the state until it is settled, so a chunk may end anywhere.
 """
 
 from functools import partial
@@ -14,24 +14,36 @@ import numpy as np
 from jax import Array, lax
 
 from primordia import events as log
-from primordia.chunk import Limits, State, named_leaves, running
+from primordia.brain import Genome
+from primordia.chunk import Limits, State, named_leaves, running, ticks_left
 from primordia.events import Events
 from primordia.genesis import birth_words
 from primordia.habitats import HostHabitat, Outcome
-from primordia.law import Law, judge, keys_of, lifeless, no_fates, rest, settle, think
+from primordia.law import Fates, Law, judge, keys_of, lifeless, no_fates, rest, settle, think
+from primordia.wide import Wide
 from primordia.world import World
 
 
 class Thought(NamedTuple):
-    """What `think` changes, kept beside the state until the tick is lived."""
+    """What `think` gives."""
 
     memory: Array
     faulty: Array
     action: Array
 
 
+class Lived(NamedTuple):
+    """What ticks have changed since the world was settled, (C,) or (W,)."""
+
+    memory: Array
+    faulty: Array
+    energy: Array
+    eaten: Array
+    food: Wide
+
+
 class Decision(NamedTuple):
-    """What the host needs of a tick."""
+    """What the host needs of a tick that is settled."""
 
     active: Array
     """bool (C,): who is to be stepped next"""
@@ -41,6 +53,8 @@ class Decision(NamedTuple):
     """uint32 (C, words) to make it from"""
     go_on: Array
     """bool (): some world runs, and the lists have room"""
+    due: Array
+    """int32 (): ticks after which the world is to be settled at the latest"""
 
 
 class Hosted:
@@ -49,8 +63,9 @@ class Hosted:
     def __init__(self, law: Law, habitat: HostHabitat) -> None:
         self.exact = getattr(habitat, "exact", True)
         self._law, self._habitat = law, habitat
-        self._tick = jax.jit(partial(_tick, law, habitat.words), donate_argnums=(0, 1))
         self._think = jax.jit(partial(_think, law))
+        self._live = jax.jit(partial(_live, law))
+        self._settle = jax.jit(partial(_settle, law, habitat.words), donate_argnums=(0, 1))
         self._genesis = jax.jit(partial(_genesis, law, habitat.words), donate_argnums=(0, 1))
         habitat.open(law.worlds * law.cells)
 
@@ -69,19 +84,41 @@ class Hosted:
         """
         events = Events(*(rows._replace(filled=jnp.int32(0)) for rows in events))
         world, events, decision = self._genesis(state.world, events, limits)
-        senses = self._embody(np.array(state.bodies), decision)
-        thought, done = self._think(world, senses), 0
+        senses, done = self._embody(np.array(state.bodies), decision), 0
+        thought = self._think(world, senses)
         while done < ticks and decision.go_on:
-            action = np.asarray(thought.action)
-            senses, outcome = self._habitat.step(action, np.asarray(decision.active))
-            world, events, thought, decision = self._tick(
-                world, events, thought, senses, outcome, limits
+            most = min(int(decision.due), ticks - done)
+            thought, senses, lived, fates, passed = self._quiet(
+                world, thought, np.asarray(decision.active), most
+            )
+            done += passed
+            organisms = world.organisms
+            bare = World(organisms._replace(genome={}), world.worlds)
+            world, events, decision = self._settle(
+                organisms.genome, events, bare, lived, fates, jnp.int32(passed), limits
             )
             if np.asarray(decision.born).any():
                 senses = self._embody(senses, decision)
                 thought = self._think(world, senses)
-            done += 1
         return State(world, senses), events, done
+
+    def _quiet(
+        self, world: World, thought: Thought, active: np.ndarray, most: int
+    ) -> tuple[Thought, np.ndarray, Lived, Fates, int]:
+        """Ticks up to and with the first eventful one, at most so many.
+
+        Returns:
+            what is thought next, senses, what was lived, fates of the last tick, how many ticks.
+        """
+        lived = _nothing_lived(world)
+        for passed in range(1, most + 1):
+            senses, outcome = self._habitat.step(np.asarray(thought.action), active)
+            lived, thought, fates = self._live(
+                world, lived, thought, senses, outcome, active, np.int32(passed)
+            )
+            if fates.eventful:
+                break
+        return thought, senses, lived, fates, passed
 
     def _embody(self, senses: np.ndarray, decision: Decision) -> np.ndarray:
         born = np.flatnonzero(decision.born)
@@ -112,6 +149,40 @@ def _think(law: Law, world: World, senses: Array) -> Thought:
     return Thought(after.organisms.memory, after.organisms.faulty, action)
 
 
+def _nothing_lived(world: World) -> Lived:
+    organisms = world.organisms
+    changed = organisms.memory, organisms.faulty, organisms.energy, organisms.eaten
+    return Lived(*changed, world.worlds.food)
+
+
+def _with(world: World, lived: Lived) -> World:
+    """A world as it was settled, with what was lived since."""
+    changed = lived._asdict()
+    food = changed.pop("food")
+    return World(world.organisms._replace(**changed), world.worlds._replace(food=food))
+
+
+def _live(
+    law: Law,
+    world: World,
+    lived: Lived,
+    thought: Thought,
+    senses: Array,
+    outcome: Outcome,
+    active: Array,
+    passed: Array,
+) -> tuple[Lived, Thought, Fates]:
+    """The tick so many after the last settled one is judged, and the next one thought."""
+    before = _with(world, lived._replace(memory=thought.memory, faulty=thought.faulty))
+    lost = ~jnp.isfinite(senses).all(axis=1)
+    fault = lost if outcome.fault is None else lost | outcome.fault
+    keys = keys_of(world.worlds, passed)
+    after, fates = judge(law, before, outcome._replace(fault=fault), keys, active)
+    next_, action = think(law, after, senses, keys_of(world.worlds, passed + 1))
+    thought = Thought(next_.organisms.memory, next_.organisms.faulty, action)
+    return _nothing_lived(after), thought, fates
+
+
 def _genesis(
     law: Law, words: int, world: World, events: Events, limits: Limits
 ) -> tuple[World, Events, Decision]:
@@ -128,28 +199,25 @@ def _genesis(
     return world, events, _decide(law, words, world, events, born, limits)
 
 
-def _tick(
+def _settle(
     law: Law,
     words: int,
-    world: World,
+    genome: Genome,
     events: Events,
-    thought: Thought,
-    senses: Array,
-    outcome: Outcome,
+    world: World,
+    lived: Lived,
+    fates: Fates,
+    passed: Array,
     limits: Limits,
-) -> tuple[World, Events, Thought, Decision]:
+) -> tuple[World, Events, Decision]:
+    """Bring a world (its genome apart, which is used up) up to date by what was lived."""
+    before = World(world.organisms._replace(genome=genome), world.worlds)
     live_worlds = running(world.worlds, limits)
-    active = world.organisms.alive & law.per_cell(live_worlds)
-    organisms = world.organisms._replace(memory=thought.memory, faulty=thought.faulty)
-    lost = ~jnp.isfinite(senses).all(axis=1)
-    fault = lost if outcome.fault is None else lost | outcome.fault
-    keys = keys_of(world.worlds, jnp.int32(1))
-    after = World(organisms, world.worlds)
-    after, fates = judge(law, after, outcome._replace(fault=fault), keys, active)
-    world = World(rest(world.organisms, after.organisms, active), after.worlds)
-    world, events, born = settle(law, world, events, fates, jnp.int32(1), live_worlds)
-    decision = _decide(law, words, world, events, born, limits)
-    return world, events, _think(law, world, senses), decision
+    active = before.organisms.alive & law.per_cell(live_worlds)
+    after = _with(before, lived)
+    world = World(rest(before.organisms, after.organisms, active), after.worlds)
+    world, events, born = settle(law, world, events, fates, passed, live_worlds)
+    return world, events, _decide(law, words, world, events, born, limits)
 
 
 def _decide(
@@ -162,4 +230,5 @@ def _decide(
         born=born,
         words=birth_words(law, world.worlds, born.any(), words),
         go_on=live_worlds.any() & room,
+        due=ticks_left(law, world, limits, live_worlds),
     )

@@ -47,7 +47,7 @@ def played(made: Arcade, arrays: dict[str, np.ndarray], ticks: int, cell: int = 
     seen = []
     for tick in range(ticks):
         arrays["action"][cell] = tick // 9 % 3
-        made.step(cell)
+        made.step([cell])
         seen.append(arrays["ram"][cell].tobytes())
     return seen
 

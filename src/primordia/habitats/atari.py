@@ -148,8 +148,10 @@ class Atari(Settings):
         values["lives_lost"] = np.maximum(self._lives - values["lives"], 0)
         self._lives[:] = values["lives"]
         values["ram"] = values["ram"].astype(np.int32)
-        fatal: Any = np.broadcast_to(self._is_fatal(values), alive.shape)
-        food: Any = np.broadcast_to(np.asarray(self._is_food(values), np.float32), alive.shape)
+        fatal: Any = np.broadcast_to(self._is_fatal(values), self._lives.shape)
+        food: Any = np.broadcast_to(
+            np.asarray(self._is_food(values), np.float32), self._lives.shape
+        )
         return self._sensed(), Outcome(fatal, food)
 
     def _sensed(self) -> np.ndarray:

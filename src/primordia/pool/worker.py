@@ -11,6 +11,7 @@ import mmap
 import os
 import signal
 import sys
+from contextlib import suppress
 from importlib import import_module
 from typing import Any, Protocol
 
@@ -25,8 +26,8 @@ class Simulator(Protocol):
 
     def __init__(self, arrays: dict[str, np.ndarray], cells: range, **settings: Any) -> None: ...
 
-    def step(self, cell: int) -> None:
-        """One tick, with what the cell's row says."""
+    def step(self, cells: list[int]) -> None:
+        """One tick of each of these cells, with what their rows say."""
 
     def reset(self, cell: int) -> None:
         """A new life, from the cell's random words."""
@@ -41,6 +42,7 @@ class Simulator(Protocol):
 def main() -> None:
     """Set up as the first line says, then do as asked until the run is gone."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the run's to hear
+    _let_others_go_on()
     asked, answers = sys.stdin.buffer, os.fdopen(os.dup(1), "wb", buffering=0)
     os.dup2(2, 1)  # what libraries print is not an answer
     setup = json.loads(asked.readline())
@@ -53,14 +55,23 @@ def main() -> None:
     serve(simulator, arrays["todo"], cells, asked, answers)
 
 
+def _let_others_go_on() -> None:
+    """Not take the core from the run at once when woken: it has other workers to wake still.
+
+    Measured for 128 games on two cores: the second worker began 0.4 ms after the first.
+    """
+    if hasattr(os, "SCHED_BATCH"):
+        with suppress(OSError):
+            os.sched_setscheduler(0, os.SCHED_BATCH, os.sched_param(0))
+
+
 def serve(simulator: Simulator, todo: np.ndarray, cells: range, asked: Any, answers: Any) -> None:
     """Answer until nothing more is asked."""
     unbuffered = asked.fileno()
     own = np.arange(cells.start, cells.stop, cells.step)
     while command := os.read(unbuffered, 1):
         if command == STEP:
-            for cell in own[todo[own]].tolist():
-                simulator.step(cell)
+            simulator.step(own[todo[own]].tolist())
         elif command == RESET:
             for cell in own[todo[own]].tolist():
                 simulator.reset(cell)
