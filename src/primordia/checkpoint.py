@@ -18,12 +18,13 @@ import numpy as np
 
 from primordia import files
 from primordia.errors import Trouble
+from primordia.genomes import FOUNDERS
 from primordia.record import TABLES, Recorder
 
 KEPT = 2
 """Checkpoints kept; should the newest be damaged, the one before serves."""
 ORIGIN = "origin"
-INPUTS = ("config.toml", "founders.safetensors")
+INPUTS = ("config.toml", FOUNDERS)
 """What a run cannot go on without, beside its checkpoints."""
 
 

@@ -1,5 +1,6 @@
 """The settings that seasons change, as they stood in a world at any tick of its past."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import jax
@@ -15,21 +16,27 @@ from primordia.sample import climate_columns, climate_values
 
 
 def climate_at(
-    run: Path, config: Config, law: Law, world: int, ticks: np.ndarray
-) -> dict[str, np.ndarray]:
-    """What was in force in some ticks: dotted setting -> float32 (n,), as named in the metrics.
+    run: Path, config: Config, law: Law, world: int
+) -> Callable[[np.ndarray], dict[str, np.ndarray]]:
+    """What was in force: a function of ticks (n,) -> dotted setting, as in the metrics -> float32 (n,).
 
-    A season that acts at the end of tick t is first felt in tick t + 1, and its sample bears t.
+    The records are read once. A season that acts at the end of tick t is first felt in tick t + 1,
+    and its sample bears t.
     """
     start = _at_the_beginning(run, law, world)
-    found = {name: np.full(len(ticks), value, np.float32) for name, value in start.items()}
-    if config.seasons:
-        metrics = table(run, "metrics")
+    metrics = table(run, "metrics") if config.seasons else None
+    if metrics is not None:
         metrics = metrics.filter(pc.equal(metrics["world"], world))
-        row = np.searchsorted(metrics["tick"].to_numpy(), ticks, side="left") - 1
-        for name, values in found.items():
-            values[row >= 0] = metrics[name].to_numpy()[row[row >= 0]]
-    return found
+
+    def at(ticks: np.ndarray) -> dict[str, np.ndarray]:
+        found = {name: np.full(len(ticks), value, np.float32) for name, value in start.items()}
+        if metrics is not None:
+            row = np.searchsorted(metrics["tick"].to_numpy(), ticks, side="left") - 1
+            for name, values in found.items():
+                values[row >= 0] = metrics[name].to_numpy()[row[row >= 0]]
+        return found
+
+    return at
 
 
 def _at_the_beginning(run: Path, law: Law, world: int) -> dict[str, np.float32]:

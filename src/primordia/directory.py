@@ -15,7 +15,6 @@ from primordia.record import TABLES
 
 FORMAT = 1
 """Of run directories; a higher one is refused."""
-FOUNDERS = "founders.safetensors"
 
 
 @contextmanager
@@ -33,8 +32,8 @@ def new(run: Path, config: Config) -> Iterator[None]:
         _write_text(run / "versions.json", json.dumps(versions, indent=1))
         if config.ancestors:
             brain = config.build_brain(config.build_habitat())
-            genomes.write(run / FOUNDERS, brain, genomes.read(config.ancestors, brain), {})
-            config = config.model_copy(update={"ancestors": (FOUNDERS,)})
+            genomes.write(run / genomes.FOUNDERS, brain, genomes.read(config.ancestors, brain), {})
+            config = config.model_copy(update={"ancestors": (genomes.FOUNDERS,)})
         _write_text(run / "config.toml", config.to_toml())
         yield
 

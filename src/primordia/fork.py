@@ -18,7 +18,7 @@ from primordia.config import Config, ForkedFrom, from_toml, merged, validated
 from primordia.errors import InputError, Trouble
 from primordia.genesis import climate, looks
 from primordia.lives import Lives, lives
-from primordia.loop import Engine, Listener, Status
+from primordia.loop import Engine
 from primordia.metabolism import fixed
 from primordia.record import Recorder
 from primordia.report import opened, world_ticks
@@ -29,9 +29,7 @@ INNOCENT = {"stop", "origin", "about", "sample_every"}
 """Settings that do not change what happens in a world."""
 
 
-def fork(
-    source: Path, at: int, out: Path, settings: dict[str, Any], listen: Listener | None = None
-) -> None:
+def fork(source: Path, at: int, out: Path, settings: dict[str, Any]) -> None:
     """Make a run that begins where another stood at the end of tick `at`; it is not yet driven on.
 
     Args:
@@ -39,7 +37,6 @@ def fork(
         at: tick, lived through by all worlds.
         out: directory to make.
         settings: changed settings, as nested tables; a changed `seed` draws another future.
-        listen: called while the source is lived again up to the tick.
 
     Raises:
         InputError: no such tick, a setting that cannot change in a living world, or `out` is taken.
@@ -51,7 +48,7 @@ def fork(
     ticks = int(world_ticks(last.arrays()).min())
     if not 1 <= at <= ticks:
         raise InputError(f"--at {at}: {source} can be forked at any tick from 1 to {ticks}")
-    before = _stood_at(source, config, at, listen)
+    before = _stood_at(source, config, at)
     living = _living(lives(source), before, config, at)
     after = _transplanted(before, config, changed, at)
     recorder = Recorder(out, changed.seeds, changed.cells, after.law.blocks)
@@ -68,7 +65,7 @@ def _changed(source: Path, settings: dict[str, Any], at: int) -> Config:
     return validated(values, source=str(source))
 
 
-def _stood_at(source: Path, config: Config, at: int, listen: Listener | None) -> Engine:
+def _stood_at(source: Path, config: Config, at: int) -> Engine:
     """The source at the end of a tick: from the newest checkpoint before it, or lived again."""
     engine, limits = Engine(config), {"ticks": at}
     for stored in checkpoint.whole(source):
@@ -84,8 +81,6 @@ def _stood_at(source: Path, config: Config, at: int, listen: Listener | None) ->
         raise InputError(f"{source} is not exact, so it cannot be lived again up to tick {at}")
     while engine.any_running(engine.limits(limits)):
         engine.advance(engine.limits(limits))
-        if listen is not None:
-            listen(Status(engine, 0.0))
     return engine
 
 

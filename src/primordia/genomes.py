@@ -14,6 +14,8 @@ from primordia import files
 from primordia.brain import Brain, join
 from primordia.errors import InputError
 
+FOUNDERS = "founders.safetensors"
+"""What a run that starts from ancestors keeps them in."""
 MOST = 2**16
 """Ancestors of one run; the arithmetic that takes them in turn is in 32 bits."""
 

@@ -3,9 +3,9 @@
 Nothing else enters (the first of the promises), so the neighbours need not live again with it.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -153,9 +153,13 @@ class Life:
         """In which ticks its body is recorded to have met its end."""
         return (ticks == self.ends) & (self.cause is Cause.FATAL)
 
+    @cached_property
+    def _climate(self) -> Callable[[np.ndarray], dict[str, np.ndarray]]:
+        return climate_at(self.run, self.config, self.law, self.world)
+
     def _rates(self, ticks: np.ndarray) -> Rates:
         """The metabolism in force, float32 (n,) each."""
-        climate = climate_at(self.run, self.config, self.law, self.world, ticks)
+        climate = self._climate(ticks)
         return Rates(*(jnp.asarray(climate[f"metabolism.{name}"]) for name in Rates._fields))
 
 

@@ -48,7 +48,7 @@ def rebuild(run: Path, organism: int, world: int = 0) -> np.ndarray:
         if older.any():
             genome = genome_in(origin, law, line.take(older).id[-1], world)
         line = line.take(~older)
-    climate = climate_at(run, config, law, world, line.born)
+    climate = climate_at(run, config, law, world)(line.born)
     with np.errstate(over="ignore", invalid="ignore"):  # a genome may have come to infinity
         return _replay(law, config, line, climate, genome)
 

@@ -70,7 +70,7 @@ def table(run: Path, name: str) -> pa.Table:
 def _table(run: Path, name: str, config: Config, last: Checkpoint) -> pa.Table:
     assert name in TABLES
     parts = [pq.read_table(run / name / each["name"]) for each in last.manifest["segments"][name]]
-    blocks = config.build_law(config.build_habitat()).blocks
+    blocks = list(config.build_brain(config.build_habitat()).blocks)
     recorder = Recorder(None, config.seeds, config.cells, blocks)
     parts.append(recorder.arrow(name, last.arrays()[f"tail.{name}"]))
     return pa.concat_tables(parts)
