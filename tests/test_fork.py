@@ -9,6 +9,7 @@ import pytest
 import primordia
 from primordia import checkpoint, loop
 from primordia.errors import InputError
+from primordia.figures.survival import quarters
 from primordia.lives import lives
 from primordia.verify import verify
 from tests.commands import complains, here
@@ -161,6 +162,16 @@ def test_a_habitat_on_the_host(tmp_path: Path) -> None:
     fork = primordia.load(tmp_path / "run").fork(90, tmp_path / "fork")
     assert same(tmp_path / "run", fork.path)
     assert verify(fork.path) == []
+
+
+def test_figures_of_a_fork_leave_nobody_out(poles: Path, tmp_path: Path) -> None:
+    """Its birth numbers do not begin at 0, nor are they without gaps."""
+    fork = primordia.load(poles).fork(1500, tmp_path / "fork", seed=2)
+    found = lives(fork.path)
+    assert found.id[-1] > len(found)
+    assert sum(map(len, quarters(found))) == len(found)
+    assert found.rank.tolist() == list(range(len(found)))
+    assert len(fork.plot()) == 8
 
 
 @pytest.mark.parametrize("at", [0, -1, 3001])

@@ -45,6 +45,14 @@ class Lives:
         return self.ended - self.born
 
     @property
+    def rank(self) -> np.ndarray:
+        """Place in its world's order of birth, from 0, int64 (L,).
+
+        That is the birth number, but not in a fork, whose records leave out who had died before it.
+        """
+        return np.arange(len(self)) - np.searchsorted(self.world, self.world)
+
+    @property
     def died(self) -> np.ndarray:
         """Who is not alive, bool (L,)."""
         return self.cause != ALIVE

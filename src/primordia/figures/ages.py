@@ -48,7 +48,7 @@ def _over_births(axes: Axes, worlds: list[Lives]) -> None:
 
 
 def _of_the_dead(axes: Axes, lives: Lives) -> None:
-    number, lifespan, died = lives.id + 1, lives.lifespan, lives.died
+    number, lifespan, died = lives.rank + 1, lives.lifespan, lives.died
     for who, colour in ((died, style.SKY), (~died, style.ORANGE)):
         some = np.flatnonzero(who)[:: int(who.sum()) // DOTS + 1]
         axes.plot(

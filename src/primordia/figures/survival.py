@@ -36,7 +36,7 @@ def draw(lives: Lives) -> Figure:
 def quarters(lives: Lives) -> list[Lives]:
     """Those born in each quarter of their own world's births so far."""
     births = np.bincount(lives.world)[lives.world]
-    quarter = lives.id * len(COHORTS) // births
+    quarter = lives.rank * len(COHORTS) // births
     return [lives.take(quarter == number) for number in range(len(COHORTS))]
 
 
