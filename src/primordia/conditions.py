@@ -105,7 +105,7 @@ class _Reader:
         index = node.slice.value if isinstance(node.slice, ast.Constant) else None
         if type(index) is not int or not 0 <= index < count:
             raise self._error(node, f"{name} goes from {name}[0] to {name}[{count - 1}]")
-        return "amount", lambda values: values[name][:, index]
+        return "amount", lambda values: _exact(values[name][:, index])
 
     def _read_binop(self, node: ast.BinOp) -> tuple[Kind, Compute]:
         if (act := SUMS.get(type(node.op))) is None:
@@ -158,6 +158,11 @@ class _Reader:
 
     def _error(self, node: ast.expr, message: str) -> ValueError:
         return ValueError(f"{self._text!r}, column {node.col_offset + 1}: {message}")
+
+
+def _exact(column: np.ndarray) -> np.ndarray:
+    """Bytes and other small integers do not overflow when reckoned with."""
+    return column.astype(np.int64) if column.dtype.kind in "iu" else column
 
 
 def _a(kind: Kind) -> str:

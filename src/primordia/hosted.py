@@ -23,6 +23,10 @@ from primordia.law import Fates, Law, judge, keys_of, lifeless, no_fates, rest, 
 from primordia.wide import Wide
 from primordia.world import World
 
+# Small calls are computed in the thread that makes them and waits for them: handing them to another costs
+# a third of their time. Read when JAX makes its first array.
+jax.config.update("jax_cpu_enable_async_dispatch", False)  # type: ignore[no-untyped-call]
+
 
 class Thought(NamedTuple):
     """What `think` gives."""
@@ -89,7 +93,7 @@ class Hosted:
         while done < ticks and decision.go_on:
             most = min(int(decision.due), ticks - done)
             thought, senses, lived, fates, passed = self._quiet(
-                world, thought, np.asarray(decision.active), most
+                world, thought, decision.active, most
             )
             done += passed
             organisms = world.organisms
@@ -103,16 +107,16 @@ class Hosted:
         return State(world, senses), events, done
 
     def _quiet(
-        self, world: World, thought: Thought, active: np.ndarray, most: int
+        self, world: World, thought: Thought, active: Array, most: int
     ) -> tuple[Thought, np.ndarray, Lived, Fates, int]:
         """Ticks up to and with the first eventful one, at most so many.
 
         Returns:
             what is thought next, senses, what was lived, fates of the last tick, how many ticks.
         """
-        lived = _nothing_lived(world)
+        lived, alive = _nothing_lived(world), np.asarray(active)
         for passed in range(1, most + 1):
-            senses, outcome = self._habitat.step(np.asarray(thought.action), active)
+            senses, outcome = self._habitat.step(np.asarray(thought.action), alive)
             lived, thought, fates = self._live(
                 world, lived, thought, senses, outcome, active, np.int32(passed)
             )

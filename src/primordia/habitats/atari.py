@@ -29,6 +29,8 @@ NAMES: Names = {
     "game_over": "condition",
 }
 """What conditions can speak of: RAM and lives after the tick, points and lives lost in it."""
+SCALED = (np.arange(256, dtype=np.float32) - 128) / 128
+"""How a byte is perceived."""
 
 
 class Atari(Settings):
@@ -147,7 +149,6 @@ class Atari(Settings):
         values = {name: pool.arrays[name] for name in ("ram", "points", "lives", "game_over")}
         values["lives_lost"] = np.maximum(self._lives - values["lives"], 0)
         self._lives[:] = values["lives"]
-        values["ram"] = values["ram"].astype(np.int32)
         fatal: Any = np.broadcast_to(self._is_fatal(values), self._lives.shape)
         food: Any = np.broadcast_to(
             np.asarray(self._is_food(values), np.float32), self._lives.shape
@@ -156,10 +157,10 @@ class Atari(Settings):
 
     def _sensed(self) -> np.ndarray:
         """Float32 (N, S)."""
-        seen = self._pool.arrays["ram"][:, self._addresses_seen]
         if self.blind:
-            return np.ones(seen.shape, np.float32)
-        return (seen.astype(np.float32) - np.float32(128)) * np.float32(1 / 128)
+            return np.ones((len(self._lives), self.senses_size), np.float32)
+        ram = self._pool.arrays["ram"]
+        return SCALED.take(ram[:, self._addresses_seen] if self.senses else ram)
 
     def save(self) -> dict[str, np.ndarray]:
         """Serialised states, padded to one length: uint8 (N, L), and their lengths."""
