@@ -17,7 +17,7 @@ ORDER = """
     video
     brain motor mutation placement metabolism
     world habitats device genomes
-    seasons sample habitats.cartpole_picture
+    seasons sample tallies habitats.cartpole_picture
     habitats.*
     turnover
     law

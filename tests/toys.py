@@ -112,6 +112,34 @@ class Mirror:
         self.bodies = np.array(arrays["mirror"])
 
 
+class Clocked(Mirror):
+    """It counts the ticks lived, up and down."""
+
+    tallies = "ticks", "ticks_down"
+
+    def open(self, cells: int) -> None:
+        super().open(cells)
+        self.clock = np.zeros(cells, np.int32)
+
+    def reset(self, born: np.ndarray, words: np.ndarray) -> np.ndarray:
+        self.clock[born] = 0
+        return super().reset(born, words)
+
+    def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
+        self.clock += alive
+        return super().step(action, alive)
+
+    def tally(self) -> np.ndarray:
+        return np.stack([self.clock, -self.clock], axis=1)
+
+    def save(self) -> dict[str, np.ndarray]:
+        return {**super().save(), "tally": self.tally()}
+
+    def load(self, arrays: dict[str, np.ndarray]) -> None:
+        super().load(arrays)
+        self.clock = np.array(arrays["tally"][:, 0])
+
+
 class HostCartPole:
     """CartPole in plain NumPy, float64, a loop over cells: a simulator as people write them."""
 

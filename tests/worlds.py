@@ -8,8 +8,7 @@ from primordia.chunk import Fused
 from primordia.config import Config, load, merged, validated
 from primordia.digest import digests
 from primordia.genesis import begin
-from primordia.loop import Engine
-from primordia.record import Recorder
+from primordia.loop import Engine, recorder_for
 
 MEADOW: dict[str, Any] = {"task": "meadow", "habitat": {"name": "tests.toys:Meadow"}, "cells": 16}
 MILL: dict[str, Any] = {
@@ -77,7 +76,7 @@ class Lived:
         if any(begun):
             seeds = [config.seed + world for world in range(config.seeds)]
             self.engine.state = self.engine.chunks.begin(begin(self.engine.law, seeds, *begun))
-        self.recorder = Recorder(None, config.seeds, config.cells, self.engine.law.blocks)
+        self.recorder = recorder_for(self.engine, None)
         self.rows: dict[str, list[np.ndarray]] = {"births": [], "deaths": [], "metrics": []}
         self.on(ticks, chunk, **stop)
 

@@ -17,6 +17,7 @@ from primordia.events import Events
 from primordia.genesis import birth_words
 from primordia.habitats import Bodies, Habitat
 from primordia.law import Fates, Law, judge, keys_of, no_fates, quiet_ticks, rest, settle, think
+from primordia.sample import width
 from primordia.wide import Wide, happened
 from primordia.world import World, Worlds
 
@@ -44,7 +45,7 @@ def running(worlds: Worlds, limits: Limits) -> Array:
 
 
 class Fused:
-    """Law and habitat in one compiled loop. State and lists given to it are used up."""
+    """Law and habitat in one compiled loop. A state given to it is used up."""
 
     exact = True
     """Whether a run goes on exactly from a checkpoint."""
@@ -52,22 +53,18 @@ class Fused:
     def __init__(self, law: Law, habitat: Habitat) -> None:
         self._law, self._habitat = law, habitat
         self._advance = jax.jit(partial(_advance, law, habitat), donate_argnums=(0, 1))
+        self.events = log.empty(law.worlds * law.cells, law.worlds, width(law.blocks))
+        """of the latest chunk"""
 
     def begin(self, world: World) -> State:
         """The state of a run before genesis."""
         words = jnp.zeros((len(world.organisms.alive), self._habitat.words), jnp.uint32)
         return State(world, self._habitat.reset(words))
 
-    def advance(
-        self, state: State, events: Events, limits: Limits, ticks: int
-    ) -> tuple[State, Events, int]:
-        """At most so many ticks, fewer if every world stops or the lists are full.
-
-        Returns:
-            state, what happened, ticks done.
-        """
-        state, events, done = self._advance(state, events, limits, jnp.int32(ticks))
-        return state, events, int(done)
+    def advance(self, state: State, limits: Limits, ticks: int) -> tuple[State, int]:
+        """At most so many ticks, fewer if every world stops or the lists are full -> ticks done."""
+        state, self.events, done = self._advance(state, self.events, limits, jnp.int32(ticks))
+        return state, int(done)
 
     def save(self, state: State) -> dict[str, np.ndarray]:
         """All that is needed to go on exactly, by name."""

@@ -18,9 +18,8 @@ from primordia.config import Config, ForkedFrom, from_toml, merged, validated
 from primordia.errors import InputError, Trouble
 from primordia.genesis import climate, looks
 from primordia.lives import Lives, lives
-from primordia.loop import Engine
+from primordia.loop import Engine, recorder_for
 from primordia.metabolism import fixed
-from primordia.record import Recorder
 from primordia.report import opened, world_ticks
 from primordia.wide import Wide, never, wide
 from primordia.world import Climate, Looks, World, Worlds
@@ -51,7 +50,7 @@ def fork(source: Path, at: int, out: Path, settings: dict[str, Any]) -> None:
     before = _stood_at(source, config, at)
     living = _living(lives(source), before, config, at)
     after = _transplanted(before, config, changed, at)
-    recorder = Recorder(out, changed.seeds, changed.cells, after.law.blocks)
+    recorder = recorder_for(after, out)
     recorder.add("births", _birth_rows(living, changed.cells))
     progress = Progress(changed.stop.model_dump(), 0.0, after.chunks.exact)
     with directory.new(out, changed):

@@ -20,6 +20,8 @@ from primordia.events import Events
 from primordia.genesis import birth_words
 from primordia.habitats import HostHabitat, Outcome
 from primordia.law import Fates, Law, judge, keys_of, lifeless, no_fates, rest, settle, think
+from primordia.sample import width
+from primordia.tallies import Tallies
 from primordia.wide import Wide
 from primordia.world import World
 
@@ -51,6 +53,8 @@ class Decision(NamedTuple):
 
     active: Array
     """bool (C,): who is to be stepped next"""
+    died: Array
+    """bool (C,): whose life has ended"""
     born: Array
     """bool (C,): who needs a body"""
     words: Array
@@ -71,6 +75,10 @@ class Hosted:
         self._live = jax.jit(partial(_live, law))
         self._settle = jax.jit(partial(_settle, law, habitat.words), donate_argnums=(0, 1))
         self._genesis = jax.jit(partial(_genesis, law, habitat.words), donate_argnums=(0, 1))
+        self._tallies = Tallies(habitat, law.worlds)
+        self._lists = log.empty(law.worlds * law.cells, law.worlds, width(law.blocks))
+        self.events = self._lists
+        """of the latest chunk"""
         habitat.open(law.worlds * law.cells)
 
     def begin(self, world: World) -> State:
@@ -78,17 +86,13 @@ class Hosted:
         cells = len(world.organisms.alive)
         return State(world, np.zeros((cells, self._habitat.senses_size), np.float32))
 
-    def advance(
-        self, state: State, events: Events, limits: Limits, ticks: int
-    ) -> tuple[State, Events, int]:
-        """At most so many ticks, fewer if every world stops or the lists are full.
-
-        Returns:
-            state, what happened, ticks done.
-        """
-        events = Events(*(rows._replace(filled=jnp.int32(0)) for rows in events))
+    def advance(self, state: State, limits: Limits, ticks: int) -> tuple[State, int]:
+        """At most so many ticks, fewer if every world stops or the lists are full -> ticks done."""
+        events = Events(*(rows._replace(filled=jnp.int32(0)) for rows in self._lists))
+        self._tallies.begin()
         world, events, decision = self._genesis(state.world, events, limits)
         senses, done = self._embody(np.array(state.bodies), decision), 0
+        self._tallies.note_samples(world.organisms.alive, events.samples)
         thought = self._think(world, senses)
         while done < ticks and decision.go_on:
             most = min(int(decision.due), ticks - done)
@@ -101,10 +105,13 @@ class Hosted:
             world, events, decision = self._settle(
                 organisms.genome, events, bare, lived, fates, jnp.int32(passed), limits
             )
+            self._tallies.note_deaths(np.asarray(decision.died))
             if np.asarray(decision.born).any():
                 senses = self._embody(senses, decision)
                 thought = self._think(world, senses)
-        return State(world, senses), events, done
+            self._tallies.note_samples(world.organisms.alive, events.samples)
+        self._lists, self.events = events, self._tallies.beside(events)
+        return State(world, senses), done
 
     def _quiet(
         self, world: World, thought: Thought, active: Array, most: int
@@ -200,7 +207,7 @@ def _genesis(
         world,
         events,
     )
-    return world, events, _decide(law, words, world, events, born, limits)
+    return world, events, _decide(law, words, world, events, nobody, born, limits)
 
 
 def _settle(
@@ -221,16 +228,18 @@ def _settle(
     after = _with(before, lived)
     world = World(rest(before.organisms, after.organisms, active), after.worlds)
     world, events, born = settle(law, world, events, fates, passed, live_worlds)
-    return world, events, _decide(law, words, world, events, born, limits)
+    died = before.organisms.alive & (~world.organisms.alive | born)
+    return world, events, _decide(law, words, world, events, died, born, limits)
 
 
 def _decide(
-    law: Law, words: int, world: World, events: Events, born: Array, limits: Limits
+    law: Law, words: int, world: World, events: Events, died: Array, born: Array, limits: Limits
 ) -> Decision:
     live_worlds = running(world.worlds, limits)
     room = log.have_room(events, law.worlds * law.cells, law.worlds)
     return Decision(
         active=world.organisms.alive & law.per_cell(live_worlds),
+        died=died,
         born=born,
         words=birth_words(law, world.worlds, born.any(), words),
         go_on=live_worlds.any() & room,

@@ -77,7 +77,7 @@ class Lives:
         Raises:
             InputError: no such organism was born.
         """
-        row = int(np.searchsorted(_key(self.world, self.id), (world << 47) + organism))
+        row = int(np.searchsorted(_key(self.world, self.id), (int(world) << 47) + int(organism)))
         if row == len(self) or (self.world[row], self.id[row]) != (world, organism):
             raise InputError(f"no organism {organism} was born in world {world}")
         return row

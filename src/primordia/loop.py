@@ -14,16 +14,18 @@ from typing import Any
 import jax.numpy as jnp
 import numpy as np
 
-from primordia import checkpoint, directory, events, sample
+from primordia import checkpoint, directory
 from primordia.checkpoint import Checkpoint, Progress
 from primordia.chunk import Fused, Limits, State, running
 from primordia.config import Config
 from primordia.config import limits as valid_limits
 from primordia.errors import InputError
+from primordia.events import Events
 from primordia.genesis import begin
 from primordia.hosted import Hosted
 from primordia.law import Law
 from primordia.record import Recorder
+from primordia.tallies import names_of
 from primordia.wide import wide
 
 CHUNK_SECONDS = 0.2
@@ -37,20 +39,21 @@ class Engine:
         self.config = config
         habitat = config.build_habitat()
         self.law = config.build_law(habitat)
+        self.tallies = names_of(habitat)
         self.chunks: Fused | Hosted = _chunks(self.law, habitat)
         seeds = [config.seed + world for world in range(config.seeds)]
         self.state: State = self.chunks.begin(begin(self.law, seeds))
-        cells = config.cells * config.seeds
-        self.events = events.empty(cells, config.seeds, sample.width(self.law.blocks))
-        """of the latest chunk"""
         self._ticks = 1
 
-    def advance(self, limits: Limits) -> events.Events:
+    @property
+    def events(self) -> Events:
+        """What happened in the latest chunk; the next one uses it up."""
+        return self.chunks.events
+
+    def advance(self, limits: Limits) -> Events:
         """One chunk of about CHUNK_SECONDS -> what happened."""
         start = time.perf_counter()
-        self.state, self.events, done = self.chunks.advance(
-            self.state, self.events, limits, self._ticks
-        )
+        self.state, done = self.chunks.advance(self.state, limits, self._ticks)
         spent = time.perf_counter() - start
         if done:
             fitting = int(done * CHUNK_SECONDS / spent)
@@ -119,7 +122,7 @@ def start(
         )
     with directory.new(run, config):
         engine = Engine(config)
-        recorder = Recorder(run, config.seeds, config.cells, engine.law.blocks)
+        recorder = recorder_for(engine, run)
         progress = Progress(config.stop.model_dump(), 0.0, engine.chunks.exact)
         drive(engine, recorder, run, progress, checkpoint_every, listen)
 
@@ -168,7 +171,7 @@ def resume(
         directory.make_folders(run)
         checkpoint.remove_what_does_not_count(run, last)
         engine = Engine(config)
-        recorder = Recorder(run, config.seeds, config.cells, engine.law.blocks)
+        recorder = recorder_for(engine, run)
         progress = Progress(config.stop.model_dump(), 0.0, engine.chunks.exact)
         if last is not None:
             stand_at(engine, recorder, last)
@@ -180,6 +183,12 @@ def resume(
             notes.append(_nothing_to_do(run, progress))
         drive(engine, recorder, run, progress, checkpoint_every, listen)
     return notes
+
+
+def recorder_for(engine: Engine, run: Path | None) -> Recorder:
+    """What takes down an engine's events in a run's directory; without one, digests only."""
+    config = engine.config
+    return Recorder(run, config.seeds, config.cells, engine.law.blocks, engine.tallies)
 
 
 def stand_at(engine: Engine, recorder: Recorder, last: Checkpoint) -> None:

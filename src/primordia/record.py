@@ -4,7 +4,7 @@ A segment is closed when it has 2^20 rows, or when a run comes to its end. Rows 
 open tail) are part of each checkpoint.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,6 +17,7 @@ from primordia.digest import row_hashes
 from primordia.events import BIRTH_FIELDS, DEATH_FIELDS, Events
 from primordia.metabolism import ONE
 from primordia.sample import WIDE_COLUMNS, climate_columns
+from primordia.tallies import sample_columns
 from primordia.world import Cause, Origin
 
 TABLES = ("births", "deaths", "metrics")
@@ -42,13 +43,21 @@ class Table:
 class Recorder:
     """Takes events, closes segments."""
 
-    def __init__(self, run: Path | None, worlds: int, cells: int, blocks: list[str]) -> None:
-        """`run` is the run's directory; None keeps digests only."""
+    def __init__(
+        self,
+        run: Path | None,
+        worlds: int,
+        cells: int,
+        blocks: list[str],
+        tallies: tuple[str, ...] = (),
+    ) -> None:
+        """`run` is the run's directory; None keeps digests only. Tallies are what the habitat counts."""
         self._run, self._worlds, self._cells = run, worlds, cells
+        samples = (*sample_fields(blocks), *sample_columns(tallies))
         self.tables = [
             self._table("births", BIRTH_FIELDS, _births(cells)),
-            self._table("deaths", DEATH_FIELDS, _deaths(cells)),
-            self._table("metrics", sample_fields(blocks), _metrics(blocks)),
+            self._table("deaths", (*DEATH_FIELDS, *tallies), _deaths(cells, tallies)),
+            self._table("metrics", samples, _metrics(blocks, tallies)),
         ]
 
     def _table(self, name: str, fields: tuple[str, ...], to_arrow: Callable) -> Table:
@@ -178,7 +187,7 @@ def _births(cells: int) -> Callable[[np.ndarray, np.ndarray], pa.Table]:
     return to_arrow
 
 
-def _deaths(cells: int) -> Callable[[np.ndarray, np.ndarray], pa.Table]:
+def _deaths(cells: int, tallies: tuple[str, ...]) -> Callable[[np.ndarray, np.ndarray], pa.Table]:
     def to_arrow(rows: np.ndarray, worlds: np.ndarray) -> pa.Table:
         return pa.table(
             {
@@ -189,13 +198,22 @@ def _deaths(cells: int) -> Callable[[np.ndarray, np.ndarray], pa.Table]:
                 "cause": _named(rows[:, 5], Cause),
                 "energy": _units(rows[:, 6]),
                 "food": _units(rows[:, 7]),
+                **{name: column.view(np.int32) for name, column in _last(rows, tallies)},
             }
         )
 
     return to_arrow
 
 
-def _metrics(blocks: list[str]) -> Callable[[np.ndarray, np.ndarray], pa.Table]:
+def _last(rows: np.ndarray, names: Sequence[str]) -> Iterator[tuple[str, np.ndarray]]:
+    """The last columns, by name."""
+    first = rows.shape[1] - len(names)
+    return zip(names, np.ascontiguousarray(rows[:, first:].T), strict=True)
+
+
+def _metrics(
+    blocks: list[str], tallies: tuple[str, ...]
+) -> Callable[[np.ndarray, np.ndarray], pa.Table]:
     def to_arrow(rows: np.ndarray, worlds: np.ndarray) -> pa.Table:
         wide = {name: _wide(rows, 2 + 2 * i) for i, name in enumerate(WIDE_COLUMNS)}
         population = rows[:, 1].astype(np.int32)
@@ -203,8 +221,11 @@ def _metrics(blocks: list[str]) -> Callable[[np.ndarray, np.ndarray], pa.Table]:
         wide["mean_age"] = wide.pop("age_total") / living
         wide["mean_energy"] = wide.pop("energy_total") / ONE / living
         wide["food"] = wide.pop("food_total") / ONE
-        values = np.ascontiguousarray(rows[:, 2 + 2 * len(WIDE_COLUMNS) :]).view(np.float32)
-        climate = dict(zip(climate_columns(blocks), values.T, strict=True))
+        names, start = climate_columns(blocks), 2 + 2 * len(WIDE_COLUMNS)
+        values = np.ascontiguousarray(rows[:, start : start + len(names)]).view(np.float32)
+        climate = dict(zip(names, values.T, strict=True))
+        for name, column in _last(rows, sample_columns(tallies)):
+            climate[name] = column.view(np.float32 if name.endswith("_mean") else np.int32)
         tick = wide.pop("tick")
         world = pa.array(worlds.astype(np.int32))
         return pa.table({"world": world, "tick": tick, "population": population, **wide, **climate})

@@ -15,16 +15,19 @@ from primordia.digest import digests
 from primordia.directory import read_config
 from primordia.errors import InputError
 from primordia.record import TABLES, Recorder
+from primordia.tallies import names_of
 from primordia.world import Cause
 
 NEVER = 2**64 - 1
+TALLY = "bodies.tally"
 
 
 def info(run: Path) -> dict[str, Any]:
     """A run in one object.
 
     `saturation` and `fixation` are None, or the tick and the births (founders counted) at which they
-    came. Ages are those of the living, in ticks. With one world its fields also stand at the top.
+    came. Ages are those of the living, in ticks; so is what the habitat counts (`tallies`). With one
+    world its fields also stand at the top.
     """
     config, last = opened(run)
     arrays = last.arrays()
@@ -70,8 +73,9 @@ def table(run: Path, name: str) -> pa.Table:
 def _table(run: Path, name: str, config: Config, last: Checkpoint) -> pa.Table:
     assert name in TABLES
     parts = [pq.read_table(run / name / each["name"]) for each in last.manifest["segments"][name]]
-    blocks = list(config.build_brain(config.build_habitat()).blocks)
-    recorder = Recorder(None, config.seeds, config.cells, blocks)
+    habitat = config.build_habitat()
+    blocks = list(config.build_brain(habitat).blocks)
+    recorder = Recorder(None, config.seeds, config.cells, blocks, names_of(habitat))
     parts.append(recorder.arrow(name, last.arrays()[f"tail.{name}"]))
     return pa.concat_tables(parts)
 
@@ -113,6 +117,9 @@ def _world(
         "fixation": _moment(count("fixed"), count("fixed_births")),
         "digest": digest,
     }
+    if (tally := arrays.get(TALLY)) is not None and alive.any():
+        names = names_of(config.build_habitat())
+        found["tallies"] = _of_the_living(names, tally[here][alive])
     if config.seasons:
         found["climate"] = _climate(arrays, world)
     return found
@@ -120,6 +127,14 @@ def _world(
 
 def _moment(tick: int, births: int) -> dict[str, int] | None:
     return None if tick == NEVER else {"tick": tick, "births": births}
+
+
+def _of_the_living(names: tuple[str, ...], tally: np.ndarray) -> dict[str, dict[str, float]]:
+    """Median and best of what the habitat counts."""
+    return {
+        name: {"median": float(np.median(column)), "best": int(column.max())}
+        for name, column in zip(names, tally.T, strict=True)
+    }
 
 
 def _climate(arrays: dict[str, np.ndarray], world: int) -> dict[str, float]:

@@ -36,11 +36,18 @@ def _one(world: dict[str, Any]) -> list[str]:
     ]
     if world["alive"]:
         lines[-1] += f", mean age {world['mean_age']:,.0f}, oldest {world['oldest_age']:,}"
+    if "tallies" in world:
+        lines.append(f"    of the living: {_tallies(world['tallies'])}")
     if world["fixation"]:
         lines.append(f"    came to descend from one ancestor {_when(world['fixation'])}")
     if world["saturation"]:
         return [*lines, f"    saturated {_when(world['saturation'])}"]
     return [*lines, "    not saturated"]
+
+
+def _tallies(tallies: dict[str, dict[str, float]]) -> str:
+    each = (f"{name} {of['median']:,.0f} (best {of['best']:,})" for name, of in tallies.items())
+    return f"median {', '.join(each)}"
 
 
 def _when(moment: dict[str, int]) -> str:

@@ -7,8 +7,7 @@ from primordia import checkpoint
 from primordia.digest import digests
 from primordia.directory import other_versions, read_config
 from primordia.errors import InputError
-from primordia.loop import Engine, Listener, Status, stand_at
-from primordia.record import Recorder
+from primordia.loop import Engine, Listener, Status, recorder_for, stand_at
 from primordia.report import world_ticks
 
 
@@ -29,7 +28,7 @@ def verify(run: Path, listen: Listener | None = None) -> list[str]:
     arrays = last.arrays()
     engine = Engine(config)
     limits = engine.limits({}, world_ticks(arrays))
-    again = Recorder(None, config.seeds, config.cells, engine.law.blocks)
+    again = recorder_for(engine, None)
     if (beginning := checkpoint.origin(run)) is not None:
         stand_at(engine, again, beginning)
     began = time.perf_counter()

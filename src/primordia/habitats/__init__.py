@@ -71,6 +71,16 @@ class Pictured(Protocol):
         """A picture of one body (no first axis) and of the action that led there."""
 
 
+class Tallied(Protocol):
+    """What a habitat on the host has besides, if it counts what people want to know of a life."""
+
+    tallies: tuple[str, ...]
+    """what is counted, such as score"""
+
+    def tally(self) -> np.ndarray:
+        """Of the lives under way, int32 (N, K); the law never sees it. `save` has it as `tally`."""
+
+
 class HostHabitat(Protocol):
     """A habitat that runs on the host, stepped between two halves of the law.
 

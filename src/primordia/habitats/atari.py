@@ -55,8 +55,10 @@ class Atari(Settings):
     difficulty: int | None = Field(None, ge=0, description="the game's difficulty")
 
     _pool: Pool = PrivateAttr()
+    _tally: np.ndarray = PrivateAttr()
+    """int32 (N, 3)"""
     _lives: np.ndarray = PrivateAttr()
-    """of the tick before, (N,)"""
+    """of the tick before, (N,), a view of the tally"""
 
     @field_validator("senses")
     @classmethod
@@ -121,6 +123,11 @@ class Atari(Settings):
         """For no-ops and sticky actions."""
         return 2
 
+    @property
+    def tallies(self) -> tuple[str, ...]:
+        """What is counted for people."""
+        return "score", "kills", "lives"
+
     def open(self, cells: int) -> None:
         """Start the emulators."""
         settings = {
@@ -130,7 +137,8 @@ class Atari(Settings):
             "actions": self._buttons,
         }
         self._pool = Pool("primordia.pool.arcade:Arcade", settings, FIELDS, cells)
-        self._lives = np.zeros(cells, np.int32)
+        self._tally = np.zeros((cells, len(self.tallies)), np.int32)
+        self._lives = self._tally[:, 2]
 
     def reset(self, born: np.ndarray, words: np.ndarray) -> np.ndarray:
         """A game from its start for each newborn."""
@@ -138,6 +146,7 @@ class Atari(Settings):
         todo[born] = True
         pool.arrays["words"][born] = words
         pool.reset(todo)
+        self._tally[born] = 0
         self._lives[born] = pool.arrays["lives"][born]
         return self._sensed()[born]
 
@@ -149,11 +158,21 @@ class Atari(Settings):
         values = {name: pool.arrays[name] for name in ("ram", "points", "lives", "game_over")}
         values["lives_lost"] = np.maximum(self._lives - values["lives"], 0)
         self._lives[:] = values["lives"]
+        self._count(values["points"], alive)
         fatal: Any = np.broadcast_to(self._is_fatal(values), self._lives.shape)
         food: Any = np.broadcast_to(
             np.asarray(self._is_food(values), np.float32), self._lives.shape
         )
         return self._sensed(), Outcome(fatal, food)
+
+    def _count(self, points: np.ndarray, alive: np.ndarray) -> None:
+        points = points.astype(np.int32) * alive
+        self._tally[:, 0] += points
+        self._tally[:, 1] += points > 0
+
+    def tally(self) -> np.ndarray:
+        """Score, kills (ticks in which points were made) and lives left, int32 (N, 3)."""
+        return self._tally
 
     def _sensed(self) -> np.ndarray:
         """Float32 (N, S)."""
@@ -169,13 +188,13 @@ class Atari(Settings):
         padded = np.zeros((len(states), lengths.max()), np.uint8)
         for row, state in zip(padded, states, strict=True):
             row[: len(state)] = np.frombuffer(state, np.uint8)
-        return {"states": padded, "lengths": lengths, "lives": self._lives.copy()}
+        return {"states": padded, "lengths": lengths, "tally": self._tally.copy()}
 
     def load(self, arrays: dict[str, np.ndarray]) -> None:
         """Take back what `save` gave."""
         pairs = zip(arrays["states"], arrays["lengths"], strict=True)
         self._pool.load([row[:length].tobytes() for row, length in pairs])
-        self._lives[:] = arrays["lives"]
+        self._tally[:] = arrays["tally"]
 
 
 @cache
