@@ -1,0 +1,164 @@
+"""How near worlds of Atari games come to the bare emulator, and what other ways of playing reach.
+
+Each way has a process of its own (`contender.py`), told over pipes to play for some seconds, in turn.
+`bare` has as many as cores. The others of 32 cells have the same brains with random weights, but no
+law: nobody is born, dies or is recorded.
+"""
+
+import json
+import os
+import select
+import subprocess
+import sys
+import tempfile
+import time
+from contextlib import ExitStack
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from contender import TASKS
+from primordia.config import load
+from worlds import median
+
+SIZES = {32: ("bare", "ours", "async", "sync", "published", "envpool"), 128: ("bare", "ours")}
+"""Ways that are set against each other at so many cells."""
+ROUNDS = 5
+STARTS = 3
+SECONDS = 1.0
+FULL = 0.95
+"""share of cells that must be occupied for a figure to count"""
+PATIENCE = 120.0
+"""seconds after which a process that has not answered is given up, or pip"""
+
+
+def against_the_emulator() -> dict:
+    """Start-up, and rates in turn, round by round, for each game and size."""
+    with tempfile.TemporaryDirectory() as folder:
+        lacking = {} if (why := _envpool(folder)) is None else {"envpool": why}
+        return {
+            "seconds until 32 emulators are up": {game: _start_up(game) for game in TASKS},
+            "worlds": [
+                _measured(game, cells, folder, lacking) for game in TASKS for cells in SIZES
+            ],
+        }
+
+
+def _envpool(folder: str) -> str | None:
+    """Install EnvPool into a folder for the time being, unless it is installed -> why not."""
+    if find_spec("envpool"):
+        return None
+    pip = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
+    command = [*pip, "--only-binary=:all:", "--target", folder, "envpool"]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE)
+    except subprocess.TimeoutExpired:
+        return f"pip install envpool takes longer than {PATIENCE:.0f} s"
+    if "No matching distribution" in done.stderr:
+        return f"pip finds no wheel of it for Python {sys.version.split()[0]}"
+    return "pip install envpool fails" if done.returncode else None
+
+
+def _start_up(game: str) -> float:
+    """Seconds from the order to the last worker's answer, the median of some."""
+    habitat: Any = load(TASKS[game]).build_habitat()
+    taken = []
+    for _ in range(STARTS):
+        began = time.perf_counter()
+        habitat.open(32)
+        taken.append(time.perf_counter() - began)
+        habitat._pool.close()
+    return median(taken)
+
+
+class Contender:
+    """A way of playing, in one process or in several that play at the same time."""
+
+    def __init__(self, way: str, game: str, cells: int, folder: str) -> None:
+        count = len(os.sched_getaffinity(0)) if way == "bare" else 1
+        words = [way, game, str(cells), folder]
+        command = [sys.executable, str(Path(__file__).with_name("contender.py")), *words]
+        self._way = f"{way} {game} {cells}"
+        how: dict[str, Any] = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
+        how["env"] = {**os.environ, "MPLCONFIGDIR": folder}  # or EnvPool makes one
+        self._processes: list[Any] = [subprocess.Popen(command, **how) for _ in range(count)]
+
+    def __enter__(self) -> "Contender":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """End of input ends them; one that does not listen is killed."""
+        for process in self._processes:
+            process.stdin.close()
+        for process in self._processes:
+            try:
+                process.wait(timeout=10)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+            process.stdout.close()
+
+    def ask(self, what: str, seconds: float) -> list[dict]:
+        """What each process has to say of so many seconds, lived at the same time."""
+        for process in self._processes:
+            process.stdin.write(f"{what} {seconds}\n")
+            process.stdin.flush()
+        return self.answers()
+
+    def answers(self) -> list[dict]:
+        """The next line of each."""
+        lines = []
+        for process in self._processes:
+            ready, _, _ = select.select([process.stdout], [], [], PATIENCE)
+            line = process.stdout.readline() if ready else ""
+            if not line:
+                raise RuntimeError(f"no answer from contender.py {self._way}")
+            lines.append(json.loads(line))
+        return lines
+
+
+def _measured(game: str, cells: int, folder: str, lacking: dict[str, str]) -> dict:
+    """One game at one size: every way in turn, some rounds; then where a tick of ours goes."""
+    lacking = {way: why for way, why in lacking.items() if way in SIZES[cells]}
+    ways = [way for way in SIZES[cells] if way not in lacking]
+    with ExitStack() as stack:
+        begun = {way: stack.enter_context(Contender(way, game, cells, folder)) for way in ways}
+        said = {way: contender.answers()[0] for way, contender in begun.items()}
+        playing = {way: begun[way] for way in ways if "about" in said[way]}
+        told: dict[str, list[list[dict]]] = {way: [] for way in playing}
+        for _ in range(ROUNDS):
+            for way, contender in playing.items():
+                told[way].append(contender.ask("play", SECONDS))
+        budget = playing["ours"].ask("budget", SECONDS)[0]
+    lacking |= {way: said[way]["not available"] for way in ways if way not in playing}
+    words = {way: said[way]["about"] for way in playing if said[way]["about"]}
+    words |= {way: f"not available: {why}" for way, why in lacking.items()}
+    found = {"game": game, "cells": cells, **_compared(told), **_lived(told["ours"], cells)}
+    return {**found, "budget": budget, **({"ways": words} if words else {})}
+
+
+def _compared(told: dict[str, list[list[dict]]]) -> dict:
+    """Medians of frames per second, and of their ratios round by round."""
+    rates = {
+        way: [sum(each["frames"] / each["seconds"] for each in answers) for answers in rounds]
+        for way, rounds in told.items()
+    }
+
+    def ratio(one: str, other: str) -> float:
+        return median([a / b for a, b in zip(rates[one], rates[other], strict=True)])
+
+    others = [way for way in rates if way not in ("bare", "ours")]
+    found: dict[str, Any] = {
+        "frames per s": {way: median(values) for way, values in rates.items()},
+        "of bare": {way: ratio(way, "bare") for way in rates if way != "bare"},
+    }
+    return {**found, "ours over": {w: ratio("ours", w) for w in others}} if others else found
+
+
+def _lived(rounds: list[list[dict]], cells: int) -> dict[str, float]:
+    """How often somebody was born, and how full the world was."""
+    whole = {name: sum(r[0][name] for r in rounds) for name in ("frames", "births", "ticks")}
+    full = whole["frames"] / (whole["ticks"] * cells)
+    if full < FULL:
+        raise RuntimeError(f"only {full:.3f} of {cells} cells were occupied; {FULL} are wanted")
+    return {"births per 1,000 ticks": 1000 * whole["births"] / whole["ticks"], "full": full}
