@@ -9,16 +9,19 @@ from PIL import Image
 
 import primordia
 from primordia import checkpoint, loop, replay
-from primordia import life as life_module
 from primordia.chunk import named_leaves
-from primordia.errors import Trouble
+from primordia.errors import InputError, Trouble
 from primordia.habitats.cartpole import CartPole
 from primordia.life import Life
+from primordia.life.fused import Fused
+from primordia.life.hosted import Hosted
+from primordia.life.instant import Stretch
 from primordia.lives import lives
 from primordia.metabolism import ONE
 from primordia.world import Cause
 from tests.commands import complains, here
-from tests.worlds import MILL, config
+from tests.toys import HOST_CARTPOLE, HostCartPole, Mirror
+from tests.worlds import MEADOW, MILL, config
 
 pytestmark = pytest.mark.usefixtures("compiled_once")
 
@@ -28,6 +31,16 @@ def mill(compiled_once: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Seasons that change the metabolism, a noisy motor, three worlds."""
     run = tmp_path_factory.mktemp("mill") / "run"
     loop.start(config({**MILL, "seeds": 3, "seed": 5, "stop": {"ticks": 700}}), run)
+    return run
+
+
+@pytest.fixture(scope="module")
+def mirror(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The same on the host."""
+    run = tmp_path_factory.mktemp("mirror") / "run"
+    habitat = {"name": "tests.toys:Mirror", "inner": "mill"}
+    changed = {"habitat": habitat, "seeds": 2, "seed": 5, "stop": {"ticks": 700}}
+    loop.start(config({**MILL, **changed}), run)
     return run
 
 
@@ -45,48 +58,102 @@ def at_the_end(run: Path, life: Life) -> dict[str, np.ndarray]:
     return {name: array[cell] for name, array in last.arrays().items() if len(array) > cell}
 
 
-@pytest.mark.parametrize("which", ["mill", "poles"])
+def comes_out(life: Life) -> list[Stretch]:
+    """It lives again as recorded: to its death, or to the checkpoint's body and energy."""
+    seen = list(life.again())
+    last, hungry = seen[-1], life.law.metabolism is not None
+    assert last.tick[-1] == life.ends
+    assert sum(len(each.tick) for each in seen) == life.ends - life.begins
+    if life.cause is None:
+        stored = at_the_end(life.run, life)
+        names = [name for name in stored if name.startswith("bodies") and name != "bodies.senses"]
+        for name, (_, leaf) in zip(names, named_leaves({"bodies": last.bodies}), strict=True):
+            np.testing.assert_array_equal(leaf[-1], stored[name])
+        assert not hungry or last.energy[-1] * ONE == stored["world.organisms.energy"]
+    assert last.fatal[-1] == (life.cause is Cause.FATAL)
+    assert (last.energy[-1] <= 0) == (life.cause is Cause.STARVED)
+    assert all((each.energy[:-1] > 0).all() for each in seen)
+    return seen
+
+
+@pytest.mark.parametrize("which", ["mill", "poles", "mirror"])
 def test_the_living_come_to_where_they_are(
     which: str, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Alone, and long after, to the last bit: bodies, energy, with noisy motors and seasons."""
-    monkeypatch.setattr(life_module, "TICKS", 512)
+    monkeypatch.setattr(Fused, "TICKS", 512)
+    monkeypatch.setattr(Hosted, "TICKS", 20)
     run = request.getfixturevalue(which)
     everyone = lives(run)
     alive = np.flatnonzero(~everyone.died & (everyone.lifespan > 0))
     for row in alive[:: max(1, len(alive) // 6)]:
-        life = Life.of(run, int(everyone.id[row]), int(everyone.world[row]))
-        last = list(life.again())[-1]
-        stored = at_the_end(run, life)
-        for name, leaf in named_leaves({"bodies": last.bodies}):
-            np.testing.assert_array_equal(leaf[-1], stored[name])
-        if which == "mill":
-            assert last.energy[-1] * ONE == stored["world.organisms.energy"]
-        assert last.tick[-1] == everyone.ended[row]
+        comes_out(Life.of(run, everyone.id[row], everyone.world[row]))
 
 
-def test_the_dead_die_when_they_died(mill: Path) -> None:
+@pytest.mark.parametrize("which", ["mill", "mirror"])
+def test_the_dead_die_when_they_died(which: str, request: pytest.FixtureRequest) -> None:
     """Of starvation in the tick in which energy runs out, of their bodies when those fail."""
-    everyone = lives(mill)
+    run = request.getfixturevalue(which)
+    everyone = lives(run)
     for cause in (Cause.STARVED, Cause.FATAL):
-        for row in np.flatnonzero(everyone.cause == cause)[-5:]:
-            life = Life.of(mill, int(everyone.id[row]), int(everyone.world[row]))
-            seen = list(life.again())[-1]
-            assert seen.fatal[-1] == (cause is Cause.FATAL)
-            assert (seen.energy[-1] <= 0) == (cause is Cause.STARVED)
-            assert (seen.energy[:-1] > 0).all()
+        rows = np.flatnonzero(everyone.cause == cause)[-5:]
+        assert len(rows)
+        for row in rows:
+            comes_out(Life.of(run, everyone.id[row], everyone.world[row]))
 
 
-def test_in_a_fork_an_older_life_goes_on_from_there(mill: Path, tmp_path: Path) -> None:
-    fork = primordia.load(mill).fork(300, tmp_path / "fork", seed=9).path
+@pytest.mark.parametrize("which", ["mill", "mirror"])
+def test_in_a_fork_an_older_life_goes_on_from_there(
+    which: str, request: pytest.FixtureRequest, tmp_path: Path
+) -> None:
+    """Also that of somebody born in the very tick, whose body still owes its shape to the old seed."""
+    run = request.getfixturevalue(which)
+    before = lives(run)
+    at = int(before.born[(before.born > 300) & (before.lifespan > 12)][0])
+    fork = primordia.load(run).fork(at, tmp_path / "fork", seed=9).path
     everyone = lives(fork)
-    long = np.flatnonzero((everyone.born < 300) & (everyone.ended > 310) & ~everyone.died)
-    older = long if len(long) else np.flatnonzero((everyone.born < 300) & (everyone.ended > 305))
-    for row in older[:4]:
-        life = Life.of(fork, int(everyone.id[row]), int(everyone.world[row]))
-        seen = list(life.again())
-        assert seen[0].tick[0] == 301
-        assert seen[-1].tick[-1] == everyone.ended[row]
+    older = (everyone.born <= at) & (everyone.ended > at + 3)
+    newest = older & (everyone.born == at)
+    assert newest.any()
+    for row in [*np.flatnonzero(newest)[:1], *np.flatnonzero(older & ~newest)[:4]]:
+        life = Life.of(fork, everyone.id[row], everyone.world[row])
+        assert comes_out(life)[0].tick[0] == at + 1
+
+
+def test_bodies_that_cannot_be_saved_are_not_found_in_a_fork(
+    mirror: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fork = primordia.load(mirror).fork(300, tmp_path / "fork").path
+    everyone = lives(fork)
+    monkeypatch.setattr(Mirror, "exact", False, raising=False)
+    with pytest.raises(InputError, match="is older than the fork"):
+        Life.of(fork, everyone.id[0], everyone.world[0])
+
+
+@pytest.mark.parametrize("kind", ["Meadow", "Mirror"])
+def test_a_simulation_that_failed_may_have_called_it_death(kind: str, tmp_path: Path) -> None:
+    inner = {"inner": "meadow"} if kind == "Mirror" else {}
+    broken = {"name": f"tests.toys:{kind}", **inner, "lifespan": 9, "broken_at": 9}
+    loop.start(config(MEADOW, habitat=broken, stop={"ticks": 30}), tmp_path / "run")
+    everyone = lives(tmp_path / "run")
+    row = np.flatnonzero(everyone.cause == Cause.FAULT)[0]
+    (seen,) = Life.of(tmp_path / "run", everyone.id[row]).again()
+    assert len(seen.tick) == 9
+
+
+def test_a_habitat_on_the_host_is_closed(mirror: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Lived to the end or not; each life has a habitat to itself."""
+    closed: list[Mirror] = []
+    monkeypatch.setattr(Mirror, "close", lambda self: closed.append(self), raising=False)
+    monkeypatch.setattr(Hosted, "TICKS", 5)
+    life = Life.of(mirror, primordia.load(mirror).oldest().id)
+    one, other = life.again(), life.again()
+    first = next(other)
+    assert next(one).action.tobytes() == first.action.tobytes()
+    one.close()
+    assert len(closed) == 1
+    assert len(list(other)) == -(-(life.ends - life.begins) // 5) - 1
+    assert len(set(map(id, closed))) == 2
 
 
 def test_a_record_that_does_not_fit_is_noticed(
@@ -104,11 +171,9 @@ def test_a_policy_acts_as_the_organism_did(poles: Path) -> None:
     organism = primordia.load(poles).oldest()
     seen = next(Life.of(poles, organism.id).again())
     policy = organism.policy()
-    start = np.asarray(Life.of(poles, organism.id).start().bodies)
-    senses = np.concatenate([start, seen.bodies[:-1]])
-    assert [policy(each) for each in senses[:200]] == seen.action[:200].tolist()
+    assert [policy(each) for each in seen.senses[:200]] == seen.action[:200].tolist()
     policy.reset()
-    assert policy(senses[0]) == seen.action[0]
+    assert policy(seen.senses[0]) == seen.action[0]
 
 
 def test_a_policy_of_continuous_actions(mill: Path) -> None:
@@ -212,5 +277,17 @@ def test_bad_input(poles: Path, mill: Path, tmp_path: Path) -> None:
     complains(here("replay", poles, "--world", 2), 2, "no world 2")
     complains(here("replay", poles, "--from", 10**7), 2, "can be seen from age 1 to")
     complains(here("replay", poles, "--out", tmp_path / "x.avi"), 2, ".mp4 or a .gif")
-    complains(here("replay", mill), 2, "draws no pictures")
+    complains(here("replay", mill), 2, "draws no pictures (it has no `picture`)")
     complains(here("replay", tmp_path), 2, "is not a run")
+
+
+def test_a_habitat_on_the_host_that_cannot_be_seen(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    values = {"task": "host", "habitat": HOST_CARTPOLE, "cells": 4, "stop": {"ticks": 20}}
+    loop.start(config(values), tmp_path / "run")
+    complains(here("replay", tmp_path / "run"), 2, "draws no pictures (it has no `picture`)")
+    monkeypatch.setattr(HostCartPole, "picture", None, raising=False)
+    complains(here("replay", tmp_path / "run"), 2, "draws no pictures (it has no `seen`)")
+    (seen,) = Life.of(tmp_path / "run", 0).again()
+    assert seen.bodies is None

@@ -17,7 +17,7 @@ ORDER = """
     video
     brain motor mutation placement metabolism
     world habitats device genomes
-    seasons sample tallies habitats.cartpole_picture
+    seasons sample tallies habitats.cartpole_picture habitats.atari_picture
     habitats.*
     turnover
     law
@@ -29,7 +29,8 @@ ORDER = """
     loop
     report live
     verify climate lives
-    lineage
+    lineage life.instant
+    life.fused life.hosted
     fork life policy
     replay
     organism

@@ -105,6 +105,9 @@ class Mirror:
         fault = ~np.isfinite(self.bodies).all(axis=1)
         return np.array(self._sense(self.bodies)), outcome._replace(fault=fault)
 
+    def seen(self) -> np.ndarray:
+        return self.bodies
+
     def save(self) -> dict[str, np.ndarray]:
         return {"mirror": self.bodies}
 

@@ -12,7 +12,8 @@ from PIL import Image, ImageDraw, ImageFont
 
 from primordia import video
 from primordia.errors import InputError
-from primordia.life import Life, Stretch
+from primordia.life import Life
+from primordia.life.instant import Stretch
 
 PART = 30.0
 """Seconds shown of each end of a life that is longer than two such parts."""
@@ -45,9 +46,10 @@ def replay(
     path = out or run / "videos" / f"world{world}-organism{organism}.mp4"
     video.check_name(path)
     life = Life.of(run, organism, world)
-    if not hasattr(life.habitat, "picture"):
-        raise InputError(f"{run}: this habitat draws no pictures (it has no `picture`)")
-    rate = float(life.habitat.rate)  # type: ignore[attr-defined]
+    for name in ("picture", "seen") if hasattr(life.habitat, "open") else ("picture",):
+        if not hasattr(life.habitat, name):
+            raise InputError(f"{run}: this habitat draws no pictures (it has no `{name}`)")
+    rate = float(life.habitat.rate)
     step = ceil(rate / video.FASTEST[path.suffix])
     parts = _parts(life, rate, ages)
     video.write(path, _pictures(life, parts, step, rate / step), rate / step)
@@ -86,7 +88,7 @@ def _pictures(life: Life, parts: list[range], step: int, rate: float) -> Iterato
 
 def _instants(life: Life, parts: list[range], step: int) -> Iterator[tuple[int, Stretch, int]]:
     """Number of the part, stretch and place in it of each instant that is shown."""
-    for stretch in life.again():
+    for stretch in life.again(watched=True):
         ages = stretch.tick - life.record.born[0]
         for number, part in enumerate(parts):
             shown = (ages >= part.start) & (ages < part.stop)
@@ -98,20 +100,25 @@ def _instants(life: Life, parts: list[range], step: int) -> Iterator[tuple[int, 
 def _picture(life: Life, stretch: Stretch, i: int) -> Image.Image:
     tick = int(stretch.tick[i])
     body = jax.tree.map(lambda leaf: leaf[i], stretch.bodies)
-    picture = life.habitat.picture(body, stretch.action[i])  # type: ignore[attr-defined]
+    picture = life.habitat.picture(body, stretch.action[i])
     words = [f"organism {life.record.id[0]}", f"age {tick - life.record.born[0]:,}"]
     if life.law.metabolism is not None:
         words.append(f"energy {stretch.energy[i]:,.1f}")
     if tick == life.ends and life.cause is not None:
         words.append(f"dies ({life.cause.label})")
-    action = np.array2string(stretch.action[i], precision=2)
-    return _captioned(picture, "   ".join(words), f"tick {tick:,}   action {action}")
+    left, right, below = "   ".join(words), f"tick {tick:,}", ""
+    if hasattr(life.habitat, "caption"):
+        below = life.habitat.caption(body, stretch.action[i])
+    else:
+        right += f"   action {np.array2string(stretch.action[i], precision=2)}"
+    return _captioned(picture, left, right, below)
 
 
-def _captioned(picture: Image.Image, left: str, right: str) -> Image.Image:
-    """A picture with words in its upper corners."""
+def _captioned(picture: Image.Image, left: str, right: str, below: str) -> Image.Image:
+    """A picture with words in its upper corners, and below those on the left."""
     pen, font = ImageDraw.Draw(picture), _font(SIZE)
     pen.text((14, 12), left, INK, font)
+    pen.text((14, 32), below, INK, font)
     pen.text((picture.width - 14, 12), right, INK, font, anchor="ra")
     return picture
 

@@ -11,7 +11,7 @@ from PIL import Image
 from primordia import files
 from primordia.errors import InputError
 
-FASTEST = {".mp4": 50, ".gif": 25}
+FASTEST = {".mp4": 60, ".gif": 25}
 """Pictures a second at most, by file name; a GIF counts time in hundredths of a second."""
 
 

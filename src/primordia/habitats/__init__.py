@@ -71,6 +71,26 @@ class Pictured(Protocol):
         """A picture of one body (no first axis) and of the action that led there."""
 
 
+class Captioned(Protocol):
+    """What a habitat has besides, if its pictures are to be explained in words."""
+
+    def caption(self, body: Bodies, action: np.ndarray) -> str:
+        """Such as the action's name and a score. `replay` writes it 32 to 48 pixels from the top."""
+
+
+class Seen(Protocol):
+    """What a habitat on the host has besides, if its bodies can be looked at.
+
+    They are what `picture` and `caption` are given; a habitat in JAX has them anyway.
+    """
+
+    def open(self, cells: int, watched: bool = False) -> None:
+        """Make room for so many bodies; `watched` if there will be pictures of them."""
+
+    def seen(self) -> Bodies:
+        """What there is to see of the bodies now; it may be written over in the next tick."""
+
+
 class Tallied(Protocol):
     """What a habitat on the host has besides, if it counts what people want to know of a life."""
 
@@ -84,7 +104,8 @@ class Tallied(Protocol):
 class HostHabitat(Protocol):
     """A habitat that runs on the host, stepped between two halves of the law.
 
-    It owns its bodies. Cells that are not `alive` are not stepped.
+    It owns its bodies. Cells that are not `alive` are not stepped. It may also have `exact = False`,
+    if it cannot save them, and `close()`, to let go of what `open` took.
     """
 
     senses_size: int
@@ -101,7 +122,7 @@ class HostHabitat(Protocol):
         """Step the bodies in cells alive (N,) -> senses float32 (N, S), outcome."""
 
     def save(self) -> dict[str, np.ndarray]:
-        """The bodies as arrays: all that is needed to go on exactly."""
+        """The bodies as arrays (N, ...): all that is needed to go on exactly."""
 
     def load(self, arrays: dict[str, np.ndarray]) -> None:
         """Take back what `save` gave."""

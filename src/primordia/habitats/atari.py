@@ -8,7 +8,7 @@ Learning Environment's (extra `primordia[atari]`).
 import difflib
 from collections.abc import Mapping
 from functools import cache, cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pydantic import Field, PrivateAttr, field_validator, model_validator
@@ -18,8 +18,11 @@ from primordia.conditions import Expression, Names
 from primordia.habitats import Outcome
 from primordia.motor import Discrete
 from primordia.pool import Pool
-from primordia.pool.arcade import FIELDS, RAM
+from primordia.pool.arcade import FIELDS, RAM, WATCHED
 from primordia.settings import Settings
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
 
 NAMES: Names = {
     "ram": RAM,
@@ -31,6 +34,8 @@ NAMES: Names = {
 """What conditions can speak of: RAM and lives after the tick, points and lives lost in it."""
 SCALED = (np.arange(256, dtype=np.float32) - 128) / 128
 """How a byte is perceived."""
+FRAMES = 60
+"""in a second"""
 
 
 class Atari(Settings):
@@ -128,15 +133,21 @@ class Atari(Settings):
         """What is counted for people."""
         return "score", "kills", "lives"
 
-    def open(self, cells: int) -> None:
-        """Start the emulators."""
+    @property
+    def rate(self) -> float:
+        """Ticks in a second."""
+        return FRAMES / self.frame_skip
+
+    def open(self, cells: int, watched: bool = False) -> None:
+        """Start the emulators, with screens if they are watched."""
+        screen = {WATCHED: ("uint8", (*screen_size(self.game), 3))} if watched else {}
         settings = {
             **self.model_dump(
                 include={"game", "mode", "difficulty", "frame_skip", "sticky", "noops"}
             ),
             "actions": self._buttons,
         }
-        self._pool = Pool("primordia.pool.arcade:Arcade", settings, FIELDS, cells)
+        self._pool = Pool("primordia.pool.arcade:Arcade", settings, FIELDS | screen, cells)
         self._tally = np.zeros((cells, len(self.tallies)), np.int32)
         self._lives = self._tally[:, 2]
 
@@ -173,6 +184,26 @@ class Atari(Settings):
     def tally(self) -> np.ndarray:
         """Score, kills (ticks in which points were made) and lives left, int32 (N, 3)."""
         return self._tally
+
+    def seen(self) -> dict[str, np.ndarray]:
+        """RAM, tally, and the screen if it is watched, uint8 (N, height, width, 3)."""
+        arrays = self._pool.arrays
+        shown = {name: arrays[name] for name in ("ram", WATCHED) if name in arrays}
+        return {**shown, "tally": self._tally}
+
+    def picture(self, body: dict[str, np.ndarray], action: np.ndarray) -> "Image":
+        """The screen, with room for words above."""
+        from primordia.habitats.atari_picture import draw
+
+        return draw(body[WATCHED])
+
+    def caption(self, body: dict[str, np.ndarray], action: np.ndarray) -> str:
+        """The score so far, and the button."""
+        return f"score {body['tally'][0]:,}   {self._names[int(action)]}"
+
+    def close(self) -> None:
+        """Stop the emulators."""
+        self._pool.close()
 
     def _sensed(self) -> np.ndarray:
         """Float32 (N, S)."""
@@ -218,8 +249,8 @@ def games() -> list[str]:
 
 
 @cache
-def _facts(game: str) -> tuple[Mapping[str, int], Mapping[str, list[int]]]:
-    """Minimal action set; modes and difficulties.
+def _facts(game: str) -> tuple[Mapping[str, int], Mapping[str, list[int]], tuple[int, int]]:
+    """Minimal action set; modes and difficulties; height and width of the screen.
 
     Raises:
         ValueError: there is no such game.
@@ -233,7 +264,8 @@ def _facts(game: str) -> tuple[Mapping[str, int], Mapping[str, list[int]]]:
     ale = console(game)
     minimal = {action.name: int(action.value) for action in ale.getMinimalActionSet()}
     options = {"mode": ale.getAvailableModes(), "difficulty": ale.getAvailableDifficulties()}
-    return minimal, {name: list(map(int, values)) for name, values in options.items()}
+    available = {name: list(map(int, values)) for name, values in options.items()}
+    return minimal, available, ale.getScreenDims()
 
 
 def minimal_actions(game: str) -> Mapping[str, int]:
@@ -244,6 +276,11 @@ def minimal_actions(game: str) -> Mapping[str, int]:
 def available_options(game: str) -> Mapping[str, list[int]]:
     """Its modes and difficulties."""
     return _facts(game)[1]
+
+
+def screen_size(game: str) -> tuple[int, int]:
+    """Height and width in pixels, of which each is about twice as wide as high."""
+    return _facts(game)[2]
 
 
 @cache

@@ -23,6 +23,8 @@ FIELDS = {
     "game_over": ("bool", ()),
 }
 NOOP = 0
+WATCHED = "screen"
+"""A further field, uint8 (height, width, 3): filled after each tick if the arrays have it."""
 
 
 def console(
@@ -65,6 +67,7 @@ class Arcade:
         self._skip, self._sticky, self._noops = frame_skip, round(sticky * 2**32), noops
         self._ale = {cell: console(game, mode, difficulty) for cell in cells}
         self._ram = {cell: arrays["ram"][cell] for cell in cells}
+        self._screen = {cell: arrays[WATCHED][cell] for cell in cells if WATCHED in arrays}
         self._start = next(iter(self._ale.values())).cloneState()
         self._dice = dict.fromkeys(cells, 0)
         self._held = dict.fromkeys(cells, NOOP)
@@ -80,6 +83,8 @@ class Arcade:
             ale, ram = self._ale[cell], self._ram[cell]
             points.append(self._frames(ale, cell, actions[choice]))
             ale.getRAM(ram)
+            if self._screen:
+                ale.getScreenRGB(self._screen[cell])
             lives.append(ale.lives())
             over.append(ale.game_over(with_truncation=False))
         arrays["points"][cells] = points
@@ -115,6 +120,8 @@ class Arcade:
         """Fill the cell's row with how things stand, no points made."""
         ale, arrays = self._ale[cell], self._arrays
         ale.getRAM(self._ram[cell])
+        if self._screen:
+            ale.getScreenRGB(self._screen[cell])
         arrays["points"][cell] = 0
         arrays["lives"][cell] = ale.lives()
         arrays["game_over"][cell] = ale.game_over(with_truncation=False)

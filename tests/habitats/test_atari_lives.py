@@ -1,0 +1,140 @@
+"""Lives in Atari games lived again, bit for bit, and seen on video."""
+
+from pathlib import Path
+
+import av
+import numpy as np
+import pytest
+
+import primordia
+from primordia.habitats.atari import SCALED, Atari, screen_size
+from primordia.habitats.atari_picture import ROOM, draw
+from primordia.life import Life
+from primordia.lives import Lives, lives
+from primordia.metabolism import ONE
+from primordia.world import Cause
+from tests.commands import here
+from tests.test_life import at_the_end
+
+pytest.importorskip("ale_py")
+
+SENSES = (51, 49, 54)
+SETTINGS = {
+    "cells": 6,
+    "seeds": 2,
+    "genesis": "fill",
+    "habitat": {"senses": SENSES, "sticky": 0.25, "noops": 30, "frame_skip": 3,
+                "food": "ram[51] > 130"},
+    "metabolism": {"store": 60.0, "gain": 0.75},
+    "hazard": 0.003,
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def pong(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Sticky actions, no-ops, hunger: in two worlds, of which each has lives of all kinds."""
+    run = tmp_path_factory.mktemp("pong") / "run"
+    return primordia.run(
+        "Pong-survival", run, **SETTINGS, stop={"ticks": 250, "until": "none"}
+    ).path
+
+
+def some(everyone: Lives, which: np.ndarray, count: int) -> list[tuple[int, int]]:
+    """Numbers and worlds of some, spread over all of these."""
+    rows = np.flatnonzero(which & (everyone.lifespan > 1))
+    assert len(rows) >= count
+    chosen = rows[np.linspace(0, len(rows) - 1, count).astype(int)]
+    return [(int(everyone.id[row]), int(everyone.world[row])) for row in chosen]
+
+
+def comes_out(run: Path, organism: int, world: int) -> None:
+    """What is recorded of its end comes out: energy, score, and of the living what they perceive."""
+    life = Life.of(run, organism, world)
+    seen = list(life.again())
+    last, scores = seen[-1], [each.bodies["tally"][:, 0] for each in seen]
+    assert last.tick[-1] == life.ends
+    assert last.fatal[-1] == (life.cause is Cause.FATAL)
+    assert (last.energy[-1] <= 0) == (life.cause is Cause.STARVED)
+    if life.cause is None:
+        stored = at_the_end(run, life)
+        np.testing.assert_array_equal(
+            SCALED[last.bodies["ram"][-1, SENSES]], stored["bodies.senses"]
+        )
+        assert last.energy[-1] * ONE == stored["world.organisms.energy"]
+        assert last.bodies["tally"][-1].tolist() == stored["bodies.tally"].tolist()
+    else:
+        rows = primordia.load(run).table("deaths").to_pylist()
+        (death,) = (row for row in rows if (row["id"], row["world"]) == (organism, world))
+        assert last.energy[-1] == death["energy"]
+        assert scores[-1][-1] == death["score"]
+
+
+@pytest.mark.parametrize("cause", [Cause.FATAL, Cause.STARVED, Cause.HAZARD, None])
+def test_a_life_comes_out_as_recorded(pong: Path, cause: Cause | None) -> None:
+    everyone = lives(pong)
+    which = ~everyone.died if cause is None else everyone.cause == cause
+    for organism, world in some(everyone, which, 2):
+        comes_out(pong, organism, world)
+
+
+def test_through_a_fork(pong: Path, tmp_path: Path) -> None:
+    """Another seed, and fate; the emulator, its dice and the score go on from where they stood."""
+    fork = primordia.load(pong).fork(200, tmp_path / "fork", seed=8).path
+    everyone = lives(fork)
+    older = everyone.born <= 200
+    for organism, world in [*some(everyone, older, 3), *some(everyone, ~older, 1)]:
+        comes_out(fork, organism, world)
+
+
+def test_a_policy_acts_as_the_organism_did(pong: Path) -> None:
+    organism = primordia.load(pong).oldest()
+    policy = organism.policy()
+    (seen,) = Life.of(pong, organism.id, organism.world).again()
+    assert [policy(senses) for senses in seen.senses] == seen.action.tolist()
+
+
+def test_a_life_on_video(pong: Path, tmp_path: Path) -> None:
+    everyone = lives(pong)
+    ((organism, world),) = some(everyone, everyone.cause == Cause.FATAL, 1)
+    path = tmp_path / "life.mp4"
+    done = here("replay", pong, "--organism", organism, "--world", world, "--out", path)
+    assert (done.returncode, done.stdout.strip()) == (0, str(path))
+    with av.open(str(path)) as container:
+        assert container.streams.video[0].average_rate == 20
+        frames = [frame.to_ndarray(format="rgb24") for frame in container.decode(video=0)]
+    ticks = everyone.lifespan[everyone.row(organism, world)]
+    assert len(frames) == ticks + 20  # its last picture stands for a second
+    assert frames[0].shape == (420 + ROOM, 640, 3)
+    game, words = (slice(ROOM + 4, None), slice(0, ROOM - 4))
+    for part in (game, words):
+        assert (abs(frames[0][part].astype(int) - frames[ticks - 1][part]) > 40).any()
+
+
+def test_a_picture_has_pixels_twice_as_wide_as_high_below_the_words() -> None:
+    screen = np.zeros((210, 160, 3), np.uint8)
+    screen[100, 30] = (10, 200, 30)
+    picture = np.asarray(draw(screen))
+    assert picture.shape == (420 + ROOM, 640, 3)
+    rows, columns = np.nonzero((picture == (10, 200, 30)).all(axis=2))
+    assert (rows.min(), rows.max()) == (ROOM + 200, ROOM + 201)
+    assert (columns.min(), columns.max()) == (120, 123)
+    assert (picture[:ROOM] == picture[0, 0]).all()
+    assert picture[0, 0].min() > 240
+
+
+def test_some_games_have_larger_screens() -> None:
+    """And time runs as on the console, however many frames make a tick."""
+    habitat = Atari(game="pacman", frame_skip=4)
+    habitat.open(2, watched=True)
+    habitat.reset(np.array([0, 1]), np.zeros((2, habitat.words), np.uint32))
+    screens = habitat.seen()["screen"]
+    habitat.close()
+    assert screens.shape == (2, *screen_size("pacman"), 3) == (2, 250, 160, 3)
+    assert screens.any()
+    assert habitat.rate == 15
+
+
+def test_the_button_is_called_by_its_name() -> None:
+    habitat = Atari(game="pong", actions="NOOP UPFIRE")
+    words = habitat.caption({"tally": np.array([-12, 0, 0])}, np.int32(1))
+    assert words == "score -12   UPFIRE"
