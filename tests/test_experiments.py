@@ -24,9 +24,9 @@ def test_settings_of_every_arm_are_good_and_limits_are_shared(file: Path) -> Non
     assert len(set(names)) == len(names) > 1
     configs = [load(values["task"], merged(values, arm)) for arm in arms]
     assert len({config.to_toml() for config in configs}) == len(configs)
-    assert {config.task for config in configs} == {"CartPole-survival"}
+    assert len({config.task for config in configs}) == 1
     assert len({config.stop for config in configs}) == 1
-    assert min(config.seeds for config in configs) >= 20
+    assert min(config.seeds for config in configs) >= (20 if file.parent.name == "cartpole" else 5)
     assert configs[0].stop.ticks is not None
 
 

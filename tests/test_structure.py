@@ -30,8 +30,8 @@ ORDER = """
     report live
     verify climate lives
     lineage life.instant
-    life.fused life.hosted
-    fork life policy
+    life.fused life.hosted games
+    fork life policy evaluation
     replay
     organism
     comparison.resample
@@ -43,6 +43,7 @@ ORDER = """
     api help
     cli.say cli.flags cli.side_by_side
     cli.evolve cli.look
+    cli.evaluate
     cli
     __main__
 """

@@ -80,6 +80,23 @@ class Echo(Settings):
         return clock, Outcome(jnp.zeros_like(clock, bool), food, action[:, 1])
 
 
+class Watch(Settings):
+    """It perceives the time, and food is the first number of its action."""
+
+    senses_size: int = 2
+    action: Any = Continuous(1)
+    words: int = 0
+
+    def reset(self, words: Array) -> Array:
+        return jnp.ones(len(words), jnp.float32)
+
+    def sense(self, bodies: Array) -> Array:
+        return jnp.stack([bodies, jnp.ones_like(bodies)], axis=1)
+
+    def step(self, bodies: Array, action: Array) -> tuple[Array, Outcome]:
+        return bodies + 1, Outcome(jnp.zeros_like(bodies, bool), action[:, 0])
+
+
 class Mirror:
     """Any habitat in JAX, made to keep the contract of those on the host."""
 

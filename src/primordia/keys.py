@@ -31,6 +31,7 @@ class Purpose(IntEnum):
     GENESIS = 7
     BODY = 8
     MOTOR = 9
+    EVALUATION = 10
 
 
 def threefry(key: Wide, counter: Wide) -> Wide:

@@ -2,10 +2,12 @@
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from primordia.directory import read_config
+from primordia.evaluation import Evaluation, evaluate
 from primordia.lineage import descent, rebuild
 from primordia.lives import Lives
 from primordia.policy import Policy
@@ -81,6 +83,10 @@ class Organism:
         """Its brain by itself."""
         config = read_config(self.run)
         return Policy(config.build_law(config.build_habitat()), self.genome())
+
+    def evaluate(self, **options: Any) -> Evaluation:
+        """How it does in whole games; see `evaluation.evaluate`."""
+        return evaluate(self.run, self.id, self.world, **options)
 
     def replay(self, out: str | Path | None = None) -> Path:
         """Its life on video -> the file; see `replay.replay`."""

@@ -4,7 +4,7 @@ import sys
 
 import click
 
-from primordia.cli import evolve, look
+from primordia.cli import evaluate, evolve, look
 from primordia.cli.say import say
 from primordia.errors import InputError, Trouble
 
@@ -30,7 +30,7 @@ def commands() -> None:
     """
 
 
-for each in (*evolve.COMMANDS, *look.COMMANDS):
+for each in (*evolve.COMMANDS, *look.COMMANDS, *evaluate.COMMANDS):
     commands.add_command(each)
 
 

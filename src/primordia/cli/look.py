@@ -46,12 +46,12 @@ def plot(run: Path, out: Path | None, world: int) -> None:
     "--out", type=click.Path(path_type=Path), help="An .mp4 or .gif file [under RUN/videos]."
 )
 def replay(
-    run: Path, begin: int | None, end: int | None, out: Path | None, **who: int | None
+    run: Path, begin: int | None, end: int | None, out: Path | None, **chosen: int | None
 ) -> None:
     """A life on video: all of it, or the first and last 30 seconds of a long one."""
     from primordia.replay import replay as show
 
-    organism = _who(run, **who)
+    organism = who(run, **chosen)
     click.echo(show(run, organism.id, organism.world, out, (begin, end)))
 
 
@@ -74,7 +74,7 @@ def export(run: Path, organisms: tuple[int, ...], world: int, file: Path) -> Non
     click.echo(f"{file}: organism {', '.join(map(str, chosen))}")
 
 
-def _who(run: Path, organism: int | None, world: int | None) -> Any:
+def who(run: Path, organism: int | None, world: int | None) -> Any:
     """The organism asked for."""
     from primordia.api import Run
 

@@ -101,6 +101,13 @@ class Tallied(Protocol):
         """Of the lives under way, int32 (N, K); the law never sees it. `save` has it as `tally`."""
 
 
+class Scored(Protocol):
+    """What a habitat has besides, if others have scored play in it (`primordia evaluate`)."""
+
+    def original(self) -> "Habitat | HostHabitat":
+        """The whole game: fatal is its end, and food the score."""
+
+
 class HostHabitat(Protocol):
     """A habitat that runs on the host, stepped between two halves of the law.
 

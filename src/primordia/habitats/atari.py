@@ -125,8 +125,8 @@ class Atari(Settings):
 
     @property
     def words(self) -> int:
-        """For no-ops and sticky actions."""
-        return 2
+        """For no-ops and sticky actions; without them all games begin alike."""
+        return 2 if self.noops or self.sticky else 0
 
     @property
     def tallies(self) -> tuple[str, ...]:
@@ -155,7 +155,7 @@ class Atari(Settings):
         """A game from its start for each newborn."""
         pool, todo = self._pool, np.zeros(len(self._lives), bool)
         todo[born] = True
-        pool.arrays["words"][born] = words
+        pool.arrays["words"][born, : self.words] = words
         pool.reset(todo)
         self._tally[born] = 0
         self._lives[born] = pool.arrays["lives"][born]
@@ -184,6 +184,10 @@ class Atari(Settings):
     def tally(self) -> np.ndarray:
         """Score, kills (ticks in which points were made) and lives left, int32 (N, 3)."""
         return self._tally
+
+    def original(self) -> "Atari":
+        """The game until it is over; food is its points."""
+        return Atari(**{**self.model_dump(), "fatal": "game_over", "food": "points"})
 
     def seen(self) -> dict[str, np.ndarray]:
         """RAM, tally, and the screen if it is watched, uint8 (N, height, width, 3)."""

@@ -21,6 +21,8 @@ from primordia.pool.board import LOAD, READY, RESET, SAVE, STEP
 
 PATIENCE = 20.0
 """Seconds without an answer after which a worker is given up."""
+START = 2.0
+"""Seconds more for every simulator that it has to make first; an emulator takes a tenth when idle."""
 
 
 class Pool:
@@ -66,7 +68,7 @@ class Pool:
         file.close()
         for first, worker in enumerate(self._workers):
             _put(worker, json.dumps({**setup, "first": first}).encode() + b"\n")
-        self._gather()
+        self._gather(PATIENCE + START * cells / self._count)
 
     def step(self, todo: np.ndarray) -> None:
         """One tick of the cells todo, bool (N,).
@@ -111,10 +113,10 @@ class Pool:
         for worker in self._workers:
             _put(worker, command)
 
-    def _gather(self) -> None:
+    def _gather(self, patience: float | None = None) -> None:
         """Hear from every worker that it is done."""
         for worker in self._workers:
-            if _get(worker, 1) != READY:
+            if _get(worker, 1, patience) != READY:
                 raise Trouble("a worker process gave an answer that makes no sense")
 
 
@@ -139,14 +141,14 @@ def _put(worker: subprocess.Popen, data: bytes) -> None:
         raise _lost(worker) from None
 
 
-def _get(worker: subprocess.Popen, count: int) -> bytes:
+def _get(worker: subprocess.Popen, count: int, patience: float | None = None) -> bytes:
     assert worker.stdout is not None
-    parts, left = [], count
+    parts, left, most = [], count, patience or PATIENCE
     while left:
-        ready, _, _ = select.select([worker.stdout], [], [], PATIENCE)
+        ready, _, _ = select.select([worker.stdout], [], [], most)
         if not ready:
             raise Trouble(
-                f"worker process {worker.pid} has not answered for {PATIENCE:.0f} s; resume the run"
+                f"worker process {worker.pid} has not answered for {most:.0f} s; resume the run"
                 " from its last checkpoint"
             )
         part = os.read(worker.stdout.fileno(), left)

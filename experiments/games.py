@@ -1,0 +1,109 @@
+"""Let the longest-lived organism of every world of an experiment play, in its own game and in others.
+
+    python experiments/games.py experiments/atari/*.toml
+
+For experiments that have been run (`experiments/run.py`). Each organism plays the game of its task;
+games with sticky buttons and no-ops at the start; the first with frozen senses; and the second
+blindly, doing what it did in the first. Beside them plays the first founder of each world of the
+reference, which nothing has selected. The table goes to `results/` beside the file, as Markdown and CSV.
+"""
+
+import csv
+import sys
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import primordia
+from primordia.organism import Organism
+from results import table
+
+GAMES = 10
+TICKS = 20_000
+NOISE = {"sticky": 0.25, "noops": 30}
+WAYS: dict[str, dict[str, Any]] = {
+    "own game": {},
+    "sticky, no-ops": NOISE,
+    "senses frozen": {"senses": "frozen"},
+    "blindly, sticky, no-ops": {"senses": "ignored", **NOISE},
+}
+COLUMNS = ("lifespan", "score", "length")
+
+
+def main() -> None:
+    """All files named, one after the other."""
+    if len(sys.argv) < 2:
+        sys.exit(__doc__)
+    for name in sys.argv[1:]:
+        report(Path(name))
+
+
+def report(file: Path) -> None:
+    """Play, and write what came out."""
+    arms = tomllib.loads(file.read_text(encoding="utf-8"))["arms"]
+    folder = Path("runs", "experiments", file.parent.name, file.stem)
+    players = [("a founder", each) for each in founders(folder / arms[0]["name"])]
+    for arm in arms:
+        players += [(arm["name"], each) for each in longest_lived(folder / arm["name"])]
+    rows = [row for name, organism in players for row in played(name, organism)]
+    stem = file.parent / "results" / f"{file.stem}-games"
+    stem.parent.mkdir(exist_ok=True)
+    with stem.with_suffix(".csv").open("w", newline="", encoding="utf-8") as out:
+        sheet = csv.DictWriter(out, list(rows[0]), lineterminator="\n")
+        sheet.writeheader()
+        sheet.writerows(rows)
+    stem.with_suffix(".md").write_text(summary(rows) + "\n", encoding="utf-8")
+    print(f"{stem}: .md .csv")
+
+
+def longest_lived(run: Path) -> list[Organism]:
+    """Of each world."""
+    found = primordia.load(run)
+    return [found.oldest(world) for world in range(found.lives().worlds)]
+
+
+def founders(run: Path) -> list[Organism]:
+    """The first that lived in each world."""
+    found = primordia.load(run)
+    return [found.organism(0, world) for world in range(found.lives().worlds)]
+
+
+def played(name: str, organism: Organism) -> list[dict[str, Any]]:
+    """A row for each way of playing."""
+    rows = []
+    for way, options in WAYS.items():
+        told = organism.evaluate(games=GAMES, ticks=TICKS, **options).to_dict()
+        row = {"who": name, "world": organism.world, "organism": organism.id, "age": organism.age}
+        row |= {"way": way, "games": told["games"], "distinct": told["distinct"]}
+        row |= {column: told[column]["median"] for column in COLUMNS}
+        row |= {f"best_{column}": told[column]["maximum"] for column in COLUMNS}
+        rows.append(row)
+        print(*row.values(), flush=True)
+    return rows
+
+
+def summary(rows: list[dict[str, Any]]) -> str:
+    """Medians over worlds of each world's median, with the least and the most."""
+    names = list(dict.fromkeys(row["who"] for row in rows))
+    lines = []
+    for name in names:
+        for way in WAYS:
+            mine = [row for row in rows if (row["who"], row["way"]) == (name, way)]
+            cells = [spread([row[column] for row in mine]) for column in COLUMNS]
+            lines.append([name, way, len(mine), *cells])
+    note = (
+        f"Medians over worlds (least to most) of each organism's median over {GAMES} games, or the"
+        f" one game where nothing is drawn at random. Games were cut after {TICKS:,} ticks."
+    )
+    return f"{table(['who', 'plays', 'worlds', *COLUMNS], lines)}\n\n{note}"
+
+
+def spread(values: list[float]) -> str:
+    """Median, least and most."""
+    return f"{np.median(values):,.0f} ({min(values):,.0f} to {max(values):,.0f})"
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,110 @@
+"""An organism plays by itself: its lifespan, whole games, without seeing, and what the command says."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import primordia
+from primordia import loop
+from primordia.evaluation import evaluate
+from primordia.lives import lives
+from tests.commands import complains, here
+from tests.worlds import MEADOW, config
+
+pytestmark = pytest.mark.usefixtures("compiled_once")
+
+
+@pytest.fixture(scope="module")
+def pong(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    pytest.importorskip("ale_py")
+    run = tmp_path_factory.mktemp("pong") / "run"
+    settings = {"cells": 6, "genesis": "fill", "mutation": {"founder_scale": 1.0}}
+    return primordia.run(
+        "Pong-survival", run, stop={"ticks": 400, "until": "none"}, **settings
+    ).path
+
+
+@pytest.fixture(scope="module")
+def poles(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    run = tmp_path_factory.mktemp("poles") / "run"
+    return primordia.run("CartPole-survival", run, stop={"ticks": 3000, "until": "none"}).path
+
+
+def test_where_nothing_is_random_a_life_is_lived_again(pong: Path) -> None:
+    """To the tick, and one game is enough to know."""
+    everyone = lives(pong)
+    died = np.flatnonzero(everyone.died)[:4]
+    assert len(died) == 4
+    for row in died:
+        found = evaluate(pong, int(everyone.id[row]))
+        assert (found.games, found.distinct) == (1, 1)
+        assert found.lived.ticks[0] == everyone.lifespan[row]
+        assert found.whole is not None
+        assert found.whole.ticks[0] > everyone.lifespan[row]
+        assert found.whole.food[0] <= -20
+
+
+def test_doing_it_again_blindly_comes_to_the_same(pong: Path) -> None:
+    """In the same game; with buttons that stick it does not."""
+    oldest = primordia.load(pong).oldest()
+    live, ignored = oldest.evaluate(), oldest.evaluate(senses="ignored")
+    assert live.to_dict() == {**ignored.to_dict(), "senses": "live"}
+    sticky = oldest.evaluate(senses="ignored", games=3, sticky=0.5, noops=30)
+    assert sticky.distinct == 3
+
+
+def test_frozen_senses_are_those_of_the_start(tmp_path: Path) -> None:
+    """One without memory who sees the clock stand still does the same thing over and over."""
+    habitat, brain = {"name": "tests.toys:Watch"}, {"kind": "feed-forward"}
+    settings = {**MEADOW, "stop": {"ticks": 5}, "habitat": habitat, "brain": brain}
+    loop.start(config(settings), tmp_path / "run")
+    live = evaluate(tmp_path / "run", 0, ticks=20)
+    frozen = evaluate(tmp_path / "run", 0, ticks=20, senses="frozen")
+    assert live.lived.food[0] != frozen.lived.food[0]
+    assert frozen.lived.food[0] == pytest.approx(20 * float(frozen.lived.actions[0][0]), rel=1e-5)
+
+
+def test_games_begin_at_random_where_lives_do(poles: Path) -> None:
+    found = primordia.load(poles).oldest().evaluate(games=12, ticks=2000)
+    assert (found.games, found.distinct) == (12, 12)
+    assert found.whole is None
+    assert (found.lived.over | (found.lived.ticks == 2000)).all()
+    again = primordia.load(poles).oldest().evaluate(games=12, ticks=2000)
+    np.testing.assert_array_equal(found.lived.ticks, again.lived.ticks)
+
+
+def test_it_starves_by_its_tasks_metabolism(tmp_path: Path) -> None:
+    hungry = {"metabolism": {"store": 30.0, "gain": 0.5}, "stop": {"ticks": 10}}
+    loop.start(
+        config({**MEADOW, **hungry, "habitat": {**MEADOW["habitat"], "food": 1.0}}),
+        tmp_path / "run",
+    )
+    found = evaluate(tmp_path / "run", 0, games=2)
+    assert found.lived.ticks.tolist() == [60, 60]
+    cut = evaluate(tmp_path / "run", 0, games=2, ticks=59)
+    assert not cut.lived.over.any()
+    assert cut.to_dict()["alive_when_cut"] == 2
+
+
+def test_what_the_command_says(pong: Path) -> None:
+    one = here("evaluate", pong).stdout
+    assert "1 distinct game; nothing is drawn at random" in one
+    many = here("evaluate", pong, "--episodes", "3", "--sticky", "0.25", "--ticks", "300").stdout
+    assert "3 games, sticky 0.25" in many
+    assert "3 still going on when cut" in many
+    told = json.loads(here("evaluate", pong, "--freeze-senses", "--json").stdout)
+    assert (told["games"], told["senses"]) == (1, "frozen")
+    assert set(told["score"]) == {"q1", "median", "q3", "maximum"}
+
+
+def test_bad_input(pong: Path, poles: Path) -> None:
+    for words, part in (
+        ((poles, "--sticky", "0.1"), "no setting 'habitat.sticky'"),
+        ((pong, "--sticky", "1.5"), "sticky"),
+        ((pong, "--open-loop", "--freeze-senses"), "one or the other"),
+        ((pong, "--episodes", "0"), "one game or more"),
+        ((pong, "--organism", "9999"), "no organism 9999"),
+    ):
+        complains(here("evaluate", *words), 2, part)
