@@ -10,10 +10,8 @@ import os
 import select
 import subprocess
 import sys
-import tempfile
 import time
 from contextlib import ExitStack
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -29,34 +27,14 @@ SECONDS = 1.0
 FULL = 0.95
 """share of cells that must be occupied for a figure to count"""
 PATIENCE = 120.0
-"""seconds after which a process that has not answered is given up, or pip"""
+"""seconds after which a process that has not answered is given up"""
 
 
 def against_the_emulator() -> dict:
     """Start-up, and rates in turn, round by round, for each game and size."""
-    with tempfile.TemporaryDirectory() as folder:
-        lacking = {} if (why := _envpool(folder)) is None else {"envpool": why}
-        return {
-            "seconds until 32 emulators are up": {game: _start_up(game) for game in TASKS},
-            "worlds": [
-                _measured(game, cells, folder, lacking) for game in TASKS for cells in SIZES
-            ],
-        }
-
-
-def _envpool(folder: str) -> str | None:
-    """Install EnvPool into a folder for the time being, unless it is installed -> why not."""
-    if find_spec("envpool"):
-        return None
-    pip = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
-    command = [*pip, "--only-binary=:all:", "--target", folder, "envpool"]
-    try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE)
-    except subprocess.TimeoutExpired:
-        return f"pip install envpool takes longer than {PATIENCE:.0f} s"
-    if "No matching distribution" in done.stderr:
-        return f"pip finds no wheel of it for Python {sys.version.split()[0]}"
-    return "pip install envpool fails" if done.returncode else None
+    worlds = [_measured(game, cells) for game in TASKS for cells in SIZES]
+    starts = {game: _start_up(game) for game in TASKS}
+    return {"seconds until 32 emulators are up": starts, "worlds": worlds}
 
 
 def _start_up(game: str) -> float:
@@ -74,13 +52,12 @@ def _start_up(game: str) -> float:
 class Contender:
     """A way of playing, in one process or in several that play at the same time."""
 
-    def __init__(self, way: str, game: str, cells: int, folder: str) -> None:
+    def __init__(self, way: str, game: str, cells: int) -> None:
         count = len(os.sched_getaffinity(0)) if way == "bare" else 1
-        words = [way, game, str(cells), folder]
+        words = [way, game, str(cells)]
         command = [sys.executable, str(Path(__file__).with_name("contender.py")), *words]
         self._way = f"{way} {game} {cells}"
         how: dict[str, Any] = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
-        how["env"] = {**os.environ, "MPLCONFIGDIR": folder}  # or EnvPool makes one
         self._processes: list[Any] = [subprocess.Popen(command, **how) for _ in range(count)]
 
     def __enter__(self) -> "Contender":
@@ -117,12 +94,11 @@ class Contender:
         return lines
 
 
-def _measured(game: str, cells: int, folder: str, lacking: dict[str, str]) -> dict:
+def _measured(game: str, cells: int) -> dict:
     """One game at one size: every way in turn, some rounds; then where a tick of ours goes."""
-    lacking = {way: why for way, why in lacking.items() if way in SIZES[cells]}
-    ways = [way for way in SIZES[cells] if way not in lacking]
+    ways = SIZES[cells]
     with ExitStack() as stack:
-        begun = {way: stack.enter_context(Contender(way, game, cells, folder)) for way in ways}
+        begun = {way: stack.enter_context(Contender(way, game, cells)) for way in ways}
         said = {way: contender.answers()[0] for way, contender in begun.items()}
         playing = {way: begun[way] for way in ways if "about" in said[way]}
         told: dict[str, list[list[dict]]] = {way: [] for way in playing}
@@ -130,9 +106,9 @@ def _measured(game: str, cells: int, folder: str, lacking: dict[str, str]) -> di
             for way, contender in playing.items():
                 told[way].append(contender.ask("play", SECONDS))
         budget = playing["ours"].ask("budget", SECONDS)[0]
-    lacking |= {way: said[way]["not available"] for way in ways if way not in playing}
     words = {way: said[way]["about"] for way in playing if said[way]["about"]}
-    words |= {way: f"not available: {why}" for way, why in lacking.items()}
+    absent = {way: said[way]["not available"] for way in ways if way not in playing}
+    words |= {way: f"not available: {why}" for way, why in absent.items()}
     found = {"game": game, "cells": cells, **_compared(told), **_lived(told["ours"], cells)}
     return {**found, "budget": budget, **({"ways": words} if words else {})}
 

@@ -1,10 +1,10 @@
 """A process that plays a game when it is told to: what `arcade.py` sets against each other.
 
-    python benchmarks/contender.py WAY GAME CELLS [FOLDER]
+    python benchmarks/contender.py WAY GAME CELLS
 
 It says in a line of JSON that it is ready, or what it lacks. Each line it then reads, `play 1.5`, asks
 for so many seconds of play; the answer is a line of JSON. It ends with its standard input. JAX is
-loaded late, since Gymnasium forks. FOLDER is searched last for packages.
+loaded late, since Gymnasium forks.
 """
 
 import json
@@ -191,7 +191,9 @@ class EnvPool(Loop):
         try:
             import envpool
         except Exception as error:
-            raise Lacking(f"import envpool fails: {type(error).__name__}") from None
+            raise Lacking(
+                f"import envpool fails ({type(error).__name__}): pip install envpool"
+            ) from None
         self._envs = envpool.make_gymnasium(
             f"{_pascal(game)}-v5",
             num_envs=cells,
@@ -262,8 +264,7 @@ WAYS: dict[str, Callable[[str, int], Any]] = {
 
 def main() -> None:
     """Make ready, then do as asked until nothing more is."""
-    way, game, cells, *folder = sys.argv[1:]
-    sys.path.extend(folder)
+    way, game, cells = sys.argv[1:]
     answers = os.fdopen(os.dup(1), "w", buffering=1)
     os.dup2(2, 1)  # what libraries print is not an answer
     try:
