@@ -255,6 +255,9 @@ def _check(config: Config) -> None:
         raise InputError("seed + seeds: seeds must be below 2^64")
     if config.cells * config.seeds > 2**26:
         raise InputError(f"cells x seeds: {config.cells * config.seeds} cells are more than 2^26")
+    workers, cells = getattr(habitat, "workers", None), config.cells * config.seeds
+    if workers is not None and workers > cells:
+        raise InputError(f"habitat.workers: {workers} workers are more than the {cells} cells")
     if config.motor.kind == "gaussian" and not isinstance(habitat.action, Continuous):
         raise InputError(
             "motor.kind: this habitat's actions are discrete, so a gaussian motor has no use"

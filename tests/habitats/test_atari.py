@@ -100,7 +100,7 @@ class Played:
         self.habitat = Atari(**settings)
         self.habitat.open(2)
         both = np.array([0, 1])
-        self.senses = self.habitat.reset(both, np.zeros((2, 2), np.uint32))
+        self.senses = self.habitat.reset(both, np.zeros((2, self.habitat.words), np.uint32))
 
     def until(self, name: str, most: int = 3000) -> tuple[int, Any]:
         """Step, doing nothing, until the first body has it."""
@@ -143,10 +143,18 @@ def test_a_life_lost_is_noticed() -> None:
 
 
 def test_runs_are_exact(tmp_path: Path) -> None:
-    """In chunks, over a resume, and lived again."""
-    settings = {"cells": 4, "habitat": {"sticky": 0.1, "noops": 5}, "hazard": 0.005}
-    whole = primordia.run("Pong-survival", tmp_path / "whole", **settings, stop={"ticks": 300})
-    half = primordia.run("Pong-survival", tmp_path / "half", **settings, stop={"ticks": 130})
+    """In chunks, by other workers, over a resume, and lived again."""
+    noisy = {"sticky": 0.1, "noops": 5}
+    settings = {"cells": 4, "hazard": 0.005}
+
+    def lived(name: str, ticks: int, workers: int) -> primordia.Run:
+        habitat = {**noisy, "workers": workers}
+        stop = {"ticks": ticks}
+        return primordia.run(
+            "Pong-survival", tmp_path / name, **settings, habitat=habitat, stop=stop
+        )
+
+    whole, half = lived("whole", 300, 1), lived("half", 130, 3)
     half.resume(ticks=300)
     assert half.info()["digest"] == whole.info()["digest"]
     assert verify(half.path) == []
@@ -166,6 +174,7 @@ def test_runs_are_exact(tmp_path: Path) -> None:
         (["--habitat.actions", "NOOP JUMP"], "there is no JUMP; pong takes NOOP, FIRE"),
         (["--habitat.mode", "77"], "mode: pong has [0, 1], not 77"),
         (["--habitat.sticky", "1.5"], "habitat.sticky"),
+        (["--habitat.workers", "9", "--cells", "8"], "9 workers are more than the 8 cells"),
     ],
 )
 def test_bad_input(flags: list[str], says: str, tmp_path: Path) -> None:

@@ -58,6 +58,11 @@ class Atari(Settings):
     noops: int = Field(0, ge=0, le=10_000, description="a life begins after up to so many no-ops")
     mode: int | None = Field(None, ge=0, description="the game's mode")
     difficulty: int | None = Field(None, ge=0, description="the game's difficulty")
+    workers: int | None = Field(
+        None,
+        ge=1,
+        description="processes that emulate; no life depends on it (default: one a core)",
+    )
 
     _pool: Pool = PrivateAttr()
     _tally: np.ndarray = PrivateAttr()
@@ -147,7 +152,9 @@ class Atari(Settings):
             ),
             "actions": self._buttons,
         }
-        self._pool = Pool("primordia.pool.arcade:Arcade", settings, FIELDS | screen, cells)
+        self._pool = Pool(
+            "primordia.pool.arcade:Arcade", settings, FIELDS | screen, cells, self.workers
+        )
         self._tally = np.zeros((cells, len(self.tallies)), np.int32)
         self._lives = self._tally[:, 2]
 
