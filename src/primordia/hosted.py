@@ -19,10 +19,10 @@ from primordia.chunk import Limits, State, named_leaves, running, ticks_left
 from primordia.events import Events
 from primordia.genesis import birth_words
 from primordia.habitats import HostHabitat, Outcome
+from primordia.held import Form, Held
 from primordia.law import Fates, Law, judge, keys_of, lifeless, no_fates, rest, settle, think
 from primordia.sample import width
 from primordia.tallies import Tallies
-from primordia.wide import Wide
 from primordia.world import World
 
 # Small calls are computed in the thread that makes them and waits for them: handing them to another costs
@@ -38,19 +38,11 @@ class Thought(NamedTuple):
     action: Array
 
 
-class Lived(NamedTuple):
-    """What ticks have changed since the world was settled, (C,) or (W,)."""
-
-    memory: Array
-    faulty: Array
-    energy: Array
-    eaten: Array
-    food: Wide
-
-
 class Decision(NamedTuple):
     """What the host needs of a tick that is settled."""
 
+    alive: Array
+    """bool (C,)"""
     active: Array
     """bool (C,): who is to be stepped next"""
     died: Array
@@ -71,10 +63,6 @@ class Hosted:
     def __init__(self, law: Law, habitat: HostHabitat) -> None:
         self.exact = getattr(habitat, "exact", True)
         self._law, self._habitat = law, habitat
-        self._think = jax.jit(partial(_think, law))
-        self._live = jax.jit(partial(_live, law))
-        self._settle = jax.jit(partial(_settle, law, habitat.words), donate_argnums=(0, 1))
-        self._genesis = jax.jit(partial(_genesis, law, habitat.words), donate_argnums=(0, 1))
         self._tallies = Tallies(habitat, law.worlds)
         self._lists = log.empty(law.worlds * law.cells, law.worlds, width(law.blocks))
         self.events = self._lists
@@ -83,6 +71,12 @@ class Hosted:
 
     def begin(self, world: World) -> State:
         """The state of a run before genesis."""
+        law, words, form = self._law, self._habitat.words, Form(world)
+        self._hold, self._release = jax.jit(form.hold), jax.jit(form.release)
+        self._think = jax.jit(partial(_think, law, form))
+        self._live = jax.jit(partial(_live, law, form))
+        self._settle = jax.jit(partial(_settle, law, form, words), donate_argnums=(0, 1))
+        self._genesis = jax.jit(partial(_genesis, law, form, words), donate_argnums=(0, 1))
         cells = len(world.organisms.alive)
         return State(world, np.zeros((cells, self._habitat.senses_size), np.float32))
 
@@ -90,46 +84,51 @@ class Hosted:
         """At most so many ticks, fewer if every world stops or the lists are full -> ticks done."""
         events = Events(*(rows._replace(filled=jnp.int32(0)) for rows in self._lists))
         self._tallies.begin()
-        world, events, decision = self._genesis(state.world, events, limits)
+        genome, held = state.world.organisms.genome, self._hold(state.world)
+        genome, events, held, decision = self._genesis(genome, events, held, limits)
         senses, done = self._embody(np.array(state.bodies), decision), 0
-        self._tallies.note_samples(world.organisms.alive, events.samples)
-        thought = self._think(world, senses)
+        self._tallies.note_samples(decision.alive, events.samples)
+        thought = self._think(genome, held, senses)
         while done < ticks and decision.go_on:
             most = min(int(decision.due), ticks - done)
-            thought, senses, lived, fates, passed = self._quiet(
-                world, thought, decision.active, most
+            thought, senses, now, fates, passed = self._quiet(
+                genome, held, thought, decision.active, most
             )
             done += passed
-            organisms = world.organisms
-            bare = World(organisms._replace(genome={}), world.worlds)
-            world, events, decision = self._settle(
-                organisms.genome, events, bare, lived, fates, jnp.int32(passed), limits
+            genome, events, held, decision = self._settle(
+                genome, events, held, now, fates, np.int32(passed), limits
             )
             self._tallies.note_deaths(np.asarray(decision.died))
             if np.asarray(decision.born).any():
                 senses = self._embody(senses, decision)
-                thought = self._think(world, senses)
-            self._tallies.note_samples(world.organisms.alive, events.samples)
+                thought = self._think(genome, held, senses)
+            self._tallies.note_samples(decision.alive, events.samples)
         self._lists, self.events = events, self._tallies.beside(events)
-        return State(world, senses), done
+        return State(self._released(genome, held), senses), done
+
+    def _released(self, genome: Genome, held: Held) -> World:
+        """The world again; its genomes do not pass through a call, which would copy them."""
+        world = self._release(held, {})
+        return world._replace(organisms=world.organisms._replace(genome=genome))
 
     def _quiet(
-        self, world: World, thought: Thought, active: Array, most: int
-    ) -> tuple[Thought, np.ndarray, Lived, Fates, int]:
+        self, genome: Genome, held: Held, thought: Thought, active: Array, most: int
+    ) -> tuple[Thought, np.ndarray, Held, Fates, int]:
         """Ticks up to and with the first eventful one, at most so many.
 
         Returns:
-            what is thought next, senses, what was lived, fates of the last tick, how many ticks.
+            what is thought next, senses, the world not settled yet, fates of the last tick, how many
+            ticks.
         """
-        lived, alive = _nothing_lived(world), np.asarray(active)
+        now, alive = held, np.asarray(active)
         for passed in range(1, most + 1):
             senses, outcome = self._habitat.step(np.asarray(thought.action), alive)
-            lived, thought, fates = self._live(
-                world, lived, thought, senses, outcome, active, np.int32(passed)
+            now, thought, fates = self._live(
+                genome, now, thought, senses, outcome, active, np.int32(passed)
             )
             if fates.eventful:
                 break
-        return thought, senses, lived, fates, passed
+        return thought, senses, now, fates, passed
 
     def _embody(self, senses: np.ndarray, decision: Decision) -> np.ndarray:
         born = np.flatnonzero(decision.born)
@@ -155,49 +154,47 @@ class Hosted:
         return State(jax.tree.unflatten(jax.tree.structure(template.world), leaves), senses)
 
 
-def _think(law: Law, world: World, senses: Array) -> Thought:
+def _think(law: Law, form: Form, genome: Genome, held: Held, senses: Array) -> Thought:
+    world = form.release(held, genome)
     after, action = think(law, world, senses, keys_of(world.worlds, jnp.int32(1)))
     return Thought(after.organisms.memory, after.organisms.faulty, action)
 
 
-def _nothing_lived(world: World) -> Lived:
-    organisms = world.organisms
-    changed = organisms.memory, organisms.faulty, organisms.energy, organisms.eaten
-    return Lived(*changed, world.worlds.food)
-
-
-def _with(world: World, lived: Lived) -> World:
-    """A world as it was settled, with what was lived since."""
-    changed = lived._asdict()
-    food = changed.pop("food")
-    return World(world.organisms._replace(**changed), world.worlds._replace(food=food))
-
-
 def _live(
     law: Law,
-    world: World,
-    lived: Lived,
+    form: Form,
+    genome: Genome,
+    now: Held,
     thought: Thought,
     senses: Array,
     outcome: Outcome,
     active: Array,
     passed: Array,
-) -> tuple[Lived, Thought, Fates]:
+) -> tuple[Held, Thought, Fates]:
     """The tick so many after the last settled one is judged, and the next one thought."""
-    before = _with(world, lived._replace(memory=thought.memory, faulty=thought.faulty))
+    world = form.release(now, genome)
+    organisms = world.organisms._replace(memory=thought.memory, faulty=thought.faulty)
     lost = ~jnp.isfinite(senses).all(axis=1)
     fault = lost if outcome.fault is None else lost | outcome.fault
     keys = keys_of(world.worlds, passed)
-    after, fates = judge(law, before, outcome._replace(fault=fault), keys, active)
-    next_, action = think(law, after, senses, keys_of(world.worlds, passed + 1))
-    thought = Thought(next_.organisms.memory, next_.organisms.faulty, action)
-    return _nothing_lived(after), thought, fates
+    outcome = outcome._replace(fault=fault)
+    world, fates = judge(law, world._replace(organisms=organisms), outcome, keys, active)
+    after, action = think(law, world, senses, keys_of(world.worlds, passed + 1))
+    thought = Thought(after.organisms.memory, after.organisms.faulty, action)
+    return form.hold(world), thought, fates
 
 
 def _genesis(
-    law: Law, words: int, world: World, events: Events, limits: Limits
-) -> tuple[World, Events, Decision]:
+    law: Law,
+    form: Form,
+    words: int,
+    genome: Genome,
+    events: Events,
+    held: Held,
+    limits: Limits,
+) -> tuple[Genome, Events, Held, Decision]:
     """Founders where a running world is empty, before the first tick; else nothing."""
+    world = form.release(held, genome)
     nobody = jnp.zeros_like(world.organisms.alive)
     live_worlds = running(world.worlds, limits)
     world, events, born = lax.cond(
@@ -207,29 +204,31 @@ def _genesis(
         world,
         events,
     )
-    return world, events, _decide(law, words, world, events, nobody, born, limits)
+    decision = _decide(law, words, world, events, nobody, born, limits)
+    return world.organisms.genome, events, form.hold(world), decision
 
 
 def _settle(
     law: Law,
+    form: Form,
     words: int,
     genome: Genome,
     events: Events,
-    world: World,
-    lived: Lived,
+    held: Held,
+    now: Held,
     fates: Fates,
     passed: Array,
     limits: Limits,
-) -> tuple[World, Events, Decision]:
-    """Bring a world (its genome apart, which is used up) up to date by what was lived."""
-    before = World(world.organisms._replace(genome=genome), world.worlds)
-    live_worlds = running(world.worlds, limits)
+) -> tuple[Genome, Events, Held, Decision]:
+    """Bring a world, as it was held after the last settled tick, up to date by what was lived since."""
+    before, after = form.release(held, genome), form.release(now, genome)
+    live_worlds = running(before.worlds, limits)
     active = before.organisms.alive & law.per_cell(live_worlds)
-    after = _with(before, lived)
     world = World(rest(before.organisms, after.organisms, active), after.worlds)
     world, events, born = settle(law, world, events, fates, passed, live_worlds)
     died = before.organisms.alive & (~world.organisms.alive | born)
-    return world, events, _decide(law, words, world, events, died, born, limits)
+    decision = _decide(law, words, world, events, died, born, limits)
+    return world.organisms.genome, events, form.hold(world), decision
 
 
 def _decide(
@@ -237,8 +236,10 @@ def _decide(
 ) -> Decision:
     live_worlds = running(world.worlds, limits)
     room = log.have_room(events, law.worlds * law.cells, law.worlds)
+    alive = world.organisms.alive
     return Decision(
-        active=world.organisms.alive & law.per_cell(live_worlds),
+        alive=alive,
+        active=alive & law.per_cell(live_worlds),
         died=died,
         born=born,
         words=birth_words(law, world.worlds, born.any(), words),
