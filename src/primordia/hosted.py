@@ -82,10 +82,9 @@ class Hosted:
 
     def advance(self, state: State, limits: Limits, ticks: int) -> tuple[State, int]:
         """At most so many ticks, fewer if every world stops or the lists are full -> ticks done."""
-        events = Events(*(rows._replace(filled=jnp.int32(0)) for rows in self._lists))
         self._tallies.begin()
         genome, held = state.world.organisms.genome, self._hold(state.world)
-        genome, events, held, decision = self._genesis(genome, events, held, limits)
+        genome, events, held, decision = self._genesis(genome, self._lists, held, limits)
         senses, done = self._embody(np.array(state.bodies), decision), 0
         self._tallies.note_samples(decision.alive, events.samples)
         thought = self._think(genome, held, senses)
@@ -193,7 +192,8 @@ def _genesis(
     held: Held,
     limits: Limits,
 ) -> tuple[Genome, Events, Held, Decision]:
-    """Founders where a running world is empty, before the first tick; else nothing."""
+    """Lists emptied; founders where a running world is empty, before the first tick."""
+    events = Events(*(rows._replace(filled=jnp.int32(0)) for rows in events))
     world = form.release(held, genome)
     nobody = jnp.zeros_like(world.organisms.alive)
     live_worlds = running(world.worlds, limits)

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 
@@ -27,6 +28,8 @@ from primordia.law import Law
 from primordia.record import Recorder
 from primordia.tallies import names_of
 from primordia.wide import wide
+
+_running = jax.jit(running)
 
 CHUNK_SECONDS = 0.2
 """Aimed at, so that Ctrl-C is heard in time."""
@@ -62,7 +65,7 @@ class Engine:
 
     def any_running(self, limits: Limits) -> bool:
         """Whether some world has not come to a limit."""
-        return bool(running(self.state.world.worlds, limits).any())
+        return bool(_running(self.state.world.worlds, limits).any())
 
     def limits(self, stop: dict[str, Any], ticks: np.ndarray | None = None) -> Limits:
         """Limits for all worlds alike; `ticks` (W,) if each has its own."""
