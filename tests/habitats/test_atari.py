@@ -18,7 +18,10 @@ ale_py = pytest.importorskip("ale_py")
 PAPERS = ["pong", "boxing", "space_invaders", "battle_zone", "breakout", "freeway"]
 
 
-@pytest.mark.parametrize("game", PAPERS)
+OTHERS = [pytest.param(each, marks=pytest.mark.slow) for each in games() if each not in PAPERS]
+
+
+@pytest.mark.parametrize("game", [*PAPERS, *OTHERS])
 def test_a_clone_goes_on_as_the_original(game: str) -> None:
     """Clone, serialise, restore elsewhere, go on: the same RAM and points for 2,000 frames."""
     one, other = console(game), console(game)
@@ -167,6 +170,8 @@ def test_runs_are_exact(tmp_path: Path) -> None:
     [
         (["--habitat.game", "pongg"], "there is no game 'pongg'; did you mean pong"),
         (["--habitat.game", "xyzzy"], "known: adventure"),
+        (["--habitat.game", "combat"], "combat is refused: the emulator has it for several"),
+        (["--habitat.game", "qbert"], "qbert is refused: the emulator does not restore"),
         (["--habitat.senses", "[3, 128]"], "there is no address 128"),
         (["--habitat.fatal", "points <"], "'points <' cannot be read at column"),
         (["--habitat.fatal", "ram[200] == 1"], "ram goes from ram[0] to ram[127]"),

@@ -18,7 +18,7 @@ from primordia.conditions import Expression, Names
 from primordia.habitats import Outcome
 from primordia.motor import Discrete
 from primordia.pool import Pool
-from primordia.pool.arcade import FIELDS, RAM, WATCHED
+from primordia.pool.arcade import FIELDS, RAM, REFUSED, WATCHED
 from primordia.settings import Settings
 
 if TYPE_CHECKING:
@@ -255,8 +255,8 @@ def _ale() -> Any:
 
 @cache
 def games() -> list[str]:
-    """Names of the games there are."""
-    return sorted(_ale().roms.get_all_rom_ids())
+    """Names of the games that can be lived in."""
+    return sorted(set(_ale().roms.get_all_rom_ids()) - set(REFUSED))
 
 
 @cache
@@ -264,10 +264,12 @@ def _facts(game: str) -> tuple[Mapping[str, int], Mapping[str, list[int]], tuple
     """Minimal action set; modes and difficulties; height and width of the screen.
 
     Raises:
-        ValueError: there is no such game.
+        ValueError: there is no such game, or it is refused.
     """
     from primordia.pool.arcade import console
 
+    if game in REFUSED:
+        raise ValueError(f"{game} is refused: {REFUSED[game]}")
     if game not in games():
         close = difflib.get_close_matches(game.lower().replace("-", "_"), games(), 3)
         known = f"did you mean {', '.join(close)}?" if close else f"known: {', '.join(games())}"

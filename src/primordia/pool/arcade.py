@@ -23,6 +23,17 @@ FIELDS = {
     "game_over": ("bool", ()),
 }
 NOOP = 0
+REFUSED = {
+    **dict.fromkeys(
+        ("combat", "joust", "maze_craze", "warlords"),
+        "the emulator has it for several players only",
+    ),
+    **dict.fromkeys(
+        ("miniature_golf", "qbert", "tetris"),
+        "the emulator does not restore its states exactly, so no run of it could be repeated",
+    ),
+}
+"""Games that cannot be lived in, and why; measured with ale-py 0.12.1, all others are exact."""
 WATCHED = "screen"
 """A further field, uint8 (height, width, 3): filled after each tick if the arrays have it."""
 
