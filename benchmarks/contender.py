@@ -102,7 +102,7 @@ class Published(Loop):
     about = "one Python object an organism, NumPy, one process"
 
     def __init__(self, game: str, cells: int) -> None:
-        from primordia.habitats.atari import minimal_actions
+        from primordia.habitats.atari_games import minimal_actions
         from primordia.pool.arcade import console
 
         config, habitat, _ = _described(game)

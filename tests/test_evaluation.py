@@ -8,6 +8,7 @@ import pytest
 
 import primordia
 from primordia import loop
+from primordia.errors import InputError
 from primordia.evaluation import evaluate
 from primordia.lives import lives
 from tests.commands import complains, here
@@ -108,3 +109,8 @@ def test_bad_input(pong: Path, poles: Path) -> None:
         ((pong, "--organism", "9999"), "no organism 9999"),
     ):
         complains(here("evaluate", *words), 2, part)
+
+
+def test_the_brain_must_fit(pong: Path) -> None:
+    with pytest.raises(InputError, match=r"3 senses and 2 actions; .* made for 3 and 6"):
+        primordia.load(pong).oldest().evaluate(actions="NOOP UP")

@@ -17,7 +17,7 @@ ORDER = """
     video
     brain motor mutation placement metabolism
     world habitats device genomes
-    seasons sample tallies held habitats.cartpole_picture habitats.atari_picture
+    seasons sample tallies held habitats.cartpole_picture habitats.atari_picture habitats.atari_games
     habitats.*
     turnover
     law

@@ -5,6 +5,7 @@ looks at the game at all, is asked here.
 """
 
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
@@ -12,12 +13,11 @@ import jax.numpy as jnp
 import numpy as np
 
 from primordia.climate import climate_at
-from primordia.config import Config
+from primordia.directory import read_config
 from primordia.errors import InputError
 from primordia.games import Games, Player, play
 from primordia.keys import Purpose, stream
 from primordia.lineage import rebuild
-from primordia.lives import lives
 from primordia.metabolism import Rates
 from primordia.report import opened, world_ticks
 from primordia.wide import wide
@@ -104,32 +104,49 @@ def evaluate(
         changes: settings of the habitat, such as `sticky=0.25, noops=30`.
 
     Raises:
-        InputError: no such organism, or a setting that the habitat does not have.
+        InputError: no such organism, a setting that the habitat does not have, or one with which the
+            brain no longer fits.
     """
     if games < 1 or ticks < 1:
         raise InputError("evaluate: play one game or more, of one tick or more")
-    config, _ = opened(run)
-    lives(run).row(organism, world)
-    changed = config.model_copy(update={"habitat": {**config.habitat, **changes}})
-    before, after = _players(run, config, organism, world), _players(run, changed, organism, world)
-    script = play(before[-1], 1, ticks).actions if senses == "ignored" else None
-    count = 1 if after[0].deterministic else games
-    played = [
-        play(player, count, ticks, frozen=senses == "frozen", script=script) for player in after
-    ]
-    whole = played[1] if len(played) > 1 else None
-    return Evaluation(organism, world, senses, played[0], whole)
+    own = _player(run, organism, world)
+    player = own._replace(habitat=_changed(run, own.habitat, changes))
+    script = play(own, 1, ticks).actions if senses == "ignored" else None
+    count = 1 if player.deterministic else games
+    played = partial(play, games=count, ticks=ticks, frozen=senses == "frozen", script=script)
+    whole = _in_the_original(player)
+    return Evaluation(organism, world, senses, played(player), played(whole) if whole else None)
 
 
-def _players(run: Path, config: Config, organism: int, world: int) -> list[Player]:
-    """The organism in its task, and in the original game if there is one."""
+def _player(run: Path, organism: int, world: int) -> Player:
+    """The organism in its task."""
+    genome = rebuild(run, organism, world)
+    config, last = opened(run)
     habitat = config.build_habitat()
     law = config.build_law(habitat)
-    end = world_ticks(opened(run)[1].arrays())[world : world + 1].astype(np.int64)
+    end = world_ticks(last.arrays())[world : world + 1].astype(np.int64)
     climate = climate_at(run, config, law, world)(end)
     rates = Rates(*(jnp.asarray(climate[f"metabolism.{name}"]) for name in Rates._fields))
     key = stream(wide([config.seed + world]), Purpose.EVALUATION, wide([organism]))
-    own = Player(law, habitat, rebuild(run, organism, world), key, rates)
-    if not hasattr(habitat, "original"):
-        return [own]
-    return [own, own._replace(habitat=habitat.original(), law=replace(law, metabolism=None))]
+    return Player(law, habitat, genome, key, rates)
+
+
+def _changed(run: Path, before: Any, changes: dict[str, Any]) -> Any:
+    """The run's habitat with some settings changed."""
+    config = read_config(run)
+    habitat = config.model_copy(update={"habitat": {**config.habitat, **changes}}).build_habitat()
+    if (habitat.senses_size, habitat.action) != (before.senses_size, before.action):
+        raise InputError(
+            f"evaluate: with other {', '.join(changes)} the habitat has {habitat.senses_size} senses"
+            f" and {habitat.action.size} actions; the brain is made for {before.senses_size} and"
+            f" {before.action.size}"
+        )
+    return habitat
+
+
+def _in_the_original(player: Player) -> Player | None:
+    """The same in the original game, where there is one; nobody starves in it."""
+    if not hasattr(player.habitat, "original"):
+        return None
+    law = replace(player.law, metabolism=None)
+    return player._replace(habitat=player.habitat.original(), law=law)

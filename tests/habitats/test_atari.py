@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 import primordia
-from primordia.habitats.atari import Atari, games
+from primordia.habitats import atari_games
+from primordia.habitats.atari import Atari
+from primordia.habitats.atari_games import games
 from primordia.pool import board
 from primordia.pool.arcade import FIELDS, Arcade, console
 from primordia.verify import verify
@@ -190,9 +192,7 @@ def test_bad_input(flags: list[str], says: str, tmp_path: Path) -> None:
 def test_without_the_extra(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     import sys
 
-    from primordia.habitats import atari
-
-    for cached in (atari._ale, atari.games, atari._facts, atari.legal_actions):
+    for cached in (atari_games._ale, games, atari_games._facts, atari_games.legal_actions):
         cached.cache_clear()
     monkeypatch.setitem(sys.modules, "ale_py", None)
     done = here("run", "Pong-survival", "--out", tmp_path / "run")

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import primordia
-from primordia.habitats.atari import SCALED, Atari, screen_size
+from primordia.habitats.atari import SCALED, Atari
+from primordia.habitats.atari_games import screen_size
 from primordia.habitats.atari_picture import ROOM, draw
 from primordia.life import Life
 from primordia.lives import Lives, lives

@@ -5,9 +5,7 @@ actions. What is fatal and what is food are conditions on RAM, points and lives.
 Learning Environment's (extra `primordia[atari]`).
 """
 
-import difflib
-from collections.abc import Mapping
-from functools import cache, cached_property
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,9 +14,15 @@ from pydantic import Field, PrivateAttr, field_validator, model_validator
 from primordia import conditions
 from primordia.conditions import Expression, Names
 from primordia.habitats import Outcome
+from primordia.habitats.atari_games import (
+    available_options,
+    legal_actions,
+    minimal_actions,
+    screen_size,
+)
 from primordia.motor import Discrete
 from primordia.pool import Pool
-from primordia.pool.arcade import FIELDS, RAM, REFUSED, WATCHED
+from primordia.pool.arcade import FIELDS, RAM, WATCHED
 from primordia.settings import Settings
 
 if TYPE_CHECKING:
@@ -237,66 +241,3 @@ class Atari(Settings):
         pairs = zip(arrays["states"], arrays["lengths"], strict=True)
         self._pool.load([row[:length].tobytes() for row, length in pairs])
         self._tally[:] = arrays["tally"]
-
-
-@cache
-def _ale() -> Any:
-    """The ale_py package.
-
-    Raises:
-        ValueError: it is not installed.
-    """
-    try:
-        import ale_py
-    except ImportError:
-        raise ValueError("Atari games need ale-py: pip install 'primordia[atari]'") from None
-    return ale_py
-
-
-@cache
-def games() -> list[str]:
-    """Names of the games that can be lived in."""
-    return sorted(set(_ale().roms.get_all_rom_ids()) - set(REFUSED))
-
-
-@cache
-def _facts(game: str) -> tuple[Mapping[str, int], Mapping[str, list[int]], tuple[int, int]]:
-    """Minimal action set; modes and difficulties; height and width of the screen.
-
-    Raises:
-        ValueError: there is no such game, or it is refused.
-    """
-    from primordia.pool.arcade import console
-
-    if game in REFUSED:
-        raise ValueError(f"{game} is refused: {REFUSED[game]}")
-    if game not in games():
-        close = difflib.get_close_matches(game.lower().replace("-", "_"), games(), 3)
-        known = f"did you mean {', '.join(close)}?" if close else f"known: {', '.join(games())}"
-        raise ValueError(f"there is no game {game!r}; {known}")
-    ale = console(game)
-    minimal = {action.name: int(action.value) for action in ale.getMinimalActionSet()}
-    options = {"mode": ale.getAvailableModes(), "difficulty": ale.getAvailableDifficulties()}
-    available = {name: list(map(int, values)) for name, values in options.items()}
-    return minimal, available, ale.getScreenDims()
-
-
-def minimal_actions(game: str) -> Mapping[str, int]:
-    """Names and codes of the actions that do something in a game."""
-    return _facts(game)[0]
-
-
-def available_options(game: str) -> Mapping[str, list[int]]:
-    """Its modes and difficulties."""
-    return _facts(game)[1]
-
-
-def screen_size(game: str) -> tuple[int, int]:
-    """Height and width in pixels, of which each is about twice as wide as high."""
-    return _facts(game)[2]
-
-
-@cache
-def legal_actions() -> Mapping[str, int]:
-    """Names and codes of all 18 actions."""
-    return {name: int(action.value) for name, action in _ale().Action.__members__.items()}

@@ -45,9 +45,8 @@ class Hosted:
         self, now: Instant, ticks: np.ndarray, rates: Rates, count: int
     ) -> tuple[Instant, Stretch]:
         """The first so many of TICKS ticks, with their rates (TICKS,)."""
-        tick = jax.tree.map(
-            np.asarray, wide(ticks)
-        )  # slicing JAX's arrays takes longer than a frame
+        # in NumPy, since slicing JAX's arrays takes longer than a frame
+        tick = jax.tree.map(np.asarray, wide(ticks))
         memory, senses, lived = now.memory, now.bodies, []
         for i in range(count):
             memory, action = self._think(self._mind, memory, senses, tick.take(np.s_[i : i + 1]))
