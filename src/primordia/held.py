@@ -17,10 +17,8 @@ from primordia.world import Organisms, World
 class Held(NamedTuple):
     """A world without its genomes."""
 
-    memory: Array
-    """float32 (C, M)"""
     organisms: Array
-    """uint32 (C, K): all else about them"""
+    """uint32 (C, K)"""
     worlds: Array
     """uint32 (W, L)"""
 
@@ -29,25 +27,22 @@ class Form:
     """How worlds of one shape are held."""
 
     def __init__(self, world: World) -> None:
-        self._organisms = Packing(_small(world.organisms))
+        self._organisms = Packing(_without_genome(world.organisms))
         self._worlds = Packing(world.worlds)
 
     def hold(self, world: World) -> Held:
         """All but the genomes."""
-        organisms = self._organisms.pack(_small(world.organisms))
-        return Held(world.organisms.memory, organisms, self._worlds.pack(world.worlds))
+        organisms = self._organisms.pack(_without_genome(world.organisms))
+        return Held(organisms, self._worlds.pack(world.worlds))
 
     def release(self, held: Held, genome: Genome) -> World:
         """The world, with the genomes given."""
-        small = self._organisms.unpack(held.organisms)
-        organisms = Organisms(genome=genome, memory=held.memory, **small)
+        organisms = self._organisms.unpack(held.organisms)._replace(genome=genome)
         return World(organisms, self._worlds.unpack(held.worlds))
 
 
-def _small(organisms: Organisms) -> dict[str, Any]:
-    """What there is little of."""
-    fields = organisms._asdict()
-    return {name: fields[name] for name in fields if name not in ("genome", "memory")}
+def _without_genome(organisms: Organisms) -> Organisms:
+    return organisms._replace(genome={})
 
 
 class Packing:

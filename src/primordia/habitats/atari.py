@@ -174,20 +174,20 @@ class Atari(Settings):
 
     def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
         """One tick of the games that are played."""
-        pool = self._pool
+        pool, lives = self._pool, self._lives
         pool.arrays["action"][:] = action
         pool.step(alive)
         values = {name: pool.arrays[name] for name in ("ram", "points", "lives", "game_over")}
-        values["lives_lost"] = np.maximum(self._lives - values["lives"], 0)
-        self._lives[:] = values["lives"]
-        self._count(values["points"], alive)
-        fatal: Any = np.broadcast_to(self._is_fatal(values), self._lives.shape)
-        food: Any = np.broadcast_to(
-            np.asarray(self._is_food(values), np.float32), self._lives.shape
-        )
+        values["lives_lost"] = np.maximum(lives - values["lives"], 0)
+        lives[:] = values["lives"]
+        if values["points"].any():
+            self._count(values["points"], alive)
+        fatal: Any = np.full(len(lives), self._is_fatal(values), bool)
+        food: Any = np.full(len(lives), self._is_food(values), np.float32)
         return self._sensed(), Outcome(fatal, food)
 
     def _count(self, points: np.ndarray, alive: np.ndarray) -> None:
+        """Points (N,) made, or lost to the opponent, in a tick."""
         points = points.astype(np.int32) * alive
         self._tally[:, 0] += points
         self._tally[:, 1] += points > 0

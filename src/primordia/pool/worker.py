@@ -9,8 +9,10 @@ gone, whatever became of it, standard input ends, and so does the worker. JAX is
 import json
 import mmap
 import os
+import select
 import signal
 import sys
+import time
 from contextlib import suppress
 from importlib import import_module
 from typing import Any, Protocol
@@ -19,6 +21,9 @@ import numpy as np
 
 from primordia.pool import board
 from primordia.pool.board import LOAD, READY, RESET, SAVE, STEP
+
+AWAKE = 0.002
+"""Seconds for which a worker that has nothing to do keeps its core."""
 
 
 class Simulator(Protocol):
@@ -69,7 +74,9 @@ def serve(simulator: Simulator, todo: np.ndarray, cells: range, asked: Any, answ
     """Answer until nothing more is asked."""
     unbuffered = asked.fileno()
     own = np.arange(cells.start, cells.stop, cells.step)
-    while command := os.read(unbuffered, 1):
+    ear = select.poll()
+    ear.register(unbuffered, select.POLLIN)
+    while command := _heard(ear, unbuffered):
         if command == STEP:
             simulator.step(own[todo[own]].tolist())
         elif command == RESET:
@@ -84,6 +91,19 @@ def serve(simulator: Simulator, todo: np.ndarray, cells: range, asked: Any, answ
                 length = int.from_bytes(_read(unbuffered, 4), "little")
                 simulator.load(cell, _read(unbuffered, length))
         answers.write(READY)
+
+
+def _heard(ear: select.poll, asked: int) -> bytes:
+    """The next command, b"" at the end; at first the worker listens without falling asleep.
+
+    The run takes half a millisecond from one tick to the next. A core that is put to sleep and woken
+    for that, above all a virtual one, costs more: 32 games went on at 0.56 of the bare emulators' speed,
+    and at 0.68 like this. The run has the core whenever it wants it.
+    """
+    tired = time.perf_counter() + AWAKE
+    while not ear.poll(0) and time.perf_counter() < tired:
+        os.sched_yield()
+    return os.read(asked, 1)
 
 
 def _write(answers: Any, data: bytes) -> None:
