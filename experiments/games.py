@@ -48,13 +48,17 @@ def report(file: Path) -> None:
     for arm in arms:
         players += [(arm["name"], each) for each in longest_lived(folder / arm["name"])]
     rows = [row for name, organism in players for row in played(name, organism)]
-    stem = file.parent / "results" / f"{file.stem}-games"
+    write_rows(file.parent / "results" / f"{file.stem}-games", rows, summary(rows))
+
+
+def write_rows(stem: Path, rows: list[dict[str, Any]], told: str) -> None:
+    """STEM.csv with all rows, STEM.md with what they come to."""
     stem.parent.mkdir(exist_ok=True)
     with stem.with_suffix(".csv").open("w", newline="", encoding="utf-8") as out:
         sheet = csv.DictWriter(out, list(rows[0]), lineterminator="\n")
         sheet.writeheader()
         sheet.writerows(rows)
-    stem.with_suffix(".md").write_text(summary(rows) + "\n", encoding="utf-8")
+    stem.with_suffix(".md").write_text(told + "\n", encoding="utf-8")
     print(f"{stem}: .md .csv")
 
 

@@ -9,7 +9,8 @@ import pytest
 import primordia
 from primordia import loop
 from primordia.errors import InputError
-from primordia.evaluation import evaluate
+from primordia.evaluation import evaluate, player_of
+from primordia.games import play
 from primordia.lives import lives
 from tests.commands import complains, here
 from tests.worlds import MEADOW, config
@@ -45,6 +46,16 @@ def test_where_nothing_is_random_a_life_is_lived_again(pong: Path) -> None:
         assert found.whole is not None
         assert found.whole.ticks[0] > everyone.lifespan[row]
         assert found.whole.food[0] <= -20
+
+
+def test_several_may_play_side_by_side(pong: Path) -> None:
+    """Each lives its own life."""
+    everyone = lives(pong)
+    some = [int(everyone.id[row]) for row in np.flatnonzero(everyone.died)[:4]]
+    players = [player_of(pong, each) for each in some]
+    genomes = np.stack([player.genome for player in players])
+    ticks = play(players[0]._replace(genome=genomes), 4, 1000).ticks
+    assert ticks.tolist() == [everyone.lifespan[everyone.row(each)] for each in some]
 
 
 def test_doing_it_again_blindly_comes_to_the_same(pong: Path) -> None:

@@ -109,7 +109,7 @@ def evaluate(
     """
     if games < 1 or ticks < 1:
         raise InputError("evaluate: play one game or more, of one tick or more")
-    own = _player(run, organism, world)
+    own = player_of(run, organism, world)
     player = own._replace(habitat=_changed(run, own.habitat, changes))
     script = play(own, 1, ticks).actions if senses == "ignored" else None
     count = 1 if player.deterministic else games
@@ -118,8 +118,12 @@ def evaluate(
     return Evaluation(organism, world, senses, played(player), played(whole) if whole else None)
 
 
-def _player(run: Path, organism: int, world: int) -> Player:
-    """The organism in its task."""
+def player_of(run: Path, organism: int, world: int = 0) -> Player:
+    """An organism, with all that its games in its own task are a function of.
+
+    Raises:
+        InputError: no such organism was born.
+    """
     genome = rebuild(run, organism, world)
     config, last = opened(run)
     habitat = config.build_habitat()

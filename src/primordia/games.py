@@ -28,7 +28,7 @@ class Player(NamedTuple):
     law: Law
     habitat: Habitat | HostHabitat
     genome: np.ndarray
-    """float32 (P,)"""
+    """float32 (P,), or (E, P) if somebody else plays each game"""
     key: Wide
     """(1,), of everything random"""
     rates: Rates
@@ -107,7 +107,7 @@ class _Tries:
     def __init__(self, player: Player, games: int) -> None:
         law, self._player = player.law, player
         self._cells = jnp.arange(games, dtype=jnp.int32)
-        genome = split(law.brain, jnp.asarray(np.tile(player.genome, (games, 1))))
+        genome = split(law.brain, jnp.asarray(_one_a_game(player.genome, games)))
         self._mind = Mind(genome, player.key, self._cells)
         self._memory = jnp.zeros((games, law.brain.memory), jnp.float32)
         self._energy = jnp.broadcast_to(fixed(jnp.asarray(player.rates.store)), (games,))
@@ -133,6 +133,10 @@ class _Tries:
         rates = self._player.rates
         self._energy = self._eat(self._energy, outcome.food, outcome.effort, rates)
         return dies | (np.asarray(self._energy) <= 0)
+
+
+def _one_a_game(genome: np.ndarray, games: int) -> np.ndarray:
+    return np.broadcast_to(genome, (games, genome.shape[-1]))
 
 
 @contextmanager
