@@ -8,7 +8,7 @@ from typing import Any
 
 import primordia
 from primordia.cli.side_by_side import effect, ratio, setting, spread
-from primordia.comparison import OUTCOMES, Comparison
+from primordia.comparison import Comparison
 from primordia.figures import style
 from primordia.figures.comparison import draw
 
@@ -35,7 +35,8 @@ def write(stem: Path, question: str, runs: list[Path]) -> None:
 def summary(compared: Comparison, infos: list[dict[str, Any]]) -> str:
     """A row an arm: medians over worlds, with quartiles."""
     names = list(compared.arms[0].settings)
-    head = ["", *names, "worlds", "saturated", "extinctions (median)", *OUTCOMES.values()]
+    told = compared.outcomes
+    head = ["", *names, "worlds", "saturated", "extinctions (median)", *told.values()]
     rows = [
         [
             arm.name,
@@ -44,7 +45,7 @@ def summary(compared: Comparison, infos: list[dict[str, Any]]) -> str:
             arm.saturated,
             f"{extinct(info):g}",
         ]
-        + [spread(arm, outcome) for outcome in OUTCOMES]
+        + [spread(arm, outcome) for outcome in told]
         for arm, info in zip(compared.arms, infos, strict=True)
     ]
     return table(head, rows)
@@ -60,9 +61,9 @@ def effects(compared: Comparison) -> str:
     reference, *others = compared.arms
     rows = []
     for arm in others:
-        found = [(compared.contrast(arm, outcome), outcome) for outcome in OUTCOMES]
+        found = [(compared.contrast(arm, outcome), outcome) for outcome in compared.outcomes]
         rows.append([arm.name, *(f"{effect(*each)}; {ratio(each[0])}" for each in found)])
-    return table([f"against {reference.name}", *OUTCOMES.values()], rows)
+    return table([f"against {reference.name}", *compared.outcomes.values()], rows)
 
 
 def table(head: list[str], rows: list[list[Any]]) -> str:

@@ -36,6 +36,7 @@ ORDER = """
     organism
     comparison.resample
     comparison.contrast comparison.survival
+    comparison.pace
     comparison
     figures.style figures.series
     figures.*

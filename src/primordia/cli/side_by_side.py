@@ -7,7 +7,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from primordia.comparison import OUTCOMES, Arm, Comparison
+from primordia.comparison import Arm, Comparison
 from primordia.comparison.contrast import Bounds, Contrast
 
 DIRECTIONS = {
@@ -15,6 +15,8 @@ DIRECTIONS = {
     "births": ("earlier", "later"),
     "ticks": ("earlier", "later"),
     "lifespan": ("shorter", "longer"),
+    "longest": ("shorter", "longer"),
+    "pace": ("fewer", "more"),
 }
 """What a smaller and a larger figure mean."""
 
@@ -27,7 +29,7 @@ def side_by_side(compared: Comparison) -> str:
     console = Console(width=WIDE, color_system=None)
     with console.capture() as captured:
         console.print(_runs(compared))
-        for outcome in OUTCOMES:
+        for outcome in compared.outcomes:
             console.print(_against(compared, outcome))
     lines = [line.rstrip() for line in captured.get().splitlines()]
     text = "\n".join([*lines, *_notes(compared)])
@@ -91,7 +93,9 @@ def _runs(compared: Comparison) -> Table:
 def _against(compared: Comparison, outcome: str) -> Table:
     """One outcome of each run, and each run against the first."""
     reference, *others = compared.arms
-    table = _table(OUTCOMES[outcome], "median (quartiles)", "delta", "ratio of medians (95 %)")
+    table = _table(
+        compared.outcomes[outcome], "median (quartiles)", "delta", "ratio of medians (95 %)"
+    )
     table.add_row(reference.name, spread(reference, outcome), "reference", "")
     for arm in others:
         found = compared.contrast(arm, outcome)
@@ -104,9 +108,11 @@ def _table(*columns: str) -> Table:
 
 
 def _notes(compared: Comparison) -> list[str]:
+    late = "Late: the last quarter of the time that all worlds have lived through."
     return [
         "Medians and intervals are over worlds. Of a world that stopped unsaturated, what is known"
         " counts.",
+        *[late] * ("pace" in compared.outcomes),
         f"A long life: {compared.age:,} ticks. Mean lifespan: ticks, in each world, up to that age"
         " (Kaplan-Meier).",
         "Delta: Cliff's; the share of pairs of worlds in which the run's figure is larger than the"

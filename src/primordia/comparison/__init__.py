@@ -12,9 +12,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from primordia import report
 from primordia.comparison.contrast import Bounds, Contrast, Figures, contrast
+from primordia.comparison.pace import Pace, pace
 from primordia.comparison.survival import Survival, survival
 from primordia.config import Config
 from primordia.directory import read_config
@@ -26,7 +28,11 @@ OUTCOMES = {
     "births": "births to saturation",
     "ticks": "ticks to saturation",
     "lifespan": "mean lifespan",
+    "longest": "longest life",
+    "pace": "ticks lived for each death, late",
 }
+UNSATURATED = ("longest", "pace")
+"""Those that are of use only where no world saturated."""
 
 
 @dataclass(frozen=True)
@@ -38,8 +44,10 @@ class Arm:
     """dotted name -> value, of those settings in which the runs differ"""
     figures: dict[str, Figures]
     """of each of OUTCOMES: which birth the first was that lived to the comparison's age; births and
-    ticks to saturation, founders counted; mean lifespan in a world, in ticks, up to that age"""
+    ticks to saturation, founders counted; mean lifespan in a world, in ticks, up to that age; ticks of
+    the longest life, so far or in all; ticks lived for each death, see `pace`"""
     survival: Survival
+    pace: Pace
 
     @property
     def worlds(self) -> int:
@@ -65,6 +73,16 @@ class Comparison:
     """horizon, or None: as far as each world went"""
     ticks: int | None
     """horizon, or None: as far as each world went"""
+
+    @property
+    def outcomes(self) -> dict[str, str]:
+        """Those of OUTCOMES that tell something: known of some world, and of use."""
+        untold = UNSATURATED if any(arm.saturated for arm in self.arms) else ()
+        return {
+            name: words
+            for name, words in OUTCOMES.items()
+            if name not in untold and any(arm.figures[name].known.any() for arm in self.arms)
+        }
 
     def contrast(self, arm: Arm, outcome: str) -> Contrast:
         """A run against the reference in one of OUTCOMES."""
@@ -114,18 +132,33 @@ def compare(
     configs = _configs(runs)
     age = min(config.saturation_ticks for config in configs)
     names = [path.resolve().name for path in runs]
+    everyone = [lives(path) for path in runs]
+    until = min(int(world.ended.max(initial=0)) for each in everyone for world in _worlds(each))
     arms = []
-    for path, config, name, own in zip(runs, configs, names, differing(configs), strict=True):
-        lived = lives(path)
-        survived = survival(lived, config.seeds, age)
+    for path, lived, name, own in zip(runs, everyone, names, differing(configs), strict=True):
+        worlds = _worlds(lived)
+        survived, dying = survival(lived, len(worlds), age), pace(worlds, until)
         figures = {
-            "first": first_long([lived.of_world(world) for world in range(config.seeds)], age),
+            "first": first_long(worlds, age),
             **_saturation(path, births, ticks),
-            "lifespan": Figures(survived.restricted_mean, np.ones(config.seeds, bool)),
+            "lifespan": _all_known(survived.restricted_mean),
+            "longest": _all_known([world.lifespan.max() for world in worlds]),
+            "pace": dying.late,
         }
         label = name if names.count(name) == 1 else str(path)
-        arms.append(Arm(label, own, figures, survived))
+        arms.append(Arm(label, own, figures, survived, dying))
     return Comparison(configs[0].task, tuple(arms), age, births, ticks)
+
+
+def _all_known(values: ArrayLike) -> Figures:
+    """A figure that every world has."""
+    value = np.asarray(values, float)
+    return Figures(value, np.ones(value.shape, bool))
+
+
+def _worlds(lived: Lives) -> list[Lives]:
+    """Of a run, one by one."""
+    return [lived.of_world(world) for world in range(lived.worlds)]
 
 
 def _configs(runs: Sequence[Path]) -> list[Config]:

@@ -27,17 +27,21 @@ def save(compared: Comparison, folder: Path) -> list[Path]:
 
 
 def draw(compared: Comparison) -> Figure:
-    """Survival of all lives, and the share of worlds saturated, against births and against time."""
+    """Survival of all lives, and how soon worlds saturate; if none does, how fast organisms die."""
     figure = Figure(figsize=(style.PAGE, 2.7))
-    alive, births, ticks = figure.subplots(1, 3)
+    if any(arm.saturated for arm in compared.arms):
+        alive, births, ticks = figure.subplots(1, 3)
+        _saturated(births, compared, "births")
+        births.set(title="Saturated, by births", xlabel="births", ylabel="fraction of worlds")
+        _saturated(ticks, compared, "ticks")
+        ticks.set(title="Saturated, by time", xlabel="time (ticks)")
+    else:
+        alive, dying = figure.subplots(1, 2, width_ratios=(1, 1.6))
+        _dying(dying, compared)
     for arm, colour in zip(compared.arms, colours(len(compared.arms)), strict=True):
         _alive(alive, arm, colour)
     style.time_axis(alive, compared.age, "age (ticks)")
     alive.set(title="Alive at each age", ylabel="fraction of organisms", ylim=(-0.03, 1.03))
-    _saturated(births, compared, "births")
-    births.set(title="Saturated, by births", xlabel="births", ylabel="fraction of worlds")
-    _saturated(ticks, compared, "ticks")
-    ticks.set(title="Saturated, by time", xlabel="time (ticks)")
     _legend(figure, alive, compared)
     return figure
 
@@ -81,10 +85,23 @@ def _saturated(axes: Axes, compared: Comparison, unit: str) -> None:
     axes.set(xlim=(first, last), ylim=(-0.03, 1.03))
 
 
+def _dying(axes: Axes, compared: Comparison) -> None:
+    """Ticks lived for each death as time goes on: every world, and their median."""
+    for arm, colour in zip(compared.arms, colours(len(compared.arms)), strict=True):
+        middle = (arm.pace.edges[1:] + arm.pace.edges[:-1]) / 2
+        for world in arm.pace.curve:
+            axes.plot(middle, world, color=colour, alpha=0.3, linewidth=0.8)
+        axes.plot(middle, np.median(arm.pace.curve, axis=0), "o-", color=colour, markersize=3)
+    style.counted(axes.xaxis)
+    axes.set(title="Ticks lived for each death: worlds and median", xlabel="time (ticks)")
+    axes.set(xlim=(0, arm.pace.edges[-1]), ylim=(0, None))
+
+
 def _legend(figure: Figure, axes: Axes, compared: Comparison) -> None:
     """Names of the runs, and what the marks are if there are any."""
     handles = axes.get_legend_handles_labels()[0]
-    if not all(arm.figures["births"].known.all() for arm in compared.arms):
+    known = [arm.figures["births"].known for arm in compared.arms]
+    if any(each.any() for each in known) and not all(each.all() for each in known):
         handles.append(
             Line2D([], [], ls="", marker=STOPPED, color=style.SOFT, label="stopped unsaturated")
         )

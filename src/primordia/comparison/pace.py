@@ -1,0 +1,53 @@
+"""How fast organisms die as time goes on: ticks lived for each death, in windows of a world's time."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from primordia.comparison.contrast import Figures
+from primordia.lives import Lives
+
+WINDOWS, LATE = 12, 3
+"""Windows that time is cut into, and how many of the last are called late."""
+
+
+@dataclass(frozen=True)
+class Pace:
+    """Ticks lived and deaths, world by world, in windows of equal length."""
+
+    edges: np.ndarray
+    """ticks of the world, float64 (WINDOWS + 1,)"""
+    lived: np.ndarray
+    """organism-ticks, float64 (W, WINDOWS)"""
+    deaths: np.ndarray
+    """int64 (W, WINDOWS)"""
+
+    @property
+    def curve(self) -> np.ndarray:
+        """Ticks lived for each death, float64 (W, WINDOWS); where nobody died, at least so many."""
+        return self.lived / np.maximum(self.deaths, 1)
+
+    @property
+    def late(self) -> Figures:
+        """The same for the last quarter of the time."""
+        lived, deaths = (each[:, -LATE:].sum(axis=1) for each in (self.lived, self.deaths))
+        return Figures(lived / np.maximum(deaths, 1), deaths > 0)
+
+
+def pace(worlds: list[Lives], until: int) -> Pace:
+    """Of the lives of each world, up to a tick that all worlds have come to."""
+    edges = np.linspace(0, until, WINDOWS + 1)
+    lived = np.array([_lived(world, edges) for world in worlds])
+    deaths = np.array([np.diff(_deaths_by(world, edges)) for world in worlds])
+    return Pace(edges, lived, deaths)
+
+
+def _lived(lives: Lives, edges: np.ndarray) -> np.ndarray:
+    """Organism-ticks between each two edges."""
+    first, last = edges[:-1, None], edges[1:, None]
+    return np.clip(np.minimum(lives.ended, last) - np.maximum(lives.born, first), 0, None).sum(1)
+
+
+def _deaths_by(lives: Lives, edges: np.ndarray) -> np.ndarray:
+    """How many have died by the tick of each edge."""
+    return np.searchsorted(np.sort(lives.ended[lives.died]), edges, side="right")
