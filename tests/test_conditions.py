@@ -9,16 +9,28 @@ from hypothesis import strategies as st
 
 from primordia.conditions import Names, parse
 
-NAMES: Names = {"points": "amount", "lives": "amount", "ram": 4}
+NAMES: Names = {
+    "points": "amount",
+    "lives": "amount",
+    "ram": 4,
+    "speed": 3,
+    "place": {"hand": 2, "target": 2},
+}
 VALUES = {
     "points": np.array([0.0, -1.0, 2.5], np.float32),
     "lives": np.array([3, 0, 1]),
-    "ram": np.array([[1, 2, 3, 4], [0, 0, 0, 0], [255, 17, 1, 0]]),
+    "ram": np.array([[1, 2, 3, 4], [0, 0, 0, 0], [255, 17, 1, 0]], np.uint8),
+    "speed": np.array([[0.5, -1.0, 2.0], [0.0, 0.0, 0.0], [-3.0, 4.0, 12.0]]),
+    "place": {
+        "hand": np.array([[1.0, 2.0], [3.0, 4.0], [5.0, 6.0]]),
+        "target": np.array([[0.0, 0.5], [1.0, 1.5], [2.0, 2.5]]),
+    },
 }
 
 number = st.deferred(
     lambda: st.one_of(
-        st.sampled_from(["points", "lives", "ram[0]", "ram[3]", "0", "1", "2.5"]),
+        st.sampled_from(["points", "lives", "ram[0]", "ram[3]", "0", "1", "2.5", "speed[2]"]),
+        st.sampled_from(["sum(speed)", "sum(ram[1:])", 'place["hand"][1]', "sum(2 * speed[:2])"]),
         st.builds(lambda a, op, b: f"({a} {op} {b})", number, st.sampled_from("+-*"), number),
         st.builds(lambda a: f"-{a}", number),
         st.builds(
@@ -42,8 +54,13 @@ condition = st.deferred(
 
 def by_python(text: str, body: int) -> Any:
     """What Python makes of it, for one body."""
-    names = {name: array[body] for name, array in VALUES.items()}
-    return eval(text, {"__builtins__": {}, "abs": abs, "min": min, "max": max}, names)
+    names: dict[str, Any] = {
+        name: values[body].astype(float) if isinstance(values, np.ndarray) else values
+        for name, values in VALUES.items()
+    }
+    names["place"] = {part: values[body] for part, values in VALUES["place"].items()}
+    known = {"abs": abs, "min": min, "max": max, "sum": sum}
+    return eval(text, {"__builtins__": {}, **known}, names)
 
 
 @settings(deadline=None, max_examples=150)
@@ -63,6 +80,25 @@ def test_amounts_too(text: str) -> None:
 
 def test_a_condition_is_an_amount_of_one_where_it_holds() -> None:
     assert parse("points > 0", "amount", NAMES)(VALUES).tolist() == [0.0, 0.0, 1.0]
+
+
+@pytest.mark.parametrize(
+    ("text", "means"),
+    [
+        ("speed[1:]", VALUES["speed"][:, 1:]),
+        ("cos(speed) * 2 - 1", np.cos(VALUES["speed"]) * 2 - 1),
+        ("min(max(speed, -10), points)", np.minimum(VALUES["speed"], VALUES["points"][:, None])),
+        ('place["hand"] - place["target"]', VALUES["place"]["hand"] - VALUES["place"]["target"]),
+        ('norm(place["hand"])', np.hypot(*VALUES["place"]["hand"].T)),
+        ("ram - 128", VALUES["ram"].astype(int) - 128),
+        ("lives < 2", np.array([0.0, 1.0, 1.0])),
+    ],
+)
+def test_lists_of_numbers(text: str, means: np.ndarray) -> None:
+    found = parse(text, "numbers", NAMES)
+    np.testing.assert_allclose(found(VALUES), means)
+    assert found.kind == (means.shape[1] if means.ndim == 2 else "amount")
+    assert found.names == {n for n in NAMES if n in text}
 
 
 @pytest.mark.parametrize(
@@ -91,6 +127,15 @@ def test_a_condition_is_an_amount_of_one_where_it_holds() -> None:
         ("max(points, 1, 2) < 1", "of functions there are"),
         ("lives[0] == 1", "only what has several numbers can be indexed"),
         ("lives := 3", "cannot be read"),
+        ("speed + ram < 1", "column 9: this is a list of 4 numbers, beside a list of 3 numbers"),
+        ("speed < 1", "'speed' has 3 numbers; say which"),
+        ("speed[1:] < 1", "this is a list of 2 numbers, where a number is needed"),
+        ("sum(speed[3:]) < 1", "takes none of speed, which has 3 numbers"),
+        ("sum(speed[::2]) < 1", "takes none"),
+        ("sum(speed[:points]) < 1", "column 12: numbers are taken from"),
+        ("sum(points) < 1", "column 5: this is a number, where a list of numbers is needed"),
+        ("place < 1", "'place' is of parts; say of which: place\\[\"hand\"\\]"),
+        ('place["foot"][0] < 1', "place is known of hand, target"),
         ("(" * 500 + "1" + ")" * 500 + " < 2", "cannot be read"),
     ],
 )

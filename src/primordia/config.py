@@ -204,7 +204,7 @@ def _replaced(values: Any, old: Any, new: Any) -> Any:
 
 
 def from_toml(path: Path) -> dict[str, Any]:
-    """The values in a TOML file; genome files are looked for beside it.
+    """The values in a TOML file; genomes, and the file a habitat is made from, are looked for beside it.
 
     Raises:
         InputError: it cannot be read, or is not TOML.
@@ -217,6 +217,9 @@ def from_toml(path: Path) -> dict[str, Any]:
         raise InputError(f"{path} cannot be read: {error.strerror}") from None
     if isinstance(files := values.get("ancestors"), list):
         values["ancestors"] = [str(path.parent / str(each)) for each in files]
+    habitat = values.get("habitat")
+    if isinstance(habitat, dict) and (beside := path.parent / str(habitat.get("file"))).is_file():
+        habitat["file"] = str(beside.resolve())
     return values
 
 
@@ -306,6 +309,8 @@ def _first(error: ValidationError, prefix: str, model: type) -> str:
         return f"there is no setting {path!r}{_did_you_mean(path, known)}{more}"
     if fault["type"] == "missing":
         return f"{path} is missing{more}"
+    if fault["type"] == "value_error":  # ours, which says all that is to be said
+        return f"{path}: {fault['ctx']['error']}{more}"
     message = fault["msg"][0].lower() + fault["msg"][1:]
     return f"{path}: {message}, not {fault['input']!r}{more}"
 
