@@ -10,7 +10,7 @@ SOURCE = Path(__file__).parent.parent / "src" / "primordia"
 # A module imports from rows above its own only, so those of one row know nothing of each other.
 ORDER = """
     errors settings wide digest events tasks live.paint summary
-    keys files lines pool.board conditions
+    keys files lines pool.board conditions dice
     pool.worker pool.arcade
     pool
     clades
@@ -18,6 +18,7 @@ ORDER = """
     brain motor mutation placement metabolism
     world habitats device genomes
     seasons sample tallies held habitats.cartpole_picture habitats.atari_picture habitats.atari_games
+    habitats.mujoco_model
     habitats.*
     turnover
     law

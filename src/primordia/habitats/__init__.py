@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 KNOWN = {
     "cartpole": "primordia.habitats.cartpole:CartPole",
     "atari": "primordia.habitats.atari:Atari",
+    "mujoco": "primordia.habitats.mujoco:MuJoCo",
 }
 
 Bodies: TypeAlias = Any

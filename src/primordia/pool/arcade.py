@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from primordia import dice
+
 if TYPE_CHECKING:
     from ale_py import ALEInterface
 
@@ -113,7 +115,7 @@ class Arcade:
 
     def _pressed(self, cell: int, action: int) -> int:
         """The button that is down in this frame: with some probability still the one before."""
-        self._dice[cell], word = _next(self._dice[cell])
+        self._dice[cell], word = dice.roll(self._dice[cell])
         if word >= self._sticky:
             self._held[cell] = action
         return self._held[cell]
@@ -124,7 +126,7 @@ class Arcade:
         ale.restoreState(self._start)
         for _ in range(words[0] % (self._noops + 1)):
             ale.act(NOOP)
-        self._dice[cell], self._held[cell] = words[0] << 32 | words[1], NOOP
+        self._dice[cell], self._held[cell] = dice.begin(*words), NOOP
         self._show(cell)
 
     def _show(self, cell: int) -> None:
@@ -149,11 +151,3 @@ class Arcade:
         self._dice[cell], self._held[cell] = int.from_bytes(state[:8], "little"), state[8]
         self._ale[cell].restoreState(ALEState(state[9:]))
         self._show(cell)
-
-
-def _next(dice: int) -> tuple[int, int]:
-    """SplitMix64 (Steele, Lea & Flood 2014): the next state, and 32 random bits."""
-    dice = (dice + 0x9E3779B97F4A7C15) % 2**64
-    z = ((dice ^ dice >> 30) * 0xBF58476D1CE4E5B9) % 2**64
-    z = ((z ^ z >> 27) * 0x94D049BB133111EB) % 2**64
-    return dice, (z ^ z >> 31) >> 32

@@ -1,0 +1,257 @@
+"""Any MuJoCo model as a habitat: bodies, stepped side by side on all cores.
+
+Schmidgall & Hays 2021, "Reacher", "HalfCheetah", "Walker". What is perceived, fatal, food and effort is
+said in settings, of named parts of the state. The simulator is MuJoCo's batch (extra
+`primordia[mujoco]`): results do not depend on the number of threads, and a row of its state, warm start
+included, is all that a body needs to go on exactly.
+"""
+
+import math
+import os
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from pydantic import Field, PrivateAttr, model_validator
+
+from primordia import conditions, dice
+from primordia.conditions import Expression, Names
+from primordia.habitats import Outcome
+from primordia.habitats.mujoco_model import compiled, names, numbered, package
+from primordia.motor import Continuous
+from primordia.mutation import quantiles
+from primordia.settings import Settings
+
+ROOT = 1
+"""The first body, after the world itself."""
+
+
+class Target(Settings):
+    """Something to be reached; it then is elsewhere in a disc of the plane x, y."""
+
+    body: str = Field(description="the body that is to be reached")
+    by: str = Field(description="the body that reaches it")
+    within: float = Field(gt=0, description="metres between the two")
+    joints: tuple[str, str] = Field(strict=False, description="slide joints of the first, x and y")
+    radius: float = Field(gt=0, description="metres; of the disc, around the origin")
+
+
+class MuJoCo(Settings):
+    """A model as a habitat; actions are its controls, kept within their ranges."""
+
+    file: str = Field(description="an MJCF file, or gymnasium:NAME.xml, one that Gymnasium brings")
+    timestep: float | None = Field(None, gt=0, description="seconds a substep, if not the model's")
+    substeps: int = Field(1, ge=1, le=1000, description="steps of the simulator in a tick")
+    senses: tuple[str, ...] = Field(
+        ("qpos", "qvel"), strict=False, description="numbers perceived, such as qpos[1:] or qvel"
+    )
+    position_noise: float = Field(
+        0.0, ge=0, description="bodies are born in positions up to so far from the model's own"
+    )
+    velocity_noise: float = Field(0.0, ge=0, description="... with velocities up to so large,")
+    velocity_sd: float = Field(0.0, ge=0, description="... or with Gaussian ones of so large an sd")
+    fatal: str = Field("", description="condition that ends a life; none: nothing does")
+    food: str = Field("0", description="amount gathered in a tick")
+    effort: str = Field("0", description="amount exerted in a tick")
+    target: Target | None = Field(None, description="something to be reached")
+
+    _bodies: Any = PrivateAttr()
+    _seen: dict[str, Any] = PrivateAttr()
+    """Arrays by name that are always as the bodies are"""
+    _dice: np.ndarray = PrivateAttr()
+    """uint64 (N,), of targets"""
+
+    @model_validator(mode="after")
+    def _makes_sense(self) -> "MuJoCo":
+        assert self._perceived
+        assert self._used is not None
+        if self.velocity_noise and self.velocity_sd:
+            raise ValueError("velocity_noise or velocity_sd: one or the other")
+        if self.target is not None:
+            named = {"body": (self.target.body, self.target.by), "joint": self.target.joints}
+            for kind, wanted in named.items():
+                known = numbered(self._model, kind)
+                if missing := [name for name in wanted if name not in known]:
+                    raise ValueError(
+                        f"target: there is no {kind} {missing[0]!r}; known: {', '.join(known)}"
+                    )
+        return self
+
+    @cached_property
+    def _model(self) -> Any:
+        return compiled(self.file, self.timestep)
+
+    @cached_property
+    def _names(self) -> Names:
+        known = names(self._model)
+        return {**known, "reached": "condition"} if self.target else known
+
+    @cached_property
+    def _perceived(self) -> list[Expression]:
+        return [conditions.parse(each, "numbers", self._names) for each in self.senses]
+
+    @cached_property
+    def _is_fatal(self) -> Expression | None:
+        return conditions.parse(self.fatal, "condition", self._names) if self.fatal else None
+
+    @cached_property
+    def _is_food(self) -> Expression:
+        return conditions.parse(self.food, "amount", self._names)
+
+    @cached_property
+    def _is_effort(self) -> Expression:
+        return conditions.parse(self.effort, "amount", self._names)
+
+    @cached_property
+    def _used(self) -> frozenset[str]:
+        """Names that are spoken of."""
+        judged = [self._is_food, self._is_effort, *filter(None, [self._is_fatal])]
+        spoken = frozenset().union(*(each.names for each in (*self._perceived, *judged)))
+        return spoken | {"reached"} if self.target else spoken
+
+    @property
+    def senses_size(self) -> int:
+        """How many numbers are perceived."""
+        return sum(each.kind if isinstance(each.kind, int) else 1 for each in self._perceived)
+
+    @property
+    def action(self) -> Continuous:
+        """Controls."""
+        return Continuous(self._model.nu)
+
+    @property
+    def words(self) -> int:
+        """One for each position and velocity, and two for the dice of a target."""
+        return self._model.nq + self._model.nv + 2 * (self.target is not None)
+
+    @property
+    def rate(self) -> float:
+        """Ticks in a second."""
+        return 1 / (self._model.opt.timestep * self.substeps)
+
+    def open(self, cells: int) -> None:
+        """Make room for so many bodies."""
+        threads = len(os.sched_getaffinity(0))
+        self._bodies = package().batch.Batch(self._model, cells, nthread=threads)
+        self._dice = np.zeros(cells, np.uint64)
+        bound, model, used = self._bodies.bind, self._model, self._used
+        self._seen = {name: bound(name) for name in ("qpos", "qvel", "ctrl")}
+        if used & {"xpos", "reached"}:
+            places = bound("xpos")
+            self._seen["xpos"] = {n: places[:, i] for n, i in numbered(model, "body").items()}
+        if "site" in used:
+            places = bound("site_xpos")
+            self._seen["site"] = {n: places[:, i] for n, i in numbered(model, "site").items()}
+        if "height" in used:
+            self._seen["height"] = bound("xpos")[:, ROOT, 2]
+        if "pitch" in used:
+            self._seen["frame"] = bound("xmat")[:, ROOT]
+        if "travelled" in used:
+            self._seen["middle"] = bound("subtree_com")[:, 0, :2]
+
+    @cached_property
+    def _stage(self) -> Any:
+        """What is computed of a state besides: places, if they are spoken of."""
+        stages = package().mjtStage
+        spoken = self._used & {"xpos", "site", "height", "pitch", "travelled", "reached"}
+        return stages.mjSTAGE_POS if spoken else stages.mjSTAGE_NONE
+
+    def reset(self, born: np.ndarray, words: np.ndarray) -> np.ndarray:
+        """The model's own pose, with noise from words uint32 (K, words)."""
+        bodies, positions = self._bodies, self._model.nq
+        bodies.reset(born, stage=package().mjtStage.mjSTAGE_NONE)
+        bodies.qpos[born] += self.position_noise * _uniform(words[:, :positions])
+        moved = words[:, positions : positions + self._model.nv]
+        gaussian = quantiles()[moved >> np.uint32(16)]
+        bodies.qvel[born] = self.velocity_noise * _uniform(moved) + self.velocity_sd * gaussian
+        if self.target is not None:
+            for cell, (high, low) in zip(born.tolist(), words[:, -2:].tolist(), strict=True):
+                self._dice[cell] = dice.begin(high, low)
+                self._put_target(self.target, cell)
+        bodies.forward(born)
+        return self._sensed(self._values(self._stood()))[born]
+
+    def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
+        """One tick of the bodies that live."""
+        self._bodies.ctrl[:] = self._allowed(action)
+        before, fault = self._stood(), self._advance(alive)
+        values = self._values(before)
+        fatal = self._is_fatal(values) if self._is_fatal else False
+        told: dict[str, Any] = {
+            "fatal": np.full(len(alive), fatal, bool),
+            "food": np.full(len(alive), self._is_food(values), np.float32),
+            "effort": np.full(len(alive), self._is_effort(values), np.float32),
+            "fault": fault,
+        }
+        if self.target is not None and (reached := values["reached"] & alive).any():
+            cells = np.flatnonzero(reached)
+            for cell in cells.tolist():
+                self._put_target(self.target, cell)
+            self._bodies.forward(cells)
+        return self._sensed(values), Outcome(**told)
+
+    def _allowed(self, action: np.ndarray) -> np.ndarray:
+        """Controls within their ranges, where they have any."""
+        limited = self._model.actuator_ctrllimited.astype(bool)
+        low, high = self._model.actuator_ctrlrange.T
+        return np.where(limited, np.clip(action, low, high), action)
+
+    def _advance(self, alive: np.ndarray) -> np.ndarray:
+        """Step who is alive -> whose simulation failed, bool (N,); the others are not disturbed."""
+        fault = np.zeros(len(alive), bool)
+        try:
+            who = None if alive.all() else np.flatnonzero(alive)
+            self._bodies.step(who, nstep=self.substeps, stage=self._stage)
+        except package().batch.SimulationError as error:
+            fault[error.ids] = True
+        return fault
+
+    def _stood(self) -> dict[str, np.ndarray]:
+        """From where ways are measured."""
+        start = {"forward": self._seen["qpos"][:, 0], "travelled": self._seen.get("middle")}
+        return {name: np.array(start[name]) for name in self._used & start.keys()}
+
+    def _values(self, before: dict[str, np.ndarray]) -> dict[str, Any]:
+        """All that is spoken of, as it is now."""
+        seen, values = self._seen, dict(self._seen)
+        if "forward" in before:
+            values["forward"] = seen["qpos"][:, 0] - before["forward"]
+        if "travelled" in before:
+            values["travelled"] = np.hypot(*(seen["middle"] - before["travelled"]).T)
+        if "frame" in seen:
+            values["pitch"] = np.arctan2(-seen["frame"][:, 6], seen["frame"][:, 0])
+        if self.target is not None:
+            apart = seen["xpos"][self.target.body] - seen["xpos"][self.target.by]
+            values["reached"] = np.sqrt((apart * apart).sum(axis=1)) < self.target.within
+        return values
+
+    def _sensed(self, values: dict[str, Any]) -> np.ndarray:
+        """Float32 (N, S)."""
+        parts = [each(values) for each in self._perceived]
+        columns = [part if part.ndim == 2 else part[:, None] for part in parts]
+        return np.concatenate(columns, axis=1, dtype=np.float32)
+
+    def _put_target(self, target: Target, cell: int) -> None:
+        """Somewhere in its disc, anywhere with equal chance, at rest."""
+        self._dice[cell], one = dice.roll(int(self._dice[cell]))
+        self._dice[cell], other = dice.roll(int(self._dice[cell]))
+        distance, angle = target.radius * math.sqrt(one / 2**32), 2 * math.pi * other / 2**32
+        for name, along in zip(target.joints, (math.cos(angle), math.sin(angle)), strict=True):
+            joint = self._model.joint(name)
+            self._bodies.qpos[cell, joint.qposadr[0]] = distance * along
+            self._bodies.qvel[cell, joint.dofadr[0]] = 0.0
+
+    def save(self) -> dict[str, np.ndarray]:
+        """MuJoCo's states, float64 (N, L), and the dice of targets."""
+        return {"state": self._bodies.state.copy(), "dice": self._dice.copy()}
+
+    def load(self, arrays: dict[str, np.ndarray]) -> None:
+        """Take back what `save` gave."""
+        self._bodies.state[:], self._dice[:] = arrays["state"], arrays["dice"]
+        if self._stage:
+            self._bodies.forward(stage=self._stage)
+
+
+def _uniform(words: np.ndarray) -> np.ndarray:
+    """From -1 to 1, float64."""
+    return (words >> np.uint32(8)) * 2.0**-23 - 1

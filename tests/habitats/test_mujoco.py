@@ -1,0 +1,278 @@
+"""Robots: equal to Gymnasium's environments step for step, exact to resume, and what is refused."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import primordia
+from primordia.config import load
+from primordia.habitats import mujoco_model
+from primordia.habitats.mujoco import MuJoCo
+from primordia.life import Life
+from primordia.lives import lives
+from tests.commands import complains, here
+
+mujoco = pytest.importorskip("mujoco")
+gymnasium = pytest.importorskip("gymnasium")
+
+TICKS = 120
+FOUR = np.ones(4, bool)
+
+
+def opened(bodies: int = 4, **changes: Any) -> MuJoCo:
+    habitat = MuJoCo(**{"file": "gymnasium:half_cheetah.xml", "substeps": 5, **changes})
+    habitat.open(bodies)
+    return habitat
+
+
+def of_task(name: str, bodies: int = 4, **changes: Any) -> Any:
+    habitat: Any = load(name, {"habitat": changes}).build_habitat()
+    habitat.open(bodies)
+    return habitat
+
+
+def born(habitat: Any, bodies: int = 4, seed: int = 0) -> np.ndarray:
+    words = np.random.default_rng(seed).integers(0, 2**32, (bodies, habitat.words), np.uint32)
+    return habitat.reset(np.arange(bodies), words)
+
+
+def started_alike(name: str, habitat: Any, body: int, **options: Any) -> Any:
+    """Gymnasium's environment in the state that a body was born in."""
+    env = gymnasium.make(name, disable_env_checker=True, **options).unwrapped
+    env.reset(seed=0)
+    seen = habitat._seen
+    env.set_state(seen["qpos"][body].copy(), seen["qvel"][body].copy())
+    return env
+
+
+ALIKE: list[tuple[str, str, dict, dict, slice]] = [
+    ("HalfCheetah-forager", "HalfCheetah-v5", {}, {}, slice(0, 17)),
+    ("Walker-survival-forager", "Walker2d-v5", {"xml_file": "walker2d.xml"}, {"timestep": "none"},
+     slice(0, 17)),
+    ("Hopper-survival", "Hopper-v5", {}, {}, slice(0, 11)),
+    ("Humanoid-homeostasis", "Humanoid-v5", {}, {"timestep": "none"}, slice(0, 45)),
+    ("Reacher-forager", "Reacher-v5", {}, {}, slice(0, 8)),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("task", "name", "options", "changes", "told"), ALIKE)
+def test_senses_and_physics_are_gymnasiums_to_the_bit(
+    task: str, name: str, options: dict, changes: dict, told: slice
+) -> None:
+    habitat = of_task(task, **changes)
+    senses = born(habitat)
+    envs = [started_alike(name, habitat, body, **options) for body in range(4)]
+    rng, alive = np.random.default_rng(1), FOUR.copy()
+    for _ in range(TICKS):
+        high = envs[0].action_space.high
+        action = high * rng.uniform(-1, 1, (4, habitat.action.size)).astype(np.float32)
+        before = habitat._seen["qpos"][:, 0].copy()
+        senses, outcome = habitat.step(action, FOUR)
+        for body, env in enumerate(envs):
+            if task == "Reacher-forager":  # its target stays where it is, ours moves when reached
+                env.data.qpos[2:] = habitat._seen["qpos"][body, 2:]
+            seen, _, terminated, _, _ = env.step(action[body])
+            if not alive[body] or (outcome.food[body] and task == "Reacher-forager"):
+                continue
+            np.testing.assert_array_equal(senses[body, told], seen[told].astype(np.float32))
+            if task == "HalfCheetah-forager":
+                assert outcome.food[body] == np.float32(env.data.qpos[0] - before[body])
+            if task.startswith(("Walker", "Humanoid")):
+                assert outcome.fatal[body] == terminated
+        alive &= ~outcome.fatal
+    assert alive.any() or task not in ("HalfCheetah-forager", "Reacher-forager")
+
+
+def test_a_lag_of_gymnasiums_is_not_ours() -> None:
+    """Its reacher sees where the fingertip was a substep ago, by `mj_step`; ours, where it is."""
+    habitat = of_task("Reacher-forager", target={"within": 1e-9})
+    born(habitat)
+    env = started_alike("Reacher-v5", habitat, 0)
+    senses, _ = habitat.step(np.full((4, 2), 0.3, np.float32), FOUR)
+    seen = env.step(np.full(2, 0.3, np.float32))[0]
+    assert not np.allclose(senses[0, 8:10], seen[8:10], atol=1e-6)
+    mujoco.mj_kinematics(env.model, env.data)
+    apart = env.data.body("fingertip").xpos - env.data.body("target").xpos
+    np.testing.assert_array_equal(senses[0, 8:], apart.astype(np.float32))
+
+
+def test_a_body_is_a_function_of_its_words_alone() -> None:
+    """Whatever number of others there is, and wherever it is among them."""
+    many, one = of_task("Reacher-forager", 37), of_task("Reacher-forager", 1)
+    words = np.random.default_rng(3).integers(0, 2**32, (37, many.words), np.uint32)
+    both = [many.reset(np.arange(37), words)[21], one.reset(np.array([0]), words[21:22])[0]]
+    np.testing.assert_array_equal(*both)
+    for tick in range(60):
+        action = np.sin(np.arange(74).reshape(37, 2) + tick / 9).astype(np.float32)
+        (senses, outcome), (sole, its) = (
+            many.step(action, np.ones(37, bool)),
+            one.step(action[21:22], np.ones(1, bool)),
+        )
+        np.testing.assert_array_equal(senses[21], sole[0])
+        assert (outcome.food[21], outcome.effort[21]) == (its.food[0], its.effort[0])
+
+
+def test_births_are_spread_as_said() -> None:
+    uniform = opened(2000, position_noise=0.25, velocity_noise=0.5)
+    born(uniform, 2000)
+    for name, most in (("qpos", 0.25), ("qvel", 0.5)):
+        assert np.abs(uniform._seen[name]).max() == pytest.approx(most, rel=1e-3)
+        assert uniform._seen[name].std() == pytest.approx(most / np.sqrt(3), rel=0.02)
+    gaussian = opened(2000, velocity_sd=2.0)
+    born(gaussian, 2000)
+    assert (gaussian._seen["qpos"] == 0).all()
+    assert gaussian._seen["qvel"].std() == pytest.approx(2.0, rel=0.02)
+    assert np.abs(gaussian._seen["qvel"]).max() > 6
+
+
+def test_a_target_that_is_reached_feeds_once_and_is_elsewhere() -> None:
+    habitat = of_task("Reacher-forager", 1000)
+    born(habitat, 1000)
+    everyone, places = np.ones(1000, bool), []
+    for _ in range(20):
+        before = habitat._seen["qpos"][:, 2:].copy()
+        senses, outcome = habitat.step(np.full((1000, 2), 0.05, np.float32), everyone)
+        fed, after = outcome.food == 1, habitat._seen["qpos"][:, 2:]
+        apart = np.hypot(*habitat._seen["xpos"]["fingertip"][:, :2].T)
+        assert ((outcome.food == 0) | fed).all()
+        assert (after[~fed] == before[~fed]).all()
+        assert (after[fed] != before[fed]).all()
+        np.testing.assert_array_equal(senses[:, 4:6], after.astype(np.float32))
+        assert (np.hypot(*before[fed].T) <= apart[fed] + 0.06).all()
+        places.append(after[fed])
+    radius = np.hypot(*np.concatenate(places).T)
+    assert len(radius) > 50
+    assert radius.max() <= 0.2
+    assert np.median(radius) == pytest.approx(0.2 / np.sqrt(2), rel=0.15)
+
+
+def test_who_is_dead_is_not_stepped_and_a_failure_disturbs_nobody() -> None:
+    habitat, undisturbed = opened(), opened()
+    for each in (habitat, undisturbed):
+        born(each)
+    habitat._seen["qvel"][1] = 1e200
+    alive, action = np.array([True, True, False, True]), np.full((4, 6), 0.5, np.float32)
+    for _ in range(5):
+        before = habitat._seen["qpos"][2].copy(), habitat._seen["qvel"][2].copy()
+        senses, outcome = habitat.step(action, alive)
+        others, _ = undisturbed.step(action, FOUR)
+        np.testing.assert_array_equal(before[0], habitat._seen["qpos"][2])
+        np.testing.assert_array_equal(before[1], habitat._seen["qvel"][2])
+        np.testing.assert_array_equal(senses[[0, 3]], others[[0, 3]])
+        assert outcome.fault[1] or not np.isfinite(senses[1]).all()
+
+
+def test_named_amounts() -> None:
+    """Height and pitch of a hopper are those that its joints say; ways add up."""
+    habitat = of_task(
+        "Hopper-survival", senses=["height", "pitch", "forward", "travelled"], fatal="pitch > 9"
+    )
+    senses = born(habitat)
+    assert (senses[:, 2:] == 0).all()
+    start, gone = habitat._seen["qpos"][:, 0].copy(), 0.0
+    for _ in range(15):
+        senses, _ = habitat.step(np.full((4, 3), -0.4, np.float32), FOUR)
+        position = habitat._seen["qpos"]
+        np.testing.assert_allclose(senses[:, 0], position[:, 1], atol=1e-6)
+        np.testing.assert_allclose(senses[:, 1], position[:, 2], atol=1e-6)
+        assert (senses[:, 3] >= 0).all()
+        gone = gone + senses[:, 2]
+    np.testing.assert_allclose(gone, position[:, 0] - start, atol=1e-5)
+
+
+def test_controls_are_kept_within_their_ranges() -> None:
+    habitat = opened(effort="sum(ctrl * ctrl)")
+    born(habitat)
+    _, outcome = habitat.step(np.full((4, 6), 50.0, np.float32), FOUR)
+    assert outcome.effort.tolist() == [6.0] * 4
+
+
+@pytest.fixture(scope="module")
+def reachers(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    run = tmp_path_factory.mktemp("reachers") / "run"
+    settings = {"cells": 6, "seeds": 2, "genesis": "fill", "hazard": 0.003}
+    return primordia.run(
+        "Reacher-forager-costly", run, **settings, stop={"ticks": 260, "until": "none"}
+    ).path
+
+
+def test_a_run_that_was_stopped_goes_on_exactly(reachers: Path, tmp_path: Path) -> None:
+    settings = {"cells": 6, "seeds": 2, "genesis": "fill", "hazard": 0.003}
+    parts = primordia.run(
+        "Reacher-forager-costly", tmp_path / "run", **settings, stop={"ticks": 97, "until": "none"}
+    )
+    parts.resume(ticks=260)
+    told = [
+        [w["digest"] for w in run.info()["worlds"]] for run in (parts, primordia.load(reachers))
+    ]
+    assert told[0] == told[1]
+
+
+def test_lives_come_out_again_as_recorded(reachers: Path) -> None:
+    everyone = lives(reachers)
+    dead = primordia.load(reachers).arrays("deaths")
+    energy = {(w, i): e for w, i, e in zip(dead["world"], dead["id"], dead["energy"], strict=True)}
+    rows = np.flatnonzero(everyone.died & (everyone.lifespan > 20))[:6]
+    assert len(rows) == 6
+    for row in rows:
+        who = int(everyone.world[row]), int(everyone.id[row])
+        stretches = list(Life.of(reachers, who[1], who[0]).again())
+        assert stretches[-1].energy[-1] == energy[who]
+
+
+SLIDE = """<mujoco><worldbody><body name="box"><joint name="x" type="slide" axis="1 0 0"/>
+<geom size="0.1"/></body></worldbody>{actuator}</mujoco>"""
+
+
+def test_a_model_of_ones_own(tmp_path: Path) -> None:
+    """Beside the TOML file that names it."""
+    motor = '<actuator><motor joint="x"/></actuator>'
+    (tmp_path / "box.xml").write_text(SLIDE.format(actuator=motor))
+    (tmp_path / "box.toml").write_text(
+        'task = "box"\ncells = 4\n[habitat]\nname = "mujoco"\nfile = "box.xml"\n'
+        'food = "abs(forward)"\nfatal = "abs(qpos[0]) > 1"\n[stop]\nticks = 20\n'
+    )
+    run = primordia.run(str(tmp_path / "box.toml"), tmp_path / "run")
+    assert run.info()["worlds"][0]["ticks"] == 20
+
+
+@pytest.mark.parametrize(
+    ("flags", "says"),
+    [
+        (["--habitat.file", "nowhere.xml"], "file: there is no nowhere.xml"),
+        (["--habitat.file", "gymnasium:dog.xml"], "dog.xml"),
+        (["--habitat.file", "bad.xml"], "bad.xml: XML"),
+        (["--habitat.file", "still.xml"], "still.xml has no actuators"),
+        (["--habitat.fatal", "heihgt < 1"], "there is no 'heihgt'; known: qpos, qvel"),
+        (["--habitat.fatal", "qpos[99] < 1"], "qpos goes from qpos[0] to qpos[8]"),
+        (["--habitat.food", 'xpos["foot"][0]'], "xpos is known of world, torso"),
+        (["--habitat.senses", '["qpos[1:]", "velocity"]'], "there is no 'velocity'"),
+        (["--habitat.substeps", "0"], "habitat.substeps"),
+    ],
+)
+def test_bad_input(
+    flags: list[str], says: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("bad.xml").write_text("<mujoco><body></mujoco>")
+    Path("still.xml").write_text(SLIDE.format(actuator=""))
+    complains(here("run", "HalfCheetah-forager", *flags, "--out", "run"), 2, says)
+    assert not Path("run").exists()
+    assert not Path("MUJOCO_LOG.TXT").exists()
+
+
+def test_a_target_of_nothing(tmp_path: Path) -> None:
+    flags = ["--habitat.target.by", "nose", "--out", tmp_path / "run"]
+    complains(here("run", "Reacher-forager", *flags), 2, "target: there is no body 'nose'; known")
+
+
+def test_without_the_extra(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    import sys
+
+    mujoco_model.package.cache_clear()
+    monkeypatch.setitem(sys.modules, "mujoco", None)
+    done = here("run", "HalfCheetah-forager", "--out", tmp_path / "run")
+    mujoco_model.package.cache_clear()
+    complains(done, 2, "pip install 'primordia[mujoco]'")
