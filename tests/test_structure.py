@@ -19,6 +19,7 @@ ORDER = """
     world habitats device genomes
     seasons sample tallies held habitats.cartpole_picture habitats.atari_picture habitats.atari_games
     habitats.mujoco_model
+    habitats.mujoco_picture
     habitats.*
     turnover
     law

@@ -1,8 +1,10 @@
 """Robots: equal to Gymnasium's environments step for step, exact to resume, and what is refused."""
 
+from ctypes.util import find_library
 from pathlib import Path
 from typing import Any
 
+import av
 import numpy as np
 import pytest
 
@@ -220,6 +222,54 @@ def test_lives_come_out_again_as_recorded(reachers: Path) -> None:
         who = int(everyone.world[row]), int(everyone.id[row])
         stretches = list(Life.of(reachers, who[1], who[0]).again())
         assert stretches[-1].energy[-1] == energy[who]
+
+
+def needs_gl() -> None:
+    """A library that draws without a screen; where there is none, there are no pictures to test."""
+    if not any(map(find_library, ("OSMesa", "EGL"))):
+        pytest.skip("no OpenGL without a screen")
+
+
+@pytest.mark.parametrize("task", ["HalfCheetah-forager", "Reacher-forager", "Humanoid-homeostasis"])
+def test_pictures_show_the_robot_where_it_is(task: str) -> None:
+    """Another pose, another picture; and one eye does not disturb another's."""
+    needs_gl()
+    habitat, other = of_task(task), of_task("Hopper-survival")
+    born(habitat)
+    born(other)
+    action = np.zeros(habitat.action.size, np.float32)
+    pose = {"qpos": habitat.seen()["qpos"][0].copy()}
+    first = np.asarray(habitat.picture(pose, action)).astype(int)
+    assert first.shape == (360 + 56, 640, 3)
+    assert first[60:].std() > 5
+    other.picture({"qpos": other.seen()["qpos"][0]}, action)
+    assert np.abs(np.asarray(habitat.picture(pose, action)) - first).max() <= 2
+    pose["qpos"][-3:] += 0.5
+    assert (np.abs(np.asarray(habitat.picture(pose, action)) - first).max(axis=2) > 40).sum() > 50
+    assert (first[:56] == first[0, 0]).all()
+
+
+def test_a_life_on_video(reachers: Path, tmp_path: Path) -> None:
+    needs_gl()
+    path = tmp_path / "life.mp4"
+    done = here("replay", reachers, "--to", 10, "--out", path)
+    assert (done.returncode, done.stdout.strip()) == (0, str(path))
+    with av.open(str(path)) as container:
+        frames = [frame.to_ndarray(format="rgb24") for frame in container.decode(video=0)]
+        assert container.streams.video[0].average_rate == 50
+    assert frames[0].shape == (416, 640, 3)
+    assert len(frames) >= 10
+
+
+def test_without_opengl(reachers: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from primordia.habitats import mujoco_picture
+
+    mujoco_picture._screen.cache_clear()
+    monkeypatch.setenv("MUJOCO_GL", "nothing")
+    done = here("replay", reachers, "--to", 10, "--out", tmp_path / "life.mp4")
+    mujoco_picture._screen.cache_clear()
+    complains(done, 2, "OpenGL without a screen, and nothing cannot be used: `apt-get install")
+    assert not list(tmp_path.iterdir())
 
 
 SLIDE = """<mujoco><worldbody><body name="box"><joint name="x" type="slide" axis="1 0 0"/>

@@ -9,7 +9,7 @@ included, is all that a body needs to go on exactly.
 import math
 import os
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pydantic import Field, PrivateAttr, model_validator
@@ -21,6 +21,9 @@ from primordia.habitats.mujoco_model import compiled, names, numbered, package
 from primordia.motor import Continuous
 from primordia.mutation import quantiles
 from primordia.settings import Settings
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
 
 ROOT = 1
 """The first body, after the world itself."""
@@ -129,8 +132,8 @@ class MuJoCo(Settings):
         """Ticks in a second."""
         return 1 / (self._model.opt.timestep * self.substeps)
 
-    def open(self, cells: int) -> None:
-        """Make room for so many bodies."""
+    def open(self, cells: int, watched: bool = False) -> None:
+        """Make room for so many bodies, watched or not."""
         threads = len(os.sched_getaffinity(0))
         self._bodies = package().batch.Batch(self._model, cells, nthread=threads)
         self._dice = np.zeros(cells, np.uint64)
@@ -240,6 +243,29 @@ class MuJoCo(Settings):
             joint = self._model.joint(name)
             self._bodies.qpos[cell, joint.qposadr[0]] = distance * along
             self._bodies.qvel[cell, joint.dofadr[0]] = 0.0
+
+    def seen(self) -> dict[str, np.ndarray]:
+        """Positions of the joints, float64 (N, nq)."""
+        return {"qpos": self._seen["qpos"]}
+
+    @cached_property
+    def _eye(self) -> Any:
+        from primordia.habitats.mujoco_picture import Eye
+
+        return Eye(self._model)
+
+    def picture(self, body: dict[str, np.ndarray], action: np.ndarray) -> "Image":
+        """The robot where it stands, with room for words above."""
+        return self._eye.draw(body["qpos"])
+
+    def caption(self, body: dict[str, np.ndarray], action: np.ndarray) -> str:
+        """How far it has come."""
+        return f"x {body['qpos'][0]:,.1f} m" if self._walks else ""
+
+    @property
+    def _walks(self) -> bool:
+        """Whether the first joint's position is a place."""
+        return self._model.jnt_type[0] != package().mjtJoint.mjJNT_HINGE
 
     def save(self) -> dict[str, np.ndarray]:
         """MuJoCo's states, float64 (N, L), and the dice of targets."""
