@@ -98,7 +98,7 @@ def evaluate(
         organism: birth number.
         world: where it lived.
         games: how many; one is played where all would be the same.
-        ticks: a game that still goes on then is cut.
+        ticks: a game that still goes on then is cut; whole games also where others cut them.
         senses: `live`; `frozen`, they stay as they are when a game begins; `ignored`, it does what it
             did in a game with its task's own settings, over and over, whatever happens.
         changes: settings of the habitat, such as `sticky=0.25, noops=30`.
@@ -113,9 +113,12 @@ def evaluate(
     player = own._replace(habitat=_changed(run, own.habitat, changes))
     script = play(own, 1, ticks).actions if senses == "ignored" else None
     count = 1 if player.deterministic else games
-    played = partial(play, games=count, ticks=ticks, frozen=senses == "frozen", script=script)
-    whole = _in_the_original(player)
-    return Evaluation(organism, world, senses, played(player), played(whole) if whole else None)
+    played = partial(play, games=count, frozen=senses == "frozen", script=script)
+    lived, whole = played(player, ticks=ticks), _in_the_original(player)
+    if whole is None:
+        return Evaluation(organism, world, senses, lived, None)
+    episode = getattr(whole.habitat, "episode", None) or ticks
+    return Evaluation(organism, world, senses, lived, played(whole, ticks=min(ticks, episode)))
 
 
 def player_of(run: Path, organism: int, world: int = 0) -> Player:
@@ -150,7 +153,7 @@ def _changed(run: Path, before: Any, changes: dict[str, Any]) -> Any:
 
 def _in_the_original(player: Player) -> Player | None:
     """The same in the original game, where there is one; nobody starves in it."""
-    if not hasattr(player.habitat, "original"):
+    original = player.habitat.original() if hasattr(player.habitat, "original") else None
+    if original is None:
         return None
-    law = replace(player.law, metabolism=None)
-    return player._replace(habitat=player.habitat.original(), law=law)
+    return player._replace(habitat=original, law=replace(player.law, metabolism=None))

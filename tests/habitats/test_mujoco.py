@@ -87,6 +87,48 @@ def test_senses_and_physics_are_gymnasiums_to_the_bit(
     assert alive.any() or task not in ("HalfCheetah-forager", "Reacher-forager")
 
 
+@pytest.mark.parametrize(
+    ("task", "name", "tolerance"),
+    [
+        ("HalfCheetah-forager", "HalfCheetah-v5", 1e-5),
+        ("Walker-survival-forager", "Walker2d-v5", 1e-5),
+        ("Hopper-survival", "Hopper-v5", 1e-5),
+        ("Reacher-forager", "Reacher-v5", 0.02),
+    ],
+)
+def test_scores_are_gymnasiums(task: str, name: str, tolerance: float) -> None:
+    """And games end as there. Two differences: its reacher is paid for where the fingertip was a substep
+    ago, and it does not pay the point for being healthy in the tick of a fall.
+    """
+    habitat = load(task).build_habitat().original()
+    assert habitat.episode == gymnasium.spec(name).max_episode_steps
+    habitat.open(4)
+    born(habitat)
+    env = started_alike(name, habitat, 2)
+    rng, paid, ours = np.random.default_rng(5), 0.0, 0.0
+    for _ in range(50):
+        action = rng.uniform(-1, 1, (4, habitat.action.size)).astype(np.float32)
+        _, outcome = habitat.step(action, FOUR)
+        _, reward, terminated, *_ = env.step(action[2])
+        paid, ours = paid + reward, ours + outcome.food[2]
+        assert outcome.fatal[2] == terminated
+        if terminated:
+            ours -= 1
+            break
+    assert ours == pytest.approx(paid, rel=tolerance, abs=tolerance)
+
+
+def test_evaluations_are_cut_where_gymnasium_cuts(tmp_path: Path) -> None:
+    settings = {"cells": 4, "genesis": "fill", "stop": {"ticks": 30, "until": "none"}}
+    run = primordia.run("HalfCheetah-forager", tmp_path / "run", **settings)
+    found = run.oldest().evaluate(games=3, ticks=1200)
+    assert found.whole is not None
+    assert found.whole.ticks.tolist() == [1000] * 3
+    assert (found.games, found.distinct) == (3, 3)
+    assert 0 < found.lived.ticks.max() <= 1200
+    assert found.lived.over.all()
+
+
 def test_a_lag_of_gymnasiums_is_not_ours() -> None:
     """Its reacher sees where the fingertip was a substep ago, by `mj_step`; ours, where it is."""
     habitat = of_task("Reacher-forager", target={"within": 1e-9})

@@ -105,8 +105,11 @@ class Tallied(Protocol):
 class Scored(Protocol):
     """What a habitat has besides, if others have scored play in it (`primordia evaluate`)."""
 
-    def original(self) -> "Habitat | HostHabitat":
-        """The whole game: fatal is its end, and food the score."""
+    episode: int | None
+    """ticks after which a game is cut, if others cut it; it need not be there"""
+
+    def original(self) -> "Habitat | HostHabitat | None":
+        """The whole game: fatal is its end, and food the score. None: nobody scores it."""
 
 
 class HostHabitat(Protocol):

@@ -57,6 +57,12 @@ class MuJoCo(Settings):
     food: str = Field("0", description="amount gathered in a tick")
     effort: str = Field("0", description="amount exerted in a tick")
     target: Target | None = Field(None, description="something to be reached")
+    episode: int | None = Field(
+        None, ge=1, description="ticks after which an evaluation ends a game; no life ends there"
+    )
+    scored: dict[str, Any] = Field(
+        {}, description="what is different in the game that others score, where food is the score"
+    )
 
     _bodies: Any = PrivateAttr()
     _seen: dict[str, Any] = PrivateAttr()
@@ -68,6 +74,8 @@ class MuJoCo(Settings):
     def _makes_sense(self) -> "MuJoCo":
         assert self._perceived
         assert self._used is not None
+        if (original := self.original()) and original.senses_size != self.senses_size:
+            raise ValueError("scored: senses must be as many as in the task itself")
         if self.velocity_noise and self.velocity_sd:
             raise ValueError("velocity_noise or velocity_sd: one or the other")
         if self.target is not None:
@@ -243,6 +251,11 @@ class MuJoCo(Settings):
             joint = self._model.joint(name)
             self._bodies.qpos[cell, joint.qposadr[0]] = distance * along
             self._bodies.qvel[cell, joint.dofadr[0]] = 0.0
+
+    def original(self) -> "MuJoCo | None":
+        """The game that others score, if it is said what that is."""
+        changed = {**self.model_dump(), "scored": {}, **self.scored}
+        return MuJoCo(**changed) if self.scored else None
 
     def seen(self) -> dict[str, np.ndarray]:
         """Positions of the joints, float64 (N, nq)."""
