@@ -1,6 +1,8 @@
 """`make bench`: every figure that Primordia claims, measured in one run.
 
-    python benchmarks/bench.py [--json FILE] [--only paper,speed,plain,live,cells,atari,shell,records]
+    python benchmarks/bench.py [--json FILE] [--only SECTION,...]
+
+Sections: paper, speed, plain, live, cells, atari, robots, shell, records.
 
 Speeds are compared within this run only: machines differ, and the same machine from hour to hour.
 """
@@ -12,7 +14,7 @@ import os
 import platform
 from pathlib import Path
 
-import arcade
+import hosted
 import paper
 import scale
 import show
@@ -25,7 +27,8 @@ SECTIONS = {
     "plain": speed.against_the_plain_loop,
     "live": show.cost_of_the_live_view,
     "cells": scale.cost_by_cells,
-    "atari": arcade.against_the_emulator,
+    "atari": hosted.against_the_emulator,
+    "robots": hosted.against_the_batch,
     "shell": scale.shell_to_saturation,
     "records": scale.births_recorded_per_second,
 }

@@ -1,4 +1,4 @@
-"""A process that plays a game when it is told to: what `arcade.py` sets against each other.
+"""A process that plays a game when it is told to: what `hosted.py` sets against each other.
 
     python benchmarks/contender.py WAY GAME CELLS
 
@@ -19,8 +19,22 @@ from typing import Any
 
 import numpy as np
 
-TASKS = {"pong": "Pong-survival", "battle_zone": "BattleZone-survival"}
-"""the task that is measured in each game"""
+TASKS = {
+    "pong": "Pong-survival",
+    "battle_zone": "BattleZone-survival",
+    "HalfCheetah-v5": "HalfCheetah-forager",
+    "Walker2d-v5": "Walker-survival-forager",
+    "Reacher-v5": "Reacher-forager",
+}
+"""the task that is measured in each game, or with each of Gymnasium's robots"""
+ROBOTS = [game for game in TASKS if game.endswith("-v5")]
+NO_DEATH: dict[str, dict] = {
+    game: {"metabolism": "none", "habitat": {"fatal": ""}}
+    if game in ROBOTS
+    else {"habitat": {"fatal": "game_over"}}
+    for game in TASKS
+}
+"""settings under which nobody dies but by accident, or when the game is over"""
 BUTTONS_DRAWN = 10_007
 """at random, beforehand; a prime, so that they do not fall into step with anything"""
 
@@ -76,6 +90,57 @@ class Bare(Loop):
         return frames
 
 
+class Batch(Loop):
+    """MuJoCo's own batch on all cores with random controls: nothing that plays tick by tick can pass it.
+
+    A walker that falls goes on where it lies.
+    """
+
+    def __init__(self, game: str, cells: int) -> None:
+        habitat = _described(game)[1]
+        habitat.open(cells)
+        habitat.reset(np.arange(cells), _words(cells, habitat.words))
+        self._bodies, self._substeps = habitat._bodies, habitat.substeps
+        noise = np.random.default_rng(0)
+        self._controls = noise.uniform(-1, 1, (64, cells, habitat.action.size))
+        self._cells, self._number = cells, 0
+
+    def tick(self) -> int:
+        """A tick of each."""
+        self._number = (self._number + 1) % len(self._controls)
+        self._bodies.ctrl[:] = self._controls[self._number]
+        self._bodies.step(nstep=self._substeps)
+        return self._cells
+
+
+class Robots(Loop):
+    """Gymnasium's vector environments with brains, but no law. Its reacher perceives a number less."""
+
+    def __init__(self, mode: str, game: str, cells: int) -> None:
+        try:
+            import gymnasium
+        except ImportError as error:
+            raise Lacking(f"{error.name} is not installed") from None
+        habitat = _described(game)[1]
+        changed = {"frame_skip": habitat.substeps}
+        self._envs = gymnasium.make_vec(
+            game, num_envs=cells, vectorization_mode=mode, disable_env_checker=True, **changed
+        )
+        self.about = f"gymnasium {version('gymnasium')}, {type(self._envs).__name__}"
+        self._cells, self._seen = cells, self._envs.reset(seed=0)[0]
+        self._senses = np.zeros((cells, habitat.senses_size), np.float32)
+        self._brains, self._size = (
+            Brains(game, cells),
+            min(habitat.senses_size, self._seen.shape[1]),
+        )
+
+    def tick(self) -> int:
+        """A tick of each."""
+        self._senses[:, : self._size] = self._seen[:, : self._size]
+        self._seen = self._envs.step(np.clip(self._brains(self._senses), -1, 1))[0]
+        return self._cells
+
+
 class Organism:
     """A network of NumPy matrices that plays on a console of its own."""
 
@@ -128,12 +193,10 @@ class Brains:
         import jax
         import jax.numpy as jnp
 
-        from primordia.habitats.atari import SCALED
-        from primordia.motor import argmax
+        from primordia.motor import Discrete, argmax
 
         config, habitat, brain = _described(game)
-        noise = np.random.default_rng(0)
-        self._scaled, self._seen = SCALED, _seen(habitat)
+        noise, discrete = np.random.default_rng(0), isinstance(habitat.action, Discrete)
         self._genome = {
             name: jnp.asarray(_founder(config, noise, (cells, *shape)), jnp.float32)
             for name, shape in brain.blocks.items()
@@ -142,13 +205,12 @@ class Brains:
 
         def think(genome: Any, memory: Any, senses: Any) -> tuple:
             memory, output = brain(genome, memory, senses)
-            return memory, argmax(output)
+            return memory, argmax(output) if discrete else output
 
         self._think = jax.jit(think)
 
-    def __call__(self, ram: np.ndarray) -> np.ndarray:
-        """RAM, uint8 (N, 128) -> actions, int32 (N,). Memory is kept from game to game."""
-        senses = self._scaled.take(ram[:, self._seen])
+    def __call__(self, senses: np.ndarray) -> np.ndarray:
+        """Float32 (N, S) -> actions, int32 (N,) or float32 (N, A). Memory is kept from game to game."""
         self._memory, action = self._think(self._genome, self._memory, senses)
         return np.asarray(action)
 
@@ -176,11 +238,11 @@ class Gymnasium(Loop):
         )
         self.about = f"gymnasium {version('gymnasium')}, {type(self._envs).__name__}"
         self._cells, self._ram = cells, self._envs.reset(seed=0)[0]
-        self._brains = Brains(game, cells)
+        self._brains, self._sensed = Brains(game, cells), _sight(game)
 
     def tick(self) -> int:
         """A frame of each."""
-        self._ram = self._envs.step(self._brains(self._ram))[0]
+        self._ram = self._envs.step(self._brains(self._sensed(self._ram)))[0]
         return self._cells
 
 
@@ -214,11 +276,11 @@ class EnvPool(Loop):
             raise Lacking(f"envpool {envpool.__version__} does not give the console's memory")
         self.about = f"envpool {envpool.__version__}; makes a picture of every frame besides RAM"
         self._cells, self._ram = cells, told["ram"]
-        self._brains = Brains(game, cells)
+        self._brains, self._sensed = Brains(game, cells), _sight(game)
 
     def tick(self) -> int:
         """A frame of each."""
-        self._ram = self._envs.step(self._brains(self._ram))[-1]["ram"]
+        self._ram = self._envs.step(self._brains(self._sensed(self._ram)))[-1]["ram"]
         return self._cells
 
 
@@ -229,6 +291,19 @@ def _described(game: str) -> tuple:
     config = load(TASKS[game])
     habitat = config.build_habitat()
     return config, habitat, config.build_brain(habitat)
+
+
+def _sight(game: str) -> Callable[[np.ndarray], np.ndarray]:
+    """RAM, uint8 (N, 128) -> what is perceived of it, float32 (N, S)."""
+    from primordia.habitats.atari import SCALED
+
+    seen = _seen(_described(game)[1])
+    return lambda ram: SCALED.take(ram[:, seen])
+
+
+def _words(cells: int, each: int) -> np.ndarray:
+    """Random words for births."""
+    return np.random.default_rng(0).integers(0, 2**32, (cells, each), np.uint32)
 
 
 def _seen(habitat: Any) -> list[int]:
@@ -247,16 +322,21 @@ def _pascal(game: str) -> str:
 
 
 def _ours(game: str, cells: int) -> Any:
-    from arcade_world import Ours
+    from hosted_world import Ours
 
-    return Ours(TASKS[game], cells)
+    return Ours(TASKS[game], cells, NO_DEATH[game])
+
+
+def _gymnasium(mode: str, game: str, cells: int) -> Loop:
+    return (Robots if game in ROBOTS else Gymnasium)(mode, game, cells)
 
 
 WAYS: dict[str, Callable[[str, int], Any]] = {
     "bare": Bare,
     "ours": _ours,
-    "async": partial(Gymnasium, "async"),
-    "sync": partial(Gymnasium, "sync"),
+    "batch": Batch,
+    "async": partial(_gymnasium, "async"),
+    "sync": partial(_gymnasium, "sync"),
     "published": Published,
     "envpool": EnvPool,
 }

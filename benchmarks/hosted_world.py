@@ -1,4 +1,4 @@
-"""A world of an Atari task in memory, kept full, timed, and taken apart by what its ticks cost."""
+"""A world of a task on the host, in memory, kept full, timed, and taken apart by what its ticks cost."""
 
 import time
 from collections import defaultdict
@@ -18,7 +18,6 @@ SETTINGS: dict[str, Any] = {
     "hazard": 0.001,
     "replication": 0.5,
     "placement": {"topology": "well-mixed", "rule": "empty-only"},
-    "habitat": {"fatal": "game_over"},
     "stop": {"until": "none", "ticks": "none"},
 }
 """Accidents at a stated rate, and cells filled again at once: births go on for ever."""
@@ -65,8 +64,9 @@ class Ours:
 
     about = ""
 
-    def __init__(self, task: str, cells: int) -> None:
-        self._engine = Engine(load(task, {**SETTINGS, "cells": cells}))
+    def __init__(self, task: str, cells: int, settings: dict[str, Any]) -> None:
+        """Settings of the task under which nobody dies but by accident."""
+        self._engine = Engine(load(task, {**SETTINGS, **settings, "cells": cells}))
         self._limits = self._engine.limits({})
         self.play(WARM)
 
@@ -97,11 +97,13 @@ class Ours:
         """What is timed: name of the part, whose methods, which."""
         law: Any = self._engine.chunks
         habitat = law._habitat
+        simulator = habitat._pool if hasattr(habitat, "_pool") else habitat._bodies
+        newborn = ("reset", "forward") if hasattr(simulator, "forward") else ("reset",)
         return [
             ("law and brains, compiled", law, ("_think", "_live", "_settle", "_genesis")),
             ("habitat, NumPy", habitat, ("step", "reset")),
-            ("emulation", habitat._pool, ("step",)),
-            ("games of the newborn", habitat._pool, ("reset",)),
+            ("simulation", simulator, ("step",)),
+            ("simulators of the newborn", simulator, newborn),
         ]
 
     def _advance(self, seconds: float) -> None:

@@ -1,8 +1,8 @@
-"""How near worlds of Atari games come to the bare emulator, and what other ways of playing reach.
+"""How near worlds on the host come to the bare simulator, and what other ways of playing reach.
 
 Each way has a process of its own (`contender.py`), told over pipes to play for some seconds, in turn.
-`bare` has as many as cores. The others of 32 cells have the same brains with random weights, but no
-law: nobody is born, dies or is recorded.
+`bare` has as many as cores, and neither it nor `batch` has brains. The others of 32 cells have the same
+brains as ours, with random weights, but no law: nobody is born, dies or is recorded.
 """
 
 import json
@@ -15,12 +15,14 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
-from contender import TASKS
+from contender import ROBOTS, TASKS
 from primordia.config import load
 from worlds import median
 
+GAMES = "pong", "battle_zone"
 SIZES = {32: ("bare", "ours", "async", "sync", "published", "envpool"), 128: ("bare", "ours")}
-"""Ways that are set against each other at so many cells."""
+"""Ways that are set against each other at so many cells, the first as what cannot be passed."""
+ROBOT_SIZES = {32: ("batch", "ours", "async", "sync"), 256: ("batch", "ours")}
 ROUNDS = 5
 STARTS = 3
 SECONDS = 1.0
@@ -32,9 +34,14 @@ PATIENCE = 120.0
 
 def against_the_emulator() -> dict:
     """Start-up, and rates in turn, round by round, for each game and size."""
-    worlds = [_measured(game, cells) for game in TASKS for cells in SIZES]
-    starts = {game: _start_up(game) for game in TASKS}
+    worlds = [_measured(game, cells, ways) for game in GAMES for cells, ways in SIZES.items()]
+    starts = {game: _start_up(game) for game in GAMES}
     return {"seconds until 32 emulators are up": starts, "worlds": worlds}
+
+
+def against_the_batch() -> list[dict]:
+    """Rates of robots in turn, round by round, for each robot and size."""
+    return [_measured(robot, n, ways) for robot in ROBOTS for n, ways in ROBOT_SIZES.items()]
 
 
 def _start_up(game: str) -> float:
@@ -94,9 +101,8 @@ class Contender:
         return lines
 
 
-def _measured(game: str, cells: int) -> dict:
+def _measured(game: str, cells: int, ways: tuple[str, ...]) -> dict:
     """One game at one size: every way in turn, some rounds; then where a tick of ours goes."""
-    ways = SIZES[cells]
     with ExitStack() as stack:
         begun = {way: stack.enter_context(Contender(way, game, cells)) for way in ways}
         said = {way: contender.answers()[0] for way, contender in begun.items()}
@@ -123,10 +129,11 @@ def _compared(told: dict[str, list[list[dict]]]) -> dict:
     def ratio(one: str, other: str) -> float:
         return median([a / b for a, b in zip(rates[one], rates[other], strict=True)])
 
-    others = [way for way in rates if way not in ("bare", "ours")]
+    bare, *_ = rates
+    others = [way for way in rates if way not in (bare, "ours")]
     found: dict[str, Any] = {
         "frames per s": {way: median(values) for way, values in rates.items()},
-        "of bare": {way: ratio(way, "bare") for way in rates if way != "bare"},
+        "of bare": {way: ratio(way, bare) for way in rates if way != bare},
     }
     return {**found, "ours over": {w: ratio("ours", w) for w in others}} if others else found
 
