@@ -1,6 +1,5 @@
 """Robots: equal to Gymnasium's environments step for step, exact to resume, and what is refused."""
 
-from ctypes.util import find_library
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +9,8 @@ import pytest
 
 import primordia
 from primordia.config import load
-from primordia.habitats import mujoco_model
+from primordia.errors import InputError
+from primordia.habitats import mujoco_model, mujoco_picture
 from primordia.habitats.mujoco import MuJoCo
 from primordia.life import Life
 from primordia.lives import lives
@@ -267,9 +267,11 @@ def test_lives_come_out_again_as_recorded(reachers: Path) -> None:
 
 
 def needs_gl() -> None:
-    """A library that draws without a screen; where there is none, there are no pictures to test."""
-    if not any(map(find_library, ("OSMesa", "EGL"))):
-        pytest.skip("no OpenGL without a screen")
+    """Something that draws without a screen; where there is nothing, there are no pictures to test."""
+    try:
+        mujoco_picture._screen()
+    except InputError as error:
+        pytest.skip(str(error))
 
 
 @pytest.mark.parametrize("task", ["HalfCheetah-forager", "Reacher-forager", "Humanoid-homeostasis"])
@@ -304,8 +306,6 @@ def test_a_life_on_video(reachers: Path, tmp_path: Path) -> None:
 
 
 def test_without_opengl(reachers: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from primordia.habitats import mujoco_picture
-
     mujoco_picture._screen.cache_clear()
     monkeypatch.setenv("MUJOCO_GL", "nothing")
     done = here("replay", reachers, "--to", 10, "--out", tmp_path / "life.mp4")

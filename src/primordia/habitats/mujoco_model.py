@@ -19,13 +19,15 @@ def package() -> Any:
     folder with what the law knows anyway, that a body's simulation has failed.
 
     Raises:
-        ValueError: it is not installed.
+        ValueError: it is not installed, or does not like its environment (MUJOCO_GL).
     """
     try:
         mujoco = import_module("mujoco")
         import_module("mujoco.batch")
     except ImportError:
         raise ValueError(LACKING) from None
+    except RuntimeError as error:
+        raise ValueError(f"MuJoCo cannot be loaded: {error}") from None
     log = mujoco.MjLogConfig.get()
     log.logto_console = log.logto_file = False
     log.set()
