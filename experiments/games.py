@@ -9,11 +9,10 @@ reference, which nothing has selected. The table goes to `results/` beside the f
 """
 
 import csv
-import sys
-import tomllib
 from pathlib import Path
 from typing import Any
 
+import files
 import numpy as np
 
 import primordia
@@ -32,21 +31,12 @@ WAYS: dict[str, dict[str, Any]] = {
 COLUMNS = ("lifespan", "score", "length")
 
 
-def main() -> None:
-    """All files named, one after the other."""
-    if len(sys.argv) < 2:
-        sys.exit(__doc__)
-    for name in sys.argv[1:]:
-        report(Path(name))
-
-
 def report(file: Path) -> None:
     """Play, and write what came out."""
-    arms = tomllib.loads(file.read_text(encoding="utf-8"))["arms"]
-    folder = Path("runs", "experiments", file.parent.name, file.stem)
-    players = [("a founder", each) for each in founders(folder / arms[0]["name"])]
-    for arm in arms:
-        players += [(arm["name"], each) for each in longest_lived(folder / arm["name"])]
+    runs = files.runs(file)
+    players = [("a founder", each) for each in founders(runs[0])]
+    for run in runs:
+        players += [(run.name, each) for each in longest_lived(run)]
     rows = [row for name, organism in players for row in played(name, organism)]
     write_rows(file.parent / "results" / f"{file.stem}-games", rows, summary(rows))
 
@@ -110,4 +100,4 @@ def spread(values: list[float]) -> str:
 
 
 if __name__ == "__main__":
-    main()
+    files.each(report, __doc__)

@@ -8,11 +8,10 @@ mutants of several scales, every weight with noise; each lives once. The table g
 the file, as Markdown and CSV.
 """
 
-import sys
-import tomllib
 from pathlib import Path
 from typing import Any
 
+import files
 import numpy as np
 from games import longest_lived, write_rows
 
@@ -31,19 +30,10 @@ SAME = 2
 SHARES = ("as long", "longer", "longer by a tenth", "shorter by a third")
 
 
-def main() -> None:
-    """All files named, one after the other."""
-    if len(sys.argv) < 2:
-        sys.exit(__doc__)
-    for name in sys.argv[1:]:
-        report(Path(name))
-
-
 def report(file: Path) -> None:
     """Let mutants live, and write what came out."""
-    arms = tomllib.loads(file.read_text(encoding="utf-8"))["arms"]
-    run = Path("runs", "experiments", file.parent.name, file.stem, arms[0]["name"])
-    rows = [row for organism in longest_lived(run) for row in mutants_of(organism)]
+    reference = files.runs(file)[0]
+    rows = [row for organism in longest_lived(reference) for row in mutants_of(organism)]
     write_rows(file.parent / "results" / f"{file.stem}-mutants", rows, summary(rows))
 
 
@@ -88,4 +78,4 @@ def summary(rows: list[dict[str, Any]]) -> str:
 
 
 if __name__ == "__main__":
-    main()
+    files.each(report, __doc__)

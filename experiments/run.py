@@ -13,27 +13,20 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
+import files
+
 import primordia
 from primordia import config
 from results import write
-
-
-def main() -> None:
-    """All files named, one after the other."""
-    if len(sys.argv) < 2:
-        sys.exit(__doc__)
-    for name in sys.argv[1:]:
-        experiment(Path(name))
 
 
 def experiment(file: Path) -> None:
     """Every arm, then the results."""
     values = tomllib.loads(file.read_text(encoding="utf-8"))
     question, arms = values.pop("question"), values.pop("arms")
-    folder = Path("runs", "experiments", file.parent.name, file.stem)
     runs = []
     for arm in arms:
-        runs.append(folder / arm.pop("name"))
+        runs.append(files.folder(file) / arm.pop("name"))
         live(runs[-1], config.merged(values, arm))
         print(f"{runs[-1]} is done", flush=True)
     write(file.parent / "results" / file.stem, question, runs)
@@ -52,4 +45,4 @@ def live(run: Path, settings: dict[str, Any]) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    files.each(experiment, __doc__)

@@ -12,8 +12,8 @@ from matplotlib.colors import to_rgb
 from matplotlib.text import Text
 
 import primordia
-from primordia import loop
-from primordia.figures import FIGURES, ages, population, series, spacetime, style, survival
+from primordia import loop, series
+from primordia.figures import FIGURES, ages, population, spacetime, style, survival
 from primordia.lives import Lives, lives
 from primordia.world import Cause
 from tests.commands import complains, here

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from primordia.figures import series, survival
+from primordia import series
+from primordia.figures import survival
 from tests.synthetic import LIVED, alive, world_of
 
 

@@ -17,8 +17,8 @@ ORDER = """
     video
     brain motor mutation placement metabolism
     world habitats device genomes
-    seasons sample tallies held habitats.cartpole_picture habitats.atari_picture habitats.atari_games
-    habitats.mujoco_model
+    seasons sample tallies held habitats.cartpole_picture habitats.framed habitats.atari_games
+    habitats.atari_picture habitats.mujoco_model
     habitats.mujoco_picture
     habitats.*
     turnover
@@ -31,7 +31,7 @@ ORDER = """
     loop
     report live
     verify climate lives
-    lineage life.instant
+    lineage life.instant series
     life.fused life.hosted games
     fork life policy evaluation
     replay
@@ -40,7 +40,7 @@ ORDER = """
     comparison.contrast comparison.survival
     comparison.pace
     comparison
-    figures.style figures.series
+    figures.style
     figures.*
     figures
     api help

@@ -12,6 +12,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from primordia import video
 from primordia.errors import InputError
+from primordia.habitats.framed import PAPER
 from primordia.life import Life
 from primordia.life.instant import Stretch
 
@@ -19,7 +20,7 @@ PART = 30.0
 """Seconds shown of each end of a life that is longer than two such parts."""
 STILL = 1.0
 """Seconds that a card, and the last picture, are shown."""
-SIZE, INK, PAPER = 16, "#333333", "#fbfaf7"
+SIZE, INK = 16, "#333333"
 
 
 def replay(

@@ -9,7 +9,8 @@ import pytest
 import primordia
 from primordia.habitats.atari import SCALED, Atari
 from primordia.habitats.atari_games import screen_size
-from primordia.habitats.atari_picture import ROOM, draw
+from primordia.habitats.atari_picture import draw
+from primordia.habitats.framed import ROOM
 from primordia.life import Life
 from primordia.lives import Lives, lives
 from primordia.metabolism import ONE

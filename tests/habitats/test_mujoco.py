@@ -66,7 +66,7 @@ def test_senses_and_physics_are_gymnasiums_to_the_bit(
     habitat = of_task(task, **changes)
     senses = born(habitat)
     envs = [started_alike(name, habitat, body, **options) for body in range(4)]
-    rng, alive = np.random.default_rng(1), FOUR.copy()
+    rng, alive, compared = np.random.default_rng(1), FOUR.copy(), 0
     for _ in range(TICKS):
         high = envs[0].action_space.high
         action = high * rng.uniform(-1, 1, (4, habitat.action.size)).astype(np.float32)
@@ -79,12 +79,13 @@ def test_senses_and_physics_are_gymnasiums_to_the_bit(
             if not alive[body] or (outcome.food[body] and task == "Reacher-forager"):
                 continue
             np.testing.assert_array_equal(senses[body, told], seen[told].astype(np.float32))
+            compared += 1
             if task == "HalfCheetah-forager":
                 assert outcome.food[body] == np.float32(env.data.qpos[0] - before[body])
             if task.startswith(("Walker", "Humanoid")):
                 assert outcome.fatal[body] == terminated
         alive &= ~outcome.fatal
-    assert alive.any() or task not in ("HalfCheetah-forager", "Reacher-forager")
+    assert compared > (300 if task in ("HalfCheetah-forager", "Reacher-forager") else 40)
 
 
 @pytest.mark.parametrize(
@@ -142,9 +143,12 @@ def test_a_lag_of_gymnasiums_is_not_ours() -> None:
     np.testing.assert_array_equal(senses[0, 8:], apart.astype(np.float32))
 
 
-def test_a_body_is_a_function_of_its_words_alone() -> None:
-    """Whatever number of others there is, and wherever it is among them."""
-    many, one = of_task("Reacher-forager", 37), of_task("Reacher-forager", 1)
+def test_a_body_is_a_function_of_its_words_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever number of others there is, wherever it is among them, and on however many threads."""
+    one = of_task("Reacher-forager", 1)
+    monkeypatch.setattr("os.sched_getaffinity", lambda _: {0, 1, 2})
+    many = of_task("Reacher-forager", 37)
+    assert one._bodies.nthread != many._bodies.nthread == 3
     words = np.random.default_rng(3).integers(0, 2**32, (37, many.words), np.uint32)
     both = [many.reset(np.arange(37), words)[21], one.reset(np.array([0]), words[21:22])[0]]
     np.testing.assert_array_equal(*both)
@@ -233,25 +237,36 @@ def test_controls_are_kept_within_their_ranges() -> None:
     assert outcome.effort.tolist() == [6.0] * 4
 
 
+SETTINGS: dict[str, Any] = {"cells": 6, "seeds": 2, "genesis": "fill", "hazard": 0.003}
+
+
 @pytest.fixture(scope="module")
 def reachers(tmp_path_factory: pytest.TempPathFactory) -> Path:
     run = tmp_path_factory.mktemp("reachers") / "run"
-    settings = {"cells": 6, "seeds": 2, "genesis": "fill", "hazard": 0.003}
     return primordia.run(
-        "Reacher-forager-costly", run, **settings, stop={"ticks": 260, "until": "none"}
+        "Reacher-forager-costly", run, **SETTINGS, stop={"ticks": 260, "until": "none"}
     ).path
 
 
-def test_a_run_that_was_stopped_goes_on_exactly(reachers: Path, tmp_path: Path) -> None:
-    settings = {"cells": 6, "seeds": 2, "genesis": "fill", "hazard": 0.003}
-    parts = primordia.run(
-        "Reacher-forager-costly", tmp_path / "run", **settings, stop={"ticks": 97, "until": "none"}
-    )
-    parts.resume(ticks=260)
-    told = [
-        [w["digest"] for w in run.info()["worlds"]] for run in (parts, primordia.load(reachers))
-    ]
-    assert told[0] == told[1]
+@pytest.mark.parametrize("task", ["Reacher-forager-costly", "Humanoid-forager"])
+def test_a_run_that_was_stopped_goes_on_exactly(task: str, tmp_path: Path) -> None:
+    """Also where food is measured from where a body was before the stop."""
+    digests = []
+    for name, first in (("whole", 160), ("parts", 67)):
+        stop = {"ticks": first, "until": "none"}
+        run = primordia.run(task, tmp_path / name, **SETTINGS, stop=stop)
+        run.resume(ticks=160)
+        digests.append([world["digest"] for world in run.info()["worlds"]])
+    assert digests[0] == digests[1]
+
+
+def test_lives_come_out_again_through_a_fork(reachers: Path, tmp_path: Path) -> None:
+    fork = primordia.load(reachers).fork(200, tmp_path / "fork", seed=9).path
+    everyone = lives(fork)
+    older = np.flatnonzero(everyone.born <= 200)[:4]
+    for row in older:
+        life = Life.of(fork, int(everyone.id[row]), int(everyone.world[row]))
+        assert list(life.again())[-1].tick[-1] == life.ends
 
 
 def test_lives_come_out_again_as_recorded(reachers: Path) -> None:

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from primordia import series
 from primordia.comparison.contrast import Figures
 from primordia.lives import Lives
 
@@ -37,17 +38,6 @@ class Pace:
 def pace(worlds: list[Lives], until: int) -> Pace:
     """Of the lives of each world, up to a tick that all worlds have come to."""
     edges = np.linspace(0, until, WINDOWS + 1)
-    lived = np.array([_lived(world, edges) for world in worlds])
-    deaths = np.array([np.diff(_deaths_by(world, edges)) for world in worlds])
-    return Pace(edges, lived, deaths)
-
-
-def _lived(lives: Lives, edges: np.ndarray) -> np.ndarray:
-    """Organism-ticks between each two edges."""
-    first, last = edges[:-1, None], edges[1:, None]
-    return np.clip(np.minimum(lives.ended, last) - np.maximum(lives.born, first), 0, None).sum(1)
-
-
-def _deaths_by(lives: Lives, edges: np.ndarray) -> np.ndarray:
-    """How many have died by the tick of each edge."""
-    return np.searchsorted(np.sort(lives.ended[lives.died]), edges, side="right")
+    lived = [series.exposure(world.born, world.ended, edges) for world in worlds]
+    deaths = [np.diff(series.until(np.sort(world.ended[world.died]), edges)) for world in worlds]
+    return Pace(edges, np.array(lived), np.array(deaths))

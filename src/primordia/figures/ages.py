@@ -4,7 +4,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from primordia.figures import series, style
+from primordia import series
+from primordia.figures import style
 from primordia.lives import Lives
 
 DOTS = 3000

@@ -6,9 +6,10 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter
 
+from primordia import series
 from primordia.clades import Clades, clades
 from primordia.config import Config
-from primordia.figures import series, style
+from primordia.figures import style
 from primordia.lines import CROWD
 from primordia.lives import Lives
 

@@ -5,7 +5,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from scipy import stats
 
-from primordia.figures import series, style
+from primordia import series
+from primordia.figures import style
 from primordia.lives import Lives
 
 COHORTS = {

@@ -3,17 +3,14 @@
 import numpy as np
 from PIL import Image
 
+from primordia.habitats.framed import framed
+
 PIXEL = (4, 2)
 """width and height of one of the console's"""
-PAPER = "#fbfaf7"
-ROOM = 56
-"""pixels above the screen, for two lines of words"""
 
 
 def draw(screen: np.ndarray) -> Image.Image:
     """A picture (640 x 476 for most games) of a screen, uint8 (height, width, 3)."""
     height, width = screen.shape[:2]
     size = width * PIXEL[0], height * PIXEL[1]
-    picture = Image.new("RGB", (size[0], size[1] + ROOM), PAPER)
-    picture.paste(Image.fromarray(screen).resize(size, Image.Resampling.NEAREST), (0, ROOM))
-    return picture
+    return framed(Image.fromarray(screen).resize(size, Image.Resampling.NEAREST))

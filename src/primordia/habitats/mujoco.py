@@ -17,16 +17,13 @@ from pydantic import Field, PrivateAttr, model_validator
 from primordia import conditions, dice
 from primordia.conditions import Expression, Names
 from primordia.habitats import Outcome
-from primordia.habitats.mujoco_model import compiled, names, numbered, package
+from primordia.habitats.mujoco_model import ROOT, compiled, moves_about, names, numbered, package
 from primordia.motor import Continuous
 from primordia.mutation import quantiles
 from primordia.settings import Settings
 
 if TYPE_CHECKING:
     from PIL.Image import Image
-
-ROOT = 1
-"""The first body, after the world itself."""
 
 
 class Target(Settings):
@@ -184,7 +181,7 @@ class MuJoCo(Settings):
 
     def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
         """One tick of the bodies that live."""
-        self._bodies.ctrl[:] = self._allowed(action)
+        np.clip(action, *self._range, out=self._seen["ctrl"])
         before, fault = self._stood(), self._advance(alive)
         values = self._values(before)
         fatal = self._is_fatal(values) if self._is_fatal else False
@@ -201,11 +198,11 @@ class MuJoCo(Settings):
             self._bodies.forward(cells)
         return self._sensed(values), Outcome(**told)
 
-    def _allowed(self, action: np.ndarray) -> np.ndarray:
-        """Controls within their ranges, where they have any."""
-        limited = self._model.actuator_ctrllimited.astype(bool)
-        low, high = self._model.actuator_ctrlrange.T
-        return np.where(limited, np.clip(action, low, high), action)
+    @cached_property
+    def _range(self) -> tuple[np.ndarray, np.ndarray]:
+        """Least and largest controls, (nu,) each; infinite where a control has no range."""
+        limited, (low, high) = self._model.actuator_ctrllimited, self._model.actuator_ctrlrange.T
+        return np.where(limited, low, -np.inf), np.where(limited, high, np.inf)
 
     def _advance(self, alive: np.ndarray) -> np.ndarray:
         """Step who is alive -> whose simulation failed, bool (N,); the others are not disturbed."""
@@ -273,12 +270,7 @@ class MuJoCo(Settings):
 
     def caption(self, body: dict[str, np.ndarray], action: np.ndarray) -> str:
         """How far it has come."""
-        return f"x {body['qpos'][0]:,.1f} m" if self._walks else ""
-
-    @property
-    def _walks(self) -> bool:
-        """Whether the first joint's position is a place."""
-        return self._model.jnt_type[0] != package().mjtJoint.mjJNT_HINGE
+        return f"x {body['qpos'][0]:,.1f} m" if moves_about(self._model) else ""
 
     def save(self) -> dict[str, np.ndarray]:
         """MuJoCo's states, float64 (N, L), and the dice of targets."""

@@ -10,6 +10,8 @@ from primordia.conditions import Names
 
 GYMNASIUM = "gymnasium:"
 """Begins the name of a file that comes with Gymnasium."""
+ROOT = 1
+"""The first body, after the world itself."""
 LACKING = "robots need MuJoCo and Gymnasium's models: pip install 'primordia[mujoco]'"
 
 
@@ -72,6 +74,11 @@ def numbered(model: Any, kind: str) -> dict[str, int]:
     count = {"body": model.nbody, "site": model.nsite, "joint": model.njnt}[kind]
     each = (getattr(model, kind)(i) for i in range(count))
     return {one.name: one.id for one in each if one.name}
+
+
+def moves_about(model: Any) -> bool:
+    """Whether the first joint's position is a place, and not an angle."""
+    return bool(model.jnt_type[0] != package().mjtJoint.mjJNT_HINGE)
 
 
 def names(model: Any) -> Names:

@@ -11,19 +11,16 @@ import numpy as np
 from PIL import Image
 
 from primordia.errors import InputError
-from primordia.habitats.mujoco_model import package
+from primordia.habitats.framed import framed
+from primordia.habitats.mujoco_model import ROOT, moves_about, package
 
 WIDTH, HEIGHT = 640, 360
-ROOM = 56
-"""pixels above, for two lines of words"""
-PAPER = "#fbfaf7"
 FINE = 2
 """Drawn so many times larger and reduced, for smooth edges; four times as fast as MuJoCo's own way."""
 SHAPES = 2000
 """most that are drawn at once"""
 CAMERA = "track"
 """of the model, if it has one of this name"""
-ROOT = 1
 
 
 class Eye:
@@ -49,7 +46,7 @@ class Eye:
         mujoco.mjv_defaultFreeCamera(model, camera)
         if own >= 0:
             camera.type, camera.fixedcamid = mujoco.mjtCamera.mjCAMERA_FIXED, own
-        elif model.jnt_type[0] != mujoco.mjtJoint.mjJNT_HINGE:
+        elif moves_about(model):
             camera.type, camera.trackbodyid = mujoco.mjtCamera.mjCAMERA_TRACKING, ROOT
         else:
             camera.elevation, camera.distance = -80, camera.distance / 2
@@ -68,9 +65,7 @@ class Eye:
         pixels = np.zeros((HEIGHT * FINE, WIDTH * FINE, 3), np.uint8)
         mujoco.mjr_render(view, scene, self._context)
         mujoco.mjr_readPixels(pixels, None, view, self._context)
-        picture = Image.new("RGB", (WIDTH, HEIGHT + ROOM), PAPER)
-        picture.paste(Image.fromarray(pixels[::-1]).reduce(FINE), (0, ROOM))
-        return picture
+        return framed(Image.fromarray(pixels[::-1]).reduce(FINE))
 
 
 @cache
