@@ -170,12 +170,15 @@ class Published(Loop):
         from primordia.habitats.atari_games import minimal_actions
         from primordia.pool.arcade import console
 
-        config, habitat, _ = _described(game)
+        config, habitat, brain = _described(game)
         buttons, seen = list(minimal_actions(game).values()), _seen(habitat)
         hidden, noise = config.brain.hidden, np.random.default_rng(0)
         shapes = ((hidden, len(seen)), (hidden, hidden), (len(buttons), hidden))
+        blocks = list(zip(_scales(config, brain), shapes, strict=True))
         self._organisms = [
-            Organism([_founder(config, noise, s) for s in shapes], console(game), buttons, seen)
+            Organism(
+                [s * noise.standard_normal(b) for s, b in blocks], console(game), buttons, seen
+            )
             for _ in range(cells)
         ]
 
@@ -198,8 +201,10 @@ class Brains:
         config, habitat, brain = _described(game)
         noise, discrete = np.random.default_rng(0), isinstance(habitat.action, Discrete)
         self._genome = {
-            name: jnp.asarray(_founder(config, noise, (cells, *shape)), jnp.float32)
-            for name, shape in brain.blocks.items()
+            name: jnp.asarray(scale * noise.standard_normal((cells, *shape)), jnp.float32)
+            for scale, (name, shape) in zip(
+                _scales(config, brain), brain.blocks.items(), strict=True
+            )
         }
         self._memory = jnp.zeros((cells, brain.memory), jnp.float32)
 
@@ -311,9 +316,9 @@ def _seen(habitat: Any) -> list[int]:
     return list(habitat.senses or range(128))
 
 
-def _founder(config: Any, noise: np.random.Generator, shape: tuple[int, ...]) -> np.ndarray:
-    """Random weights, spread as the task says."""
-    return config.mutation.founder_scale * noise.standard_normal(shape)
+def _scales(config: Any, brain: Any) -> list[float]:
+    """How far a founder's weights are spread in each block."""
+    return config.mutation.of_blocks("founder_scale", list(brain.blocks))
 
 
 def _pascal(game: str) -> str:

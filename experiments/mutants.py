@@ -15,7 +15,6 @@ import files
 import numpy as np
 from games import longest_lived, write_rows
 
-from primordia.directory import read_config
 from primordia.evaluation import player_of
 from primordia.games import play
 from primordia.organism import Organism
@@ -41,10 +40,11 @@ def mutants_of(organism: Organism) -> list[dict[str, Any]]:
     """A row for each scale."""
     player, noise = player_of(organism.run, organism.id, organism.world), np.random.default_rng(0)
     own = play(player, 1, TICKS).ticks[0]
-    founder = read_config(organism.run).mutation.founder_scale
     rows = []
     for scale in SCALES:
-        steps = noise.normal(0, scale * founder, (MUTANTS, len(player.genome)))
+        steps = (
+            scale * player.law.founder_scale * noise.standard_normal((MUTANTS, len(player.genome)))
+        )
         genomes = (player.genome + steps).astype(np.float32)
         ticks = play(player._replace(genome=genomes), MUTANTS, TICKS).ticks
         row = {"world": organism.world, "organism": organism.id, "lifespan": own, "scale": scale}

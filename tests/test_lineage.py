@@ -33,7 +33,10 @@ BLOCKS = {
     "probability": 0.3,
     "scale": 0.02,
     "founder_scale": 0.1,
-    "blocks": {"input": {"probability": 0.8}, "output": {"probability": 0.0, "scale": 0.5}},
+    "blocks": {
+        "input": {"probability": 0.8, "founder_scale": 1.0},
+        "output": {"probability": 0.0, "scale": 0.5},
+    },
 }
 LIVES = {"brain": SMALL, "hazard": 0.03, "replication": 0.3}
 WORLDS: dict[str, tuple[dict[str, Any], int]] = {

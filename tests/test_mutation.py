@@ -130,21 +130,26 @@ def test_blocks_have_their_own_settings_where_given() -> None:
         scale=0.02,
         blocks={
             "input": BlockMutation(probability=0.0),
-            "output": BlockMutation(scale=0.5),
+            "output": BlockMutation(scale=0.5, founder_scale=1.0),
         },
     )
-    assert mutation.probabilities(NAMES) == [0.0, 0.3, 0.3]
-    assert mutation.scales(NAMES) == [0.02, 0.02, 0.5]
-    none = Mutation(blocks={"recurrent": BlockMutation(probability=0.0, scale=0.0)})
-    assert none.probabilities(NAMES) == [0.5, 0.0, 0.5]
-    assert none.scales(NAMES) == [0.01, 0.0, 0.01]
+    assert mutation.of_blocks("probability", NAMES) == [0.0, 0.3, 0.3]
+    assert mutation.of_blocks("scale", NAMES) == [0.02, 0.02, 0.5]
+    assert mutation.of_blocks("founder_scale", NAMES) == [0.01, 0.01, 1.0]
+    none = Mutation(blocks={"recurrent": BlockMutation(probability=0, scale=0, founder_scale=0)})
+    assert none.of_blocks("probability", NAMES) == [0.5, 0.0, 0.5]
+    assert none.of_blocks("scale", NAMES) == [0.01, 0.0, 0.01]
+    assert none.of_blocks("founder_scale", NAMES) == [0.01, 0.0, 0.01]
 
 
 @jax.jit
 def compiled(
     parents: jax.Array, index: jax.Array, takes: jax.Array, scale: jax.Array, founder: jax.Array
 ) -> jax.Array:
-    return newborns(parents, jnp.asarray(quantiles())[index], takes, scale, founder, 0.3)
+    return newborns(parents, jnp.asarray(quantiles())[index], takes, scale, founder, FOUNDER)
+
+
+FOUNDER = np.full(P, 0.3, np.float32)
 
 
 def same_bits(a: np.ndarray, b: np.ndarray) -> None:
@@ -174,7 +179,7 @@ def test_children_are_those_of_numpy_bit_for_bit(
     with np.errstate(invalid="ignore"):
         inherited = np.where(takes, parents + standard * scales, parents)
     expected = np.where(founder[:, None], standard * np.float32(0.3), inherited)
-    same_bits(newborns(parents, standard, takes, scales, founder, 0.3), expected)
+    same_bits(newborns(parents, standard, takes, scales, founder, FOUNDER), expected)
     same_bits(compiled(parents, index, takes, scales, founder), expected)
 
 
@@ -187,6 +192,7 @@ def test_a_copy_is_its_parent_to_the_last_bit() -> None:
 
 
 SCALES, PROBABILITIES = [0.3, 0.25, 0.01], [0.0, 0.6, 0.3]
+FOUNDER_SCALES = [1.0, 0.1, 1.0]
 
 
 @pytest.fixture(scope="module")
@@ -196,7 +202,8 @@ def family() -> Lived:
         name: {"scale": scale, "probability": probability}
         for name, scale, probability in zip(NAMES, SCALES, PROBABILITIES, strict=True)
     }
-    mutation = {"founder_scale": 1.0, "blocks": blocks}
+    blocks["recurrent"]["founder_scale"] = FOUNDER_SCALES[1]
+    mutation = {"founder_scale": FOUNDER_SCALES[0], "blocks": blocks}
     values = {"cells": 256, "replication": 0.3, "placement": {"topology": "well-mixed"}}
     lived = Lived(config(MEADOW, mutation=mutation, **values), 100)
     assert lived.table("births")["id"].tolist() == list(range(256))
@@ -222,8 +229,8 @@ def test_children_in_a_world_differ_from_their_parents_as_their_blocks_say(famil
     for name, scale in (("recurrent", 0.25), ("output", 0.01)):
         values = change[name][moved[name]]
         assert values.std() == pytest.approx(scale, rel=5 / np.sqrt(2 * values.size))
-    founder = np.concatenate([block[0] for block in genome.values()])
-    assert founder.std() == pytest.approx(1.0, rel=5 / np.sqrt(2 * founder.size))
+    for block, scale in zip(genome.values(), FOUNDER_SCALES, strict=True):
+        assert block[0].std() == pytest.approx(scale, rel=5 / np.sqrt(2 * block[0].size))
 
 
 def test_genomes_in_a_world_are_those_of_numpy_bit_for_bit(family: Lived) -> None:
@@ -235,7 +242,8 @@ def test_genomes_in_a_world_are_those_of_numpy_bit_for_bit(family: Lived) -> Non
     drawn = streams(name(family.config.seed, 256), ticks)
     takes = np.asarray(mutates(drawn, cells, jnp.array([PROBABILITIES] * 256, jnp.float32)))
     takes, scale = np.repeat(takes, sizes, axis=1), np.repeat(np.float32(SCALES), sizes)
-    same_bits(noise(drawn.founder, cells, lived.shape[1])[0], lived[0])
+    spread = np.repeat(np.float32(FOUNDER_SCALES), sizes)
+    same_bits((noise(drawn.founder, cells, lived.shape[1]) * spread)[0], lived[0])
     parents = lived[births["parent"][1:].astype(int)]
     change = noise(drawn.noise, cells, lived.shape[1])[1:] * scale
     same_bits(np.where(takes[1:], parents + change, parents), lived[1:])

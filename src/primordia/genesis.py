@@ -83,8 +83,8 @@ def climate(law: Law, count: int) -> Climate:
     return Climate(
         replication=each(law.replication),
         hazard=each(law.hazard),
-        mutation_probability=each(law.mutation.probabilities(law.blocks)),
-        mutation_scale=each(law.mutation.scales(law.blocks)),
+        mutation_probability=each(law.mutation.of_blocks("probability", law.blocks)),
+        mutation_scale=each(law.mutation.of_blocks("scale", law.blocks)),
         metabolism=Rates(*(each(getattr(rates, name)) for name in Rates._fields)),
     )
 

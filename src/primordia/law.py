@@ -80,6 +80,12 @@ class Law:
         return np.array([prod(shape) for shape in self.brain.blocks.values()])
 
     @cached_property
+    def founder_scale(self) -> np.ndarray:
+        """Standard deviation of each of a founder's weights, float32 (P,)."""
+        scales = self.mutation.of_blocks("founder_scale", self.blocks)
+        return np.repeat(np.array(scales, np.float32), self.block_sizes)
+
+    @cached_property
     def columns(self) -> Columns:
         """Which blocks each setting under `mutation` governs."""
         found: Columns = {}

@@ -120,4 +120,4 @@ def _founders(law: Law, config: Config, births: Lives) -> np.ndarray:
         return law.ancestors[np.asarray(ancestor_of(seeds, wide(births.id), len(law.ancestors)))]
     drawn, length = streams(seeds, wide(births.born)), int(law.block_sizes.sum())
     index = noise_index(drawn.founder, jnp.asarray(births.cell), length)
-    return quantiles()[np.asarray(index)] * np.float32(config.mutation.founder_scale)
+    return quantiles()[np.asarray(index)] * law.founder_scale

@@ -8,7 +8,7 @@ be rebuilt bit for bit anywhere. The tails end at +-4.32 standard deviations.
 import hashlib
 from functools import cache
 from statistics import NormalDist
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import jax.numpy as jnp
 import numpy as np
@@ -29,6 +29,9 @@ class BlockMutation(Settings):
         None, ge=0, le=1, description="chance that a child's block mutates"
     )
     scale: float | None = Field(None, ge=0, description="standard deviation of the block's noise")
+    founder_scale: float | None = Field(
+        None, ge=0, description="standard deviation of a founder's weights in the block"
+    )
 
 
 class Mutation(Settings):
@@ -47,15 +50,12 @@ class Mutation(Settings):
         {}, description="other values for single blocks of weights (input, recurrent, output)"
     )
 
-    def probabilities(self, names: list[str]) -> list[float]:
-        """The probability of each named block."""
-        given = [self.blocks.get(name, BlockMutation()).probability for name in names]
-        return [self.probability if p is None else p for p in given]
-
-    def scales(self, names: list[str]) -> list[float]:
-        """The scale of each named block."""
-        given = [self.blocks.get(name, BlockMutation()).scale for name in names]
-        return [self.scale if s is None else s for s in given]
+    def of_blocks(
+        self, field: Literal["probability", "scale", "founder_scale"], names: list[str]
+    ) -> list[float]:
+        """A setting's value for each named block."""
+        own = [getattr(self.blocks.get(name), field, None) for name in names]
+        return [getattr(self, field) if value is None else value for value in own]
 
 
 @cache
@@ -108,7 +108,7 @@ def newborns(
     takes: Array,
     scale: Array,
     founder: Array,
-    founder_scale: float,
+    founder_scale: Array,
 ) -> Array:
     """Genomes (K, P) of children of `parents` (K, P) and of founders.
 
@@ -118,12 +118,12 @@ def newborns(
         takes: which weights take it, bool (K, P).
         scale: its standard deviation for children, float32 (K, P).
         founder: who is made from nothing, bool (K,).
-        founder_scale: standard deviation of a founder's weights.
+        founder_scale: standard deviation of a founder's weights, float32 (P,).
 
     A weight is one product and one sum, each rounded.
     """
     inherited = jnp.where(takes, parents + _rounded_product(standard, scale), parents)
-    return jnp.where(founder[:, None], standard * np.float32(founder_scale), inherited)
+    return jnp.where(founder[:, None], standard * founder_scale, inherited)
 
 
 def ancestor_of(seed: Wide, number: Wide, count: int) -> Array:

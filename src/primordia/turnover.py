@@ -151,7 +151,7 @@ def _inherit(law: "Law", world: World, births: Births, listed: Rows) -> tuple[Or
             jnp.repeat(mutated, sizes, axis=1, total_repeat_length=length),
             jnp.repeat(climate.mutation_scale[of], sizes, axis=1, total_repeat_length=length),
             founder,
-            law.mutation.founder_scale,
+            jnp.asarray(law.founder_scale),
         )
         if law.ancestors is not None:
             turn = ancestor_of(worlds.seed.take(of), births.number.take(cells), len(law.ancestors))
