@@ -160,7 +160,8 @@ def load(task: str, settings: dict[str, Any] | None = None) -> Config:
     Raises:
         InputError: no such task or file, or a setting that is unknown or out of range.
     """
-    return validated(merged(values_of(task), settings or {}), source=task)
+    changes = _found_in(Path(), settings or {})
+    return validated(merged(values_of(task), changes), source=task)
 
 
 def validated(values: dict[str, Any], source: str) -> Config:
@@ -217,9 +218,14 @@ def from_toml(path: Path) -> dict[str, Any]:
         raise InputError(f"{path} cannot be read: {error.strerror}") from None
     if isinstance(files := values.get("ancestors"), list):
         values["ancestors"] = [str(path.parent / str(each)) for each in files]
+    return _found_in(path.parent, values)
+
+
+def _found_in(folder: Path, values: dict[str, Any]) -> dict[str, Any]:
+    """Values in which the file that a habitat is made from, if it is in the folder, has its full path."""
     habitat = values.get("habitat")
-    if isinstance(habitat, dict) and (beside := path.parent / str(habitat.get("file"))).is_file():
-        habitat["file"] = str(beside.resolve())
+    if isinstance(habitat, dict) and (file := folder / str(habitat.get("file"))).is_file():
+        return {**values, "habitat": {**habitat, "file": str(file.resolve())}}
     return values
 
 

@@ -28,7 +28,7 @@ def new(run: Path, config: Config) -> Iterator[None]:
     refuse_if_taken(run)
     make_folders(run)
     with locked(run):
-        versions = {"format": FORMAT, **device.versions()}
+        versions = {"format": FORMAT, **device.versions(), **_habitat_versions(config)}
         _write_text(run / "versions.json", json.dumps(versions, indent=1))
         if config.ancestors:
             brain = config.build_brain(config.build_habitat())
@@ -75,11 +75,16 @@ def read_config(run: Path) -> Config:
 def other_versions(run: Path) -> list[str]:
     """What a run was begun with and is not so here; while this is empty it goes on bit for bit."""
     recorded = _recorded_versions(run)
+    here = {**device.versions(), **_habitat_versions(read_config(run))}
     return [
         f"{name} {recorded.get(name)} then, {now} now"
-        for name, now in device.versions().items()
+        for name, now in here.items()
         if recorded.get(name) != now
     ]
+
+
+def _habitat_versions(config: Config) -> dict[str, str]:
+    return getattr(config.build_habitat(), "versions", {})
 
 
 def _recorded_versions(run: Path) -> dict[str, Any]:

@@ -1,5 +1,6 @@
 """Lives in Atari games lived again, bit for bit, and seen on video."""
 
+from importlib.metadata import version
 from pathlib import Path
 
 import av
@@ -39,6 +40,10 @@ def pong(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return primordia.run(
         "Pong-survival", run, **SETTINGS, stop={"ticks": 250, "until": "none"}
     ).path
+
+
+def test_the_emulators_version_is_recorded(pong: Path) -> None:
+    assert primordia.load(pong).info()["versions"]["ale-py"] == version("ale-py")
 
 
 def some(everyone: Lives, which: np.ndarray, count: int) -> list[tuple[int, int]]:

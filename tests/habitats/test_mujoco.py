@@ -1,43 +1,20 @@
-"""Robots: equal to Gymnasium's environments step for step, exact to resume, and what is refused."""
+"""Robots: equal to Gymnasium's environments step for step, and what befalls their bodies."""
 
 from pathlib import Path
 from typing import Any
 
-import av
 import numpy as np
 import pytest
 
 import primordia
 from primordia.config import load
-from primordia.errors import InputError
-from primordia.habitats import mujoco_model, mujoco_picture
-from primordia.habitats.mujoco import MuJoCo
-from primordia.life import Life
-from primordia.lives import lives
-from tests.commands import complains, here
+from tests.robots import born, of_task, opened
 
 mujoco = pytest.importorskip("mujoco")
 gymnasium = pytest.importorskip("gymnasium")
 
 TICKS = 120
 FOUR = np.ones(4, bool)
-
-
-def opened(bodies: int = 4, **changes: Any) -> MuJoCo:
-    habitat = MuJoCo(**{"file": "gymnasium:half_cheetah.xml", "substeps": 5, **changes})
-    habitat.open(bodies)
-    return habitat
-
-
-def of_task(name: str, bodies: int = 4, **changes: Any) -> Any:
-    habitat: Any = load(name, {"habitat": changes}).build_habitat()
-    habitat.open(bodies)
-    return habitat
-
-
-def born(habitat: Any, bodies: int = 4, seed: int = 0) -> np.ndarray:
-    words = np.random.default_rng(seed).integers(0, 2**32, (bodies, habitat.words), np.uint32)
-    return habitat.reset(np.arange(bodies), words)
 
 
 def started_alike(name: str, habitat: Any, body: int, **options: Any) -> Any:
@@ -235,151 +212,3 @@ def test_controls_are_kept_within_their_ranges() -> None:
     born(habitat)
     _, outcome = habitat.step(np.full((4, 6), 50.0, np.float32), FOUR)
     assert outcome.effort.tolist() == [6.0] * 4
-
-
-SETTINGS: dict[str, Any] = {"cells": 6, "seeds": 2, "genesis": "fill", "hazard": 0.003}
-
-
-@pytest.fixture(scope="module")
-def reachers(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    run = tmp_path_factory.mktemp("reachers") / "run"
-    return primordia.run(
-        "Reacher-forager-costly", run, **SETTINGS, stop={"ticks": 260, "until": "none"}
-    ).path
-
-
-@pytest.mark.parametrize("task", ["Reacher-forager-costly", "Humanoid-forager"])
-def test_a_run_that_was_stopped_goes_on_exactly(task: str, tmp_path: Path) -> None:
-    """Also where food is measured from where a body was before the stop."""
-    digests = []
-    for name, first in (("whole", 160), ("parts", 67)):
-        stop = {"ticks": first, "until": "none"}
-        run = primordia.run(task, tmp_path / name, **SETTINGS, stop=stop)
-        run.resume(ticks=160)
-        digests.append([world["digest"] for world in run.info()["worlds"]])
-    assert digests[0] == digests[1]
-
-
-def test_lives_come_out_again_through_a_fork(reachers: Path, tmp_path: Path) -> None:
-    fork = primordia.load(reachers).fork(200, tmp_path / "fork", seed=9).path
-    everyone = lives(fork)
-    older = np.flatnonzero(everyone.born <= 200)[:4]
-    for row in older:
-        life = Life.of(fork, int(everyone.id[row]), int(everyone.world[row]))
-        assert list(life.again())[-1].tick[-1] == life.ends
-
-
-def test_lives_come_out_again_as_recorded(reachers: Path) -> None:
-    everyone = lives(reachers)
-    dead = primordia.load(reachers).arrays("deaths")
-    energy = {(w, i): e for w, i, e in zip(dead["world"], dead["id"], dead["energy"], strict=True)}
-    rows = np.flatnonzero(everyone.died & (everyone.lifespan > 20))[:6]
-    assert len(rows) == 6
-    for row in rows:
-        who = int(everyone.world[row]), int(everyone.id[row])
-        stretches = list(Life.of(reachers, who[1], who[0]).again())
-        assert stretches[-1].energy[-1] == energy[who]
-
-
-def needs_gl() -> None:
-    """Something that draws without a screen; where there is nothing, there are no pictures to test."""
-    try:
-        mujoco_picture._screen()
-    except InputError as error:
-        pytest.skip(str(error))
-
-
-@pytest.mark.parametrize("task", ["HalfCheetah-forager", "Reacher-forager", "Humanoid-homeostasis"])
-def test_pictures_show_the_robot_where_it_is(task: str) -> None:
-    """Another pose, another picture; and one eye does not disturb another's."""
-    needs_gl()
-    habitat, other = of_task(task), of_task("Hopper-survival")
-    born(habitat)
-    born(other)
-    action = np.zeros(habitat.action.size, np.float32)
-    pose = {"qpos": habitat.seen()["qpos"][0].copy()}
-    first = np.asarray(habitat.picture(pose, action)).astype(int)
-    assert first.shape == (360 + 56, 640, 3)
-    assert first[60:].std() > 5
-    other.picture({"qpos": other.seen()["qpos"][0]}, action)
-    assert np.abs(np.asarray(habitat.picture(pose, action)) - first).max() <= 2
-    pose["qpos"][-3:] += 0.5
-    assert (np.abs(np.asarray(habitat.picture(pose, action)) - first).max(axis=2) > 40).sum() > 50
-    assert (first[:56] == first[0, 0]).all()
-
-
-def test_a_life_on_video(reachers: Path, tmp_path: Path) -> None:
-    needs_gl()
-    path = tmp_path / "life.mp4"
-    done = here("replay", reachers, "--to", 10, "--out", path)
-    assert (done.returncode, done.stdout.strip()) == (0, str(path))
-    with av.open(str(path)) as container:
-        frames = [frame.to_ndarray(format="rgb24") for frame in container.decode(video=0)]
-        assert container.streams.video[0].average_rate == 50
-    assert frames[0].shape == (416, 640, 3)
-    assert len(frames) >= 10
-
-
-def test_without_opengl(reachers: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    mujoco_picture._screen.cache_clear()
-    monkeypatch.setenv("MUJOCO_GL", "nothing")
-    done = here("replay", reachers, "--to", 10, "--out", tmp_path / "life.mp4")
-    mujoco_picture._screen.cache_clear()
-    complains(done, 2, "OpenGL without a screen, and nothing cannot be used: `apt-get install")
-    assert not list(tmp_path.iterdir())
-
-
-SLIDE = """<mujoco><worldbody><body name="box"><joint name="x" type="slide" axis="1 0 0"/>
-<geom size="0.1"/></body></worldbody>{actuator}</mujoco>"""
-
-
-def test_a_model_of_ones_own(tmp_path: Path) -> None:
-    """Beside the TOML file that names it."""
-    motor = '<actuator><motor joint="x"/></actuator>'
-    (tmp_path / "box.xml").write_text(SLIDE.format(actuator=motor))
-    (tmp_path / "box.toml").write_text(
-        'task = "box"\ncells = 4\n[habitat]\nname = "mujoco"\nfile = "box.xml"\n'
-        'food = "abs(forward)"\nfatal = "abs(qpos[0]) > 1"\n[stop]\nticks = 20\n'
-    )
-    run = primordia.run(str(tmp_path / "box.toml"), tmp_path / "run")
-    assert run.info()["worlds"][0]["ticks"] == 20
-
-
-@pytest.mark.parametrize(
-    ("flags", "says"),
-    [
-        (["--habitat.file", "nowhere.xml"], "file: there is no nowhere.xml"),
-        (["--habitat.file", "gymnasium:dog.xml"], "dog.xml"),
-        (["--habitat.file", "bad.xml"], "bad.xml: XML"),
-        (["--habitat.file", "still.xml"], "still.xml has no actuators"),
-        (["--habitat.fatal", "heihgt < 1"], "there is no 'heihgt'; known: qpos, qvel"),
-        (["--habitat.fatal", "qpos[99] < 1"], "qpos goes from qpos[0] to qpos[8]"),
-        (["--habitat.food", 'xpos["foot"][0]'], "xpos is known of world, torso"),
-        (["--habitat.senses", '["qpos[1:]", "velocity"]'], "there is no 'velocity'"),
-        (["--habitat.substeps", "0"], "habitat.substeps"),
-    ],
-)
-def test_bad_input(
-    flags: list[str], says: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    Path("bad.xml").write_text("<mujoco><body></mujoco>")
-    Path("still.xml").write_text(SLIDE.format(actuator=""))
-    complains(here("run", "HalfCheetah-forager", *flags, "--out", "run"), 2, says)
-    assert not Path("run").exists()
-    assert not Path("MUJOCO_LOG.TXT").exists()
-
-
-def test_a_target_of_nothing(tmp_path: Path) -> None:
-    flags = ["--habitat.target.by", "nose", "--out", tmp_path / "run"]
-    complains(here("run", "Reacher-forager", *flags), 2, "target: there is no body 'nose'; known")
-
-
-def test_without_the_extra(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    import sys
-
-    mujoco_model.package.cache_clear()
-    monkeypatch.setitem(sys.modules, "mujoco", None)
-    done = here("run", "HalfCheetah-forager", "--out", tmp_path / "run")
-    mujoco_model.package.cache_clear()
-    complains(done, 2, "pip install 'primordia[mujoco]'")

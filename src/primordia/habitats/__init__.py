@@ -102,6 +102,13 @@ class Tallied(Protocol):
         """Of the lives under way, int32 (N, K); the law never sees it. `save` has it as `tally`."""
 
 
+class Versioned(Protocol):
+    """What a habitat has besides, if its lives depend on more than its settings and this package."""
+
+    versions: dict[str, str]
+    """name -> version of each package or file; where one differs, a run does not go on unasked"""
+
+
 class Scored(Protocol):
     """What a habitat has besides, if others have scored play in it (`primordia evaluate`)."""
 

@@ -6,6 +6,7 @@ Learning Environment's (extra `primordia[atari]`).
 """
 
 from functools import cached_property
+from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -104,6 +105,11 @@ class Atari(Settings):
     @cached_property
     def _is_food(self) -> Expression:
         return conditions.parse(self.food, "amount", NAMES)
+
+    @property
+    def versions(self) -> dict[str, str]:
+        """The emulator's, which comes with its games."""
+        return {"ale-py": version("ale-py")}
 
     @property
     def senses_size(self) -> int:

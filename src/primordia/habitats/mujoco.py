@@ -9,6 +9,8 @@ included, is all that a body needs to go on exactly.
 import math
 import os
 from functools import cached_property
+from importlib.metadata import version
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,7 +19,15 @@ from pydantic import Field, PrivateAttr, model_validator
 from primordia import conditions, dice
 from primordia.conditions import Expression, Names
 from primordia.habitats import Outcome
-from primordia.habitats.mujoco_model import ROOT, compiled, moves_about, names, numbered, package
+from primordia.habitats.mujoco_model import (
+    ROOT,
+    compiled,
+    fingerprint,
+    moves_about,
+    names,
+    numbered,
+    package,
+)
 from primordia.motor import Continuous
 from primordia.mutation import quantiles
 from primordia.settings import Settings
@@ -116,6 +126,11 @@ class MuJoCo(Settings):
         judged = [self._is_food, self._is_effort, *filter(None, [self._is_fatal])]
         spoken = frozenset().union(*(each.names for each in (*self._perceived, *judged)))
         return spoken | {"reached"} if self.target else spoken
+
+    @property
+    def versions(self) -> dict[str, str]:
+        """MuJoCo's, and which model the file holds."""
+        return {"mujoco": version("mujoco"), Path(self.file).name: fingerprint(self._model)}
 
     @property
     def senses_size(self) -> int:

@@ -1,10 +1,13 @@
 """MuJoCo's models: found, compiled, and what in them can be spoken of."""
 
+import hashlib
 from functools import cache
 from importlib import import_module
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from primordia.conditions import Names
 
@@ -56,6 +59,14 @@ def compiled(file: str, timestep: float | None) -> Any:
     # A simulation that comes to infinity is to stay there, so that its body dies of it.
     model.opt.disableflags |= package().mjtDisableBit.mjDSBL_AUTORESET
     return model
+
+
+def fingerprint(model: Any) -> str:
+    """Twelve digits of the SHA-256 of a model as MuJoCo has compiled it, meshes and all."""
+    mujoco = package()
+    compiled = np.zeros(mujoco.mj_sizeModel(model), np.uint8)
+    mujoco.mj_saveModel(model, None, compiled)
+    return f"sha256 {hashlib.sha256(compiled.tobytes()).hexdigest()[:12]}"
 
 
 def _path(file: str) -> Path:

@@ -1,0 +1,109 @@
+"""Lives of robots: exact to resume, to fork and to live again, and on video."""
+
+from pathlib import Path
+from typing import Any
+
+import av
+import numpy as np
+import pytest
+
+import primordia
+from primordia.errors import InputError
+from primordia.habitats import mujoco_picture
+from primordia.life import Life
+from primordia.lives import lives
+from tests.commands import complains, here
+from tests.robots import born, of_task
+
+pytest.importorskip("mujoco")
+
+SETTINGS: dict[str, Any] = {"cells": 6, "seeds": 2, "genesis": "fill", "hazard": 0.003}
+
+
+@pytest.fixture(scope="module")
+def reachers(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    run = tmp_path_factory.mktemp("reachers") / "run"
+    return primordia.run(
+        "Reacher-forager-costly", run, **SETTINGS, stop={"ticks": 260, "until": "none"}
+    ).path
+
+
+@pytest.mark.parametrize("task", ["Reacher-forager-costly", "Humanoid-forager"])
+def test_a_run_that_was_stopped_goes_on_exactly(task: str, tmp_path: Path) -> None:
+    """Also where food is measured from where a body was before the stop."""
+    digests = []
+    for name, first in (("whole", 160), ("parts", 67)):
+        stop = {"ticks": first, "until": "none"}
+        run = primordia.run(task, tmp_path / name, **SETTINGS, stop=stop)
+        run.resume(ticks=160)
+        digests.append([world["digest"] for world in run.info()["worlds"]])
+    assert digests[0] == digests[1]
+
+
+def test_lives_come_out_again_through_a_fork(reachers: Path, tmp_path: Path) -> None:
+    fork = primordia.load(reachers).fork(200, tmp_path / "fork", seed=9).path
+    everyone = lives(fork)
+    older = np.flatnonzero(everyone.born <= 200)[:4]
+    for row in older:
+        life = Life.of(fork, int(everyone.id[row]), int(everyone.world[row]))
+        assert list(life.again())[-1].tick[-1] == life.ends
+
+
+def test_lives_come_out_again_as_recorded(reachers: Path) -> None:
+    everyone = lives(reachers)
+    dead = primordia.load(reachers).arrays("deaths")
+    energy = {(w, i): e for w, i, e in zip(dead["world"], dead["id"], dead["energy"], strict=True)}
+    rows = np.flatnonzero(everyone.died & (everyone.lifespan > 20))[:6]
+    assert len(rows) == 6
+    for row in rows:
+        who = int(everyone.world[row]), int(everyone.id[row])
+        stretches = list(Life.of(reachers, who[1], who[0]).again())
+        assert stretches[-1].energy[-1] == energy[who]
+
+
+def needs_gl() -> None:
+    """Something that draws without a screen; where there is nothing, there are no pictures to test."""
+    try:
+        mujoco_picture._screen()
+    except InputError as error:
+        pytest.skip(str(error))
+
+
+@pytest.mark.parametrize("task", ["HalfCheetah-forager", "Reacher-forager", "Humanoid-homeostasis"])
+def test_pictures_show_the_robot_where_it_is(task: str) -> None:
+    """Another pose, another picture; and one eye does not disturb another's."""
+    needs_gl()
+    habitat, other = of_task(task), of_task("Hopper-survival")
+    born(habitat)
+    born(other)
+    action = np.zeros(habitat.action.size, np.float32)
+    pose = {"qpos": habitat.seen()["qpos"][0].copy()}
+    first = np.asarray(habitat.picture(pose, action)).astype(int)
+    assert first.shape == (360 + 56, 640, 3)
+    assert first[60:].std() > 5
+    other.picture({"qpos": other.seen()["qpos"][0]}, action)
+    assert np.abs(np.asarray(habitat.picture(pose, action)) - first).max() <= 2
+    pose["qpos"][-3:] += 0.5
+    assert (np.abs(np.asarray(habitat.picture(pose, action)) - first).max(axis=2) > 40).sum() > 50
+    assert (first[:56] == first[0, 0]).all()
+
+
+def test_a_life_on_video(reachers: Path, tmp_path: Path) -> None:
+    needs_gl()
+    path = tmp_path / "life.mp4"
+    done = here("replay", reachers, "--to", 10, "--out", path)
+    assert (done.returncode, done.stdout.strip()) == (0, str(path))
+    with av.open(str(path)) as container:
+        frames = [frame.to_ndarray(format="rgb24") for frame in container.decode(video=0)]
+        assert container.streams.video[0].average_rate == 50
+    assert frames[0].shape == (416, 640, 3)
+    assert len(frames) >= 10
+
+
+def test_without_opengl(reachers: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    mujoco_picture._screen.cache_clear()
+    monkeypatch.setenv("MUJOCO_GL", "nothing")
+    done = here("replay", reachers, "--to", 10, "--out", tmp_path / "life.mp4")
+    mujoco_picture._screen.cache_clear()
+    complains(done, 2, "OpenGL without a screen, and nothing cannot be used: `apt-get install")
+    assert not list(tmp_path.iterdir())

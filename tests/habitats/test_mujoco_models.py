@@ -1,0 +1,99 @@
+"""Models of one's own, and what is refused."""
+
+from pathlib import Path
+
+import pytest
+
+import primordia
+from primordia.habitats import mujoco_model
+from tests.commands import complains, here
+
+mujoco = pytest.importorskip("mujoco")
+
+SLIDE = """<mujoco><worldbody><body name="box"><joint name="x" type="slide" axis="1 0 0"/>
+<geom size="0.1"/></body></worldbody>{actuator}</mujoco>"""
+
+
+MOTOR = '<actuator><motor joint="x"/></actuator>'
+BOX = """
+task = "box"
+cells = 4
+habitat = { name = "mujoco", file = "box.xml", food = "abs(forward)", fatal = "abs(qpos[0]) > 1" }
+stop = { ticks = 20 }
+"""
+
+
+@pytest.fixture
+def box(tmp_path: Path) -> Path:
+    """A run with a model that lies beside the TOML file which names it."""
+    (tmp_path / "box.xml").write_text(SLIDE.format(actuator=MOTOR))
+    (tmp_path / "box.toml").write_text(BOX)
+    return primordia.run(str(tmp_path / "box.toml"), tmp_path / "run").path
+
+
+def test_a_model_of_ones_own(box: Path) -> None:
+    info = primordia.load(box).info()
+    assert info["worlds"][0]["ticks"] == 20
+    assert info["versions"]["mujoco"] == mujoco.__version__
+
+
+def test_a_run_does_not_go_on_with_another_model(box: Path) -> None:
+    model = box.parent / "box.xml"
+    same = model.read_text()
+    model.write_text(same.replace("0.1", "0.2"))
+    complains(here("resume", box, "--ticks", 30), 2, "box.xml sha256", "then", "now", "--inexact")
+    model.write_text("<!-- the same box -->" + same)
+    assert here("resume", box, "--ticks", 30).returncode == 0
+    assert primordia.load(box).info()["worlds"][0]["ticks"] == 30
+
+
+def test_a_model_named_by_a_flag_is_found_from_elsewhere(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "box.xml").write_text(SLIDE.format(actuator=MOTOR))
+    monkeypatch.chdir(tmp_path)
+    habitat = {"file": "box.xml", "senses": ["qpos"], "scored": {}}
+    run = primordia.run("HalfCheetah-forager", "run", habitat=habitat, cells=2, stop={"ticks": 5})
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    assert primordia.load(tmp_path / run.path).resume(ticks=8) == []
+
+
+@pytest.mark.parametrize(
+    ("flags", "says"),
+    [
+        (["--habitat.file", "nowhere.xml"], "file: there is no nowhere.xml"),
+        (["--habitat.file", "gymnasium:dog.xml"], "dog.xml"),
+        (["--habitat.file", "bad.xml"], "bad.xml: XML"),
+        (["--habitat.file", "still.xml"], "still.xml has no actuators"),
+        (["--habitat.fatal", "heihgt < 1"], "there is no 'heihgt'; known: qpos, qvel"),
+        (["--habitat.fatal", "qpos[99] < 1"], "qpos goes from qpos[0] to qpos[8]"),
+        (["--habitat.food", 'xpos["foot"][0]'], "xpos is known of world, torso"),
+        (["--habitat.senses", '["qpos[1:]", "velocity"]'], "there is no 'velocity'"),
+        (["--habitat.substeps", "0"], "habitat.substeps"),
+    ],
+)
+def test_bad_input(
+    flags: list[str], says: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("bad.xml").write_text("<mujoco><body></mujoco>")
+    Path("still.xml").write_text(SLIDE.format(actuator=""))
+    complains(here("run", "HalfCheetah-forager", *flags, "--out", "run"), 2, says)
+    assert not Path("run").exists()
+    assert not Path("MUJOCO_LOG.TXT").exists()
+
+
+def test_a_target_of_nothing(tmp_path: Path) -> None:
+    flags = ["--habitat.target.by", "nose", "--out", tmp_path / "run"]
+    complains(here("run", "Reacher-forager", *flags), 2, "target: there is no body 'nose'; known")
+
+
+def test_without_the_extra(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    import sys
+
+    mujoco_model.package.cache_clear()
+    monkeypatch.setitem(sys.modules, "mujoco", None)
+    done = here("run", "HalfCheetah-forager", "--out", tmp_path / "run")
+    mujoco_model.package.cache_clear()
+    complains(done, 2, "pip install 'primordia[mujoco]'")
