@@ -32,6 +32,21 @@ def test_the_summary_of_one_world() -> None:
     assert "cannot be repeated" in told([world()], exact=False)
 
 
+def test_the_summary_says_what_food_keeps_one_alive() -> None:
+    def fed(tick: float | None, second: float | None) -> dict[str, Any]:
+        return world(break_even={"food_per_tick": tick, "food_per_second": second})
+
+    def line(*worlds: dict[str, Any]) -> str:
+        return told(list(worlds)).splitlines()[1]
+
+    assert line(fed(0.025, 0.5)) == "  break-even: food of 0.025 a tick, or 0.5 a second"
+    assert line(fed(0.5, None)) == "  break-even: food of 0.5 a tick"
+    ratchets = line(fed(0.025, 0.5), fed(0.275, 5.5))
+    assert ratchets == "  break-even: food of 0.025 to 0.275 a tick, or 0.5 to 5.5 a second"
+    assert "break-even" not in told([fed(None, None)])
+    assert "break-even" not in told([world()])
+
+
 def test_the_summary_of_many_worlds_gives_quartiles() -> None:
     worlds = [world(seed=n, saturation={"tick": 9, "births": 100 * n}) for n in range(9)]
     many = told(worlds)

@@ -44,6 +44,11 @@ def add(a: Array, b: Array) -> Array:
     return jnp.clip(a + b, -MOST, MOST)
 
 
+def break_even(drain: float, gain: float) -> float | None:
+    """Food a tick that keeps energy where it is, without effort; None where no food does."""
+    return drain / gain if gain > 0 else None
+
+
 class Rates(NamedTuple):
     """The settings above as they stand in each organism's world: float32, (N,) or broadcast to it."""
 

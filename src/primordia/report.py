@@ -14,6 +14,7 @@ from primordia.config import Config
 from primordia.digest import digests
 from primordia.directory import read_config
 from primordia.errors import InputError
+from primordia.metabolism import break_even
 from primordia.record import TABLES, Recorder
 from primordia.tallies import names_of
 from primordia.world import Cause
@@ -26,8 +27,9 @@ def info(run: Path) -> dict[str, Any]:
     """A run in one object.
 
     `saturation` and `fixation` are None, or the tick and the births (founders counted) at which they
-    came. Ages are those of the living, in ticks; so is what the habitat counts (`tallies`). With one
-    world its fields also stand at the top.
+    came. Ages are those of the living, in ticks; so is what the habitat counts (`tallies`).
+    `break_even` is the food, a tick and a second, that keeps energy where it is as the world stands
+    now. With one world its fields also stand at the top.
     """
     config, last = opened(run)
     arrays = last.arrays()
@@ -117,9 +119,11 @@ def _world(
         "fixation": _moment(count("fixed"), count("fixed_births")),
         "digest": digest,
     }
+    habitat = config.build_habitat()
     if (tally := arrays.get(TALLY)) is not None and alive.any():
-        names = names_of(config.build_habitat())
-        found["tallies"] = _of_the_living(names, tally[here][alive])
+        found["tallies"] = _of_the_living(names_of(habitat), tally[here][alive])
+    if config.metabolism is not None:
+        found["break_even"] = _break_even(arrays, world, getattr(habitat, "rate", None))
     if config.seasons:
         found["climate"] = _climate(arrays, world)
     return found
@@ -135,6 +139,16 @@ def _of_the_living(names: tuple[str, ...], tally: np.ndarray) -> dict[str, dict[
         name: {"median": float(np.median(column)), "best": int(column.max())}
         for name, column in zip(names, tally.T, strict=True)
     }
+
+
+def _break_even(
+    arrays: dict[str, np.ndarray], world: int, rate: float | None
+) -> dict[str, float | None]:
+    """Food that keeps energy where it is; None where none does, or without seconds."""
+    climate = _climate(arrays, world)
+    each = break_even(climate["metabolism.drain"], climate["metabolism.gain"])
+    second = each * rate if each is not None and rate is not None else None
+    return {"food_per_tick": each, "food_per_second": second}
 
 
 def _climate(arrays: dict[str, np.ndarray], world: int) -> dict[str, float]:

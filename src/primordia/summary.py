@@ -16,6 +16,7 @@ def summary(info: dict[str, Any]) -> str:
     lines = [
         f"{info['task']}: {count} of {info['cells']:,} cells{', no heredity' * (not heredity)}"
     ]
+    lines += _break_even(worlds)
     if len(worlds) <= FEW:
         for world in worlds:
             lines += _one(world)
@@ -43,6 +44,17 @@ def _one(world: dict[str, Any]) -> list[str]:
     if world["saturation"]:
         return [*lines, f"    saturated {_when(world['saturation'])}"]
     return [*lines, "    not saturated"]
+
+
+def _break_even(worlds: list[dict[str, Any]]) -> list[str]:
+    """What food keeps one alive, from the world where it is least to where it is most."""
+    told = []
+    for unit in ("tick", "second"):
+        each = [world.get("break_even", {}).get(f"food_per_{unit}") for world in worlds]
+        if None not in each:
+            low, high = f"{min(each):.3g}", f"{max(each):.3g}"
+            told.append(f"{low if low == high else f'{low} to {high}'} a {unit}")
+    return [f"  break-even: food of {', or '.join(told)}"] if told else []
 
 
 def _tallies(tallies: dict[str, dict[str, float]]) -> str:
