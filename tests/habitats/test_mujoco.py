@@ -71,12 +71,13 @@ def test_senses_and_physics_are_gymnasiums_to_the_bit(
         ("HalfCheetah-forager", "HalfCheetah-v5", 1e-5),
         ("Walker-survival-forager", "Walker2d-v5", 1e-5),
         ("Hopper-survival", "Hopper-v5", 1e-5),
+        ("Humanoid-forager", "Humanoid-v5", 1e-5),
         ("Reacher-forager", "Reacher-v5", 0.02),
     ],
 )
 def test_scores_are_gymnasiums(task: str, name: str, tolerance: float) -> None:
-    """And games end as there. Two differences: its reacher is paid for where the fingertip was a substep
-    ago, and it does not pay the point for being healthy in the tick of a fall.
+    """And games end as there. Three differences: its reacher is paid for where the fingertip was a
+    substep ago, its humanoid pays for contacts, and nobody is paid for health in the tick of a fall.
     """
     habitat = load(task).build_habitat().original()
     assert habitat.episode == gymnasium.spec(name).max_episode_steps
@@ -85,13 +86,14 @@ def test_scores_are_gymnasiums(task: str, name: str, tolerance: float) -> None:
     env = started_alike(name, habitat, 2)
     rng, paid, ours = np.random.default_rng(5), 0.0, 0.0
     for _ in range(50):
-        action = rng.uniform(-1, 1, (4, habitat.action.size)).astype(np.float32)
+        limit = env.action_space.high[0]
+        action = rng.uniform(-limit, limit, (4, habitat.action.size)).astype(np.float32)
         _, outcome = habitat.step(action, FOUR)
-        _, reward, terminated, *_ = env.step(action[2])
-        paid, ours = paid + reward, ours + outcome.food[2]
+        _, reward, terminated, _, parts = env.step(action[2])
+        paid, ours = paid + reward - parts.get("reward_contact", 0), ours + outcome.food[2]
         assert outcome.fatal[2] == terminated
         if terminated:
-            ours -= 1
+            ours -= env._healthy_reward
             break
     assert ours == pytest.approx(paid, rel=tolerance, abs=tolerance)
 

@@ -36,6 +36,10 @@ if TYPE_CHECKING:
     from PIL.Image import Image
 
 
+PLACES = {"xpos", "site", "height", "pitch", "travelled", "com_forward", "reached"}
+"""Names of what is not in the state itself, but follows from it."""
+
+
 class Target(Settings):
     """Something to be reached; it then is elsewhere in a disc of the plane x, y."""
 
@@ -169,15 +173,14 @@ class MuJoCo(Settings):
             self._seen["height"] = bound("xpos")[:, ROOT, 2]
         if "pitch" in used:
             self._seen["frame"] = bound("xmat")[:, ROOT]
-        if "travelled" in used:
+        if used & {"travelled", "com_forward"}:
             self._seen["middle"] = bound("subtree_com")[:, 0, :2]
 
     @cached_property
     def _stage(self) -> Any:
         """What is computed of a state besides: places, if they are spoken of."""
         stages = package().mjtStage
-        spoken = self._used & {"xpos", "site", "height", "pitch", "travelled", "reached"}
-        return stages.mjSTAGE_POS if spoken else stages.mjSTAGE_NONE
+        return stages.mjSTAGE_POS if self._used & PLACES else stages.mjSTAGE_NONE
 
     def reset(self, born: np.ndarray, words: np.ndarray) -> np.ndarray:
         """The model's own pose, with noise from words uint32 (K, words)."""
@@ -231,16 +234,17 @@ class MuJoCo(Settings):
 
     def _stood(self) -> dict[str, np.ndarray]:
         """From where ways are measured."""
-        start = {"forward": self._seen["qpos"][:, 0], "travelled": self._seen.get("middle")}
-        return {name: np.array(start[name]) for name in self._used & start.keys()}
+        stood = {"forward": self._seen["qpos"][:, 0].copy()} if "forward" in self._used else {}
+        return {**stood, "middle": self._seen["middle"].copy()} if "middle" in self._seen else stood
 
     def _values(self, before: dict[str, np.ndarray]) -> dict[str, Any]:
         """All that is spoken of, as it is now."""
         seen, values = self._seen, dict(self._seen)
         if "forward" in before:
             values["forward"] = seen["qpos"][:, 0] - before["forward"]
-        if "travelled" in before:
-            values["travelled"] = np.hypot(*(seen["middle"] - before["travelled"]).T)
+        if "middle" in before:
+            moved = seen["middle"] - before["middle"]
+            values["com_forward"], values["travelled"] = moved[:, 0], np.hypot(*moved.T)
         if "frame" in seen:
             values["pitch"] = np.arctan2(-seen["frame"][:, 6], seen["frame"][:, 0])
         if self.target is not None:

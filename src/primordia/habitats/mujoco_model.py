@@ -104,4 +104,5 @@ def names(model: Any) -> Names:
         "pitch": "amount",
         "forward": "amount",
         "travelled": "amount",
+        "com_forward": "amount",
     }
