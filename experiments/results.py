@@ -6,6 +6,8 @@ import statistics
 from pathlib import Path
 from typing import Any
 
+from late import LATE, last_deaths
+
 import primordia
 from primordia.cli.side_by_side import effect, ratio, setting, spread
 from primordia.comparison import Comparison
@@ -24,9 +26,12 @@ def write(stem: Path, question: str, runs: list[Path]) -> None:
     compared = primordia.compare(*runs)
     infos = [primordia.Run(run).info() for run in runs]
     parts = [f"# {question}", summary(compared, infos), effects(compared), NOTE]
+    ends = [last_deaths(run, compared) for run in runs] if "pace" in compared.outcomes else []
+    if ends:
+        parts.insert(2, dying(compared, ends))
     text = "\n\n".join([*parts, made(runs[0], infos[0])])
     stem.with_suffix(".md").write_text(text + "\n", encoding="utf-8")
-    write_worlds(stem.with_suffix(".csv"), compared, infos)
+    write_worlds(stem.with_suffix(".csv"), compared, infos, ends)
     with style.look():
         draw(compared).savefig(stem.with_suffix(".png"), dpi=200)
     print(f"{stem}: .md .csv .png")
@@ -56,6 +61,16 @@ def extinct(info: dict[str, Any]) -> float:
     return statistics.median(world["extinctions"] for world in info["worlds"])
 
 
+def dying(compared: Comparison, ends: list[list[dict[str, float]]]) -> str:
+    """A row an arm: what the worlds' deaths came to, each world's figure."""
+    names = [name for name in LATE if name in ends[0][0]]
+    rows = [
+        [arm.name, *("; ".join(f"{world[name]:,.0f}" for world in worlds) for name in names)]
+        for arm, worlds in zip(compared.arms, ends, strict=True)
+    ]
+    return table(["world by world", *(LATE[name] for name in names)], rows)
+
+
 def effects(compared: Comparison) -> str:
     """A row an arm: Cliff's delta against the reference, and the ratio of the medians."""
     reference, *others = compared.arms
@@ -80,16 +95,22 @@ def made(run: Path, info: dict[str, Any]) -> str:
     return f"Run on {begun} with {what}. Each world stopped at: {' or '.join(limits)}."
 
 
-def write_worlds(path: Path, compared: Comparison, infos: list[dict[str, Any]]) -> None:
+def write_worlds(
+    path: Path,
+    compared: Comparison,
+    infos: list[dict[str, Any]],
+    ends: list[list[dict[str, float]]],
+) -> None:
     """A row for each world of each arm; empty where it never saturated."""
     with path.open("w", newline="", encoding="utf-8") as file:
         rows = csv.writer(file, lineterminator="\n")
         moments = ["saturated_births", "saturated_tick"]
-        rows.writerow(
-            ["arm", "seed", "ticks", "births", "extinctions", "alive", *moments, "mean_lifespan"]
-        )
-        for arm, info in zip(compared.arms, infos, strict=True):
-            for world, mean in zip(info["worlds"], arm.figures["lifespan"].value, strict=True):
+        counted = ["seed", "ticks", "births", "extinctions", "alive"]
+        rows.writerow(["arm", *counted, *moments, "mean_lifespan", *(ends[0][0] if ends else ())])
+        for number, (arm, info) in enumerate(zip(compared.arms, infos, strict=True)):
+            for each, world in enumerate(info["worlds"]):
                 at = world["saturation"] or {"births": "", "tick": ""}
-                counts = [world[n] for n in ("seed", "ticks", "births", "extinctions", "alive")]
-                rows.writerow([arm.name, *counts, at["births"], at["tick"], f"{mean:.1f}"])
+                mean = f"{arm.figures['lifespan'].value[each]:.1f}"
+                late = ends[number][each].values() if ends else ()
+                counts = [world[name] for name in counted]
+                rows.writerow([arm.name, *counts, at["births"], at["tick"], mean, *late])

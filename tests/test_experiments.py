@@ -13,6 +13,7 @@ from tests.worlds import MEADOW
 
 EXPERIMENTS = Path(__file__).parent.parent / "experiments"
 FILES = sorted(EXPERIMENTS.glob("*/*.toml"))
+TRIALS = sorted(EXPERIMENTS.glob("*/founders/*.toml"))
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
@@ -28,6 +29,39 @@ def test_settings_of_every_arm_are_good_and_limits_are_shared(file: Path) -> Non
     assert len({config.stop for config in configs}) == 1
     assert min(config.seeds for config in configs) >= (20 if file.parent.name == "cartpole" else 5)
     assert configs[0].stop.ticks is not None
+
+
+@pytest.mark.parametrize("file", TRIALS, ids=lambda file: file.stem)
+def test_settings_of_trials_are_good(file: Path) -> None:
+    values = tomllib.loads(file.read_text(encoding="utf-8"))
+    assert values.pop("question").endswith("?")
+    for arm in values.pop("arms"):
+        assert arm.pop("name")
+        load(values["task"], merged(values, arm))
+
+
+def test_trials_tell_what_mutants_inherit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Copies live as long as their parents where all lives begin alike; strangers do not."""
+    monkeypatch.syspath_prepend(str(EXPERIMENTS))
+    script = import_module("founders")
+    for name, value in {"FOUNDERS": 64, "PARENTS": 4, "MUTANTS": 8, "AT_ONCE": 16}.items():
+        monkeypatch.setattr(script, name, value)
+    arms = [
+        {"name": "copies", "mutation": {"founder_scale": 1.0, "scale": 0.0}},
+        {"name": "strangers", "mutation": {"founder_scale": 1.0, "scale": 1000.0}},
+    ]
+    shared = {"task": "CartPole-survival", "habitat": {"spread": 0.0}}
+    file = tmp_path / "founders" / "poles.toml"
+    file.parent.mkdir()
+    file.write_text(tomli_w.dumps({"question": "What is inherited?", **shared, "arms": arms}))
+    script.report(file)
+    told = (tmp_path / "results" / "poles-founders.md").read_text()
+    assert told.startswith("# What is inherited?")
+    rows = [line.strip("| ").split(" | ") for line in told.splitlines() if line.startswith("| ")]
+    shares = {row[0]: float(row[-1]) for row in rows[2:]}
+    assert shares["copies"] == 1
+    assert shares["strangers"] < 0.5
+    assert rows[2][4] == rows[2][5]
 
 
 @pytest.mark.usefixtures("compiled_once")
