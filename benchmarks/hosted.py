@@ -15,14 +15,14 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
-from contender import ROBOTS, TASKS
+from contenders.loop import ROBOTS, TASKS
 from primordia.config import load
 from worlds import median
 
 GAMES = "pong", "battle_zone"
 SIZES = {32: ("bare", "ours", "async", "sync", "published", "envpool"), 128: ("bare", "ours")}
 """Ways that are set against each other at so many cells, the first as what cannot be passed."""
-ROBOT_SIZES = {32: ("batch", "ours", "async", "sync"), 256: ("batch", "ours")}
+ROBOT_SIZES = {32: ("batch", "ours", "async", "sync", "envpool"), 256: ("batch", "ours")}
 ROUNDS = 5
 STARTS = 3
 SECONDS = 1.0

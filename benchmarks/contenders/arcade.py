@@ -1,0 +1,176 @@
+"""Atari games: bare emulators, the published way, Gymnasium's vector environments, EnvPool."""
+
+import os
+import random
+from collections.abc import Callable
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+
+from contenders.loop import Brains, Lacking, Loop, described, scales
+
+BUTTONS_DRAWN = 10_007
+"""at random, beforehand; a prime, so that they do not fall into step with anything"""
+
+
+class Bare(Loop):
+    """One emulator with random buttons: what nothing that plays frame by frame can pass."""
+
+    FRAMES = 100
+    """from one look at the clock to the next"""
+
+    def __init__(self, game: str, cells: int) -> None:
+        from primordia.pool.arcade import RAM, console
+
+        self._ale, self._ram = console(game), np.zeros(RAM, np.uint8)
+        self._start = 0
+        known = [int(action.value) for action in self._ale.getMinimalActionSet()]
+        self._buttons = random.Random(os.getpid()).choices(known, k=BUTTONS_DRAWN)
+
+    def tick(self) -> int:
+        """Some frames, RAM read after each."""
+        ale, ram, first = self._ale, self._ram, self._start
+        for button in self._buttons[first : first + self.FRAMES]:
+            ale.act(button)
+            ale.getRAM(ram)
+            if ale.game_over():
+                ale.reset_game()
+        frames = min(self.FRAMES, BUTTONS_DRAWN - first)
+        self._start = (first + frames) % BUTTONS_DRAWN
+        return frames
+
+
+class Organism:
+    """A network of NumPy matrices that plays on a console of its own."""
+
+    def __init__(
+        self, weights: list[np.ndarray], ale: Any, buttons: list[int], seen: list[int]
+    ) -> None:
+        self._weights, self._hidden = weights, np.zeros(len(weights[1]))
+        self._ale, self._buttons, self._seen = ale, buttons, seen
+
+    def live(self) -> None:
+        """One frame; a new game when it is over."""
+        into, recurrent, out = self._weights
+        senses = (self._ale.getRAM()[self._seen] - 128.0) / 128.0
+        self._hidden = np.tanh(into @ senses + recurrent @ self._hidden)
+        self._ale.act(self._buttons[int(np.argmax(out @ self._hidden))])
+        if self._ale.game_over():
+            self._ale.reset_game()
+            self._hidden = np.zeros(len(self._hidden))
+
+
+class Published(Loop):
+    """As one writes it first, and as the paper's code is organised: one object an organism."""
+
+    about = "one Python object an organism, NumPy, one process"
+
+    def __init__(self, game: str, cells: int) -> None:
+        from primordia.habitats.atari_games import minimal_actions
+        from primordia.pool.arcade import console
+
+        config, habitat, brain = described(game)
+        buttons, seen = list(minimal_actions(game).values()), _seen(habitat)
+        hidden, noise = config.brain.hidden, np.random.default_rng(0)
+        shapes = ((hidden, len(seen)), (hidden, hidden), (len(buttons), hidden))
+        blocks = list(zip(scales(config, brain), shapes, strict=True))
+        self._organisms = [
+            Organism(
+                [s * noise.standard_normal(b) for s, b in blocks], console(game), buttons, seen
+            )
+            for _ in range(cells)
+        ]
+
+    def tick(self) -> int:
+        """A frame of each."""
+        for organism in self._organisms:
+            organism.live()
+        return len(self._organisms)
+
+
+class Gymnasium(Loop):
+    """Gymnasium's vector environments; the tick in which it resets a game counts as a frame."""
+
+    def __init__(self, mode: str, game: str, cells: int) -> None:
+        try:
+            import ale_py
+            import gymnasium
+        except ImportError as error:
+            raise Lacking(f"{error.name} is not installed") from None
+        ale_py.ALEInterface.setLoggerMode(ale_py.LoggerMode.Error)
+        gymnasium.register_envs(ale_py)
+        self._envs = gymnasium.make_vec(
+            f"ALE/{_pascal(game)}-v5",
+            num_envs=cells,
+            vectorization_mode=mode,
+            obs_type="ram",
+            frameskip=1,
+            repeat_action_probability=0.0,
+            full_action_space=False,
+            disable_env_checker=True,
+        )
+        self.about = f"gymnasium {version('gymnasium')}, {type(self._envs).__name__}"
+        self._cells, self._ram = cells, self._envs.reset(seed=0)[0]
+        self._brains, self._sensed = Brains(game, cells), _sight(game)
+
+    def tick(self) -> int:
+        """A frame of each."""
+        self._ram = self._envs.step(self._brains(self._sensed(self._ram)))[0]
+        return self._cells
+
+
+class Pool(Loop):
+    """EnvPool, which cannot leave out a picture a frame: it is made as small as is of use."""
+
+    def __init__(self, game: str, cells: int) -> None:
+        try:
+            import envpool
+        except Exception as error:
+            raise Lacking(
+                f"import envpool fails ({type(error).__name__}): pip install envpool"
+            ) from None
+        self._envs = envpool.make_gymnasium(
+            f"{_pascal(game)}-v5",
+            num_envs=cells,
+            num_threads=len(os.sched_getaffinity(0)),
+            frame_skip=1,
+            repeat_action_probability=0.0,
+            full_action_space=False,
+            noop_max=1,
+            use_fire_reset=False,
+            max_episode_steps=108_000,
+            stack_num=1,
+            img_height=8,
+            img_width=8,
+            use_inter_area_resize=False,
+        )
+        told = self._envs.reset()[1]
+        if "ram" not in told:
+            raise Lacking(f"envpool {envpool.__version__} does not give the console's memory")
+        self.about = f"envpool {envpool.__version__}; makes a picture of every frame besides RAM"
+        self._cells, self._ram = cells, told["ram"]
+        self._brains, self._sensed = Brains(game, cells), _sight(game)
+
+    def tick(self) -> int:
+        """A frame of each."""
+        self._ram = self._envs.step(self._brains(self._sensed(self._ram)))[-1]["ram"]
+        return self._cells
+
+
+def _sight(game: str) -> Callable[[np.ndarray], np.ndarray]:
+    """RAM, uint8 (N, 128) -> what is perceived of it, float32 (N, S)."""
+    from primordia.habitats.atari import SCALED
+
+    seen = _seen(described(game)[1])
+    return lambda ram: SCALED.take(ram[:, seen])
+
+
+def _seen(habitat: Any) -> list[int]:
+    """Addresses perceived."""
+    return list(habitat.senses or range(128))
+
+
+def _pascal(game: str) -> str:
+    """How others write a game's name: BattleZone."""
+    return game.title().replace("_", "")

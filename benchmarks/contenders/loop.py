@@ -1,0 +1,92 @@
+"""What all ways of playing share: the tasks, a loop, and brains."""
+
+import time
+from typing import Any
+
+import numpy as np
+
+TASKS = {
+    "pong": "Pong-survival",
+    "battle_zone": "BattleZone-survival",
+    "HalfCheetah-v5": "HalfCheetah-forager",
+    "Walker2d-v5": "Walker-survival-forager",
+    "Reacher-v5": "Reacher-forager",
+}
+"""the task that is measured in each game, or with each of Gymnasium's robots"""
+ROBOTS = [game for game in TASKS if game.endswith("-v5")]
+NO_DEATH: dict[str, dict] = {
+    game: {"metabolism": "none", "habitat": {"fatal": ""}}
+    if game in ROBOTS
+    else {"habitat": {"fatal": "game_over"}}
+    for game in TASKS
+}
+"""settings under which nobody dies but by accident, or when the game is over"""
+
+
+class Lacking(Exception):  # noqa: N818
+    """Why a way of playing is not available, in words."""
+
+
+class Loop:
+    """Plays by repeating a tick."""
+
+    about = ""
+    """what should be known of this way, in words"""
+
+    def tick(self) -> int:
+        """One tick of all cells, or some frames of one -> frames."""
+        raise NotImplementedError
+
+    def play(self, seconds: float) -> dict[str, float]:
+        """Frames played in about so many seconds."""
+        frames, began = 0, time.perf_counter()
+        now = began
+        while now - began < seconds:
+            frames += self.tick()
+            now = time.perf_counter()
+        return {"frames": frames, "seconds": now - began}
+
+
+def described(game: str) -> tuple:
+    """The task's settings, habitat and brain."""
+    from primordia.config import load
+
+    config = load(TASKS[game])
+    habitat = config.build_habitat()
+    return config, habitat, config.build_brain(habitat)
+
+
+def scales(config: Any, brain: Any) -> list[float]:
+    """How far a founder's weights are spread in each block."""
+    return config.mutation.of_blocks("founder_scale", list(brain.blocks))
+
+
+class Brains:
+    """Those of as many founders as there are cells, in one compiled call a tick."""
+
+    def __init__(self, game: str, cells: int) -> None:
+        import jax
+        import jax.numpy as jnp
+
+        from primordia.motor import Discrete, argmax
+
+        config, habitat, brain = described(game)
+        noise, discrete = np.random.default_rng(0), isinstance(habitat.action, Discrete)
+        self._genome = {
+            name: jnp.asarray(scale * noise.standard_normal((cells, *shape)), jnp.float32)
+            for scale, (name, shape) in zip(
+                scales(config, brain), brain.blocks.items(), strict=True
+            )
+        }
+        self._memory = jnp.zeros((cells, brain.memory), jnp.float32)
+
+        def think(genome: Any, memory: Any, senses: Any) -> tuple:
+            memory, output = brain(genome, memory, senses)
+            return memory, argmax(output) if discrete else output
+
+        self._think = jax.jit(think)
+
+    def __call__(self, senses: np.ndarray) -> np.ndarray:
+        """Float32 (N, S) -> actions, int32 (N,) or float32 (N, A). Memory is kept from game to game."""
+        self._memory, action = self._think(self._genome, self._memory, senses)
+        return np.asarray(action)
