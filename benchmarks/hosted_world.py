@@ -9,7 +9,7 @@ from typing import Any
 import jax
 
 from primordia.config import load
-from primordia.loop import Engine
+from primordia.engine.loop import Engine
 from primordia.wide import to_host
 from worlds import organism_ticks
 

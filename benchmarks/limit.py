@@ -9,9 +9,9 @@ from functools import partial
 import jax
 from jax import Array, lax
 
-from primordia.brain import BrainSettings, Genome
 from primordia.habitats.cartpole import CartPole
-from primordia.motor import argmax
+from primordia.law.brain import BrainSettings, Genome
+from primordia.law.motor import argmax
 
 
 @partial(jax.jit, static_argnames=("ticks",), donate_argnums=(1, 2))

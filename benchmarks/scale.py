@@ -76,8 +76,8 @@ def births_recorded_per_second() -> float:
     """From rows as the law gives them to closed, checksummed segments on disk."""
     import jax.numpy as jnp
 
-    from primordia.events import BIRTH_FIELDS, DEATH_FIELDS, Events, Rows
-    from primordia.record import Recorder, sample_fields
+    from primordia.disk.record import Recorder, sample_fields
+    from primordia.law.events import BIRTH_FIELDS, DEATH_FIELDS, Events, Rows
 
     blocks = ["input", "recurrent", "output"]
     rng, rows, chunks = np.random.default_rng(0), 2**18, 24

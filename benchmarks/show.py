@@ -5,8 +5,8 @@ import time
 
 from rich.console import Console
 
+from primordia.engine.loop import Engine, Listener, Status
 from primordia.live import View
-from primordia.loop import Engine, Listener, Status
 from worlds import engine, median, organism_ticks, saturated_phase
 
 ROUNDS = 7

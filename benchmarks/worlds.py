@@ -8,8 +8,8 @@ import jax.numpy as jnp
 import numpy as np
 
 from primordia.config import load
-from primordia.genesis import begin
-from primordia.loop import Engine
+from primordia.engine.loop import Engine
+from primordia.law.genesis import begin
 from primordia.wide import to_host
 
 

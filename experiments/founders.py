@@ -18,9 +18,9 @@ import files
 import numpy as np
 
 from primordia import config
-from primordia.games import Player, play
-from primordia.genesis import climate
 from primordia.keys import Purpose, stream
+from primordia.law.genesis import climate
+from primordia.organism.games import Player, play
 from primordia.wide import wide
 from results import table
 

@@ -15,9 +15,9 @@ import files
 import numpy as np
 from games import longest_lived, write_rows
 
-from primordia.evaluation import player_of
-from primordia.games import play
 from primordia.organism import Organism
+from primordia.organism.evaluation import player_of
+from primordia.organism.games import play
 from results import table
 
 MUTANTS = 48

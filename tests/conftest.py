@@ -4,7 +4,8 @@ from pathlib import Path
 import jax
 import pytest
 
-from primordia import fork, loop, verify
+from primordia.engine import loop
+from primordia.history import fork, verify
 from tests import commands, worlds
 
 

@@ -8,8 +8,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from primordia.law.world import Cause
 from primordia.wide import to_host
-from primordia.world import Cause
 from tests.worlds import Lived
 
 STEPS = {

@@ -6,7 +6,7 @@ import jax
 import numpy as np
 import pytest
 
-from primordia.brain import Brain, BrainSettings, Linear, genome_length, join, split
+from primordia.law.brain import Brain, BrainSettings, Linear, genome_length, join, split
 
 SENSES, HIDDEN, OUTPUTS, N = 5, 12, 3, 64
 KINDS = ["recurrent", "feed-forward"]

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from primordia.clades import Clades, clades
+from primordia.history.clades import Clades, clades
 
 FEW = st.lists(st.integers(0, 30), max_size=3)
 HISTORY = st.lists(st.tuples(FEW, FEW), max_size=30)

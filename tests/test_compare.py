@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 import primordia
-from primordia import loop
 from primordia.comparison import Comparison
+from primordia.engine import loop
 from tests.commands import complains, here
 from tests.test_survival import restricted_mean
 from tests.worlds import MEADOW, config

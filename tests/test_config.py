@@ -11,11 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import BaseModel
 
-from primordia.brain import genome_length
 from primordia.config import Config, from_toml, load, merged, setting_fields, tasks, validated
 from primordia.habitats import KNOWN, find
-from primordia.mutation import BlockMutation
-from primordia.seasons import Ratchet, Schedule
+from primordia.law.brain import genome_length
+from primordia.law.mutation import BlockMutation
+from primordia.law.seasons import Ratchet, Schedule
 from primordia.settings import Settings
 from tests.commands import here
 from tests.worlds import MEADOW, MILL, config

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 import primordia
-from primordia import loop
+from primordia.engine import loop
 from primordia.errors import InputError
-from primordia.evaluation import evaluate, player_of
-from primordia.games import play
-from primordia.lives import lives
+from primordia.history.lives import lives
+from primordia.organism.evaluation import evaluate, player_of
+from primordia.organism.games import play
 from tests.commands import complains, here
 from tests.worlds import MEADOW, config
 
@@ -59,10 +59,12 @@ def test_several_may_play_side_by_side(pong: Path) -> None:
 
 
 def test_doing_it_again_blindly_comes_to_the_same(pong: Path) -> None:
-    """In the same game; with buttons that stick it does not."""
+    """In the same game, for as long as it lives; with buttons that stick it does not."""
     oldest = primordia.load(pong).oldest()
     live, ignored = oldest.evaluate(), oldest.evaluate(senses="ignored")
-    assert live.to_dict() == {**ignored.to_dict(), "senses": "live"}
+    assert live.lived.ticks == ignored.lived.ticks == oldest.age
+    assert live.lived.course == ignored.lived.course
+    assert live.lived.actions == ignored.lived.actions
     sticky = oldest.evaluate(senses="ignored", games=3, sticky=0.5, noops=30)
     assert sticky.distinct == 3
 

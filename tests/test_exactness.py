@@ -9,8 +9,8 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from primordia.brain import BrainSettings
 from primordia.habitats.cartpole import CartPole
+from primordia.law.brain import BrainSettings
 from tests.toys import Mill
 from tests.worlds import MEADOW, MILL, Lived, config
 

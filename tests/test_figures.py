@@ -12,10 +12,11 @@ from matplotlib.colors import to_rgb
 from matplotlib.text import Text
 
 import primordia
-from primordia import loop, series
+from primordia.engine import loop
 from primordia.figures import FIGURES, ages, population, spacetime, style, survival
-from primordia.lives import Lives, lives
-from primordia.world import Cause
+from primordia.history import series
+from primordia.history.lives import Lives, lives
+from primordia.law.world import Cause
 from tests.commands import complains, here
 from tests.synthetic import alive, world_of, worlds_of
 from tests.worlds import MEADOW, config

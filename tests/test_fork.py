@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 
 import primordia
-from primordia import checkpoint, loop
+from primordia.disk import checkpoint
+from primordia.engine import loop
 from primordia.errors import InputError
 from primordia.figures.survival import quarters
-from primordia.lives import lives
-from primordia.verify import verify
+from primordia.history.lives import lives
+from primordia.history.verify import verify
 from tests.commands import complains, here
 from tests.test_lineage import comes_back
 from tests.worlds import MILL, config, merged

@@ -9,12 +9,13 @@ from hypothesis import strategies as st
 from safetensors.numpy import load_file, save_file
 
 import primordia
-from primordia import genomes
-from primordia.brain import Recurrent
 from primordia.config import load
+from primordia.disk import genomes
+from primordia.engine import loop
 from primordia.errors import InputError
-from primordia.mutation import ancestor_of
-from primordia.verify import verify
+from primordia.history.verify import verify
+from primordia.law.brain import Recurrent
+from primordia.law.mutation import ancestor_of
 from primordia.wide import wide
 from tests.commands import complains, here
 from tests.worlds import MEADOW, config, merged
@@ -52,7 +53,7 @@ def test_a_run_that_starts_from_ancestors(tmp_path: Path, inheritance: str) -> N
     genomes.write(tmp_path / "a.safetensors", BRAIN, given_, {})
     values = merged(MEADOW, SMALL | {"ancestors": [str(tmp_path / "a.safetensors")], "seed": 2})
     values |= {"inheritance": inheritance, "hazard": 0.2, "seeds": 2}
-    primordia.loop.start(config(values), run)
+    loop.start(config(values), run)
     (tmp_path / "a.safetensors").unlink()  # the run has its own copy
     found = primordia.load(run)
     assert found.info()["worlds"][0]["extinctions"] > 3

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from primordia.brain import join
-from primordia.mutation import noise_index, quantiles, streams
+from primordia.law.brain import join
+from primordia.law.mutation import noise_index, quantiles, streams
 from primordia.wide import happened, to_host, wide
 from tests.chance import binomial, even
 from tests.history import History

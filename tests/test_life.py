@@ -8,17 +8,19 @@ import pytest
 from PIL import Image
 
 import primordia
-from primordia import checkpoint, loop, replay
-from primordia.chunk import named_leaves
+from primordia.disk import checkpoint
+from primordia.engine import loop
+from primordia.engine.chunk import named_leaves
 from primordia.errors import InputError, Trouble
 from primordia.habitats.cartpole import CartPole
-from primordia.life import Life
-from primordia.life.fused import Fused
-from primordia.life.hosted import Hosted
-from primordia.life.instant import Stretch
-from primordia.lives import lives
-from primordia.metabolism import ONE
-from primordia.world import Cause
+from primordia.history.lives import lives
+from primordia.law.metabolism import ONE
+from primordia.law.world import Cause
+from primordia.organism import replay
+from primordia.organism.life import Life
+from primordia.organism.life.fused import Fused
+from primordia.organism.life.hosted import Hosted
+from primordia.organism.life.instant import Stretch
 from tests.commands import complains, here
 from tests.toys import HOST_CARTPOLE, HostCartPole, Mirror
 from tests.worlds import MEADOW, MILL, config

@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 
 import primordia
-from primordia import checkpoint, loop, record
-from primordia.brain import join
-from primordia.directory import read_config
+from primordia.disk import checkpoint, record
+from primordia.disk.directory import read_config
+from primordia.engine import loop
 from primordia.errors import InputError
-from primordia.lineage import descent, rebuild
-from primordia.lives import lives
+from primordia.history.lineage import descent, rebuild
+from primordia.history.lives import lives
+from primordia.law.brain import join
 from tests.worlds import MEADOW, MILL, config, merged
 
 pytestmark = pytest.mark.usefixtures("compiled_once")

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from primordia.lines import DIES, NOBODY, Lines, Turnover, turnovers
+from primordia.history.lines import DIES, NOBODY, Lines, Turnover, turnovers
 from tests import worlds
 
 Event = tuple[int, int, int]

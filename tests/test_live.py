@@ -16,13 +16,14 @@ import numpy as np
 import pytest
 from rich.console import Console, ConsoleDimensions
 
-from primordia import live, loop
-from primordia.chunk import Limits, State
+from primordia import live
+from primordia.engine import loop
+from primordia.engine.chunk import Limits, State
+from primordia.law.world import World
 from primordia.live.census import Census, Pace
 from primordia.live.paint import EMPTY, Cells, Row, field, skyline, strip
 from primordia.live.panel import duration, short
 from primordia.wide import Wide, wide
-from primordia.world import World
 from tests import commands
 from tests.commands import COMMAND, environment, here
 from tests.worlds import MEADOW, config, engine

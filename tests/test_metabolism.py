@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
-from primordia.metabolism import MOST, ONE, Metabolism, Rates, add, fixed, metabolise
+from primordia.law.metabolism import MOST, ONE, Metabolism, Rates, add, fixed, metabolise
 
 FIXED, METABOLISE = jax.jit(fixed), jax.jit(metabolise)
 RATES = ("store", "drain", "gain", "effort_cost", "cap")

@@ -5,7 +5,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from primordia.motor import argmax
+from primordia.law.motor import argmax
 
 ARGMAX = jax.jit(argmax)
 SIZES = range(2, 19)

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from primordia.keys import Purpose, bits, stream
-from primordia.mutation import (
+from primordia.law.mutation import (
     BlockMutation,
     Mutation,
     Streams,

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 
 import primordia
-from primordia import loop
 from primordia.comparison.pace import LATE, WINDOWS, pace
+from primordia.engine import loop
 from tests.commands import here
 from tests.synthetic import LIVED, alive, world_of
 from tests.worlds import MEADOW, config

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from primordia.placement import Placement
+from primordia.law.placement import Placement
 from primordia.wide import Wide
 from tests.chance import even
 from tests.history import reach

@@ -12,9 +12,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import primordia
-from primordia import checkpoint, loop, record
-from primordia.digest import row_hashes
-from primordia.world import Cause
+from primordia.disk import checkpoint, record
+from primordia.disk.digest import row_hashes
+from primordia.engine import loop
+from primordia.law.world import Cause
 from tests.worlds import MILL, Lived, config
 
 pytestmark = pytest.mark.usefixtures("compiled_once")

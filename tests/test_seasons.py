@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from pydantic import TypeAdapter, ValidationError
 
-from primordia.genesis import begin
 from primordia.habitats import Habitat
 from primordia.law import Law
-from primordia.seasons import Ratchet, Season, turn
+from primordia.law.genesis import begin
+from primordia.law.seasons import Ratchet, Season, turn
 from tests.history import History
 from tests.worlds import MEADOW, MILL, Lived, config
 

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from primordia import series
 from primordia.figures import survival
+from primordia.history import series
 from tests.synthetic import LIVED, alive, world_of
 
 

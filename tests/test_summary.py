@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from primordia.summary import summary
+from primordia.history.summary import summary
 
 
 def world(**changed: Any) -> dict[str, Any]:

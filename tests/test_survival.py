@@ -8,7 +8,7 @@ from scipy import stats
 
 from primordia.comparison.resample import interval, resamples
 from primordia.comparison.survival import survival
-from primordia.lives import ALIVE, Lives
+from primordia.history.lives import ALIVE, Lives
 
 
 def restricted_mean(lives: list[tuple[int, bool]], limit: int) -> float:

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import primordia
-from primordia import loop
-from primordia.lives import lives
-from primordia.summary import summary
+from primordia.engine import loop
+from primordia.history.lives import lives
+from primordia.history.summary import summary
 from tests.worlds import config
 
 WORLDS = {

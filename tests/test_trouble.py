@@ -16,7 +16,9 @@ import numpy as np
 import pyarrow.parquet
 import pytest
 
-from primordia import checkpoint, chunk, device, directory, files, loop
+from primordia import device
+from primordia.disk import checkpoint, directory, files
+from primordia.engine import chunk, loop
 from primordia.errors import InputError, Trouble
 from tests import commands
 from tests.commands import begin, complains, here

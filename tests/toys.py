@@ -7,9 +7,8 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from primordia.habitats import Outcome
+from primordia.habitats import Continuous, Discrete, Outcome
 from primordia.habitats.cartpole import COORDINATES, CartPole
-from primordia.motor import Continuous, Discrete
 from primordia.settings import Settings
 
 

@@ -4,11 +4,11 @@ from typing import Any
 
 import numpy as np
 
-from primordia.chunk import Fused
 from primordia.config import Config, load, merged, validated
-from primordia.digest import digests
-from primordia.genesis import begin
-from primordia.loop import Engine, recorder_for
+from primordia.disk.digest import digests
+from primordia.engine.chunk import Fused
+from primordia.engine.loop import Engine, recorder_for
+from primordia.law.genesis import begin
 
 MEADOW: dict[str, Any] = {"task": "meadow", "habitat": {"name": "tests.toys:Meadow"}, "cells": 16}
 MILL: dict[str, Any] = {

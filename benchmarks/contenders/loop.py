@@ -68,7 +68,8 @@ class Brains:
         import jax
         import jax.numpy as jnp
 
-        from primordia.motor import Discrete, argmax
+        from primordia.habitats import Discrete
+        from primordia.law.motor import argmax
 
         config, habitat, brain = described(game)
         noise, discrete = np.random.default_rng(0), isinstance(habitat.action, Discrete)

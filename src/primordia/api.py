@@ -16,16 +16,19 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from primordia import comparison, config, genomes, lineage, loop, report
+from primordia import comparison, config
 from primordia import device as devices
-from primordia.directory import read_config
+from primordia.disk import genomes
+from primordia.disk.directory import read_config
+from primordia.engine import loop
+from primordia.engine.loop import Listener
 from primordia.errors import InputError
-from primordia.fork import fork
-from primordia.lives import Lives, lives
-from primordia.loop import Listener
+from primordia.history import lineage, report
+from primordia.history.fork import fork
+from primordia.history.lives import Lives, lives
+from primordia.history.verify import verify
 from primordia.organism import Organism
-from primordia.policy import Policy
-from primordia.verify import verify
+from primordia.organism.policy import Policy
 
 
 @dataclass(frozen=True)

@@ -10,16 +10,17 @@ from typing import Any, Literal, Union, get_args, get_origin
 import tomli_w
 from pydantic import BaseModel, Field, ValidationError
 
-from primordia import genomes, habitats
-from primordia.brain import Brain, BrainSettings
+from primordia import habitats
+from primordia.disk import genomes
 from primordia.errors import InputError
-from primordia.habitats import Habitat, HostHabitat
+from primordia.habitats import Continuous, Habitat, HostHabitat
 from primordia.law import Law
-from primordia.metabolism import Metabolism
-from primordia.motor import Continuous, Motor
-from primordia.mutation import Mutation
-from primordia.placement import Placement
-from primordia.seasons import Season
+from primordia.law.brain import Brain, BrainSettings
+from primordia.law.metabolism import Metabolism
+from primordia.law.motor import Motor
+from primordia.law.mutation import Mutation
+from primordia.law.placement import Placement
+from primordia.law.seasons import Season
 from primordia.settings import Settings
 
 NONE = "none"

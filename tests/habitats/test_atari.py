@@ -10,9 +10,9 @@ import primordia
 from primordia.habitats import atari_games
 from primordia.habitats.atari import Atari
 from primordia.habitats.atari_games import games
+from primordia.history.verify import verify
 from primordia.pool import board
 from primordia.pool.arcade import FIELDS, Arcade, console
-from primordia.verify import verify
 from tests.commands import complains, here
 
 ale_py = pytest.importorskip("ale_py")

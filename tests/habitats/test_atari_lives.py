@@ -12,10 +12,10 @@ from primordia.habitats.atari import SCALED, Atari
 from primordia.habitats.atari_games import screen_size
 from primordia.habitats.atari_picture import draw
 from primordia.habitats.framed import ROOM
-from primordia.life import Life
-from primordia.lives import Lives, lives
-from primordia.metabolism import ONE
-from primordia.world import Cause
+from primordia.history.lives import Lives, lives
+from primordia.law.metabolism import ONE
+from primordia.law.world import Cause
+from primordia.organism.life import Life
 from tests.commands import here
 from tests.test_life import at_the_end
 

@@ -10,8 +10,8 @@ import pytest
 import primordia
 from primordia.errors import InputError
 from primordia.habitats import mujoco_picture
-from primordia.life import Life
-from primordia.lives import lives
+from primordia.history.lives import lives
+from primordia.organism.life import Life
 from tests.commands import complains, here
 from tests.robots import born, of_task
 

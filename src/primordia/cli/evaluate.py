@@ -10,7 +10,7 @@ from primordia.cli.flags import run_argument
 from primordia.errors import InputError
 
 if TYPE_CHECKING:
-    from primordia.evaluation import Evaluation
+    from primordia.organism.evaluation import Evaluation
 
 SENSES = {
     "live": "",
@@ -47,8 +47,8 @@ def evaluate(
 
     A lifespan is what its task makes of a game; score and length are those of the whole game.
     """
-    from primordia import evaluation
     from primordia.cli.look import who
+    from primordia.organism import evaluation
 
     if freeze_senses and open_loop:
         raise InputError("--freeze-senses and --open-loop: one or the other")

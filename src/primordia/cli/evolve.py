@@ -113,8 +113,8 @@ def fork(
 
 def _drive(path: Path, quiet: bool, go: Callable[[Any], object]) -> None:
     from primordia.api import Run
+    from primordia.history.summary import summary
     from primordia.live import watching
-    from primordia.summary import summary
 
     try:
         with watching(quiet) as listen:

@@ -16,7 +16,7 @@ from primordia.errors import Trouble
 def info(run: Path, as_json: bool) -> None:
     """What happened in a run so far."""
     from primordia.api import Run
-    from primordia.summary import summary
+    from primordia.history.summary import summary
 
     found = Run(run).info()
     click.echo(json.dumps(found) if as_json else summary(found))
@@ -49,7 +49,7 @@ def replay(
     run: Path, begin: int | None, end: int | None, out: Path | None, **chosen: int | None
 ) -> None:
     """A life on video: all of it, or the first and last 30 seconds of a long one."""
-    from primordia.replay import replay as show
+    from primordia.organism.replay import replay as show
 
     organism = who(run, **chosen)
     click.echo(show(run, organism.id, organism.world, out, (begin, end)))

@@ -14,14 +14,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from primordia import report
 from primordia.comparison.contrast import Bounds, Contrast, Figures, contrast
 from primordia.comparison.pace import Pace, pace
 from primordia.comparison.survival import Survival, survival
 from primordia.config import Config
-from primordia.directory import read_config
+from primordia.disk.directory import read_config
 from primordia.errors import InputError
-from primordia.lives import Lives, lives
+from primordia.history import report
+from primordia.history.lives import Lives, lives
 
 OUTCOMES = {
     "first": "births to first long life",
@@ -32,7 +32,7 @@ OUTCOMES = {
     "pace": "ticks lived for each death, late",
 }
 UNSATURATED = ("longest", "pace")
-"""Those that are of use only where no world saturated."""
+"""Those that are of use only where saturation is rare."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,8 @@ class Comparison:
     @property
     def outcomes(self) -> dict[str, str]:
         """Those of OUTCOMES that tell something: known of some world, and of use."""
-        untold = UNSATURATED if any(arm.saturated for arm in self.arms) else ()
+        common = any(2 * arm.saturated >= arm.worlds for arm in self.arms)
+        untold = UNSATURATED if common else ()
         return {
             name: words
             for name, words in OUTCOMES.items()

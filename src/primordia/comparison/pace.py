@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from primordia import series
 from primordia.comparison.contrast import Figures
-from primordia.lives import Lives
+from primordia.history import series
+from primordia.history.lives import Lives
 
 WINDOWS, LATE = 12, 3
 """Windows that time is cut into, and how many of the last are called late."""

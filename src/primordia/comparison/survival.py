@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from primordia.comparison.resample import interval, resamples
-from primordia.lives import Lives
+from primordia.history.lives import Lives
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 from primordia.config import Config
 from primordia.errors import InputError, Trouble
 from primordia.figures import ages, population, spacetime, style, survival
-from primordia.lives import Lives, lives
-from primordia.report import opened
+from primordia.history.lives import Lives, lives
+from primordia.history.report import opened
 
 FIGURES: dict[str, Callable[[Lives, Config, int], Figure]] = {
     "ages": lambda lives, config, world: ages.draw(lives),

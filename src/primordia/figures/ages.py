@@ -4,9 +4,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from primordia import series
 from primordia.figures import style
-from primordia.lives import Lives
+from primordia.history import series
+from primordia.history.lives import Lives
 
 DOTS = 3000
 """Most lives drawn as dots, of the dead and of the living."""

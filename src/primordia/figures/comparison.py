@@ -27,9 +27,9 @@ def save(compared: Comparison, folder: Path) -> list[Path]:
 
 
 def draw(compared: Comparison) -> Figure:
-    """Survival of all lives, and how soon worlds saturate; if none does, how fast organisms die."""
+    """Survival of all lives, and how soon worlds saturate; where few do, how fast organisms die."""
     figure = Figure(figsize=(style.PAGE, 2.7))
-    if any(arm.saturated for arm in compared.arms):
+    if "pace" not in compared.outcomes:
         alive, births, ticks = figure.subplots(1, 3)
         _saturated(births, compared, "births")
         births.set(title="Saturated, by births", xlabel="births", ylabel="fraction of worlds")
@@ -93,15 +93,17 @@ def _dying(axes: Axes, compared: Comparison) -> None:
             axes.plot(middle, world, color=colour, alpha=0.3, linewidth=0.8)
         axes.plot(middle, np.median(arm.pace.curve, axis=0), "o-", color=colour, markersize=3)
     style.counted(axes.xaxis)
+    style.logarithmic(axes.yaxis)
     axes.set(title="Ticks lived for each death: worlds and median", xlabel="time (ticks)")
-    axes.set(xlim=(0, arm.pace.edges[-1]), ylim=(0, None))
+    axes.set(xlim=(0, arm.pace.edges[-1]))
 
 
 def _legend(figure: Figure, axes: Axes, compared: Comparison) -> None:
     """Names of the runs, and what the marks are if there are any."""
     handles = axes.get_legend_handles_labels()[0]
     known = [arm.figures["births"].known for arm in compared.arms]
-    if any(each.any() for each in known) and not all(each.all() for each in known):
+    marked = "pace" not in compared.outcomes and any(each.any() for each in known)
+    if marked and not all(each.all() for each in known):
         handles.append(
             Line2D([], [], ls="", marker=STOPPED, color=style.SOFT, label="stopped unsaturated")
         )

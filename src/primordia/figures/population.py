@@ -4,10 +4,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from primordia import series
 from primordia.figures import style
-from primordia.lives import Lives
-from primordia.world import Cause
+from primordia.history import series
+from primordia.history.lives import Lives
+from primordia.law.world import Cause
 
 COLOURS = {
     Cause.FATAL: style.VERMILION,

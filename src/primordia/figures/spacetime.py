@@ -6,12 +6,12 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter
 
-from primordia import series
-from primordia.clades import Clades, clades
 from primordia.config import Config
 from primordia.figures import style
-from primordia.lines import CROWD
-from primordia.lives import Lives
+from primordia.history import series
+from primordia.history.clades import Clades, clades
+from primordia.history.lines import CROWD
+from primordia.history.lives import Lives
 
 ROWS, COLUMNS = 800, 512
 """Most moments, and cells, that are drawn; of more, each second or third is."""

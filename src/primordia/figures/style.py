@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
-from primordia import files
+from primordia.disk import files
 
 COLUMN, PAGE = 3.4, 7.0
 """Widths in inches."""

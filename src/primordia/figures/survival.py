@@ -5,9 +5,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from scipy import stats
 
-from primordia import series
 from primordia.figures import style
-from primordia.lives import Lives
+from primordia.history import series
+from primordia.history.lives import Lives
 
 COHORTS = {
     "first quarter": "#d89000",

@@ -7,13 +7,12 @@ bodies in physical units; what that means for a life is the law's.
 that keeps the contract below. The other keys of the table are the class's own settings.
 """
 
+from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
 from jax import Array
-
-from primordia.motor import Continuous, Discrete
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -26,6 +25,20 @@ KNOWN = {
 
 Bodies: TypeAlias = Any
 """A tree of arrays, each with cells as its first axis."""
+
+
+@dataclass(frozen=True)
+class Discrete:
+    """An action is one of `size` choices: int32 (N,)."""
+
+    size: int
+
+
+@dataclass(frozen=True)
+class Continuous:
+    """An action is a vector: float32 (N, size). Its bounds are the habitat's to keep."""
+
+    size: int
 
 
 class Outcome(NamedTuple):

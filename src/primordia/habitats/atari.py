@@ -14,14 +14,13 @@ from pydantic import Field, PrivateAttr, field_validator, model_validator
 
 from primordia import conditions
 from primordia.conditions import Expression, Names
-from primordia.habitats import Outcome
+from primordia.habitats import Discrete, Outcome
 from primordia.habitats.atari_games import (
     available_options,
     legal_actions,
     minimal_actions,
     screen_size,
 )
-from primordia.motor import Discrete
 from primordia.pool import Pool
 from primordia.pool.arcade import FIELDS, RAM, WATCHED
 from primordia.settings import Settings

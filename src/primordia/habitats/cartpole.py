@@ -13,8 +13,7 @@ import numpy as np
 from jax import Array
 from pydantic import Field
 
-from primordia.habitats import Outcome
-from primordia.motor import Discrete
+from primordia.habitats import Discrete, Outcome
 from primordia.settings import Settings
 
 if TYPE_CHECKING:

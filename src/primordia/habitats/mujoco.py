@@ -18,7 +18,7 @@ from pydantic import Field, PrivateAttr, model_validator
 
 from primordia import conditions, dice
 from primordia.conditions import Expression, Names
-from primordia.habitats import Outcome
+from primordia.habitats import Continuous, Outcome
 from primordia.habitats.mujoco_model import (
     ROOT,
     compiled,
@@ -28,8 +28,7 @@ from primordia.habitats.mujoco_model import (
     numbered,
     package,
 )
-from primordia.motor import Continuous
-from primordia.mutation import quantiles
+from primordia.law.mutation import quantiles
 from primordia.settings import Settings
 
 if TYPE_CHECKING:

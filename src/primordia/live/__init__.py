@@ -10,12 +10,12 @@ from rich.console import Console, ConsoleOptions, RenderResult
 from rich.live import Live
 from rich.segment import Segment
 
-from primordia.lines import CROWD, Lines, Turnover, turnovers
+from primordia.engine.loop import Listener, Status
+from primordia.history.lines import CROWD, Lines, Turnover, turnovers
 from primordia.live.census import Census, Pace
 from primordia.live.paint import FAINT, Row
 from primordia.live.panel import Tempo, heading, numbers, saturation, short
 from primordia.live.scene import Room, scene
-from primordia.loop import Listener, Status
 from primordia.wide import to_host
 
 

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from primordia.chunk import Limits
+from primordia.engine.chunk import Limits
+from primordia.law.world import World
 from primordia.wide import Wide, to_host
-from primordia.world import World
 
 
 @dataclass(frozen=True)

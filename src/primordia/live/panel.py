@@ -7,9 +7,9 @@ from rich.segment import Segment
 from rich.style import Style
 
 from primordia.config import Config
+from primordia.law.world import Cause
 from primordia.live.census import Census
 from primordia.live.paint import FAINT, Row
-from primordia.world import Cause
 
 STRONG = Style(bold=True)
 FILLED = Style(color="green")

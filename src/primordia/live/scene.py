@@ -5,11 +5,11 @@ from typing import NamedTuple
 import numpy as np
 from rich.segment import Segment
 
+from primordia.history.lines import Lines
 from primordia.law import Law
-from primordia.lines import Lines
+from primordia.law.world import World
 from primordia.live.paint import EMPTY, FAINT, Cells, Row, field, skyline, strip
 from primordia.wide import Wide, to_host
-from primordia.world import World
 
 TALLEST = 4
 """rows of a skyline"""

@@ -1,0 +1,165 @@
+"""Chunks: many ticks of law and habitat between two visits of the host.
+
+A chunk may have any length; nothing that lives can tell. A habitat in JAX is fused with the law into
+one compiled loop. A habitat on the host is stepped between compiled halves, one call a tick.
+"""
+
+from functools import partial
+from typing import NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array, lax
+
+from primordia.habitats import Bodies, Habitat
+from primordia.law import Fates, Law, judge, keys_of, no_fates, quiet_ticks, rest, settle, think
+from primordia.law import events as log
+from primordia.law.events import Events
+from primordia.law.genesis import birth_words
+from primordia.law.sample import width
+from primordia.law.world import World, Worlds
+from primordia.wide import Wide, happened
+
+
+class Limits(NamedTuple):
+    """When each world stops, for now: Wide (W,), `wide.never` for no limit."""
+
+    ticks: Wide
+    births: Wide
+    saturation: Array
+    """bool (): stop a world once it is saturated"""
+
+
+class State(NamedTuple):
+    """Where a run stands: all of it, for a habitat in JAX."""
+
+    world: World
+    bodies: Bodies
+
+
+def running(worlds: Worlds, limits: Limits) -> Array:
+    """Which worlds have not come to a limit, bool (W,). The others are frozen as they stand."""
+    over = worlds.tick.at_least(limits.ticks) | worlds.births.at_least(limits.births)
+    return ~(over | (limits.saturation & happened(worlds.saturated)))
+
+
+class Fused:
+    """Law and habitat in one compiled loop. A state given to it is used up."""
+
+    exact = True
+    """Whether a run goes on exactly from a checkpoint."""
+
+    def __init__(self, law: Law, habitat: Habitat) -> None:
+        self._law, self._habitat = law, habitat
+        self._advance = jax.jit(partial(_advance, law, habitat), donate_argnums=(0, 1))
+        self.events = log.empty(law.worlds * law.cells, law.worlds, width(law.blocks))
+        """of the latest chunk"""
+
+    def begin(self, world: World) -> State:
+        """The state of a run before genesis."""
+        words = jnp.zeros((len(world.organisms.alive), self._habitat.words), jnp.uint32)
+        return State(world, self._habitat.reset(words))
+
+    def advance(self, state: State, limits: Limits, ticks: int) -> tuple[State, int]:
+        """At most so many ticks, fewer if every world stops or the lists are full -> ticks done."""
+        state, self.events, done = self._advance(state, self.events, limits, jnp.int32(ticks))
+        return state, int(done)
+
+    def save(self, state: State) -> dict[str, np.ndarray]:
+        """All that is needed to go on exactly, by name."""
+        return {name: np.asarray(leaf) for name, leaf in named_leaves(state)}
+
+    def load(self, template: State, arrays: dict[str, np.ndarray]) -> State:
+        """Take back what `save` gave; `template` is any state of the same run."""
+        leaves = [jnp.asarray(arrays[name]) for name, _ in named_leaves(template)]
+        return jax.tree.unflatten(jax.tree.structure(template), leaves)
+
+
+def named_leaves(tree: object) -> list[tuple[str, Array]]:
+    """The arrays of a state with their paths, such as `world.organisms.genome.input`."""
+    leaves = jax.tree_util.tree_flatten_with_path(tree)[0]
+    return [(jax.tree_util.keystr(path, simple=True, separator="."), leaf) for path, leaf in leaves]
+
+
+def _advance(
+    law: Law, habitat: Habitat, state: State, events: Events, limits: Limits, ticks: Array
+) -> tuple[State, Events, Array]:
+    cells = law.worlds * law.cells
+    none = jnp.int32(0)
+    events = Events(*(rows._replace(filled=none) for rows in events))
+
+    def go_on(carry: tuple) -> Array:
+        _, events, live_worlds, done = carry
+        return (done < ticks) & live_worlds.any() & log.have_room(events, cells, law.worlds)
+
+    def until_something_happens(carry: tuple) -> tuple:
+        state, events, live_worlds, done = carry
+        at_most = jnp.minimum(ticks - done, ticks_left(law, state.world, limits, live_worlds))
+        state, fates, passed = _quiet(law, habitat, state, live_worlds, at_most)
+        world, events, born = settle(law, state.world, events, fates, passed, live_worlds)
+        state = State(world, _embody(law, habitat, world, state.bodies, born))
+        return state, events, running(world.worlds, limits), done + passed
+
+    carry = (state, events, running(state.world.worlds, limits), none)
+    state, events, _, done = lax.while_loop(go_on, until_something_happens, carry)
+    return state, events, done
+
+
+def ticks_left(law: Law, world: World, limits: Limits, live_worlds: Array) -> Array:
+    """Ticks until a limit or something else falls due in a running world, int32 ()."""
+    to_limit = jnp.where(live_worlds, world.worlds.tick.until(limits.ticks), 2**31 - 1).min()
+    return jnp.minimum(to_limit, quiet_ticks(law, world, live_worlds))
+
+
+def _quiet(
+    law: Law, habitat: Habitat, state: State, live_worlds: Array, at_most: Array
+) -> tuple[State, Fates, Array]:
+    """Ticks up to and with the first eventful one, at most so many -> state, fates, ticks."""
+    first = state.world
+    active = first.organisms.alive & law.per_cell(live_worlds)
+
+    def go_on(carry: tuple) -> Array:
+        _, _, fates, _, passed = carry
+        return (passed < at_most) & ~fates.eventful
+
+    def tick(carry: tuple) -> tuple:
+        world, bodies, _, keys, passed = carry
+        world, action = think(law, world, habitat.sense(bodies), keys)
+        bodies, outcome = habitat.step(bodies, action)
+        fault = broken(bodies) if outcome.fault is None else broken(bodies) | outcome.fault
+        world, fates = judge(law, world, outcome._replace(fault=fault), keys, active)
+        return world, bodies, fates, keys_of(first.worlds, passed + 2), passed + 1
+
+    keys = keys_of(first.worlds, jnp.int32(1))
+    carry = (first, state.bodies, no_fates(law), keys, jnp.int32(0))
+    world, bodies, fates, _, passed = lax.while_loop(go_on, tick, carry)
+    organisms = rest(first.organisms, world.organisms, active)
+    bodies = choose(active, bodies, state.bodies)
+    return State(World(organisms, world.worlds), bodies), fates, passed
+
+
+def _embody(law: Law, habitat: Habitat, world: World, bodies: Bodies, born: Array) -> Bodies:
+    """Fresh bodies for the newborn."""
+    words = birth_words(law, world.worlds, born.any(), habitat.words)
+
+    def fresh(bodies: Bodies, words: Array) -> Bodies:
+        return choose(born, habitat.reset(words), bodies)
+
+    return lax.cond(born.any(), fresh, lambda bodies, _: bodies, bodies, words)
+
+
+def choose(cells: Array, yes: Bodies, no: Bodies) -> Bodies:
+    """Bodies `yes` in the given cells (C,), `no` elsewhere."""
+
+    def leaf(a: Array, b: Array) -> Array:
+        return jnp.where(cells.reshape(-1, *[1] * (a.ndim - 1)), a, b)
+
+    return jax.tree.map(leaf, yes, no)
+
+
+def broken(bodies: Bodies) -> Array:
+    """Which bodies (C,) have a coordinate that is no finite number."""
+    leaves = [leaf for leaf in jax.tree.leaves(bodies) if jnp.issubdtype(leaf.dtype, jnp.floating)]
+    flat = [(~jnp.isfinite(leaf.reshape(len(leaf), -1))).any(axis=1) for leaf in leaves]
+    return jnp.stack(flat).any(axis=0) if flat else jnp.zeros((), bool)

@@ -1,0 +1,248 @@
+"""Chunks with a habitat that runs on the host: one compiled call a tick, the habitat between them.
+
+The call judges a tick and at once thinks the next one. A quiet tick needs no more; one with an event, or
+in which something falls due, is settled by a second call, and the newborn take a third for their first
+thought. What ticks change is kept beside the state until it is settled, so a chunk may end anywhere.
+"""
+
+from functools import partial
+from typing import NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array, lax
+
+from primordia.engine.chunk import Limits, State, named_leaves, running, ticks_left
+from primordia.engine.held import Form, Held
+from primordia.engine.tallies import Tallies
+from primordia.habitats import HostHabitat, Outcome
+from primordia.law import Fates, Law, judge, keys_of, lifeless, no_fates, rest, settle, think
+from primordia.law import events as log
+from primordia.law.brain import Genome
+from primordia.law.events import Events
+from primordia.law.genesis import birth_words
+from primordia.law.sample import width
+from primordia.law.world import World
+
+# Small calls are computed in the thread that makes them and waits for them: handing them to another costs
+# a third of their time. Read when JAX makes its first array.
+jax.config.update("jax_cpu_enable_async_dispatch", False)  # type: ignore[no-untyped-call]
+
+
+class Thought(NamedTuple):
+    """What `think` gives."""
+
+    memory: Array
+    faulty: Array
+    action: Array
+
+
+class Decision(NamedTuple):
+    """What the host needs of a tick that is settled."""
+
+    alive: Array
+    """bool (C,)"""
+    active: Array
+    """bool (C,): who is to be stepped next"""
+    died: Array
+    """bool (C,): whose life has ended"""
+    born: Array
+    """bool (C,): who needs a body"""
+    words: Array
+    """uint32 (C, words) to make it from"""
+    go_on: Array
+    """bool (): some world runs, and the lists have room"""
+    due: Array
+    """int32 (): ticks after which the world is to be settled at the latest"""
+
+
+class Hosted:
+    """Law compiled, habitat on the host. The bodies live in the habitat; the state holds senses."""
+
+    def __init__(self, law: Law, habitat: HostHabitat) -> None:
+        self.exact = getattr(habitat, "exact", True)
+        self._law, self._habitat = law, habitat
+        self._tallies = Tallies(habitat, law.worlds)
+        self._lists = log.empty(law.worlds * law.cells, law.worlds, width(law.blocks))
+        self.events = self._lists
+        """of the latest chunk"""
+        habitat.open(law.worlds * law.cells)
+
+    def begin(self, world: World) -> State:
+        """The state of a run before genesis."""
+        law, words, form = self._law, self._habitat.words, Form(world)
+        self._hold, self._release = jax.jit(form.hold), jax.jit(form.release)
+        self._think = jax.jit(partial(_think, law, form))
+        self._live = jax.jit(partial(_live, law, form))
+        self._settle = jax.jit(partial(_settle, law, form, words), donate_argnums=(0, 1))
+        self._genesis = jax.jit(partial(_genesis, law, form, words), donate_argnums=(0, 1))
+        cells = len(world.organisms.alive)
+        return State(world, np.zeros((cells, self._habitat.senses_size), np.float32))
+
+    def advance(self, state: State, limits: Limits, ticks: int) -> tuple[State, int]:
+        """At most so many ticks, fewer if every world stops or the lists are full -> ticks done."""
+        self._tallies.begin()
+        genome, held = state.world.organisms.genome, self._hold(state.world)
+        genome, events, held, decision = self._genesis(genome, self._lists, held, limits)
+        senses, done = self._embody(np.array(state.bodies), decision), 0
+        self._tallies.note_samples(decision.alive, events.samples)
+        thought = self._think(genome, held, senses)
+        while done < ticks and decision.go_on:
+            most = min(int(decision.due), ticks - done)
+            thought, senses, now, fates, passed = self._quiet(
+                genome, held, thought, decision.active, most
+            )
+            done += passed
+            genome, events, held, decision = self._settle(
+                genome, events, held, now, fates, np.int32(passed), limits
+            )
+            self._tallies.note_deaths(np.asarray(decision.died))
+            if np.asarray(decision.born).any():
+                senses = self._embody(senses, decision)
+                thought = self._think(genome, held, senses)
+            self._tallies.note_samples(decision.alive, events.samples)
+        self._lists, self.events = events, self._tallies.beside(events)
+        return State(self._released(genome, held), senses), done
+
+    def _released(self, genome: Genome, held: Held) -> World:
+        """The world again; its genomes do not pass through a call, which would copy them."""
+        world = self._release(held, {})
+        return world._replace(organisms=world.organisms._replace(genome=genome))
+
+    def _quiet(
+        self, genome: Genome, held: Held, thought: Thought, active: Array, most: int
+    ) -> tuple[Thought, np.ndarray, Held, Fates, int]:
+        """Ticks up to and with the first eventful one, at most so many.
+
+        Returns:
+            what is thought next, senses, the world not settled yet, fates of the last tick, how many
+            ticks.
+        """
+        now, alive = held, np.asarray(active)
+        for passed in range(1, most + 1):
+            senses, outcome = self._habitat.step(np.asarray(thought.action), alive)
+            now, thought, fates = self._live(
+                genome, now, thought, senses, outcome, active, np.int32(passed)
+            )
+            if np.asarray(fates.eventful):  # three times as fast as asking JAX's array itself
+                break
+        return thought, senses, now, fates, passed
+
+    def _embody(self, senses: np.ndarray, decision: Decision) -> np.ndarray:
+        born = np.flatnonzero(decision.born)
+        if len(born):
+            senses[born] = self._habitat.reset(born, np.asarray(decision.words)[born])
+        return senses
+
+    def save(self, state: State) -> dict[str, np.ndarray]:
+        """All that is needed to go on exactly, by name."""
+        bodies = {f"bodies.{name}": array for name, array in self._habitat.save().items()}
+        bodies["bodies.senses"] = np.asarray(state.bodies)
+        return {
+            f"world.{name}": np.asarray(leaf) for name, leaf in named_leaves(state.world)
+        } | bodies
+
+    def load(self, template: State, arrays: dict[str, np.ndarray]) -> State:
+        """Take back what `save` gave; `template` is any state of the same run."""
+        leaves = [jnp.array(arrays[f"world.{name}"]) for name, _ in named_leaves(template.world)]
+        prefix, senses = "bodies.", arrays["bodies.senses"]
+        bodies = {n.removeprefix(prefix): a for n, a in arrays.items() if n.startswith(prefix)}
+        bodies.pop("senses")
+        self._habitat.load(bodies)
+        return State(jax.tree.unflatten(jax.tree.structure(template.world), leaves), senses)
+
+
+def _think(law: Law, form: Form, genome: Genome, held: Held, senses: Array) -> Thought:
+    world = form.release(held, genome)
+    after, action = think(law, world, senses, keys_of(world.worlds, jnp.int32(1)))
+    return Thought(after.organisms.memory, after.organisms.faulty, action)
+
+
+def _live(
+    law: Law,
+    form: Form,
+    genome: Genome,
+    now: Held,
+    thought: Thought,
+    senses: Array,
+    outcome: Outcome,
+    active: Array,
+    passed: Array,
+) -> tuple[Held, Thought, Fates]:
+    """The tick so many after the last settled one is judged, and the next one thought."""
+    world = form.release(now, genome)
+    organisms = world.organisms._replace(memory=thought.memory, faulty=thought.faulty)
+    lost = ~jnp.isfinite(senses).all(axis=1)
+    fault = lost if outcome.fault is None else lost | outcome.fault
+    keys = keys_of(world.worlds, passed)
+    outcome = outcome._replace(fault=fault)
+    world, fates = judge(law, world._replace(organisms=organisms), outcome, keys, active)
+    after, action = think(law, world, senses, keys_of(world.worlds, passed + 1))
+    thought = Thought(after.organisms.memory, after.organisms.faulty, action)
+    return form.hold(world), thought, fates
+
+
+def _genesis(
+    law: Law,
+    form: Form,
+    words: int,
+    genome: Genome,
+    events: Events,
+    held: Held,
+    limits: Limits,
+) -> tuple[Genome, Events, Held, Decision]:
+    """Lists emptied; founders where a running world is empty, before the first tick."""
+    events = Events(*(rows._replace(filled=jnp.int32(0)) for rows in events))
+    world = form.release(held, genome)
+    nobody = jnp.zeros_like(world.organisms.alive)
+    live_worlds = running(world.worlds, limits)
+    world, events, born = lax.cond(
+        lifeless(law, world, live_worlds).any(),
+        lambda world, events: settle(law, world, events, no_fates(law), jnp.int32(0), live_worlds),
+        lambda world, events: (world, events, nobody),
+        world,
+        events,
+    )
+    decision = _decide(law, words, world, events, nobody, born, limits)
+    return world.organisms.genome, events, form.hold(world), decision
+
+
+def _settle(
+    law: Law,
+    form: Form,
+    words: int,
+    genome: Genome,
+    events: Events,
+    held: Held,
+    now: Held,
+    fates: Fates,
+    passed: Array,
+    limits: Limits,
+) -> tuple[Genome, Events, Held, Decision]:
+    """Bring a world, as it was held after the last settled tick, up to date by what was lived since."""
+    before, after = form.release(held, genome), form.release(now, genome)
+    live_worlds = running(before.worlds, limits)
+    active = before.organisms.alive & law.per_cell(live_worlds)
+    world = World(rest(before.organisms, after.organisms, active), after.worlds)
+    world, events, born = settle(law, world, events, fates, passed, live_worlds)
+    died = before.organisms.alive & (~world.organisms.alive | born)
+    decision = _decide(law, words, world, events, died, born, limits)
+    return world.organisms.genome, events, form.hold(world), decision
+
+
+def _decide(
+    law: Law, words: int, world: World, events: Events, died: Array, born: Array, limits: Limits
+) -> Decision:
+    live_worlds = running(world.worlds, limits)
+    room = log.have_room(events, law.worlds * law.cells, law.worlds)
+    alive = world.organisms.alive
+    return Decision(
+        alive=alive,
+        active=alive & law.per_cell(live_worlds),
+        died=died,
+        born=born,
+        words=birth_words(law, world.worlds, born.any(), words),
+        go_on=live_worlds.any() & room,
+        due=ticks_left(law, world, limits, live_worlds),
+    )

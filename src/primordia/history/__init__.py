@@ -1,0 +1,1 @@
+"""The history of runs, read from what is on disk: lives, lines of descent, figures' series, forks."""

@@ -1,0 +1,97 @@
+"""Beginnings: worlds before anything has lived, and the random words newborn bodies are made of."""
+
+import jax.numpy as jnp
+import numpy as np
+from jax import Array, lax
+
+from primordia.keys import Purpose, bits, stream
+from primordia.law import Law
+from primordia.law.metabolism import Metabolism, Rates
+from primordia.law.seasons import ratchets
+from primordia.law.world import Cause, Climate, Looks, Organisms, World, Worlds
+from primordia.wide import Wide, never, wide, zero
+
+
+def begin(law: Law, seeds: list[int], tick: int = 0, births: int = 0) -> World:
+    """Worlds in which nothing has ever lived. `settle` puts founders into them before the first tick.
+
+    `tick` and `births` are what the counts start at.
+    """
+    count, each = len(seeds), law.worlds * law.cells
+    worlds = Worlds(
+        seed=wide(np.array(seeds, np.uint64)),
+        tick=wide(np.full(count, tick, np.uint64)),
+        births=wide(np.full(count, births, np.uint64)),
+        deaths=zero((count, len(Cause))),
+        extinctions=zero((count,)),
+        organism_ticks=zero((count,)),
+        food=zero((count,)),
+        calm=jnp.zeros(count, jnp.int32),
+        sample_wait=jnp.full(count, law.sample_every - tick % law.sample_every, jnp.int32),
+        saturated=never((count,)),
+        saturated_births=never((count,)),
+        fixed=never((count,)),
+        fixed_births=never((count,)),
+        climate=climate(law, count),
+        looks=looks(law, count, tick),
+    )
+    genome = {
+        name: jnp.zeros((each, *shape), jnp.float32) for name, shape in law.brain.blocks.items()
+    }
+    organisms = Organisms(
+        alive=jnp.zeros(each, bool),
+        genome=genome,
+        memory=jnp.zeros((each, law.brain.memory), jnp.float32),
+        energy=jnp.zeros(each, jnp.int32),
+        eaten=jnp.zeros(each, jnp.int32),
+        faulty=jnp.zeros(each, bool),
+        born=zero((each,)),
+        number=zero((each,)),
+        branch=zero((each,)),
+    )
+    return World(organisms, worlds)
+
+
+def birth_words(law: Law, worlds: Worlds, needed: Array, words: int) -> Array:
+    """Random words for bodies born in this tick, uint32 (C, words); zeros unless needed, bool ()."""
+    key = stream(worlds.seed, Purpose.BODY, worlds.tick).map(law.per_cell)
+    return lax.cond(
+        needed,
+        lambda key: body_words(key, law.cell_numbers, words),
+        lambda _: jnp.zeros((law.worlds * law.cells, words), jnp.uint32),
+        key,
+    )
+
+
+def body_words(key: Wide, cells: Array, words: int) -> Array:
+    """Random words for bodies born in these cells (N,) of their worlds, with keys (N,): (N, words)."""
+    draws = jnp.arange(-(-words // 2), dtype=jnp.uint32)[:, None]
+    # Cells on the last axis, which compilers turn into vector instructions.
+    pairs = bits(key, cells, draws)
+    return jnp.concatenate(pairs, axis=0)[:words].T
+
+
+def climate(law: Law, count: int) -> Climate:
+    """The settings that seasons may change, as a run begins with them, in `count` worlds."""
+
+    def each(values: float | list[float]) -> Array:
+        return jnp.asarray(
+            np.tile(np.array(values, np.float32), (count, 1)).reshape(count, *np.shape(values))
+        )
+
+    rates = law.metabolism or Metabolism()
+    return Climate(
+        replication=each(law.replication),
+        hazard=each(law.hazard),
+        mutation_probability=each(law.mutation.of_blocks("probability", law.blocks)),
+        mutation_scale=each(law.mutation.of_blocks("scale", law.blocks)),
+        metabolism=Rates(*(each(getattr(rates, name)) for name in Rates._fields)),
+    )
+
+
+def looks(law: Law, count: int, tick: int) -> Looks:
+    """What ratchets remember that have not looked yet, in worlds that stand at a tick."""
+    every = [ratchet.every for ratchet in ratchets(law.seasons)]
+    wait = np.array([e - tick % e for e in every], np.int32)
+    nothing = (zero((count, len(every))) for _ in range(2))
+    return Looks(jnp.asarray(np.tile(wait, (count, 1))), *nothing)

@@ -1,0 +1,137 @@
+"""Replay: a life lived again, on video."""
+
+from collections.abc import Iterator
+from functools import cache
+from itertools import repeat
+from math import ceil
+from pathlib import Path
+
+import jax
+import numpy as np
+from PIL import Image, ImageDraw, ImageFont
+
+from primordia.errors import InputError
+from primordia.habitats.framed import PAPER
+from primordia.organism import video
+from primordia.organism.life import Life
+from primordia.organism.life.instant import Stretch
+
+PART = 30.0
+"""Seconds shown of each end of a life that is longer than two such parts."""
+STILL = 1.0
+"""Seconds that a card, and the last picture, are shown."""
+SIZE, INK = 16, "#333333"
+
+
+def replay(
+    run: Path,
+    organism: int,
+    world: int = 0,
+    out: Path | None = None,
+    ages: tuple[int | None, int | None] = (None, None),
+) -> Path:
+    """Make a video of a life -> its path.
+
+    Args:
+        run: the run's directory.
+        organism: birth number.
+        world: where it lived.
+        out: an .mp4 or .gif; by default under the run's `videos`.
+        ages: first and last age shown, in ticks. Without them all of it, or of a life longer than a
+            minute its first and last 30 seconds.
+
+    Raises:
+        InputError: no such organism was born, its habitat draws no pictures, or nothing is to be shown.
+        Trouble: the video cannot be written, or the life does not come out as recorded.
+    """
+    path = out or run / "videos" / f"world{world}-organism{organism}.mp4"
+    video.check_name(path)
+    life = Life.of(run, organism, world)
+    for name in ("picture", "seen") if hasattr(life.habitat, "open") else ("picture",):
+        if not hasattr(life.habitat, name):
+            raise InputError(f"{run}: this habitat draws no pictures (it has no `{name}`)")
+    rate = float(life.habitat.rate)
+    step = ceil(rate / video.FASTEST[path.suffix])
+    parts = _parts(life, rate, ages)
+    video.write(path, _pictures(life, parts, step, rate / step), rate / step)
+    return path
+
+
+def _parts(life: Life, rate: float, ages: tuple[int | None, int | None]) -> list[range]:
+    """Ages to be shown, in ticks."""
+    born = int(life.record.born[0])
+    first, last = life.begins + 1 - born, life.ends - born
+    if ages == (None, None) and last - first > 2 * PART * rate:
+        part = int(PART * rate)
+        return [range(first, first + part), range(last - part + 1, last + 1)]
+    begin, end = ages
+    shown = range(max(first, begin or 0), min(last, last if end is None else end) + 1)
+    if not len(shown):
+        raise InputError(
+            f"organism {life.record.id[0]} can be seen from age {first} to {last}, not from"
+            f" {begin} to {end}"
+        )
+    return [shown]
+
+
+def _pictures(life: Life, parts: list[range], step: int, rate: float) -> Iterator[Image.Image]:
+    """Every step-th instant of some parts, with what lies between them on a card."""
+    still, number, picture = max(1, round(STILL * rate)), 0, None
+    for number_now, stretch, i in _instants(life, parts, step):
+        if number_now > number and picture is not None:
+            left_out = parts[number_now].start - parts[number].stop
+            yield from repeat(_card(picture.size, f"{left_out:,} ticks later"), still)
+        number, picture = number_now, _picture(life, stretch, i)
+        yield picture
+    assert picture is not None
+    yield from repeat(picture, still)
+
+
+def _instants(life: Life, parts: list[range], step: int) -> Iterator[tuple[int, Stretch, int]]:
+    """Number of the part, stretch and place in it of each instant that is shown."""
+    for stretch in life.again(watched=True):
+        ages = stretch.tick - life.record.born[0]
+        for number, part in enumerate(parts):
+            shown = (ages >= part.start) & (ages < part.stop)
+            shown &= ((ages - part.start) % step == 0) | (stretch.tick == life.ends)
+            for i in np.flatnonzero(shown):
+                yield number, stretch, int(i)
+
+
+def _picture(life: Life, stretch: Stretch, i: int) -> Image.Image:
+    tick = int(stretch.tick[i])
+    body = jax.tree.map(lambda leaf: leaf[i], stretch.bodies)
+    picture = life.habitat.picture(body, stretch.action[i])
+    words = [f"organism {life.record.id[0]}", f"age {tick - life.record.born[0]:,}"]
+    if life.law.metabolism is not None:
+        words.append(f"energy {stretch.energy[i]:,.1f}")
+    if tick == life.ends and life.cause is not None:
+        words.append(f"dies ({life.cause.label})")
+    left, right, below = "   ".join(words), f"tick {tick:,}", ""
+    if hasattr(life.habitat, "caption"):
+        below = life.habitat.caption(body, stretch.action[i])
+    else:
+        right += f"   action {np.array2string(stretch.action[i], precision=2)}"
+    return _captioned(picture, left, right, below)
+
+
+def _captioned(picture: Image.Image, left: str, right: str, below: str) -> Image.Image:
+    """A picture with words in its upper corners, and below those on the left."""
+    pen, font = ImageDraw.Draw(picture), _font(SIZE)
+    pen.text((14, 12), left, INK, font)
+    pen.text((14, 32), below, INK, font)
+    pen.text((picture.width - 14, 12), right, INK, font, anchor="ra")
+    return picture
+
+
+@cache
+def _font(size: int) -> ImageFont.ImageFont | ImageFont.FreeTypeFont:
+    return ImageFont.load_default(size)
+
+
+def _card(size: tuple[int, int], words: str) -> Image.Image:
+    """Words by themselves."""
+    card = Image.new("RGB", size, PAPER)
+    middle = (size[0] / 2, size[1] / 2)
+    ImageDraw.Draw(card).text(middle, words, INK, _font(2 * SIZE), anchor="mm")
+    return card

@@ -1,0 +1,67 @@
+"""Pictures in a row as an MP4 or GIF file; the encoders come with PyAV's and Pillow's wheels."""
+
+from collections.abc import Iterator
+from fractions import Fraction
+from pathlib import Path
+
+import av
+import numpy as np
+from PIL import Image
+
+from primordia.disk import files
+from primordia.errors import InputError
+
+FASTEST = {".mp4": 60, ".gif": 25}
+"""Pictures a second at most, by file name; a GIF counts time in hundredths of a second."""
+
+
+def check_name(path: Path) -> None:
+    """Raise InputError for a file name that says neither MP4 nor GIF."""
+    if path.suffix not in FASTEST:
+        raise InputError(f"--out {path}: a video is an .mp4 or a .gif")
+
+
+def write(path: Path, pictures: Iterator[Image.Image], rate: float) -> None:
+    """Write pictures of one size, so many a second, to a .mp4 or .gif.
+
+    Raises:
+        Trouble: it cannot be written.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    encode = _gif if path.suffix == ".gif" else _mp4
+    files.write(path, lambda temporary: encode(temporary, pictures, rate))
+
+
+def _mp4(path: Path, pictures: Iterator[Image.Image], rate: float) -> None:
+    """H.264 in yuv420p, which browsers and slides play."""
+    first = next(pictures)
+    with av.open(str(path), "w") as container:
+        stream = container.add_stream("libx264", rate=Fraction(rate).limit_denominator(1000))
+        stream.width, stream.height = (size - size % 2 for size in first.size)
+        stream.pix_fmt = "yuv420p"
+        stream.options = {"crf": "23", "preset": "veryfast"}
+        for picture in _all(first, pictures):
+            container.mux(stream.encode(_frame(picture)))
+        container.mux(stream.encode())
+
+
+def _frame(picture: Image.Image) -> av.VideoFrame:
+    return av.VideoFrame.from_ndarray(np.asarray(picture), format="rgb24")
+
+
+def _gif(path: Path, pictures: Iterator[Image.Image], rate: float) -> None:
+    """At half the size, with the first picture's colours."""
+    first = next(pictures)
+    palette = first.quantize(colors=64, dither=Image.Dither.NONE)
+    small = (
+        picture.reduce(2).quantize(palette=palette, dither=Image.Dither.NONE)
+        for picture in _all(first, pictures)
+    )
+    next(small).save(
+        path, save_all=True, append_images=small, duration=round(1000 / rate), loop=0, optimize=True
+    )
+
+
+def _all(first: Image.Image, others: Iterator[Image.Image]) -> Iterator[Image.Image]:
+    yield first
+    yield from others
