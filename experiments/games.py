@@ -20,7 +20,7 @@ from primordia.organism import Organism
 from results import table
 
 GAMES = 10
-TICKS = 20_000
+TICKS = 8_000
 NOISE = {"sticky": 0.25, "noops": 30}
 WAYS: dict[str, dict[str, Any]] = {
     "own game": {},
