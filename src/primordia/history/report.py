@@ -34,7 +34,8 @@ def info(run: Path) -> dict[str, Any]:
     config, last = opened(run)
     arrays = last.arrays()
     each = digests(last.digests, arrays, config.seeds)
-    worlds = [_world(config, arrays, world, digest) for world, digest in enumerate(each)]
+    habitat = config.build_habitat()
+    worlds = [_world(config, habitat, arrays, world, digest) for world, digest in enumerate(each)]
     recorded = json.loads((run / "versions.json").read_text())
     whole = {
         "task": config.task,
@@ -93,7 +94,7 @@ def _counts(arrays: dict[str, np.ndarray], name: str) -> np.ndarray:
 
 
 def _world(
-    config: Config, arrays: dict[str, np.ndarray], world: int, digest: str
+    config: Config, habitat: Any, arrays: dict[str, np.ndarray], world: int, digest: str
 ) -> dict[str, Any]:
     def count(name: str) -> Any:
         return _counts(arrays, f"world.worlds.{name}")[world].tolist()
@@ -119,7 +120,6 @@ def _world(
         "fixation": _moment(count("fixed"), count("fixed_births")),
         "digest": digest,
     }
-    habitat = config.build_habitat()
     if (tally := arrays.get(TALLY)) is not None and alive.any():
         found["tallies"] = _of_the_living(names_of(habitat), tally[here][alive])
     if config.metabolism is not None:
