@@ -25,7 +25,7 @@ from primordia.wide import wide
 from results import table
 
 FOUNDERS, PARENTS, MUTANTS = 512, 16, 16
-AT_ONCE = 64
+AT_ONCE = 128
 TICKS = 8_000
 HEAD = ("", "founders: median", "mean", "longest", "parents: mean", "mutants: mean", "heritability")
 
