@@ -19,7 +19,7 @@ import primordia
 from primordia.organism import Organism
 from results import table
 
-GAMES = 10
+GAMES = 5
 TICKS = 8_000
 NOISE = {"sticky": 0.25, "noops": 30}
 WAYS: dict[str, dict[str, Any]] = {
