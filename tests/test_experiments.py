@@ -100,3 +100,44 @@ def test_an_experiment_is_run_once(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     )
     with pytest.raises(SystemExit, match="other settings"):
         script.experiment(file)
+
+
+@pytest.fixture
+def ponged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A small experiment with Pong that has been run."""
+    pytest.importorskip("ale_py")
+    monkeypatch.syspath_prepend(str(EXPERIMENTS))
+    monkeypatch.chdir(tmp_path)
+    shared = {"task": "Pong-survival", "cells": 4, "genesis": "fill"}
+    arms = [{"name": "heredity"}, {"name": "none", "inheritance": "founder"}]
+    file = tmp_path / "games" / "pong.toml"
+    file.parent.mkdir()
+    values = {"question": "Do they?", **shared, "stop": {"ticks": 300, "until": "none"}}
+    file.write_text(tomli_w.dumps({**values, "arms": arms}))
+    import_module("run").experiment(file)
+    return file
+
+
+@pytest.mark.usefixtures("compiled_once")
+def test_what_is_told_of_organisms_in_other_games(
+    ponged: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    results = ponged.parent / "results"
+    assert "deaths in the last quarter" in (results / "pong.md").read_text()
+    games, mutants = import_module("games"), import_module("mutants")
+    for script in (games, mutants):
+        monkeypatch.setattr(script, "TICKS", 400)
+    monkeypatch.setattr(games, "GAMES", 2)
+    monkeypatch.setattr(games, "WAYS", {"own game": {}, "sticky": {"sticky": 0.5}})
+    monkeypatch.setattr(mutants, "MUTANTS", 4)
+    monkeypatch.setattr(mutants, "SCALES", (0.0, 0.3))
+    games.report(ponged)
+    rows = list(csv.DictReader((results / "pong-games.csv").read_text().splitlines()))
+    assert [row["who"] for row in rows[::2]] == ["a founder", "heredity", "none"]
+    for own, sticky in zip(rows[::2], rows[1::2], strict=True):
+        assert float(own["lifespan"]) >= float(own["age"])
+        assert (own["games"], sticky["games"]) == ("1", "2")
+    mutants.report(ponged)
+    rows = list(csv.DictReader((results / "pong-mutants.csv").read_text().splitlines()))
+    copies = [float(row["as long"]) for row in rows if row["scale"] == "0.0"]
+    assert copies == [1.0]
