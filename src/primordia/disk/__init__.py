@@ -1,1 +1,1 @@
-"""What is on disk: a run's directory, its records and checkpoints, genomes. Nothing else writes there."""
+"""What is on disk: a run's directory, its records and checkpoints, files of genomes."""
