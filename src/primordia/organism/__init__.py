@@ -12,7 +12,7 @@ from primordia.history.lives import Lives
 from primordia.law.world import Cause, Origin
 from primordia.organism.evaluation import Evaluation, evaluate
 from primordia.organism.policy import Policy
-from primordia.organism.replay import replay
+from primordia.organism.replay import replay as show
 
 
 @dataclass(frozen=True)
@@ -90,4 +90,4 @@ class Organism:
 
     def replay(self, out: str | Path | None = None) -> Path:
         """Its life on video -> the file; see `replay.replay`."""
-        return replay(self.run, self.id, self.world, Path(out) if out is not None else None)
+        return show(self.run, self.id, self.world, Path(out) if out is not None else None)
