@@ -24,6 +24,7 @@ from jax import Array, lax
 
 from primordia.habitats import Continuous, Discrete, Outcome
 from primordia.keys import Purpose, bits, chance, stream
+from primordia.law import turnover
 from primordia.law.brain import Brain
 from primordia.law.events import Events
 from primordia.law.metabolism import Metabolism, Rates, add, fixed, metabolise
@@ -32,7 +33,6 @@ from primordia.law.mutation import Mutation, noise_index, quantiles
 from primordia.law.placement import Placement
 from primordia.law.sample import note_samples
 from primordia.law.seasons import Columns, Ratchet, Schedule, turn
-from primordia.law.turnover import turnover
 from primordia.law.world import Cause, Organisms, World, Worlds
 from primordia.wide import Wide, happened, select, signed, times, total, wide
 
@@ -280,7 +280,9 @@ def settle(
     nobody = jnp.zeros_like(organisms.alive)
     world, events, born = lax.cond(
         fates.eventful | lifeless(law, world, running).any(),
-        lambda world, events: turnover(law, world, events, running, fates.wants, fates.cause),
+        lambda world, events: turnover.turnover(
+            law, world, events, running, fates.wants, fates.cause
+        ),
         lambda world, events: (world, events, nobody),
         World(organisms, worlds),
         events,
