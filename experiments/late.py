@@ -6,21 +6,21 @@ import numpy as np
 
 import primordia
 from primordia.comparison import Comparison
-from primordia.comparison.pace import LATE as WINDOWS
+from primordia.comparison.pace import LATE
 
-LATE = {
+COLUMNS = {
     "late_deaths": "deaths in the last quarter",
     "late_lifespan": "their median lifespan",
     "late_score": "their median score",
     "best_score": "best score at any death",
 }
-"""Columns of what is told of deaths in worlds that never saturate."""
+"""What is told of each world, and in which words."""
 
 
 def last_deaths(run: Path, compared: Comparison) -> list[dict[str, float]]:
-    """LATE of each world of a run, up to where runs are compared; without scores where nobody has one."""
+    """COLUMNS of each world of a run, up to where runs are compared; scores where there are any."""
     edges = compared.arms[0].pace.edges
-    begins, ends = edges[-1 - WINDOWS], edges[-1]
+    begins, ends = edges[-1 - LATE], edges[-1]
     found = primordia.load(run)
     everyone, deaths = found.lives(), found.arrays("deaths")
     told = []

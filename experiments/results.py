@@ -6,7 +6,7 @@ import statistics
 from pathlib import Path
 from typing import Any
 
-from late import LATE, last_deaths
+import late
 
 import primordia
 from primordia.cli.side_by_side import effect, ratio, setting, spread
@@ -26,7 +26,7 @@ def write(stem: Path, question: str, runs: list[Path]) -> None:
     compared = primordia.compare(*runs)
     infos = [primordia.Run(run).info() for run in runs]
     parts = [f"# {question}", summary(compared, infos), effects(compared), NOTE]
-    ends = [last_deaths(run, compared) for run in runs] if "pace" in compared.outcomes else []
+    ends = [late.last_deaths(run, compared) for run in runs] if "pace" in compared.outcomes else []
     if ends:
         parts.insert(2, dying(compared, ends))
     text = "\n\n".join([*parts, made(runs[0], infos[0])])
@@ -63,12 +63,12 @@ def extinct(info: dict[str, Any]) -> float:
 
 def dying(compared: Comparison, ends: list[list[dict[str, float]]]) -> str:
     """A row an arm: what the worlds' deaths came to, each world's figure."""
-    names = [name for name in LATE if name in ends[0][0]]
+    names = [name for name in late.COLUMNS if name in ends[0][0]]
     rows = [
         [arm.name, *("; ".join(f"{world[name]:,.0f}" for world in worlds) for name in names)]
         for arm, worlds in zip(compared.arms, ends, strict=True)
     ]
-    return table(["world by world", *(LATE[name] for name in names)], rows)
+    return table(["world by world", *(late.COLUMNS[name] for name in names)], rows)
 
 
 def effects(compared: Comparison) -> str:
@@ -111,6 +111,6 @@ def write_worlds(
             for each, world in enumerate(info["worlds"]):
                 at = world["saturation"] or {"births": "", "tick": ""}
                 mean = f"{arm.figures['lifespan'].value[each]:.1f}"
-                late = ends[number][each].values() if ends else ()
+                last = ends[number][each].values() if ends else ()
                 counts = [world[name] for name in counted]
-                rows.writerow([arm.name, *counts, at["births"], at["tick"], mean, *late])
+                rows.writerow([arm.name, *counts, at["births"], at["tick"], mean, *last])

@@ -2,13 +2,16 @@
 
 import json
 import shutil
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import primordia
 from primordia.comparison import Comparison
+from primordia.comparison.contrast import Figures
 from primordia.engine import loop
 from tests.commands import complains, here
 from tests.test_survival import restricted_mean
@@ -145,3 +148,16 @@ def test_a_run_cut_off_before_anything_lived(runs: list[Path], tmp_path: Path) -
     for name in ("config.toml", "versions.json"):
         (empty / name).write_bytes((runs[0] / name).read_bytes())
     complains(here("compare", runs[0], empty), 2, "no checkpoint yet")
+
+
+@pytest.mark.parametrize(("saturated", "told"), [(0, True), (2, True), (3, False), (5, False)])
+def test_what_is_of_use_where_saturation_is_rare(
+    compared: Comparison, saturated: int, told: bool
+) -> None:
+    """In fewer than half of the worlds of every run."""
+    known = np.arange(WORLDS) < saturated
+    moments = {name: Figures(np.ones(WORLDS), known) for name in ("births", "ticks")}
+    arm = replace(compared.arms[0], figures={**compared.arms[0].figures, **moments})
+    assert arm.saturated == saturated
+    outcomes = replace(compared, arms=(arm,)).outcomes
+    assert ("pace" in outcomes, "longest" in outcomes) == (told, told)

@@ -5,11 +5,14 @@ import tomllib
 from importlib import import_module
 from pathlib import Path
 
+import numpy as np
 import pytest
 import tomli_w
 
+import primordia
 from primordia.config import load, merged
-from tests.worlds import MEADOW
+from primordia.engine import loop
+from tests.worlds import MEADOW, config
 
 EXPERIMENTS = Path(__file__).parent.parent / "experiments"
 FILES = sorted(EXPERIMENTS.glob("*/*.toml"))
@@ -141,3 +144,20 @@ def test_what_is_told_of_organisms_in_other_games(
     rows = list(csv.DictReader((results / "pong-mutants.csv").read_text().splitlines()))
     copies = [float(row["as long"]) for row in rows if row["scale"] == "0.0"]
     assert copies == [1.0]
+
+
+@pytest.mark.usefixtures("compiled_once")
+def test_deaths_of_the_last_quarter(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Up to where all runs have come, counted one by one."""
+    monkeypatch.syspath_prepend(str(EXPERIMENTS))
+    settings = {**MEADOW, "brain": {"hidden": 1}, "seeds": 2, "hazard": 0.02, "replication": 0.2}
+    for name, ticks in (("long", 480), ("short", 400)):
+        loop.start(config({**settings, "stop": {"ticks": ticks}}), tmp_path / name)
+    compared = primordia.compare(tmp_path / "long", tmp_path / "short")
+    told = import_module("late").last_deaths(tmp_path / "long", compared)
+    lives = primordia.load(tmp_path / "long").lives()
+    for world, found in enumerate(told):
+        here = zip(lives.world, lives.born, lives.ended, lives.died, strict=True)
+        spans = [e - b for w, b, e, died in here if w == world and died and 300 < e <= 400]
+        assert found == {"late_deaths": len(spans), "late_lifespan": float(np.median(spans))}
+        assert spans

@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from primordia.gaussian import quantiles
 from primordia.law.brain import join
-from primordia.law.mutation import noise_index, quantiles, streams
+from primordia.law.mutation import noise_index, streams
 from primordia.wide import happened, to_host, wide
 from tests.chance import binomial, even
 from tests.history import History

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from primordia.gaussian import quantiles
 from primordia.keys import Purpose, bits, stream
 from primordia.law.mutation import (
     BlockMutation,
@@ -17,7 +18,6 @@ from primordia.law.mutation import (
     mutates,
     newborns,
     noise_index,
-    quantiles,
     streams,
 )
 from primordia.wide import Wide, wide

@@ -1,5 +1,6 @@
 """Seasons: changes come when they should, where they should, and by what they should."""
 
+from pathlib import Path
 from typing import Any
 
 import jax.numpy as jnp
@@ -7,9 +8,11 @@ import numpy as np
 import pytest
 from pydantic import TypeAdapter, ValidationError
 
+import primordia
 from primordia.habitats import Habitat
 from primordia.law import Law
 from primordia.law.genesis import begin
+from primordia.law.metabolism import break_even
 from primordia.law.seasons import Ratchet, Season, turn
 from tests.history import History
 from tests.worlds import MEADOW, MILL, Lived, config
@@ -257,3 +260,15 @@ def test_seasons_that_make_no_sense_are_refused(change: dict[str, Any]) -> None:
     assert isinstance(season.validate_python(good), Ratchet)
     with pytest.raises(ValidationError):
         season.validate_python({**good, **change})
+
+
+def test_break_even_is_told_as_the_world_stands_now(tmp_path: Path) -> None:
+    """Food that keeps energy where it is: drain over gain, by the tick and by the second."""
+    season = {"kind": "schedule", "setting": "metabolism.gain", "at": 20, "value": 0.5}
+    rates = {"store": 100.0, "drain": 2.0, "gain": 4.0}
+    settings = {"metabolism": rates, "seasons": [season], "cells": 4}
+    run = primordia.run("CartPole-survival", tmp_path / "run", **settings, stop={"ticks": 10})
+    assert run.info()["break_even"] == {"food_per_tick": 0.5, "food_per_second": 25.0}
+    run.resume(ticks=30)
+    assert run.info()["break_even"] == {"food_per_tick": 4.0, "food_per_second": 200.0}
+    assert break_even(2.0, 0.0) is None

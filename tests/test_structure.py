@@ -12,24 +12,25 @@ SOURCE = Path(__file__).parent.parent / "src" / "primordia"
 ORDER = """
     engine disk history
     errors settings wide disk.digest law.events tasks live.paint history.summary
-    keys disk.files history.lines pool.board conditions dice
+    keys disk.files history.lines pool.board conditions dice gaussian
     pool.worker pool.arcade
     pool
     history.clades
     organism.video
     law.brain law.motor law.mutation law.placement law.metabolism
     law.world habitats device disk.genomes
-    law.seasons law.sample engine.tallies engine.held
+    law.seasons law.sample engine.held
     habitats.cartpole_picture habitats.framed habitats.atari_games
     habitats.atari_picture habitats.mujoco_model
     habitats.mujoco_picture
     habitats.*
     law.turnover
     law
-    law.genesis
+    law.genesis disk.record
+    engine.tallies
     engine.chunk
     engine.hosted config live.census
-    disk.record live.panel live.scene
+    live.panel live.scene
     disk.checkpoint disk.directory
     engine.loop
     history.report live
@@ -98,6 +99,28 @@ def test_imports_point_one_way(module: str) -> None:
     known = {imported for imported in imports(module) if (module, imported) not in TYPES_ONLY}
     for imported in known:
         assert row(imported) < row(module), f"{module} imports {imported}"
+
+
+FOLDERS = [
+    "pool",
+    "habitats",
+    "law",
+    "disk",
+    "engine",
+    "history",
+    "organism",
+    "comparison",
+    "figures",
+    "live",
+    "cli",
+]
+
+
+@pytest.mark.parametrize("module", [name for name in MODULES if name.split(".")[0] in FOLDERS])
+def test_folders_point_one_way_too(module: str) -> None:
+    here = FOLDERS.index(module.split(".")[0])
+    others = {name.split(".")[0] for name in imports(module)} & set(FOLDERS)
+    assert all(FOLDERS.index(other) <= here for other in others)
 
 
 @pytest.mark.parametrize(("module", "imported"), TYPES_ONLY)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from contenders.loop import Brains, Lacking, Loop, described, scales
+from contenders.loop import Brains, Lacking, Loop, described, envpool, scales
 
 BUTTONS_DRAWN = 10_007
 """at random, beforehand; a prime, so that they do not fall into step with anything"""
@@ -124,13 +124,8 @@ class Pool(Loop):
     """EnvPool, which cannot leave out a picture a frame: it is made as small as is of use."""
 
     def __init__(self, game: str, cells: int) -> None:
-        try:
-            import envpool
-        except Exception as error:
-            raise Lacking(
-                f"import envpool fails ({type(error).__name__}): pip install envpool"
-            ) from None
-        self._envs = envpool.make_gymnasium(
+        package = envpool()
+        self._envs = package.make_gymnasium(
             f"{_pascal(game)}-v5",
             num_envs=cells,
             num_threads=len(os.sched_getaffinity(0)),
@@ -147,8 +142,8 @@ class Pool(Loop):
         )
         told = self._envs.reset()[1]
         if "ram" not in told:
-            raise Lacking(f"envpool {envpool.__version__} does not give the console's memory")
-        self.about = f"envpool {envpool.__version__}; makes a picture of every frame besides RAM"
+            raise Lacking(f"envpool {package.__version__} does not give the console's memory")
+        self.about = f"envpool {package.__version__}; makes a picture of every frame besides RAM"
         self._cells, self._ram = cells, told["ram"]
         self._brains, self._sensed = Brains(game, cells), _sight(game)
 

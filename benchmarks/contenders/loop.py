@@ -1,6 +1,7 @@
 """What all ways of playing share: the tasks, a loop, and brains."""
 
 import time
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -45,6 +46,19 @@ class Loop:
             frames += self.tick()
             now = time.perf_counter()
         return {"frames": frames, "seconds": now - began}
+
+
+def envpool() -> Any:
+    """The package.
+
+    Raises:
+        Lacking: it cannot be imported.
+    """
+    try:
+        return import_module("envpool")
+    except Exception as error:
+        name = type(error).__name__
+        raise Lacking(f"import envpool fails ({name}): pip install envpool") from None
 
 
 def described(game: str) -> tuple:

@@ -5,7 +5,7 @@ from importlib.metadata import version
 
 import numpy as np
 
-from contenders.loop import Brains, Lacking, Loop, described
+from contenders.loop import Brains, Lacking, Loop, described, envpool
 
 
 class Batch(Loop):
@@ -59,20 +59,15 @@ class Pool(Loop):
     """EnvPool's robots, which are those of Gymnasium's fourth version, with brains."""
 
     def __init__(self, game: str, cells: int) -> None:
-        try:
-            import envpool
-        except Exception as error:
-            raise Lacking(
-                f"import envpool fails ({type(error).__name__}): pip install envpool"
-            ) from None
+        package = envpool()
         habitat = described(game)[1]
-        self._envs = envpool.make_gymnasium(
+        self._envs = package.make_gymnasium(
             game.replace("-v5", "-v4"),
             num_envs=cells,
             num_threads=len(os.sched_getaffinity(0)),
             frame_skip=habitat.substeps,
         )
-        self.about = f"envpool {envpool.__version__}"
+        self.about = f"envpool {package.__version__}"
         self._brains, self._sight = Brains(game, cells), Sight(habitat.senses_size, cells)
         self._seen = self._envs.reset()[0]
 

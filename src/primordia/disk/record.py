@@ -14,7 +14,6 @@ import pyarrow.parquet as pq
 
 from primordia.disk import files
 from primordia.disk.digest import row_hashes
-from primordia.engine.tallies import sample_columns
 from primordia.law.events import BIRTH_FIELDS, DEATH_FIELDS, Events
 from primordia.law.metabolism import ONE
 from primordia.law.sample import WIDE_COLUMNS, climate_columns
@@ -53,7 +52,7 @@ class Recorder:
     ) -> None:
         """`run` is the run's directory; None keeps digests only. Tallies are what the habitat counts."""
         self._run, self._worlds, self._cells = run, worlds, cells
-        samples = (*sample_fields(blocks), *sample_columns(tallies))
+        samples = (*sample_fields(blocks), *tally_columns(tallies))
         self.tables = [
             self._table("births", BIRTH_FIELDS, _births(cells)),
             self._table("deaths", (*DEATH_FIELDS, *tallies), _deaths(cells, tallies)),
@@ -149,6 +148,11 @@ class Recorder:
         return own
 
 
+def tally_columns(names: tuple[str, ...]) -> list[str]:
+    """What a sample says of each of a habitat's tallies, over the living."""
+    return [f"{name}_{what}" for name in names for what in ("mean", "best")]
+
+
 def sample_fields(blocks: list[str]) -> tuple[str, ...]:
     """Words of a sample."""
     pairs = [f"{name}.{half}" for name in WIDE_COLUMNS for half in ("hi", "lo")]
@@ -224,7 +228,7 @@ def _metrics(
         names, start = climate_columns(blocks), 2 + 2 * len(WIDE_COLUMNS)
         values = np.ascontiguousarray(rows[:, start : start + len(names)]).view(np.float32)
         climate = dict(zip(names, values.T, strict=True))
-        for name, column in _last(rows, sample_columns(tallies)):
+        for name, column in _last(rows, tally_columns(tallies)):
             climate[name] = column.view(np.float32 if name.endswith("_mean") else np.int32)
         tick = wide.pop("tick")
         world = pa.array(worlds.astype(np.int32))

@@ -9,20 +9,13 @@ from typing import Any
 import numpy as np
 from jax import Array
 
+from primordia.disk.record import tally_columns
 from primordia.law.events import Events, Rows
-
-OF_SAMPLE = ("mean", "best")
-"""What a sample says of each tally, over the living."""
 
 
 def names_of(habitat: Any) -> tuple[str, ...]:
     """What a habitat keeps count of."""
     return tuple(getattr(habitat, "tallies", ()))
-
-
-def sample_columns(names: tuple[str, ...]) -> list[str]:
-    """Columns of a sample."""
-    return [f"{name}_{what}" for name in names for what in OF_SAMPLE]
 
 
 class Tallies:
@@ -36,7 +29,7 @@ class Tallies:
     def begin(self) -> None:
         """A chunk begins."""
         self._deaths = [np.zeros((0, len(self.names)), np.uint32)]
-        self._samples = [np.zeros((0, len(self.names) * len(OF_SAMPLE)), np.uint32)]
+        self._samples = [np.zeros((0, len(tally_columns(self.names))), np.uint32)]
         self._sampled = 0
 
     def note_deaths(self, died: np.ndarray) -> None:

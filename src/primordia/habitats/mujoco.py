@@ -18,6 +18,7 @@ from pydantic import Field, PrivateAttr, model_validator
 
 from primordia import conditions, dice
 from primordia.conditions import Expression, Names
+from primordia.gaussian import quantiles
 from primordia.habitats import Continuous, Outcome
 from primordia.habitats.mujoco_model import (
     ROOT,
@@ -28,12 +29,10 @@ from primordia.habitats.mujoco_model import (
     numbered,
     package,
 )
-from primordia.law.mutation import quantiles
 from primordia.settings import Settings
 
 if TYPE_CHECKING:
     from PIL.Image import Image
-
 
 PLACES = {"xpos", "site", "height", "pitch", "travelled", "com_forward", "reached"}
 """Names of what is not in the state itself, but follows from it."""
@@ -77,6 +76,8 @@ class MuJoCo(Settings):
     _bodies: Any = PrivateAttr()
     _seen: dict[str, Any] = PrivateAttr()
     """Arrays by name that are always as the bodies are"""
+    _ways: dict[str, np.ndarray] = PrivateAttr()
+    """The same, of places between which ways are measured"""
     _dice: np.ndarray = PrivateAttr()
     """uint64 (N,), of targets"""
 
@@ -172,8 +173,11 @@ class MuJoCo(Settings):
             self._seen["height"] = bound("xpos")[:, ROOT, 2]
         if "pitch" in used:
             self._seen["frame"] = bound("xmat")[:, ROOT]
+        self._ways = {}
+        if "forward" in used:
+            self._ways["forward"] = self._seen["qpos"][:, 0]
         if used & {"travelled", "com_forward"}:
-            self._seen["middle"] = bound("subtree_com")[:, 0, :2]
+            self._ways["middle"] = bound("subtree_com")[:, 0, :2]
 
     @cached_property
     def _stage(self) -> Any:
@@ -233,16 +237,15 @@ class MuJoCo(Settings):
 
     def _stood(self) -> dict[str, np.ndarray]:
         """From where ways are measured."""
-        stood = {"forward": self._seen["qpos"][:, 0].copy()} if "forward" in self._used else {}
-        return {**stood, "middle": self._seen["middle"].copy()} if "middle" in self._seen else stood
+        return {name: place.copy() for name, place in self._ways.items()}
 
     def _values(self, before: dict[str, np.ndarray]) -> dict[str, Any]:
         """All that is spoken of, as it is now."""
         seen, values = self._seen, dict(self._seen)
         if "forward" in before:
-            values["forward"] = seen["qpos"][:, 0] - before["forward"]
+            values["forward"] = self._ways["forward"] - before["forward"]
         if "middle" in before:
-            moved = seen["middle"] - before["middle"]
+            moved = self._ways["middle"] - before["middle"]
             values["com_forward"], values["travelled"] = moved[:, 0], np.hypot(*moved.T)
         if "frame" in seen:
             values["pitch"] = np.arctan2(-seen["frame"][:, 6], seen["frame"][:, 0])

@@ -13,12 +13,13 @@ import numpy as np
 from primordia.config import Config
 from primordia.disk import checkpoint
 from primordia.disk.checkpoint import Checkpoint
+from primordia.gaussian import quantiles
 from primordia.history.climate import climate_at
 from primordia.history.lives import Lives, lives
 from primordia.history.report import opened
 from primordia.law import Law
 from primordia.law.brain import join
-from primordia.law.mutation import ancestor_of, mutates, noise_index, quantiles, streams
+from primordia.law.mutation import ancestor_of, mutates, noise_index, streams
 from primordia.law.world import Origin
 from primordia.wide import wide
 

@@ -22,6 +22,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array, lax
 
+from primordia.gaussian import quantiles
 from primordia.habitats import Continuous, Discrete, Outcome
 from primordia.keys import Purpose, bits, chance, stream
 from primordia.law import turnover
@@ -29,7 +30,7 @@ from primordia.law.brain import Brain
 from primordia.law.events import Events
 from primordia.law.metabolism import Metabolism, Rates, add, fixed, metabolise
 from primordia.law.motor import Motor, argmax
-from primordia.law.mutation import Mutation, noise_index, quantiles
+from primordia.law.mutation import BlockSetting, Mutation, noise_index
 from primordia.law.placement import Placement
 from primordia.law.sample import note_samples
 from primordia.law.seasons import Columns, Ratchet, Schedule, turn
@@ -89,11 +90,10 @@ class Law:
     def columns(self) -> Columns:
         """Which blocks each setting under `mutation` governs."""
         found: Columns = {}
-        for field in ("probability", "scale"):
-            own = [
-                getattr(self.mutation.blocks.get(b), field, None) is not None for b in self.blocks
-            ]
-            found[f"mutation.{field}"] = [i for i, is_own in enumerate(own) if not is_own]
+        fields: tuple[BlockSetting, ...] = ("probability", "scale")
+        for field in fields:
+            own = self.mutation.own(field, self.blocks)
+            found[f"mutation.{field}"] = [i for i, value in enumerate(own) if value is None]
             for i, block in enumerate(self.blocks):
                 found[f"mutation.blocks.{block}.{field}"] = [i]
         return found

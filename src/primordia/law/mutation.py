@@ -1,14 +1,10 @@
 """Mutation: genome -> genome with a key; and founders, genomes from nothing.
 
-Noise is read from a table of 65,536 Gaussian quantiles, made on the host in float32, by 16 random
-bits a weight. A child weight is one IEEE product (quantile x scale) and one IEEE sum, so that it can
-be rebuilt bit for bit anywhere. The tails end at +-4.32 standard deviations.
+Noise is read from the table of `gaussian`, by 16 random bits a weight. A child weight is one IEEE product
+(quantile x scale) and one IEEE sum, so that it can be rebuilt bit for bit anywhere.
 """
 
-import hashlib
-from functools import cache
-from statistics import NormalDist
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, TypeAlias
 
 import jax.numpy as jnp
 import numpy as np
@@ -19,7 +15,7 @@ from primordia.keys import Purpose, bits, chance, stream
 from primordia.settings import Settings
 from primordia.wide import Wide, modulo
 
-QUANTILES_SHA256 = "1cfbba1e07e34386a57626f82aeb43e6ed54ba70a3ea6b7d964dc66a841074a8"
+BlockSetting: TypeAlias = Literal["probability", "scale", "founder_scale"]
 
 
 class BlockMutation(Settings):
@@ -50,25 +46,14 @@ class Mutation(Settings):
         {}, description="other values for single blocks of weights (input, recurrent, output)"
     )
 
-    def of_blocks(
-        self, field: Literal["probability", "scale", "founder_scale"], names: list[str]
-    ) -> list[float]:
+    def own(self, field: BlockSetting, names: list[str]) -> list[float | None]:
+        """What is set for each named block by itself, if anything is."""
+        return [getattr(self.blocks.get(name), field, None) for name in names]
+
+    def of_blocks(self, field: BlockSetting, names: list[str]) -> list[float]:
         """A setting's value for each named block."""
-        own = [getattr(self.blocks.get(name), field, None) for name in names]
+        own = self.own(field, names)
         return [getattr(self, field) if value is None else value for value in own]
-
-
-@cache
-def quantiles() -> np.ndarray:
-    """The standard Gaussian's quantiles at (i + 1/2) / 65536, float32 (65536,), increasing."""
-    inverse = NormalDist().inv_cdf
-    upper = np.array([inverse((i + 0.5) / 65536) for i in range(32768, 65536)], np.float32)
-    table = np.concatenate([-upper[::-1], upper])
-    if hashlib.sha256(table.astype("<f4").tobytes()).hexdigest() != QUANTILES_SHA256:
-        raise RuntimeError(
-            "this machine's C library gives other Gaussian quantiles: genomes would differ"
-        )
-    return table
 
 
 class Streams(NamedTuple):

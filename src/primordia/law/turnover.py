@@ -10,20 +10,13 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
+from primordia.gaussian import quantiles
 from primordia.keys import Purpose, below, bits, bits_if, stream
 from primordia.law import events as log
 from primordia.law.brain import split
 from primordia.law.events import Events, Rows
 from primordia.law.metabolism import fixed
-from primordia.law.mutation import (
-    Streams,
-    ancestor_of,
-    mutates,
-    newborns,
-    noise_index,
-    quantiles,
-    streams,
-)
+from primordia.law.mutation import Streams, ancestor_of, mutates, newborns, noise_index, streams
 from primordia.law.world import Cause, Organisms, Origin, World, Worlds
 from primordia.wide import Wide, happened, largest, never, select, zero
 
