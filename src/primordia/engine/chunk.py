@@ -86,8 +86,6 @@ def _advance(
     law: Law, habitat: Habitat, state: State, events: Events, limits: Limits, ticks: Array
 ) -> tuple[State, Events, Array]:
     cells = law.worlds * law.cells
-    none = jnp.int32(0)
-    events = Events(*(rows._replace(filled=none) for rows in events))
 
     def go_on(carry: tuple) -> Array:
         _, events, live_worlds, done = carry
@@ -101,7 +99,7 @@ def _advance(
         state = State(world, _embody(law, habitat, world, state.bodies, born))
         return state, events, running(world.worlds, limits), done + passed
 
-    carry = (state, events, running(state.world.worlds, limits), none)
+    carry = (state, log.emptied(events), running(state.world.worlds, limits), jnp.int32(0))
     state, events, _, done = lax.while_loop(go_on, until_something_happens, carry)
     return state, events, done
 

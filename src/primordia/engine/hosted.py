@@ -11,13 +11,13 @@ from typing import NamedTuple
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jax import Array, lax
+from jax import Array
 
 from primordia.engine.chunk import Limits, State, named_leaves, running, ticks_left
 from primordia.engine.held import Form, Held
 from primordia.engine.tallies import Tallies
 from primordia.habitats import HostHabitat, Outcome
-from primordia.law import Fates, Law, judge, keys_of, lifeless, no_fates, rest, settle, think
+from primordia.law import Fates, Law, judge, keys_of, no_fates, rest, settle, think
 from primordia.law import events as log
 from primordia.law.brain import Genome
 from primordia.law.events import Events
@@ -76,7 +76,8 @@ class Hosted:
         self._think = jax.jit(partial(_think, law, form))
         self._live = jax.jit(partial(_live, law, form))
         self._settle = jax.jit(partial(_settle, law, form, words), donate_argnums=(0, 1))
-        self._genesis = jax.jit(partial(_genesis, law, form, words), donate_argnums=(0, 1))
+        self._look = jax.jit(partial(_look, law, form, words))
+        self._no_fates = no_fates(law)
         cells = len(world.organisms.alive)
         return State(world, np.zeros((cells, self._habitat.senses_size), np.float32))
 
@@ -84,14 +85,13 @@ class Hosted:
         """At most so many ticks, fewer if every world stops or the lists are full -> ticks done."""
         self._tallies.begin()
         genome, held = state.world.organisms.genome, self._hold(state.world)
-        genome, events, held, decision = self._genesis(genome, self._lists, held, limits)
-        senses, done = self._embody(np.array(state.bodies), decision), 0
-        self._tallies.note_samples(decision.alive, events.samples)
+        events, senses, done = log.emptied(self._lists), np.array(state.bodies), 0
+        decision = self._look(genome, held, events, limits)
         thought = self._think(genome, held, senses)
         while done < ticks and decision.go_on:
             most = min(int(decision.due), ticks - done)
             thought, senses, now, fates, passed = self._quiet(
-                genome, held, thought, decision.active, most
+                genome, held, thought, senses, decision.active, most
             )
             done += passed
             genome, events, held, decision = self._settle(
@@ -111,22 +111,28 @@ class Hosted:
         return world._replace(organisms=world.organisms._replace(genome=genome))
 
     def _quiet(
-        self, genome: Genome, held: Held, thought: Thought, active: Array, most: int
+        self,
+        genome: Genome,
+        held: Held,
+        thought: Thought,
+        senses: np.ndarray,
+        active: Array,
+        most: int,
     ) -> tuple[Thought, np.ndarray, Held, Fates, int]:
-        """Ticks up to and with the first eventful one, at most so many.
+        """Ticks up to and with the first eventful one, at most so many; none before genesis.
 
         Returns:
             what is thought next, senses, the world not settled yet, fates of the last tick, how many
             ticks.
         """
-        now, alive = held, np.asarray(active)
-        for passed in range(1, most + 1):
+        now, fates, passed, alive = held, self._no_fates, 0, np.asarray(active)
+        # Three times as fast as asking JAX's array itself.
+        while passed < most and not np.asarray(fates.eventful):
             senses, outcome = self._habitat.step(np.asarray(thought.action), alive)
+            passed += 1
             now, thought, fates = self._live(
                 genome, now, thought, senses, outcome, active, np.int32(passed)
             )
-            if np.asarray(fates.eventful):  # three times as fast as asking JAX's array itself
-                break
         return thought, senses, now, fates, passed
 
     def _embody(self, senses: np.ndarray, decision: Decision) -> np.ndarray:
@@ -183,29 +189,13 @@ def _live(
     return form.hold(world), thought, fates
 
 
-def _genesis(
-    law: Law,
-    form: Form,
-    words: int,
-    genome: Genome,
-    events: Events,
-    held: Held,
-    limits: Limits,
-) -> tuple[Genome, Events, Held, Decision]:
-    """Lists emptied; founders where a running world is empty, before the first tick."""
-    events = Events(*(rows._replace(filled=jnp.int32(0)) for rows in events))
+def _look(
+    law: Law, form: Form, words: int, genome: Genome, held: Held, events: Events, limits: Limits
+) -> Decision:
+    """How things stand where nobody has died and nobody is born."""
     world = form.release(held, genome)
     nobody = jnp.zeros_like(world.organisms.alive)
-    live_worlds = running(world.worlds, limits)
-    world, events, born = lax.cond(
-        lifeless(law, world, live_worlds).any(),
-        lambda world, events: settle(law, world, events, no_fates(law), jnp.int32(0), live_worlds),
-        lambda world, events: (world, events, nobody),
-        world,
-        events,
-    )
-    decision = _decide(law, words, world, events, nobody, born, limits)
-    return world.organisms.genome, events, form.hold(world), decision
+    return _decide(law, words, world, events, nobody, nobody, limits)
 
 
 def _settle(

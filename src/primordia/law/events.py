@@ -49,6 +49,11 @@ def empty(cells: int, worlds: int, sample_fields: int) -> Events:
     )
 
 
+def emptied(events: Events) -> Events:
+    """The same lists, to be filled anew."""
+    return Events(*(rows._replace(filled=jnp.int32(0)) for rows in events))
+
+
 def have_room(events: Events, cells: int, worlds: int) -> Array:
     """Whether one more tick's events fit, however many: bool ()."""
     spare = batch(cells)
