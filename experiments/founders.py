@@ -18,14 +18,14 @@ import files
 import numpy as np
 
 from primordia import config
+from primordia.config import Config
 from primordia.keys import Purpose, stream
 from primordia.law.genesis import climate
-from primordia.organism.games import Player, play
+from primordia.organism.games import Players, play
 from primordia.wide import wide
 from results import table
 
 FOUNDERS, PARENTS, MUTANTS = 512, 16, 16
-AT_ONCE = 128
 TICKS = 8_000
 HEAD = ("", "founders: median", "mean", "longest", "parents: mean", "mutants: mean", "heritability")
 
@@ -47,14 +47,15 @@ def report(file: Path) -> None:
 
 def trial(name: str, settings: dict[str, Any]) -> list[str]:
     """A row of the table."""
-    player, scales = alone(settings)
+    chosen = config.load(settings.pop("task"), settings)
+    law = chosen.build_law(chosen.build_habitat())
+    scales = np.repeat(law.mutation.of_blocks("scale", law.blocks), law.block_sizes)
     noise = np.random.default_rng(0)
-    length = len(player.law.founder_scale)
-    founders = player.law.founder_scale * noise.standard_normal((FOUNDERS, length))
-    lived = lifespans(player, founders)
+    founders = law.founder_scale * noise.standard_normal((FOUNDERS, len(scales)))
+    lived = lifespans(chosen, founders)
     best = np.argsort(-lived, kind="stable")[:PARENTS]
-    steps = scales * noise.standard_normal((PARENTS * MUTANTS, length))
-    mutants = lifespans(player, np.repeat(founders[best], MUTANTS, axis=0) + steps).mean()
+    steps = scales * noise.standard_normal((PARENTS * MUTANTS, len(scales)))
+    mutants = lifespans(chosen, np.repeat(founders[best], MUTANTS, axis=0) + steps, FOUNDERS).mean()
     heritability = (mutants - lived.mean()) / (lived[best].mean() - lived.mean())
     ticks = (np.median(lived), lived.mean(), lived.max(), lived[best].mean(), mutants)
     row = [name, *(f"{value:,.0f}" for value in ticks), f"{heritability:.2f}"]
@@ -62,23 +63,14 @@ def trial(name: str, settings: dict[str, Any]) -> list[str]:
     return row
 
 
-def alone(settings: dict[str, Any]) -> tuple[Player, np.ndarray]:
-    """Somebody without a genome yet, and the scale of mutations of each weight, (P,)."""
-    shared = {key: value for key, value in settings.items() if key != "task"}
-    chosen = config.load(settings["task"], shared)
-    habitat = chosen.build_habitat()
+def lifespans(chosen: Config, genomes: np.ndarray, first: int = 0) -> np.ndarray:
+    """Of organisms with these genomes (K, P), numbered from `first`, one life each: (K,)."""
+    habitat, numbers = chosen.build_habitat(), first + np.arange(len(genomes))
     law = chosen.build_law(habitat)
-    key = stream(wide([chosen.seed]), Purpose.EVALUATION, wide([0]))
-    player = Player(law, habitat, np.empty(0), key, climate(law, 1).metabolism)
-    scales = law.mutation.of_blocks("scale", law.blocks)
-    return player, np.repeat(scales, law.block_sizes)
-
-
-def lifespans(player: Player, genomes: np.ndarray) -> np.ndarray:
-    """Of organisms with these genomes (K, P), one life each: (K,)."""
-    groups = np.split(genomes.astype(np.float32), range(AT_ONCE, len(genomes), AT_ONCE))
-    lived = [play(player._replace(genome=group), len(group), TICKS) for group in groups]
-    return np.concatenate([each.ticks for each in lived])
+    keys = stream(wide([chosen.seed]), Purpose.EVALUATION, wide(numbers))
+    rates = climate(law, len(genomes)).metabolism
+    players = Players(law, habitat, genomes.astype(np.float32), keys, rates)
+    return play(players, 1, TICKS).ticks[:, 0]
 
 
 if __name__ == "__main__":

@@ -34,10 +34,9 @@ COLUMNS = ("lifespan", "score", "length")
 def report(file: Path) -> None:
     """Play, and write what came out."""
     runs = files.runs(file)
-    players = [("a founder", each) for each in founders(runs[0])]
+    rows = played("a founder", runs[0], founders(runs[0]))
     for run in runs:
-        players += [(run.name, each) for each in longest_lived(run)]
-    rows = [row for name, organism in players for row in played(name, organism)]
+        rows += played(run.name, run, longest_lived(run))
     write_rows(file.parent / "results" / f"{file.stem}-games", rows, summary(rows))
 
 
@@ -64,17 +63,19 @@ def founders(run: Path) -> list[Organism]:
     return [found.organism(0, world) for world in range(found.lives().worlds)]
 
 
-def played(name: str, organism: Organism) -> list[dict[str, Any]]:
-    """A row for each way of playing."""
+def played(name: str, run: Path, organisms: list[Organism]) -> list[dict[str, Any]]:
+    """A row for each organism and way of playing."""
     rows = []
     for way, options in WAYS.items():
-        told = organism.evaluate(games=GAMES, ticks=TICKS, **options).to_dict()
-        row = {"who": name, "world": organism.world, "organism": organism.id, "age": organism.age}
-        row |= {"way": way, "games": told["games"], "distinct": told["distinct"]}
-        row |= {column: told[column]["median"] for column in COLUMNS}
-        row |= {f"best_{column}": told[column]["maximum"] for column in COLUMNS}
-        rows.append(row)
-        print(*row.values(), flush=True)
+        found = primordia.Run(run).evaluate(organisms, games=GAMES, ticks=TICKS, **options)
+        for organism, told in zip(organisms, (each.to_dict() for each in found), strict=True):
+            row = {"who": name, "world": organism.world, "organism": organism.id}
+            row |= {"age": organism.age, "way": way}
+            row |= {count: told[count] for count in ("games", "distinct")}
+            row |= {column: told[column]["median"] for column in COLUMNS}
+            row |= {f"best_{column}": told[column]["maximum"] for column in COLUMNS}
+            rows.append(row)
+            print(*row.values(), flush=True)
     return rows
 
 

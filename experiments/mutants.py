@@ -16,7 +16,7 @@ import numpy as np
 from games import longest_lived, write_rows
 
 from primordia.organism import Organism
-from primordia.organism.evaluation import player_of
+from primordia.organism.evaluation import players_of
 from primordia.organism.games import play
 from results import table
 
@@ -38,17 +38,21 @@ def report(file: Path) -> None:
 
 def mutants_of(organism: Organism) -> list[dict[str, Any]]:
     """A row for each scale."""
-    player, noise = player_of(organism.run, organism.id, organism.world), np.random.default_rng(0)
-    own = play(player, 1, TICKS).ticks[0]
-    rows = []
+    own = (organism.id, organism.world)
+    itself, noise = players_of(organism.run, [own]), np.random.default_rng(0)
+    lifespan = play(itself, 1, TICKS).ticks[0, 0]
+    same, rows = itself.take(np.zeros(MUTANTS, int)), []
     for scale in SCALES:
-        steps = (
-            scale * player.law.founder_scale * noise.standard_normal((MUTANTS, len(player.genome)))
-        )
-        genomes = (player.genome + steps).astype(np.float32)
-        ticks = play(player._replace(genome=genomes), MUTANTS, TICKS).ticks
-        row = {"world": organism.world, "organism": organism.id, "lifespan": own, "scale": scale}
-        row |= dict(zip(SHARES, shares(ticks, own), strict=True))
+        steps = scale * same.law.founder_scale * noise.standard_normal(same.genomes.shape)
+        genomes = (same.genomes + steps).astype(np.float32)
+        ticks = play(same._replace(genomes=genomes), 1, TICKS).ticks[:, 0]
+        row = {
+            "world": organism.world,
+            "organism": organism.id,
+            "lifespan": lifespan,
+            "scale": scale,
+        }
+        row |= dict(zip(SHARES, shares(ticks, lifespan), strict=True))
         rows.append({**row, "median": np.median(ticks), "longest": ticks.max()})
         print(*rows[-1].values(), flush=True)
     return rows

@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,8 +11,8 @@ import primordia
 from primordia.engine import loop
 from primordia.errors import InputError
 from primordia.history.lives import lives
-from primordia.organism.evaluation import evaluate, player_of
-from primordia.organism.games import play
+from primordia.organism import Organism, games
+from primordia.organism.evaluation import evaluate
 from tests.commands import complains, here
 from tests.worlds import MEADOW, config
 
@@ -39,8 +40,8 @@ def test_where_nothing_is_random_a_life_is_lived_again(pong: Path) -> None:
     everyone = lives(pong)
     died = np.flatnonzero(everyone.died)[:4]
     assert len(died) == 4
-    for row in died:
-        found = evaluate(pong, int(everyone.id[row]))
+    played = primordia.load(pong).evaluate(Organism(pong, everyone, row) for row in died)
+    for row, found in zip(died, played, strict=True):
         assert (found.games, found.distinct) == (1, 1)
         assert found.lived.ticks[0] == everyone.lifespan[row]
         assert found.whole is not None
@@ -48,14 +49,22 @@ def test_where_nothing_is_random_a_life_is_lived_again(pong: Path) -> None:
         assert found.whole.food[0] <= -20
 
 
-def test_several_may_play_side_by_side(pong: Path) -> None:
-    """Each lives its own life."""
-    everyone = lives(pong)
-    some = [int(everyone.id[row]) for row in np.flatnonzero(everyone.died)[:4]]
-    players = [player_of(pong, each) for each in some]
-    genomes = np.stack([player.genome for player in players])
-    ticks = play(players[0]._replace(genome=genomes), 4, 1000).ticks
-    assert ticks.tolist() == [everyone.lifespan[everyone.row(each)] for each in some]
+@pytest.mark.parametrize("senses", ["live", "frozen", "ignored"])
+def test_side_by_side_each_plays_as_by_itself(
+    poles: Path, monkeypatch: pytest.MonkeyPatch, senses: Any
+) -> None:
+    """However many there are, and however few find room at once."""
+    some = [(0, 0), (7, 0), (3, 0), (11, 0), (7, 0)]
+    monkeypatch.setattr(games, "AT_ONCE", 6)
+    together = evaluate(poles, some, games=3, ticks=300, senses=senses)
+    for each, found in zip(some, together, strict=True):
+        (alone,) = evaluate(poles, [each], games=3, ticks=300, senses=senses)
+        assert found.lived.ticks.tolist() == alone.lived.ticks.tolist()
+        assert found.lived.course.tolist() == alone.lived.course.tolist()
+        assert np.array_equal(found.lived.actions[0], alone.lived.actions[0])
+        assert found.to_dict() == alone.to_dict()
+    assert len({found.lived.course[0] for found in together}) == 4
+    assert evaluate(poles, []) == []
 
 
 def test_doing_it_again_blindly_comes_to_the_same(pong: Path) -> None:
@@ -64,7 +73,8 @@ def test_doing_it_again_blindly_comes_to_the_same(pong: Path) -> None:
     live, ignored = oldest.evaluate(), oldest.evaluate(senses="ignored")
     assert live.lived.ticks == ignored.lived.ticks == oldest.age
     assert live.lived.course == ignored.lived.course
-    assert live.lived.actions == ignored.lived.actions
+    assert np.array_equal(live.lived.actions[0], ignored.lived.actions[0])
+    assert len(live.lived.actions[0]) == oldest.age
     sticky = oldest.evaluate(senses="ignored", games=3, sticky=0.5, noops=30)
     assert sticky.distinct == 3
 
@@ -74,10 +84,11 @@ def test_frozen_senses_are_those_of_the_start(tmp_path: Path) -> None:
     habitat, brain = {"name": "tests.toys:Watch"}, {"kind": "feed-forward"}
     settings = {**MEADOW, "stop": {"ticks": 5}, "habitat": habitat, "brain": brain}
     loop.start(config(settings), tmp_path / "run")
-    live = evaluate(tmp_path / "run", 0, ticks=20)
-    frozen = evaluate(tmp_path / "run", 0, ticks=20, senses="frozen")
+    (live,) = evaluate(tmp_path / "run", [(0, 0)], ticks=20)
+    (frozen,) = evaluate(tmp_path / "run", [(0, 0)], ticks=20, senses="frozen")
     assert live.lived.food[0] != frozen.lived.food[0]
-    assert frozen.lived.food[0] == pytest.approx(20 * float(frozen.lived.actions[0][0]), rel=1e-5)
+    always = float(frozen.lived.actions[0][0, 0])
+    assert frozen.lived.food[0] == pytest.approx(20 * always, rel=1e-5)
 
 
 def test_games_begin_at_random_where_lives_do(poles: Path) -> None:
@@ -95,9 +106,9 @@ def test_it_starves_by_its_tasks_metabolism(tmp_path: Path) -> None:
         config({**MEADOW, **hungry, "habitat": {**MEADOW["habitat"], "food": 1.0}}),
         tmp_path / "run",
     )
-    found = evaluate(tmp_path / "run", 0, games=2)
+    (found,) = evaluate(tmp_path / "run", [(0, 0)], games=2)
     assert found.lived.ticks.tolist() == [60, 60]
-    cut = evaluate(tmp_path / "run", 0, games=2, ticks=59)
+    (cut,) = evaluate(tmp_path / "run", [(0, 0)], games=2, ticks=59)
     assert not cut.lived.over.any()
     assert cut.to_dict()["alive_when_cut"] == 2
 

@@ -47,7 +47,7 @@ def test_trials_tell_what_mutants_inherit(tmp_path: Path, monkeypatch: pytest.Mo
     """Copies live as long as their parents where all lives begin alike; strangers do not."""
     monkeypatch.syspath_prepend(str(EXPERIMENTS))
     script = import_module("founders")
-    for name, value in {"FOUNDERS": 64, "PARENTS": 4, "MUTANTS": 8, "AT_ONCE": 16}.items():
+    for name, value in {"FOUNDERS": 64, "PARENTS": 4, "MUTANTS": 8}.items():
         monkeypatch.setattr(script, name, value)
     arms = [
         {"name": "copies", "mutation": {"founder_scale": 1.0, "scale": 0.0}},

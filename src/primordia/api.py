@@ -8,6 +8,7 @@ run.resume(ticks=200_000, until="none")
 policy = run.oldest().policy()
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import chain, count
 from pathlib import Path
@@ -28,6 +29,7 @@ from primordia.history.fork import fork
 from primordia.history.lives import Lives, lives
 from primordia.history.verify import verify
 from primordia.organism import Organism
+from primordia.organism.evaluation import Evaluation, evaluate
 from primordia.organism.policy import Policy
 
 
@@ -69,6 +71,10 @@ class Run:
             raise InputError(f"{self.path} has no world {world}")
         mine = everyone if world is None else everyone.of_world(world)
         return Organism(self.path, mine, mine.oldest())
+
+    def evaluate(self, organisms: Iterable[Organism], **options: Any) -> list[Evaluation]:
+        """How they do in whole games, which they play side by side; see `evaluation.evaluate`."""
+        return evaluate(self.path, [(each.id, each.world) for each in organisms], **options)
 
     def policy(self) -> Policy:
         """The brain of the longest-lived, as `policy(senses) -> action`."""

@@ -54,9 +54,8 @@ def evaluate(
         raise InputError("--freeze-senses and --open-loop: one or the other")
     senses: Any = "frozen" if freeze_senses else "ignored" if open_loop else "live"
     chosen, given = who(run, organism, world), {n: v for n, v in changes.items() if v is not None}
-    found = evaluation.evaluate(
-        run, chosen.id, chosen.world, games=episodes, ticks=ticks, senses=senses, **given
-    )
+    whose = [(chosen.id, chosen.world)]
+    (found,) = evaluation.evaluate(run, whose, games=episodes, ticks=ticks, senses=senses, **given)
     click.echo(json.dumps(found.to_dict()) if as_json else sheet(found, given))
 
 

@@ -86,7 +86,7 @@ class Organism:
 
     def evaluate(self, **options: Any) -> Evaluation:
         """How it does in whole games; see `evaluation.evaluate`."""
-        return evaluate(self.run, self.id, self.world, **options)
+        return evaluate(self.run, [(self.id, self.world)], **options)[0]
 
     def replay(self, out: str | Path | None = None) -> Path:
         """Its life on video -> the file; see `replay.replay`."""

@@ -1,9 +1,10 @@
-"""Evaluation: an organism plays whole games, under fresh keys, from other starts, or without seeing.
+"""Evaluation: organisms play whole games, under fresh keys, from other starts, or without seeing.
 
-It was selected for its life in its own world. How it does in the game as others score it, and whether it
-looks at the game at all, is asked here.
+They were selected for their lives in their own worlds. How they do in the game as others score it, and
+whether they look at the game at all, is asked here.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -19,7 +20,7 @@ from primordia.history.lineage import rebuild
 from primordia.history.report import opened, world_ticks
 from primordia.keys import Purpose, stream
 from primordia.law.metabolism import Rates
-from primordia.organism.games import Games, Player, play
+from primordia.organism.games import Games, Players, play
 from primordia.wide import wide
 
 GAMES = 30
@@ -83,23 +84,21 @@ class Evaluation:
 
 def evaluate(
     run: Path,
-    organism: int,
-    world: int = 0,
+    organisms: Sequence[tuple[int, int]],
     *,
     games: int = GAMES,
     ticks: int = TICKS,
     senses: Senses = "live",
     **changes: Any,
-) -> Evaluation:
-    """Let an organism play.
+) -> list[Evaluation]:
+    """Let organisms play, side by side; how many there are changes nothing for any of them.
 
     Args:
         run: the run's directory.
-        organism: birth number.
-        world: where it lived.
-        games: how many; one is played where all would be the same.
+        organisms: birth number and world of each.
+        games: how many each; one is played where all would be the same.
         ticks: a game that still goes on then is cut; whole games also where others cut them.
-        senses: `live`; `frozen`, they stay as they are when a game begins; `ignored`, it does what it
+        senses: `live`; `frozen`, they stay as they are when a game begins; `ignored`, each does what it
             did in a game with its task's own settings, over and over, whatever happens.
         changes: settings of the habitat, such as `sticky=0.25, noops=30`.
 
@@ -109,33 +108,40 @@ def evaluate(
     """
     if games < 1 or ticks < 1:
         raise InputError("evaluate: play one game or more, of one tick or more")
-    own = player_of(run, organism, world)
-    player = own._replace(habitat=_changed(run, own.habitat, changes))
-    script = play(own, 1, ticks).actions if senses == "ignored" else None
-    count = 1 if player.deterministic else games
+    if not organisms:
+        return []
+    own = players_of(run, organisms)
+    players = own._replace(habitat=_changed(run, own.habitat, changes))
+    script = play(own, 1, ticks) if senses == "ignored" else None
+    count = 1 if players.deterministic else games
     played = partial(play, games=count, frozen=senses == "frozen", script=script)
-    lived, whole = played(player, ticks=ticks), _in_the_original(player)
-    if whole is None:
-        return Evaluation(organism, world, senses, lived, None)
-    episode = getattr(whole.habitat, "episode", None) or ticks
-    return Evaluation(organism, world, senses, lived, played(whole, ticks=min(ticks, episode)))
+    lived, original = played(players, ticks=ticks), _in_the_original(players)
+    if original is not None:
+        episode = getattr(original.habitat, "episode", None) or ticks
+        whole = played(original, ticks=min(ticks, episode))
+    return [
+        Evaluation(organism, world, senses, lived.of(k), original and whole.of(k))
+        for k, (organism, world) in enumerate(organisms)
+    ]
 
 
-def player_of(run: Path, organism: int, world: int = 0) -> Player:
-    """An organism, with all that its games in its own task are a function of.
+def players_of(run: Path, organisms: Sequence[tuple[int, int]]) -> Players:
+    """Organisms by birth number and world, with all that games in their own task are a function of.
 
     Raises:
         InputError: no such organism was born.
     """
-    genome = rebuild(run, organism, world)
+    genomes = np.stack([rebuild(run, organism, world) for organism, world in organisms])
     config, last = opened(run)
     habitat = config.build_habitat()
     law = config.build_law(habitat)
-    end = world_ticks(last.arrays())[world : world + 1].astype(np.int64)
-    climate = climate_at(run, config, law, world)(end)
-    rates = Rates(*(jnp.asarray(climate[f"metabolism.{name}"]) for name in Rates._fields))
-    key = stream(wide([config.seed + world]), Purpose.EVALUATION, wide([organism]))
-    return Player(law, habitat, genome, key, rates)
+    births, worlds = np.array(organisms, np.int64).T
+    ends = world_ticks(last.arrays()).astype(np.int64)
+    climates = {w: climate_at(run, config, law, w)(ends[[w]]) for w in set(worlds.tolist())}
+    each = (np.concatenate([climates[w][f"metabolism.{n}"] for w in worlds]) for n in Rates._fields)
+    rates = Rates(*map(jnp.asarray, each))
+    keys = stream(wide(config.seed + worlds), Purpose.EVALUATION, wide(births))
+    return Players(law, habitat, genomes, keys, rates)
 
 
 def _changed(run: Path, before: Any, changes: dict[str, Any]) -> Any:
@@ -151,9 +157,10 @@ def _changed(run: Path, before: Any, changes: dict[str, Any]) -> Any:
     return habitat
 
 
-def _in_the_original(player: Player) -> Player | None:
+def _in_the_original(players: Players) -> Players | None:
     """The same in the original game, where there is one; nobody starves in it."""
-    original = player.habitat.original() if hasattr(player.habitat, "original") else None
+    habitat = players.habitat
+    original = habitat.original() if hasattr(habitat, "original") else None
     if original is None:
         return None
-    return player._replace(habitat=original, law=replace(player.law, metabolism=None))
+    return players._replace(habitat=original, law=replace(players.law, metabolism=None))

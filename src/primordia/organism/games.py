@@ -1,8 +1,9 @@
-"""Games: one organism plays many times over, side by side, with no neighbours and no children."""
+"""Games: organisms play many times over, side by side, with no neighbours and no children."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
+from itertools import chain
 from typing import Any, NamedTuple
 
 import jax
@@ -18,30 +19,37 @@ from primordia.law.metabolism import Rates, fixed, metabolise
 from primordia.organism.life.instant import Mind, think
 from primordia.wide import Wide, wide
 
+AT_ONCE = 128
+"""games side by side; a player's own are never parted"""
 MIX = np.uint64(0x9E3779B97F4A7C15)
 """an odd number, for courses"""
 
 
-class Player(NamedTuple):
-    """Who plays, and what its tries are a function of."""
+class Players(NamedTuple):
+    """Who play, K of them, and what their games are a function of."""
 
     law: Law
     habitat: Habitat | HostHabitat
-    genome: np.ndarray
-    """float32 (P,), or (E, P) if somebody else plays each game"""
-    key: Wide
-    """(1,), of everything random"""
+    genomes: np.ndarray
+    """float32 (K, P)"""
+    keys: Wide
+    """(K,), of everything random in each one's games"""
     rates: Rates
-    """of its metabolism, float32 (1,) each"""
+    """of each one's metabolism, float32 (K,) each"""
 
     @property
     def deterministic(self) -> bool:
-        """Whether all its games are the same."""
+        """Whether all games of one are the same."""
         return self.habitat.words == 0 and self.law.motor.kind == "direct"
+
+    def take(self, which: slice | np.ndarray) -> "Players":
+        """Those at an index."""
+        rates = Rates(*(rate[which] for rate in self.rates))
+        return self._replace(genomes=self.genomes[which], keys=self.keys.take(which), rates=rates)
 
 
 class Games(NamedTuple):
-    """What became of them, (E,) each."""
+    """What became of E games of each of K players, (K, E) each; or of one player, (E,)."""
 
     ticks: np.ndarray
     """int64: until it was over, or cut"""
@@ -52,36 +60,58 @@ class Games(NamedTuple):
     course: np.ndarray
     """uint64: differs where what was perceived or gathered in some tick did"""
     actions: list[np.ndarray]
-    """of the first game, tick by tick"""
+    """each one's in its first game, int32 (T,) or float32 (T, A)"""
+
+    def of(self, player: int) -> "Games":
+        """One player's."""
+        *each, actions = self
+        return Games._make([*(found[player] for found in each), [actions[player]]])
+
+    def done(self, tick: int) -> np.ndarray:
+        """What each did in this tick of its first game, over and over: (K,) or (K, A)."""
+        return np.stack([each[(tick - 1) % len(each)] for each in self.actions])
 
 
 def play(
-    player: Player,
+    players: Players,
     games: int,
     ticks: int,
     *,
     frozen: bool = False,
-    script: list[np.ndarray] | None = None,
+    script: Games | None = None,
 ) -> Games:
-    """Play until all games are over, or for so many ticks.
+    """Let each play so many games, until all are over or for so many ticks.
 
     Args:
-        player: who.
-        games: how many.
+        players: who.
+        games: how many each.
         ticks: when a game is cut.
         frozen: senses stay as they are at the start.
-        script: actions to take, over and over, whatever is perceived.
+        script: games of the same players, whose actions they take, over and over, whatever is perceived.
     """
-    tries, playing = _Tries(player, games), np.ones(games, bool)
-    length, food = np.zeros(games, np.int64), np.zeros(games)
-    course, actions = np.zeros(games, np.uint64), []
-    with _opened(player.habitat, games) as table:
-        senses = first = np.array(table.reset(np.arange(games), tries.words()))
+    size, parts = max(AT_ONCE // games, 1), []
+    for first in range(0, len(players.genomes), size):
+        some = slice(first, first + size)
+        done = script and script._replace(actions=script.actions[some])
+        parts.append(_side_by_side(players.take(some), games, ticks, frozen, done))
+    *each, actions = zip(*parts, strict=True)
+    return Games._make([*map(np.concatenate, each), list(chain.from_iterable(actions))])
+
+
+def _side_by_side(
+    players: Players, games: int, ticks: int, frozen: bool, script: Games | None
+) -> Games:
+    """All at once; a player's games are next to each other."""
+    tries, count = _Tries(players, games), len(players.genomes) * games
+    playing, course = np.ones(count, bool), np.zeros(count, np.uint64)
+    length, food, actions = np.zeros(count, np.int64), np.zeros(count), []
+    with _opened(players.habitat, count) as table:
+        senses = first = np.array(table.reset(np.arange(count), tries.words()))
         for tick in range(1, ticks + 1):
             action = tries.think(first if frozen else senses, tick)
             if script is not None:
-                action = np.broadcast_to(script[(tick - 1) % len(script)], action.shape)
-            actions.append(np.array(action[0]))
+                action = np.repeat(script.done(tick), games, axis=0)
+            actions.append(action[::games].copy())
             senses, outcome = table.step(action, playing)
             dies = tries.judge(outcome, senses)
             length += playing
@@ -91,7 +121,9 @@ def play(
             playing = playing & ~dies
             if not playing.any():
                 break
-    return Games(length, ~playing, food, course, actions)
+    each = [found.reshape(-1, games) for found in (length, ~playing, food, course)]
+    taken = zip(np.stack(actions, axis=1), length[::games], strict=True)
+    return Games._make([*each, [own[:ticks] for own, ticks in taken]])
 
 
 def _stirred(course: np.ndarray, senses: np.ndarray, food: np.ndarray) -> np.ndarray:
@@ -102,41 +134,40 @@ def _stirred(course: np.ndarray, senses: np.ndarray, food: np.ndarray) -> np.nda
 
 
 class _Tries:
-    """The organism's brain and its energy, once a game."""
+    """Brains and energy, one for each game."""
 
-    def __init__(self, player: Player, games: int) -> None:
-        law, self._player = player.law, player
-        self._cells = jnp.arange(games, dtype=jnp.int32)
-        genome = split(law.brain, jnp.asarray(_one_a_game(player.genome, games)))
-        self._mind = Mind(genome, player.key, self._cells)
-        self._memory = jnp.zeros((games, law.brain.memory), jnp.float32)
-        self._energy = jnp.broadcast_to(fixed(jnp.asarray(player.rates.store)), (games,))
+    def __init__(self, players: Players, games: int) -> None:
+        law, self._players = players.law, players
+        each = partial(jnp.repeat, repeats=games, axis=0)
+        self._keys = players.keys.map(each)
+        self._cells = jnp.asarray(np.tile(np.arange(games), len(players.genomes)), jnp.int32)
+        self._mind = Mind(
+            split(law.brain, each(jnp.asarray(players.genomes))), self._keys, self._cells
+        )
+        self._memory = jnp.zeros((len(self._cells), law.brain.memory), jnp.float32)
+        self._rates = Rates(*map(each, players.rates))
+        self._energy = fixed(self._rates.store)
         self._think, self._eat = jax.jit(partial(think, law)), jax.jit(metabolise)
 
     def words(self) -> np.ndarray:
-        """What the games are begun with, uint32 (E, words)."""
-        key = stream(self._player.key, Purpose.BODY, wide([0]))
-        return np.asarray(body_words(key, self._cells, self._player.habitat.words))
+        """What the games are begun with, uint32 (K E, words)."""
+        key = stream(self._keys, Purpose.BODY, wide([0]))
+        return np.asarray(body_words(key, self._cells, self._players.habitat.words))
 
     def think(self, senses: np.ndarray, tick: int) -> np.ndarray:
-        """Senses (E, S) -> actions, int32 (E,) or float32 (E, A)."""
+        """Senses (K E, S) -> actions, int32 (K E,) or float32 (K E, A)."""
         self._memory, action = self._think(self._mind, self._memory, senses, wide([tick]))
         return np.asarray(action)
 
     def judge(self, outcome: Outcome, senses: np.ndarray) -> np.ndarray:
-        """Who is dead after a tick, bool (E,)."""
+        """Who is dead after a tick, bool (K E,)."""
         dies = np.asarray(outcome.fatal) | ~np.isfinite(senses).all(axis=1)
         if outcome.fault is not None:
             dies = dies | np.asarray(outcome.fault)
-        if self._player.law.metabolism is None:
+        if self._players.law.metabolism is None:
             return dies
-        rates = self._player.rates
-        self._energy = self._eat(self._energy, outcome.food, outcome.effort, rates)
+        self._energy = self._eat(self._energy, outcome.food, outcome.effort, self._rates)
         return dies | (np.asarray(self._energy) <= 0)
-
-
-def _one_a_game(genome: np.ndarray, games: int) -> np.ndarray:
-    return np.broadcast_to(genome, (games, genome.shape[-1]))
 
 
 @contextmanager
