@@ -1,7 +1,6 @@
 """The command line as a user meets it: in a process of its own, or faster, in this one."""
 
 import io
-import json
 import os
 import subprocess
 import sys
@@ -27,18 +26,6 @@ def environment(cache: Path | None = None) -> dict[str, str]:
     return {**os.environ, **extra}
 
 
-def primordia(*words: object, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
-    """Run a command to its end."""
-    return subprocess.run(
-        [*COMMAND, *map(str, words)],
-        env=environment(CACHE),
-        capture_output=True,
-        text=True,
-        cwd=cwd,
-        timeout=300,
-    )
-
-
 def begin(*words: object) -> subprocess.Popen[str]:
     """Start a command and leave it running."""
     pipes: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
@@ -55,13 +42,6 @@ def here(*words: object) -> subprocess.CompletedProcess[str]:
         except SystemExit as end:
             status = int(end.code or 0)
     return subprocess.CompletedProcess(argv, status, out.getvalue(), err.getvalue())
-
-
-def info(run: Path) -> dict[str, Any]:
-    """`info --json`."""
-    done = primordia("info", run, "--json")
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
 
 
 def complains(done: subprocess.CompletedProcess[str], status: int, *parts: str) -> None:

@@ -2,6 +2,7 @@
 
 import os
 import re
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -42,23 +43,30 @@ def try_out(kind: str, text: str, where: Path) -> None:
     """Do what a reader does with a block."""
     if named := FILE.match(text):
         (where / named[1]).write_text(text)
-    if kind == "sh" and text.startswith("make "):
+    if kind == "sh":
         for line in text.splitlines():
-            run(["make", "-n", "-C", str(HERE), line.split()[1]], where)
-    elif kind == "sh":
-        run(["bash", "-ec", text], where)
+            program, *words = shlex.split(line, comments=True)
+            if program == "make":
+                run(["make", "-n", "-C", str(HERE), *words], where)
+            else:
+                assert program == "primordia", line
+                done = commands.here(*words)
+                assert done.returncode == 0, f"{line}\n{done.stdout}{done.stderr}"
     elif kind == "python":
         run([sys.executable, "-c", text], where)
     elif kind == "toml":
         file = where / "block.toml"
         file.write_text(text)
-        sys.path.insert(0, str(where))  # where a habitat of the page's own may be
         load(str(file))
-        sys.path.remove(str(where))
 
 
 @pytest.mark.parametrize("page", with_blocks(), ids=lambda page: page.stem)
-def test_everything_a_page_says_to_do_works(page: Path, tmp_path: Path) -> None:
+def test_everything_a_page_says_to_do_works(
+    page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Commands in this process, for speed; the current folder is where a page's habitats are."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(str(tmp_path))
     for kind, text in blocks(page):
         assert kind in {"sh", "python", "toml", "text"}, f"{page}: what is a block of {kind}?"
         try_out(kind, text, tmp_path)

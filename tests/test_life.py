@@ -16,7 +16,7 @@ from primordia.habitats.cartpole import CartPole
 from primordia.history.lives import lives
 from primordia.law.metabolism import ONE
 from primordia.law.world import Cause
-from primordia.organism import replay
+from primordia.organism import Organism, replay
 from primordia.organism.life import Life
 from primordia.organism.life.fused import Fused
 from primordia.organism.life.hosted import Hosted
@@ -189,8 +189,10 @@ def test_an_organism_tells_what_is_recorded(poles: Path) -> None:
     run = primordia.load(poles)
     births = run.table("births").to_pylist()
     deaths = {row["id"]: row for row in run.table("deaths").to_pylist()}
+    everyone = run.lives()
+    by_id = {row["id"]: Organism(poles, everyone, everyone.row(row["id"])) for row in births}
     for row in births[::40]:
-        organism = run.organism(row["id"])
+        organism = by_id[row["id"]]
         assert (organism.parent, organism.cell, organism.born) == (
             row["parent"], row["cell"], row["tick"])  # fmt: skip
         died = deaths.get(row["id"])
@@ -198,9 +200,10 @@ def test_an_organism_tells_what_is_recorded(poles: Path) -> None:
         assert organism.age == (died["tick"] if died else 6000) - row["tick"]
         line = organism.descent()
         assert line[-1] == organism.id
-        assert run.organism(line[0]).origin == "founder"
-        assert [run.organism(child).parent for child in line[1:]] == line[:-1]
-    assert run.oldest().age == max(run.organism(row["id"]).age for row in births)
+        assert by_id[line[0]].origin == "founder"
+        assert [by_id[child].parent for child in line[1:]] == line[:-1]
+    assert run.oldest().age == max(organism.age for organism in by_id.values())
+    assert run.organism(organism.id).descent() == organism.descent()
 
 
 def test_tables_as_arrow_pandas_and_numpy(poles: Path) -> None:

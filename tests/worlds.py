@@ -48,15 +48,17 @@ def config(base: str | dict[str, Any] = "CartPole-survival", **settings: Any) ->
     return validated(merged(base, settings), source=base["task"])
 
 
-_compiled: dict[str, Fused] = {}
+_compiled: dict[str, Any] = {}
 
 
 def engine(config: Config) -> Engine:
     """An Engine, with what was compiled for another that differs in seed and limits only."""
     made = Engine(config)
+    key = config.model_copy(update={"seed": 0, "stop": None}).model_dump_json(warnings=False)
     if isinstance(made.chunks, Fused):
-        key = config.model_copy(update={"seed": 0, "stop": None}).model_dump_json(warnings=False)
         made.chunks = _compiled.setdefault(key, made.chunks)
+    else:
+        made.chunks._calls = _compiled.setdefault(key, made.chunks._calls)
     return made
 
 

@@ -57,6 +57,17 @@ class Decision(NamedTuple):
     """int32 (): ticks after which the world is to be settled at the latest"""
 
 
+class Calls:
+    """What is compiled: of the law, for bodies that take so many random words."""
+
+    def __init__(self, law: Law, words: int, form: Form) -> None:
+        self.hold, self.release = jax.jit(form.hold), jax.jit(form.release)
+        self.think = jax.jit(partial(_think, law, form))
+        self.live = jax.jit(partial(_live, law, form))
+        self.look = jax.jit(partial(_look, law, form, words))
+        self.settle = jax.jit(partial(_settle, law, form, words), donate_argnums=(0, 1))
+
+
 class Hosted:
     """Law compiled, habitat on the host. The bodies live in the habitat; the state holds senses."""
 
@@ -71,43 +82,38 @@ class Hosted:
 
     def begin(self, world: World) -> State:
         """The state of a run before genesis."""
-        law, words, form = self._law, self._habitat.words, Form(world)
-        self._hold, self._release = jax.jit(form.hold), jax.jit(form.release)
-        self._think = jax.jit(partial(_think, law, form))
-        self._live = jax.jit(partial(_live, law, form))
-        self._settle = jax.jit(partial(_settle, law, form, words), donate_argnums=(0, 1))
-        self._look = jax.jit(partial(_look, law, form, words))
-        self._no_fates = no_fates(law)
+        self._no_fates = no_fates(self._law)
+        self._calls = Calls(self._law, self._habitat.words, Form(world))
         cells = len(world.organisms.alive)
         return State(world, np.zeros((cells, self._habitat.senses_size), np.float32))
 
     def advance(self, state: State, limits: Limits, ticks: int) -> tuple[State, int]:
         """At most so many ticks, fewer if every world stops or the lists are full -> ticks done."""
         self._tallies.begin()
-        genome, held = state.world.organisms.genome, self._hold(state.world)
+        genome, held = state.world.organisms.genome, self._calls.hold(state.world)
         events, senses, done = log.emptied(self._lists), np.array(state.bodies), 0
-        decision = self._look(genome, held, events, limits)
-        thought = self._think(genome, held, senses)
+        decision = self._calls.look(genome, held, events, limits)
+        thought = self._calls.think(genome, held, senses)
         while done < ticks and decision.go_on:
             most = min(int(decision.due), ticks - done)
             thought, senses, now, fates, passed = self._quiet(
                 genome, held, thought, senses, decision.active, most
             )
             done += passed
-            genome, events, held, decision = self._settle(
+            genome, events, held, decision = self._calls.settle(
                 genome, events, held, now, fates, np.int32(passed), limits
             )
             self._tallies.note_deaths(np.asarray(decision.died))
             if np.asarray(decision.born).any():
                 senses = self._embody(senses, decision)
-                thought = self._think(genome, held, senses)
+                thought = self._calls.think(genome, held, senses)
             self._tallies.note_samples(decision.alive, events.samples)
         self._lists, self.events = events, self._tallies.beside(events)
         return State(self._released(genome, held), senses), done
 
     def _released(self, genome: Genome, held: Held) -> World:
         """The world again; its genomes do not pass through a call, which would copy them."""
-        world = self._release(held, {})
+        world = self._calls.release(held, {})
         return world._replace(organisms=world.organisms._replace(genome=genome))
 
     def _quiet(
@@ -130,7 +136,7 @@ class Hosted:
         while passed < most and not np.asarray(fates.eventful):
             senses, outcome = self._habitat.step(np.asarray(thought.action), alive)
             passed += 1
-            now, thought, fates = self._live(
+            now, thought, fates = self._calls.live(
                 genome, now, thought, senses, outcome, active, np.int32(passed)
             )
         return thought, senses, now, fates, passed
