@@ -161,3 +161,32 @@ def test_deaths_of_the_last_quarter(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         spans = [e - b for w, b, e, died in here if w == world and died and 300 < e <= 400]
         assert found == {"late_deaths": len(spans), "late_lifespan": float(np.median(spans))}
         assert spans
+
+
+def test_jumps_are_found_where_there_are_any(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Steps are found where they are; in an order that means nothing there are none, as promised."""
+    monkeypatch.syspath_prepend(str(EXPERIMENTS))
+    jumps, noise = import_module("jumps"), np.random.default_rng(3)
+    stairs = np.repeat([2.0, 4.0, 3.0, 6.0], [120, 200, 80, 100])
+    steps = jumps.parted(stairs + 0.5 * noise.standard_normal(500))
+    assert np.abs(np.array(steps.ends) - [120, 320, 400, 500]).max() <= 3
+    np.testing.assert_allclose(np.log(steps.factors), [2, -1, 3], atol=0.3)
+    told = jumps.told_of(stairs)
+    assert (told["jumps"], told["falls"]) == (2, 1)
+    assert told["largest jump"] == pytest.approx(np.exp(3), rel=0.01)
+    flat = [len(jumps.parted(noise.standard_normal(200)).ends) > 1 for _ in range(60)]
+    assert sum(flat) <= 10  # a twentieth of 60 is 3; more than 10 come once in 3,000 tries
+    assert len(jumps.parted(np.arange(19.0)).ends) == 1
+
+
+def test_jumps_of_a_run_by_world(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(EXPERIMENTS))
+    settings = {**MEADOW, "brain": {"hidden": 1}, "seeds": 2, "hazard": 0.05, "replication": 0.3}
+    safer = {"kind": "schedule", "setting": "hazard", "at": 500, "value": 0.005}
+    loop.start(config({**settings, "seasons": [safer], "stop": {"ticks": 3000}}), tmp_path / "a")
+    jumps = import_module("jumps")
+    rows = jumps.steps_of(tmp_path / "a")
+    assert all(1 <= row["jumps"] <= 2 for row in rows), "who dies soon after had lived before"
+    assert [row["falls"] for row in rows] == [0, 0]
+    assert all(5 < row["largest jump"] < 20 for row in rows)
+    assert "| a | 2 | " in jumps.summary(rows)
