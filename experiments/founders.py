@@ -56,7 +56,8 @@ def trial(name: str, settings: dict[str, Any]) -> list[str]:
     best = np.argsort(-lived, kind="stable")[:PARENTS]
     steps = scales * noise.standard_normal((PARENTS * MUTANTS, len(scales)))
     mutants = lifespans(chosen, np.repeat(founders[best], MUTANTS, axis=0) + steps, FOUNDERS).mean()
-    heritability = (mutants - lived.mean()) / (lived[best].mean() - lived.mean())
+    advantage = lived[best].mean() - lived.mean()
+    heritability = (mutants - lived.mean()) / advantage if advantage else np.nan
     ticks = (np.median(lived), lived.mean(), lived.max(), lived[best].mean(), mutants)
     row = [name, *(f"{value:,.0f}" for value in ticks), f"{heritability:.2f}"]
     print(*row, flush=True)

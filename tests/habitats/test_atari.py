@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import primordia
+from primordia.config import load
 from primordia.habitats import atari_games
 from primordia.habitats.atari import Atari
 from primordia.habitats.atari_games import games
@@ -107,13 +108,23 @@ class Played:
         both = np.array([0, 1])
         self.senses = self.habitat.reset(both, np.zeros((2, self.habitat.words), np.uint32))
 
-    def until(self, name: str, most: int = 3000) -> tuple[int, Any]:
-        """Step, doing nothing, until the first body has it."""
+    def until(self, name: str, most: int = 3000, button: int = 0) -> tuple[int, Any]:
+        """Step with the same button, the first if not said, until the first body has it."""
         for tick in range(1, most):
-            _, outcome = self.habitat.step(np.zeros(2, np.int32), np.ones(2, bool))
+            _, outcome = self.habitat.step(np.full(2, button, np.int32), np.ones(2, bool))
             if np.asarray(getattr(outcome, name))[0]:
                 return tick, outcome
         raise AssertionError(f"no {name} in {most} ticks")
+
+
+@pytest.mark.parametrize("button", range(3))
+def test_nobody_can_put_off_breakout_by_never_serving(button: int) -> None:
+    """Whatever is pressed, the ball comes, and is lost to whoever keeps to one side."""
+    settings = load("Breakout-survival-forager").habitat
+    breakout = Played(**{name: value for name, value in settings.items() if name != "name"})
+    assert breakout.habitat.action.size == 3
+    assert breakout.until("fatal", 300, button)[0] > 60
+    breakout.habitat.close()
 
 
 def test_senses_are_the_bytes_asked_for_scaled() -> None:
