@@ -127,7 +127,8 @@ def test_what_is_told_of_organisms_in_other_games(
 ) -> None:
     results = ponged.parent / "results"
     assert "deaths in the last quarter" in (results / "pong.md").read_text()
-    games, mutants = import_module("games"), import_module("mutants")
+    games, mutants, runs = (
+        import_module("games"), import_module("mutants"), import_module("files").runs)  # fmt: skip
     for script in (games, mutants):
         monkeypatch.setattr(script, "TICKS", 400)
     monkeypatch.setattr(games, "GAMES", 2)
@@ -140,6 +141,11 @@ def test_what_is_told_of_organisms_in_other_games(
     for own, sticky in zip(rows[::2], rows[1::2], strict=True):
         assert float(own["lifespan"]) >= float(own["age"])
         assert (own["games"], sticky["games"]) == ("1", "2")
+    import_module("champions").report(ponged)
+    kept = ponged.parent / "genomes" / "pong.safetensors"
+    loop.start(load("Pong-survival", {"ancestors": [str(kept)], "stop": {"ticks": 1}}), Path("new"))
+    new, old = primordia.load("new").organism(0), primordia.load(runs(ponged)[0]).oldest()
+    np.testing.assert_array_equal(new.genome(), old.genome())
     mutants.report(ponged)
     rows = list(csv.DictReader((results / "pong-mutants.csv").read_text().splitlines()))
     copies = [float(row["as long"]) for row in rows if row["scale"] == "0.0"]
