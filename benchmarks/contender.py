@@ -34,6 +34,7 @@ def _envpool(game: str, cells: int) -> Loop:
 
 WAYS: dict[str, Callable[[str, int], Any]] = {
     "bare": arcade.Bare,
+    "in step": arcade.InStep,
     "ours": _ours,
     "batch": robots.Batch,
     "async": partial(_gymnasium, "async"),

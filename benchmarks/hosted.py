@@ -20,7 +20,10 @@ from primordia.config import load
 from worlds import median
 
 GAMES = "pong", "battle_zone"
-SIZES = {32: ("bare", "ours", "async", "sync", "published", "envpool"), 128: ("bare", "ours")}
+SIZES = {
+    32: ("bare", "ours", "in step", "async", "sync", "published", "envpool"),
+    128: ("bare", "ours", "in step"),
+}
 """Ways that are set against each other at so many cells, the first as what cannot be passed."""
 ROBOT_SIZES = {32: ("batch", "ours", "async", "sync", "envpool"), 256: ("batch", "ours")}
 ROUNDS = 5

@@ -196,3 +196,16 @@ def test_jumps_of_a_run_by_world(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     assert [row["falls"] for row in rows] == [0, 0]
     assert all(5 < row["largest jump"] < 20 for row in rows)
     assert "| a | 2 | " in jumps.summary(rows)
+
+
+@pytest.mark.slow
+def test_champions_of_pong_live_until_its_clock_comes_round(tmp_path: Path) -> None:
+    """Frames are counted in 16 bits; then the game gives the opponent a point."""
+    pytest.importorskip("ale_py")
+    champions = {"ancestors": [str(EXPERIMENTS / "atari" / "genomes" / "pong-long.safetensors")]}
+    settings = {"cells": 5, "genesis": "fill", "stop": {"ticks": 1}}
+    run = primordia.run("Pong-survival", tmp_path / "run", **champions, **settings)
+    found = run.evaluate([run.organism(each) for each in range(5)], ticks=70_000)
+    lived = [int(each.lived.ticks[0]) for each in found]
+    assert max(lived) == 65_210
+    assert sorted(lived)[1] == 65_210, "four of five"

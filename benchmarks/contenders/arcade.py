@@ -41,6 +41,36 @@ class Bare(Loop):
         return frames
 
 
+class InStep(Loop):
+    """Our worker processes with random buttons, no brains and no law: what any law that waits for all of
+    a tick's frames before the next tick can come to.
+    """
+
+    about = "our workers, random buttons, no brains and no law"
+
+    def __init__(self, game: str, cells: int) -> None:
+        habitat = described(game)[1]
+        habitat.open(cells)
+        self._habitat, self._everyone, self._number = habitat, np.ones(cells, bool), 0
+        self._begin(self._everyone)
+        choices = np.random.default_rng(0).integers
+        self._buttons = choices(habitat.action.size, size=(997, cells), dtype=np.int32)
+
+    def tick(self) -> int:
+        """A frame of each; a new game when it is over."""
+        pool = self._habitat._pool
+        self._number = (self._number + 1) % len(self._buttons)
+        pool.arrays["action"][:] = self._buttons[self._number]
+        pool.step(self._everyone)
+        if pool.arrays["game_over"].any():
+            self._begin(pool.arrays["game_over"])
+        return len(self._everyone)
+
+    def _begin(self, which: np.ndarray) -> None:
+        born = np.flatnonzero(which)
+        self._habitat.reset(born, np.zeros((len(born), self._habitat.words), np.uint32))
+
+
 class Organism:
     """A network of NumPy matrices that plays on a console of its own."""
 
