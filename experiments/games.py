@@ -5,7 +5,9 @@
 For experiments that have been run (`experiments/run.py`). Each organism plays the game of its task;
 games with sticky buttons and no-ops at the start; the first with frozen senses; and the second
 blindly, doing what it did in the first. Beside them plays the first founder of each world of the
-reference, which nothing has selected. The table goes to `results/` beside the file, as Markdown and CSV.
+reference, which nothing has selected. Since the longest-lived of many may be as good by luck as by
+descent, all that are alive at the end play a game with sticky buttons and no-ops too. The table goes to
+`results/` beside the file, as Markdown and CSV.
 """
 
 import csv
@@ -34,9 +36,10 @@ COLUMNS = ("lifespan", "score", "length")
 def report(file: Path) -> None:
     """Play, and write what came out."""
     runs = files.runs(file)
-    rows = played("a founder", runs[0], founders(runs[0]))
+    rows = played("a founder", runs[0], founders(runs[0]), WAYS, GAMES)
     for run in runs:
-        rows += played(run.name, run, longest_lived(run))
+        rows += played(run.name, run, longest_lived(run), WAYS, GAMES)
+        rows += played(f"{run.name}, all alive", run, alive(run), {"sticky, no-ops": NOISE}, 1)
     write_rows(file.parent / "results" / f"{file.stem}-games", rows, summary(rows))
 
 
@@ -63,11 +66,23 @@ def founders(run: Path) -> list[Organism]:
     return [found.organism(0, world) for world in range(found.lives().worlds)]
 
 
-def played(name: str, run: Path, organisms: list[Organism]) -> list[dict[str, Any]]:
+def alive(run: Path) -> list[Organism]:
+    """At the end, in all worlds."""
+    everyone = primordia.load(run).lives()
+    return [Organism(run, everyone, int(row)) for row in np.flatnonzero(~everyone.died)]
+
+
+def played(
+    name: str,
+    run: Path,
+    organisms: list[Organism],
+    ways: dict[str, dict[str, Any]],
+    games: int,
+) -> list[dict[str, Any]]:
     """A row for each organism and way of playing."""
     rows = []
-    for way, options in WAYS.items():
-        found = primordia.Run(run).evaluate(organisms, games=GAMES, ticks=TICKS, **options)
+    for way, options in ways.items():
+        found = primordia.Run(run).evaluate(organisms, games=games, ticks=TICKS, **options)
         for organism, told in zip(organisms, (each.to_dict() for each in found), strict=True):
             row = {"who": name, "world": organism.world, "organism": organism.id}
             row |= {"age": organism.age, "way": way}
@@ -81,18 +96,21 @@ def played(name: str, run: Path, organisms: list[Organism]) -> list[dict[str, An
 
 def summary(rows: list[dict[str, Any]]) -> str:
     """Medians over worlds of each world's median, with the least and the most."""
-    names = list(dict.fromkeys(row["who"] for row in rows))
     lines = []
-    for name in names:
-        for way in WAYS:
-            mine = [row for row in rows if (row["who"], row["way"]) == (name, way)]
-            cells = [spread([row[column] for row in mine]) for column in COLUMNS]
-            lines.append([name, way, len(mine), *cells])
+    for name, way in dict.fromkeys((row["who"], row["way"]) for row in rows):
+        mine = [row for row in rows if (row["who"], row["way"]) == (name, way)]
+        worlds = sorted({row["world"] for row in mine})
+        cells = [
+            spread([np.median([r[column] for r in mine if r["world"] == w]) for w in worlds])
+            for column in COLUMNS
+        ]
+        lines.append([name, way, len(mine), *cells])
     note = (
-        f"Medians over worlds (least to most) of each organism's median over {GAMES} games, or the"
-        f" one game where nothing is drawn at random. Games were cut after {TICKS:,} ticks."
+        f"Medians over worlds (least to most) of the median in each world, and of each organism's over"
+        f" {GAMES} games; all alive play one each. One is enough where nothing is drawn at random. Games"
+        f" were cut after {TICKS:,} ticks."
     )
-    return f"{table(['who', 'plays', 'worlds', *COLUMNS], lines)}\n\n{note}"
+    return f"{table(['who', 'plays', 'organisms', *COLUMNS], lines)}\n\n{note}"
 
 
 def spread(values: list[float]) -> str:

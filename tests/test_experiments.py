@@ -137,6 +137,9 @@ def test_what_is_told_of_organisms_in_other_games(
     monkeypatch.setattr(mutants, "SCALES", (0.0, 0.3))
     games.report(ponged)
     rows = list(csv.DictReader((results / "pong-games.csv").read_text().splitlines()))
+    alive = [row for row in rows if row["who"] == "heredity, all alive"]
+    assert len(alive) == primordia.load(runs(ponged)[0]).info()["alive"]
+    rows = [row for row in rows if "all alive" not in row["who"]]
     assert [row["who"] for row in rows[::2]] == ["a founder", "heredity", "none"]
     for own, sticky in zip(rows[::2], rows[1::2], strict=True):
         assert float(own["lifespan"]) >= float(own["age"])
