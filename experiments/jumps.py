@@ -12,6 +12,7 @@ heredity tells how many jumps are due to that. The table goes to `results/` besi
 and CSV, world by world.
 """
 
+import sys
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -57,6 +58,8 @@ def steps_of(run: Path) -> list[dict[str, Any]]:
     everyone = found.lives()
     for told, number in zip(found.info()["worlds"], range(everyone.worlds), strict=True):
         mine = everyone.of_world(number)
+        if not mine.died.any():
+            sys.exit(f"{run}: in world {number} nobody has died; there are no lifespans to look at")
         dead = np.flatnonzero(mine.died)
         spans = mine.lifespan[dead[np.argsort(mine.ended[dead], kind="stable")]]
         series = pooled(np.log(np.maximum(spans, 1)))
