@@ -17,6 +17,7 @@ DIRECTIONS = {
     "lifespan": ("shorter", "longer"),
     "longest": ("shorter", "longer"),
     "pace": ("fewer", "more"),
+    "food": ("less", "more"),
 }
 """What a smaller and a larger figure mean."""
 
@@ -74,7 +75,7 @@ def number(value: float) -> str:
     """Three digits at least, commas between thousands."""
     if math.isinf(value):
         return "inf"
-    return f"{value:,.0f}" if value >= 100 or value == round(value) else f"{value:.3g}"
+    return f"{value:,.0f}" if abs(value) >= 100 or value == round(value) else f"{value:.3g}"
 
 
 def _runs(compared: Comparison) -> Table:
@@ -112,7 +113,7 @@ def _notes(compared: Comparison) -> list[str]:
     return [
         "Medians and intervals are over worlds. Of a world that stopped unsaturated, what is known"
         " counts.",
-        *[late] * ("pace" in compared.outcomes),
+        *[late] * bool({"pace", "food"} & set(compared.outcomes)),
         f"A long life: {compared.age:,} ticks. Mean lifespan: ticks, in each world, up to that age"
         " (Kaplan-Meier).",
         "Delta: Cliff's; the share of pairs of worlds in which the run's figure is larger than the"

@@ -15,12 +15,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from primordia.comparison.contrast import Bounds, Contrast, Figures, contrast
-from primordia.comparison.pace import Pace, pace
+from primordia.comparison.pace import LATE, WINDOWS, Pace, pace
 from primordia.comparison.survival import Survival, survival
 from primordia.config import Config
 from primordia.disk.directory import read_config
 from primordia.errors import InputError
 from primordia.history import report
+from primordia.history.foraging import harvests
 from primordia.history.lives import Lives, lives
 
 OUTCOMES = {
@@ -30,6 +31,7 @@ OUTCOMES = {
     "lifespan": "mean lifespan",
     "longest": "longest life",
     "pace": "ticks lived for each death, late",
+    "food": "food a {span}, late",
 }
 UNSATURATED = ("longest", "pace")
 """Those that are of use only where saturation is rare."""
@@ -45,7 +47,8 @@ class Arm:
     figures: dict[str, Figures]
     """of each of OUTCOMES: which birth the first was that lived to the comparison's age; births and
     ticks to saturation, founders counted; mean lifespan in a world, in ticks, up to that age; ticks of
-    the longest life, so far or in all; ticks lived for each death, see `pace`"""
+    the longest life, so far or in all; ticks lived for each death, and food that an organism gathered in
+    a span, in the last quarter of the time that all worlds have lived through"""
     survival: Survival
     pace: Pace
 
@@ -73,6 +76,8 @@ class Comparison:
     """horizon, or None: as far as each world went"""
     ticks: int | None
     """horizon, or None: as far as each world went"""
+    span: str
+    """of time in which food is counted: a second, or a tick where the habitat knows of no seconds"""
 
     @property
     def outcomes(self) -> dict[str, str]:
@@ -80,7 +85,7 @@ class Comparison:
         common = any(2 * arm.saturated >= arm.worlds for arm in self.arms)
         untold = UNSATURATED if common else ()
         return {
-            name: words
+            name: words.format(span=self.span)
             for name, words in OUTCOMES.items()
             if name not in untold and any(arm.figures[name].known.any() for arm in self.arms)
         }
@@ -135,7 +140,7 @@ def compare(
     names = [path.resolve().name for path in runs]
     everyone = [lives(path) for path in runs]
     until = min(int(world.ended.max(initial=0)) for each in everyone for world in _worlds(each))
-    arms = []
+    arms, rate = [], getattr(configs[0].build_habitat(), "rate", None)
     for path, lived, name, own in zip(runs, everyone, names, differing(configs), strict=True):
         worlds = _worlds(lived)
         survived, dying = survival(lived, len(worlds), age), pace(worlds, until)
@@ -145,10 +150,20 @@ def compare(
             "lifespan": _all_known(survived.restricted_mean),
             "longest": _all_known([world.lifespan.max() for world in worlds]),
             "pace": dying.late,
+            "food": foraged(path, len(worlds), until, rate or 1),
         }
         label = name if names.count(name) == 1 else str(path)
         arms.append(Arm(label, own, figures, survived, dying))
-    return Comparison(configs[0].task, tuple(arms), age, births, ticks)
+    span = "second" if rate else "tick"
+    return Comparison(configs[0].task, tuple(arms), age, births, ticks, span)
+
+
+def foraged(path: Path, worlds: int, until: int, span: float) -> Figures:
+    """Food that an organism gathered in so many ticks, late in the time up to one; known if any was."""
+    late = until * np.array([1 - LATE / WINDOWS, 1])
+    each = [harvest.between(late)[0] for harvest in harvests(path, worlds)]
+    food = span * np.nan_to_num(np.array(each))
+    return Figures(food, np.full(worlds, bool(food.any())))
 
 
 def _all_known(values: ArrayLike) -> Figures:

@@ -110,5 +110,8 @@ def _quantile(values: np.ndarray, q: float) -> np.ndarray:
 
 
 def _ratio(run: tuple, reference: tuple) -> tuple[np.ndarray, np.ndarray]:
-    """Bounds of a ratio from bounds of its terms, which are positive: 0 to infinity if need be."""
-    return np.divide(run[0], reference[1]), np.divide(run[1], reference[0])
+    """Bounds of a ratio from bounds of its terms: 0 to infinity unless both are surely positive."""
+    with np.errstate(all="ignore"):
+        low, high = np.divide(run[0], reference[1]), np.divide(run[1], reference[0])
+    positive = np.minimum(run[0], reference[0]) > 0
+    return np.where(positive, low, 0), np.where(positive, high, np.inf)

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from primordia.config import Config
 from primordia.errors import InputError, Trouble
-from primordia.figures import ages, population, spacetime, style, survival
+from primordia.figures import ages, foraging, population, spacetime, style, survival
 from primordia.history.lives import Lives, lives
 from primordia.history.report import opened
 
@@ -41,8 +41,9 @@ def plot(run: Path, out: Path | None = None, world: int = 0) -> list[Path]:
     except OSError as error:
         raise Trouble(f"{folder} cannot be made: {error.strerror or error}") from None
     with style.look():
+        drawn = {name: draw(found, config, world) for name, draw in FIGURES.items()}
+        if config.metabolism is not None:
+            drawn["foraging"] = foraging.draw(run, config)
         return [
-            path
-            for name, draw in FIGURES.items()
-            for path in style.save(draw(found, config, world), folder / name)
+            path for name, figure in drawn.items() for path in style.save(figure, folder / name)
         ]

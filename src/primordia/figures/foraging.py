@@ -1,0 +1,31 @@
+"""Do they gather more? What organisms find to eat as time goes on, and what would keep them alive."""
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from primordia.config import Config
+from primordia.figures import style
+from primordia.history.foraging import foraging
+
+BREAK_EVEN = style.ORANGE
+
+
+def draw(run: Path, config: Config) -> Figure:
+    """Food an organism gathers, a second where the habitat knows of seconds, and the break-even."""
+    figure = Figure(figsize=(style.COLUMN, 2.4))
+    axes, found = figure.subplots(), foraging(run, config)
+    rate = getattr(config.build_habitat(), "rate", None)
+    food, enough = (each * (rate or 1) for each in (found.food, found.break_even))
+    worlds = len(food)
+    if len(found.middle):
+        style.curves(axes, found.middle, food)
+    key = style.of_worlds(worlds)
+    if np.isfinite(enough).any():
+        style.curves(axes, found.middle, np.where(np.isfinite(enough), enough, np.nan), BREAK_EVEN)
+        key |= {"break-even": BREAK_EVEN}
+    style.title(axes, f"Food an organism gathers in a {'second' if rate else 'tick'}", key)
+    style.counted(axes.xaxis)
+    axes.set(xlabel="time (ticks)", xlim=(0, None), ylim=(min(0, axes.get_ylim()[0]), None))
+    return figure
