@@ -1,13 +1,14 @@
 """Let the longest-lived organism of every world of an experiment play, in its own game and in others.
 
-    python experiments/games.py experiments/atari/*.toml
+    python experiments/games.py experiments/atari/*.toml experiments/robots/*.toml
 
-For experiments that have been run (`experiments/run.py`). Each organism plays the game of its task;
-games with sticky buttons and no-ops at the start; the first with frozen senses; and the second
-blindly, doing what it did in the first. Beside them plays the first founder of each world of the
+For experiments that have been run (`experiments/run.py`). On the Atari each organism plays the game of
+its task; games with sticky buttons and no-ops at the start; the first with frozen senses; and the second
+blindly, doing what it did in the first. Robots, whose games all begin differently, play fresh ones,
+seeing, with frozen senses and blindly. Beside them plays the first founder of each world of the
 reference, which nothing has selected. Since the longest-lived of many may be as good by luck as by
-descent, all that are alive at the end play a game with sticky buttons and no-ops too. The table goes to
-`results/` beside the file, as Markdown and CSV.
+descent, all that are alive at the end play an unknown game too. The table goes to `results/` beside the
+file, as Markdown and CSV.
 """
 
 import csv
@@ -18,28 +19,41 @@ import files
 import numpy as np
 
 import primordia
+from primordia.cli.side_by_side import number
+from primordia.disk.directory import read_config
 from primordia.organism import Organism
 from results import table
 
 GAMES = 5
 TICKS = 8_000
 NOISE = {"sticky": 0.25, "noops": 30}
-WAYS: dict[str, dict[str, Any]] = {
-    "own game": {},
-    "sticky, no-ops": NOISE,
-    "senses frozen": {"senses": "frozen"},
-    "blindly, sticky, no-ops": {"senses": "ignored", **NOISE},
+WAYS: dict[str, dict[str, dict[str, Any]]] = {
+    "atari": {
+        "own game": {},
+        "sticky, no-ops": NOISE,
+        "senses frozen": {"senses": "frozen"},
+        "blindly, sticky, no-ops": {"senses": "ignored", **NOISE},
+    },
+    "mujoco": {
+        "fresh starts": {},
+        "senses frozen": {"senses": "frozen"},
+        "blindly": {"senses": "ignored"},
+    },
 }
+UNKNOWN = {"atari": "sticky, no-ops", "mujoco": "fresh starts"}
+"""how all that are alive play"""
 COLUMNS = ("lifespan", "score", "length")
 
 
 def report(file: Path) -> None:
     """Play, and write what came out."""
     runs = files.runs(file)
-    rows = played("a founder", runs[0], founders(runs[0]), WAYS, GAMES)
+    habitat = read_config(runs[0]).habitat["name"]
+    ways, unknown = WAYS[habitat], UNKNOWN[habitat]
+    rows = played("a founder", runs[0], founders(runs[0]), ways, GAMES)
     for run in runs:
-        rows += played(run.name, run, longest_lived(run), WAYS, GAMES)
-        rows += played(f"{run.name}, all alive", run, alive(run), {"sticky, no-ops": NOISE}, 1)
+        rows += played(run.name, run, longest_lived(run), ways, GAMES)
+        rows += played(f"{run.name}, all alive", run, alive(run), {unknown: ways[unknown]}, 1)
     write_rows(file.parent / "results" / f"{file.stem}-games", rows, summary(rows))
 
 
@@ -115,7 +129,8 @@ def summary(rows: list[dict[str, Any]]) -> str:
 
 def spread(values: list[float]) -> str:
     """Median, least and most."""
-    return f"{np.median(values):,.0f} ({min(values):,.0f} to {max(values):,.0f})"
+    middle, least, most = (number(float(of(values))) for of in (np.median, min, max))
+    return f"{middle} ({least} to {most})"
 
 
 if __name__ == "__main__":

@@ -132,7 +132,9 @@ def test_what_is_told_of_organisms_in_other_games(
     for script in (games, mutants):
         monkeypatch.setattr(script, "TICKS", 400)
     monkeypatch.setattr(games, "GAMES", 2)
-    monkeypatch.setattr(games, "WAYS", {"own game": {}, "sticky": {"sticky": 0.5}})
+    monkeypatch.setattr(
+        games, "WAYS", {"atari": {"own game": {}, "sticky, no-ops": {"sticky": 0.5}}}
+    )
     monkeypatch.setattr(mutants, "MUTANTS", 4)
     monkeypatch.setattr(mutants, "SCALES", (0.0, 0.3))
     games.report(ponged)
@@ -153,6 +155,53 @@ def test_what_is_told_of_organisms_in_other_games(
     rows = list(csv.DictReader((results / "pong-mutants.csv").read_text().splitlines()))
     copies = [float(row["as long"]) for row in rows if row["scale"] == "0.0"]
     assert copies == [1.0]
+
+
+def test_what_an_arm_does_for_a_target_is_measured(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A tip that goes to and fro between two places, first straight, then thrice as far as it must."""
+    monkeypatch.syspath_prepend(str(EXPERIMENTS))
+    reaching = import_module("reaching")
+    straight, detour = np.linspace(0, 0.1, 11), np.tile([0.0, 0.1], 2)
+    tip = np.concatenate([straight, straight[-2::-1], detour[1:]])
+    senses = np.zeros((len(tip), 11))
+    senses[:, 4] = np.concatenate([np.full(10, 0.1), np.zeros(10), np.full(3, 0.1), [0.0]])
+    senses[:, 6:8] = [2.0, -1.0]
+    senses[:, 8] = tip - senses[:, 4]
+    found = reaching.measured(senses)
+    assert found["reached"] == 3
+    assert found["seconds"] == pytest.approx(13 / 2 / 50)
+    assert found["turned"] == pytest.approx(3 * 13 / 2 / 50)
+    assert found["effort"] == pytest.approx(5 * 13 / 2)
+    assert found["detour"] == pytest.approx((0.1 + 0.3) / 0.2)
+    assert found["hurry"] == pytest.approx(3)
+    assert np.isnan(reaching.measured(senses[:15])["detour"])
+
+
+def test_what_is_told_of_robots_in_fresh_games(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("mujoco")
+    monkeypatch.syspath_prepend(str(EXPERIMENTS))
+    monkeypatch.chdir(tmp_path)
+    file = tmp_path / "robots" / "arms.toml"
+    file.parent.mkdir()
+    file.write_text(tomli_w.dumps({"arms": [{"name": "heredity"}]}))
+    run = import_module("files").runs(file)[0]
+    primordia.run("Reacher-forager", run, cells=4, genesis="fill", stop={"ticks": 150})
+    games, reaching = import_module("games"), import_module("reaching")
+    monkeypatch.setattr(games, "TICKS", 120)
+    monkeypatch.setattr(games, "GAMES", 2)
+    games.report(file)
+    results = file.parent / "results"
+    rows = list(csv.DictReader((results / "arms-games.csv").read_text().splitlines()))
+    ways = ["fresh starts", "senses frozen", "blindly"]
+    assert [row["way"] for row in rows if "all alive" not in row["who"]] == ways * 2
+    assert {row["length"] for row in rows} == {"50.0"}
+    assert all(float(row["score"]) < 0 for row in rows)
+    reaching.report([file])
+    rows = list(csv.DictReader((results / "reaching.csv").read_text().splitlines()))
+    assert {row["who"] for row in rows} == {"arms, heredity", "arms, heredity: founders"}
+    assert (results / "reaching.md").read_text().count("| arms") == 2
 
 
 @pytest.mark.usefixtures("compiled_once")
