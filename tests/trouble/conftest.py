@@ -1,0 +1,33 @@
+import shutil
+from pathlib import Path
+
+import pytest
+
+from primordia.disk import checkpoint
+from tests.commands import here
+from tests.trouble import HALF, SMALL, TICKS, digest, interrupt_after
+
+
+@pytest.fixture(scope="module")
+def through(compiled_once: None, tmp_path_factory: pytest.TempPathFactory) -> str:
+    """Digest of the run that never met with trouble."""
+    run = tmp_path_factory.mktemp("through") / "run"
+    assert here("run", *SMALL, "--ticks", TICKS, "--out", run).returncode == 0
+    return digest(run)
+
+
+@pytest.fixture(scope="module")
+def half(compiled_once: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run that was interrupted half-way: two checkpoints, a closed segment and open tails."""
+    run = tmp_path_factory.mktemp("half") / "run"
+    assert here("run", *SMALL, "--ticks", HALF, "--out", run).returncode == 0
+    interrupt_after(run, HALF)
+    assert len(checkpoint.numbered(run)) == 2
+    assert list((run / "births").iterdir())
+    return run
+
+
+@pytest.fixture
+def run(half: Path, tmp_path: Path) -> Path:
+    """A copy of it, to be damaged."""
+    return Path(shutil.copytree(half, tmp_path / "run"))

@@ -1,0 +1,108 @@
+"""Files of a run are damaged."""
+
+import json
+import shutil
+import signal
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from primordia.disk import checkpoint
+from tests.commands import complains, here
+from tests.trouble import TICKS, contents, digest, flip, goes_on, newest, started
+
+pytestmark = pytest.mark.usefixtures("compiled_once")
+
+
+def empty(path: Path) -> None:
+    path.write_bytes(b"")
+
+
+def truncate(path: Path) -> None:
+    path.write_bytes(path.read_bytes()[:-100])
+
+
+def garble(path: Path) -> None:
+    path.write_bytes(b"\xff\xfe garbage \x00")
+
+
+def miscount(path: Path) -> None:
+    """A change that leaves valid JSON."""
+    content = json.loads(path.read_text())
+    content["progress"]["wall_s"] += 1
+    path.write_text(json.dumps(content))
+
+
+@pytest.mark.parametrize("damage", [flip, truncate, garble, empty, Path.unlink])
+def test_a_damaged_state_is_passed_over(
+    run: Path, through: str, damage: Callable[[Path], None]
+) -> None:
+    state = newest(run) / "state.npz"
+    damage(state)
+    assert here("info", run).returncode == 0
+    complains(here("verify", run), 1, str(state))
+    done = here("resume", run, "--ticks", TICKS, "--quiet")
+    complains(done, 0, "passed over a bad checkpoint", str(state))
+    assert digest(run) == through
+
+
+@pytest.mark.parametrize("damage", [flip, miscount, garble, empty, Path.unlink])
+def test_a_damaged_manifest_is_passed_over(
+    run: Path, through: str, damage: Callable[[Path], None]
+) -> None:
+    manifest = newest(run) / "manifest.json"
+    damage(manifest)
+    done = here("resume", run, "--ticks", TICKS, "--quiet")
+    complains(done, 0, "passed over", str(manifest), "missing or damaged")
+    assert digest(run) == through
+
+
+@pytest.mark.parametrize("where", ["births/000000.parquet", "deaths/000000.parquet", "config.toml"])
+@pytest.mark.parametrize("damage", [flip, truncate, Path.unlink])
+def test_damage_to_what_all_checkpoints_need(
+    run: Path, where: str, damage: Callable[[Path], None]
+) -> None:
+    damage(run / where)
+    before = contents(run)
+    for command in ("info", "resume", "verify"):
+        done = here(command, run)
+        assert done.returncode in (1, 2)
+        complains(done, done.returncode, str(run / where))
+    assert contents(run) == before
+
+
+def test_the_only_checkpoint_is_damaged(run: Path, through: str, tmp_path: Path) -> None:
+    shutil.rmtree(checkpoint.numbered(run)[0])
+    flip(newest(run) / "state.npz")
+    before = contents(run)
+    again = f"primordia run {run / 'config.toml'}"
+    for command in ("info", "resume"):
+        complains(here(command, run), 1, f"no checkpoint of {run} is whole", "state.npz", again)
+    assert contents(run) == before
+    words = (run / "config.toml", "--ticks", TICKS, "--out", tmp_path / "again", "--quiet")
+    assert here("run", *words).returncode == 0
+    assert digest(tmp_path / "again") == through
+
+
+def test_a_changed_configuration_is_no_longer_that_run(run: Path) -> None:
+    config = run / "config.toml"
+    config.write_text(config.read_text().replace("seed = 0", "seed = 1"))
+    complains(here("resume", run), 1, str(config), "damaged")
+
+
+@pytest.mark.parametrize("text", ["", "cells = 'x'", "\x00", "task = 5"])
+def test_garbage_in_place_of_the_configuration(run: Path, text: str) -> None:
+    (run / "config.toml").write_text(text)
+    for command in ("info", "resume", "verify"):
+        complains(here(command, run), 2, str(run / "config.toml"))
+
+
+def test_folders_lost_in_a_copy_are_made_again(run: Path, through: str, tmp_path: Path) -> None:
+    fresh = tmp_path / "fresh"
+    with pytest.raises(KeyboardInterrupt):
+        started(fresh, lambda _: signal.raise_signal(signal.SIGINT))
+    for folder in ("births", "deaths", "metrics"):
+        (fresh / folder).rmdir()
+    (fresh / "checkpoints" / "note.txt").write_text("not a checkpoint")
+    goes_on(fresh, through)

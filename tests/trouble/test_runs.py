@@ -1,0 +1,163 @@
+"""What is given as a run is none, or none for this version; or there is nothing to do with it."""
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+from primordia.disk import checkpoint, directory
+from primordia.engine import chunk, loop
+from tests.commands import begin, complains, here
+from tests.trouble import HALF, SMALL, TASK, TICKS, contents, digest, goes_on, newest, started
+
+pytestmark = pytest.mark.usefixtures("compiled_once")
+
+
+def test_a_directory_that_is_taken(run: Path, tmp_path: Path) -> None:
+    before = contents(run)
+    taken = here("run", *SMALL, "--ticks", "10", "--out", run)
+    complains(taken, 2, str(run), "exists already", "--out", f"primordia resume {run}")
+    assert contents(run) == before
+    file = tmp_path / "file"
+    file.write_text("mine")
+    complains(here("run", *SMALL, "--ticks", "10", "--out", file), 2, str(file), "exists already")
+    assert file.read_text() == "mine"
+
+
+@pytest.mark.parametrize("command", ["info", "resume", "verify"])
+def test_a_directory_that_is_no_run(command: str, tmp_path: Path) -> None:
+    (tmp_path / "mine.txt").write_text("mine")
+    before = contents(tmp_path)
+    for path in (tmp_path, tmp_path / "nothing", tmp_path / "mine.txt"):
+        complains(here(command, path), 2, str(path), "is not a run of primordia")
+    assert contents(tmp_path) == before
+
+
+@pytest.mark.parametrize("command", ["info", "resume", "verify"])
+def test_a_run_made_by_a_newer_version(command: str, run: Path) -> None:
+    change_versions(run, format=directory.FORMAT + 1)
+    before = contents(run)
+    complains(here(command, run), 2, str(run), "newer primordia", "upgrade")
+    assert contents(run) == before
+
+
+@pytest.mark.parametrize("text", ["", "{", "[1]", "5", '{"jax": "1"}', '{"format": "x"}', "\udcff"])
+def test_garbage_in_place_of_versions(run: Path, text: str) -> None:
+    (run / "versions.json").write_bytes(text.encode(errors="surrogateescape"))
+    before = contents(run)
+    for command in ("info", "resume", "verify"):
+        complains(here(command, run), 2, str(run), "versions.json")
+    assert contents(run) == before
+
+
+def test_a_run_without_a_checkpoint_starts_anew(run: Path, through: str) -> None:
+    shutil.rmtree(run / "checkpoints")
+    complains(here("info", run), 2, str(run), "no checkpoint yet", f"primordia resume {run}")
+    complains(here("verify", run), 2, str(run), "no checkpoint yet")
+    goes_on(run, through)
+
+
+def change_versions(run: Path, **change: object) -> None:
+    path = run / "versions.json"
+    path.write_text(json.dumps(json.loads(path.read_text()) | change))
+
+
+@pytest.mark.parametrize(
+    "change", [{"jax": "0.0.1"}, {"instruction_set": "x86_64 SSE4_2"}, {"device": "NVIDIA H200"}]
+)
+def test_a_run_of_other_versions(run: Path, through: str, change: dict[str, str]) -> None:
+    ((name, value),) = change.items()
+    change_versions(run, **change)
+    before = contents(run)
+    complains(here("resume", run), 2, str(run), f"{name} {value} then", "now", "--inexact")
+    assert contents(run) == before
+    done = here("verify", run)
+    assert (done.returncode, done.stderr) == (0, ""), "it came out the same all the same"
+    goes_on(run, through, "--inexact")
+    assert json.loads(here("info", run, "--json").stdout)["exact"] is False
+    assert "not exact" in here("info", run).stdout
+    complains(here("resume", run), 2, "--inexact")
+    complains(here("verify", run), 2, str(run), "not exact")
+
+
+def test_verify_says_what_differs_and_why_it_might(run: Path) -> None:
+    change_versions(run, jax="0.0.1")
+    manifest = checkpoint.numbered(run)[-1] / "manifest.json"
+    content = json.loads(manifest.read_text())
+    content["digests"]["births"][0][0] ^= 1
+    content["sha256"] = checkpoint._checksum(content)
+    manifest.write_text(json.dumps(content))
+    parts = [str(run), "does not hold", "world 0 (seed 0) differs", "jax 0.0.1 then"]
+    complains(here("verify", run), 1, *parts)
+
+
+def test_nothing_to_do_says_how_to_go_on(run: Path, through: str) -> None:
+    goes_on(run, through)
+    for words in ((), ("--ticks", HALF), ("--ticks", TICKS)):
+        done = here("resume", run, "--quiet", *words)
+        limit = words[-1] if words else TICKS
+        complains(done, 0, "nothing to do", str(run), f"ticks {limit}, until saturation", "--ticks")
+        assert digest(run) == through
+    more = here("resume", run, "--ticks", TICKS + 1, "--until", "none", "--quiet")
+    assert (more.returncode, more.stderr) == (0, "")
+    found = json.loads(here("info", run, "--json").stdout)
+    assert found["ticks"] == TICKS + 1
+    assert found["limits"] == {"ticks": TICKS + 1, "births": None, "until": None}
+
+
+def test_saturated_worlds_go_on_without_that_limit(tmp_path: Path) -> None:
+    run = tmp_path / "run"
+    words = (TASK, "--cells", "8", "--habitat.angle_limit", "180", "--habitat.track_limit", "1e9")
+    done = here("run", *words, "--saturation_ticks", "50", "--out", run, "--quiet")
+    assert (done.returncode, done.stderr) == (0, "")
+    found = json.loads(here("info", run, "--json").stdout)
+    assert found["saturation"] == {"tick": found["ticks"], "births": found["births"]}
+    complains(here("resume", run, "--ticks", 10_000, "--quiet"), 0, "nothing to do", "--until none")
+    more = here("resume", run, "--ticks", 10_000, "--until", "none", "--quiet")
+    assert (more.returncode, more.stderr) == (0, "")
+    assert json.loads(here("info", run, "--json").stdout)["ticks"] == 10_000
+
+
+def test_zero_seconds_between_checkpoints_means_after_every_chunk(tmp_path: Path) -> None:
+    run, chunks = tmp_path / "run", []
+    started(run, lambda _: chunks.append(len(checkpoint.numbered(run))))
+    assert len(chunks) > 2
+    assert int(newest(run).name) == len(chunks)
+
+
+def test_weights_that_are_no_numbers_are_a_fault(run: Path) -> None:
+    struck = []
+
+    def strike(status: loop.Status) -> None:
+        """Let one weight of everybody be NaN, once."""
+        if struck:
+            return
+        world, bodies = status.engine.state
+        struck.append(int(world.organisms.alive.sum()))
+        genome = world.organisms.genome
+        genome = {**genome, "output": genome["output"].at[:, 0, 3].set(float("nan"))}
+        world = world._replace(organisms=world.organisms._replace(genome=genome))
+        status.engine.state = chunk.State(world, bodies)
+
+    loop.resume(run, {"ticks": TICKS}, listen=strike)
+    found = json.loads(here("info", run, "--json").stdout)
+    assert found["deaths_by_cause"]["fault"] == struck[0] > 0
+    assert found["extinctions"] > 0
+    assert f"{struck[0]} fault" in here("info", run).stdout
+
+
+def test_nobody_reads_what_is_printed(half: Path, through: str, tmp_path: Path) -> None:
+    """As with `| head -1`."""
+    loud = [word for word in SMALL if word != "--quiet"]
+    out = tmp_path / "run"
+    processes = [begin("info", half), begin("run", *loud, "--ticks", TICKS, "--out", out)]
+    for process in processes:
+        assert process.stdout is not None
+        process.stdout.close()
+    for process in processes:
+        assert process.stderr is not None
+        assert process.stderr.read() == ""
+        process.stderr.close()
+        assert process.wait(timeout=60) == 1
+    goes_on(out, through)

@@ -1,0 +1,165 @@
+"""What the user asked for makes no sense: status 2, and no run directory is made."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from primordia import device
+from primordia.errors import InputError
+from tests import commands
+from tests.commands import complains, here
+from tests.trouble import TASK
+
+pytestmark = pytest.mark.usefixtures("compiled_once")
+
+WRONG = {
+    ("CartPole-survivl",): ["no task 'CartPole-survivl'", "did you mean 'CartPole-survival'?"],
+    (TASK, "--celsl", "64"): ["no setting 'celsl'", "did you mean 'cells'?"],
+    (TASK, "--mutation.scal=1"): ["'mutation.scal'", "did you mean 'mutation.scale'?"],
+    (TASK, "--scale", "1"): ["'scale'", "did you mean 'mutation.scale'?"],
+    (TASK, "--mutatoin.scale", "1"): ["'mutatoin'", "did you mean 'mutation'?"],
+    (TASK, "--habitat.angle_limt", "1"): ["did you mean 'habitat.angle_limit'?"],
+    (TASK, "--cells", "many"): ["cells", "integer", "'many'"],
+    (TASK, "--cells", "1"): ["cells", "greater than or equal to 2", "1"],
+    (TASK, "--cells", "1.5"): ["cells", "integer", "1.5"],
+    (TASK, "--seed", "-1"): ["seed", "greater than or equal to 0", "-1"],
+    (TASK, "--seed", str(2**64)): ["seed", str(2**64)],
+    (TASK, "--seed", str(2**64 - 1), "--seeds", "2"): ["seeds must be below 2^64"],
+    (TASK, "--seed", "[1, 2]"): ["seed", "[1, 2]"],
+    (TASK, "--seed", "{a = 1}"): ["seed"],
+    (TASK, "--seeds", "0"): ["seeds", "greater than or equal to 1"],
+    (TASK, "--seeds", "60000", "--cells", "60000"): ["cells x seeds", "2^26"],
+    (TASK, "--replication", "1.5"): ["replication", "less than or equal to 1"],
+    (TASK, "--replication", "nan"): ["replication", "finite"],
+    (TASK, "--mutation.scale", "inf"): ["mutation.scale", "finite"],
+    (TASK, "--mutation", "5"): ["mutation", "5"],
+    (TASK, "--mutation", "5", "--mutation.scale", "1"): ["--mutation.scale"],
+    (TASK, "--mutation.blocks.inptu.scale", "1"): ["no block 'inptu'"],
+    (TASK, "--brain.kind", "clever"): ["brain.kind", "'clever'"],
+    (TASK, "--motor.kind", "gaussian"): ["motor.kind", "discrete"],
+    (TASK, "--placement.topology", "torus4", "--cells", "7"): ["7 cells", "torus"],
+    (TASK, "--seasons", '[{kind = "ratchet"}]'): ["seasons.0.ratchet.setting is missing"],
+    (TASK, "--habitat.name", "pond"): ["no habitat named 'pond'", "cartpole", "module:Class"],
+    (TASK, "--habitat.name", "5"): ["no habitat named 5"],
+    (TASK, "--habitat.name", "[]"): ["no habitat named []"],
+    (TASK, "--habitat.name", ":Pond"): ["no habitat named ':Pond'"],
+    (TASK, "--habitat.name", "no.such:Pond"): ["'no.such:Pond'", "No module named 'no'"],
+    (TASK, "--habitat.name", "tests.toys:Pond"): ["'tests.toys:Pond'", "no attribute 'Pond'"],
+    (TASK, "--habitat.name", "json:JSONDecoder"): ["JSONDecoder is no habitat", "senses_size"],
+    (TASK, "--habitat", "pond"): ["habitat", "'pond'"],
+    (TASK, "--cells"): ["--cells needs a value"],
+    (TASK, "--cells", "--seed", "3"): ["--cells needs a value"],
+    (TASK, "--ticks"): ["'--ticks' requires an argument"],
+    (TASK, "--ticks", "0"): ["stop.ticks", "greater than or equal to 1"],
+    (TASK, "--until", "bored"): ["stop.until", "'saturation'", "'bored'"],
+    (TASK, "64"): ["unexpected extra argument (64)"],
+    (TASK, "--device", "gpu"): ["--device", "finds no 'gpu' device"],
+    (TASK, "--device", "nonsense"): ["--device", "finds no 'nonsense' device"],
+    (TASK, "--checkpoint-every", "-1"): ["--checkpoint-every", "-1"],
+    (TASK, "--checkpoint-every", "nan"): ["--checkpoint-every", "nan"],
+    (TASK, "--checkpoint-every", "often"): ["--checkpoint-every", "'often'"],
+    (): ["Missing argument 'TASK|FILE.toml'"],
+    ("no/such/file.toml",): ["no/such/file.toml cannot be read", "No such file"],
+}
+
+
+@pytest.mark.parametrize("words", WRONG, ids=" ".join)
+def test_a_wrong_word_on_the_command_line(words: tuple[str, ...], tmp_path: Path) -> None:
+    if "gpu" in words and any(each.platform == "gpu" for each in device_list()):
+        pytest.skip("there is a GPU here")
+    out = tmp_path / "run"
+    complains(here("run", "--out", out, *words), 2, *WRONG[words])
+    assert not out.exists()
+
+
+def device_list() -> list[Any]:
+    import jax
+
+    return jax.devices()
+
+
+FILES = {
+    "cells = ": "not valid TOML",
+    "[mutation\nscale = 1": "not valid TOML",
+    "task = 'x'\ntask = 'y'": "not valid TOML",
+    f"task = '{TASK}'\nceils = 4": "there is no setting 'ceils'; did you mean 'cells'?",
+    f"task = '{TASK}'\n[mutation]\nscael = 4": "did you mean 'mutation.scale'?",
+    f"task = '{TASK}'\ncells = '32'": "cells: input should be a valid integer, not '32'",
+    f"task = '{TASK}'\nreplication = 2": "replication: input should be less than or equal to 1",
+    "cells = 4": "task is missing (and 1 more)",
+    "task = []": "task: input should be a valid string, not []",
+    "task = 'own'": "habitat is missing",
+    "task = 'own'\nhabitat = {}": "no habitat named ''",
+}
+
+
+@pytest.mark.parametrize("text", FILES)
+def test_a_wrong_word_in_a_file(text: str, tmp_path: Path) -> None:
+    file, out = tmp_path / "mine.toml", tmp_path / "run"
+    file.write_text(text)
+    complains(here("run", file, "--out", out), 2, str(file), FILES[text])
+    assert not out.exists()
+
+
+def test_files_that_are_no_text(tmp_path: Path) -> None:
+    file, folder = tmp_path / "mine.toml", tmp_path / "folder.toml"
+    file.write_bytes(b"\xff\x00\xfe")
+    folder.mkdir()
+    complains(here("run", file), 2, str(file), "not valid TOML")
+    complains(here("run", folder), 2, str(folder), "Is a directory")
+
+
+@pytest.mark.parametrize(
+    ("words", "parts"),
+    [
+        (["frobnicate"], ["No such command 'frobnicate'"]),
+        (["info"], ["Missing argument 'RUN'"]),
+        (["info", "--yaml", "x"], ["No such option '--yaml'"]),
+        (["resume", "--cells", "4", "x"], ["No such option '--cells'"]),
+        (["resume", "x", "--ticks"], ["'--ticks' requires an argument"]),
+        (["resume", "x", "--ticks", "-5"], ["ticks", "greater than or equal to 1", "-5"]),
+        (["resume", "x", "--ticks", "0"], ["ticks", "greater than or equal to 1"]),
+        (["resume", "x", "--births", "lots"], ["births", "integer", "'lots'"]),
+        (["resume", "x", "--until", "bored"], ["until", "'saturation'", "'bored'"]),
+        (["resume", "x", "--checkpoint-every", "-1"], ["--checkpoint-every", "-1"]),
+        (["resume", "x", "--device", "nonsense"], ["--device", "'nonsense'"]),
+        (["verify", "x", "--device", "nonsense"], ["--device", "'nonsense'"]),
+        (["tasks", "more"], ["unexpected extra argument (more)"]),
+    ],
+)
+def test_wrong_words_to_other_commands(words: list[str], parts: list[str]) -> None:
+    complains(here(*words), 2, *parts)
+
+
+def test_no_word_at_all_gives_help() -> None:
+    done = here()
+    assert done.returncode == 2
+    assert "primordia run CartPole-survival" in done.stderr
+    assert len(done.stderr.splitlines()) > 10
+
+
+def test_flags_may_stand_before_the_task(tmp_path: Path) -> None:
+    run = tmp_path / "run"
+    words = ("--cells", "8", "--hazard=0.002", TASK, "--sample_every", "500", "--quiet")
+    done = here("run", *words, "--ticks", 10, "--out", run)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert json.loads(here("info", run, "--json").stdout)["cells"] == 8
+
+
+def test_the_python_interface_raises(run: Path, tmp_path: Path) -> None:
+    import primordia
+
+    with pytest.raises(InputError, match="did you mean 'cells'"):
+        primordia.run(TASK, tmp_path / "new", celsl=3)
+    with pytest.raises(InputError, match=r"ticks: .* not -1"):
+        primordia.Run(run).resume(ticks=-1)
+    with pytest.raises(InputError, match="is not a run"):
+        primordia.Run(tmp_path / "none").info()
+    assert primordia.Run(run).info() == primordia.Run(str(run)).info()  # type: ignore[arg-type]
+    assert device.versions() == {
+        name: value for name, value in primordia.Run(run).info()["versions"].items()
+        if name != "format"
+    }  # fmt: skip
+    assert commands.CACHE is not None
