@@ -9,7 +9,8 @@ def world(**changed: Any) -> dict[str, Any]:
     return {
         "seed": 0, "ticks": 5000, "births": 900, "alive": 8, "mean_age": 70.0, "oldest_age": 300,
         "deaths_by_cause": {"fatal": 890, "hazard": 2, "fault": 0}, "extinctions": 0,
-        "saturation": {"tick": 4000, "births": 800}, "fixation": None, **changed,
+        "saturation": {"tick": 4000, "births": 800}, "fixation": None, "tries_per_life": 3.0,
+        **changed,
     }  # fmt: skip
 
 
@@ -45,6 +46,16 @@ def test_the_summary_says_what_food_keeps_one_alive() -> None:
     assert ratchets == "  break-even: food of 0.025 to 0.275 a tick, or 0.5 to 5.5 a second"
     assert "break-even" not in told([fed(None, None)])
     assert "break-even" not in told([world()])
+
+
+def test_the_summary_says_why_worlds_die_out() -> None:
+    dying = world(births=300, extinctions=7, tries_per_life=0.2)
+    line = told([dying]).splitlines()[1]
+    assert line.startswith("  an organism tries to copy itself 0.2 times in its life; raise")
+    thriving = world(births=100, extinctions=1, tries_per_life=1.8)
+    assert "copy itself 0.6 times" in told([dying, thriving])
+    for fine in (world(extinctions=7), world(tries_per_life=0.2), world(births=0, extinctions=1)):
+        assert "raise" not in told([fine])
 
 
 def test_the_summary_of_many_worlds_gives_quartiles() -> None:

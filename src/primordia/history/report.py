@@ -1,6 +1,7 @@
 """What a run directory tells: read only, without running anything."""
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -28,8 +29,9 @@ def info(run: Path) -> dict[str, Any]:
 
     `saturation` and `fixation` are None, or the tick and the births (founders counted) at which they
     came. Ages are those of the living, in ticks; so is what the habitat counts (`tallies`).
-    `break_even` is the food, a tick and a second, that keeps energy where it is as the world stands
-    now. With one world its fields also stand at the top.
+    `break_even` is the food, a tick and a second, that keeps energy where it is, and `tries_per_life`
+    how often an organism tries to copy itself in a life of mean length, as the world stands now. Below
+    one a lineage cannot last. With one world its fields also stand at the top.
     """
     config, last = opened(run)
     arrays = last.arrays()
@@ -116,6 +118,7 @@ def _world(
         "organism_ticks": count("organism_ticks"),
         "mean_age": float(ages.mean()) if len(ages) else None,
         "oldest_age": int(ages.max()) if len(ages) else None,
+        "tries_per_life": _tries(_climate(arrays, world)["replication"], count),
         "saturation": _moment(count("saturated"), count("saturated_births")),
         "fixation": _moment(count("fixed"), count("fixed_births")),
         "digest": digest,
@@ -127,6 +130,11 @@ def _world(
     if config.seasons:
         found["climate"] = _climate(arrays, world)
     return found
+
+
+def _tries(replication: float, count: Callable[[str], int]) -> float | None:
+    births = count("births")
+    return replication * count("organism_ticks") / births if births else None
 
 
 def _moment(tick: int, births: int) -> dict[str, int] | None:

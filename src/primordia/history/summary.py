@@ -16,7 +16,7 @@ def summary(info: dict[str, Any]) -> str:
     lines = [
         f"{info['task']}: {count} of {info['cells']:,} cells{', no heredity' * (not heredity)}"
     ]
-    lines += _break_even(worlds)
+    lines += _break_even(worlds) + _too_few_copies(worlds)
     if len(worlds) <= FEW:
         for world in worlds:
             lines += _one(world)
@@ -55,6 +55,16 @@ def _break_even(worlds: list[dict[str, Any]]) -> list[str]:
             low, high = f"{min(each):.3g}", f"{max(each):.3g}"
             told.append(f"{low if low == high else f'{low} to {high}'} a {unit}")
     return [f"  break-even: food of {', or '.join(told)}"] if told else []
+
+
+def _too_few_copies(worlds: list[dict[str, Any]]) -> list[str]:
+    """Why worlds die out, where lineages cannot last."""
+    births = sum(world["births"] for world in worlds)
+    if not births or not any(world["extinctions"] for world in worlds):
+        return []
+    tries = sum(world["births"] * (world["tries_per_life"] or 0) for world in worlds) / births
+    few = f"  an organism tries to copy itself {tries:.2g} times in its life; raise `replication`"
+    return [f"{few}, or lineages die out"] if tries < 1 else []
 
 
 def _tallies(tallies: dict[str, dict[str, float]]) -> str:
