@@ -13,6 +13,8 @@ import primordia
 from primordia.comparison import Comparison
 from primordia.comparison.contrast import Figures
 from primordia.engine import loop
+from primordia.figures import style
+from primordia.figures.comparison import FEW, colours, draw
 from tests.commands import complains, here
 from tests.test_survival import restricted_mean
 from tests.worlds import MEADOW, config
@@ -161,3 +163,14 @@ def test_what_is_of_use_where_saturation_is_rare(
     assert arm.saturated == saturated
     outcomes = replace(compared, arms=(arm,)).outcomes
     assert ("pace" in outcomes, "longest" in outcomes) == (told, told)
+
+
+@pytest.mark.parametrize("arms", [2, 5, 6, 9])
+def test_runs_have_colours_of_their_own(compared: Comparison, arms: int) -> None:
+    """With how their worlds scatter where few are shown."""
+    assert len(set(colours(arms))) == arms
+    many = replace(compared, arms=compared.arms[:1] * arms)
+    with style.look():
+        drawn = draw(many)
+    assert len(drawn.axes[0].get_lines()) == arms
+    assert len(drawn.axes[0].collections) == (arms if arms <= FEW else 0)

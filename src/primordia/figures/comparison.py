@@ -1,5 +1,6 @@
 """Runs side by side: how long organisms live, and how soon worlds saturate."""
 
+from itertools import cycle, islice
 from pathlib import Path
 
 import matplotlib
@@ -14,6 +15,8 @@ from primordia.figures import style
 
 STOPPED = "|"
 """Marks a world that stopped unsaturated, as censoring is marked in survival curves."""
+FEW = 5
+"""Up to so many runs are in an order of colours, and shown with how their worlds scatter."""
 
 
 def save(compared: Comparison, folder: Path) -> list[Path]:
@@ -39,7 +42,7 @@ def draw(compared: Comparison) -> Figure:
         alive, dying = figure.subplots(1, 2, width_ratios=(1, 1.6))
         _dying(dying, compared)
     for arm, colour in zip(compared.arms, colours(len(compared.arms)), strict=True):
-        _alive(alive, arm, colour)
+        _alive(alive, arm, colour, banded=len(compared.arms) <= FEW)
     style.time_axis(alive, compared.age, "age (ticks)")
     alive.set(title="Alive at each age", ylabel="fraction of organisms", ylim=(-0.03, 1.03))
     _legend(figure, alive, compared)
@@ -47,19 +50,22 @@ def draw(compared: Comparison) -> Figure:
 
 
 def colours(arms: int) -> list[str]:
-    """Ink for the reference; for the others, in their order, from dark to light."""
+    """Ink for the reference; a few others in their order from dark to light; many, to be told apart."""
+    if arms > FEW:
+        return [*islice(cycle([style.INK, *style.PALETTE, style.SOFT]), arms)]
     shades = matplotlib.colormaps["plasma"](np.linspace(0.25, 0.88, max(arms - 1, 1)))
     return [style.INK, *(matplotlib.colors.to_hex(each) for each in shades[: arms - 1])]
 
 
-def _alive(axes: Axes, arm: Arm, colour: str) -> None:
+def _alive(axes: Axes, arm: Arm, colour: str, banded: bool) -> None:
     """Kaplan-Meier of all lives, with a band over resamples of worlds."""
     survived = arm.survival
     ages = np.concatenate([[1], survived.ages, [survived.limit]])
     curve, low, high = (
         np.concatenate([[1.0], each, each[-1:]]) for each in (survived.curve, *survived.band)
     )
-    axes.fill_between(ages, low, high, step="post", color=colour, alpha=0.2, linewidth=0)
+    if banded:
+        axes.fill_between(ages, low, high, step="post", color=colour, alpha=0.2, linewidth=0)
     axes.step(ages, curve, where="post", color=colour, label=arm.name)
 
 
@@ -86,15 +92,17 @@ def _saturated(axes: Axes, compared: Comparison, unit: str) -> None:
 
 
 def _dying(axes: Axes, compared: Comparison) -> None:
-    """Ticks lived for each death as time goes on: every world, and their median."""
+    """Ticks lived for each death as time goes on: every world of a few runs, and the median."""
+    few = len(compared.arms) <= FEW
     for arm, colour in zip(compared.arms, colours(len(compared.arms)), strict=True):
         middle = (arm.pace.edges[1:] + arm.pace.edges[:-1]) / 2
-        for world in arm.pace.curve:
+        for world in arm.pace.curve if few else ():
             axes.plot(middle, world, color=colour, alpha=0.3, linewidth=0.8)
         axes.plot(middle, np.median(arm.pace.curve, axis=0), "o-", color=colour, markersize=3)
     style.counted(axes.xaxis)
     style.logarithmic(axes.yaxis)
-    axes.set(title="Ticks lived for each death: worlds and median", xlabel="time (ticks)")
+    shown = "worlds and median" if few else "median of worlds"
+    axes.set(title=f"Ticks lived for each death: {shown}", xlabel="time (ticks)")
     axes.set(xlim=(0, arm.pace.edges[-1]))
 
 

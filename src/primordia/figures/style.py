@@ -19,7 +19,8 @@ COLUMN, PAGE = 3.4, 7.0
 INK, SOFT, FAINT = "#222222", "#6b6b6b", "#d4d4d4"
 ORANGE, SKY, GREEN, YELLOW = "#e69f00", "#56b4e9", "#009e73", "#f0e442"
 BLUE, VERMILION, PURPLE = "#0072b2", "#d55e00", "#cc79a7"
-"""The palette of Okabe and Ito."""
+PALETTE = BLUE, ORANGE, GREEN, VERMILION, PURPLE, SKY, YELLOW
+"""Of Okabe and Ito."""
 
 LOOK: Any = {
     "font.family": "DejaVu Sans",
