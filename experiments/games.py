@@ -7,8 +7,9 @@ its task; games with sticky buttons and no-ops at the start; the first with froz
 blindly, doing what it did in the first. Robots, whose games all begin differently, play fresh ones,
 seeing, with frozen senses and blindly. Beside them plays the first founder of each world of the
 reference, which nothing has selected. Since the longest-lived of many may be as good by luck as by
-descent, all that are alive at the end play an unknown game too. The table goes to `results/` beside the
-file, as Markdown and CSV.
+descent, all that are alive at the end play an unknown game too; then those that scored most in it play
+as the longest-lived did (their unknown games are that one, and others). The table goes to `results/`
+beside the file, as Markdown and CSV.
 """
 
 import csv
@@ -53,7 +54,9 @@ def report(file: Path) -> None:
     rows = played("a founder", runs[0], founders(runs[0]), ways, GAMES)
     for run in runs:
         rows += played(run.name, run, longest_lived(run), ways, GAMES)
-        rows += played(f"{run.name}, all alive", run, alive(run), {unknown: ways[unknown]}, 1)
+        everyone = played(f"{run.name}, all alive", run, alive(run), {unknown: ways[unknown]}, 1)
+        rows += everyone
+        rows += played(f"{run.name}, best of these", run, best(run, everyone), ways, GAMES)
     write_rows(file.parent / "results" / f"{file.stem}-games", rows, summary(rows))
 
 
@@ -84,6 +87,16 @@ def alive(run: Path) -> list[Organism]:
     """At the end, in all worlds."""
     everyone = primordia.load(run).lives()
     return [Organism(run, everyone, int(row)) for row in np.flatnonzero(~everyone.died)]
+
+
+def best(run: Path, rows: list[dict[str, Any]]) -> list[Organism]:
+    """Of each world, who scored most in its one game."""
+    found, order = (
+        primordia.load(run),
+        sorted(rows, key=lambda row: (row["score"], row["lifespan"])),
+    )
+    first = {row["world"]: row["organism"] for row in order}
+    return [found.organism(first[world], world) for world in sorted(first)]
 
 
 def played(

@@ -99,10 +99,8 @@ def summary(rows: list[dict[str, Any]]) -> str:
     for name in dict.fromkeys(row["who"] for row in rows):
         mine = [row for row in rows if row["who"] == name]
         worlds = sorted({row["world"] for row in mine})
-        cells = [
-            spread([np.nanmedian([r[column] for r in mine if r["world"] == w]) for w in worlds])
-            for column in COLUMNS
-        ]
+        here = [[row for row in mine if row["world"] == world] for world in worlds]
+        cells = [told_of([known(rows, column) for rows in here]) for column in COLUMNS]
         lines.append([name, len(mine), *cells])
     note = (
         f"Medians over worlds (least to most) of the median in each world, of the last {TICKS:,} ticks of"
@@ -110,6 +108,20 @@ def summary(rows: list[dict[str, Any]]) -> str:
         " speeds, summed over ticks."
     )
     return f"{table(['', 'organisms', *COLUMNS.values()], lines)}\n\n{note}"
+
+
+def known(rows: list[dict[str, Any]], column: str) -> list[float]:
+    """Figures that there are."""
+    return [row[column] for row in rows if np.isfinite(row[column])]
+
+
+def told_of(worlds: list[list[float]]) -> str:
+    """Spread of the medians of worlds that have one, and how many these are if not all."""
+    medians = [float(np.median(each)) for each in worlds if each]
+    if not medians:
+        return "-"
+    few = f", {len(medians)} worlds" * (len(medians) < len(worlds))
+    return f"{spread(medians)}{few}"
 
 
 if __name__ == "__main__":
