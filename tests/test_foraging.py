@@ -82,6 +82,15 @@ def test_the_figure_is_of_foragers_only(runs: dict[str, Path], tmp_path: Path) -
         assert words in said
 
 
+def test_a_run_too_short_for_a_sample_has_a_figure_that_says_so(tmp_path: Path) -> None:
+    short = config(FED, stop={"ticks": 30})
+    loop.start(short, tmp_path / "run")
+    with style.look():
+        drawn = figure.draw(tmp_path / "run", short)
+        drawn.draw_without_rendering()
+    assert "no samples yet" in {text.get_text() for text in drawn.axes[0].texts}
+
+
 def test_what_nobody_can_live_on_has_no_break_even(tmp_path: Path) -> None:
     hungry = config(FED, metabolism={"store": 30.0, "gain": 0.0}, seasons=[])
     loop.start(hungry, tmp_path / "run")

@@ -21,6 +21,9 @@ def draw(run: Path, config: Config) -> Figure:
     worlds = len(food)
     if len(found.middle):
         style.curves(axes, found.middle, food)
+    else:
+        axes.set_yticks([])
+        style.say(axes, "no samples yet")
     key = style.of_worlds(worlds)
     if np.isfinite(enough).any():
         style.curves(axes, found.middle, np.where(np.isfinite(enough), enough, np.nan), BREAK_EVEN)

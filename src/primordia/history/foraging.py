@@ -44,14 +44,9 @@ def harvests(run: Path, worlds: int) -> list[Harvest]:
     """Of each world of a run."""
     metrics = table(run, "metrics")
     world = metrics["world"].to_numpy()
-    names = ("tick", "food", "organism_ticks")
-    columns = [metrics[name].to_numpy() for name in names]
-    starts = [np.concatenate([column[:0], [0]]).astype(column.dtype) for column in columns]
+    columns = [metrics[name].to_numpy() for name in ("tick", "food", "organism_ticks")]
     return [
-        Harvest._make(
-            np.concatenate([start, column[world == number]])
-            for start, column in zip(starts, columns, strict=True)
-        )
+        Harvest._make(np.insert(column[world == number], 0, 0) for column in columns)
         for number in range(worlds)
     ]
 
