@@ -117,7 +117,7 @@ def played(
             row |= {column: told[column]["median"] for column in COLUMNS}
             row |= {f"best_{column}": told[column]["maximum"] for column in COLUMNS}
             rows.append(row)
-            print(*row.values(), flush=True)
+        print(f"{name}: {way} is done", flush=True)
     return rows
 
 
