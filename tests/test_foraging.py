@@ -110,5 +110,7 @@ def test_runs_are_compared_by_it_where_there_is_food(runs: dict[str, Path], tmp_
     assert (against.delta, against.ratio) == (-1, (0.5, 0.5))
     again = Path(shutil.copytree(runs["none"], tmp_path / "again"))
     assert "food" not in primordia.compare(runs["none"], again).outcomes
+    np.testing.assert_allclose([arm.gathering.curve.mean() for arm in found.arms], [FOOD, FOOD / 2])
     told = here("compare", runs["fed"], runs["less"], "--out", tmp_path)
     assert "large less" in told.stdout
+    assert "Food gathered in a tick" in (tmp_path / "compare.svg").read_text(encoding="utf-8")

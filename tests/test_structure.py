@@ -35,7 +35,7 @@ ORDER = """
     engine.loop
     history.report live
     history.verify history.climate history.lives
-    history.lineage organism.life.instant history.series
+    history.lineage organism.life.instant history.series history.foraging
     organism.life.fused organism.life.hosted organism.games
     history.fork organism.life organism.policy organism.evaluation
     organism.replay
@@ -43,6 +43,7 @@ ORDER = """
     comparison.resample
     comparison.contrast comparison.survival
     comparison.pace
+    comparison.gathering
     comparison
     figures.style
     figures.*

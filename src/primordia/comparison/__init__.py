@@ -15,13 +15,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from primordia.comparison.contrast import Bounds, Contrast, Figures, contrast
-from primordia.comparison.pace import LATE, WINDOWS, Pace, pace
+from primordia.comparison.gathering import Gathering, gathering
+from primordia.comparison.pace import Pace, pace
 from primordia.comparison.survival import Survival, survival
 from primordia.config import Config
 from primordia.disk.directory import read_config
 from primordia.errors import InputError
 from primordia.history import report
-from primordia.history.foraging import harvests
 from primordia.history.lives import Lives, lives
 
 OUTCOMES = {
@@ -51,6 +51,7 @@ class Arm:
     a span, in the last quarter of the time that all worlds have lived through"""
     survival: Survival
     pace: Pace
+    gathering: Gathering
 
     @property
     def worlds(self) -> int:
@@ -144,26 +145,19 @@ def compare(
     for path, lived, name, own in zip(runs, everyone, names, differing(configs), strict=True):
         worlds = _worlds(lived)
         survived, dying = survival(lived, len(worlds), age), pace(worlds, until)
+        gathered = gathering(path, len(worlds), until, rate or 1)
         figures = {
             "first": first_long(worlds, age),
             **_saturation(path, births, ticks),
             "lifespan": _all_known(survived.restricted_mean),
             "longest": _all_known([world.lifespan.max() for world in worlds]),
             "pace": dying.late,
-            "food": foraged(path, len(worlds), until, rate or 1),
+            "food": gathered.late,
         }
         label = name if names.count(name) == 1 else str(path)
-        arms.append(Arm(label, own, figures, survived, dying))
+        arms.append(Arm(label, own, figures, survived, dying, gathered))
     span = "second" if rate else "tick"
     return Comparison(configs[0].task, tuple(arms), age, births, ticks, span)
-
-
-def foraged(path: Path, worlds: int, until: int, span: float) -> Figures:
-    """Food that an organism gathered in so many ticks, late in the time up to one; known if any was."""
-    late = until * np.array([1 - LATE / WINDOWS, 1])
-    each = [harvest.between(late)[0] for harvest in harvests(path, worlds)]
-    food = span * np.nan_to_num(np.array(each))
-    return Figures(food, np.full(worlds, bool(food.any())))
 
 
 def _all_known(values: ArrayLike) -> Figures:

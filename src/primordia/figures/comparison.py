@@ -1,5 +1,6 @@
 """Runs side by side: how long organisms live, and how soon worlds saturate."""
 
+from collections.abc import Callable, Iterator
 from itertools import cycle, islice
 from pathlib import Path
 
@@ -30,22 +31,20 @@ def save(compared: Comparison, folder: Path) -> list[Path]:
 
 
 def draw(compared: Comparison) -> Figure:
-    """Survival of all lives, and how soon worlds saturate; where few do, how fast organisms die."""
+    """Survival of all lives, and how soon worlds saturate or, where few do, how fast organisms die; what
+    they gather, where there is food.
+    """
     figure = Figure(figsize=(style.PAGE, 2.7))
-    if "pace" not in compared.outcomes:
-        alive, births, ticks = figure.subplots(1, 3)
-        _saturated(births, compared, "births")
-        births.set(title="Saturated, by births", xlabel="births", ylabel="fraction of worlds")
-        _saturated(ticks, compared, "ticks")
-        ticks.set(title="Saturated, by time", xlabel="time (ticks)")
-    else:
-        alive, dying = figure.subplots(1, 2, width_ratios=(1, 1.6))
-        _dying(dying, compared)
-    for arm, colour in zip(compared.arms, colours(len(compared.arms)), strict=True):
-        _alive(alive, arm, colour, banded=len(compared.arms) <= FEW)
-    style.time_axis(alive, compared.age, "age (ticks)")
-    alive.set(title="Alive at each age", ylabel="fraction of organisms", ylim=(-0.03, 1.03))
-    _legend(figure, alive, compared)
+    panels: list[Callable[[Axes, Comparison], None]] = [_alive]
+    panels += (
+        [_dying] if "pace" in compared.outcomes else [_saturated_by_births, _saturated_by_time]
+    )
+    panels += [_gathering] * ("food" in compared.outcomes)
+    widths = [1.6 if panel is _dying and len(panels) == 2 else 1 for panel in panels]
+    all_axes = figure.subplots(1, len(panels), width_ratios=widths)
+    for panel, axes in zip(panels, all_axes, strict=True):
+        panel(axes, compared)
+    _legend(figure, all_axes[0], compared)
     return figure
 
 
@@ -57,16 +56,33 @@ def colours(arms: int) -> list[str]:
     return [style.INK, *(matplotlib.colors.to_hex(each) for each in shades[: arms - 1])]
 
 
-def _alive(axes: Axes, arm: Arm, colour: str, banded: bool) -> None:
-    """Kaplan-Meier of all lives, with a band over resamples of worlds."""
-    survived = arm.survival
-    ages = np.concatenate([[1], survived.ages, [survived.limit]])
-    curve, low, high = (
-        np.concatenate([[1.0], each, each[-1:]]) for each in (survived.curve, *survived.band)
-    )
-    if banded:
-        axes.fill_between(ages, low, high, step="post", color=colour, alpha=0.2, linewidth=0)
-    axes.step(ages, curve, where="post", color=colour, label=arm.name)
+def _coloured(compared: Comparison) -> Iterator[tuple[Arm, str]]:
+    return zip(compared.arms, colours(len(compared.arms)), strict=True)
+
+
+def _alive(axes: Axes, compared: Comparison) -> None:
+    """Kaplan-Meier of all lives; those of a few runs with a band over resamples of worlds."""
+    for arm, colour in _coloured(compared):
+        survived = arm.survival
+        ages = np.concatenate([[1], survived.ages, [survived.limit]])
+        curve, low, high = (
+            np.concatenate([[1.0], each, each[-1:]]) for each in (survived.curve, *survived.band)
+        )
+        if len(compared.arms) <= FEW:
+            axes.fill_between(ages, low, high, step="post", color=colour, alpha=0.2, linewidth=0)
+        axes.step(ages, curve, where="post", color=colour, label=arm.name)
+    style.time_axis(axes, compared.age, "age (ticks)")
+    axes.set(title="Alive at each age", ylabel="fraction of organisms", ylim=(-0.03, 1.03))
+
+
+def _saturated_by_births(axes: Axes, compared: Comparison) -> None:
+    _saturated(axes, compared, "births")
+    axes.set(title="Saturated, by births", xlabel="births", ylabel="fraction of worlds")
+
+
+def _saturated_by_time(axes: Axes, compared: Comparison) -> None:
+    _saturated(axes, compared, "ticks")
+    axes.set(title="Saturated, by time", xlabel="time (ticks)")
 
 
 def _saturated(axes: Axes, compared: Comparison, unit: str) -> None:
@@ -75,7 +91,7 @@ def _saturated(axes: Axes, compared: Comparison, unit: str) -> None:
     power = 10 ** np.floor(np.log10(max(values.min(), 1)))
     first = power * (3 if values.min() >= 3 * power else 1)
     last = 1.2 * values.max()
-    for arm, colour in zip(compared.arms, colours(len(compared.arms)), strict=True):
+    for arm, colour in _coloured(compared):
         figures = arm.figures[unit]
         at = np.concatenate([[first], np.unique(figures.value), [last]])
         stopped = np.unique(figures.value[~figures.known])
@@ -92,18 +108,28 @@ def _saturated(axes: Axes, compared: Comparison, unit: str) -> None:
 
 
 def _dying(axes: Axes, compared: Comparison) -> None:
-    """Ticks lived for each death as time goes on: every world of a few runs, and the median."""
-    few = len(compared.arms) <= FEW
-    for arm, colour in zip(compared.arms, colours(len(compared.arms)), strict=True):
-        middle = (arm.pace.edges[1:] + arm.pace.edges[:-1]) / 2
-        for world in arm.pace.curve if few else ():
-            axes.plot(middle, world, color=colour, alpha=0.3, linewidth=0.8)
-        axes.plot(middle, np.median(arm.pace.curve, axis=0), "o-", color=colour, markersize=3)
-    style.counted(axes.xaxis)
+    _over_time(axes, compared, lambda arm: arm.pace.curve)
     style.logarithmic(axes.yaxis)
-    shown = "worlds and median" if few else "median of worlds"
-    axes.set(title=f"Ticks lived for each death: {shown}", xlabel="time (ticks)")
-    axes.set(xlim=(0, arm.pace.edges[-1]))
+    axes.set_title("Ticks lived for each death")
+
+
+def _gathering(axes: Axes, compared: Comparison) -> None:
+    _over_time(axes, compared, lambda arm: arm.gathering.curve)
+    axes.set_title(f"Food gathered in a {compared.span}")
+
+
+def _over_time(axes: Axes, compared: Comparison, curve: Callable[[Arm], np.ndarray]) -> None:
+    """Curves (W, WINDOWS): every world of a few runs, and the median."""
+    few, edges = len(compared.arms) <= FEW, compared.arms[0].pace.edges
+    middle = (edges[1:] + edges[:-1]) / 2
+    for arm, colour in _coloured(compared):
+        worlds = curve(arm)
+        if few:
+            axes.plot(middle, worlds.T, color=colour, alpha=0.3, linewidth=0.8)
+        axes.plot(middle, np.median(worlds, axis=0), "o-", color=colour, markersize=3)
+    style.counted(axes.xaxis)
+    axes.set(xlabel="time (ticks): worlds and median" if few else "time (ticks): median of worlds")
+    axes.set_xlim(0, edges[-1])
 
 
 def _legend(figure: Figure, axes: Axes, compared: Comparison) -> None:
