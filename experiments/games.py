@@ -114,8 +114,8 @@ def played(
             row = {"who": name, "world": organism.world, "organism": organism.id}
             row |= {"age": organism.age, "way": way}
             row |= {count: told[count] for count in ("games", "distinct")}
-            row |= {column: told[column]["median"] for column in COLUMNS}
-            row |= {f"best_{column}": told[column]["maximum"] for column in COLUMNS}
+            row |= {column: round(told[column]["median"], 2) for column in COLUMNS}
+            row |= {f"best_{column}": round(told[column]["maximum"], 2) for column in COLUMNS}
             rows.append(row)
         print(f"{name}: {way} is done", flush=True)
     return rows
