@@ -22,6 +22,8 @@ FORMAT = 1
 def new(run: Path, config: Config) -> Iterator[None]:
     """Write what a run begins with into its directory, new or empty, and hold the lock.
 
+    Its versions come last: a directory that has them is a run.
+
     Raises:
         InputError: it is taken.
         Trouble: it cannot be written.
@@ -30,12 +32,12 @@ def new(run: Path, config: Config) -> Iterator[None]:
     make_folders(run)
     with locked(run):
         versions = {"format": FORMAT, **device.versions(), **_habitat_versions(config)}
-        _write_text(run / "versions.json", json.dumps(versions, indent=1))
         if config.ancestors:
             brain = config.build_brain(config.build_habitat())
             genomes.write(run / genomes.FOUNDERS, brain, genomes.read(config.ancestors, brain), {})
             config = config.model_copy(update={"ancestors": (genomes.FOUNDERS,)})
         _write_text(run / "config.toml", config.to_toml())
+        _write_text(run / "versions.json", json.dumps(versions, indent=1))
         yield
 
 
