@@ -91,12 +91,10 @@ def alive(run: Path) -> list[Organism]:
 
 def best(run: Path, rows: list[dict[str, Any]]) -> list[Organism]:
     """Of each world, who scored most in its one game."""
-    found, order = (
-        primordia.load(run),
-        sorted(rows, key=lambda row: (row["score"], row["lifespan"])),
-    )
-    first = {row["world"]: row["organism"] for row in order}
-    return [found.organism(first[world], world) for world in sorted(first)]
+    found = primordia.load(run)
+    rising = sorted(rows, key=lambda row: (row["score"], row["lifespan"]))
+    last = {row["world"]: row["organism"] for row in rising}
+    return [found.organism(last[world], world) for world in sorted(last)]
 
 
 def played(

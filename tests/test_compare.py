@@ -90,6 +90,16 @@ def test_figures_of_worlds_are_what_brute_force_finds(
     assert any(0 < arm.saturated < WORLDS for arm in compared.arms[:2])
 
 
+def test_info_tells_how_often_a_life_tries_to_copy_itself(runs: list[Path]) -> None:
+    """Ticks lived, from the records of births and deaths, times replication, by births."""
+    for path in runs:
+        everyone = primordia.load(path).lives()
+        for number, world in enumerate(primordia.Run(path).info()["worlds"]):
+            lived = everyone.of_world(number).lifespan
+            expected = QUICK["replication"] * lived.sum() / len(lived)
+            assert world["tries_per_life"] == pytest.approx(expected)
+
+
 def test_settings_that_differ_are_named(compared: Comparison) -> None:
     assert compared.arms[0].settings == {"seed": 0, "stop.ticks": 600}
     assert [arm.settings["seed"] for arm in compared.arms] == [0, 100, 200]

@@ -106,3 +106,11 @@ def test_words_for_sizes(delta: float, word: str) -> None:
     found = contrast(run, figures([(2, True)]))
     assert found.delta == pytest.approx(delta, abs=0.02)
     assert found.word == word
+
+
+@pytest.mark.parametrize("values", [(3, -1), (-1, 3), (3, 0), (-2, -1)])
+def test_nothing_is_said_of_the_ratio_of_what_is_not_positive(values: tuple[int, int]) -> None:
+    run, reference = (figures([(value, True)] * 4) for value in values)
+    found = contrast(run, reference)
+    assert found.ratio == found.interval == (0, np.inf)
+    assert found.delta == np.sign(values[0] - values[1])

@@ -34,6 +34,25 @@ def test_a_directory_that_is_no_run(command: str, tmp_path: Path) -> None:
     assert contents(tmp_path) == before
 
 
+@pytest.mark.parametrize("file", ["config.toml", "versions.json"])
+def test_a_directory_that_is_half_made(
+    file: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whatever is written last, nobody takes it for a run before that."""
+    write = directory._write_text
+
+    def stop(path: Path, text: str) -> None:
+        if path.name == file:
+            raise KeyboardInterrupt
+        write(path, text)
+
+    monkeypatch.setattr(directory, "_write_text", stop)
+    with pytest.raises(KeyboardInterrupt):
+        started(tmp_path / "run")
+    for command in ("info", "resume", "verify"):
+        complains(here(command, tmp_path / "run"), 2, "is not a run of primordia")
+
+
 @pytest.mark.parametrize("command", ["info", "resume", "verify"])
 def test_a_run_made_by_a_newer_version(command: str, run: Path) -> None:
     change_versions(run, format=directory.FORMAT + 1)
