@@ -8,6 +8,7 @@ import numpy as np
 from primordia.config import Config
 from primordia.history.climate import climate_at
 from primordia.history.report import table
+from primordia.law.metabolism import break_even
 
 STRETCHES = 60
 """Most parts that a world's time is cut into."""
@@ -65,5 +66,6 @@ def foraging(run: Path, config: Config) -> Foraging:
 
 
 def _break_even(climate: dict[str, np.ndarray]) -> np.ndarray:
-    drain, gain = (climate[f"metabolism.{name}"].astype(float) for name in ("drain", "gain"))
-    return np.divide(drain, gain, out=np.full_like(gain, np.inf), where=gain > 0)
+    pairs = zip(climate["metabolism.drain"], climate["metabolism.gain"], strict=True)
+    each = (break_even(float(drain), float(gain)) for drain, gain in pairs)
+    return np.array([np.inf if enough is None else enough for enough in each])
