@@ -1,5 +1,4 @@
 import os
-from collections.abc import Iterator
 from pathlib import Path
 
 # Less to wait for: XLA compiles faster with its older emitters. Their code is slower, but gives the same
@@ -9,9 +8,7 @@ os.environ["XLA_FLAGS"] = f"{os.environ.get('XLA_FLAGS', '')} --xla_cpu_use_fusi
 import jax
 import pytest
 
-from primordia.engine import loop
-from primordia.history import fork, verify
-from tests import commands, worlds
+from tests import commands
 
 
 @pytest.fixture(autouse=True, scope="session")
@@ -22,12 +19,3 @@ def _compiled_code(tmp_path_factory: pytest.TempPathFactory) -> None:
     commands.CACHE = Path(shared) / "compiled"
     jax.config.update("jax_compilation_cache_dir", str(commands.CACHE))
     jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.2)
-
-
-@pytest.fixture(scope="module")
-def compiled_once() -> Iterator[None]:
-    """Runs in this process share what is compiled where only seeds and limits differ."""
-    with pytest.MonkeyPatch.context() as patch:
-        for module in (loop, verify, fork):
-            patch.setattr(module, "Engine", worlds.engine)
-        yield

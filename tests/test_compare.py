@@ -19,8 +19,6 @@ from tests.commands import complains, here
 from tests.test_survival import restricted_mean
 from tests.worlds import MEADOW, config
 
-pytestmark = pytest.mark.usefixtures("compiled_once")
-
 WORLDS = 5
 QUICK: dict[str, Any] = {
     **MEADOW,
@@ -35,7 +33,7 @@ QUICK: dict[str, Any] = {
 
 
 @pytest.fixture(scope="module")
-def runs(compiled_once: None, tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
+def runs(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
     """Three of one task; in the last, worlds live until they saturate."""
     folder = tmp_path_factory.mktemp("runs")
     changes: dict[str, dict[str, Any]] = {

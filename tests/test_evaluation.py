@@ -16,8 +16,6 @@ from primordia.organism.evaluation import evaluate
 from tests.commands import complains, here
 from tests.worlds import MEADOW, config
 
-pytestmark = pytest.mark.usefixtures("compiled_once")
-
 
 @pytest.fixture(scope="module")
 def pong(tmp_path_factory: pytest.TempPathFactory) -> Path:

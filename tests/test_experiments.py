@@ -67,7 +67,6 @@ def test_trials_tell_what_mutants_inherit(tmp_path: Path, monkeypatch: pytest.Mo
     assert rows[2][4] == rows[2][5]
 
 
-@pytest.mark.usefixtures("compiled_once")
 def test_an_experiment_is_run_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(str(EXPERIMENTS))
     monkeypatch.chdir(tmp_path)
@@ -121,7 +120,6 @@ def ponged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return file
 
 
-@pytest.mark.usefixtures("compiled_once")
 def test_what_is_told_of_organisms_in_other_games(
     ponged: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -206,7 +204,6 @@ def test_what_is_told_of_robots_in_fresh_games(
     assert (results / "reaching.md").read_text().count("| arms") == 2
 
 
-@pytest.mark.usefixtures("compiled_once")
 def test_deaths_of_the_last_quarter(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Up to where all runs have come, counted one by one."""
     monkeypatch.syspath_prepend(str(EXPERIMENTS))

@@ -21,8 +21,6 @@ from tests.commands import complains, here
 from tests.synthetic import alive, world_of, worlds_of
 from tests.worlds import MEADOW, config
 
-pytestmark = pytest.mark.usefixtures("compiled_once")
-
 WHAT: dict[str, Any] = {
     **MEADOW,
     "habitat": {"name": "tests.toys:Meadow", "lifespan": 90},
@@ -35,7 +33,7 @@ WHAT: dict[str, Any] = {
 
 
 @pytest.fixture(scope="module")
-def run(compiled_once: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Three worlds with births, copies and deaths of several causes."""
     where = tmp_path_factory.mktemp("figures") / "run"
     loop.start(config(WHAT, stop={"ticks": 900}), where)

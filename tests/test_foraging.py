@@ -17,8 +17,6 @@ from primordia.history.foraging import Harvest, foraging
 from tests.commands import here
 from tests.worlds import MEADOW, config
 
-pytestmark = pytest.mark.usefixtures("compiled_once")
-
 FOOD = 0.25
 FED: dict[str, Any] = {
     **MEADOW,
@@ -34,7 +32,7 @@ FED: dict[str, Any] = {
 
 
 @pytest.fixture(scope="module")
-def runs(compiled_once: None, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     """Worlds in which all find the same, from tick 200 on more than they need; less; and nothing."""
     folder = tmp_path_factory.mktemp("foraging")
     less = {**FED, "habitat": {**FED["habitat"], "food": FOOD / 2}}

@@ -17,13 +17,11 @@ from tests.commands import complains, here
 from tests.test_lineage import comes_back
 from tests.worlds import MILL, config, merged
 
-pytestmark = pytest.mark.usefixtures("compiled_once")
-
 SHIFTING = {**MILL, "brain": {"hidden": 6}, "seeds": 2, "seed": 11, "stop": {"ticks": 1500}}
 
 
 @pytest.fixture(scope="module")
-def mill(compiled_once: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def mill(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Seasons, metabolism, a noisy motor, two worlds."""
     run = tmp_path_factory.mktemp("mill") / "run"
     loop.start(config(SHIFTING), run)
@@ -31,7 +29,7 @@ def mill(compiled_once: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def poles(compiled_once: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def poles(tmp_path_factory: pytest.TempPathFactory) -> Path:
     run = tmp_path_factory.mktemp("poles") / "run"
     return primordia.run("CartPole-survival", run, stop={"ticks": 3000, "until": "none"}).path
 

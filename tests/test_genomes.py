@@ -14,15 +14,13 @@ from primordia.disk import genomes
 from primordia.engine import loop
 from primordia.errors import InputError
 from primordia.history.verify import verify
-from primordia.law.brain import Recurrent
+from primordia.law.brain import BrainSettings
 from primordia.law.mutation import ancestor_of
 from primordia.wide import wide
 from tests.commands import complains, here
 from tests.worlds import MEADOW, config, merged
 
-pytestmark = pytest.mark.usefixtures("compiled_once")
-
-BRAIN = Recurrent(2, 2, 6)
+BRAIN = BrainSettings(hidden=6).build(2, 2)
 SMALL = {"brain": {"hidden": 6}, "hazard": 0.03, "replication": 0.3, "stop": {"ticks": 300}}
 
 
@@ -97,7 +95,7 @@ def broken(path: Path, kind: str) -> None:
     if kind == "no safetensors":
         path.write_bytes(b"pickle?")
     elif kind == "another brain":
-        genomes.write(path, Recurrent(2, 2, 5), np.zeros((1, 45), np.float32), {})
+        genomes.write(path, BrainSettings(hidden=5).build(2, 2), np.zeros((1, 45), np.float32), {})
     elif kind == "no numbers":
         genomes.write(path, BRAIN, np.full((1, 60), np.nan, np.float32), {})
     elif kind == "torn":

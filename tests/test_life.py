@@ -25,11 +25,9 @@ from tests.commands import complains, here
 from tests.toys import HOST_CARTPOLE, HostCartPole, Mirror
 from tests.worlds import MEADOW, MILL, config
 
-pytestmark = pytest.mark.usefixtures("compiled_once")
-
 
 @pytest.fixture(scope="module")
-def mill(compiled_once: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def mill(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Seasons that change the metabolism, a noisy motor, three worlds."""
     run = tmp_path_factory.mktemp("mill") / "run"
     loop.start(config({**MILL, "seeds": 3, "seed": 5, "stop": {"ticks": 700}}), run)
@@ -47,7 +45,7 @@ def mirror(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def poles(compiled_once: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def poles(tmp_path_factory: pytest.TempPathFactory) -> Path:
     run = tmp_path_factory.mktemp("poles") / "run"
     return primordia.run("CartPole-survival", run, stop={"ticks": 6000, "until": "none"}).path
 

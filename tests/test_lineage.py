@@ -17,8 +17,6 @@ from primordia.history.lives import lives
 from primordia.law.brain import join
 from tests.worlds import MEADOW, MILL, config, merged
 
-pytestmark = pytest.mark.usefixtures("compiled_once")
-
 SMALL = {"hidden": 6}
 SHIFTING = {
     **MILL,
@@ -82,7 +80,7 @@ def depth(run: Path, organism: int, world: int = 0) -> int:
 
 
 @pytest.fixture(scope="module")
-def deep(compiled_once: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def deep(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """CartPole-survival with poles that may swing far: thousands of births, no saturation."""
     run = tmp_path_factory.mktemp("deep") / "run"
     freely = {"angle_limit": 180.0, "track_limit": 1e9}

@@ -4,6 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from primordia.engine.loop import Engine
 from primordia.history.lines import DIES, NOBODY, Lines, Turnover, turnovers
 from tests import worlds
 
@@ -99,7 +100,7 @@ def test_a_founder_after_extinction_takes_nothing_over() -> None:
 def test_chunks_of_any_length_give_the_same_lines() -> None:
     found, meadow = [], worlds.config(worlds.MEADOW, hazard=0.02, metabolism=None)
     for ticks in (7, 2**20):
-        made = worlds.engine(meadow)
+        made = Engine(meadow)
         lines, limits = Lines([], crowd=8), made.limits({"ticks": 5000})
         while made.any_running(limits):
             made._ticks = ticks

@@ -26,7 +26,7 @@ from primordia.live.panel import duration, short
 from primordia.wide import Wide, wide
 from tests import commands
 from tests.commands import COMMAND, environment, here
-from tests.worlds import MEADOW, config, engine
+from tests.worlds import MEADOW, config
 
 # What is drawn.
 
@@ -79,7 +79,7 @@ WORLDS: dict[str, dict[str, Any]] = {
 
 
 def meadow(name: str) -> loop.Engine:
-    return engine(config(MEADOW, hazard=0.02, metabolism=None, **WORLDS[name]))
+    return loop.Engine(config(MEADOW, hazard=0.02, metabolism=None, **WORLDS[name]))
 
 
 @pytest.fixture(scope="module", params=WORLDS)
@@ -210,7 +210,7 @@ SMALL = ("CartPole-survival", "--cells", "8", "--hazard", "0.002", "--sample_eve
 
 
 def test_plain_lines_where_there_is_no_terminal(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, compiled_once: None
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(live.Plain, "EVERY", 0.0)
     monkeypatch.setenv("FORCE_COLOR", "1")

@@ -35,7 +35,6 @@ def test_every_tick_and_every_death_counts_once(
     assert (found.late.value == late[0] / np.maximum(late[1], 1)).all()
 
 
-@pytest.mark.usefixtures("compiled_once")
 def test_worlds_that_never_saturate_are_compared_by_it(tmp_path: Path) -> None:
     """Half the hazard, twice the ticks for each death; saturation is not spoken of."""
     runs = []

@@ -18,15 +18,13 @@ from primordia.engine import loop
 from primordia.law.world import Cause
 from tests.worlds import MILL, Lived, config
 
-pytestmark = pytest.mark.usefixtures("compiled_once")
-
 WHAT: dict[str, Any] = {**MILL, "brain": {"hidden": 6}, "seeds": 3, "hazard": 0.02}
 TICKS = 900
 WORDS = st.integers(0, 2**32 - 1)
 
 
 @pytest.fixture(scope="module")
-def lived(compiled_once: None) -> Lived:
+def lived() -> Lived:
     """The same worlds in memory, with the events as the law gave them."""
     return Lived(config(WHAT), TICKS)
 

@@ -11,7 +11,7 @@ SOURCE = Path(__file__).parent.parent / "src" / "primordia"
 # A module imports from rows above its own only, so those of one row know nothing of each other.
 ORDER = """
     engine disk history
-    errors settings wide disk.digest law.events tasks live.paint history.summary
+    errors settings compiled wide disk.digest law.events tasks live.paint history.summary
     keys disk.files history.lines pool.board conditions dice gaussian
     pool.worker pool.arcade
     pool

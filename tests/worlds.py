@@ -6,7 +6,6 @@ import numpy as np
 
 from primordia.config import Config, load, merged, validated
 from primordia.disk.digest import digests
-from primordia.engine.chunk import Fused
 from primordia.engine.loop import Engine, recorder_for
 from primordia.law.genesis import begin
 
@@ -48,20 +47,6 @@ def config(base: str | dict[str, Any] = "CartPole-survival", **settings: Any) ->
     return validated(merged(base, settings), source=base["task"])
 
 
-_compiled: dict[str, Any] = {}
-
-
-def engine(config: Config) -> Engine:
-    """An Engine, with what was compiled for another that differs in seed and limits only."""
-    made = Engine(config)
-    key = config.model_copy(update={"seed": 0, "stop": None}).model_dump_json(warnings=False)
-    if isinstance(made.chunks, Fused):
-        made.chunks = _compiled.setdefault(key, made.chunks)
-    else:
-        made.chunks._calls = _compiled.setdefault(key, made.chunks._calls)
-    return made
-
-
 class Lived:
     """A run in memory, driven for some ticks, with its records."""
 
@@ -74,7 +59,7 @@ class Lived:
         **stop: Any,
     ) -> None:
         """`begun`: what the counts of ticks and births start at."""
-        self.config, self.engine = config, engine(config)
+        self.config, self.engine = config, Engine(config)
         if any(begun):
             seeds = [config.seed + world for world in range(config.seeds)]
             self.engine.state = self.engine.chunks.begin(begin(self.engine.law, seeds, *begun))

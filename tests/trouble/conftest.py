@@ -9,7 +9,7 @@ from tests.trouble import HALF, SMALL, TICKS, digest, interrupt_after
 
 
 @pytest.fixture(scope="module")
-def through(compiled_once: None, tmp_path_factory: pytest.TempPathFactory) -> str:
+def through(tmp_path_factory: pytest.TempPathFactory) -> str:
     """Digest of the run that never met with trouble."""
     run = tmp_path_factory.mktemp("through") / "run"
     assert here("run", *SMALL, "--ticks", TICKS, "--out", run).returncode == 0
@@ -17,7 +17,7 @@ def through(compiled_once: None, tmp_path_factory: pytest.TempPathFactory) -> st
 
 
 @pytest.fixture(scope="module")
-def half(compiled_once: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def half(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run that was interrupted half-way: two checkpoints, a closed segment and open tails."""
     run = tmp_path_factory.mktemp("half") / "run"
     assert here("run", *SMALL, "--ticks", HALF, "--out", run).returncode == 0

@@ -12,8 +12,6 @@ from primordia.disk import checkpoint
 from tests.commands import complains, here
 from tests.trouble import TICKS, contents, digest, flip, goes_on, newest, started
 
-pytestmark = pytest.mark.usefixtures("compiled_once")
-
 
 def empty(path: Path) -> None:
     path.write_bytes(b"")

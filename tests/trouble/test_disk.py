@@ -20,8 +20,6 @@ from primordia.errors import Trouble
 from tests.commands import complains, here
 from tests.trouble import SMALL, TICKS, contents, digest, goes_on, started
 
-pytestmark = pytest.mark.usefixtures("compiled_once")
-
 
 def test_places_where_no_run_can_be_made(tmp_path: Path) -> None:
     file = tmp_path / "file"

@@ -11,8 +11,6 @@ from primordia.engine import chunk, loop
 from tests.commands import begin, complains, here
 from tests.trouble import HALF, SMALL, TASK, TICKS, contents, digest, goes_on, newest, started
 
-pytestmark = pytest.mark.usefixtures("compiled_once")
-
 
 def test_a_directory_that_is_taken(run: Path, tmp_path: Path) -> None:
     before = contents(run)

@@ -12,8 +12,6 @@ from tests import commands
 from tests.commands import complains, here
 from tests.trouble import TASK
 
-pytestmark = pytest.mark.usefixtures("compiled_once")
-
 WRONG = {
     ("CartPole-survivl",): ["no task 'CartPole-survivl'", "did you mean 'CartPole-survival'?"],
     (TASK, "--celsl", "64"): ["no setting 'celsl'", "did you mean 'cells'?"],

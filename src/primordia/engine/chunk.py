@@ -4,7 +4,6 @@ A chunk may have any length; nothing that lives can tell. A habitat in JAX is fu
 one compiled loop. A habitat on the host is stepped between compiled halves, one call a tick.
 """
 
-from functools import partial
 from typing import NamedTuple
 
 import jax
@@ -12,6 +11,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array, lax
 
+from primordia.compiled import shared
 from primordia.habitats import Bodies, Habitat
 from primordia.law import Fates, Law, judge, keys_of, no_fates, quiet_ticks, rest, settle, think
 from primordia.law import events as log
@@ -52,7 +52,7 @@ class Fused:
 
     def __init__(self, law: Law, habitat: Habitat) -> None:
         self._law, self._habitat = law, habitat
-        self._advance = jax.jit(partial(_advance, law, habitat), donate_argnums=(0, 1))
+        self._advance = shared(_advance, law, habitat, donate=(0, 1))
         self.events = log.empty(law.worlds * law.cells, law.worlds, width(law.blocks))
         """of the latest chunk"""
 

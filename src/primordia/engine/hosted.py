@@ -5,7 +5,6 @@ in which something falls due, is settled by a second call, and the newborn take 
 thought. What ticks change is kept beside the state until it is settled, so a chunk may end anywhere.
 """
 
-from functools import partial
 from typing import NamedTuple
 
 import jax
@@ -13,6 +12,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
+from primordia.compiled import shared
 from primordia.engine.chunk import Limits, State, named_leaves, running, ticks_left
 from primordia.engine.held import Form, Held
 from primordia.engine.tallies import Tallies
@@ -61,11 +61,11 @@ class Calls:
     """What is compiled: of the law, for bodies that take so many random words."""
 
     def __init__(self, law: Law, words: int, form: Form) -> None:
-        self.hold, self.release = jax.jit(form.hold), jax.jit(form.release)
-        self.think = jax.jit(partial(_think, law, form))
-        self.live = jax.jit(partial(_live, law, form))
-        self.look = jax.jit(partial(_look, law, form, words))
-        self.settle = jax.jit(partial(_settle, law, form, words), donate_argnums=(0, 1))
+        self.hold, self.release = shared(Form.hold, form), shared(Form.release, form)
+        self.think = shared(_think, law, form)
+        self.live = shared(_live, law, form)
+        self.look = shared(_look, law, form, words)
+        self.settle = shared(_settle, law, form, words, donate=(0, 1))
 
 
 class Hosted:
@@ -83,7 +83,7 @@ class Hosted:
     def begin(self, world: World) -> State:
         """The state of a run before genesis."""
         self._no_fates = no_fates(self._law)
-        self._calls = Calls(self._law, self._habitat.words, Form(world))
+        self._calls = Calls(self._law, self._habitat.words, Form.of(world))
         cells = len(world.organisms.alive)
         return State(world, np.zeros((cells, self._habitat.senses_size), np.float32))
 

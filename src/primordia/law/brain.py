@@ -23,11 +23,13 @@ Genome: TypeAlias = dict[str, Array]
 class Brain(Protocol):
     """Contract: pure, elementwise over organisms, the same bits for every N and thread count."""
 
-    memory: int
-    """Length of an organism's memory, which is zero at birth."""
+    @property
+    def memory(self) -> int:
+        """Length of an organism's memory, which is zero at birth."""
 
-    blocks: dict[str, Shape]
-    """Name and shape of each block of weights; their order is the order of the flat genome."""
+    @property
+    def blocks(self) -> dict[str, Shape]:
+        """Name and shape of each block of weights; their order is the order of the flat genome."""
 
     def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:
         """One tick: memory (N, M) and senses (N, S), float32, -> memory (N, M), output (N, A)."""
@@ -57,6 +59,7 @@ class Linear:
         return lax.dot_general(x, weights, dimensions, precision=lax.Precision.HIGHEST)
 
 
+@dataclass(frozen=True)
 class Recurrent:
     """The paper's brain: `h' = tanh(W1 x + R h)`, `y = W2 h'`.
 
@@ -64,37 +67,49 @@ class Recurrent:
     32; the formula, without biases, is that of the published code.
     """
 
-    def __init__(self, senses: int, outputs: int, hidden: int) -> None:
-        self.memory = hidden
-        self._input = Linear(senses, hidden)
-        self._recurrent = Linear(hidden, hidden)
-        self._output = Linear(hidden, outputs)
-        self.blocks = {
-            "input": self._input.shape,
-            "recurrent": self._recurrent.shape,
-            "output": self._output.shape,
-        }
+    input: Linear
+    recurrent: Linear
+    output: Linear
+
+    @property
+    def memory(self) -> int:
+        """One number a neuron."""
+        return self.recurrent.outputs
+
+    @property
+    def blocks(self) -> dict[str, Shape]:
+        """Three."""
+        layers = {"input": self.input, "recurrent": self.recurrent, "output": self.output}
+        return {name: layer.shape for name, layer in layers.items()}
 
     def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:
         """One tick; see `Brain`."""
-        drive = self._input(genome["input"], senses)
-        memory = jnp.tanh(drive + self._recurrent(genome["recurrent"], memory))
-        return memory, self._output(genome["output"], memory)
+        drive = self.input(genome["input"], senses)
+        memory = jnp.tanh(drive + self.recurrent(genome["recurrent"], memory))
+        return memory, self.output(genome["output"], memory)
 
 
+@dataclass(frozen=True)
 class FeedForward:
     """One hidden layer and no memory: `y = W2 tanh(W1 x)`."""
 
-    def __init__(self, senses: int, outputs: int, hidden: int) -> None:
-        self.memory = 0
-        self._input = Linear(senses, hidden)
-        self._output = Linear(hidden, outputs)
-        self.blocks = {"input": self._input.shape, "output": self._output.shape}
+    input: Linear
+    output: Linear
+
+    @property
+    def memory(self) -> int:
+        """None."""
+        return 0
+
+    @property
+    def blocks(self) -> dict[str, Shape]:
+        """Two."""
+        return {"input": self.input.shape, "output": self.output.shape}
 
     def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:
         """One tick; see `Brain`."""
-        hidden = jnp.tanh(self._input(genome["input"], senses))
-        return memory, self._output(genome["output"], hidden)
+        hidden = jnp.tanh(self.input(genome["input"], senses))
+        return memory, self.output(genome["output"], hidden)
 
 
 class BrainSettings(Settings):
@@ -107,8 +122,10 @@ class BrainSettings(Settings):
 
     def build(self, senses: int, outputs: int) -> Brain:
         """The brain for a habitat with so many senses and a motor with so many outputs."""
-        make = Recurrent if self.kind == "recurrent" else FeedForward
-        return make(senses, outputs, self.hidden)
+        into, out = Linear(senses, self.hidden), Linear(self.hidden, outputs)
+        if self.kind == "feed-forward":
+            return FeedForward(into, out)
+        return Recurrent(into, Linear(self.hidden, self.hidden), out)
 
 
 def genome_length(brain: Brain) -> int:

@@ -46,6 +46,10 @@ class Mutation(Settings):
         {}, description="other values for single blocks of weights (input, recurrent, output)"
     )
 
+    def __hash__(self) -> int:
+        """Dictionaries have none, and this one is not changed."""
+        return hash(self.model_dump_json())
+
     def own(self, field: BlockSetting, names: list[str]) -> list[float | None]:
         """What is set for each named block by itself, if anything is."""
         return [getattr(self.blocks.get(name), field, None) for name in names]

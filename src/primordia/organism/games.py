@@ -6,11 +6,12 @@ from functools import partial
 from itertools import chain
 from typing import Any, NamedTuple
 
-import jax
 import jax.numpy as jnp
 import numpy as np
+from jax import Array
 
-from primordia.habitats import Habitat, HostHabitat, Outcome
+from primordia.compiled import shared
+from primordia.habitats import Bodies, Habitat, HostHabitat, Outcome
 from primordia.keys import Purpose, stream
 from primordia.law import Law
 from primordia.law.brain import split
@@ -147,7 +148,7 @@ class _Tries:
         self._memory = jnp.zeros((len(self._cells), law.brain.memory), jnp.float32)
         self._rates = Rates(*map(each, players.rates))
         self._energy = fixed(self._rates.store)
-        self._think, self._eat = jax.jit(partial(think, law)), jax.jit(metabolise)
+        self._think, self._eat = shared(think, law), shared(metabolise)
 
     def words(self) -> np.ndarray:
         """What the games are begun with, uint32 (K E, words)."""
@@ -182,12 +183,20 @@ def _opened(habitat: Any, games: int) -> Iterator[Any]:
             table.close()
 
 
+def _sense(habitat: Habitat, bodies: Bodies) -> Array:
+    return habitat.sense(bodies)
+
+
+def _step(habitat: Habitat, bodies: Bodies, action: Array) -> tuple[Bodies, Outcome]:
+    return habitat.step(bodies, action)
+
+
 class _OnHost:
     """A habitat in JAX, stepped as those on the host are."""
 
     def __init__(self, inner: Habitat) -> None:
-        self._reset, self._sense = inner.reset, jax.jit(inner.sense)
-        self._step = jax.jit(inner.step)
+        self._reset = inner.reset
+        self._sense, self._step = shared(_sense, inner), shared(_step, inner)
 
     def open(self, cells: int) -> None:
         """Bodies are made as they are needed."""

@@ -1,9 +1,9 @@
 """A brain by itself: `policy(senses) -> action`, to be used anywhere."""
 
-import jax
 import jax.numpy as jnp
 import numpy as np
 
+from primordia.compiled import shared
 from primordia.habitats import Discrete
 from primordia.law import Law
 from primordia.law.brain import split
@@ -17,7 +17,7 @@ class Policy:
         """`genome` is float32 (P,)."""
         self._law = law
         self._genome = split(law.brain, jnp.asarray(genome, jnp.float32)[None])
-        self._think = jax.jit(law.brain.__call__)
+        self._think = shared(type(law.brain).__call__, law.brain)
         self.reset()
 
     def reset(self) -> None:

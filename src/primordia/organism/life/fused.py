@@ -1,12 +1,11 @@
 """A life in a habitat in JAX: brain and body in one compiled loop."""
 
-from functools import partial
-
 import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array, lax
 
+from primordia.compiled import shared
 from primordia.engine.chunk import named_leaves
 from primordia.habitats import Bodies, Habitat
 from primordia.law import Law
@@ -23,7 +22,7 @@ class Fused:
 
     def __init__(self, law: Law, mind: Mind, habitat: Habitat) -> None:
         self._mind, self._habitat = mind, habitat
-        self._lived = jax.jit(partial(_lived, law, habitat))
+        self._lived = shared(_lived, law, habitat)
 
     def born(self, words: Array) -> Bodies:
         """A fresh body from random words uint32 (1, words)."""

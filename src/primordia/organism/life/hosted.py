@@ -1,12 +1,12 @@
 """A life in a habitat on the host: brain and simulator by turns, in a habitat with one cell."""
 
-from functools import partial
 from typing import Any
 
 import jax
 import numpy as np
 from jax import Array, lax
 
+from primordia.compiled import shared
 from primordia.habitats import Outcome
 from primordia.law import Law
 from primordia.law.metabolism import ONE, Rates, metabolise
@@ -27,8 +27,8 @@ class Hosted:
         habitat.open(1, watched=True) if watched else habitat.open(1)
         self._mind, self._habitat = mind, habitat
         self._seen = getattr(habitat, "seen", lambda: None)
-        self._think = jax.jit(partial(think, law))
-        self._energies = jax.jit(_energies) if law.metabolism is not None else None
+        self._think = shared(think, law)
+        self._energies = shared(_energies) if law.metabolism is not None else None
 
     def born(self, words: Array) -> np.ndarray:
         """A fresh body from random words uint32 (1, words) -> its senses (1, S)."""
