@@ -9,6 +9,7 @@ All functions take and give arrays of shapes that broadcast.
 
 from enum import IntEnum
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array, lax
@@ -34,6 +35,7 @@ class Purpose(IntEnum):
     EVALUATION = 10
 
 
+@jax.jit
 def threefry(key: Wide, counter: Wide) -> Wide:
     """Encrypt counters (two words each) under keys (two words each)."""
     k = (key.hi, key.lo, key.hi ^ key.lo ^ np.uint32(PARITY))
