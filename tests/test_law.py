@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from primordia.gaussian import quantiles
+from primordia.keys import Purpose, stream
 from primordia.law.brain import join
-from primordia.law.mutation import noise_index, streams
+from primordia.law.mutation import noise_index
 from primordia.wide import happened, to_host, wide
 from tests.chance import binomial, even
 from tests.history import History
@@ -296,7 +297,7 @@ def test_a_replaced_parent_passes_on_its_own_genome() -> None:
     rule = {"placement": {"topology": "well-mixed", "rule": "replacing"}}
     history = History(Lived(config(MEADOW, **SMALL, **values, **rule), 3))
     worlds = history.lived.engine.state.world.worlds
-    key = streams(worlds.seed, wide(np.zeros(1, np.uint64))).founder
+    key = stream(worlds.seed, Purpose.FOUNDER, wide(np.zeros(1, np.uint64)))
     length = sum(history.lived.engine.law.block_sizes)
     founders = quantiles()[np.asarray(noise_index(key, np.arange(64), length))] * np.float32(0.01)
     living = sorted(history.living_after[3], key=lambda life: life.cell)

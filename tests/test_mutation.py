@@ -10,21 +10,20 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from primordia.gaussian import quantiles
-from primordia.keys import Purpose, bits, stream
+from primordia.keys import Purpose, Streams, bits, stream, streams
 from primordia.law.mutation import (
     BlockMutation,
     Mutation,
-    Streams,
     mutates,
     newborns,
     noise_index,
-    streams,
 )
 from primordia.wide import Wide, wide
 from tests.chance import binomial
 from tests.worlds import MEADOW, Lived, config
 
 K, P = 64, 1001
+GENETIC = Purpose.MUTATE, Purpose.NOISE, Purpose.FOUNDER
 NAMES = ["input", "recurrent", "output"]
 
 
@@ -33,7 +32,7 @@ def name(number: int, count: int = K) -> Wide:
 
 
 def drawn(seed: int = 3, tick: int = 11, count: int = K) -> Streams:
-    return streams(name(seed, count), name(tick, count))
+    return streams(name(seed, count), name(tick, count), *GENETIC)
 
 
 def noise(which: Wide, cells: np.ndarray | None = None, length: int = P) -> np.ndarray:
@@ -56,11 +55,9 @@ def test_the_table_is_the_standard_gaussian() -> None:
     np.testing.assert_allclose(shares, (np.arange(65536)[::97] + 0.5) / 65536, atol=1e-7)
 
 
-@pytest.mark.parametrize("which", ["noise", "founder"])
-def test_noise_has_the_moments_of_the_gaussian(which: str) -> None:
-    values = np.concatenate(
-        [noise(getattr(drawn(tick=t), which)).ravel() for t in range(4)]
-    ).astype(float)
+@pytest.mark.parametrize("which", [Purpose.NOISE, Purpose.FOUNDER])
+def test_noise_has_the_moments_of_the_gaussian(which: Purpose) -> None:
+    values = np.concatenate([noise(drawn(tick=t)[which]).ravel() for t in range(4)]).astype(float)
     n = values.size
     assert abs(values.mean()) < 5 / np.sqrt(n)
     assert abs(values.std() - 1) < 5 / np.sqrt(2 * n) + 1e-4
@@ -70,14 +67,14 @@ def test_noise_has_the_moments_of_the_gaussian(which: str) -> None:
 
 
 def test_noise_of_different_organisms_is_unrelated() -> None:
-    base = noise(drawn().noise).astype(float)
+    base = noise(drawn()[Purpose.NOISE]).astype(float)
     between = np.corrcoef(base)[np.triu_indices(K, 1)]
     assert abs(between).max() < 5.5 / np.sqrt(P)
     others = {
-        "tick": noise(drawn(tick=12).noise),
-        "far tick": noise(drawn(tick=11 + 2**32).noise),
-        "seed": noise(drawn(seed=4).noise),
-        "purpose": noise(drawn().founder),
+        "tick": noise(drawn(tick=12)[Purpose.NOISE]),
+        "far tick": noise(drawn(tick=11 + 2**32)[Purpose.NOISE]),
+        "seed": noise(drawn(seed=4)[Purpose.NOISE]),
+        "purpose": noise(drawn()[Purpose.FOUNDER]),
         **{f"weights {lag} apart": np.roll(base, lag, axis=1) for lag in (1, 2, 250, 251, 502)},
     }
     for what, other in others.items():
@@ -99,16 +96,16 @@ def test_where_in_the_table_each_weights_noise_stands(length: int) -> None:
 
 
 def test_noise_does_not_depend_on_who_else_is_born() -> None:
-    all_of_them = noise(drawn().noise)
+    all_of_them = noise(drawn()[Purpose.NOISE])
     some = np.array([63, 2, 40])
-    np.testing.assert_array_equal(noise(drawn(count=3).noise, some), all_of_them[some])
+    np.testing.assert_array_equal(noise(drawn(count=3)[Purpose.NOISE], some), all_of_them[some])
 
 
 @pytest.mark.parametrize("probability", [0.0, 0.1, 0.5, 0.999, 1.0])
 def test_the_share_of_mutants(probability: float) -> None:
     count = 100_000
     cells, each = jnp.arange(count), jnp.full((count, 3), probability, jnp.float32)
-    taken = np.asarray(mutates(drawn(count=count), cells, each))
+    taken = np.asarray(mutates(drawn(count=count)[Purpose.MUTATE], cells, each))
     assert binomial(int(taken[:, 0].sum()), count, probability)
     np.testing.assert_array_equal(taken, np.tile(taken[:, :1], 3))
 
@@ -116,7 +113,7 @@ def test_the_share_of_mutants(probability: float) -> None:
 def test_one_draw_decides_for_all_blocks() -> None:
     count = 100_000
     each = jnp.tile(jnp.array([0.0, 0.2, 0.7, 1.0], jnp.float32), (count, 1))
-    taken = np.asarray(mutates(drawn(count=count), jnp.arange(count), each))
+    taken = np.asarray(mutates(drawn(count=count)[Purpose.MUTATE], jnp.arange(count), each))
     assert not taken[:, 0].any()
     assert taken[:, 3].all()
     assert binomial(int(taken[:, 1].sum()), count, 0.2)
@@ -239,11 +236,13 @@ def test_genomes_in_a_world_are_those_of_numpy_bit_for_bit(family: Lived) -> Non
     sizes = [block.shape[1] for block in genome.values()]
     lived = np.concatenate(list(genome.values()), axis=1)
     cells, ticks = jnp.asarray(births["cell"]), wide(births["tick"])
-    drawn = streams(name(family.config.seed, 256), ticks)
-    takes = np.asarray(mutates(drawn, cells, jnp.array([PROBABILITIES] * 256, jnp.float32)))
+    drawn = streams(name(family.config.seed, 256), ticks, *GENETIC)
+    takes = np.asarray(
+        mutates(drawn[Purpose.MUTATE], cells, jnp.array([PROBABILITIES] * 256, jnp.float32))
+    )
     takes, scale = np.repeat(takes, sizes, axis=1), np.repeat(np.float32(SCALES), sizes)
     spread = np.repeat(np.float32(FOUNDER_SCALES), sizes)
-    same_bits((noise(drawn.founder, cells, lived.shape[1]) * spread)[0], lived[0])
+    same_bits((noise(drawn[Purpose.FOUNDER], cells, lived.shape[1]) * spread)[0], lived[0])
     parents = lived[births["parent"][1:].astype(int)]
-    change = noise(drawn.noise, cells, lived.shape[1])[1:] * scale
+    change = noise(drawn[Purpose.NOISE], cells, lived.shape[1])[1:] * scale
     same_bits(np.where(takes[1:], parents + change, parents), lived[1:])

@@ -17,9 +17,10 @@ from primordia.gaussian import quantiles
 from primordia.history.climate import climate_at
 from primordia.history.lives import Lives, lives
 from primordia.history.report import opened
+from primordia.keys import Purpose, stream, streams
 from primordia.law import Law
 from primordia.law.brain import join
-from primordia.law.mutation import ancestor_of, mutates, noise_index, streams
+from primordia.law.mutation import ancestor_of, mutates, noise_index
 from primordia.law.world import Origin
 from primordia.wide import wide
 
@@ -98,13 +99,14 @@ def _replay(
         rows = np.arange(first, first + STEPS_AT_A_TIME) % len(line)  # past the end, some again
         births, length = line.take(rows), len(genome)
         seed = np.uint64(config.seed) + births.world.astype(np.uint64)
-        drawn, cells = streams(wide(seed), wide(births.born)), jnp.asarray(births.cell)
+        cells = jnp.asarray(births.cell)
+        drawn = streams(wide(seed), wide(births.born), Purpose.MUTATE, Purpose.NOISE)
         per_weight = (
             np.repeat(each[rows], law.block_sizes, axis=1) for each in (probability, scale)
         )
         chance, size = per_weight
-        takes = np.asarray(mutates(drawn, cells, jnp.asarray(chance)))
-        noise = quantiles()[np.asarray(noise_index(drawn.noise, cells, length))] * size
+        takes = np.asarray(mutates(drawn[Purpose.MUTATE], cells, jnp.asarray(chance)))
+        noise = quantiles()[np.asarray(noise_index(drawn[Purpose.NOISE], cells, length))] * size
         founders = _founders(law, config, births)
         for step in range(min(STEPS_AT_A_TIME, len(line) - first)):
             if births.origin[step] == Origin.FOUNDER:
@@ -119,6 +121,6 @@ def _founders(law: Law, config: Config, births: Lives) -> np.ndarray:
     seeds = wide(np.uint64(config.seed) + births.world.astype(np.uint64))
     if law.ancestors is not None:
         return law.ancestors[np.asarray(ancestor_of(seeds, wide(births.id), len(law.ancestors)))]
-    drawn, length = streams(seeds, wide(births.born)), int(law.block_sizes.sum())
-    index = noise_index(drawn.founder, jnp.asarray(births.cell), length)
+    drawn, length = stream(seeds, Purpose.FOUNDER, wide(births.born)), int(law.block_sizes.sum())
+    index = noise_index(drawn, jnp.asarray(births.cell), length)
     return quantiles()[np.asarray(index)] * law.founder_scale

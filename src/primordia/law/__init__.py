@@ -24,7 +24,7 @@ from jax import Array, lax
 
 from primordia.gaussian import quantiles
 from primordia.habitats import Continuous, Discrete, Outcome
-from primordia.keys import Purpose, bits, chance, stream
+from primordia.keys import Purpose, Streams, bits, chance, streams
 from primordia.law import turnover
 from primordia.law.brain import Brain
 from primordia.law.events import Events
@@ -104,19 +104,10 @@ class Law:
         return jnp.tile(jnp.arange(self.cells, dtype=jnp.int32), self.worlds)
 
 
-class Keys(NamedTuple):
-    """The streams of one tick that think and judge draw from, (W,) each."""
-
-    motor: Wide
-    hazard: Wide
-    replicate: Wide
-
-
-def keys_of(worlds: Worlds, ticks: Array) -> Keys:
-    """The keys of the tick so many (int32 ()) after the last one settled."""
+def keys_of(worlds: Worlds, ticks: Array) -> Streams:
+    """What think and judge draw from in the tick so many (int32 ()) after the last one settled, (W,)."""
     tick = worlds.tick.plus(jnp.full_like(worlds.calm, ticks))
-    purposes = Purpose.MOTOR, Purpose.HAZARD, Purpose.REPLICATE
-    return Keys(*(stream(worlds.seed, purpose, tick) for purpose in purposes))
+    return streams(worlds.seed, tick, Purpose.MOTOR, Purpose.HAZARD, Purpose.REPLICATE)
 
 
 class Fates(NamedTuple):
@@ -137,7 +128,7 @@ def no_fates(law: Law) -> Fates:
     return Fates(jnp.full(cells, -1, jnp.int32), nobody, jnp.zeros((), bool))
 
 
-def think(law: Law, world: World, senses: Array, keys: Keys) -> tuple[World, Array]:
+def think(law: Law, world: World, senses: Array, keys: Streams) -> tuple[World, Array]:
     """Brains of all cells, one tick; `rest` then undoes what is not to be.
 
     Args:
@@ -153,9 +144,8 @@ def think(law: Law, world: World, senses: Array, keys: Keys) -> tuple[World, Arr
     memory, output = law.brain(organisms.genome, organisms.memory, senses)
     faulty = (~jnp.isfinite(output)).any(axis=1)
     organisms = organisms._replace(memory=memory, faulty=faulty)
-    return World(organisms, worlds), act(
-        law, keys.motor.map(law.per_cell), law.cell_numbers, output
-    )
+    key = keys[Purpose.MOTOR].map(law.per_cell)
+    return World(organisms, worlds), act(law, key, law.cell_numbers, output)
 
 
 def act(law: Law, key: Wide, cells: Array, output: Array) -> Array:
@@ -169,7 +159,7 @@ def act(law: Law, key: Wide, cells: Array, output: Array) -> Array:
 
 
 def judge(
-    law: Law, world: World, outcome: Outcome, keys: Keys, active: Array
+    law: Law, world: World, outcome: Outcome, keys: Streams, active: Array
 ) -> tuple[World, Fates]:
     """What a tick in the habitat means for the active: they eat, die, want to copy themselves.
 
@@ -184,9 +174,9 @@ def judge(
         world with energy and food brought up to date; fates.
     """
     organisms, worlds = _eat(law, world, outcome, active)
-    cause = _deaths(law, organisms, worlds, outcome, keys.hazard)
+    cause = _deaths(law, organisms, worlds, outcome, keys[Purpose.HAZARD])
     cause = jnp.where(active, cause, -1)
-    replicates = _drawn(law, keys.replicate, worlds.climate.replication)
+    replicates = _drawn(law, keys[Purpose.REPLICATE], worlds.climate.replication)
     wants = replicates & active & (cause < 0)
     room = law.placement.room(law.by_world(organisms.alive)).ravel()
     eventful = ((cause >= 0) | (wants & room)).any()
@@ -277,11 +267,11 @@ def settle(
         sample_wait=worlds.sample_wait - passed,
         looks=worlds.looks._replace(wait=worlds.looks.wait - passed[:, None]),
     )
-    nobody = jnp.zeros_like(organisms.alive)
+    nobody, keys = jnp.zeros_like(organisms.alive), turnover.keys_of(worlds)
     world, events, born = lax.cond(
         fates.eventful | lifeless(law, world, running).any(),
         lambda world, events: turnover.turnover(
-            law, world, events, running, fates.wants, fates.cause
+            law, world, events, running, fates.wants, fates.cause, keys
         ),
         lambda world, events: (world, events, nobody),
         World(organisms, worlds),

@@ -4,14 +4,14 @@ Noise is read from the table of `gaussian`, by 16 random bits a weight. A child 
 (quantile x scale) and one IEEE sum, so that it can be rebuilt bit for bit anywhere.
 """
 
-from typing import Literal, NamedTuple, TypeAlias
+from typing import Literal, TypeAlias
 
 import jax.numpy as jnp
 import numpy as np
 from jax import Array, lax
 from pydantic import Field
 
-from primordia.keys import Purpose, bits, chance, stream
+from primordia.keys import bits, chance
 from primordia.settings import Settings
 from primordia.wide import Wide, modulo
 
@@ -60,23 +60,9 @@ class Mutation(Settings):
         return [getattr(self, field) if value is None else value for value in own]
 
 
-class Streams(NamedTuple):
-    """The streams that newborns' genomes come from, (K,), each of the newborn's world and tick."""
-
-    mutate: Wide
-    noise: Wide
-    founder: Wide
-
-
-def streams(seed: Wide, tick: Wide) -> Streams:
-    """The streams of worlds with these seeds at these ticks."""
-    purposes = Purpose.MUTATE, Purpose.NOISE, Purpose.FOUNDER
-    return Streams(*(stream(seed, purpose, tick) for purpose in purposes))
-
-
-def mutates(streams: Streams, cells: Array, probability: Array) -> Array:
-    """Which blocks of the genomes born in these cells (K,) take noise: bool (K, B)."""
-    return chance(bits(streams.mutate, cells).hi[:, None], probability)
+def mutates(stream: Wide, cells: Array, probability: Array) -> Array:
+    """Which blocks of the genomes born in these cells (K,), by their streams, take noise: bool (K, B)."""
+    return chance(bits(stream, cells).hi[:, None], probability)
 
 
 def noise_index(stream: Wide, cells: Array, length: int) -> Array:

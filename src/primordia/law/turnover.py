@@ -11,12 +11,12 @@ import numpy as np
 from jax import Array
 
 from primordia.gaussian import quantiles
-from primordia.keys import Purpose, below, bits, bits_if, stream
+from primordia.keys import Purpose, Streams, below, bits, bits_if, streams
 from primordia.law import events as log
 from primordia.law.brain import split
 from primordia.law.events import Events, Rows
 from primordia.law.metabolism import fixed
-from primordia.law.mutation import Streams, ancestor_of, mutates, newborns, noise_index, streams
+from primordia.law.mutation import ancestor_of, mutates, newborns, noise_index
 from primordia.law.world import Cause, Organisms, Origin, World, Worlds
 from primordia.wide import Wide, happened, largest, never, select, zero
 
@@ -37,8 +37,20 @@ class Births(NamedTuple):
     """birth number within the world"""
 
 
+def keys_of(worlds: Worlds) -> Streams:
+    """What the turnover of worlds at the end of this tick draws from, (W,)."""
+    mine = Purpose.PLACE, Purpose.GENESIS, Purpose.MUTATE, Purpose.NOISE, Purpose.FOUNDER
+    return streams(worlds.seed, worlds.tick, *mine)
+
+
 def turnover(
-    law: "Law", world: World, events: Events, running: Array, wants: Array, cause: Array
+    law: "Law",
+    world: World,
+    events: Events,
+    running: Array,
+    wants: Array,
+    cause: Array,
+    keys: Streams,
 ) -> tuple[World, Events, Array]:
     """Deaths and births of one tick.
 
@@ -49,28 +61,28 @@ def turnover(
         running: which worlds are, bool (W,).
         wants: which survivors replicate, bool (C,).
         cause: of each cell's death, int32 (C,), or -1.
+        keys: those of the tick.
 
     Returns:
         world, events, who is born (C,).
     """
     organisms, worlds = world
-    parent = _place(law, worlds, wants, organisms.alive)
+    parent = _place(law, keys[Purpose.PLACE], wants, organisms.alive)
     cause = jnp.where(organisms.alive & (parent >= 0) & (cause < 0), Cause.REPLACED, cause)
     alive = (organisms.alive & (cause < 0)) | (parent >= 0)
     extinct = running & ~law.by_world(alive).any(axis=1)
-    founded = _genesis(law, worlds, extinct).ravel()
+    founded = _genesis(law, keys[Purpose.GENESIS], extinct).ravel()
     births = _births(law, worlds, parent, founded)
 
     events = events._replace(deaths=_note_deaths(law, organisms, worlds, cause, events.deaths))
-    organisms, listed = _inherit(law, world, births, events.births)
+    organisms, listed = _inherit(law, world, births, keys, events.births)
     organisms = _begin_lives(law, organisms, worlds, births, alive | founded)
     worlds = _count(law, worlds, organisms, births, cause, extinct)
     return World(organisms, worlds), events._replace(births=listed), births.born
 
 
-def _place(law: "Law", worlds: Worlds, wants: Array, alive: Array) -> Array:
+def _place(law: "Law", key: Wide, wants: Array, alive: Array) -> Array:
     """The parent (on the axis of all cells) of each newborn, or -1: int32 (C,)."""
-    key = stream(worlds.seed, Purpose.PLACE, worlds.tick)
     key, cells = key.take(np.s_[:, None]), jnp.arange(law.cells)[None]
 
     def draw(number: Array) -> Wide:
@@ -81,11 +93,10 @@ def _place(law: "Law", worlds: Worlds, wants: Array, alive: Array) -> Array:
     return jnp.where(parent >= 0, parent + first, -1).ravel()
 
 
-def _genesis(law: "Law", worlds: Worlds, extinct: Array) -> Array:
+def _genesis(law: "Law", key: Wide, extinct: Array) -> Array:
     """Where founders appear: bool (W, N)."""
     if law.genesis == "fill":
         return jnp.broadcast_to(extinct[:, None], (law.worlds, law.cells))
-    key = stream(worlds.seed, Purpose.GENESIS, worlds.tick)
     chosen = below(bits(key, jnp.zeros_like(key.lo)).hi, law.cells)
     return extinct[:, None] & (jnp.arange(law.cells)[None] == chosen[:, None])
 
@@ -117,21 +128,22 @@ def _note_deaths(
     return log.for_each(cause >= 0, (deaths,), note)[0]
 
 
-def _inherit(law: "Law", world: World, births: Births, listed: Rows) -> tuple[Organisms, Rows]:
+def _inherit(
+    law: "Law", world: World, births: Births, keys: Streams, listed: Rows
+) -> tuple[Organisms, Rows]:
     """Write the genomes of the newborn, and note their births."""
     organisms, worlds = world
     climate, before = worlds.climate, organisms.genome
     sizes, length = law.block_sizes, int(law.block_sizes.sum())
-    drawn = streams(worlds.seed, worlds.tick)
 
     def one_batch(cells: Array, valid: Array, carry: tuple) -> tuple:
         genome, listed = carry
         of, parent = cells // law.cells, births.parent[cells]
         founder = births.founded[cells] | (law.inheritance == "founder")
-        mine = Streams(*(each.take(of) for each in drawn))
         within = cells % law.cells
-        source = select(founder, mine.founder, mine.noise)
-        mutated = mutates(mine, within, climate.mutation_probability[of]) & ~founder[:, None]
+        draw = keys[Purpose.MUTATE].take(of)
+        mutated = mutates(draw, within, climate.mutation_probability[of]) & ~founder[:, None]
+        source = select(founder, keys[Purpose.FOUNDER].take(of), keys[Purpose.NOISE].take(of))
         # A replaced parent's genome may be overwritten by then; elsewhere parents outlive births,
         # and reading the array that is written spares a copy of all genomes.
         pool = before if law.placement.rule == "replacing" else genome
