@@ -1,26 +1,30 @@
-"""Keep the genome of the longest-lived organism of every world of an experiment.
+"""Keep the genome of the best organism of every world of an experiment.
 
-    python experiments/champions.py experiments/atari/*.toml
+    python experiments/champions.py experiments/atari/*.toml experiments/robots/*.toml
 
 For experiments that have been run (`experiments/run.py`): one genome from each world of the reference, to
-`genomes/` beside the file. `primordia run TASK --ancestor FILE --genesis fill` begins a world with them.
+`genomes/` beside the file. Whose, `experiments/games.py` has found out among all that are alive; where it
+has not, the longest-lived's. `primordia run TASK --ancestor FILE --genesis fill` begins with them.
 """
 
+import csv
 from collections.abc import Iterable
 from pathlib import Path
 
 import files
 import numpy as np
-from games import longest_lived
+from games import BEST, longest_lived
 
+import primordia
 from primordia.disk import genomes
 from primordia.disk.directory import read_config
+from primordia.organism import Organism
 
 
 def report(file: Path) -> None:
     """Write the genomes, in the order of worlds."""
     run = files.runs(file)[0]
-    config, champions = read_config(run), longest_lived(run)
+    config, champions = read_config(run), best_known(file, run)
     about = {
         "task": config.task,
         "seeds": words(config.seed + each.world for each in champions),
@@ -32,6 +36,16 @@ def report(file: Path) -> None:
     brain = config.build_brain(config.build_habitat())
     genomes.write(path, brain, np.stack([each.genome() for each in champions]), about)
     print(path)
+
+
+def best_known(file: Path, run: Path) -> list[Organism]:
+    """Of each world."""
+    games = file.parent / "results" / f"{file.stem}-games.csv"
+    rows = csv.DictReader(games.read_text().splitlines()) if games.exists() else []
+    found = {int(r["world"]): int(r["organism"]) for r in rows if r["who"] == BEST.format(run.name)}
+    if not found:
+        return longest_lived(run)
+    return [primordia.Run(run).organism(found[world], world) for world in sorted(found)]
 
 
 def words(numbers: Iterable[int]) -> str:

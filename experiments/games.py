@@ -43,6 +43,8 @@ WAYS: dict[str, dict[str, dict[str, Any]]] = {
 }
 UNKNOWN = {"atari": "sticky, no-ops", "mujoco": "fresh starts"}
 """how all that are alive play"""
+BEST = "{}, best of these"
+"""what rows of those are called who scored most of all that are alive"""
 COLUMNS = ("lifespan", "score", "length")
 
 
@@ -56,7 +58,7 @@ def report(file: Path) -> None:
         rows += played(run.name, run, longest_lived(run), ways, GAMES)
         everyone = played(f"{run.name}, all alive", run, alive(run), {unknown: ways[unknown]}, 1)
         rows += everyone
-        rows += played(f"{run.name}, best of these", run, best(run, everyone), ways, GAMES)
+        rows += played(BEST.format(run.name), run, best(run, everyone), ways, GAMES)
     write_rows(file.parent / "results" / f"{file.stem}-games", rows, summary(rows))
 
 
