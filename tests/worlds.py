@@ -7,6 +7,7 @@ import numpy as np
 from primordia.config import Config, load, merged, validated
 from primordia.disk.digest import digests
 from primordia.engine.loop import Engine, recorder_for
+from primordia.law.brain import join
 from primordia.law.genesis import begin
 
 MEADOW: dict[str, Any] = {"task": "meadow", "habitat": {"name": "tests.toys:Meadow"}, "cells": 16}
@@ -84,6 +85,12 @@ class Lived:
         return {
             column: arrow[column].to_numpy(zero_copy_only=False) for column in arrow.column_names
         }
+
+    def genomes(self) -> np.ndarray:
+        """Of the living, float32 (n, P)."""
+        organisms = self.engine.state.world.organisms
+        blocks = {name: np.asarray(block) for name, block in organisms.genome.items()}
+        return join(self.engine.law.brain, blocks)[np.asarray(organisms.alive)]
 
     def digests(self) -> list[str]:
         """Of each world."""
