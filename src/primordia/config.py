@@ -223,11 +223,21 @@ def from_toml(path: Path) -> dict[str, Any]:
 
 
 def _found_in(folder: Path, values: dict[str, Any]) -> dict[str, Any]:
-    """Values in which the file that a habitat is made from, if it is in the folder, has its full path."""
+    """Values in which files that a habitat is made from, if they are in the folder, have full paths."""
     habitat = values.get("habitat")
-    if isinstance(habitat, dict) and (file := folder / str(habitat.get("file"))).is_file():
-        return {**values, "habitat": {**habitat, "file": str(file.resolve())}}
-    return values
+    return (
+        {**values, "habitat": _full_paths(folder, habitat)} if isinstance(habitat, dict) else values
+    )
+
+
+def _full_paths(folder: Path, table: dict[str, Any]) -> dict[str, Any]:
+    """Of each `file` in a table and in those within it."""
+    found = {}
+    for name, value in table.items():
+        file = folder / str(value)
+        full = str(file.resolve()) if name == "file" and file.is_file() else value
+        found[name] = _full_paths(folder, value) if isinstance(value, dict) else full
+    return found
 
 
 def merged(base: dict[str, Any], change: dict[str, Any]) -> dict[str, Any]:

@@ -52,11 +52,13 @@ def test_a_model_named_by_a_flag_is_found_from_elsewhere(
 ) -> None:
     (tmp_path / "box.xml").write_text(SLIDE.format(actuator=MOTOR))
     monkeypatch.chdir(tmp_path)
-    habitat = {"file": "box.xml", "senses": ["qpos"], "scored": {}}
+    habitat = {"file": "box.xml", "senses": ["qpos"], "scored": {"file": "box.xml"}}
     run = primordia.run("HalfCheetah-forager", "run", habitat=habitat, cells=2, stop={"ticks": 5})
     (tmp_path / "elsewhere").mkdir()
     monkeypatch.chdir(tmp_path / "elsewhere")
-    assert primordia.load(tmp_path / run.path).resume(ticks=8) == []
+    run = primordia.load(tmp_path / run.path)
+    assert run.resume(ticks=8) == []
+    assert run.oldest().evaluate(ticks=3).whole is not None
 
 
 @pytest.mark.parametrize(
