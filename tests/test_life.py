@@ -90,6 +90,14 @@ def test_the_living_come_to_where_they_are(
         comes_out(Life.of(run, everyone.id[row], everyone.world[row]))
 
 
+def test_a_body_begins_as_it_was_born(tmp_path: Path) -> None:
+    """Also where compiled code rounds a product and a sum once, and each operation by itself would."""
+    full = {"genesis": "fill", "replication": 0.0, "cells": 32, "stop": {"ticks": 2}}
+    loop.start(config(MEADOW, habitat={"name": "tests.toys:Slope"}, **full), tmp_path / "run")
+    for row in range(32):
+        comes_out(Life.of(tmp_path / "run", row))
+
+
 @pytest.mark.parametrize("which", ["mill", "mirror"])
 def test_the_dead_die_when_they_died(which: str, request: pytest.FixtureRequest) -> None:
     """Of starvation in the tick in which energy runs out, of their bodies when those fail."""

@@ -59,6 +59,24 @@ class Mill(Settings):
         return after, Outcome(angle > 0.999, food=turn, effort=jnp.abs(action[:, 1]))
 
 
+class Slope(Settings):
+    """Bodies begin somewhere between two bounds, a sum of products, and stay there."""
+
+    senses_size: int = 2
+    action: Any = Discrete(2)
+    words: int = 2
+
+    def reset(self, words: Array) -> Array:
+        share = (words >> np.uint32(8)).astype(jnp.float32) * np.float32(2**-24)
+        return np.float32(0.1) + share * np.float32(0.3) * (np.float32(1.1) + share[:, ::-1])
+
+    def sense(self, bodies: Array) -> Array:
+        return bodies
+
+    def step(self, bodies: Array, action: Array) -> tuple[Array, Outcome]:
+        return bodies, Outcome(jnp.zeros(len(bodies), bool))
+
+
 class Echo(Settings):
     """Food is the first number of the action, effort the second; at a given clock food is infinite."""
 

@@ -58,8 +58,8 @@ class Fused:
 
     def begin(self, world: World) -> State:
         """The state of a run before genesis."""
-        words = jnp.zeros((len(world.organisms.alive), self._habitat.words), jnp.uint32)
-        return State(world, self._habitat.reset(words))
+        words = np.zeros((len(world.organisms.alive), self._habitat.words), np.uint32)
+        return State(world, shared(fresh, self._habitat)(words))
 
     def advance(self, state: State, limits: Limits, ticks: int) -> tuple[State, int]:
         """At most so many ticks, fewer if every world stops or the lists are full -> ticks done."""
@@ -80,6 +80,14 @@ def named_leaves(tree: object) -> list[tuple[str, Array]]:
     """The arrays of a state with their paths, such as `world.organisms.genome.input`."""
     leaves = jax.tree_util.tree_flatten_with_path(tree)[0]
     return [(jax.tree_util.keystr(path, simple=True, separator="."), leaf) for path, leaf in leaves]
+
+
+def fresh(habitat: Habitat, words: Array) -> Bodies:
+    """Bodies from random words uint32 (N, words); to be compiled, as in the loop.
+
+    Operation by operation, a product and a sum are each rounded; compiled, they may be rounded once.
+    """
+    return habitat.reset(words)
 
 
 def _advance(
@@ -141,10 +149,10 @@ def _embody(law: Law, habitat: Habitat, world: World, bodies: Bodies, born: Arra
     """Fresh bodies for the newborn."""
     words = birth_words(law, world.worlds, born.any(), habitat.words)
 
-    def fresh(bodies: Bodies, words: Array) -> Bodies:
-        return choose(born, habitat.reset(words), bodies)
+    def embodied(bodies: Bodies, words: Array) -> Bodies:
+        return choose(born, fresh(habitat, words), bodies)
 
-    return lax.cond(born.any(), fresh, lambda bodies, _: bodies, bodies, words)
+    return lax.cond(born.any(), embodied, lambda bodies, _: bodies, bodies, words)
 
 
 def choose(cells: Array, yes: Bodies, no: Bodies) -> Bodies:

@@ -11,6 +11,7 @@ import numpy as np
 from jax import Array
 
 from primordia.compiled import shared
+from primordia.engine.chunk import fresh
 from primordia.habitats import Bodies, Habitat, HostHabitat, Outcome
 from primordia.keys import Purpose, stream
 from primordia.law import Law
@@ -195,8 +196,8 @@ class _OnHost:
     """A habitat in JAX, stepped as those on the host are."""
 
     def __init__(self, inner: Habitat) -> None:
-        self._reset = inner.reset
-        self._sense, self._step = shared(_sense, inner), shared(_step, inner)
+        each = (fresh, _sense, _step)
+        self._reset, self._sense, self._step = (shared(function, inner) for function in each)
 
     def open(self, cells: int) -> None:
         """Bodies are made as they are needed."""

@@ -6,7 +6,7 @@ import numpy as np
 from jax import Array, lax
 
 from primordia.compiled import shared
-from primordia.engine.chunk import named_leaves
+from primordia.engine.chunk import fresh, named_leaves
 from primordia.habitats import Bodies, Habitat
 from primordia.law import Law
 from primordia.law.metabolism import ONE, Rates, metabolise
@@ -26,7 +26,7 @@ class Fused:
 
     def born(self, words: Array) -> Bodies:
         """A fresh body from random words uint32 (1, words)."""
-        return self._habitat.reset(words)
+        return shared(fresh, self._habitat)(words)
 
     def found(self, stored: dict[str, np.ndarray]) -> Bodies:
         """The body that a checkpoint holds under names that begin with `bodies`, (1, ...) each."""
