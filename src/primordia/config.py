@@ -225,9 +225,9 @@ def from_toml(path: Path) -> dict[str, Any]:
 def _found_in(folder: Path, values: dict[str, Any]) -> dict[str, Any]:
     """Values in which files that a habitat is made from, if they are in the folder, have full paths."""
     habitat = values.get("habitat")
-    return (
-        {**values, "habitat": _full_paths(folder, habitat)} if isinstance(habitat, dict) else values
-    )
+    if not isinstance(habitat, dict):
+        return values
+    return {**values, "habitat": _full_paths(folder, habitat)}
 
 
 def _full_paths(folder: Path, table: dict[str, Any]) -> dict[str, Any]:

@@ -267,7 +267,8 @@ def settle(
         sample_wait=worlds.sample_wait - passed,
         looks=worlds.looks._replace(wait=worlds.looks.wait - passed[:, None]),
     )
-    nobody, keys = jnp.zeros_like(organisms.alive), turnover.keys_of(worlds)
+    nobody = jnp.zeros_like(organisms.alive)
+    keys = turnover.keys_of(worlds)
     world, events, born = lax.cond(
         fates.eventful | lifeless(law, world, running).any(),
         lambda world, events: turnover.turnover(
