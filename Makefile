@@ -10,7 +10,7 @@ demo: .venv/installed  ## evolve pole balancers; draw what happened, and film th
 	$(BIN)/primordia plot runs/demo
 	$(BIN)/primordia replay runs/demo
 
-test: .venv/installed-dev  ## ten to fourteen minutes on two cores
+test: .venv/installed-dev  ## ten minutes on two cores
 	$(BIN)/python -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder
 
 slow: .venv/installed-dev  ## long campaigns: fifty kills, and what else is marked slow

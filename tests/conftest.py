@@ -7,8 +7,13 @@ os.environ["XLA_FLAGS"] = f"{os.environ.get('XLA_FLAGS', '')} --xla_cpu_use_fusi
 
 import jax
 import pytest
+from hypothesis import HealthCheck, settings
 
 from tests import commands
+
+# What is slow is not wrong: a machine may be busy, and Python collects garbage for a third of a second.
+settings.register_profile("patient", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("patient")
 
 
 @pytest.fixture(autouse=True, scope="session")

@@ -63,7 +63,7 @@ def by_python(text: str, body: int) -> Any:
     return eval(text, {"__builtins__": {}, **known}, names)
 
 
-@settings(deadline=None, max_examples=150)
+@settings(max_examples=150)
 @given(condition)
 def test_conditions_mean_what_they_mean_in_python(text: str) -> None:
     found = np.broadcast_to(parse(text, "condition", NAMES)(VALUES), 3)
@@ -71,7 +71,7 @@ def test_conditions_mean_what_they_mean_in_python(text: str) -> None:
     assert found.tolist() == [bool(by_python(text, body)) for body in range(3)]
 
 
-@settings(deadline=None, max_examples=150)
+@settings(max_examples=150)
 @given(number)
 def test_amounts_too(text: str) -> None:
     found = np.broadcast_to(parse(text, "amount", NAMES)(VALUES), 3)

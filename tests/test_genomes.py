@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from safetensors.numpy import load_file, save_file
 
@@ -38,7 +38,6 @@ def test_what_is_written_is_read(tmp_path: Path) -> None:
     assert shapes == {name: (3, *shape) for name, shape in BRAIN.blocks.items()}
 
 
-@settings(deadline=None)
 @given(st.integers(0, 2**64 - 1), st.integers(0, 2**64 - 1), st.integers(1, genomes.MOST))
 def test_founders_take_ancestors_in_turn(seed: int, number: int, count: int) -> None:
     assert int(ancestor_of(wide(seed), wide(number), count)) == (seed + number) % 2**64 % count

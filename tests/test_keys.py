@@ -15,7 +15,7 @@ from primordia.keys import Purpose, below, bits, bits_if, chance, stream, threef
 from primordia.wide import Wide, to_host, wide
 from tests.chance import binomial, even
 
-FEW = settings(deadline=None, max_examples=50)
+FEW = settings(max_examples=50)
 word = st.integers(0, 2**32 - 1)
 
 
@@ -98,7 +98,7 @@ def test_bits_if_are_bits_or_nothing() -> None:
     assert to_host(bits_if(jnp.bool_(False), key, cells, index)).tolist() == [[0] * 5] * 3
 
 
-@settings(deadline=None, max_examples=200)
+@settings(max_examples=200)
 @given(st.floats(0, 1, width=32), word)
 def test_chance_compares_integers(probability: float, any_word: int) -> None:
     threshold = int(Fraction(probability) * 2**32)

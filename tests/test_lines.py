@@ -1,7 +1,7 @@
 """Lines of descent as the live view follows them are what their rule says."""
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from primordia.engine.loop import Engine
@@ -68,7 +68,6 @@ def _root(number: int, parent: dict[int, int], roots: set[int]) -> int:
     return number
 
 
-@settings(deadline=None)
 @given(histories(), st.lists(st.integers(0, 40), max_size=4), st.integers(1, 4))
 def test_lines_follow_the_rule_however_a_history_is_cut(
     events: list[Event], cuts: list[int], crowd: int

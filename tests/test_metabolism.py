@@ -40,7 +40,7 @@ numbers = st.lists(
 )
 
 
-@settings(deadline=None, max_examples=150)
+@settings(max_examples=150)
 @given(numbers)
 def test_to_the_nearest_step_halves_to_even_and_saturating(values: list[float]) -> None:
     steps = FIXED(jnp.array(values, jnp.float32))
@@ -56,7 +56,7 @@ def test_steps_by_hand() -> None:
     assert fixed(jnp.float32(3e38)) == MOST
 
 
-@settings(deadline=None, max_examples=100)
+@settings(max_examples=100)
 @given(*[st.lists(st.integers(-MOST, MOST), min_size=8, max_size=8)] * 2)
 def test_sums_saturate_and_never_wrap(a: list[int], b: list[int]) -> None:
     sums = add(jnp.array(a, jnp.int32), jnp.array(b, jnp.int32))
@@ -75,7 +75,7 @@ energies = st.lists(
 )
 
 
-@settings(deadline=None, max_examples=150)
+@settings(max_examples=150)
 @given(energies, numbers, numbers, rate, rate, rate, rate)
 def test_a_tick_of_energy(
     energy: list[int],

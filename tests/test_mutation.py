@@ -153,7 +153,7 @@ def same_bits(a: np.ndarray, b: np.ndarray) -> None:
     np.testing.assert_array_equal(np.asarray(a).view(np.uint32), np.asarray(b).view(np.uint32))
 
 
-@settings(deadline=None, max_examples=40)
+@settings(max_examples=40)
 @given(
     st.integers(0, 2**32),
     st.floats(0, 1e3, width=32, allow_subnormal=False).map(lambda x: x if x > 1e-30 else 0.0),

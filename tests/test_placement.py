@@ -77,7 +77,7 @@ ticks = st.builds(
 
 
 @pytest.mark.parametrize(("topology", "rule"), ALL)
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(ticks)
 def test_all_at_once_equals_one_after_another(
     topology: str, rule: str, tick: tuple[np.ndarray, ...]
@@ -91,7 +91,7 @@ def test_all_at_once_equals_one_after_another(
 
 
 @pytest.mark.parametrize(("topology", "rule"), ALL)
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(ticks)
 def test_births_keep_the_rules(topology: str, rule: str, tick: tuple[np.ndarray, ...]) -> None:
     words, wants, occupied = tick
@@ -120,7 +120,7 @@ def test_births_keep_the_rules(topology: str, rule: str, tick: tuple[np.ndarray,
 
 
 @pytest.mark.parametrize(("topology", "rule"), ALL)
-@settings(deadline=None, max_examples=25)
+@settings(max_examples=25)
 @given(ticks)
 def test_room_is_a_cell_in_reach_that_would_take_a_child(
     topology: str, rule: str, tick: tuple[np.ndarray, ...]

@@ -23,7 +23,7 @@ from primordia.wide import (
 )
 
 ALL = 2**64
-FEW = settings(deadline=None, max_examples=60)
+FEW = settings(max_examples=60)
 TOTAL = jax.jit(total, static_argnums=1)
 TIMES, TO_FLOAT = jax.jit(times), jax.jit(to_float)
 
