@@ -36,7 +36,7 @@ class Gymnasium(Loop):
 
     def __init__(self, mode: str, game: str, cells: int) -> None:
         try:
-            import gymnasium
+            import gymnasium.envs.mujoco
         except ImportError as error:
             raise Lacking(f"{error.name} is not installed") from None
         habitat = described(game)[1]
