@@ -265,10 +265,16 @@ class MuJoCo(Settings):
         self._dice[cell], one = dice.roll(int(self._dice[cell]))
         self._dice[cell], other = dice.roll(int(self._dice[cell]))
         distance, angle = target.radius * math.sqrt(one / 2**32), 2 * math.pi * other / 2**32
-        for name, along in zip(target.joints, (math.cos(angle), math.sin(angle)), strict=True):
-            joint = self._model.joint(name)
-            self._bodies.qpos[cell, joint.qposadr[0]] = distance * along
-            self._bodies.qvel[cell, joint.dofadr[0]] = 0.0
+        across = math.cos(angle), math.sin(angle)
+        for (position, velocity), along in zip(self._slides, across, strict=True):
+            self._seen["qpos"][cell, position] = distance * along
+            self._seen["qvel"][cell, velocity] = 0.0
+
+    @cached_property
+    def _slides(self) -> list[tuple[int, int]]:
+        """Where the target's joints stand among positions and among velocities."""
+        joints = map(self._model.joint, self.target.joints if self.target else ())
+        return [(int(joint.qposadr[0]), int(joint.dofadr[0])) for joint in joints]
 
     def original(self) -> "MuJoCo | None":
         """The game that others score, if it is said what that is."""
