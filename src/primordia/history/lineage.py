@@ -5,6 +5,7 @@ integer draws, a table look-up, one product and one sum a weight are needed, so 
 version that lived it do not matter.
 """
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import jax.numpy as jnp
@@ -39,20 +40,28 @@ def rebuild(run: Path, organism: int, world: int = 0) -> np.ndarray:
     Raises:
         InputError: no such organism was born.
     """
+    return rebuild_all(run, [(organism, world)])[0]
+
+
+def rebuild_all(run: Path, organisms: Sequence[tuple[int, int]]) -> np.ndarray:
+    """The genomes of some, by birth number and world, float32 (K, P); see `rebuild`."""
     config, _ = opened(run)
-    everyone = lives(run)
+    everyone, origin = lives(run), checkpoint.origin(run)
     law = config.build_law(config.build_habitat())
-    origin = checkpoint.origin(run)
-    line = everyone.take(descent(everyone, organism, world))
-    genome = np.zeros(int(law.block_sizes.sum()), np.float32)
-    if origin is not None:  # a fork: who lived when it began has its genome there
-        older = line.born <= config.origin.tick if config.origin else np.zeros(len(line), bool)
-        if older.any():
-            genome = genome_in(origin, law, line.take(older).id[-1], world)
-        line = line.take(~older)
-    climate = climate_at(run, config, law, world)(line.born)
-    with np.errstate(over="ignore", invalid="ignore"):  # a genome may have come to infinity
-        return _replay(law, config, line, climate, genome)
+    lines = [everyone.take(descent(everyone, *each)) for each in organisms]
+    worlds = {world for _, world in organisms}
+    climates = {world: climate_at(run, config, law, world) for world in worlds}
+    found = []
+    for (_, world), line in zip(organisms, lines, strict=True):
+        genome = np.zeros(int(law.block_sizes.sum()), np.float32)
+        if origin is not None and config.origin is not None:  # of a fork: genomes as it began
+            older = line.born <= config.origin.tick
+            if older.any():
+                genome = genome_in(origin, law, line.take(older).id[-1], world)
+            line = line.take(~older)
+        with np.errstate(over="ignore", invalid="ignore"):  # a genome may have come to infinity
+            found.append(_replay(law, config, line, climates[world](line.born), genome))
+    return np.stack(found)
 
 
 def descent(everyone: Lives, organism: int, world: int) -> np.ndarray:

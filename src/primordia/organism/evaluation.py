@@ -16,7 +16,7 @@ import numpy as np
 from primordia.disk.directory import read_config
 from primordia.errors import InputError
 from primordia.history.climate import climate_at
-from primordia.history.lineage import rebuild
+from primordia.history.lineage import rebuild_all
 from primordia.history.report import opened, world_ticks
 from primordia.keys import Purpose, stream
 from primordia.law.metabolism import Rates
@@ -131,7 +131,7 @@ def players_of(run: Path, organisms: Sequence[tuple[int, int]]) -> Players:
     Raises:
         InputError: no such organism was born.
     """
-    genomes = np.stack([rebuild(run, organism, world) for organism, world in organisms])
+    genomes = rebuild_all(run, organisms)
     config, last = opened(run)
     habitat = config.build_habitat()
     law = config.build_law(habitat)
