@@ -77,7 +77,6 @@ def _on_disk(run: Path, seed: int) -> float:
     (run / "config.toml").write_text(config.to_toml())
     warm, made = Engine(config), Engine(config)
     warm.advance(warm.limits({}))
-    made.chunks = warm.chunks
     recorder = Recorder(run, 1, config.cells, made.law.blocks)
     began = time.perf_counter()
     drive(made, recorder, run, Progress({"ticks": 3_000_000}, 0.0, True), 1.0, None)

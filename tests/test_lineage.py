@@ -12,7 +12,7 @@ from primordia.disk import checkpoint, record
 from primordia.disk.directory import read_config
 from primordia.engine import loop
 from primordia.errors import InputError
-from primordia.history.lineage import descent, rebuild
+from primordia.history.lineage import descent, rebuild, rebuild_all
 from primordia.history.lives import lives
 from primordia.law.brain import join
 from tests.worlds import MEADOW, MILL, config, merged
@@ -66,8 +66,9 @@ def comes_back(run: Path) -> None:
     everybody = living(run)
     assert len(everybody) > 5
     assert len({genome.tobytes() for *_, genome in everybody}) > 3
-    for world, organism, genome in everybody:
-        np.testing.assert_array_equal(bits(rebuild(run, organism, world)), bits(genome))
+    rebuilt = rebuild_all(run, [(organism, world) for world, organism, _ in everybody])
+    for (*_, genome), again in zip(everybody, rebuilt, strict=True):
+        np.testing.assert_array_equal(bits(again), bits(genome))
 
 
 def bits(genome: np.ndarray) -> np.ndarray:

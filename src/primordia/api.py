@@ -89,7 +89,7 @@ class Run:
             "seed": str(settings.seed + world),
             "organisms": " ".join(map(str, organisms)),
         }
-        found = np.stack([self.rebuild(each, world) for each in organisms])
+        found = lineage.rebuild_all(self.path, [(each, world) for each in organisms])
         genomes.write(Path(out), brain, found, about)
 
     def rebuild(self, organism: int, world: int = 0) -> np.ndarray:
