@@ -12,12 +12,12 @@ from collections.abc import Iterable
 from pathlib import Path
 
 import files
-import numpy as np
 from games import BEST, longest_lived
 
 import primordia
 from primordia.disk import genomes
 from primordia.disk.directory import read_config
+from primordia.history.lineage import rebuild_all
 from primordia.organism import Organism
 
 
@@ -34,7 +34,8 @@ def report(file: Path) -> None:
     path = file.parent / "genomes" / f"{file.stem}.safetensors"
     path.parent.mkdir(exist_ok=True)
     brain = config.build_brain(config.build_habitat())
-    genomes.write(path, brain, np.stack([each.genome() for each in champions]), about)
+    kept = rebuild_all(run, [(each.id, each.world) for each in champions])
+    genomes.write(path, brain, kept, about)
     print(path)
 
 

@@ -22,7 +22,7 @@ ORDER = """
     law.seasons law.sample engine.held
     habitats.cartpole_picture habitats.framed habitats.atari_games
     habitats.atari_picture habitats.mujoco_model
-    habitats.mujoco_picture
+    habitats.mujoco_target habitats.mujoco_picture
     habitats.*
     law.turnover
     law

@@ -6,7 +6,6 @@ said in settings, of named parts of the state. The simulator is MuJoCo's batch (
 included, is all that a body needs to go on exactly.
 """
 
-import math
 import os
 from functools import cached_property
 from importlib.metadata import version
@@ -29,6 +28,7 @@ from primordia.habitats.mujoco_model import (
     numbered,
     package,
 )
+from primordia.habitats.mujoco_target import Target
 from primordia.settings import Settings
 
 if TYPE_CHECKING:
@@ -36,16 +36,6 @@ if TYPE_CHECKING:
 
 PLACES = {"xpos", "site", "height", "pitch", "travelled", "com_forward", "reached"}
 """Names of what is not in the state itself, but follows from it."""
-
-
-class Target(Settings):
-    """Something to be reached; it then is elsewhere in a disc of the plane x, y."""
-
-    body: str = Field(description="the body that is to be reached")
-    by: str = Field(description="the body that reaches it")
-    within: float = Field(gt=0, description="metres between the two")
-    joints: tuple[str, str] = Field(strict=False, description="slide joints of the first, x and y")
-    radius: float = Field(gt=0, description="metres; of the disc, around the origin")
 
 
 class MuJoCo(Settings):
@@ -90,13 +80,7 @@ class MuJoCo(Settings):
         if self.velocity_noise and self.velocity_sd:
             raise ValueError("velocity_noise or velocity_sd: one or the other")
         if self.target is not None:
-            named = {"body": (self.target.body, self.target.by), "joint": self.target.joints}
-            for kind, wanted in named.items():
-                known = numbered(self._model, kind)
-                if missing := [name for name in wanted if name not in known]:
-                    raise ValueError(
-                        f"target: there is no {kind} {missing[0]!r}; known: {', '.join(known)}"
-                    )
+            self.target.check(self._model)
         return self
 
     @cached_property
@@ -250,8 +234,7 @@ class MuJoCo(Settings):
         if "frame" in seen:
             values["pitch"] = np.arctan2(-seen["frame"][:, 6], seen["frame"][:, 0])
         if self.target is not None:
-            apart = seen["xpos"][self.target.body] - seen["xpos"][self.target.by]
-            values["reached"] = np.sqrt((apart * apart).sum(axis=1)) < self.target.within
+            values["reached"] = self.target.reached(seen["xpos"])
         return values
 
     def _sensed(self, values: dict[str, Any]) -> np.ndarray:
@@ -261,20 +244,15 @@ class MuJoCo(Settings):
         return np.concatenate(columns, axis=1, dtype=np.float32)
 
     def _put_target(self, target: Target, cell: int) -> None:
-        """Somewhere in its disc, anywhere with equal chance, at rest."""
-        self._dice[cell], one = dice.roll(int(self._dice[cell]))
-        self._dice[cell], other = dice.roll(int(self._dice[cell]))
-        distance, angle = target.radius * math.sqrt(one / 2**32), 2 * math.pi * other / 2**32
-        across = math.cos(angle), math.sin(angle)
-        for (position, velocity), along in zip(self._slides, across, strict=True):
-            self._seen["qpos"][cell, position] = distance * along
+        """Somewhere else, at rest."""
+        self._dice[cell], place = target.somewhere(int(self._dice[cell]))
+        for (position, velocity), along in zip(self._slides, place, strict=True):
+            self._seen["qpos"][cell, position] = along
             self._seen["qvel"][cell, velocity] = 0.0
 
     @cached_property
     def _slides(self) -> list[tuple[int, int]]:
-        """Where the target's joints stand among positions and among velocities."""
-        joints = map(self._model.joint, self.target.joints if self.target else ())
-        return [(int(joint.qposadr[0]), int(joint.dofadr[0])) for joint in joints]
+        return self.target.slides(self._model) if self.target else []
 
     def original(self) -> "MuJoCo | None":
         """The game that others score, if it is said what that is."""
