@@ -115,6 +115,10 @@ def _measured(game: str, cells: int, ways: tuple[str, ...]) -> dict:
             for way, contender in playing.items():
                 told[way].append(contender.ask("play", SECONDS))
         budget = playing["ours"].ask("budget", SECONDS)[0]
+        if "batch" in playing:
+            again = [playing["ours"].ask("again", SECONDS)[0] for _ in range(ROUNDS)]
+            shares = [each["alone"] / each["seconds"] for each in again]
+            budget["of the batch under our controls"] = median(shares)
     words = {way: said[way]["about"] for way in playing if said[way]["about"]}
     absent = {way: said[way]["not available"] for way in ways if way not in playing}
     words |= {way: f"not available: {why}" for way, why in absent.items()}

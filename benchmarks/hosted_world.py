@@ -93,6 +93,30 @@ class Ours:
         tick = 1e6 * sum(watch.spent.values()) / ticks
         return {"us a tick": tick, "shares": shares}
 
+    def again(self, seconds: float) -> dict[str, float]:
+        """So many seconds of robots' lives, and how long the batch alone takes for the same bodies under
+        the same controls, where nobody is born: brains move bodies otherwise than chance does.
+        """
+        habitat: Any = self._engine.chunks._habitat
+        bodies, begun, controls = habitat._bodies, habitat.save(), []
+        step = bodies.step
+
+        def kept(*who: Any, **how: Any) -> None:
+            controls.append(bodies.ctrl.copy())
+            step(*who, **how)
+
+        with _replaced(bodies, "step", kept):
+            spent = self.play(seconds)["seconds"]
+        ended = habitat.save()
+        habitat.load(begun)
+        began = time.perf_counter()
+        for each in controls:
+            bodies.ctrl[:] = each
+            step(nstep=habitat.substeps)
+        alone = time.perf_counter() - began
+        habitat.load(ended)
+        return {"seconds": spent, "alone": alone}
+
     def _parts(self) -> list[tuple[str, Any, tuple[str, ...]]]:
         """What is timed: name of the part, whose methods, which."""
         law: Any = self._engine.chunks
