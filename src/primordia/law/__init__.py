@@ -268,7 +268,7 @@ def settle(
         looks=worlds.looks._replace(wait=worlds.looks.wait - passed[:, None]),
     )
     nobody = jnp.zeros_like(organisms.alive)
-    keys = turnover.keys_of(worlds)
+    keys = turnover.birth_keys(worlds)
     world, events, born = lax.cond(
         fates.eventful | lifeless(law, world, running).any(),
         lambda world, events: turnover.turnover(

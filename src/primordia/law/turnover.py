@@ -37,7 +37,7 @@ class Births(NamedTuple):
     """birth number within the world"""
 
 
-def keys_of(worlds: Worlds) -> Streams:
+def birth_keys(worlds: Worlds) -> Streams:
     """What the turnover of worlds at the end of this tick draws from, (W,)."""
     mine = Purpose.PLACE, Purpose.GENESIS, Purpose.MUTATE, Purpose.NOISE, Purpose.FOUNDER
     return streams(worlds.seed, worlds.tick, *mine)
