@@ -14,7 +14,7 @@ from primordia.comparison import Comparison
 from primordia.comparison.contrast import Figures
 from primordia.engine import loop
 from primordia.figures import style
-from primordia.figures.comparison import FEW, colours, draw
+from primordia.figures.comparison import FEW, draw, looks
 from tests.commands import complains, here
 from tests.test_survival import restricted_mean
 from tests.worlds import MEADOW, config
@@ -173,10 +173,10 @@ def test_what_is_of_use_where_saturation_is_rare(
     assert ("pace" in outcomes, "longest" in outcomes) == (told, told)
 
 
-@pytest.mark.parametrize("arms", [2, 5, 6, 9])
-def test_runs_have_colours_of_their_own(compared: Comparison, arms: int) -> None:
+@pytest.mark.parametrize("arms", [2, 5, 6, 9, 27])
+def test_runs_have_looks_of_their_own(compared: Comparison, arms: int) -> None:
     """With how their worlds scatter where few are shown."""
-    assert len(set(colours(arms))) == arms
+    assert len({tuple(look.items()) for look in looks(arms)}) == arms
     many = replace(compared, arms=compared.arms[:1] * arms)
     with style.look():
         drawn = draw(many)

@@ -1,12 +1,14 @@
 """Runs side by side: how long organisms live, and how soon worlds saturate."""
 
 from collections.abc import Callable, Iterator
-from itertools import cycle, islice
+from itertools import cycle, islice, product
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator
@@ -16,6 +18,7 @@ from primordia.figures import style
 
 STOPPED = "|"
 """Marks a world that stopped unsaturated, as censoring is marked in survival curves."""
+DASHES = "-", "--", ":"
 FEW = 5
 """Up to so many runs are in an order of colours, and shown with how their worlds scatter."""
 
@@ -48,29 +51,32 @@ def draw(compared: Comparison) -> Figure:
     return figure
 
 
-def colours(arms: int) -> list[str]:
-    """Ink for the reference; a few others in their order from dark to light; many, to be told apart."""
+def looks(arms: int) -> list[dict[str, Any]]:
+    """How each run's lines look. The reference is in ink, a few others in their order from dark to light;
+    many are to be told apart, by dashes where colours begin again.
+    """
     if arms > FEW:
-        return [*islice(cycle([style.INK, *style.PALETTE, style.SOFT]), arms)]
+        lines = product(DASHES, [style.INK, *style.PALETTE, style.SOFT])
+        return [{"color": colour, "linestyle": dash} for dash, colour in islice(cycle(lines), arms)]
     shades = matplotlib.colormaps["plasma"](np.linspace(0.25, 0.88, max(arms - 1, 1)))
-    return [style.INK, *(matplotlib.colors.to_hex(each) for each in shades[: arms - 1])]
+    return [{"color": each} for each in (style.INK, *map(to_hex, shades[: arms - 1]))]
 
 
-def _coloured(compared: Comparison) -> Iterator[tuple[Arm, str]]:
-    return zip(compared.arms, colours(len(compared.arms)), strict=True)
+def _looking(compared: Comparison) -> Iterator[tuple[Arm, dict[str, Any]]]:
+    return zip(compared.arms, looks(len(compared.arms)), strict=True)
 
 
 def _alive(axes: Axes, compared: Comparison) -> None:
     """Kaplan-Meier of all lives; those of a few runs with a band over resamples of worlds."""
-    for arm, colour in _coloured(compared):
+    for arm, look in _looking(compared):
         survived = arm.survival
         ages = np.concatenate([[1], survived.ages, [survived.limit]])
         curve, low, high = (
             np.concatenate([[1.0], each, each[-1:]]) for each in (survived.curve, *survived.band)
         )
         if len(compared.arms) <= FEW:
-            axes.fill_between(ages, low, high, step="post", color=colour, alpha=0.2, linewidth=0)
-        axes.step(ages, curve, where="post", color=colour, label=arm.name)
+            axes.fill_between(ages, low, high, step="post", color=look["color"], alpha=0.2, lw=0)
+        axes.step(ages, curve, where="post", label=arm.name, **look)
     style.time_axis(axes, compared.age, "age (ticks)")
     axes.set(title="Alive at each age", ylabel="fraction of organisms", ylim=(-0.03, 1.03))
 
@@ -91,7 +97,7 @@ def _saturated(axes: Axes, compared: Comparison, unit: str) -> None:
     power = 10 ** np.floor(np.log10(max(values.min(), 1)))
     first = power * (3 if values.min() >= 3 * power else 1)
     last = 1.2 * values.max()
-    for arm, colour in _coloured(compared):
+    for arm, look in _looking(compared):
         figures = arm.figures[unit]
         at = np.concatenate([[first], np.unique(figures.value), [last]])
         stopped = np.unique(figures.value[~figures.known])
@@ -99,8 +105,8 @@ def _saturated(axes: Axes, compared: Comparison, unit: str) -> None:
         share, left = (
             np.searchsorted(saturated, each, side="right") / arm.worlds for each in (at, stopped)
         )
-        axes.step(at, share, where="post", color=colour)
-        axes.plot(stopped, left, STOPPED, color=colour, markersize=4)
+        axes.step(at, share, where="post", **look)
+        axes.plot(stopped, left, STOPPED, color=look["color"], markersize=4)
     style.logarithmic(axes.xaxis)
     if last / first < 100:  # too few powers of ten to read a value off
         axes.xaxis.set_major_locator(LogLocator(subs=(1, 3)))
@@ -122,11 +128,11 @@ def _over_time(axes: Axes, compared: Comparison, curve: Callable[[Arm], np.ndarr
     """Curves (W, WINDOWS): every world of a few runs, and the median."""
     few, edges = len(compared.arms) <= FEW, compared.arms[0].pace.edges
     middle = (edges[1:] + edges[:-1]) / 2
-    for arm, colour in _coloured(compared):
+    for arm, look in _looking(compared):
         worlds = curve(arm)
         if few:
-            axes.plot(middle, worlds.T, color=colour, alpha=0.3, linewidth=0.8)
-        axes.plot(middle, np.median(worlds, axis=0), "o-", color=colour, markersize=3)
+            axes.plot(middle, worlds.T, alpha=0.3, linewidth=0.8, **look)
+        axes.plot(middle, np.median(worlds, axis=0), marker="o", markersize=3, **look)
     style.counted(axes.xaxis)
     axes.set(xlabel="time (ticks): worlds and median" if few else "time (ticks): median of worlds")
     axes.set_xlim(0, edges[-1])
