@@ -16,6 +16,7 @@ import pytest
 from primordia import pool as pools
 from primordia.errors import Trouble
 from primordia.pool import Pool
+from primordia.pool.board import STEP
 from tests.counters import FIELDS
 
 ALL = np.ones(7, bool)
@@ -117,6 +118,18 @@ def test_a_worker_that_cannot_start(capfd: pytest.CaptureFixture[str]) -> None:
     assert "Nobody" in capfd.readouterr().err
 
 
+def test_a_worker_whose_run_is_gone_says_nothing(capfd: pytest.CaptureFixture[str]) -> None:
+    """Whoever kills a run in the midst of a tick reads no tracebacks of its workers."""
+    with counters(cells=1, workers=1) as pool:
+        worker = pool._workers[0]
+        assert worker.stdin is not None
+        assert worker.stdout is not None
+        worker.stdout.close()
+        worker.stdin.write(STEP)
+        assert worker.wait(timeout=30) == 0
+    assert capfd.readouterr().err == ""
+
+
 def test_a_closed_pool_leaves_no_process() -> None:
     with counters() as pool:
         pool.reset(ALL)
@@ -142,6 +155,7 @@ def test_workers_end_with_their_run_however_it_ends(kill: int) -> None:
         import sys, time
         import numpy as np
         from primordia.pool import Pool
+from primordia.pool.board import STEP
         from tests.counters import FIELDS
         pool = Pool("tests.counters:Counters", {"start": 0}, FIELDS, 2, 2)
         pool.reset(np.ones(2, bool))

@@ -123,4 +123,5 @@ def _read(descriptor: int, count: int) -> bytes:
 
 
 if __name__ == "__main__":
-    main()
+    with suppress(BrokenPipeError):  # the run is gone, and hears no answer
+        main()
