@@ -155,7 +155,6 @@ def test_workers_end_with_their_run_however_it_ends(kill: int) -> None:
         import sys, time
         import numpy as np
         from primordia.pool import Pool
-from primordia.pool.board import STEP
         from tests.counters import FIELDS
         pool = Pool("tests.counters:Counters", {"start": 0}, FIELDS, 2, 2)
         pool.reset(np.ones(2, bool))
@@ -170,6 +169,7 @@ from primordia.pool.board import STEP
     )
     assert run.stdout is not None
     workers = [int(word) for word in run.stdout.readline().split()]
+    assert len(workers) == 2
     assert set(Path("/dev/shm").iterdir()) == before
     run.send_signal(kill)
     run.wait()
