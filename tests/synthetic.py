@@ -23,6 +23,7 @@ def world_of(lived: list[tuple[int, int, bool]], until: int = 90) -> Lives:
         cell=number.astype(np.int32),
         origin=np.zeros(len(born), np.int8),
         born=born,
+        seen=born,
         ended=np.where(died, born + 1 + lifespan, until),
         cause=np.where(died, Cause.FATAL, ALIVE).astype(np.int8),
     )

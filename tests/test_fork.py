@@ -1,5 +1,6 @@
 """Forks: the tape replayed from a tick, the same or another way."""
 
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ from primordia.disk import checkpoint
 from primordia.engine import loop
 from primordia.errors import InputError
 from primordia.figures.survival import quarters
+from primordia.history.foraging import foraging, harvests
 from primordia.history.lives import lives
 from primordia.history.verify import verify
 from tests.commands import complains, here
@@ -70,6 +72,41 @@ def test_from_a_checkpoint_or_lived_again(mill: Path, tmp_path: Path) -> None:
     primordia.load(tmp_path / "short").fork(700, kept, stop={"ticks": 1500})
     assert same(again.path, kept)
     assert same(mill, kept)
+
+
+@pytest.mark.parametrize("at", [300, 1400])
+def test_what_is_told_of_a_fork_begins_with_it(mill: Path, tmp_path: Path, at: int) -> None:
+    """As of the run it is a fork of, from then on: who died when, at which ages, what was eaten."""
+    fork = primordia.load(mill).fork(at, tmp_path / "fork").path
+    whole, part = primordia.compare(mill, fork).arms
+    assert part.pace.edges[[0, -1]].tolist() == [at, 1500]
+    for one, other in ((whole.pace, part.pace), (whole.survival, part.survival)):
+        for field in fields(one):
+            np.testing.assert_array_equal(getattr(one, field.name), getattr(other, field.name))
+    np.testing.assert_array_equal(lives(mill).since(at).seen, lives(fork).seen)
+    found, before = harvests(fork, 2), harvests(mill, 2)
+    for world in range(2):
+        sampled = before[world].tick >= at
+        for one, other in zip(found[world], before[world], strict=True):
+            np.testing.assert_array_equal(one, other[sampled])
+    assert foraging(fork, config(SHIFTING)).since == at
+    anew, alive = lives(fork).since_fork(), lives(fork).born <= at
+    assert (anew.seen >= 0).all()
+    assert ((anew.seen == 0) == alive).all()
+    assert (anew.lifespan == lives(fork).lifespan).all()
+    primordia.load(fork).plot(tmp_path)
+    for name, words in (
+        ("ages", "since the fork"),
+        ("survival", "since the fork"),
+        ("foraging", ""),
+    ):
+        assert words in (tmp_path / f"{name}.svg").read_text(encoding="utf-8")
+
+
+def test_forks_are_compared_where_they_have_time_in_common(mill: Path, tmp_path: Path) -> None:
+    late = primordia.load(mill).fork(1500, tmp_path / "late", stop={"ticks": 1600}).path
+    with pytest.raises(InputError, match=r"forked at tick 1,500, .* ends at 1,500"):
+        primordia.compare(mill, late)
 
 
 def test_another_seed_is_another_future_of_the_same_past(poles: Path, tmp_path: Path) -> None:

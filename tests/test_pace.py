@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hypothesis import given
+from hypothesis import strategies as st
 
 import primordia
 from primordia.comparison.pace import LATE, WINDOWS, pace
@@ -17,15 +18,15 @@ TICKS = 7
 """of a window"""
 
 
-@given(LIVED, LIVED)
+@given(LIVED, LIVED, st.integers(0, 20))
 def test_every_tick_and_every_death_counts_once(
-    one: list[tuple[int, int, bool]], other: list[tuple[int, int, bool]]
+    one: list[tuple[int, int, bool]], other: list[tuple[int, int, bool]], since: int
 ) -> None:
-    worlds = [world_of(lived) for lived in (one, other)]
-    found = pace(worlds, WINDOWS * TICKS)
+    worlds = [world_of(lived, until=110) for lived in (one, other)]
+    found = pace([world.since(since) for world in worlds], since, since + WINDOWS * TICKS)
     for number, world in enumerate(worlds):
         for window in range(WINDOWS):
-            ticks = range(window * TICKS, (window + 1) * TICKS)
+            ticks = range(since + window * TICKS, since + (window + 1) * TICKS)
             lived = sum(alive(world, row, tick) for row in range(len(world)) for tick in ticks)
             ended = world.ended[world.died] - 1
             assert found.lived[number, window] == lived

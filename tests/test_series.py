@@ -3,7 +3,6 @@
 from itertools import pairwise
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -53,19 +52,3 @@ def test_bins_begin_at_0_end_with_the_last_tick_and_rise(last: int) -> None:
     assert edges[-1] == max(last, 1)
     assert (np.diff(edges) > 0).all()
     assert (np.diff(series.middle(edges)) > 0).all()
-
-
-@given(lived=LIVED)
-def test_survival_is_the_product_over_ages_of_who_lived_on(
-    lived: list[tuple[int, int, bool]],
-) -> None:
-    world = world_of(lived)
-    age, fraction = survival.survival(world, 90)
-    assert (age[0], fraction[0]) == (0, 1)
-    left = 1.0
-    for each in range(91):
-        at_risk = (world.lifespan >= each).sum()
-        died = (world.died & (world.lifespan == each)).sum()
-        left *= 1 - died / max(at_risk, 1)
-        found = fraction[np.searchsorted(age, each, side="right") - 1]
-        assert found == pytest.approx(left, abs=1e-12)

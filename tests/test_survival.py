@@ -1,4 +1,4 @@
-"""Survival of lives with worlds as units: Kaplan and Meier's, and a band of worlds drawn again."""
+"""Survival of lives with worlds as units: Kaplan and Meier's, forks too; a band of worlds drawn again."""
 
 import numpy as np
 import pytest
@@ -31,7 +31,7 @@ def made(worlds: list[list[tuple[int, bool]]]) -> Lives:
     world, lifespan, died = (np.array(column) for column in zip(*rows, strict=True))
     nothing = np.zeros(len(rows), np.int64)
     cause = np.where(died, 0, ALIVE).astype(np.int8)
-    return Lives(world, nothing, nothing - 1, nothing, nothing, nothing, lifespan, cause)
+    return Lives(world, nothing, nothing - 1, nothing, nothing, nothing, nothing, lifespan, cause)
 
 
 @given(LIVED, st.integers(1, 40))
@@ -41,8 +41,34 @@ def test_survival_is_kaplan_and_meiers(worlds: list[list[tuple[int, bool]]], lim
     split = stats.CensoredData(lives.lifespan[lives.died], right=lives.lifespan[~lives.died])
     expected = stats.ecdf(split).sf.evaluate(found.ages)
     np.testing.assert_allclose(found.curve, expected, atol=1e-12)
+    np.testing.assert_array_equal(found.steps, [0, *found.ages, limit])
+    np.testing.assert_array_equal(
+        found.whole(found.curve), [1, *found.curve, (1, *found.curve)[-1]]
+    )
     for lived, mean in zip(worlds, found.restricted_mean, strict=True):
         assert mean == pytest.approx(restricted_mean(lived, limit))
+
+
+@given(LIVED, st.integers(0, 20), st.integers(1, 40))
+def test_who_was_alive_at_a_fork_counts_from_the_age_of_then(
+    worlds: list[list[tuple[int, bool]]], begun: int, limit: int
+) -> None:
+    lives = made(worlds).since(begun)
+    assert (lives.lifespan[lives.died] > begun).all()
+    assert (lives.entered == begun).all()
+    found = survival(lives, len(worlds), limit)
+    left = np.ones(len(worlds))
+    for age in range(limit + 1):
+        for world in range(len(worlds)):
+            mine = lives.of_world(world)
+            at_risk = ((mine.entered < age) & (mine.lifespan >= age)).sum()
+            died = (mine.died & (mine.lifespan == age)).sum()
+            left[world] *= 1 - died / max(at_risk, 1)
+        if age in found.ages:
+            which = found.ages.tolist().index(age)
+            assert (found.at_risk[:, which] >= found.deaths[:, which]).all()
+            each = np.cumprod(1 - found.deaths / np.maximum(found.at_risk, 1), axis=1)
+            np.testing.assert_allclose(each[:, which], left, atol=1e-12)
 
 
 def test_band_is_that_of_worlds_drawn_again() -> None:

@@ -3,7 +3,8 @@
 Worlds are the units, taken to be independent. (Those of the same seed in two runs share random
 words, which makes them alike if anything; intervals are then too wide rather than too narrow.) The
 first run is the reference that each other is held against. Worlds that stopped unsaturated count for
-what is known of them, and no more; see `contrast`.
+what is known of them, and no more; see `contrast`. Where some are forks, lives are looked at from the
+tick on at which the last of them was forked, in all runs.
 """
 
 from collections.abc import Sequence
@@ -140,12 +141,13 @@ def compare(
     age = min(config.saturation_ticks for config in configs)
     names = [path.resolve().name for path in runs]
     everyone = [lives(path) for path in runs]
-    until = min(int(world.ended.max(initial=0)) for each in everyone for world in _worlds(each))
+    since, until = _common(runs, configs, everyone)
+    everyone = [each.since(since) for each in everyone]
     arms, rate = [], getattr(configs[0].build_habitat(), "rate", None)
     for path, lived, name, own in zip(runs, everyone, names, differing(configs), strict=True):
         worlds = _worlds(lived)
-        survived, dying = survival(lived, len(worlds), age), pace(worlds, until)
-        gathered = gathering(path, len(worlds), until, rate or 1)
+        survived, dying = survival(lived, len(worlds), age), pace(worlds, since, until)
+        gathered = gathering(path, len(worlds), since, until, rate or 1)
         figures = {
             "first": first_long(worlds, age),
             **_saturation(path, births, ticks),
@@ -158,6 +160,21 @@ def compare(
         arms.append(Arm(label, own, figures, survived, dying, gathered))
     span = "second" if rate else "tick"
     return Comparison(configs[0].task, tuple(arms), age, births, ticks, span)
+
+
+def _common(
+    runs: Sequence[Path], configs: Sequence[Config], everyone: Sequence[Lives]
+) -> tuple[int, int]:
+    """The ticks between which all worlds of all runs are on record: since the last fork."""
+    begun = [config.origin.tick if config.origin is not None else 0 for config in configs]
+    ended = [min(int(world.ended.max(initial=0)) for world in _worlds(each)) for each in everyone]
+    if 0 < max(begun) >= min(ended):
+        late, early = runs[begun.index(max(begun))], runs[ended.index(min(ended))]
+        raise InputError(
+            f"{late} was forked at tick {max(begun):,}, {early} ends at {min(ended):,}: they have no"
+            " time in common"
+        )
+    return max(begun), min(ended)
 
 
 def _all_known(values: ArrayLike) -> Figures:

@@ -20,9 +20,9 @@ class Gathering:
     """in the last quarter of the time; known if there was any food at all"""
 
 
-def gathering(run: Path, worlds: int, until: int, span: float) -> Gathering:
-    """Of the worlds of a run, up to a tick that all have come to; a span is so many ticks."""
-    edges = np.linspace(0, until, WINDOWS + 1)
+def gathering(run: Path, worlds: int, since: int, until: int, span: float) -> Gathering:
+    """Of the worlds of a run, between two ticks at which all are on record; a span is so many ticks."""
+    edges = np.linspace(since, until, WINDOWS + 1)
     found = harvests(run, worlds)
     curve = span * np.array([harvest.between(edges) for harvest in found])
     late = span * np.array([harvest.between(edges[[-1 - LATE, -1]])[0] for harvest in found])

@@ -35,9 +35,9 @@ class Pace:
         return Figures(lived / np.maximum(deaths, 1), deaths > 0)
 
 
-def pace(worlds: list[Lives], until: int) -> Pace:
-    """Of the lives of each world, up to a tick that all worlds have come to."""
-    edges = np.linspace(0, until, WINDOWS + 1)
-    lived = [series.exposure(world.born, world.ended, edges) for world in worlds]
+def pace(worlds: list[Lives], since: int, until: int) -> Pace:
+    """Of the lives of each world, between two ticks at which all worlds are on record."""
+    edges = np.linspace(since, until, WINDOWS + 1)
+    lived = [series.exposure(world.seen, world.ended, edges) for world in worlds]
     deaths = [np.diff(series.until(np.sort(world.ended[world.died]), edges)) for world in worlds]
     return Pace(edges, np.array(lived), np.array(deaths))

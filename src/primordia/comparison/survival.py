@@ -1,4 +1,8 @@
-"""How many are still alive at an age: Kaplan-Meier (1958) over lives, with worlds as the units."""
+"""How many are still alive at an age: Kaplan-Meier (1958) over lives, with worlds as the units.
+
+Those who were alive at a fork count from the age that they had then (delayed entry: Kalbfleisch and
+Prentice 2002, section 1.3), since the shorter lives of their time are not on its record.
+"""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -24,12 +28,22 @@ class Survival:
     deaths: np.ndarray
     """int64 (W, A)"""
     at_risk: np.ndarray
-    """int64 (W, A): who reached this age, and was not censored before"""
+    """int64 (W, A): who reached this age on record, and was not censored before"""
 
     @cached_property
     def curve(self) -> np.ndarray:
         """Share alive after each age, all worlds' lives pooled, float64 (A,)."""
         return _alive(self.deaths.sum(0), self.at_risk.sum(0))
+
+    @property
+    def steps(self) -> np.ndarray:
+        """Ages at which curves have their steps, with both ends: from 0 to the limit, (A + 2,)."""
+        return np.concatenate([[0], self.ages, [self.limit]])
+
+    def whole(self, curve: np.ndarray) -> np.ndarray:
+        """A curve (A,) with both ends, (A + 2,): all are alive at 0; after the last step it stays."""
+        alive = np.insert(curve, 0, 1.0)
+        return np.append(alive, alive[-1])
 
     @cached_property
     def band(self) -> tuple[np.ndarray, np.ndarray]:
@@ -55,11 +69,18 @@ def survival(lives: Lives, worlds: int, limit: int) -> Survival:
     ages = np.unique(lives.lifespan[died])
     deaths = np.zeros((worlds, len(ages)), np.int64)
     np.add.at(deaths, (lives.world[died], np.searchsorted(ages, lives.lifespan[died])), 1)
-    # Everyone leaves after the last age not above the lifespan; at risk is who has not left before.
-    left = np.zeros((worlds, len(ages) + 1), np.int64)
-    np.add.at(left, (lives.world, np.searchsorted(ages, lives.lifespan, side="right")), 1)
-    at_risk = np.cumsum(left[:, ::-1], axis=1)[:, ::-1][:, 1:]
-    return Survival(limit, ages, deaths, at_risk)
+    # At risk at an age: whose last tick is not before it, less those who come on record at it or later.
+    reached, later = (
+        _reaching(lives.world, each, worlds, ages) for each in (lives.lifespan, lives.entered)
+    )
+    return Survival(limit, ages, deaths, reached - later)
+
+
+def _reaching(world: np.ndarray, age: np.ndarray, worlds: int, ages: np.ndarray) -> np.ndarray:
+    """How many are no younger than each of `ages`, int64 (W, A)."""
+    last = np.zeros((worlds, len(ages) + 1), np.int64)
+    np.add.at(last, (world, np.searchsorted(ages, age, side="right")), 1)
+    return np.cumsum(last[:, ::-1], axis=1)[:, ::-1][:, 1:]
 
 
 def _alive(deaths: np.ndarray, at_risk: np.ndarray) -> np.ndarray:

@@ -12,9 +12,9 @@ from primordia.history.lives import Lives, lives
 from primordia.history.report import opened
 
 FIGURES: dict[str, Callable[[Lives, Config, int], Figure]] = {
-    "ages": lambda lives, config, world: ages.draw(lives),
-    "survival": lambda lives, config, world: survival.draw(lives),
-    "population": lambda lives, config, world: population.draw(lives, config.cells),
+    "ages": lambda lives, config, world: ages.draw(lives.since_fork()),
+    "survival": lambda lives, config, world: survival.draw(lives.since_fork()),
+    "population": lambda lives, config, world: population.draw(lives.since_fork(), config.cells),
     "space-time": spacetime.draw,
 }
 

@@ -19,7 +19,7 @@ def draw(lives: Lives) -> Figure:
     figure = Figure(figsize=(style.PAGE, 2.4))
     over_time, over_births, dead = figure.subplots(1, 3, sharey=True)
     worlds = [lives.of_world(world) for world in range(lives.worlds)]
-    _over_time(over_time, worlds)
+    _over_time(over_time, worlds, style.time_label(lives))
     _over_births(over_births, worlds)
     _of_the_dead(dead, lives)
     style.logarithmic(dead.yaxis)
@@ -27,10 +27,10 @@ def draw(lives: Lives) -> Figure:
     return figure
 
 
-def _over_time(axes: Axes, worlds: list[Lives]) -> None:
+def _over_time(axes: Axes, worlds: list[Lives], time: str) -> None:
     ticks = series.moments(max(int(world.ended.max()) for world in worlds))
     style.curves(axes, ticks, _positive(series.of_worlds(series.mean_age, worlds, ticks)))
-    style.time_axis(axes, int(ticks[-1]))
+    style.time_axis(axes, int(ticks[-1]), time)
     style.title(axes, "Mean age of the living over time", style.of_worlds(len(worlds)))
     axes.set_ylabel("age (ticks)")
 
@@ -41,7 +41,7 @@ def _over_births(axes: Axes, worlds: list[Lives]) -> None:
     ages = np.full((len(worlds), len(number)), np.nan)
     for row, world in zip(ages, worlds, strict=True):
         here = number[number <= len(world)]
-        row[: len(here)] = series.mean_age(world, world.born[here - 1])
+        row[: len(here)] = series.mean_age(world, world.seen[here - 1])
     style.curves(axes, number, _positive(ages))
     style.counted(axes.xaxis)
     style.title(axes, "... and as organisms were born", style.of_worlds(len(worlds)))

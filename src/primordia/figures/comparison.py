@@ -70,10 +70,8 @@ def _alive(axes: Axes, compared: Comparison) -> None:
     """Kaplan-Meier of all lives; those of a few runs with a band over resamples of worlds."""
     for arm, look in _looking(compared):
         survived = arm.survival
-        ages = np.concatenate([[1], survived.ages, [survived.limit]])
-        curve, low, high = (
-            np.concatenate([[1.0], each, each[-1:]]) for each in (survived.curve, *survived.band)
-        )
+        ages = np.maximum(survived.steps, 1)
+        curve, low, high = map(survived.whole, (survived.curve, *survived.band))
         if len(compared.arms) <= FEW:
             axes.fill_between(ages, low, high, step="post", color=look["color"], alpha=0.2, lw=0)
         axes.step(ages, curve, where="post", label=arm.name, **look)
@@ -135,7 +133,7 @@ def _over_time(axes: Axes, compared: Comparison, curve: Callable[[Arm], np.ndarr
         axes.plot(middle, np.median(worlds, axis=0), marker="o", markersize=3, **look)
     style.counted(axes.xaxis)
     axes.set(xlabel="time (ticks): worlds and median" if few else "time (ticks): median of worlds")
-    axes.set_xlim(0, edges[-1])
+    axes.set_xlim(edges[0], edges[-1])
 
 
 def _legend(figure: Figure, axes: Axes, compared: Comparison) -> None:

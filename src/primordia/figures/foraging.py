@@ -30,5 +30,7 @@ def draw(run: Path, config: Config) -> Figure:
         key |= {"break-even": BREAK_EVEN}
     style.title(axes, f"Food an organism gathers in a {'second' if rate else 'tick'}", key)
     style.counted(axes.xaxis)
-    axes.set(xlabel="time (ticks)", xlim=(0, None), ylim=(min(0, axes.get_ylim()[0]), None))
+    axes.set(
+        xlabel="time (ticks)", xlim=(found.since, None), ylim=(min(0, axes.get_ylim()[0]), None)
+    )
     return figure

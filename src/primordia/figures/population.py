@@ -30,7 +30,7 @@ def draw(lives: Lives, cells: int) -> Figure:
     _fates(fates, lives, causes)
     _rates(rates, lives, causes)
     for axes in (living, fates, rates):
-        style.time_axis(axes, int(lives.ended.max()))
+        style.time_axis(axes, int(lives.ended.max()), style.time_label(lives))
     return figure
 
 

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from primordia.disk import files
+from primordia.history.lives import Lives
 
 COLUMN, PAGE = 3.4, 7.0
 """Widths in inches."""
@@ -77,7 +78,12 @@ def _filling(figure: Figure, suffix: str) -> Callable[[Path], None]:
     return lambda path: figure.savefig(path, format=suffix[1:], metadata=metadata)
 
 
-def time_axis(axes: Axes, until: int, label: str = "time (ticks)") -> None:
+def time_label(lives: Lives) -> str:
+    """Of an axis on which the time is counted that these lives are told in; see `Lives.since_fork`."""
+    return "time since the fork (ticks)" if (lives.entered > 0).any() else "time (ticks)"
+
+
+def time_axis(axes: Axes, until: int, label: str) -> None:
     """A logarithmic axis of ticks from 1: most of what happens, happens early."""
     logarithmic(axes.xaxis)
     axes.set_xlim(1, max(until, 10))

@@ -3,8 +3,8 @@
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from scipy import stats
 
+from primordia.comparison.survival import survival
 from primordia.figures import style
 from primordia.history import series
 from primordia.history.lives import Lives
@@ -41,14 +41,6 @@ def quarters(lives: Lives) -> list[Lives]:
     return [lives.take(quarter == number) for number in range(len(COHORTS))]
 
 
-def survival(cohort: Lives, until: int) -> tuple[np.ndarray, np.ndarray]:
-    """Kaplan and Meier's estimate -> ages (A,) up to `until`, fraction alive after each (A,)."""
-    ended, died = cohort.lifespan, cohort.died
-    found = stats.ecdf(stats.CensoredData(uncensored=ended[died], right=ended[~died])).sf
-    alive = np.concatenate([[1.0], found.probabilities, found.probabilities[-1:]])
-    return np.concatenate([[0], found.quantiles, [until]]), alive
-
-
 def hazard(start: np.ndarray, stop: np.ndarray, died: np.ndarray, edges: np.ndarray) -> np.ndarray:
     """Deaths per tick lived in each bin of age or time, float64; NaN where too few died."""
     return series.per_tick(stop[died], series.exposure(start, stop, edges), edges)
@@ -59,7 +51,8 @@ def _alive(axes: Axes, lives: Lives) -> None:
     cohorts = quarters(lives)
     for cohort, colour in zip(cohorts, COHORTS.values(), strict=True):
         if len(cohort):
-            axes.step(*survival(cohort, longest), where="post", color=colour)
+            found = survival(cohort, lives.worlds, longest)
+            axes.step(found.steps, found.whole(found.curve), where="post", color=colour)
     style.time_axis(axes, longest, "age (ticks)")
     style.title(axes, "Alive at each age", style.together(lives.worlds))
     axes.set(ylabel="fraction alive", ylim=(0, 1.02))
@@ -80,7 +73,7 @@ def _at_risk(axes: Axes, cohorts: list[Lives]) -> None:
     for line, (cohort, (name, colour)) in enumerate(zip(cohorts, COHORTS.items(), strict=True), 1):
         put(0.3, line, name, colour, "right")
         for age in (10**power for power in range(powers)):
-            at_risk = int((cohort.lifespan >= age).sum())
+            at_risk = int(((cohort.lifespan >= age) & (cohort.entered < age)).sum())
             put(age, line, style.short(at_risk), colour, "center")
 
 
@@ -88,7 +81,7 @@ def _by_age(axes: Axes, lives: Lives) -> None:
     longest = int(lives.lifespan.max())
     edges = series.bins(longest)
     for cohort, colour in zip(quarters(lives), COHORTS.values(), strict=True):
-        risk = hazard(np.zeros_like(cohort.lifespan), cohort.lifespan, cohort.died, edges)
+        risk = hazard(cohort.entered, cohort.lifespan, cohort.died, edges)
         axes.plot(series.middle(edges), risk, ".-", color=colour, markersize=3)
     style.time_axis(axes, longest, "age (ticks)")
     style.title(axes, "Risk of death by age", style.together(lives.worlds))
@@ -97,7 +90,7 @@ def _by_age(axes: Axes, lives: Lives) -> None:
 def _over_time(axes: Axes, lives: Lives) -> None:
     last = int(lives.ended.max())
     edges = series.bins(last)
-    risk = hazard(lives.born, lives.ended, lives.died, edges)
+    risk = hazard(lives.seen, lives.ended, lives.died, edges)
     axes.plot(series.middle(edges), risk, ".-", color=style.INK, markersize=3)
-    style.time_axis(axes, last)
+    style.time_axis(axes, last, style.time_label(lives))
     style.title(axes, "Risk of death over time", style.together(lives.worlds))

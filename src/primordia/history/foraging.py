@@ -6,9 +6,10 @@ from typing import NamedTuple
 import numpy as np
 
 from primordia.config import Config
+from primordia.disk import checkpoint
 from primordia.history.climate import climate_at
-from primordia.history.report import table
-from primordia.law.metabolism import break_even
+from primordia.history.report import counts, table
+from primordia.law.metabolism import ONE, break_even
 
 STRETCHES = 60
 """Most parts that a world's time is cut into."""
@@ -17,6 +18,8 @@ STRETCHES = 60
 class Foraging(NamedTuple):
     """Of W worlds, in N stretches of time, one after another."""
 
+    since: int
+    """tick at the end of which the first stretch begins"""
     middle: np.ndarray
     """ticks, float64 (N,)"""
     food: np.ndarray
@@ -26,10 +29,10 @@ class Foraging(NamedTuple):
 
 
 class Harvest(NamedTuple):
-    """All that had been gathered and lived in a world by each of its samples, S + 1 with the start."""
+    """All gathered and lived in a world by each of its samples: S + 1 numbers, with the beginning."""
 
     tick: np.ndarray
-    """int64, rising from 0"""
+    """int64, rising from 0, or from where it was forked"""
     food: np.ndarray
     """float64"""
     lived: np.ndarray
@@ -46,10 +49,26 @@ def harvests(run: Path, worlds: int) -> list[Harvest]:
     metrics = table(run, "metrics")
     world = metrics["world"].to_numpy()
     columns = [metrics[name].to_numpy() for name in ("tick", "food", "organism_ticks")]
+    begun = _beginning(run, worlds)
     return [
-        Harvest._make(np.insert(column[world == number], 0, 0) for column in columns)
+        Harvest._make(
+            np.insert(column[world == number], 0, start[number])
+            for column, start in zip(columns, begun, strict=True)
+        )
         for number in range(worlds)
     ]
+
+
+def _beginning(run: Path, worlds: int) -> list[np.ndarray]:
+    """Tick, food and organism-ticks of each world before its first tick on record, (W,) each."""
+    origin = checkpoint.origin(run)
+    if origin is None:
+        return [np.zeros(worlds, np.int64)] * 3
+    names = "tick", "food", "organism_ticks"
+    tick, food, lived = (
+        counts(origin.arrays(), f"world.worlds.{name}").astype(np.int64) for name in names
+    )
+    return [tick, food / ONE, lived]
 
 
 def foraging(run: Path, config: Config) -> Foraging:
@@ -57,12 +76,13 @@ def foraging(run: Path, config: Config) -> Foraging:
     gathered = harvests(run, config.seeds)
     samples = max(len(harvest.tick) for harvest in gathered) - 1
     last = max(int(harvest.tick[-1]) for harvest in gathered)
-    edges = np.linspace(0, last, min(STRETCHES, samples) + 1)
+    first = min(int(harvest.tick[0]) for harvest in gathered)
+    edges = np.linspace(first, last, min(STRETCHES, samples) + 1)
     middle = (edges[1:] + edges[:-1]) / 2
     law = config.build_law(config.build_habitat())
     enough = [_break_even(climate_at(run, config, law, w)(middle)) for w in range(config.seeds)]
     food = [harvest.between(edges) for harvest in gathered]
-    return Foraging(middle, np.array(food), np.array(enough))
+    return Foraging(first, middle, np.array(food), np.array(enough))
 
 
 def _break_even(climate: dict[str, np.ndarray]) -> np.ndarray:

@@ -1,6 +1,6 @@
 """Everyone who ever lived in a run, one row each: births and deaths joined."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -31,6 +31,8 @@ class Lives:
     """int8, an `Origin`"""
     born: np.ndarray
     """int64, tick"""
+    seen: np.ndarray
+    """int64, tick from which on it is on record: its birth, or the fork at which it was alive"""
     ended: np.ndarray
     """int64, tick of death, or the world's last so far"""
     cause: np.ndarray
@@ -43,6 +45,15 @@ class Lives:
     def lifespan(self) -> np.ndarray:
         """Ticks lived, so far or in all, int64 (L,)."""
         return self.ended - self.born
+
+    @property
+    def entered(self) -> np.ndarray:
+        """Age from which on it is on record, int64 (L,): 0, but for those alive at a fork.
+
+        Of their generation only those who lived so long are on record, so they tell nothing of younger
+        ages.
+        """
+        return self.seen - self.born
 
     @property
     def rank(self) -> np.ndarray:
@@ -66,6 +77,17 @@ class Lives:
         """Those of one world."""
         first, last = np.searchsorted(self.world, [world, world + 1])
         return self.take(slice(first, last))
+
+    def since(self, tick: int) -> "Lives":
+        """As they would be on record had that begun at the end of a tick."""
+        later = self.take(np.flatnonzero(~self.died | (self.ended > tick)))
+        return replace(later, seen=np.maximum(later.seen, tick))
+
+    def since_fork(self) -> "Lives":
+        """With time counted from where a fork began; those alive at it were born before."""
+        inherited = self.entered > 0
+        then = int(self.seen[inherited].min()) if inherited.any() else 0
+        return replace(self, born=self.born - then, seen=self.seen - then, ended=self.ended - then)
 
     def oldest(self) -> int:
         """Row of the longest life, of equals the first."""
@@ -101,7 +123,7 @@ def lives(run: Path) -> Lives:
     Raises:
         InputError: this is no run, or nothing has lived in it yet.
     """
-    _, last = opened(run)
+    config, last = opened(run)
     ends = world_ticks(last.arrays()).astype(np.int64)
     born = _by_life(table(run, "births"), Origin)
     if not len(born["id"]):
@@ -110,6 +132,7 @@ def lives(run: Path) -> Lives:
     rows = np.searchsorted(_key(born["world"], born["id"]), _key(dead["world"], dead["id"]))
     ended, cause = ends[born["world"]], np.full(len(born["id"]), ALIVE, np.int8)
     ended[rows], cause[rows] = dead["tick"], dead["cause"]
+    begun = config.origin.tick if config.origin is not None else 0
     return Lives(
         world=born["world"],
         id=born["id"],
@@ -117,6 +140,7 @@ def lives(run: Path) -> Lives:
         cell=born["cell"],
         origin=born["cause"],
         born=born["tick"],
+        seen=np.maximum(born["tick"], begun),
         ended=ended,
         cause=cause,
     )

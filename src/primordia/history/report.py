@@ -87,10 +87,11 @@ def _table(run: Path, name: str, config: Config, last: Checkpoint) -> pa.Table:
 
 def world_ticks(arrays: dict[str, np.ndarray]) -> np.ndarray:
     """Ticks each world has lived through, uint64 (W,), from a checkpoint's arrays."""
-    return _counts(arrays, "world.worlds.tick")
+    return counts(arrays, "world.worlds.tick")
 
 
-def _counts(arrays: dict[str, np.ndarray], name: str) -> np.ndarray:
+def counts(arrays: dict[str, np.ndarray], name: str) -> np.ndarray:
+    """Numbers of 64 bits, uint64, from a checkpoint's arrays, where they stand in two words."""
     hi, lo = arrays[f"{name}.hi"].astype(np.uint64), arrays[f"{name}.lo"]
     return (hi << np.uint64(32)) | lo
 
@@ -99,12 +100,12 @@ def _world(
     config: Config, habitat: Any, arrays: dict[str, np.ndarray], world: int, digest: str
 ) -> dict[str, Any]:
     def count(name: str) -> Any:
-        return _counts(arrays, f"world.worlds.{name}")[world].tolist()
+        return counts(arrays, f"world.worlds.{name}")[world].tolist()
 
     here = slice(world * config.cells, (world + 1) * config.cells)
     alive = arrays["world.organisms.alive"][here]
     tick = count("tick")
-    ages = tick - _counts(arrays, "world.organisms.born")[here][alive].astype(np.int64)
+    ages = tick - counts(arrays, "world.organisms.born")[here][alive].astype(np.int64)
     deaths = count("deaths")
     found = {
         "seed": config.seed + world,

@@ -20,10 +20,12 @@ def moments(until: int) -> np.ndarray:
 def of_worlds(
     curve: Callable[[Lives, np.ndarray], np.ndarray], worlds: list[Lives], ticks: np.ndarray
 ) -> np.ndarray:
-    """A curve of each world, float64 (W, T); NaN where the world had not come to by now."""
-    return np.array(
-        [np.where(ticks <= world.ended.max(), curve(world, ticks), np.nan) for world in worlds]
-    )
+    """A curve of each world, float64 (W, T); NaN before a fork, and where no world has come to yet."""
+
+    def on_record(world: Lives) -> np.ndarray:
+        return (world.seen.min() <= ticks) & (ticks <= world.ended.max())
+
+    return np.array([np.where(on_record(world), curve(world, ticks), np.nan) for world in worlds])
 
 
 def population(lives: Lives, ticks: np.ndarray) -> np.ndarray:
