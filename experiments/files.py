@@ -4,6 +4,9 @@ import sys
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
+
+from primordia.config import merged
 
 
 def each(do: Callable[[Path], None], usage: str | None) -> None:
@@ -21,5 +24,15 @@ def folder(file: Path) -> Path:
 
 def runs(file: Path) -> list[Path]:
     """Of each arm, the reference first."""
-    arms = tomllib.loads(file.read_text(encoding="utf-8"))["arms"]
-    return [folder(file) / arm["name"] for arm in arms]
+    return [folder(file) / name for name in arms(file)]
+
+
+def arms(file: Path) -> dict[str, dict[str, Any]]:
+    """Settings of each arm by its name, the task among them; a fork's, on top of those it comes from."""
+    values = tomllib.loads(file.read_text(encoding="utf-8"))
+    own, fork = values.pop("arms"), values.pop("fork", None)
+    values.pop("question", None)
+    if fork is not None:
+        other, _, name = fork["of"].partition("/")
+        values = merged(arms(file.with_name(f"{other}.toml"))[name], values)
+    return {arm.pop("name"): merged(values, arm) for arm in own}

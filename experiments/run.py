@@ -3,7 +3,8 @@
     python experiments/run.py experiments/cartpole/*.toml
 
 An experiment is a TOML file: a `question`, the settings that all arms share, and `[[arms]]`, each
-with a `name` and what is different in it; the first arm is the reference. Arms live in
+with a `name` and what is different in it; the first arm is the reference. With a `[fork]`, `of` the
+arm of another file of the folder, `at` a tick, all arms go on from there. Arms live in
 `runs/experiments/` of the current folder. One that is done is not run again, one that was cut off
 goes on. Table, figure and the figures of every world go to `results/` beside the file.
 """
@@ -22,26 +23,31 @@ from results import write
 
 def experiment(file: Path) -> None:
     """Every arm, then the results."""
-    values = tomllib.loads(file.read_text(encoding="utf-8"))
-    question, arms = values.pop("question"), values.pop("arms")
-    runs = []
-    for arm in arms:
-        runs.append(files.folder(file) / arm.pop("name"))
-        live(runs[-1], config.merged(values, arm))
-        print(f"{runs[-1]} is done", flush=True)
-    write(file.parent / "results" / file.stem, question, runs)
+    told, arms = tomllib.loads(file.read_text(encoding="utf-8")), files.arms(file)
+    runs = [files.folder(file) / name for name in arms]
+    for run, settings in zip(runs, arms.values(), strict=True):
+        live(run, settings, told.get("fork"))
+        print(f"{run} is done", flush=True)
+    write(file.parent / "results" / file.stem, told["question"], runs)
 
 
-def live(run: Path, settings: dict[str, Any]) -> None:
+def live(run: Path, settings: dict[str, Any], fork: dict[str, Any] | None) -> None:
     """Run an arm to its end, or go on with it."""
     task = settings.pop("task")
-    if not run.exists():
+    if not run.exists() and fork is None:
         primordia.run(task, run, **settings)
-        return
-    wanted = tomllib.loads(config.load(task, settings).to_toml())
-    if tomllib.loads((run / "config.toml").read_text()) != wanted:
+    elif not run.exists():
+        primordia.load(run.parent.parent / fork["of"]).fork(fork["at"], run, **settings)
+    else:
+        refuse_other(run, tomllib.loads(config.load(task, settings).to_toml()))
+        primordia.Run(run).resume()
+
+
+def refuse_other(run: Path, wanted: dict[str, Any]) -> None:
+    """Not to go on with a run of other settings."""
+    found = tomllib.loads((run / "config.toml").read_text(encoding="utf-8"))
+    if {**found, "origin": wanted["origin"]} != wanted:
         sys.exit(f"{run} was begun with other settings; remove it, and it is run again")
-    primordia.Run(run).resume()
 
 
 if __name__ == "__main__":

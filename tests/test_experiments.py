@@ -21,13 +21,15 @@ TRIALS = sorted(EXPERIMENTS.glob("*/founders/*.toml"))
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
-def test_settings_of_every_arm_are_good_and_limits_are_shared(file: Path) -> None:
-    values = tomllib.loads(file.read_text(encoding="utf-8"))
-    assert values.pop("question").endswith("?")
-    arms = values.pop("arms")
-    names = [arm.pop("name") for arm in arms]
-    assert len(set(names)) == len(names) > 1
-    configs = [load(values["task"], merged(values, arm)) for arm in arms]
+def test_settings_of_every_arm_are_good_and_limits_are_shared(
+    file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.syspath_prepend(str(EXPERIMENTS))
+    told = tomllib.loads(file.read_text(encoding="utf-8"))
+    assert told["question"].endswith("?")
+    arms = import_module("files").arms(file)
+    assert len(arms) == len(told["arms"]) > 1, "names differ"
+    configs = [load(settings.pop("task"), settings) for settings in arms.values()]
     assert len({config.to_toml() for config in configs}) == len(configs)
     assert len({config.task for config in configs}) == 1
     assert len({config.stop for config in configs}) == 1
@@ -103,6 +105,39 @@ def test_an_experiment_is_run_once(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     )
     with pytest.raises(SystemExit, match="other settings"):
         script.experiment(file)
+
+
+def test_an_experiment_may_go_on_from_another(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its arms are forks of an arm of that, with the settings of that."""
+    monkeypatch.syspath_prepend(str(EXPERIMENTS))
+    monkeypatch.chdir(tmp_path)
+    settings = {**MEADOW, "brain": {"hidden": 1}, "seeds": 2, "replication": 0.3}
+    (tmp_path / "meadow.toml").write_text(tomli_w.dumps(settings))
+    first = {"question": "How?", "task": str(tmp_path / "meadow.toml"), "stop": {"ticks": 200}}
+    arms = [{"name": "mild", "hazard": 0.02}, {"name": "rough", "hazard": 0.04}]
+    then = {"question": "And then?", "fork": {"of": "one/rough", "at": 150}, "stop": {"ticks": 300}}
+    folder, script = tmp_path / "meadow", import_module("run")
+    folder.mkdir()
+    (folder / "one.toml").write_text(tomli_w.dumps({**first, "arms": arms}))
+    others = [{"name": "unchanged"}, {"name": "safe", "hazard": 0.0}]
+    (folder / "two.toml").write_text(tomli_w.dumps({**then, "arms": others}))
+    for name in ("one", "two", "two"):
+        script.experiment(folder / f"{name}.toml")
+    primordia.run(first["task"], "rough", seeds=2, hazard=0.04, stop={"ticks": 300})
+    unchanged, safe = (Path("runs/experiments/meadow/two", arm["name"]) for arm in others)
+    here, there = (primordia.load(run).arrays("deaths") for run in (unchanged, "rough"))
+    later = there["tick"] > 150
+    assert later.any()
+    for name, column in here.items():
+        np.testing.assert_array_equal(column, there[name][later])
+    assert len(primordia.load(safe).arrays("deaths")["tick"]) == 0
+    told = (folder / "results" / "two.md").read_text()
+    assert "And then?" in told
+    (folder / "two.toml").write_text(tomli_w.dumps({**then, "arms": others[::-1], "cells": 9}))
+    with pytest.raises(SystemExit, match="other settings"):
+        script.experiment(folder / "two.toml")
 
 
 @pytest.fixture
