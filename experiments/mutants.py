@@ -20,8 +20,8 @@ from primordia.organism.evaluation import players_of
 from primordia.organism.games import play
 from results import table
 
-MUTANTS = 48
-SCALES = (0.0003, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3)
+MUTANTS = 24
+SCALES = (0.0001, 0.0003, 0.001, 0.003, 0.01, 0.03, 0.1)
 """standard deviations of the noise, of the founders' scale"""
 TICKS = 20_000
 SAME = 2

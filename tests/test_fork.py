@@ -84,6 +84,9 @@ def test_what_is_told_of_a_fork_begins_with_it(mill: Path, tmp_path: Path, at: i
         for field in fields(one):
             np.testing.assert_array_equal(getattr(one, field.name), getattr(other, field.name))
     np.testing.assert_array_equal(lives(mill).since(at).seen, lives(fork).seen)
+    np.testing.assert_array_equal(whole.figures["first"].value, part.figures["first"].value)
+    later = [lives(fork).of_world(world).born > at for world in range(2)]
+    assert (part.figures["first"].value <= [1 + born.sum() for born in later]).all()
     found, before = harvests(fork, 2), harvests(mill, 2)
     for world in range(2):
         sampled = before[world].tick >= at

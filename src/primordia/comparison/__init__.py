@@ -217,12 +217,12 @@ def differing(configs: Sequence[Config]) -> list[dict[str, Any]]:
 
 
 def first_long(worlds: Sequence[Lives], age: int) -> Figures:
-    """Which birth of each world was the first to live so long.
+    """Which birth of each world, since the fork if there was one, was the first to live so long.
 
     Known if all who were born before are dead; otherwise it is at least the first one's still alive.
     """
     value, known = [], []
-    for lived in worlds:
+    for lived in (world.take(np.flatnonzero(world.entered == 0)) for world in worlds):
         long = lived.lifespan >= age
         first, open_ = (
             int(each.argmax()) if each.any() else len(lived) for each in (long, ~long & ~lived.died)
