@@ -53,7 +53,8 @@ def report(file: Path) -> None:
     runs = files.runs(file)
     habitat = read_config(runs[0]).habitat["name"]
     ways, unknown = WAYS[habitat], UNKNOWN[habitat]
-    rows = played("a founder", runs[0], founders(runs[0]), ways, GAMES)
+    first = unforked(runs[0])
+    rows = played("a founder", first, founders(first), ways, GAMES)
     for run in runs:
         rows += played(run.name, run, longest_lived(run), ways, GAMES)
         everyone = played(f"{run.name}, all alive", run, alive(run), {unknown: ways[unknown]}, 1)
@@ -77,6 +78,12 @@ def longest_lived(run: Path) -> list[Organism]:
     """Of each world."""
     found = primordia.load(run)
     return [found.oldest(world) for world in range(found.lives().worlds)]
+
+
+def unforked(run: Path) -> Path:
+    """The run that a fork goes back to; of any other, itself."""
+    origin = read_config(run).origin
+    return run if origin is None else unforked(Path(origin.run))
 
 
 def founders(run: Path) -> list[Organism]:

@@ -205,6 +205,28 @@ def test_what_is_told_of_organisms_in_other_games(
     assert copies == [1.0]
 
 
+def test_founders_of_forks_are_those_of_the_run_they_go_back_to(
+    ponged: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    games, runs = import_module("games"), import_module("files").runs
+    for name, value in {
+        "TICKS": 400,
+        "GAMES": 1,
+        "WAYS": {"atari": {"sticky, no-ops": {}}},
+    }.items():
+        monkeypatch.setattr(games, name, value)
+    values = {"question": "And then?", "stop": {"ticks": 320, "until": "none"}}
+    arms = [{"name": "same"}, {"name": "rare", "mutation": {"probability": 0.1}}]
+    file = ponged.with_name("then.toml")
+    fork = {"of": "pong/heredity", "at": 300}
+    file.write_text(tomli_w.dumps({**values, "fork": fork, "arms": arms}))
+    import_module("run").experiment(file)
+    assert games.unforked(runs(file)[0]) == runs(ponged)[0]
+    games.report(file)
+    rows = list(csv.DictReader((file.parent / "results/then-games.csv").read_text().splitlines()))
+    assert [row["organism"] for row in rows if row["who"] == "a founder"] == ["0"]
+
+
 def test_what_an_arm_does_for_a_target_is_measured(monkeypatch: pytest.MonkeyPatch) -> None:
     """A tip that goes to and fro between two places, first straight, then thrice as far as it must."""
     monkeypatch.syspath_prepend(str(EXPERIMENTS))

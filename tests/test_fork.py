@@ -106,6 +106,22 @@ def test_what_is_told_of_a_fork_begins_with_it(mill: Path, tmp_path: Path, at: i
         assert words in (tmp_path / f"{name}.svg").read_text(encoding="utf-8")
 
 
+def test_a_season_does_what_a_fork_does(tmp_path: Path) -> None:
+    """To the last bit, so what a fork has shown can be shipped as a season."""
+    settings = {**MILL, "seasons": [], "seeds": 2, "brain": {"hidden": 6}, "stop": {"ticks": 500}}
+    change = {"mutation": {"probability": 0.1}, "hazard": 0.03}
+    then = [
+        {"kind": "schedule", "setting": name, "at": 250, "value": value}
+        for name, value in (("mutation.probability", 0.1), ("hazard", 0.03))
+    ]
+    loop.start(config(settings), tmp_path / "plain")
+    loop.start(config({**settings, "seasons": then}), tmp_path / "seasons")
+    primordia.load(tmp_path / "plain").fork(250, tmp_path / "fork", **change)
+    forked = after_the_fork(tmp_path / "fork", 250)
+    assert forked == after_the_fork(tmp_path / "seasons", 250)
+    assert forked != after_the_fork(tmp_path / "plain", 250)
+
+
 def test_forks_are_compared_where_they_have_time_in_common(mill: Path, tmp_path: Path) -> None:
     late = primordia.load(mill).fork(1500, tmp_path / "late", stop={"ticks": 1600}).path
     with pytest.raises(InputError, match=r"forked at tick 1,500, .* ends at 1,500"):
