@@ -206,7 +206,8 @@ def _configs(runs: Sequence[Path]) -> list[Config]:
 
 def differing(configs: Sequence[Config]) -> list[dict[str, Any]]:
     """Of each configuration, the settings in which it is not as all the others."""
-    flat = [_flat(config.model_dump(mode="json", exclude={"about"})) for config in configs]
+    untold: Any = {"about": True, "origin": {"run"}}  # words, and the name of a folder
+    flat = [_flat(config.model_dump(mode="json", exclude=untold)) for config in configs]
     names = [name for each in flat for name in each]
     several = [
         name
