@@ -1,5 +1,7 @@
 """How long do they live? Survival by cohort of birth, and the risk of death by age and over time."""
 
+from dataclasses import replace
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -51,7 +53,7 @@ def _alive(axes: Axes, lives: Lives) -> None:
     cohorts = quarters(lives)
     for cohort, colour in zip(cohorts, COHORTS.values(), strict=True):
         if len(cohort):
-            found = survival(cohort, lives.worlds, longest)
+            found = survival(replace(cohort, world=np.zeros_like(cohort.world)), 1, longest)
             axes.step(found.steps, found.whole(found.curve), where="post", color=colour)
     style.time_axis(axes, longest, "age (ticks)")
     style.title(axes, "Alive at each age", style.together(lives.worlds))
