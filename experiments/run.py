@@ -34,13 +34,13 @@ def experiment(file: Path) -> None:
 def live(run: Path, settings: dict[str, Any], fork: dict[str, Any] | None) -> None:
     """Run an arm to its end, or go on with it."""
     task = settings.pop("task")
-    if not run.exists() and fork is None:
-        primordia.run(task, run, **settings)
-    elif not run.exists():
-        primordia.load(run.parent.parent / fork["of"]).fork(fork["at"], run, **settings)
-    else:
+    if run.exists():
         refuse_other(run, tomllib.loads(config.load(task, settings).to_toml()))
         primordia.Run(run).resume()
+    elif fork is None:
+        primordia.run(task, run, **settings)
+    else:
+        primordia.load(run.parent.parent / fork["of"]).fork(fork["at"], run, **settings)
 
 
 def refuse_other(run: Path, wanted: dict[str, Any]) -> None:

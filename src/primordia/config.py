@@ -138,6 +138,11 @@ class Config(Settings):
             sample_every=self.sample_every,
         )
 
+    @property
+    def begins(self) -> int:
+        """The tick at the end of which its records begin: that of the fork, or 0."""
+        return 0 if self.origin is None else self.origin.tick
+
     def to_toml(self) -> str:
         """As TOML that `validated` takes back."""
         return tomli_w.dumps(_replaced(self.model_dump(mode="json"), None, NONE))

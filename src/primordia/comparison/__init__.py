@@ -166,7 +166,7 @@ def _common(
     runs: Sequence[Path], configs: Sequence[Config], everyone: Sequence[Lives]
 ) -> tuple[int, int]:
     """The ticks between which all worlds of all runs are on record: since the last fork."""
-    begun = [config.origin.tick if config.origin is not None else 0 for config in configs]
+    begun = [config.begins for config in configs]
     ended = [min(int(world.ended.max(initial=0)) for world in _worlds(each)) for each in everyone]
     if 0 < max(begun) >= min(ended):
         late, early = runs[begun.index(max(begun))], runs[ended.index(min(ended))]

@@ -132,7 +132,6 @@ def lives(run: Path) -> Lives:
     rows = np.searchsorted(_key(born["world"], born["id"]), _key(dead["world"], dead["id"]))
     ended, cause = ends[born["world"]], np.full(len(born["id"]), ALIVE, np.int8)
     ended[rows], cause[rows] = dead["tick"], dead["cause"]
-    begun = config.origin.tick if config.origin is not None else 0
     return Lives(
         world=born["world"],
         id=born["id"],
@@ -140,7 +139,7 @@ def lives(run: Path) -> Lives:
         cell=born["cell"],
         origin=born["cause"],
         born=born["tick"],
-        seen=np.maximum(born["tick"], begun),
+        seen=np.maximum(born["tick"], config.begins),
         ended=ended,
         cause=cause,
     )
