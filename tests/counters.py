@@ -11,9 +11,12 @@ FIELDS = {"add": ("int64", ()), "total": ("int64", ()), "who": ("int64", ())}
 class Counters:
     """`total` grows by `add`; adding -1 raises, -2 ends the process, -3 sleeps."""
 
-    def __init__(self, arrays: dict[str, np.ndarray], cells: range, start: int) -> None:
+    def __init__(self, arrays: dict[str, np.ndarray], start: int) -> None:
         self._arrays, self._start = arrays, start
-        self._total = dict.fromkeys(cells, 0)
+        self._total: dict[int, int] = {}
+
+    def make(self, cell: int) -> None:
+        self._total[cell] = 0
 
     def step(self, cells: list[int]) -> None:
         for cell in cells:

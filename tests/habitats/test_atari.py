@@ -45,7 +45,10 @@ def arcade(cells: int = 2, **options: Any) -> tuple[Arcade, dict[str, np.ndarray
     arrays = {name: np.zeros((cells, *shape), dtype) for name, (dtype, shape) in FIELDS.items()}
     settings = {"game": "pong", "actions": [0, 2, 3], "mode": None, "difficulty": None,
                 "frame_skip": 1, "sticky": 0.0, "noops": 0} | options  # fmt: skip
-    return Arcade(arrays, range(cells), **settings), arrays
+    made = Arcade(arrays, **settings)
+    for cell in range(cells):
+        made.make(cell)
+    return made, arrays
 
 
 def played(made: Arcade, arrays: dict[str, np.ndarray], ticks: int, cell: int = 0) -> list[bytes]:

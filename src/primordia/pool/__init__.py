@@ -20,9 +20,7 @@ from primordia.pool import board
 from primordia.pool.board import LOAD, READY, RESET, SAVE, STEP
 
 PATIENCE = 20.0
-"""Seconds without an answer after which a worker is given up."""
-START = 2.0
-"""Seconds more for every simulator that it has to make first; an emulator takes a tenth when idle."""
+"""Seconds without a sign of life after which a worker is given up; each simulator made is one."""
 
 
 class Pool:
@@ -68,7 +66,8 @@ class Pool:
         file.close()
         for first, worker in enumerate(self._workers):
             _put(worker, json.dumps({**setup, "first": first}).encode() + b"\n")
-        self._gather(PATIENCE + START * cells / self._count)
+        for first, worker in enumerate(self._workers):
+            _ready(worker, len(range(first, cells, self._count)))
 
     def step(self, todo: np.ndarray) -> None:
         """One tick of the cells todo, bool (N,).
@@ -113,11 +112,10 @@ class Pool:
         for worker in self._workers:
             _put(worker, command)
 
-    def _gather(self, patience: float | None = None) -> None:
+    def _gather(self) -> None:
         """Hear from every worker that it is done."""
         for worker in self._workers:
-            if _get(worker, 1, patience) != READY:
-                raise Trouble("a worker process gave an answer that makes no sense")
+            _ready(worker)
 
 
 def _spawn(memory: int) -> subprocess.Popen:
@@ -141,14 +139,20 @@ def _put(worker: subprocess.Popen, data: bytes) -> None:
         raise _lost(worker) from None
 
 
-def _get(worker: subprocess.Popen, count: int, patience: float | None = None) -> bytes:
+def _ready(worker: subprocess.Popen, times: int = 1) -> None:
+    """Hear that it is done, with so many things."""
+    if _get(worker, times * len(READY)) != times * READY:
+        raise Trouble("a worker process gave an answer that makes no sense")
+
+
+def _get(worker: subprocess.Popen, count: int) -> bytes:
     assert worker.stdout is not None
-    parts, left, most = [], count, patience or PATIENCE
+    parts, left = [], count
     while left:
-        ready, _, _ = select.select([worker.stdout], [], [], most)
+        ready, _, _ = select.select([worker.stdout], [], [], PATIENCE)
         if not ready:
             raise Trouble(
-                f"worker process {worker.pid} has not answered for {most:.0f} s; resume the run"
+                f"worker process {worker.pid} has not answered for {PATIENCE:.0f} s; resume the run"
                 " from its last checkpoint"
             )
         part = os.read(worker.stdout.fileno(), left)

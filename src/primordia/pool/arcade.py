@@ -67,7 +67,6 @@ class Arcade:
     def __init__(
         self,
         arrays: dict[str, np.ndarray],
-        cells: range,
         game: str,
         actions: list[int],
         mode: int | None,
@@ -78,12 +77,22 @@ class Arcade:
     ) -> None:
         self._arrays, self._actions = arrays, actions
         self._skip, self._sticky, self._noops = frame_skip, round(sticky * 2**32), noops
-        self._ale = {cell: console(game, mode, difficulty) for cell in cells}
-        self._ram = {cell: arrays["ram"][cell] for cell in cells}
-        self._screen = {cell: arrays[WATCHED][cell] for cell in cells if WATCHED in arrays}
-        self._start = next(iter(self._ale.values())).cloneState()
-        self._dice = dict.fromkeys(cells, 0)
-        self._held = dict.fromkeys(cells, NOOP)
+        self._console = (game, mode, difficulty)
+        self._ale: dict[int, ALEInterface] = {}
+        self._ram: dict[int, np.ndarray] = {}
+        self._screen: dict[int, np.ndarray] = {}
+        self._dice: dict[int, int] = {}
+        self._held: dict[int, int] = {}
+
+    def make(self, cell: int) -> None:
+        """One more emulator."""
+        ale = console(*self._console)
+        if not self._ale:
+            self._start = ale.cloneState()
+        self._ale[cell], self._ram[cell] = ale, self._arrays["ram"][cell]
+        if WATCHED in self._arrays:
+            self._screen[cell] = self._arrays[WATCHED][cell]
+        self._dice[cell], self._held[cell] = 0, NOOP
 
     def step(self, cells: list[int]) -> None:
         """Frames of one tick; points are summed over them.

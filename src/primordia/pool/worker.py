@@ -29,7 +29,10 @@ AWAKE = 0.002
 class Simulator(Protocol):
     """What a worker keeps: the simulators of some cells. Rows of `arrays` are theirs to fill."""
 
-    def __init__(self, arrays: dict[str, np.ndarray], cells: range, **settings: Any) -> None: ...
+    def __init__(self, arrays: dict[str, np.ndarray], **settings: Any) -> None: ...
+
+    def make(self, cell: int) -> None:
+        """The simulator of one more cell."""
 
     def step(self, cells: list[int]) -> None:
         """One tick of each of these cells, with what their rows say."""
@@ -55,8 +58,10 @@ def main() -> None:
     memory = mmap.mmap(setup["memory"], setup["size"])
     arrays = board.arrays(memory, setup["fields"], setup["cells"])
     module, _, name = setup["simulator"].partition(":")
-    simulator = getattr(import_module(module), name)(arrays, cells, **setup["settings"])
-    answers.write(READY)
+    simulator = getattr(import_module(module), name)(arrays, **setup["settings"])
+    for cell in cells:
+        simulator.make(cell)
+        answers.write(READY)
     serve(simulator, arrays["todo"], cells, asked, answers)
 
 
