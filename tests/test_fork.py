@@ -10,7 +10,7 @@ import pytest
 import primordia
 from primordia.disk import checkpoint
 from primordia.engine import loop
-from primordia.errors import InputError
+from primordia.errors import InputError, Trouble
 from primordia.figures.survival import quarters
 from primordia.history.foraging import foraging, harvests
 from primordia.history.lives import lives
@@ -162,6 +162,10 @@ def test_a_fork_whose_checkpoints_are_lost_begins_again(poles: Path, tmp_path: P
     notes = fork.resume()
     assert "passed over a bad checkpoint" in notes[0]
     assert all(np.array_equal(before[name], array) for name, array in arrays(fork.path).items())
+    for path in fork.path.rglob("state.npz"):
+        path.write_bytes(b"damaged")
+    with pytest.raises(Trouble, match=r"no checkpoint of .* is whole: .*; fork it again"):
+        fork.resume()
 
 
 def climate(run: Path) -> dict[str, Any]:

@@ -86,7 +86,8 @@ def test_the_only_checkpoint_is_damaged(run: Path, through: str, tmp_path: Path)
 def test_a_changed_configuration_is_no_longer_that_run(run: Path) -> None:
     config = run / "config.toml"
     config.write_text(config.read_text().replace("seed = 0", "seed = 1"))
-    complains(here("resume", run), 1, str(config), "damaged")
+    for command in ("info", "resume", "verify"):
+        complains(here(command, run), 1, str(config), "changed", "put it back", "primordia fork")
 
 
 @pytest.mark.parametrize("text", ["", "cells = 'x'", "\x00", "task = 5"])

@@ -134,10 +134,10 @@ def _checksum(manifest: dict[str, Any]) -> str:
 
 def none_whole(run: Path, faults: list[str]) -> Trouble:
     """The error of a run none of whose checkpoints is whole."""
-    return Trouble(
-        f"no checkpoint of {run} is whole: {faults[0]}; `primordia run {run / 'config.toml'}` lives"
-        " it again from its beginning"
-    )
+    again = f"`primordia run {run / 'config.toml'}` lives it again from its beginning"
+    if (run / ORIGIN).exists():
+        again = "fork it again"
+    return Trouble(f"no checkpoint of {run} is whole: {faults[0]}; {again}")
 
 
 def numbered(run: Path) -> list[Path]:
@@ -183,16 +183,20 @@ def _newest_first(run: Path) -> Iterator[Checkpoint | str]:
 
 
 def _read(run: Path, path: Path) -> Checkpoint | str:
+    """It, or what is wrong with it; raises Trouble if an input of all is no longer what it was."""
     try:
         manifest = json.loads((path / "manifest.json").read_text())
         if manifest["sha256"] != _checksum(manifest):
             raise ValueError
-        sealed = [(run / name, seal) for name, seal in manifest["inputs"].items()]
-        sealed.append((path / "state.npz", manifest["state"]))
+        inputs = manifest["inputs"].items()
+        sealed = [(path / "state.npz", manifest["state"])]
         for table in TABLES:
             sealed += [(run / table / each["name"], each) for each in manifest["segments"][table]]
     except (OSError, ValueError, KeyError, TypeError):
         return f"{path / 'manifest.json'} is missing or damaged"
+    for name, seal in inputs:
+        if fault := files.fault_in(run / name, seal):
+            raise Trouble(f"{fault}; put it back (`primordia fork` goes on with other settings)")
     for file, seal in sealed:
         if fault := files.fault_in(file, seal):
             return fault

@@ -53,5 +53,5 @@ def fault_in(path: Path, sealed: dict[str, object]) -> str | None:
     if path.stat().st_size != sealed["bytes"]:
         return f"{path} has {path.stat().st_size} bytes instead of {sealed['bytes']}"
     if seal(path) != {key: sealed[key] for key in ("bytes", "sha256")}:
-        return f"{path} is damaged: its checksum does not hold"
+        return f"{path} was changed or damaged: its checksum does not hold"
     return None
