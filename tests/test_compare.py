@@ -182,3 +182,23 @@ def test_runs_have_looks_of_their_own(compared: Comparison, arms: int) -> None:
         drawn = draw(many)
     assert len(drawn.axes[0].get_lines()) == arms
     assert len(drawn.axes[0].collections) == (arms if arms <= FEW else 0)
+
+
+@pytest.mark.parametrize("saturated", [0, WORLDS])
+@pytest.mark.parametrize("fed", [False, True])
+def test_whatever_is_drawn_stays_on_the_page(
+    compared: Comparison, saturated: int, fed: bool
+) -> None:
+    """Two panels to four."""
+    known = np.arange(WORLDS) < saturated
+    moments = {name: Figures(np.ones(WORLDS), known) for name in ("births", "ticks")}
+    food = {"food": Figures(np.ones(WORLDS), np.full(WORLDS, fed))}
+    arm = replace(compared.arms[0], figures={**compared.arms[0].figures, **moments, **food})
+    with style.look():
+        drawn = draw(replace(compared, arms=(arm,)))
+        drawn.draw_without_rendering()
+    assert len(drawn.axes) == 2 + fed + bool(saturated)
+    for axes in drawn.axes:
+        for text in (axes.title, axes.xaxis.label, axes.yaxis.label):
+            box = text.get_window_extent()
+            assert drawn.bbox.count_contains([box.min, box.max]) == 2, text

@@ -19,6 +19,8 @@ from primordia.figures import style
 STOPPED = "|"
 """Marks a world that stopped unsaturated, as censoring is marked in survival curves."""
 DASHES = "-", "--", ":"
+MOST = 3
+"""Panels that have room side by side."""
 FEW = 5
 """Up to so many runs are in an order of colours, and shown with how their worlds scatter."""
 
@@ -37,14 +39,15 @@ def draw(compared: Comparison) -> Figure:
     """Survival of all lives, and how soon worlds saturate or, where few do, how fast organisms die; what
     they gather, where there is food.
     """
-    figure = Figure(figsize=(style.PAGE, 2.7))
     panels: list[Callable[[Axes, Comparison], None]] = [_alive]
     panels += (
         [_dying] if "pace" in compared.outcomes else [_saturated_by_births, _saturated_by_time]
     )
     panels += [_gathering] * ("food" in compared.outcomes)
-    widths = [1.6 if panel is _dying and len(panels) == 2 else 1 for panel in panels]
-    all_axes = figure.subplots(1, len(panels), width_ratios=widths)
+    rows, columns = (1, len(panels)) if len(panels) <= MOST else (2, 2)
+    figure = Figure(figsize=(style.PAGE, 2.7 * rows))
+    widths = [1.6 if panel is _dying and columns == 2 else 1 for panel in panels[:columns]]
+    all_axes = figure.subplots(rows, columns, width_ratios=widths, squeeze=False).flat
     for panel, axes in zip(panels, all_axes, strict=True):
         panel(axes, compared)
     _legend(figure, all_axes[0], compared)
