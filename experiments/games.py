@@ -26,7 +26,7 @@ from primordia.organism import Organism
 from results import table
 
 GAMES = 5
-TICKS = 8_000
+TICKS = 20_000
 NOISE = {"sticky": 0.25, "noops": 30}
 WAYS: dict[str, dict[str, dict[str, Any]]] = {
     "atari": {
@@ -60,7 +60,7 @@ def report(file: Path) -> None:
         everyone = played(f"{run.name}, all alive", run, alive(run), {unknown: ways[unknown]}, 1)
         rows += everyone
         rows += played(BEST.format(run.name), run, best(run, everyone), ways, GAMES)
-    write_rows(file.parent / "results" / f"{file.stem}-games", rows, summary(rows))
+        write_rows(file.parent / "results" / f"{file.stem}-games", rows, summary(rows))
 
 
 def write_rows(stem: Path, rows: list[dict[str, Any]], told: str) -> None:
