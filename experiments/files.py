@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from primordia.config import merged
+from primordia.values import merged
 
 
 def each(do: Callable[[Path], None], usage: str | None) -> None:

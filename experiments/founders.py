@@ -22,6 +22,7 @@ from primordia.config import Config
 from primordia.keys import Purpose, stream
 from primordia.law.genesis import climate
 from primordia.organism.games import Players, play
+from primordia.values import merged
 from primordia.wide import wide
 from results import table
 
@@ -34,7 +35,7 @@ def report(file: Path) -> None:
     """Let all live, and write what came out."""
     values = tomllib.loads(file.read_text(encoding="utf-8"))
     question, arms = values.pop("question"), values.pop("arms")
-    rows = [trial(arm.pop("name"), config.merged(values, arm)) for arm in arms]
+    rows = [trial(arm.pop("name"), merged(values, arm)) for arm in arms]
     note = (
         f"{FOUNDERS} founders lived once each; {MUTANTS} mutants each of the {PARENTS} that lived"
         f" longest. Lives were cut at {TICKS:,} ticks."

@@ -11,12 +11,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import BaseModel
 
-from primordia.config import Config, from_toml, load, merged, setting_fields, tasks, validated
+from primordia.config import Config, load, setting_fields, validated
 from primordia.habitats import KNOWN, find
 from primordia.law.brain import genome_length
 from primordia.law.mutation import BlockMutation
 from primordia.law.seasons import Ratchet, Schedule
 from primordia.settings import Settings
+from primordia.values import from_toml, merged, tasks
 from tests.commands import here
 from tests.worlds import MEADOW, MILL, config
 

@@ -11,8 +11,9 @@ import tomli_w
 from safetensors import safe_open
 
 import primordia
-from primordia.config import load, merged
+from primordia.config import load
 from primordia.engine import loop
+from primordia.values import merged
 from tests.worlds import MEADOW, config
 
 EXPERIMENTS = Path(__file__).parent.parent / "experiments"

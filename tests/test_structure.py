@@ -12,7 +12,7 @@ SOURCE = Path(__file__).parent.parent / "src" / "primordia"
 ORDER = """
     engine disk history
     errors settings compiled wide disk.digest law.events tasks live.paint history.summary
-    keys disk.files history.lines pool.board conditions dice gaussian
+    values keys disk.files history.lines pool.board conditions dice gaussian
     pool.worker pool.arcade
     pool
     history.clades

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from primordia.config import tasks
+from primordia.values import tasks
 
 ROOT = Path(__file__).parent.parent
 

@@ -4,11 +4,12 @@ from typing import Any
 
 import numpy as np
 
-from primordia.config import Config, load, merged, validated
+from primordia.config import Config, load, validated
 from primordia.disk.digest import digests
 from primordia.engine.loop import Engine, recorder_for
 from primordia.law.brain import join
 from primordia.law.genesis import begin
+from primordia.values import merged
 
 MEADOW: dict[str, Any] = {"task": "meadow", "habitat": {"name": "tests.toys:Meadow"}, "cells": 16}
 MILL: dict[str, Any] = {

@@ -1,8 +1,5 @@
 """Settings of a run: from a task's TOML, a file and flags to one validated, frozen object."""
 
-import difflib
-import tomllib
-from importlib import resources
 from pathlib import Path
 from types import UnionType
 from typing import Any, Literal, Union, get_args, get_origin
@@ -22,9 +19,7 @@ from primordia.law.mutation import Mutation
 from primordia.law.placement import Placement
 from primordia.law.seasons import Season
 from primordia.settings import Settings
-
-NONE = "none"
-"""How TOML and flags write None."""
+from primordia.values import NONE, did_you_mean, found_in, merged, replaced, values_of
 
 
 class Stop(Settings):
@@ -145,17 +140,7 @@ class Config(Settings):
 
     def to_toml(self) -> str:
         """As TOML that `validated` takes back."""
-        return tomli_w.dumps(_replaced(self.model_dump(mode="json"), None, NONE))
-
-
-def tasks() -> dict[str, dict[str, Any]]:
-    """The tasks that come with the package, by name."""
-    found = {}
-    for file in sorted(resources.files("primordia.tasks").iterdir(), key=lambda f: f.name):
-        if file.name.endswith(".toml"):
-            values = tomllib.loads(file.read_text())
-            found[values["task"]] = values
-    return found
+        return tomli_w.dumps(replaced(self.model_dump(mode="json"), None, NONE))
 
 
 def load(task: str, settings: dict[str, Any] | None = None) -> Config:
@@ -166,7 +151,7 @@ def load(task: str, settings: dict[str, Any] | None = None) -> Config:
     Raises:
         InputError: no such task or file, or a setting that is unknown or out of range.
     """
-    changes = _found_in(Path(), settings or {})
+    changes = found_in(Path(), settings or {})
     return validated(merged(values_of(task), changes), source=task)
 
 
@@ -177,7 +162,7 @@ def validated(values: dict[str, Any], source: str) -> Config:
         InputError: in one line, what is wrong and where.
     """
     try:
-        config = Config.model_validate(_replaced(values, NONE, None))
+        config = Config.model_validate(replaced(values, NONE, None))
     except ValidationError as error:
         raise InputError(f"{source}: {_first(error, '', Config)}") from None
     try:
@@ -193,83 +178,12 @@ def limits(values: dict[str, Any]) -> dict[str, Any]:
     Raises:
         InputError: an unknown one, or one out of range.
     """
-    values = _replaced(values, NONE, None)
+    values = replaced(values, NONE, None)
     try:
         Stop.model_validate(values)
     except ValidationError as error:
         raise InputError(_first(error, "", Stop)) from None
     return values
-
-
-def _replaced(values: Any, old: Any, new: Any) -> Any:
-    """Nested tables and lists with one value put for another."""
-    if isinstance(values, dict):
-        return {name: _replaced(value, old, new) for name, value in values.items()}
-    if isinstance(values, list | tuple):
-        return [_replaced(value, old, new) for value in values]
-    return new if type(values) is type(old) and values == old else values
-
-
-def from_toml(path: Path) -> dict[str, Any]:
-    """The values in a TOML file; genomes, and the file a habitat is made from, are looked for beside it.
-
-    Raises:
-        InputError: it cannot be read, or is not TOML.
-    """
-    try:
-        values = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"{path} is not valid TOML: {error}") from None
-    except OSError as error:
-        raise InputError(f"{path} cannot be read: {error.strerror}") from None
-    if isinstance(files := values.get("ancestors"), list):
-        values["ancestors"] = [str(path.parent / str(each)) for each in files]
-    return _found_in(path.parent, values)
-
-
-def _found_in(folder: Path, values: dict[str, Any]) -> dict[str, Any]:
-    """Values in which files that a habitat is made from, if they are in the folder, have full paths."""
-    habitat = values.get("habitat")
-    if not isinstance(habitat, dict):
-        return values
-    return {**values, "habitat": _full_paths(folder, habitat)}
-
-
-def _full_paths(folder: Path, table: dict[str, Any]) -> dict[str, Any]:
-    """Of each `file` in a table and in those within it."""
-    found = {}
-    for name, value in table.items():
-        file = folder / str(value)
-        full = str(file.resolve()) if name == "file" and file.is_file() else value
-        found[name] = _full_paths(folder, value) if isinstance(value, dict) else full
-    return found
-
-
-def merged(base: dict[str, Any], change: dict[str, Any]) -> dict[str, Any]:
-    """`base` with the values of `change` put in, table by table."""
-    result = dict(base)
-    for name, value in change.items():
-        both = isinstance(value, dict) and isinstance(result.get(name), dict)
-        result[name] = merged(result[name], value) if both else value
-    return result
-
-
-def values_of(task: str) -> dict[str, Any]:
-    """What a built-in task or a TOML file says.
-
-    Raises:
-        InputError: there is neither, or the file cannot be read.
-    """
-    known = tasks()
-    if task in known:
-        return known[task]
-    if task.endswith(".toml") or Path(task).is_file():
-        values = from_toml(Path(task))
-        return merged(known.get(str(values.get("task")), {}), values)
-    raise InputError(
-        f"there is no task {task!r}{_did_you_mean(task, list(known))}; `primordia tasks` lists them,"
-        " or give a file FILE.toml"
-    )
 
 
 def _check(config: Config) -> None:
@@ -328,17 +242,10 @@ def _first(error: ValidationError, prefix: str, model: type) -> str:
     if fault["type"] == "extra_forbidden":
         known = [f"{prefix}." * bool(prefix) + name for name in setting_fields(model)]
         known += sorted({name.rpartition(".")[0] for name in known} - {""})
-        return f"there is no setting {path!r}{_did_you_mean(path, known)}{more}"
+        return f"there is no setting {path!r}{did_you_mean(path, known)}{more}"
     if fault["type"] == "missing":
         return f"{path} is missing{more}"
     if fault["type"] == "value_error":  # ours, which says all that is to be said
         return f"{path}: {fault['ctx']['error']}{more}"
     message = fault["msg"][0].lower() + fault["msg"][1:]
     return f"{path}: {message}, not {fault['input']!r}{more}"
-
-
-def _did_you_mean(name: str, known: list[str]) -> str:
-    close = difflib.get_close_matches(name, known, 1) or [
-        path for path in known if path.rpartition(".")[2] == name.rpartition(".")[2]
-    ]
-    return f"; did you mean {close[0]!r}?" if close else ""

@@ -6,9 +6,10 @@ from typing import Any
 from pydantic import Field
 from pydantic_core import PydanticUndefined
 
-from primordia.config import NONE, Config, setting_fields, values_of
+from primordia.config import Config, setting_fields
 from primordia.habitats import KNOWN, find
 from primordia.settings import Settings
+from primordia.values import NONE, values_of
 
 
 def setting_rows(task: str | None) -> list[tuple[str, str]]:

@@ -63,8 +63,8 @@ class SettingsCommand(click.Command):
 
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Append every setting with its value in the task named, and what it means."""
-        from primordia.config import tasks
         from primordia.help import setting_rows
+        from primordia.values import tasks
 
         known = tasks()
         words = ctx.meta["words"]

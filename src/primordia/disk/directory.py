@@ -9,10 +9,11 @@ from typing import Any
 from filelock import FileLock, Timeout
 
 from primordia import device
-from primordia.config import Config, from_toml, validated
+from primordia.config import Config, validated
 from primordia.disk import files, genomes
 from primordia.disk.record import TABLES
 from primordia.errors import InputError, Trouble
+from primordia.values import from_toml
 
 FORMAT = 1
 """Of run directories; a higher one is refused."""

@@ -11,7 +11,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from primordia.config import Config, ForkedFrom, from_toml, merged, validated
+from primordia.config import Config, ForkedFrom, validated
 from primordia.disk import checkpoint, directory
 from primordia.disk.checkpoint import Progress
 from primordia.engine.chunk import State
@@ -22,6 +22,7 @@ from primordia.history.report import opened, world_ticks
 from primordia.law.genesis import climate, looks
 from primordia.law.metabolism import fixed
 from primordia.law.world import Climate, Looks, World, Worlds
+from primordia.values import from_toml, merged
 from primordia.wide import Wide, never, wide
 
 INNOCENT = {"stop", "origin", "about", "sample_every"}
