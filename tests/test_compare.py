@@ -173,6 +173,19 @@ def test_what_is_of_use_where_saturation_is_rare(
     assert ("pace" in outcomes, "longest" in outcomes) == (told, told)
 
 
+def test_where_few_worlds_saturate_all_are_looked_at_for_as_long(tmp_path: Path) -> None:
+    """A run that went on tells of the time that it has in common with one that did not."""
+    never: dict[str, Any] = {**QUICK, "saturation_ticks": 10_000}
+    for name, ticks in (("short", 600), ("long", 900)):
+        loop.start(config({**never, "stop": {"ticks": ticks}}), tmp_path / name)
+    short, long = primordia.compare(tmp_path / "short", tmp_path / "long").arms
+    for outcome in ("first", "lifespan", "longest", "pace", "food"):
+        one, other = short.figures[outcome], long.figures[outcome]
+        np.testing.assert_array_equal(one.value, other.value, err_msg=outcome)
+        np.testing.assert_array_equal(one.known, other.known, err_msg=outcome)
+    np.testing.assert_array_equal(short.survival.curve, long.survival.curve)
+
+
 @pytest.mark.parametrize("arms", [2, 5, 6, 9, 27])
 def test_runs_have_looks_of_their_own(compared: Comparison, arms: int) -> None:
     """With how their worlds scatter where few are shown."""

@@ -4,7 +4,8 @@ Worlds are the units, taken to be independent. (Those of the same seed in two ru
 words, which makes them alike if anything; intervals are then too wide rather than too narrow.) The
 first run is the reference that each other is held against. Worlds that stopped unsaturated count for
 what is known of them, and no more; see `contrast`. Where some are forks, lives are looked at from the
-tick on at which the last of them was forked, in all runs.
+tick on at which the last of them was forked, in all runs; where few worlds saturate, which ends them,
+up to the tick that all worlds have lived through.
 """
 
 from collections.abc import Sequence
@@ -84,8 +85,7 @@ class Comparison:
     @property
     def outcomes(self) -> dict[str, str]:
         """Those of OUTCOMES that tell something: known of some world, and of use."""
-        common = any(2 * arm.saturated >= arm.worlds for arm in self.arms)
-        untold = UNSATURATED if common else ()
+        untold = UNSATURATED if any(saturates(arm.figures) for arm in self.arms) else ()
         return {
             name: words.format(span=self.span)
             for name, words in OUTCOMES.items()
@@ -143,14 +143,18 @@ def compare(
     everyone = [lives(path) for path in runs]
     since, until = _common(runs, configs, everyone)
     everyone = [each.since(since) for each in everyone]
+    moments = [_saturation(path, births, ticks) for path in runs]
+    if not any(map(saturates, moments)):
+        everyone = [each.until(until) for each in everyone]
     arms, rate = [], getattr(configs[0].build_habitat(), "rate", None)
-    for path, lived, name, own in zip(runs, everyone, names, differing(configs), strict=True):
+    each_run = zip(runs, everyone, moments, names, differing(configs), strict=True)
+    for path, lived, saturation, name, own in each_run:
         worlds = _worlds(lived)
         survived, dying = survival(lived, len(worlds), age), pace(worlds, since, until)
         gathered = gathering(path, len(worlds), since, until, rate or 1)
         figures = {
             "first": first_long(worlds, age),
-            **_saturation(path, births, ticks),
+            **saturation,
             "lifespan": _all_known(survived.restricted_mean),
             "longest": _all_known([world.lifespan.max() for world in worlds]),
             "pace": dying.late,
@@ -252,6 +256,12 @@ def _saturation(path: Path, births: int | None, ticks: int | None) -> dict[str, 
             except InputError as error:
                 raise InputError(f"--{unit} {horizon}: in {path}, {error}") from None
     return found
+
+
+def saturates(figures: dict[str, Figures]) -> bool:
+    """Whether at least half of a run's worlds do, within the horizons."""
+    known = figures["births"].known & figures["ticks"].known
+    return 2 * int(known.sum()) >= len(known)
 
 
 def _flat(values: dict[str, Any], prefix: str = "") -> dict[str, Any]:

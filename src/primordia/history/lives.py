@@ -83,6 +83,16 @@ class Lives:
         later = self.take(np.flatnonzero(~self.died | (self.ended > tick)))
         return replace(later, seen=np.maximum(later.seen, tick))
 
+    def until(self, tick: int) -> "Lives":
+        """As they would be on record had that stopped at the end of a tick."""
+        before = self.take(np.flatnonzero(self.born <= tick))
+        late = before.ended > tick
+        return replace(
+            before,
+            ended=np.where(late, tick, before.ended),
+            cause=np.where(late, np.int8(ALIVE), before.cause),
+        )
+
     def since_fork(self) -> "Lives":
         """With time counted from where a fork began; those alive at it were born before."""
         inherited = self.entered > 0
