@@ -15,6 +15,7 @@ from primordia.figures.survival import quarters
 from primordia.history.foraging import foraging, harvests
 from primordia.history.lives import lives
 from primordia.history.verify import verify
+from primordia.wide import to_host
 from tests.commands import complains, here
 from tests.test_lineage import comes_back
 from tests.worlds import MILL, config, merged
@@ -117,6 +118,32 @@ def test_a_season_does_what_a_fork_does(tmp_path: Path) -> None:
     forked = after_the_fork(tmp_path / "fork", 250)
     assert forked == after_the_fork(tmp_path / "seasons", 250)
     assert forked != after_the_fork(tmp_path / "plain", 250)
+
+
+def test_what_is_lived_again_for_a_fork_is_told_too(mill: Path, tmp_path: Path) -> None:
+    ticks: list[int] = []
+
+    def listen(status: loop.Status) -> None:
+        ticks.append(int(to_host(status.engine.state.world.worlds.tick).min()))
+
+    primordia.load(mill).fork(700, tmp_path / "fork", listen=listen)
+    assert ticks == sorted(ticks)
+    assert 700 in ticks
+    assert ticks[-1] == 1500
+
+
+def test_ctrl_c_before_a_fork_is_begun(
+    mill: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """While its past is lived again there is nothing to resume."""
+
+    def interrupt(_: object, __: loop.Status) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("primordia.live.Plain.__call__", interrupt)
+    done = here("fork", mill, "--at", 700, "--out", tmp_path / "fork")
+    assert (done.returncode, list(tmp_path.iterdir())) == (130, [])
+    assert done.stderr.strip() == f"Stopped before {tmp_path / 'fork'} was begun"
 
 
 def test_forks_are_compared_where_they_have_time_in_common(mill: Path, tmp_path: Path) -> None:

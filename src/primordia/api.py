@@ -115,7 +115,7 @@ class Run:
         """A new run that goes on from the end of tick `at`, with some settings changed; see `fork`."""
         devices.select(device)
         path = Path(out) if out is not None else fresh_directory(f"{self.path.name}-at{at}")
-        fork(self.path, at, path, settings)
+        fork(self.path, at, path, settings, listen)
         loop.resume(path, checkpoint_every=checkpoint_every, listen=listen)
         return Run(path)
 

@@ -120,7 +120,8 @@ def _drive(path: Path, quiet: bool, go: Callable[[Any], object]) -> None:
         with watching(quiet) as listen:
             go(listen)
     except KeyboardInterrupt:
-        click.echo(f"Stopped and saved. Go on with: primordia resume {path}", err=True)
+        saved = f"Stopped and saved. Go on with: primordia resume {path}"
+        click.echo(saved if path.exists() else f"Stopped before {path} was begun", err=True)
         raise SystemExit(130) from None
     if not quiet:
         click.echo(summary(Run(path).info()))

@@ -4,6 +4,7 @@ A fork is a run of its own. Its `origin` holds everything as it stood, in the fo
 records begin with the births of those then alive.
 """
 
+import time
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ from primordia.config import Config, ForkedFrom, validated
 from primordia.disk import checkpoint, directory
 from primordia.disk.checkpoint import Progress
 from primordia.engine.chunk import State
-from primordia.engine.loop import Engine, recorder_for
+from primordia.engine.loop import Engine, Listener, Status, recorder_for
 from primordia.errors import InputError, Trouble
 from primordia.history.lives import Lives, lives
 from primordia.history.report import opened, world_ticks
@@ -29,7 +30,13 @@ INNOCENT = {"stop", "origin", "about", "sample_every"}
 """Settings that do not change what happens in a world."""
 
 
-def fork(source: Path, at: int, out: Path, settings: dict[str, Any]) -> None:
+def fork(
+    source: Path,
+    at: int,
+    out: Path,
+    settings: dict[str, Any],
+    listen: Listener | None = None,
+) -> None:
     """Make a run that begins where another stood at the end of tick `at`; it is not yet driven on.
 
     Args:
@@ -37,6 +44,7 @@ def fork(source: Path, at: int, out: Path, settings: dict[str, Any]) -> None:
         at: tick, lived through by all worlds.
         out: directory to make.
         settings: changed settings, as nested tables; a changed `seed` draws another future.
+        listen: called after each chunk of what has to be lived again up to the tick.
 
     Raises:
         InputError: no such tick, a setting that cannot change in a living world, or `out` is taken.
@@ -48,7 +56,7 @@ def fork(source: Path, at: int, out: Path, settings: dict[str, Any]) -> None:
     ticks = int(world_ticks(last.arrays()).min())
     if not 1 <= at <= ticks:
         raise InputError(f"--at {at}: {source} can be forked at any tick from 1 to {ticks}")
-    before = _stood_at(source, config, at)
+    before = _stood_at(source, config, at, listen)
     living = _living(lives(source), before, config, at)
     after = _transplanted(before, config, changed, at)
     recorder = recorder_for(after, out)
@@ -65,22 +73,26 @@ def _changed(source: Path, settings: dict[str, Any], at: int) -> Config:
     return validated(values, source=str(source))
 
 
-def _stood_at(source: Path, config: Config, at: int) -> Engine:
+def _stood_at(source: Path, config: Config, at: int, listen: Listener | None) -> Engine:
     """The source at the end of a tick: from the newest checkpoint before it, or lived again."""
-    engine, limits = Engine(config), {"ticks": at}
+    engine = Engine(config)
+    limits = engine.limits({"ticks": at})
     for stored in checkpoint.whole(source):
         arrays = stored.arrays()
         if (world_ticks(arrays) <= at).all():
             engine.load(arrays)
             break
-    if not engine.any_running(engine.limits(limits)):
+    if not engine.any_running(limits):
         return engine
     if differ := directory.other_versions(source):
         raise InputError(f"{source} cannot be lived again up to tick {at}: {'; '.join(differ)}")
     if not engine.chunks.exact:
         raise InputError(f"{source} is not exact, so it cannot be lived again up to tick {at}")
-    while engine.any_running(engine.limits(limits)):
-        engine.advance(engine.limits(limits))
+    began = time.perf_counter()
+    while engine.any_running(limits):
+        engine.advance(limits)
+        if listen is not None:
+            listen(Status(engine, time.perf_counter() - began, limits))
     return engine
 
 
