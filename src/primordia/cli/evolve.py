@@ -120,8 +120,9 @@ def _drive(path: Path, quiet: bool, go: Callable[[Any], object]) -> None:
         with watching(quiet) as listen:
             go(listen)
     except KeyboardInterrupt:
+        begun = (path / "versions.json").exists()
         saved = f"Stopped and saved. Go on with: primordia resume {path}"
-        click.echo(saved if path.exists() else f"Stopped before {path} was begun", err=True)
+        click.echo(saved if begun else f"Stopped before {path} was begun", err=True)
         raise SystemExit(130) from None
     if not quiet:
         click.echo(summary(Run(path).info()))
