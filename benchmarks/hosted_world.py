@@ -9,8 +9,8 @@ from typing import Any
 import jax
 
 from primordia.config import load
-from primordia.engine.loop import Engine
-from primordia.wide import to_host
+from primordia.engine.engine import Engine
+from primordia.random.wide import to_host
 from worlds import organism_ticks
 
 SETTINGS: dict[str, Any] = {

@@ -9,8 +9,8 @@ from functools import partial
 import jax
 from jax import Array, lax
 
-from primordia.habitats.cartpole import CartPole
-from primordia.law.brain import BrainSettings, Genome
+from primordia.brains.contract import BrainSettings, Genome
+from primordia.habitats.cartpole.habitat import CartPole
 from primordia.law.motor import argmax
 
 

@@ -76,8 +76,8 @@ def births_recorded_per_second() -> float:
     """From rows as the law gives them to closed, checksummed segments on disk."""
     import jax.numpy as jnp
 
-    from primordia.disk.record import Recorder, sample_fields
     from primordia.law.events import BIRTH_FIELDS, DEATH_FIELDS, Events, Rows
+    from primordia.runs.record import Recorder, sample_fields
 
     blocks = ["input", "recurrent", "output"]
     rng, rows, chunks = np.random.default_rng(0), 2**18, 24

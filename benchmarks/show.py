@@ -5,8 +5,9 @@ import time
 
 from rich.console import Console
 
-from primordia.engine.loop import Engine, Listener, Status
-from primordia.live import View
+from primordia.engine.engine import Engine
+from primordia.live.view import View
+from primordia.runs.loop import Listener, Status
 from worlds import engine, median, organism_ticks, saturated_phase
 
 ROUNDS = 7

@@ -9,9 +9,10 @@ import jax
 import published
 from limit import limit
 from primordia.config import load
-from primordia.disk.checkpoint import Progress
-from primordia.disk.record import Recorder
-from primordia.engine.loop import Engine, drive
+from primordia.engine.engine import Engine
+from primordia.runs.checkpoint import Progress
+from primordia.runs.loop import drive
+from primordia.runs.record import Recorder
 from worlds import median, organism_ticks, random_phase, random_rate, rate, saturated_phase
 
 SHAPES = {"1 x 32": (32, 1), "16 x 32": (32, 16), "1 x 1,024": (1024, 1)}

@@ -8,9 +8,9 @@ import jax.numpy as jnp
 import numpy as np
 
 from primordia.config import load
-from primordia.engine.loop import Engine
+from primordia.engine.engine import Engine
 from primordia.law.genesis import begin
-from primordia.wide import to_host
+from primordia.random.wide import to_host
 
 
 def engine(cells: int, worlds: int = 1, **settings: object) -> Engine:

@@ -15,10 +15,10 @@ import files
 from games import BEST, longest_lived
 
 import primordia
-from primordia.disk import genomes
-from primordia.disk.directory import read_config
+from primordia.brains import genomes
 from primordia.history.lineage import rebuild_all
-from primordia.organism import Organism
+from primordia.organism.organism import Organism
+from primordia.runs.directory import read_config
 
 
 def report(file: Path) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from primordia.values import merged
+from primordia.settings.tables import merged
 
 
 def each(do: Callable[[Path], None], usage: str | None) -> None:

@@ -19,11 +19,11 @@ import numpy as np
 
 from primordia import config
 from primordia.config import Config
-from primordia.keys import Purpose, stream
 from primordia.law.genesis import climate
 from primordia.organism.games import Players, play
-from primordia.values import merged
-from primordia.wide import wide
+from primordia.random.keys import Purpose, stream
+from primordia.random.wide import wide
+from primordia.settings.tables import merged
 from results import table
 
 FOUNDERS, PARENTS, MUTANTS = 512, 16, 16

@@ -21,8 +21,8 @@ import numpy as np
 
 import primordia
 from primordia.cli.side_by_side import number
-from primordia.disk.directory import read_config
-from primordia.organism import Organism
+from primordia.organism.organism import Organism
+from primordia.runs.directory import read_config
 from results import table
 
 GAMES = 5

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 import primordia
-from primordia.comparison import Comparison
+from primordia.comparison.comparison import Comparison
 from primordia.comparison.pace import LATE
 
 COLUMNS = {

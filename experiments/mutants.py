@@ -15,9 +15,9 @@ import files
 import numpy as np
 from games import longest_lived, write_rows
 
-from primordia.organism import Organism
 from primordia.organism.evaluation import players_of
 from primordia.organism.games import play
+from primordia.organism.organism import Organism
 from results import table
 
 MUTANTS = 24

@@ -18,8 +18,8 @@ import numpy as np
 from games import founders, spread, write_rows
 
 import primordia
-from primordia.organism import Organism
-from primordia.organism.life import Life
+from primordia.organism.life.life import Life
+from primordia.organism.organism import Organism
 from results import table
 
 EACH = 8

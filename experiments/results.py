@@ -10,7 +10,7 @@ import late
 
 import primordia
 from primordia.cli.side_by_side import effect, ratio, setting, spread
-from primordia.comparison import Comparison
+from primordia.comparison.comparison import Comparison
 from primordia.figures import style
 from primordia.figures.comparison import draw
 

@@ -16,8 +16,8 @@ COMMAND = [sys.executable, "-m", "primordia"]
 
 
 def environment(cache: Path | None = None) -> dict[str, str]:
-    """Finds the tests' own habitats; compiled code is kept for the next process."""
-    extra = {"PYTHONPATH": str(HERE)}
+    """Finds this tree's package and the tests' own habitats; compiled code is kept between processes."""
+    extra = {"PYTHONPATH": os.pathsep.join([str(HERE / "src"), str(HERE)])}
     if cache is not None:
         extra |= {
             "JAX_COMPILATION_CACHE_DIR": str(cache),

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from primordia.config import load
-from primordia.habitats.mujoco import MuJoCo
+from primordia.habitats.mujoco.habitat import MuJoCo
 
 
 def opened(bodies: int = 4, **changes: Any) -> MuJoCo:

@@ -5,8 +5,8 @@ from dataclasses import fields
 import numpy as np
 from hypothesis import strategies as st
 
-from primordia.history.lives import ALIVE, Lives
 from primordia.law.world import Cause
+from primordia.runs.lives import ALIVE, Lives
 
 LIFE = st.tuples(st.integers(0, 40), st.integers(0, 40), st.booleans())
 LIVED = st.lists(LIFE, min_size=1, max_size=20)

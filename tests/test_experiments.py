@@ -12,8 +12,8 @@ from safetensors import safe_open
 
 import primordia
 from primordia.config import load
-from primordia.engine import loop
-from primordia.values import merged
+from primordia.runs import loop
+from primordia.settings.tables import merged
 from tests.worlds import MEADOW, config
 
 EXPERIMENTS = Path(__file__).parent.parent / "experiments"

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from primordia.values import tasks
+from primordia.settings.tables import tasks
 
 ROOT = Path(__file__).parent.parent
 

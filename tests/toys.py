@@ -7,9 +7,9 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from primordia.habitats import Continuous, Discrete, Outcome
-from primordia.habitats.cartpole import COORDINATES, CartPole
-from primordia.settings import Settings
+from primordia.habitats.cartpole.habitat import COORDINATES, CartPole
+from primordia.habitats.contract import Continuous, Discrete, Outcome
+from primordia.settings.base import Settings
 
 
 class Meadow(Settings):

@@ -4,12 +4,13 @@ from typing import Any
 
 import numpy as np
 
+from primordia.brains.contract import join
 from primordia.config import Config, load, validated
-from primordia.disk.digest import digests
-from primordia.engine.loop import Engine, recorder_for
-from primordia.law.brain import join
+from primordia.engine.engine import Engine
 from primordia.law.genesis import begin
-from primordia.values import merged
+from primordia.runs.digest import digests
+from primordia.runs.loop import recorder_for
+from primordia.settings.tables import merged
 
 MEADOW: dict[str, Any] = {"task": "meadow", "habitat": {"name": "tests.toys:Meadow"}, "cells": 16}
 MILL: dict[str, Any] = {

@@ -21,7 +21,7 @@ class Bare(Loop):
     """from one look at the clock to the next"""
 
     def __init__(self, game: str, cells: int) -> None:
-        from primordia.pool.arcade import RAM, console
+        from primordia.habitats.atari.simulator import RAM, console
 
         self._ale, self._ram = console(game), np.zeros(RAM, np.uint8)
         self._start = 0
@@ -97,8 +97,8 @@ class Published(Loop):
     about = "one Python object an organism, NumPy, one process"
 
     def __init__(self, game: str, cells: int) -> None:
-        from primordia.habitats.atari_games import minimal_actions
-        from primordia.pool.arcade import console
+        from primordia.habitats.atari.games import minimal_actions
+        from primordia.habitats.atari.simulator import console
 
         config, habitat, brain = described(game)
         buttons, seen = list(minimal_actions(game).values()), _seen(habitat)
@@ -185,7 +185,7 @@ class Pool(Loop):
 
 def _sight(game: str) -> Callable[[np.ndarray], np.ndarray]:
     """RAM, uint8 (N, 128) -> what is perceived of it, float32 (N, S)."""
-    from primordia.habitats.atari import SCALED
+    from primordia.habitats.atari.habitat import SCALED
 
     seen = _seen(described(game)[1])
     return lambda ram: SCALED.take(ram[:, seen])

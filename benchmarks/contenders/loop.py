@@ -82,7 +82,7 @@ class Brains:
         import jax
         import jax.numpy as jnp
 
-        from primordia.habitats import Discrete
+        from primordia.habitats.contract import Discrete
         from primordia.law.motor import argmax
 
         config, habitat, brain = described(game)

@@ -17,20 +17,21 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from primordia import comparison, config
+from primordia import config
 from primordia import device as devices
-from primordia.disk import genomes
-from primordia.disk.directory import read_config
-from primordia.engine import loop
-from primordia.engine.loop import Listener
+from primordia.brains import genomes
+from primordia.comparison import comparison
 from primordia.errors import InputError
-from primordia.history import lineage, report
-from primordia.history.fork import fork
-from primordia.history.lives import Lives, lives
-from primordia.history.verify import verify
-from primordia.organism import Organism
+from primordia.history import lineage
 from primordia.organism.evaluation import Evaluation, evaluate
+from primordia.organism.organism import Organism
 from primordia.organism.policy import Policy
+from primordia.runs import loop, report
+from primordia.runs.directory import read_config
+from primordia.runs.fork import fork
+from primordia.runs.lives import Lives, lives
+from primordia.runs.loop import Listener
+from primordia.runs.verify import verify
 
 
 @dataclass(frozen=True)
@@ -98,7 +99,7 @@ class Run:
 
     def plot(self, out: str | Path | None = None, world: int = 0) -> list[Path]:
         """Draw its figures into a folder, by default its own -> the files; see `figures.plot`."""
-        from primordia import figures  # Matplotlib takes a second to load
+        from primordia.figures import plot as figures  # Matplotlib takes a second to load
 
         return figures.plot(self.path, Path(out) if out is not None else None, world)
 

@@ -7,19 +7,19 @@ from typing import Any, Literal, Union, get_args, get_origin
 import tomli_w
 from pydantic import BaseModel, Field, ValidationError
 
-from primordia import habitats
-from primordia.disk import genomes
+from primordia.brains import genomes
+from primordia.brains.contract import Brain, BrainSettings
 from primordia.errors import InputError
-from primordia.habitats import Continuous, Habitat, HostHabitat
-from primordia.law import Law
-from primordia.law.brain import Brain, BrainSettings
+from primordia.habitats import contract as habitats
+from primordia.habitats.contract import Continuous, Habitat, HostHabitat
+from primordia.law.law import Law
 from primordia.law.metabolism import Metabolism
 from primordia.law.motor import Motor
 from primordia.law.mutation import Mutation
 from primordia.law.placement import Placement
 from primordia.law.seasons import Season
-from primordia.settings import Settings
-from primordia.values import NONE, did_you_mean, found_in, merged, replaced, values_of
+from primordia.settings.base import Settings
+from primordia.settings.tables import NONE, did_you_mean, found_in, merged, replaced, values_of
 
 
 class Stop(Settings):

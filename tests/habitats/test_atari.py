@@ -8,12 +8,12 @@ import pytest
 
 import primordia
 from primordia.config import load
-from primordia.habitats import atari_games
-from primordia.habitats.atari import Atari
-from primordia.habitats.atari_games import games
-from primordia.history.verify import verify
+from primordia.habitats.atari import games as atari_games
+from primordia.habitats.atari.games import games
+from primordia.habitats.atari.habitat import Atari
+from primordia.habitats.atari.simulator import FIELDS, Arcade, console
 from primordia.pool import board
-from primordia.pool.arcade import FIELDS, Arcade, console
+from primordia.runs.verify import verify
 from tests.commands import complains, here
 
 ale_py = pytest.importorskip("ale_py")

@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 
 import primordia
-from primordia.habitats.atari import SCALED, Atari
-from primordia.habitats.atari_games import screen_size
-from primordia.habitats.atari_picture import draw
+from primordia.habitats.atari.games import screen_size
+from primordia.habitats.atari.habitat import SCALED, Atari
+from primordia.habitats.atari.picture import draw
 from primordia.habitats.framed import ROOM
-from primordia.history.lives import Lives, lives
 from primordia.law.metabolism import ONE
 from primordia.law.world import Cause
-from primordia.organism.life import Life
+from primordia.organism.life.life import Life
+from primordia.runs.lives import Lives, lives
 from tests.commands import here
-from tests.test_life import at_the_end
+from tests.organism.test_life import at_the_end
 
 pytest.importorskip("ale_py")
 

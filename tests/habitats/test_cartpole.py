@@ -9,7 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from primordia.habitats.cartpole import CartPole
+from primordia.habitats.cartpole.habitat import CartPole
 
 LIMITS = np.array([2.4, np.inf, np.deg2rad(12), np.inf])
 

@@ -9,9 +9,9 @@ import pytest
 
 import primordia
 from primordia.errors import InputError
-from primordia.habitats import mujoco_picture
-from primordia.history.lives import lives
-from primordia.organism.life import Life
+from primordia.habitats.mujoco import picture as mujoco_picture
+from primordia.organism.life.life import Life
+from primordia.runs.lives import lives
 from tests.commands import complains, here
 from tests.robots import born, of_task
 

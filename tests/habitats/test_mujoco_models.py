@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 import primordia
-from primordia.habitats import mujoco_model
+from primordia.habitats.mujoco import simulator as mujoco_model
 from tests.commands import complains, here
 
 mujoco = pytest.importorskip("mujoco")

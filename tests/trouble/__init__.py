@@ -8,8 +8,7 @@ from pathlib import Path
 import pytest
 
 from primordia import config
-from primordia.disk import checkpoint
-from primordia.engine import loop
+from primordia.runs import checkpoint, loop
 from tests.commands import here
 
 TASK = "CartPole-survival"

@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from primordia.disk import checkpoint
+from primordia.runs import checkpoint
 from tests.commands import here
 from tests.trouble import HALF, SMALL, TICKS, digest, interrupt_after
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from primordia.disk import checkpoint
+from primordia.runs import checkpoint
 from tests.commands import complains, here
 from tests.trouble import TICKS, contents, digest, flip, goes_on, newest, started
 

@@ -14,9 +14,9 @@ import numpy as np
 import pyarrow.parquet
 import pytest
 
-from primordia.disk import checkpoint, files
-from primordia.engine import loop
+from primordia import files
 from primordia.errors import Trouble
+from primordia.runs import checkpoint, loop
 from tests.commands import complains, here
 from tests.trouble import SMALL, TICKS, contents, digest, goes_on, started
 

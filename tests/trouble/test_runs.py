@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from primordia.disk import checkpoint, directory
-from primordia.engine import chunk, loop
+from primordia.engine import fused as chunk
+from primordia.runs import checkpoint, directory, loop
 from tests.commands import begin, complains, here
 from tests.trouble import HALF, SMALL, TASK, TICKS, contents, digest, goes_on, newest, started
 

@@ -114,7 +114,7 @@ def fork(
 def _drive(path: Path, quiet: bool, go: Callable[[Any], object]) -> None:
     from primordia.api import Run
     from primordia.history.summary import summary
-    from primordia.live import watching
+    from primordia.live.view import watching
 
     try:
         with watching(quiet) as listen:

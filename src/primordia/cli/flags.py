@@ -63,8 +63,8 @@ class SettingsCommand(click.Command):
 
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Append every setting with its value in the task named, and what it means."""
-        from primordia.help import setting_rows
-        from primordia.values import tasks
+        from primordia.cli.help import setting_rows
+        from primordia.settings.tables import tasks
 
         known = tasks()
         words = ctx.meta["words"]

@@ -97,7 +97,7 @@ def verify(run: Path, device: str) -> None:
 @click.command()
 def tasks() -> None:
     """The tasks that come with Primordia."""
-    from primordia.values import tasks as known
+    from primordia.settings.tables import tasks as known
 
     for name, values in known().items():
         click.echo(f"{name:28} {values.get('about', '')}")

@@ -7,7 +7,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from primordia.comparison import Arm, Comparison
+from primordia.comparison.comparison import Arm, Comparison
 from primordia.comparison.contrast import Bounds, Contrast
 
 DIRECTIONS = {

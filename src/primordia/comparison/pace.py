@@ -6,7 +6,7 @@ import numpy as np
 
 from primordia.comparison.contrast import Figures
 from primordia.history import series
-from primordia.history.lives import Lives
+from primordia.runs.lives import Lives
 
 WINDOWS, LATE = 12, 3
 """Windows that time is cut into, and how many of the last are called late."""

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from primordia.keys import threefry
-from primordia.wide import Wide
+from primordia.random.keys import threefry
+from primordia.random.wide import Wide
 
 RESAMPLES = 1000
 COVERED = 0.95

@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from primordia.comparison.resample import interval, resamples
-from primordia.history.lives import Lives
+from primordia.runs.lives import Lives
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array, lax
 
-from primordia.law.brain import Genome
+from primordia.brains.contract import Genome
 from primordia.law.world import Organisms, World
 
 

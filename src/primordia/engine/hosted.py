@@ -12,16 +12,18 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
+from primordia.brains.contract import Genome
 from primordia.compiled import shared
-from primordia.engine.chunk import Limits, State, named_leaves, running, ticks_left
 from primordia.engine.held import Form, Held
+from primordia.engine.state import Limits, State, named_leaves, running, ticks_left
 from primordia.engine.tallies import Tallies
-from primordia.habitats import HostHabitat, Outcome
-from primordia.law import Fates, Law, judge, keys_of, no_fates, rest, settle, think
+from primordia.habitats.contract import HostHabitat, Outcome
 from primordia.law import events as log
-from primordia.law.brain import Genome
 from primordia.law.events import Events
 from primordia.law.genesis import birth_words
+from primordia.law.law import Law
+from primordia.law.life import Fates, judge, keys_of, no_fates, think
+from primordia.law.population import rest, settle
 from primordia.law.sample import width
 from primordia.law.world import World
 

@@ -9,13 +9,17 @@ from typing import Any
 import numpy as np
 from jax import Array
 
-from primordia.disk.record import tally_columns
 from primordia.law.events import Events, Rows
 
 
 def names_of(habitat: Any) -> tuple[str, ...]:
     """What a habitat keeps count of."""
     return tuple(getattr(habitat, "tallies", ()))
+
+
+def tally_columns(names: tuple[str, ...]) -> list[str]:
+    """What a sample says of each of a habitat's tallies, over the living."""
+    return [f"{name}_{what}" for name in names for what in ("mean", "best")]
 
 
 class Tallies:

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from primordia.figures import style
 from primordia.history import series
-from primordia.history.lives import Lives
+from primordia.runs.lives import Lives
 
 DOTS = 3000
 """Most lives drawn as dots, of the dead and of the living."""

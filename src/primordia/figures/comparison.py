@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator
 
-from primordia.comparison import Arm, Comparison
+from primordia.comparison.comparison import Arm, Comparison
 from primordia.figures import style
 
 STOPPED = "|"

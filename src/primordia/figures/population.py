@@ -6,8 +6,8 @@ from matplotlib.figure import Figure
 
 from primordia.figures import style
 from primordia.history import series
-from primordia.history.lives import Lives
 from primordia.law.world import Cause
+from primordia.runs.lives import Lives
 
 COLOURS = {
     Cause.FATAL: style.VERMILION,

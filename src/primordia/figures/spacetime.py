@@ -11,7 +11,7 @@ from primordia.figures import style
 from primordia.history import series
 from primordia.history.clades import Clades, clades
 from primordia.history.lines import CROWD
-from primordia.history.lives import Lives
+from primordia.runs.lives import Lives
 
 ROWS, COLUMNS = 800, 512
 """Most moments, and cells, that are drawn; of more, each second or third is."""

@@ -11,8 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
-from primordia.disk import files
-from primordia.history.lives import Lives
+from primordia import files
+from primordia.runs.lives import Lives
 
 COLUMN, PAGE = 3.4, 7.0
 """Widths in inches."""

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from primordia.comparison.survival import survival
 from primordia.figures import style
 from primordia.history import series
-from primordia.history.lives import Lives
+from primordia.runs.lives import Lives
 
 COHORTS = {
     "first quarter": "#d89000",

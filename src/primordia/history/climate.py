@@ -8,11 +8,12 @@ import numpy as np
 import pyarrow.compute as pc
 
 from primordia.config import Config
-from primordia.disk import checkpoint
-from primordia.engine.chunk import named_leaves
-from primordia.history.report import table
-from primordia.law import Law, genesis
+from primordia.engine.state import named_leaves
+from primordia.law import genesis
+from primordia.law.law import Law
 from primordia.law.sample import climate_columns, climate_values
+from primordia.runs import checkpoint
+from primordia.runs.report import table
 
 
 def climate_at(

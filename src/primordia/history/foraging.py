@@ -6,10 +6,10 @@ from typing import NamedTuple
 import numpy as np
 
 from primordia.config import Config
-from primordia.disk import checkpoint
 from primordia.history.climate import climate_at
-from primordia.history.report import counts, table
 from primordia.law.metabolism import ONE, break_even
+from primordia.runs import checkpoint
+from primordia.runs.report import counts, table
 
 STRETCHES = 60
 """Most parts that a world's time is cut into."""

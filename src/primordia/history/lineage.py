@@ -11,19 +11,19 @@ from pathlib import Path
 import jax.numpy as jnp
 import numpy as np
 
+from primordia.brains.contract import join
 from primordia.config import Config
-from primordia.disk import checkpoint
-from primordia.disk.checkpoint import Checkpoint
-from primordia.gaussian import quantiles
 from primordia.history.climate import climate_at
-from primordia.history.lives import Lives, lives
-from primordia.history.report import opened
-from primordia.keys import Purpose, stream, streams
-from primordia.law import Law
-from primordia.law.brain import join
+from primordia.law.law import Law
 from primordia.law.mutation import ancestor_of, mutates, noise_index
 from primordia.law.world import Origin
-from primordia.wide import wide
+from primordia.random.gaussian import quantiles
+from primordia.random.keys import Purpose, stream, streams
+from primordia.random.wide import wide
+from primordia.runs import checkpoint
+from primordia.runs.checkpoint import Checkpoint
+from primordia.runs.lives import Lives, lives
+from primordia.runs.report import opened
 
 STEPS_AT_A_TIME = 64
 """Births replayed together; always as many, since JAX compiles anew for every shape."""

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from primordia.history.lives import Lives
+from primordia.runs.lives import Lives
 
 POINTS = 1000
 """Of a curve: about as many as a page has room for."""

@@ -5,12 +5,12 @@ import numpy as np
 from jax import Array, lax
 
 from primordia.compiled import shared
-from primordia.keys import Purpose, bits, stream
-from primordia.law import Law
+from primordia.law.law import Law
 from primordia.law.metabolism import Metabolism, Rates
 from primordia.law.seasons import ratchets
 from primordia.law.world import Cause, Climate, Looks, Organisms, World, Worlds
-from primordia.wide import Wide, never, wide, zero
+from primordia.random.keys import Purpose, bits, stream
+from primordia.random.wide import Wide, never, wide, zero
 
 
 def begin(law: Law, seeds: list[int], tick: int = 0, births: int = 0) -> World:

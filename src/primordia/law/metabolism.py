@@ -11,7 +11,7 @@ import numpy as np
 from jax import Array
 from pydantic import Field
 
-from primordia.settings import Settings
+from primordia.settings.base import Settings
 
 ONE = 1024
 """Fixed-point steps in one unit of energy or food."""

@@ -6,7 +6,7 @@ import jax.numpy as jnp
 from jax import Array
 from pydantic import Field
 
-from primordia.settings import Settings
+from primordia.settings.base import Settings
 
 
 class Motor(Settings):

@@ -11,9 +11,9 @@ import numpy as np
 from jax import Array, lax
 from pydantic import Field
 
-from primordia.keys import bits, chance
-from primordia.settings import Settings
-from primordia.wide import Wide, modulo
+from primordia.random.keys import bits, chance
+from primordia.random.wide import Wide, modulo
+from primordia.settings.base import Settings
 
 BlockSetting: TypeAlias = Literal["probability", "scale", "founder_scale"]
 

@@ -15,9 +15,9 @@ import numpy as np
 from jax import Array, lax
 from pydantic import Field
 
-from primordia.keys import below
-from primordia.settings import Settings
-from primordia.wide import Wide
+from primordia.random.keys import below
+from primordia.random.wide import Wide
+from primordia.settings.base import Settings
 
 OFFSETS = {
     "ring": ((0, -1), (0, 1)),

@@ -6,7 +6,7 @@ from jax import Array, lax
 
 from primordia.law.events import Rows
 from primordia.law.world import Cause, Climate, World, ages, ages_total
-from primordia.wide import Wide, largest, signed, total
+from primordia.random.wide import Wide, largest, signed, total
 
 WIDE_COLUMNS = (
     "tick",

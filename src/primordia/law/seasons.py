@@ -9,8 +9,8 @@ from pydantic import Field
 
 from primordia.law.metabolism import ONE
 from primordia.law.world import Climate, Looks, World, Worlds, ages_total
-from primordia.settings import Settings
-from primordia.wide import Wide, select, to_float, wide
+from primordia.random.wide import Wide, select, to_float, wide
+from primordia.settings.base import Settings
 
 SETTING = r"replication|hazard|metabolism\.(store|drain|gain|effort_cost|cap)"
 MUTATION = r"mutation\.(blocks\.[a-z]+\.)?(probability|scale)"

@@ -4,24 +4,22 @@ Runs only in ticks in which something dies or may be born. What must be done for
 genome is done per birth; the rest is cheap enough to do for all cells at once.
 """
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from primordia.gaussian import quantiles
-from primordia.keys import Purpose, Streams, below, bits, bits_if, streams
+from primordia.brains.contract import split
 from primordia.law import events as log
-from primordia.law.brain import split
 from primordia.law.events import Events, Rows
+from primordia.law.law import Law
 from primordia.law.metabolism import fixed
 from primordia.law.mutation import ancestor_of, mutates, newborns, noise_index
 from primordia.law.world import Cause, Organisms, Origin, World, Worlds
-from primordia.wide import Wide, happened, largest, never, select, zero
-
-if TYPE_CHECKING:
-    from primordia.law import Law
+from primordia.random.gaussian import quantiles
+from primordia.random.keys import Purpose, Streams, below, bits, bits_if, streams
+from primordia.random.wide import Wide, happened, largest, never, select, zero
 
 
 class Births(NamedTuple):
@@ -44,7 +42,7 @@ def birth_keys(worlds: Worlds) -> Streams:
 
 
 def turnover(
-    law: "Law",
+    law: Law,
     world: World,
     events: Events,
     running: Array,
@@ -81,7 +79,7 @@ def turnover(
     return World(organisms, worlds), events._replace(births=listed), births.born
 
 
-def _place(law: "Law", key: Wide, wants: Array, alive: Array) -> Array:
+def _place(law: Law, key: Wide, wants: Array, alive: Array) -> Array:
     """The parent (on the axis of all cells) of each newborn, or -1: int32 (C,)."""
     key, cells = key.take(np.s_[:, None]), jnp.arange(law.cells)[None]
 
@@ -93,7 +91,7 @@ def _place(law: "Law", key: Wide, wants: Array, alive: Array) -> Array:
     return jnp.where(parent >= 0, parent + first, -1).ravel()
 
 
-def _genesis(law: "Law", key: Wide, extinct: Array) -> Array:
+def _genesis(law: Law, key: Wide, extinct: Array) -> Array:
     """Where founders appear: bool (W, N)."""
     if law.genesis == "fill":
         return jnp.broadcast_to(extinct[:, None], (law.worlds, law.cells))
@@ -101,7 +99,7 @@ def _genesis(law: "Law", key: Wide, extinct: Array) -> Array:
     return extinct[:, None] & (jnp.arange(law.cells)[None] == chosen[:, None])
 
 
-def _births(law: "Law", worlds: Worlds, parent: Array, founded: Array) -> Births:
+def _births(law: Law, worlds: Worlds, parent: Array, founded: Array) -> Births:
     born = (parent >= 0) | founded
     rank = jnp.cumsum(law.by_world(born), axis=1, dtype=jnp.int32).ravel() - 1
     number = worlds.births.map(law.per_cell).plus(jnp.maximum(rank, 0))
@@ -109,7 +107,7 @@ def _births(law: "Law", worlds: Worlds, parent: Array, founded: Array) -> Births
 
 
 def _note_deaths(
-    law: "Law", organisms: Organisms, worlds: Worlds, cause: Array, deaths: Rows
+    law: Law, organisms: Organisms, worlds: Worlds, cause: Array, deaths: Rows
 ) -> Rows:
     tick = worlds.tick.map(law.per_cell)
 
@@ -129,7 +127,7 @@ def _note_deaths(
 
 
 def _inherit(
-    law: "Law", world: World, births: Births, keys: Streams, listed: Rows
+    law: Law, world: World, births: Births, keys: Streams, listed: Rows
 ) -> tuple[Organisms, Rows]:
     """Write the genomes of the newborn, and note their births."""
     organisms, worlds = world
@@ -177,7 +175,7 @@ def _inherit(
 
 
 def _birth_columns(
-    law: "Law", world: World, births: Births, cells: Array, founder: Array, mutated: Array
+    law: Law, world: World, births: Births, cells: Array, founder: Array, mutated: Array
 ) -> list[Array]:
     """Columns of events.BIRTH_FIELDS; a parent of all ones is nobody."""
     organisms, worlds = world
@@ -190,7 +188,7 @@ def _birth_columns(
 
 
 def _begin_lives(
-    law: "Law", organisms: Organisms, worlds: Worlds, births: Births, alive: Array
+    law: Law, organisms: Organisms, worlds: Worlds, births: Births, alive: Array
 ) -> Organisms:
     """Set everything but the genome of the newborn."""
     born = births.born
@@ -212,7 +210,7 @@ def _begin_lives(
 
 
 def _count(
-    law: "Law", worlds: Worlds, organisms: Organisms, births: Births, cause: Array, extinct: Array
+    law: Law, worlds: Worlds, organisms: Organisms, births: Births, cause: Array, extinct: Array
 ) -> Worlds:
     of_cause = cause[:, None] == jnp.arange(len(Cause))
     deaths = law.by_world(of_cause).sum(axis=1, dtype=jnp.uint32)
@@ -233,7 +231,7 @@ def _count(
     )
 
 
-def _one_branch(law: "Law", organisms: Organisms) -> Array:
+def _one_branch(law: Law, organisms: Organisms) -> Array:
     """Whether all the living of a world descend from one child of a founder: bool (W,)."""
     alive = law.by_world(organisms.alive)
     branch = organisms.branch.map(law.by_world)

@@ -10,9 +10,9 @@ from typing import NamedTuple
 import jax.numpy as jnp
 from jax import Array
 
-from primordia.law.brain import Genome
+from primordia.brains.contract import Genome
 from primordia.law.metabolism import Rates
-from primordia.wide import Wide, select, total, zero
+from primordia.random.wide import Wide, select, total, zero
 
 
 class Named(IntEnum):

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from primordia.engine.chunk import Limits
+from primordia.engine.state import Limits
 from primordia.law.world import World
-from primordia.wide import Wide, to_host
+from primordia.random.wide import Wide, to_host
 
 
 @dataclass(frozen=True)

@@ -6,10 +6,10 @@ import numpy as np
 from rich.segment import Segment
 
 from primordia.history.lines import Lines
-from primordia.law import Law
+from primordia.law.law import Law
 from primordia.law.world import World
 from primordia.live.paint import EMPTY, FAINT, Cells, Row, field, skyline, strip
-from primordia.wide import Wide, to_host
+from primordia.random.wide import Wide, to_host
 
 TALLEST = 4
 """rows of a skyline"""

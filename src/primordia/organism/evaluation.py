@@ -13,15 +13,15 @@ from typing import Any, Literal, NamedTuple
 import jax.numpy as jnp
 import numpy as np
 
-from primordia.disk.directory import read_config
 from primordia.errors import InputError
 from primordia.history.climate import climate_at
 from primordia.history.lineage import rebuild_all
-from primordia.history.report import opened, world_ticks
-from primordia.keys import Purpose, stream
 from primordia.law.metabolism import Rates
 from primordia.organism.games import Games, Players, play
-from primordia.wide import wide
+from primordia.random.keys import Purpose, stream
+from primordia.random.wide import wide
+from primordia.runs.directory import read_config
+from primordia.runs.report import opened, world_ticks
 
 GAMES = 30
 TICKS = 100_000

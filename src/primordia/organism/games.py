@@ -10,16 +10,16 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
+from primordia.brains.contract import split
 from primordia.compiled import shared
-from primordia.engine.chunk import fresh
-from primordia.habitats import Bodies, Habitat, HostHabitat, Outcome
-from primordia.keys import Purpose, stream
-from primordia.law import Law
-from primordia.law.brain import split
+from primordia.engine.fused import fresh
+from primordia.habitats.contract import Bodies, Habitat, HostHabitat, Outcome
 from primordia.law.genesis import body_words
+from primordia.law.law import Law
 from primordia.law.metabolism import Rates, fixed, metabolise
 from primordia.organism.life.instant import Mind, think
-from primordia.wide import Wide, wide
+from primordia.random.keys import Purpose, stream
+from primordia.random.wide import Wide, wide
 
 AT_ONCE = 128
 """games side by side; a player's own are never parted"""

@@ -3,10 +3,10 @@
 import jax.numpy as jnp
 import numpy as np
 
+from primordia.brains.contract import split
 from primordia.compiled import shared
-from primordia.habitats import Discrete
-from primordia.law import Law
-from primordia.law.brain import split
+from primordia.habitats.contract import Discrete
+from primordia.law.law import Law
 from primordia.law.motor import argmax
 
 

@@ -13,8 +13,8 @@ from PIL import Image, ImageDraw, ImageFont
 from primordia.errors import InputError
 from primordia.habitats.framed import PAPER
 from primordia.organism import video
-from primordia.organism.life import Life
 from primordia.organism.life.instant import Stretch
+from primordia.organism.life.life import Life
 
 PART = 30.0
 """Seconds shown of each end of a life that is longer than two such parts."""

@@ -8,7 +8,7 @@ import av
 import numpy as np
 from PIL import Image
 
-from primordia.disk import files
+from primordia import files
 from primordia.errors import InputError
 
 FASTEST = {".mp4": 60, ".gif": 25}

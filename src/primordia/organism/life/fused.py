@@ -6,12 +6,13 @@ import numpy as np
 from jax import Array, lax
 
 from primordia.compiled import shared
-from primordia.engine.chunk import fresh, named_leaves
-from primordia.habitats import Bodies, Habitat
-from primordia.law import Law
+from primordia.engine.fused import fresh
+from primordia.engine.state import named_leaves
+from primordia.habitats.contract import Bodies, Habitat
+from primordia.law.law import Law
 from primordia.law.metabolism import ONE, Rates, metabolise
 from primordia.organism.life.instant import Instant, Mind, Stretch, think
-from primordia.wide import Wide, wide
+from primordia.random.wide import Wide, wide
 
 
 class Fused:

@@ -7,11 +7,11 @@ import numpy as np
 from jax import Array, lax
 
 from primordia.compiled import shared
-from primordia.habitats import Outcome
-from primordia.law import Law
+from primordia.habitats.contract import Outcome
+from primordia.law.law import Law
 from primordia.law.metabolism import ONE, Rates, metabolise
 from primordia.organism.life.instant import Instant, Mind, Stretch, think
-from primordia.wide import wide
+from primordia.random.wide import wide
 
 ALONE = np.array([0])
 """The cell of one who lives by itself."""

@@ -5,11 +5,12 @@ from typing import NamedTuple
 import numpy as np
 from jax import Array
 
-from primordia.habitats import Bodies
-from primordia.keys import Purpose, stream
-from primordia.law import Law, act
-from primordia.law.brain import Genome
-from primordia.wide import Wide
+from primordia.brains.contract import Genome
+from primordia.habitats.contract import Bodies
+from primordia.law.law import Law
+from primordia.law.life import act
+from primordia.random.keys import Purpose, stream
+from primordia.random.wide import Wide
 
 
 class Instant(NamedTuple):

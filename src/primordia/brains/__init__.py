@@ -1,0 +1,1 @@
+"""Brains, one file each, and the genomes that hold their weights."""

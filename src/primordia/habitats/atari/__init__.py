@@ -1,0 +1,1 @@
+"""Atari games, emulated in worker processes."""

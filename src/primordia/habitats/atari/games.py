@@ -1,0 +1,69 @@
+"""What the Arcade Learning Environment knows of its games: their names, buttons, modes and screens."""
+
+import difflib
+from collections.abc import Mapping
+from functools import cache
+from typing import Any
+
+from primordia.habitats.atari.simulator import REFUSED, console
+
+
+@cache
+def _ale() -> Any:
+    """The ale_py package.
+
+    Raises:
+        ValueError: it is not installed.
+    """
+    try:
+        import ale_py
+    except ImportError:
+        raise ValueError("Atari games need ale-py: pip install 'primordia[atari]'") from None
+    return ale_py
+
+
+@cache
+def games() -> list[str]:
+    """Names of the games that can be lived in."""
+    return sorted(set(_ale().roms.get_all_rom_ids()) - set(REFUSED))
+
+
+@cache
+def _facts(game: str) -> tuple[Mapping[str, int], Mapping[str, list[int]], tuple[int, int]]:
+    """Minimal action set; modes and difficulties; height and width of the screen.
+
+    Raises:
+        ValueError: there is no such game, or it is refused.
+    """
+    if game in REFUSED:
+        raise ValueError(f"{game} is refused: {REFUSED[game]}")
+    if game not in games():
+        close = difflib.get_close_matches(game.lower().replace("-", "_"), games(), 3)
+        known = f"did you mean {', '.join(close)}?" if close else f"known: {', '.join(games())}"
+        raise ValueError(f"there is no game {game!r}; {known}")
+    ale = console(game)
+    minimal = {action.name: int(action.value) for action in ale.getMinimalActionSet()}
+    options = {"mode": ale.getAvailableModes(), "difficulty": ale.getAvailableDifficulties()}
+    available = {name: list(map(int, values)) for name, values in options.items()}
+    return minimal, available, ale.getScreenDims()
+
+
+def minimal_actions(game: str) -> Mapping[str, int]:
+    """Names and codes of the actions that do something in a game."""
+    return _facts(game)[0]
+
+
+def available_options(game: str) -> Mapping[str, list[int]]:
+    """Its modes and difficulties."""
+    return _facts(game)[1]
+
+
+def screen_size(game: str) -> tuple[int, int]:
+    """Height and width in pixels, of which each is about twice as wide as high."""
+    return _facts(game)[2]
+
+
+@cache
+def legal_actions() -> Mapping[str, int]:
+    """Names and codes of all 18 actions."""
+    return {name: int(action.value) for name, action in _ale().Action.__members__.items()}

@@ -1,0 +1,162 @@
+"""One Atari game a cell, on the Arcade Learning Environment (Bellemare et al. 2013); runs in workers.
+
+A life begins in the state after the game's reset, which is cloned once and restored at each birth (a
+reset takes as long as some 60 frames), plus no-ops if asked for. The emulator itself draws nothing at
+random: sticky actions are ours, from a counter that begins with the organism's random words.
+"""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from primordia.random import dice
+
+if TYPE_CHECKING:
+    from ale_py import ALEInterface
+
+RAM = 128
+"""bytes of an Atari 2600"""
+FIELDS = {
+    "action": ("int32", ()),
+    "words": ("uint32", (2,)),
+    "ram": ("uint8", (RAM,)),
+    "points": ("float32", ()),
+    "lives": ("int32", ()),
+    "game_over": ("bool", ()),
+}
+NOOP = 0
+REFUSED = {
+    **dict.fromkeys(
+        ("combat", "joust", "maze_craze", "warlords"),
+        "the emulator has it for several players only",
+    ),
+    **dict.fromkeys(
+        ("miniature_golf", "qbert", "tetris"),
+        "the emulator does not restore its states exactly, so no run of it could be repeated",
+    ),
+}
+"""Games that cannot be lived in, and why; measured with ale-py 0.12.1, all others are exact."""
+WATCHED = "screen"
+"""A further field, uint8 (height, width, 3): filled after each tick if the arrays have it."""
+
+
+def console(
+    game: str, mode: int | None = None, difficulty: int | None = None, seed: int = 0
+) -> "ALEInterface":
+    """A fresh emulator with a game: no frame skip, no sticky actions, no time limit of its own."""
+    from ale_py import ALEInterface, LoggerMode, roms
+
+    ALEInterface.setLoggerMode(LoggerMode.Error)
+    ale = ALEInterface()
+    ale.setInt("random_seed", seed)
+    ale.setFloat("repeat_action_probability", 0.0)
+    ale.setInt("frame_skip", 1)
+    ale.setInt("max_num_frames_per_episode", 0)
+    ale.loadROM(str(roms.get_rom_path(game)))
+    if mode is not None:
+        ale.setMode(mode)
+    if difficulty is not None:
+        ale.setDifficulty(difficulty)
+    ale.reset_game()
+    return ale
+
+
+class Arcade:
+    """The emulators of one worker's cells."""
+
+    def __init__(
+        self,
+        arrays: dict[str, np.ndarray],
+        game: str,
+        actions: list[int],
+        mode: int | None,
+        difficulty: int | None,
+        frame_skip: int,
+        sticky: float,
+        noops: int,
+    ) -> None:
+        self._arrays, self._actions = arrays, actions
+        self._skip, self._sticky, self._noops = frame_skip, round(sticky * 2**32), noops
+        self._console = (game, mode, difficulty)
+        self._ale: dict[int, ALEInterface] = {}
+        self._ram: dict[int, np.ndarray] = {}
+        self._screen: dict[int, np.ndarray] = {}
+        self._dice: dict[int, int] = {}
+        self._held: dict[int, int] = {}
+
+    def make(self, cell: int) -> None:
+        """One more emulator."""
+        ale = console(*self._console)
+        if not self._ale:
+            self._start = ale.cloneState()
+        self._ale[cell], self._ram[cell] = ale, self._arrays["ram"][cell]
+        if WATCHED in self._arrays:
+            self._screen[cell] = self._arrays[WATCHED][cell]
+        self._dice[cell], self._held[cell] = 0, NOOP
+
+    def step(self, cells: list[int]) -> None:
+        """Frames of one tick; points are summed over them.
+
+        Rows are read and written for all cells at once: done one by one it takes a fifth of the time.
+        """
+        arrays, actions = self._arrays, self._actions
+        points, lives, over = [], [], []
+        for cell, choice in zip(cells, arrays["action"][cells].tolist(), strict=True):
+            ale, ram = self._ale[cell], self._ram[cell]
+            points.append(self._frames(ale, cell, actions[choice]))
+            ale.getRAM(ram)
+            if self._screen:
+                ale.getScreenRGB(self._screen[cell])
+            lives.append(ale.lives())
+            over.append(ale.game_over(with_truncation=False))
+        arrays["points"][cells] = points
+        arrays["lives"][cells] = lives
+        arrays["game_over"][cells] = over
+
+    def _frames(self, ale: "ALEInterface", cell: int, action: int) -> int:
+        """The frames of a tick -> points."""
+        if self._skip == 1 and not self._sticky:
+            return ale.act(action)
+        points = 0
+        for _ in range(self._skip):
+            points += ale.act(self._pressed(cell, action) if self._sticky else action)
+        return points
+
+    def _pressed(self, cell: int, action: int) -> int:
+        """The button that is down in this frame: with some probability still the one before."""
+        self._dice[cell], word = dice.roll(self._dice[cell])
+        if word >= self._sticky:
+            self._held[cell] = action
+        return self._held[cell]
+
+    def reset(self, cell: int) -> None:
+        """From the start, or after up to `noops` frames of waiting."""
+        ale, words = self._ale[cell], self._arrays["words"][cell].tolist()
+        ale.restoreState(self._start)
+        for _ in range(words[0] % (self._noops + 1)):
+            ale.act(NOOP)
+        self._dice[cell], self._held[cell] = dice.begin(*words), NOOP
+        self._show(cell)
+
+    def _show(self, cell: int) -> None:
+        """Fill the cell's row with how things stand, no points made."""
+        ale, arrays = self._ale[cell], self._arrays
+        ale.getRAM(self._ram[cell])
+        if self._screen:
+            ale.getScreenRGB(self._screen[cell])
+        arrays["points"][cell] = 0
+        arrays["lives"][cell] = ale.lives()
+        arrays["game_over"][cell] = ale.game_over(with_truncation=False)
+
+    def save(self, cell: int) -> bytes:
+        """Dice, the button held, and the emulator's serialised state."""
+        state = self._ale[cell].cloneState().serialize()
+        return self._dice[cell].to_bytes(8, "little") + bytes([self._held[cell]]) + state
+
+    def load(self, cell: int, state: bytes) -> None:
+        """Take back what `save` gave."""
+        from ale_py import ALEState
+
+        self._dice[cell], self._held[cell] = int.from_bytes(state[:8], "little"), state[8]
+        self._ale[cell].restoreState(ALEState(state[9:]))
+        self._show(cell)

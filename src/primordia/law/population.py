@@ -1,0 +1,112 @@
+"""Worlds brought up to date: ticks that only passed, births and deaths, seasons, samples."""
+
+import jax.numpy as jnp
+from jax import Array, lax
+
+from primordia.law import turnover
+from primordia.law.events import Events
+from primordia.law.law import Law
+from primordia.law.life import Fates
+from primordia.law.sample import note_samples
+from primordia.law.seasons import Schedule, turn
+from primordia.law.world import Organisms, World
+from primordia.random.wide import happened, select, times, wide
+
+
+def rest(before: Organisms, after: Organisms, active: Array) -> Organisms:
+    """Who is not active, in an empty cell or a world that has stopped, stays as before."""
+
+    def keep(new: Array, old: Array) -> Array:
+        return jnp.where(active.reshape(-1, *[1] * (new.ndim - 1)), new, old)
+
+    return before._replace(
+        memory=keep(after.memory, before.memory),
+        energy=keep(after.energy, before.energy),
+        eaten=keep(after.eaten, before.eaten),
+        faulty=keep(after.faulty, before.faulty),
+    )
+
+
+def lifeless(law: Law, world: World, running: Array) -> Array:
+    """Which running worlds have nobody alive, as before genesis: bool (W,)."""
+    return running & ~law.by_world(world.organisms.alive).any(axis=1)
+
+
+def settle(
+    law: Law, world: World, events: Events, fates: Fates, ticks: Array, running: Array
+) -> tuple[World, Events, Array]:
+    """Bring the counts up to date by some ticks, of which only the last may have been eventful.
+
+    Args:
+        law: the law.
+        world: its organisms as `rest` left them after those ticks.
+        events: lists with room for one tick (`events.have_room`).
+        fates: of the last tick.
+        ticks: int32 (), at most as many as `quiet_ticks` said; 0 for genesis.
+        running: which worlds are, bool (W,); the others stay as they are.
+
+    Returns:
+        world, events, who was born in the last tick (bool (C,)).
+    """
+    organisms, worlds = world
+    passed = jnp.where(running, ticks, 0)
+    population = law.by_world(organisms.alive).sum(axis=1, dtype=jnp.uint32)
+    worlds = worlds._replace(
+        tick=worlds.tick.plus(passed),
+        organism_ticks=worlds.organism_ticks + times(population, passed),
+        calm=jnp.minimum(worlds.calm, 2**31 - 1 - passed) + passed,
+        sample_wait=worlds.sample_wait - passed,
+        looks=worlds.looks._replace(wait=worlds.looks.wait - passed[:, None]),
+    )
+    nobody = jnp.zeros_like(organisms.alive)
+    keys = turnover.birth_keys(worlds)
+    world, events, born = lax.cond(
+        fates.eventful | lifeless(law, world, running).any(),
+        lambda world, events: turnover.turnover(
+            law, world, events, running, fates.wants, fates.cause, keys
+        ),
+        lambda world, events: (world, events, nobody),
+        World(organisms, worlds),
+        events,
+    )
+    return *_watch(law, world, events, running), born
+
+
+def quiet_ticks(law: Law, world: World, running: Array) -> Array:
+    """How many ticks can pass before anything falls due, int32 (), if none of them is eventful.
+
+    None can before genesis.
+    """
+    worlds, far = world.worlds, 2**31 - 1
+    due = [worlds.sample_wait, *worlds.looks.wait.T]
+    due.append(
+        jnp.where(worlds.calm < law.saturation_ticks, law.saturation_ticks - worlds.calm, far)
+    )
+    for season in law.seasons:
+        if isinstance(season, Schedule):
+            due.append(worlds.tick.until(wide(season.at)))
+    soonest = jnp.stack(due).min(axis=0)
+    soonest = jnp.where(lifeless(law, world, running), 0, soonest)
+    return jnp.where(running, soonest, far).min()
+
+
+def _watch(law: Law, world: World, events: Events, running: Array) -> tuple[World, Events]:
+    """Saturation, seasons and samples at the end of a tick."""
+    organisms, worlds = world
+    full = law.by_world(organisms.alive).all(axis=1)
+    calm = worlds.calm >= law.saturation_ticks
+    newly = running & full & calm & ~happened(worlds.saturated)
+    worlds = worlds._replace(
+        saturated=select(newly, worlds.tick, worlds.saturated),
+        saturated_births=select(newly, worlds.births, worlds.saturated_births),
+    )
+    changed = jnp.zeros_like(running)
+    if law.seasons:
+        worlds, changed = turn(law.seasons, law.columns, World(organisms, worlds), running)
+    periodic = worlds.sample_wait == 0
+    worlds = worlds._replace(sample_wait=jnp.where(periodic, law.sample_every, worlds.sample_wait))
+    world, due = World(organisms, worlds), running & (periodic | changed)
+    samples = lax.cond(
+        due.any(), lambda s: note_samples(world, due, s), lambda s: s, events.samples
+    )
+    return world, events._replace(samples=samples)

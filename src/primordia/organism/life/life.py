@@ -1,0 +1,166 @@
+"""A life lived again, tick for tick: from an organism's genome, its world's seed, and where it was born.
+
+Nothing else enters (the first of the promises), so the neighbours need not live again with it.
+"""
+
+from collections.abc import Callable, Iterator
+from contextlib import closing
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+
+from primordia.brains.contract import Genome, split
+from primordia.config import Config
+from primordia.errors import InputError, Trouble
+from primordia.history.climate import climate_at
+from primordia.history.lineage import place_in, rebuild
+from primordia.law.genesis import body_words
+from primordia.law.law import Law
+from primordia.law.metabolism import Rates, fixed
+from primordia.law.world import Cause
+from primordia.organism.life.fused import Fused
+from primordia.organism.life.hosted import Hosted
+from primordia.organism.life.instant import Instant, Mind, Stretch
+from primordia.random.keys import Purpose, stream
+from primordia.random.wide import Wide, wide
+from primordia.runs import checkpoint
+from primordia.runs.lives import Lives, lives
+from primordia.runs.report import opened
+
+
+@dataclass(frozen=True)
+class Life:
+    """What a life is a function of, and what is recorded of it."""
+
+    run: Path
+    config: Config
+    law: Law
+    habitat: Any
+    """to ask for pictures; each time the life is lived it is in a habitat of its own"""
+    genome: Genome
+    """of one"""
+    record: Lives
+    """of one"""
+
+    @classmethod
+    def of(cls, run: Path, organism: int, world: int = 0) -> "Life":
+        """An organism's.
+
+        Raises:
+            InputError: no such organism was born, or it cannot be lived again.
+        """
+        config, _ = opened(run)
+        everyone = lives(run)
+        row = everyone.row(organism, world)
+        habitat = config.build_habitat()
+        law = config.build_law(habitat)
+        genome = split(law.brain, jnp.asarray(rebuild(run, organism, world)[None]))
+        life = cls(run, config, law, habitat, genome, everyone.take(slice(row, row + 1)))
+        if life.was_found and not getattr(habitat, "exact", True):
+            raise InputError(
+                f"{run}: organism {organism} is older than the fork, and its habitat cannot save bodies"
+            )
+        return life
+
+    @property
+    def world(self) -> int:
+        """Where it was lived."""
+        return int(self.record.world[0])
+
+    @property
+    def was_found(self) -> bool:
+        """Whether a fork found it, and it can be lived again only from there."""
+        origin = self.config.origin
+        return origin is not None and int(self.record.born[0]) <= origin.tick
+
+    @property
+    def begins(self) -> int:
+        """The tick from whose end it can be lived again: its birth, or the fork's."""
+        origin = self.config.origin
+        return max(int(self.record.born[0]), origin.tick if origin else 0)
+
+    @property
+    def ends(self) -> int:
+        """The tick of its death, or its world's last so far."""
+        return int(self.record.ended[0])
+
+    @property
+    def cause(self) -> Cause | None:
+        """Of its death, if it died."""
+        return Cause(self.record.cause[0]) if self.record.died[0] else None
+
+    def again(self, watched: bool = False) -> Iterator[Stretch]:
+        """All of it, in order, some ticks at a time.
+
+        Args:
+            watched: pictures will be asked for, so a habitat on the host is to make them.
+
+        Raises:
+            Trouble: its death does not come where it is recorded.
+        """
+        with closing(self._alone(watched)) as alone:
+            instant = self._start(alone)
+            for first in range(self.begins, self.ends, alone.TICKS):
+                ticks = first + 1 + np.arange(alone.TICKS)
+                count = min(alone.TICKS, self.ends - first)
+                instant, stretch = alone.live(instant, ticks, self._rates(ticks), count)
+                self._check(stretch)
+                yield stretch
+
+    def _alone(self, watched: bool) -> Fused | Hosted:
+        mind = Mind(self.genome, self._seed, jnp.asarray(self.record.cell))
+        habitat = self.config.build_habitat()
+        if hasattr(habitat, "open"):
+            return Hosted(self.law, mind, habitat, watched)
+        return Fused(self.law, mind, habitat)
+
+    def _start(self, alone: Fused | Hosted) -> Instant:
+        """Where it begins: at birth, or where a fork found it."""
+        if self.was_found:
+            return self._as_found(alone)
+        key = stream(self._seed, Purpose.BODY, wide(self.record.born))
+        words = body_words(key, jnp.asarray(self.record.cell), self.habitat.words)
+        memory = jnp.zeros((1, self.law.brain.memory), jnp.float32)
+        store = self._rates(np.array([self.begins])).store
+        return Instant(memory, fixed(store), alone.born(words))
+
+    def _as_found(self, alone: Fused | Hosted) -> Instant:
+        origin = checkpoint.origin(self.run)
+        assert origin is not None
+        arrays = origin.arrays()
+        cell = [place_in(origin, self.law, int(self.record.id[0]), self.world)]
+        return Instant(
+            jnp.asarray(arrays["world.organisms.memory"][cell]),
+            jnp.asarray(arrays["world.organisms.energy"][cell]),
+            alone.found({n: a[cell] for n, a in arrays.items() if n.startswith("bodies")}),
+        )
+
+    def _check(self, stretch: Stretch) -> None:
+        """Its body must meet its end where that is recorded, and nowhere else."""
+        last = stretch.tick == self.ends
+        expected = last & (self.cause is Cause.FATAL)
+        if self.cause is Cause.FAULT:  # a simulation that failed may have said anything
+            expected |= last & stretch.fatal
+        if not np.array_equal(stretch.fatal, expected):
+            raise Trouble(
+                f"{self.run}: organism {self.record.id[0]} did not live again as recorded;"
+                " `primordia verify` tells whether this machine gives the run's bits"
+            )
+
+    @property
+    def _seed(self) -> Wide:
+        """Of its world, (1,)."""
+        return wide([self.config.seed + self.world])
+
+    @cached_property
+    def _climate(self) -> Callable[[np.ndarray], dict[str, np.ndarray]]:
+        return climate_at(self.run, self.config, self.law, self.world)
+
+    def _rates(self, ticks: np.ndarray) -> Rates:
+        """The metabolism in force, float32 (n,) each."""
+        climate = self._climate(ticks)
+        return Rates(*(jnp.asarray(climate[f"metabolism.{name}"]) for name in Rates._fields))

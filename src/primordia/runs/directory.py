@@ -1,0 +1,123 @@
+"""A run's directory: settings, versions, the genomes it starts from, and its lock."""
+
+import json
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from filelock import FileLock, Timeout
+
+from primordia import device, files
+from primordia.brains import genomes
+from primordia.config import Config, validated
+from primordia.errors import InputError, Trouble
+from primordia.runs.record import TABLES
+from primordia.settings.tables import from_toml
+
+FORMAT = 1
+"""Of run directories; a higher one is refused."""
+
+
+@contextmanager
+def new(run: Path, config: Config) -> Iterator[None]:
+    """Write what a run begins with into its directory, new or empty, and hold the lock.
+
+    Its versions come last: a directory that has them is a run.
+
+    Raises:
+        InputError: it is taken.
+        Trouble: it cannot be written.
+    """
+    refuse_if_taken(run)
+    make_folders(run)
+    with locked(run):
+        versions = {"format": FORMAT, **device.versions(), **_habitat_versions(config)}
+        if config.ancestors:
+            brain = config.build_brain(config.build_habitat())
+            genomes.write(run / genomes.FOUNDERS, brain, genomes.read(config.ancestors, brain), {})
+            config = config.model_copy(update={"ancestors": (genomes.FOUNDERS,)})
+        _write_text(run / "config.toml", config.to_toml())
+        _write_text(run / "versions.json", json.dumps(versions, indent=1))
+        yield
+
+
+def refuse_if_taken(run: Path) -> None:
+    """Raise InputError unless a run can be made there."""
+    if run.exists() and (not run.is_dir() or any(run.iterdir())):
+        raise InputError(f"{run} exists already; choose another --out, or `primordia resume {run}`")
+
+
+def make_folders(run: Path) -> None:
+    """The folders of a run, where they are missing."""
+    try:
+        for name in (*TABLES, "checkpoints"):
+            (run / name).mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise Trouble(f"{run} cannot be written: {error.strerror}") from None
+
+
+def read_config(run: Path) -> Config:
+    """The configuration of a run directory.
+
+    Raises:
+        InputError: this is no run directory, or one this version cannot read.
+    """
+    try:
+        made_by = int(_recorded_versions(run)["format"])
+    except (OSError, ValueError, KeyError, TypeError):
+        raise InputError(
+            f"{run} is not a run of primordia: it has no readable versions.json"
+        ) from None
+    if made_by > FORMAT:
+        raise InputError(
+            f"{run} was made by a newer primordia (format {made_by}, this one reads {FORMAT}); upgrade"
+        )
+    return validated(from_toml(run / "config.toml"), source=str(run / "config.toml"))
+
+
+def other_versions(run: Path) -> list[str]:
+    """What a run was begun with and is not so here; while this is empty it goes on bit for bit."""
+    recorded = _recorded_versions(run)
+    here = {**device.versions(), **_habitat_versions(read_config(run))}
+    return [
+        f"{name} {recorded.get(name)} then, {now} now"
+        for name, now in here.items()
+        if recorded.get(name) != now
+    ]
+
+
+def _habitat_versions(config: Config) -> dict[str, str]:
+    return getattr(config.build_habitat(), "versions", {})
+
+
+def _recorded_versions(run: Path) -> dict[str, Any]:
+    recorded: dict[str, Any] = json.loads((run / "versions.json").read_text())
+    return recorded
+
+
+@contextmanager
+def locked(run: Path) -> Iterator[None]:
+    """Hold the run's lock: one writer at a time; it is released even by kill -9.
+
+    Raises:
+        InputError: another process holds it.
+    """
+    lock = FileLock(run / "lock")
+    try:
+        lock.acquire(timeout=0)
+    except Timeout:
+        raise InputError(f"{run} is being written by another process") from None
+    except OSError as error:
+        raise Trouble(f"{run} cannot be written: {error.strerror}") from None
+    try:
+        yield
+    finally:
+        lock.release()
+
+
+def _write_text(path: Path, text: str) -> None:
+    def fill(temporary: Path) -> None:
+        temporary.write_text(text)
+
+    files.write(path, fill)

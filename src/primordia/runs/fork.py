@@ -1,0 +1,175 @@
+"""Forks: the tape of a run replayed from one of its ticks, with another seed or other settings.
+
+A fork is a run of its own. Its `origin` holds everything as it stood, in the form of a checkpoint; its
+records begin with the births of those then alive.
+"""
+
+import time
+from pathlib import Path
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from primordia.config import Config, ForkedFrom, validated
+from primordia.engine.engine import Engine
+from primordia.engine.state import State
+from primordia.errors import InputError, Trouble
+from primordia.law.genesis import climate, looks
+from primordia.law.metabolism import fixed
+from primordia.law.world import Climate, Looks, World, Worlds
+from primordia.random.wide import Wide, never, wide
+from primordia.runs import checkpoint, directory
+from primordia.runs.checkpoint import Progress
+from primordia.runs.lives import Lives, lives
+from primordia.runs.loop import Listener, Status, recorder_for
+from primordia.runs.report import opened, world_ticks
+from primordia.settings.tables import from_toml, merged
+
+INNOCENT = {"stop", "origin", "about", "sample_every"}
+"""Settings that do not change what happens in a world."""
+
+
+def fork(
+    source: Path,
+    at: int,
+    out: Path,
+    settings: dict[str, Any],
+    listen: Listener | None = None,
+) -> None:
+    """Make a run that begins where another stood at the end of tick `at`; it is not yet driven on.
+
+    Args:
+        source: the run to fork.
+        at: tick, lived through by all worlds.
+        out: directory to make.
+        settings: changed settings, as nested tables; a changed `seed` draws another future.
+        listen: called after each chunk of what has to be lived again up to the tick.
+
+    Raises:
+        InputError: no such tick, a setting that cannot change in a living world, or `out` is taken.
+        Trouble: something cannot be written, or the source does not come out as recorded.
+    """
+    config, last = opened(source)
+    changed = _changed(source, settings, at)
+    directory.refuse_if_taken(out)
+    ticks = int(world_ticks(last.arrays()).min())
+    if not 1 <= at <= ticks:
+        raise InputError(f"--at {at}: {source} can be forked at any tick from 1 to {ticks}")
+    before = _stood_at(source, config, at, listen)
+    living = _living(lives(source), before, config, at)
+    after = _transplanted(before, config, changed, at)
+    recorder = recorder_for(after, out)
+    recorder.add("births", _birth_rows(living, changed.cells))
+    progress = Progress(changed.stop.model_dump(), 0.0, after.chunks.exact)
+    with directory.new(out, changed):
+        checkpoint.save_origin(out, after.arrays(), recorder, progress)
+
+
+def _changed(source: Path, settings: dict[str, Any], at: int) -> Config:
+    """The fork's configuration."""
+    values = merged(from_toml(source / "config.toml"), settings)
+    values["origin"] = ForkedFrom(run=str(source), tick=at).model_dump()
+    return validated(values, source=str(source))
+
+
+def _stood_at(source: Path, config: Config, at: int, listen: Listener | None) -> Engine:
+    """The source at the end of a tick: from the newest checkpoint before it, or lived again."""
+    engine = Engine(config)
+    limits = engine.limits({"ticks": at})
+    for stored in checkpoint.whole(source):
+        arrays = stored.arrays()
+        if (world_ticks(arrays) <= at).all():
+            engine.load(arrays)
+            break
+    if not engine.any_running(limits):
+        return engine
+    if differ := directory.other_versions(source):
+        raise InputError(f"{source} cannot be lived again up to tick {at}: {'; '.join(differ)}")
+    if not engine.chunks.exact:
+        raise InputError(f"{source} is not exact, so it cannot be lived again up to tick {at}")
+    began = time.perf_counter()
+    while engine.any_running(limits):
+        engine.advance(limits)
+        if listen is not None:
+            listen(Status(engine, time.perf_counter() - began, limits))
+    return engine
+
+
+def _living(everyone: Lives, engine: Engine, config: Config, at: int) -> Lives:
+    """The lives under way at the end of a tick, held against the world as it was lived again."""
+    alive = (everyone.born <= at) & ((everyone.ended > at) | ~everyone.died)
+    living = everyone.take(np.flatnonzero(alive))
+    organisms = engine.state.world.organisms
+    cells = np.flatnonzero(organisms.alive)
+    number = np.asarray(organisms.number.lo)[cells]
+    order = np.lexsort((living.cell, living.world))
+    recorded = living.world[order] * config.cells + living.cell[order]
+    if not np.array_equal(recorded, cells) or not np.array_equal(
+        living.id[order].astype(np.uint32), number
+    ):
+        raise Trouble(f"tick {at} did not come out as recorded; `primordia verify` tells more")
+    return living
+
+
+def _birth_rows(living: Lives, cells: int) -> np.ndarray:
+    """Rows of `events.BIRTH_FIELDS`, uint32 (n, fields), in the order of events."""
+    living = living.take(np.lexsort((living.cell, living.world, living.born)))
+    cell = living.world.astype(np.int64) * cells + living.cell
+    pairs = (
+        half for each in (living.id, living.parent, living.born) for half in (each >> 32, each)
+    )
+    return np.stack([cell, *pairs, living.origin], axis=1).astype(np.uint32)
+
+
+def _transplanted(before: Engine, old: Config, new: Config, at: int) -> Engine:
+    """An engine of the new configuration with the organisms and bodies of another."""
+    after = Engine(new)
+    arrays, own = before.arrays(), after.arrays()
+    for name, array in own.items():
+        if ".looks." not in name and np.shape(arrays.get(name, 0)) != array.shape:
+            raise InputError("a fork cannot change cells, seeds, senses, the brain or the habitat")
+    after.load(arrays)
+    world, bodies = after.state
+    after.state = State(_adapted(world, before, after, old, new, at), bodies)
+    return after
+
+
+def _adapted(
+    world: World, before: Engine, after: Engine, old: Config, new: Config, at: int
+) -> World:
+    """A world under new settings; what is not changed stays, as seasons have left it."""
+    organisms, worlds = world
+    worlds = worlds._replace(
+        seed=wide(np.array([new.seed + w for w in range(new.seeds)], np.uint64)),
+        sample_wait=jnp.full_like(worlds.sample_wait, new.sample_every - at % new.sample_every),
+        climate=_climate(worlds.climate, before, after),
+        looks=worlds.looks if new.seasons == old.seasons else _looks(worlds, after, at),
+    )
+    if new.metabolism is not None and old.metabolism is None:
+        store = after.law.per_cell(fixed(worlds.climate.metabolism.store))
+        organisms = organisms._replace(energy=store)
+    if new.model_dump(exclude=INNOCENT) != old.model_dump(exclude=INNOCENT):
+        worlds = worlds._replace(  # saturation is looked for anew
+            calm=jnp.zeros_like(worlds.calm),
+            saturated=never(worlds.calm.shape),
+            saturated_births=never(worlds.calm.shape),
+        )
+    return World(organisms, worlds)
+
+
+def _looks(worlds: Worlds, after: Engine, at: int) -> Looks:
+    """New ratchets look back as far as the fork."""
+    fresh = looks(after.law, len(worlds.calm), at)
+
+    def now(count: Wide) -> Wide:
+        return count.map(lambda words: jnp.tile(words[:, None], (1, fresh.wait.shape[1])))
+
+    return Looks(fresh.wait, now(worlds.food), now(worlds.organism_ticks))
+
+
+def _climate(now: Climate, before: Engine, after: Engine) -> Climate:
+    """The new settings where they differ from the old, elsewhere what is now in force."""
+    old, new = (climate(engine.law, engine.law.worlds) for engine in (before, after))
+    return jax.tree.map(lambda now, a, b: jnp.where(a == b, now, b), now, old, new)

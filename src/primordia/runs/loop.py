@@ -1,0 +1,202 @@
+"""The loop: advance, record, checkpoint; and how a run begins, goes on, and is done again.
+
+A run is a directory. Everything in it is a function of `config.toml`; see `record` and `checkpoint`.
+"""
+
+import signal
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from primordia.config import Config
+from primordia.config import limits as valid_limits
+from primordia.engine.engine import Engine
+from primordia.engine.state import Limits
+from primordia.errors import InputError
+from primordia.runs import checkpoint, directory
+from primordia.runs.checkpoint import Checkpoint, Progress
+from primordia.runs.record import Recorder
+
+
+@dataclass
+class Status:
+    """What a listener is told after each chunk."""
+
+    engine: Engine
+    wall_s: float
+    """of this session"""
+    limits: Limits | None = None
+    """when each world stops, where that is known"""
+
+
+Listener = Callable[[Status], None]
+
+
+def start(
+    config: Config, run: Path, *, checkpoint_every: float = 60.0, listen: Listener | None = None
+) -> None:
+    """Begin a run in a new directory and drive it until it stops or is interrupted.
+
+    Args:
+        config: what to run.
+        run: its directory, which must not exist, or be empty.
+        checkpoint_every: seconds from one checkpoint to the next.
+        listen: called after each chunk.
+
+    Raises:
+        InputError: the directory is taken.
+        Trouble: something cannot be written.
+    """
+    _check_interval(checkpoint_every)
+    if config.origin is not None:
+        raise InputError(
+            f"these are the settings of a fork, of {config.origin.run}; fork that again"
+        )
+    with directory.new(run, config):
+        engine = Engine(config)
+        recorder = recorder_for(engine, run)
+        progress = Progress(config.stop.model_dump(), 0.0, engine.chunks.exact)
+        drive(engine, recorder, run, progress, checkpoint_every, listen)
+
+
+def resume(
+    run: Path,
+    limits: dict[str, Any] | None = None,
+    *,
+    inexact: bool = False,
+    checkpoint_every: float = 60.0,
+    listen: Listener | None = None,
+) -> list[str]:
+    """Go on where a run stopped, was interrupted, or was killed.
+
+    Args:
+        run: its directory.
+        limits: new values of `ticks`, `births` or `until`.
+        inexact: go on although versions differ from those recorded; marks the run.
+        checkpoint_every: seconds from one checkpoint to the next.
+        listen: called after each chunk.
+
+    Returns:
+        what the user should be told: checkpoints that had to be passed over, or that there was
+        nothing to do.
+
+    Raises:
+        InputError: this is no run, one in use, or one of other versions; a limit makes no sense.
+        Trouble: something cannot be written, or no checkpoint is whole.
+    """
+    _check_interval(checkpoint_every)
+    given = valid_limits(limits or {})
+    config = directory.read_config(run)
+    differ = directory.other_versions(run)
+    if differ and not inexact:
+        raise InputError(
+            f"{run} cannot go on bit for bit: {'; '.join(differ)}. Restore that, or add --inexact"
+        )
+    with directory.locked(run):
+        last, faults = checkpoint.newest(run)
+        if last is None and faults:
+            raise checkpoint.none_whole(run, faults)
+        if last is None and config.origin is not None:
+            raise InputError(
+                f"{run} is a fork that was cut off before it began; remove it, fork again"
+            )
+        directory.make_folders(run)
+        checkpoint.remove_what_does_not_count(run, last)
+        engine = Engine(config)
+        recorder = recorder_for(engine, run)
+        progress = Progress(config.stop.model_dump(), 0.0, engine.chunks.exact)
+        if last is not None:
+            stand_at(engine, recorder, last)
+            progress = last.progress
+        progress.limits |= given
+        progress.exact &= not differ and engine.chunks.exact
+        notes = [f"passed over a bad checkpoint: {fault}" for fault in faults]
+        if not engine.any_running(engine.limits(progress.limits)):
+            notes.append(_nothing_to_do(run, progress))
+        drive(engine, recorder, run, progress, checkpoint_every, listen)
+    return notes
+
+
+def recorder_for(engine: Engine, run: Path | None) -> Recorder:
+    """What takes down an engine's events in a run's directory; without one, digests only."""
+    config = engine.config
+    return Recorder(run, config.seeds, config.cells, engine.law.blocks, engine.tallies)
+
+
+def stand_at(engine: Engine, recorder: Recorder, last: Checkpoint) -> None:
+    """Put an engine and a recorder where a checkpoint stands."""
+    arrays = last.arrays()
+    recorder.resume(last.manifest["segments"], last.digests, arrays)
+    engine.load(arrays)
+
+
+def _nothing_to_do(run: Path, progress: Progress) -> str:
+    limits = ", ".join(f"{name} {value}" for name, value in progress.limits.items() if value)
+    return (
+        f"nothing to do: every world of {run} has come to a limit ({limits}); to go on, give it"
+        " another with --ticks, --births or --until, such as --ticks 1000000 --until none"
+    )
+
+
+def drive(
+    engine: Engine,
+    recorder: Recorder,
+    run: Path,
+    progress: Progress,
+    checkpoint_every: float,
+    listen: Listener | None,
+) -> None:
+    """Advance, record and checkpoint until every world stops, or Ctrl-C; see `start`.
+
+    Raises:
+        KeyboardInterrupt: on Ctrl-C or SIGTERM, after a checkpoint.
+    """
+    limits, before = engine.limits(progress.limits), progress.wall_s
+    began = saved = time.perf_counter()
+
+    def save() -> None:
+        progress.wall_s = before + time.perf_counter() - began
+        checkpoint.save(run, engine.arrays(), recorder, progress)
+
+    with interruptible() as interrupted:
+        while engine.any_running(limits) and not interrupted:
+            recorder.append(engine.advance(limits))
+            if listen is not None:
+                listen(Status(engine, time.perf_counter() - began, limits))
+            if time.perf_counter() - saved >= checkpoint_every:
+                save()
+                saved = time.perf_counter()
+        if not interrupted:
+            recorder.finish()
+        save()
+    if interrupted:
+        raise KeyboardInterrupt
+
+
+def _check_interval(checkpoint_every: float) -> None:
+    if not checkpoint_every >= 0:
+        raise InputError(f"--checkpoint-every: seconds, 0 or more, not {checkpoint_every}")
+
+
+@contextmanager
+def interruptible() -> Iterator[list[int]]:
+    """A list that stays empty until Ctrl-C or SIGTERM."""
+    heard: list[int] = []
+
+    def hear(number: int, _: object) -> None:
+        heard.append(number)
+
+    signals = (signal.SIGINT, signal.SIGTERM)
+    try:
+        before = [signal.signal(each, hear) for each in signals]
+    except ValueError:  # not in the main thread, where signals go anyway
+        yield heard
+        return
+    try:
+        yield heard
+    finally:
+        for each, handler in zip(signals, before, strict=True):
+            signal.signal(each, handler)

@@ -1,0 +1,1 @@
+"""Settings: what every group of settings has in common, and nested tables of settings."""

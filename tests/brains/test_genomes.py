@@ -1,0 +1,139 @@
+"""Genome files, and runs that start from them."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from safetensors.numpy import load_file, save_file
+
+import primordia
+from primordia.brains import genomes
+from primordia.brains.contract import BrainSettings
+from primordia.config import load
+from primordia.errors import InputError
+from primordia.law.mutation import ancestor_of
+from primordia.random.wide import wide
+from primordia.runs import loop
+from primordia.runs.verify import verify
+from tests.commands import complains, here
+from tests.worlds import MEADOW, config, merged
+
+BRAIN = BrainSettings(hidden=6).build(2, 2)
+SMALL = {"brain": {"hidden": 6}, "hazard": 0.03, "replication": 0.3, "stop": {"ticks": 300}}
+
+
+def some(count: int, seed: int = 0) -> np.ndarray:
+    return np.random.default_rng(seed).normal(size=(count, 60)).astype(np.float32)
+
+
+def test_what_is_written_is_read(tmp_path: Path) -> None:
+    one, three = some(1), some(3, seed=1)
+    for name, each in (("one", one), ("three", three)):
+        genomes.write(tmp_path / name, BRAIN, each, {"task": "meadow"})
+    both = genomes.read([str(tmp_path / "one"), str(tmp_path / "three")], BRAIN)
+    np.testing.assert_array_equal(both, np.concatenate([one, three]))
+    shapes = {name: block.shape for name, block in load_file(tmp_path / "three").items()}
+    assert shapes == {name: (3, *shape) for name, shape in BRAIN.blocks.items()}
+
+
+@given(st.integers(0, 2**64 - 1), st.integers(0, 2**64 - 1), st.integers(1, genomes.MOST))
+def test_founders_take_ancestors_in_turn(seed: int, number: int, count: int) -> None:
+    assert int(ancestor_of(wide(seed), wide(number), count)) == (seed + number) % 2**64 % count
+
+
+@pytest.mark.parametrize("inheritance", ["parent", "founder"])
+def test_a_run_that_starts_from_ancestors(tmp_path: Path, inheritance: str) -> None:
+    """Founders have the ancestors' genomes, bit for bit, also those after an extinction."""
+    given_, run = some(3), tmp_path / "run"
+    genomes.write(tmp_path / "a.safetensors", BRAIN, given_, {})
+    values = merged(MEADOW, SMALL | {"ancestors": [str(tmp_path / "a.safetensors")], "seed": 2})
+    values |= {"inheritance": inheritance, "hazard": 0.2, "seeds": 2}
+    loop.start(config(values), run)
+    (tmp_path / "a.safetensors").unlink()  # the run has its own copy
+    found = primordia.load(run)
+    assert found.info()["worlds"][0]["extinctions"] > 3
+    births = found.table("births").to_pylist()
+    founders = [birth for birth in births if birth["cause"] == "founder"]
+    for birth in founders[:20] + founders[-20:]:
+        expected = given_[(2 + birth["world"] + birth["id"]) % 3]
+        np.testing.assert_array_equal(found.rebuild(birth["id"], birth["world"]), expected)
+    assert verify(run) == []
+    again = primordia.run(str(run / "config.toml"), tmp_path / "again")
+    assert [w["digest"] for w in again.info()["worlds"]] == [
+        w["digest"] for w in found.info()["worlds"]
+    ]
+
+
+def test_export_and_start_from_it(tmp_path: Path) -> None:
+    run = primordia.run("CartPole-survival", tmp_path / "run", stop={"ticks": 200})
+    file = tmp_path / "two.safetensors"
+    done = here("export", run.path, "--organism", 3, "--organism", 5, file)
+    assert (done.returncode, done.stdout) == (0, f"{file}: organism 3, 5\n")
+    done = here(
+        "run", "CartPole-survival", "--ancestor", file, "--genesis", "fill", "--ticks", 1,
+        "--out", tmp_path / "next", "--quiet",
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    child = primordia.load(tmp_path / "next")
+    for organism in range(4):
+        np.testing.assert_array_equal(child.rebuild(organism), run.rebuild([3, 5][organism % 2]))
+
+
+def test_export_takes_the_longest_life(tmp_path: Path) -> None:
+    run = primordia.run("CartPole-survival", tmp_path / "run", stop={"ticks": 200})
+    file = tmp_path / "one.safetensors"
+    assert here("export", run.path, file).returncode == 0
+    brain = config().build_brain(config().build_habitat())
+    oldest = run.rebuild(run.oldest().id)
+    np.testing.assert_array_equal(genomes.read([str(file)], brain)[0], oldest)
+
+
+def broken(path: Path, kind: str) -> None:
+    if kind == "no safetensors":
+        path.write_bytes(b"pickle?")
+    elif kind == "another brain":
+        genomes.write(path, BrainSettings(hidden=5).build(2, 2), np.zeros((1, 45), np.float32), {})
+    elif kind == "no numbers":
+        genomes.write(path, BRAIN, np.full((1, 60), np.nan, np.float32), {})
+    elif kind == "torn":
+        genomes.write(path, BRAIN, some(2), {})
+        save_file({**load_file(path), "output": np.zeros((1, 2, 6), np.float32)}, path)
+    elif kind == "nobody":
+        genomes.write(path, BRAIN, some(0), {})
+
+
+@pytest.mark.parametrize(
+    ("kind", "says"),
+    [
+        ("missing", "there is no genome file"),
+        ("no safetensors", "is not a safetensors file"),
+        ("another brain", "holds genomes of another brain: .*5x5.*this task's is .*6x6"),
+        ("no numbers", "no finite numbers"),
+        ("torn", "holds no whole genome"),
+        ("nobody", "holds no whole genome"),
+    ],
+)
+def test_a_file_that_cannot_be_used(tmp_path: Path, kind: str, says: str) -> None:
+    file = tmp_path / "x.safetensors"
+    broken(file, kind)
+    with pytest.raises(InputError, match=says):
+        config(merged(MEADOW, SMALL | {"ancestors": [str(file)]}))
+
+
+def test_files_are_looked_for_beside_the_settings(tmp_path: Path) -> None:
+    brain = config().build_brain(config().build_habitat())
+    genomes.write(tmp_path / "x.safetensors", brain, np.zeros((1, 1216), np.float32), {})
+    file = tmp_path / "task.toml"
+    file.write_text('task = "CartPole-survival"\nancestors = ["x.safetensors"]\n')
+    assert load(str(file)).ancestors == (str(tmp_path / "x.safetensors"),)
+
+
+def test_bad_input_on_the_command_line(tmp_path: Path) -> None:
+    complains(here("run", "CartPole-survival", "--ancestor", tmp_path / "no"), 2, "no genome file")
+    run = primordia.run("CartPole-survival", tmp_path / "run", stop={"ticks": 50})
+    done = here("export", run.path, "--organism", 999, tmp_path / "x.safetensors")
+    complains(done, 2, "no organism 999 was born in world 0")
+    complains(here("export", run.path, "--world", 3, tmp_path / "x"), 2, "no world 3")
+    complains(here("export", run.path, tmp_path / "no" / "x"), 1, "cannot be written")

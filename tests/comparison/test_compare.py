@@ -1,0 +1,217 @@
+"""Runs side by side: figures against brute force, the command, and what it refuses."""
+
+import json
+import shutil
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import primordia
+from primordia.comparison.comparison import Comparison
+from primordia.comparison.contrast import Figures
+from primordia.figures import style
+from primordia.figures.comparison import FEW, draw, looks
+from primordia.runs import loop
+from tests.commands import complains, here
+from tests.comparison.test_survival import restricted_mean
+from tests.worlds import MEADOW, config
+
+WORLDS = 5
+QUICK: dict[str, Any] = {
+    **MEADOW,
+    "brain": {"hidden": 1},
+    "seeds": WORLDS,
+    "replication": 0.2,
+    "hazard": 0.02,
+    "saturation_ticks": 12,
+    "stop": {"ticks": 600, "until": "saturation"},
+}
+"""Some worlds saturate by the end, some do not."""
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
+    """Three of one task; in the last, worlds live until they saturate."""
+    folder = tmp_path_factory.mktemp("runs")
+    changes: dict[str, dict[str, Any]] = {
+        "one": {},
+        "another": {"seed": 100},
+        "patient": {"seed": 200, "stop": {"until": "saturation"}},
+    }
+    for name, change in changes.items():  # seeds and limits only, so all share compiled code
+        loop.start(config({**QUICK, **change}), folder / name)
+    return [folder / name for name in changes]
+
+
+@pytest.fixture(scope="module")
+def compared(runs: list[Path]) -> Comparison:
+    return primordia.compare(*runs)
+
+
+def test_figures_of_worlds_are_what_brute_force_finds(
+    runs: list[Path], compared: Comparison
+) -> None:
+    seen = 0
+    for path, arm in zip(runs, compared.arms, strict=True):
+        run = primordia.Run(path)
+        worlds = run.info()["worlds"]
+        born, died = (run.table(name).to_pylist() for name in ("births", "deaths"))
+        for number, world in enumerate(worlds):
+            moment = world["saturation"]
+            for unit, key in (("births", "births"), ("ticks", "tick")):
+                value = arm.figures[unit].value[number]
+                assert arm.figures[unit].known[number] == (moment is not None)
+                assert value == (moment[key] if moment else world[unit])
+            ends = {row["id"]: row["tick"] for row in died if row["world"] == number}
+            lives = [
+                (ends.get(row["id"], world["ticks"]) - row["tick"], row["id"] in ends)
+                for row in born
+                if row["world"] == number
+            ]
+            age = QUICK["saturation_ticks"]
+            long = [lived >= age for lived, _ in lives]
+            undecided = [lived < age and not dead for lived, dead in lives]
+            first = arm.figures["first"]
+            before = int(first.value[number]) - 1
+            assert not any(long[:before] + undecided[:before])
+            assert long[before] if first.known[number] else [*undecided, True][before]
+            mean = restricted_mean(lives, age)
+            assert arm.figures["lifespan"].value[number] == pytest.approx(mean)
+            seen += len(lives)
+        assert arm.saturated == sum(world["saturation"] is not None for world in worlds)
+    assert seen > 500
+    assert [arm.worlds for arm in compared.arms] == [WORLDS] * 3
+    assert compared.arms[2].saturated == WORLDS
+    assert any(0 < arm.saturated < WORLDS for arm in compared.arms[:2])
+
+
+def test_info_tells_how_often_a_life_tries_to_copy_itself(runs: list[Path]) -> None:
+    """Ticks lived, from the records of births and deaths, times replication, by births."""
+    for path in runs:
+        everyone = primordia.load(path).lives()
+        for number, world in enumerate(primordia.Run(path).info()["worlds"]):
+            lived = everyone.of_world(number).lifespan
+            expected = QUICK["replication"] * lived.sum() / len(lived)
+            assert world["tries_per_life"] == pytest.approx(expected)
+
+
+def test_settings_that_differ_are_named(compared: Comparison) -> None:
+    assert compared.arms[0].settings == {"seed": 0, "stop.ticks": 600}
+    assert [arm.settings["seed"] for arm in compared.arms] == [0, 100, 200]
+
+
+def test_the_command_shows_tables_and_draws_a_figure(runs: list[Path], tmp_path: Path) -> None:
+    done = here("compare", *runs, "--out", tmp_path / "new")
+    assert done.returncode == 0, done.stderr
+    for word in ("one", "another", "patient", "births to saturation", "mean lifespan", "reference"):
+        assert word in done.stdout
+    for name in ("compare.png", "compare.svg"):
+        assert (tmp_path / "new" / name).stat().st_size > 10_000
+        assert str(tmp_path / "new" / name) in done.stdout
+
+
+def test_json_is_one_object_and_is_the_same_each_time(runs: list[Path], tmp_path: Path) -> None:
+    one, two = (here("compare", *runs[:2], "--json", "--out", tmp_path) for _ in range(2))
+    assert one.stdout == two.stdout
+    found = json.loads(one.stdout)
+    assert [run["name"] for run in found["runs"]] == ["one", "another"]
+    assert found["runs"][1]["births"]["against"]["word"] in (
+        "small",
+        "medium",
+        "large",
+        "negligible",
+    )
+
+
+def test_a_horizon_that_all_worlds_were_followed_to(runs: list[Path], tmp_path: Path) -> None:
+    found = primordia.compare(*runs, ticks=600)
+    for arm, whole in zip(found.arms, primordia.compare(*runs).arms, strict=True):
+        within = whole.figures["ticks"].known & (whole.figures["ticks"].value < 600)
+        assert arm.saturated == within.sum()
+    early = primordia.compare(*runs, ticks=100)
+    assert early.arms[0].saturated <= found.arms[0].saturated
+    assert (
+        "saturated within 100 ticks"
+        in here("compare", *runs, "--ticks", 100, "--out", tmp_path).stdout
+    )
+
+
+def test_what_cannot_be_compared(runs: list[Path], tmp_path: Path) -> None:
+    other = shutil.copytree(runs[0], tmp_path / "other")
+    settings = (other / "config.toml").read_text().replace('task = "meadow"', 'task = "pasture"')
+    (other / "config.toml").write_text(settings)
+    complains(here("compare"), 2, "two runs or more")
+    complains(here("compare", runs[0]), 2, "two runs or more")
+    complains(here("compare", runs[0], runs[0]), 2, "given twice")
+    complains(here("compare", runs[0], other), 2, "meadow", "pasture")
+    complains(here("compare", runs[0], tmp_path / "none"), 2, "none")
+    complains(here("compare", *runs, "--ticks", 601), 2, "--ticks 601", "stopped at 600")
+    complains(here("compare", *runs, "--births", 0), 2, "--births")
+
+
+def test_a_run_cut_off_before_anything_lived(runs: list[Path], tmp_path: Path) -> None:
+    empty = tmp_path / "empty"
+    empty.mkdir()
+    for name in ("config.toml", "versions.json"):
+        (empty / name).write_bytes((runs[0] / name).read_bytes())
+    complains(here("compare", runs[0], empty), 2, "no checkpoint yet")
+
+
+@pytest.mark.parametrize(("saturated", "told"), [(0, True), (2, True), (3, False), (5, False)])
+def test_what_is_of_use_where_saturation_is_rare(
+    compared: Comparison, saturated: int, told: bool
+) -> None:
+    """In fewer than half of the worlds of every run."""
+    known = np.arange(WORLDS) < saturated
+    moments = {name: Figures(np.ones(WORLDS), known) for name in ("births", "ticks")}
+    arm = replace(compared.arms[0], figures={**compared.arms[0].figures, **moments})
+    assert arm.saturated == saturated
+    outcomes = replace(compared, arms=(arm,)).outcomes
+    assert ("pace" in outcomes, "longest" in outcomes) == (told, told)
+
+
+def test_where_few_worlds_saturate_all_are_looked_at_for_as_long(tmp_path: Path) -> None:
+    """A run that went on tells of the time that it has in common with one that did not."""
+    never: dict[str, Any] = {**QUICK, "saturation_ticks": 10_000}
+    for name, ticks in (("short", 600), ("long", 900)):
+        loop.start(config({**never, "stop": {"ticks": ticks}}), tmp_path / name)
+    short, long = primordia.compare(tmp_path / "short", tmp_path / "long").arms
+    for outcome in ("first", "lifespan", "longest", "pace", "food"):
+        one, other = short.figures[outcome], long.figures[outcome]
+        np.testing.assert_array_equal(one.value, other.value, err_msg=outcome)
+        np.testing.assert_array_equal(one.known, other.known, err_msg=outcome)
+    np.testing.assert_array_equal(short.survival.curve, long.survival.curve)
+
+
+@pytest.mark.parametrize("arms", [2, 5, 6, 9, 27])
+def test_runs_have_looks_of_their_own(compared: Comparison, arms: int) -> None:
+    """With how their worlds scatter where few are shown."""
+    assert len({tuple(look.items()) for look in looks(arms)}) == arms
+    many = replace(compared, arms=compared.arms[:1] * arms)
+    with style.look():
+        drawn = draw(many)
+    assert len(drawn.axes[0].get_lines()) == arms
+    assert len(drawn.axes[0].collections) == (arms if arms <= FEW else 0)
+
+
+@pytest.mark.parametrize("saturated", [0, WORLDS])
+@pytest.mark.parametrize("fed", [False, True])
+def test_whatever_is_drawn_stays_on_the_page(
+    compared: Comparison, saturated: int, fed: bool
+) -> None:
+    """Two panels to four."""
+    known = np.arange(WORLDS) < saturated
+    moments = {name: Figures(np.ones(WORLDS), known) for name in ("births", "ticks")}
+    food = {"food": Figures(np.ones(WORLDS), np.full(WORLDS, fed))}
+    arm = replace(compared.arms[0], figures={**compared.arms[0].figures, **moments, **food})
+    with style.look():
+        drawn = draw(replace(compared, arms=(arm,)))
+        drawn.draw_without_rendering()
+    assert len(drawn.axes) == 2 + fed + bool(saturated)
+    for axes in drawn.axes:
+        for text in (axes.title, axes.xaxis.label, axes.yaxis.label):
+            box = text.get_window_extent()
+            assert drawn.bbox.count_contains([box.min, box.max]) == 2, text

@@ -1,0 +1,54 @@
+"""Ticks lived for each death: against counting tick by tick, and in runs that never saturate."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import primordia
+from primordia.comparison.pace import LATE, WINDOWS, pace
+from primordia.runs import loop
+from tests.commands import here
+from tests.synthetic import LIVED, alive, world_of
+from tests.worlds import MEADOW, config
+
+TICKS = 7
+"""of a window"""
+
+
+@given(LIVED, LIVED, st.integers(0, 20))
+def test_every_tick_and_every_death_counts_once(
+    one: list[tuple[int, int, bool]], other: list[tuple[int, int, bool]], since: int
+) -> None:
+    worlds = [world_of(lived, until=110) for lived in (one, other)]
+    found = pace([world.since(since) for world in worlds], since, since + WINDOWS * TICKS)
+    for number, world in enumerate(worlds):
+        for window in range(WINDOWS):
+            ticks = range(since + window * TICKS, since + (window + 1) * TICKS)
+            lived = sum(alive(world, row, tick) for row in range(len(world)) for tick in ticks)
+            ended = world.ended[world.died] - 1
+            assert found.lived[number, window] == lived
+            assert found.deaths[number, window] == np.isin(ended, ticks).sum()
+    late = found.lived[:, -LATE:].sum(1), found.deaths[:, -LATE:].sum(1)
+    assert (found.late.known == (late[1] > 0)).all()
+    assert (found.late.value == late[0] / np.maximum(late[1], 1)).all()
+
+
+def test_worlds_that_never_saturate_are_compared_by_it(tmp_path: Path) -> None:
+    """Half the hazard, twice the ticks for each death; saturation is not spoken of."""
+    runs = []
+    for name, hazard, ticks in (("rough", 0.02, 600), ("mild", 0.01, 700)):
+        settings = {**MEADOW, "brain": {"hidden": 1}, "seeds": 4, "hazard": hazard}
+        runs.append(tmp_path / name)
+        loop.start(config({**settings, "replication": 0.2, "stop": {"ticks": ticks}}), runs[-1])
+    rough, mild = primordia.compare(*runs).arms
+    assert rough.pace.edges[-1] == mild.pace.edges[-1] == 600
+    assert np.median(rough.figures["pace"].value) == pytest.approx(50, rel=0.2)
+    assert np.median(mild.figures["pace"].value) == pytest.approx(100, rel=0.2)
+    assert (mild.figures["longest"].value > 100).all()
+    told = here("compare", *runs, "--out", tmp_path / "figures").stdout
+    assert "ticks lived for each death, late" in told
+    assert "births to" not in told
+    assert (tmp_path / "figures" / "compare.png").stat().st_size > 10_000

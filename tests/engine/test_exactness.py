@@ -1,0 +1,137 @@
+"""Promise 1: a life is a function of genome, seed and organism, however it is computed."""
+
+import os
+import subprocess
+import sys
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from primordia.brains.contract import BrainSettings
+from primordia.habitats.cartpole.habitat import CartPole
+from tests.toys import Mill
+from tests.worlds import MILL, Lived, config
+
+CARTPOLE = {"seed": 5, "cells": 32}
+
+
+@pytest.fixture(scope="module")
+def reference() -> Lived:
+    return Lived(config(**CARTPOLE), 3000)
+
+
+@pytest.mark.parametrize("chunk", [1, 7, 1000])
+def test_chunks_of_any_length_make_the_same_run(reference: Lived, chunk: int) -> None:
+    ticks = 3000 if chunk > 1 else 400
+    expected = reference if chunk > 1 else Lived(config(**CARTPOLE), ticks)
+    assert Lived(config(**CARTPOLE), ticks, chunk).digests() == expected.digests()
+
+
+@pytest.mark.parametrize("chunk", [1, 13])
+def test_chunks_make_no_difference_with_metabolism_noise_and_seasons(chunk: int) -> None:
+    whole = Lived(config(MILL, seeds=2), 700)
+    assert len(set(np.round(whole.table("metrics")["metabolism.gain"], 6))) > 2
+    assert Lived(config(MILL, seeds=2), 700, chunk).digests() == whole.digests()
+
+
+def test_a_world_is_the_same_alone_and_among_a_hundred(reference: Lived) -> None:
+    among = Lived(config(cells=32, seed=0, seeds=100), 3000)
+    assert among.digests()[5] == reference.digests()[0]
+    assert len(set(among.digests())) == 100
+
+
+def test_worlds_that_stop_early_change_nothing_for_the_others() -> None:
+    together = Lived(config(MILL, seeds=4), 600, births=25)
+    for world in range(4):
+        alone = Lived(config(MILL, seed=world), 600, births=25)
+        assert alone.digests()[0] == together.digests()[world]
+    ticks = together.engine.arrays()["world.worlds.tick.lo"]
+    assert len(set(ticks.tolist())) > 1
+
+
+def test_going_on_equals_going_through(reference: Lived) -> None:
+    parts = Lived(config(**CARTPOLE), 1111)
+    parts.on(2000)
+    parts.on(3000, chunk=91)
+    assert parts.digests() == reference.digests()
+
+
+def test_different_seeds_differ() -> None:
+    assert Lived(config(seed=1), 500).digests() != Lived(config(seed=2), 500).digests()
+
+
+@pytest.mark.parametrize(("fused", "inner"), [("CartPole-survival", "cartpole"), (MILL, "mill")])
+def test_a_hosted_habitat_lives_under_the_same_law(fused: str | dict, inner: str) -> None:
+    changed = {"seeds": 2, "habitat": {"name": "tests.toys:Mirror", "inner": inner}}
+    one, other = Lived(config(fused, seeds=2), 500), Lived(config(fused, **changed), 500, chunk=77)
+    for name in ("births", "deaths", "metrics"):
+        np.testing.assert_array_equal(
+            np.concatenate(one.rows[name]), np.concatenate(other.rows[name])
+        )
+    a, b = one.engine.arrays(), other.engine.arrays()
+    alive = a["world.organisms.alive"]
+    assert alive.any()
+    for name in a:
+        if name.startswith("world.organisms"):
+            np.testing.assert_array_equal(a[name][alive], b[name][alive], err_msg=name)
+
+
+def test_a_numpy_habitat_is_exact_in_chunks_of_any_length() -> None:
+    host = {"name": "tests.toys:HostCartPole"}
+    values = {"task": "host", "habitat": host, "cells": 8}
+    whole = Lived(config(values), 400)
+    assert len(np.concatenate(whole.rows["births"])) > 10
+    assert Lived(config(values), 400, chunk=9).digests() == whole.digests()
+
+
+@pytest.mark.parametrize("kind", ["recurrent", "feed-forward"])
+@pytest.mark.parametrize("habitat", [CartPole(), Mill()])
+def test_brains_and_bodies_do_not_depend_on_how_many_there_are(kind: str, habitat) -> None:
+    brain = BrainSettings(kind=kind).build(habitat.senses_size, habitat.action.size)
+    rng = np.random.default_rng(0)
+    genome = {n: rng.normal(size=(1024, *s)).astype(np.float32) for n, s in brain.blocks.items()}
+    words = rng.integers(0, 2**32, (1024, habitat.words), dtype=np.uint32)
+
+    @jax.jit
+    def lives(genome: dict, words: np.ndarray) -> tuple:
+        def tick(carry: tuple, _: None) -> tuple:
+            memory, bodies = carry
+            memory, output = brain(genome, memory, habitat.sense(bodies))
+            action = output[:, 0] > 0 if habitat.action.size != 2 or kind == "" else output
+            if isinstance(habitat, CartPole):
+                action = (output[:, 1] > output[:, 0]).astype(jnp.int32)
+            bodies, _ = habitat.step(bodies, action)
+            return (memory, bodies), None
+
+        start = jnp.zeros((len(words), brain.memory)), habitat.reset(words)
+        return jax.lax.scan(tick, start, None, length=50)[0]
+
+    memory, bodies = lives(genome, words)
+    for n in (1, 2, 31, 32):
+        few_memory, few_bodies = lives({k: v[:n] for k, v in genome.items()}, words[:n])
+        np.testing.assert_array_equal(few_memory, memory[:n])
+        np.testing.assert_array_equal(few_bodies, bodies[:n])
+
+
+PROGRAM = """
+import os, sys
+os.sched_setaffinity(0, [int(cpu) for cpu in sys.argv[1:]])
+from tests.worlds import Lived, config
+print(Lived(config(cells=64, seeds=8, seed=3), 600).digests())
+"""
+
+
+def test_threads_make_no_difference() -> None:
+    def run(*processors: int) -> str:
+        environment = {**os.environ, "PYTHONPATH": os.pathsep.join(["src", "."])}
+        command = [sys.executable, "-c", PROGRAM, *map(str, processors)]
+        return subprocess.run(
+            command, env=environment, capture_output=True, text=True, check=True
+        ).stdout
+
+    if not hasattr(os, "sched_setaffinity") or len(os.sched_getaffinity(0)) < 2:
+        pytest.skip("needs Linux and two processors")
+    one, two = sorted(os.sched_getaffinity(0))[:2]
+    assert run(one) == run(one, two)

@@ -1,0 +1,220 @@
+"""Figures show what the records say; whatever can be drawn of a run is drawn, always the same."""
+
+import re
+import shutil
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+import numpy as np
+import pytest
+from matplotlib.colors import to_rgb
+from matplotlib.text import Text
+
+import primordia
+from primordia.figures import ages, population, spacetime, style, survival
+from primordia.figures.plot import FIGURES
+from primordia.history import series
+from primordia.law.world import Cause
+from primordia.runs import loop
+from primordia.runs.lives import Lives, lives
+from tests.commands import complains, here
+from tests.synthetic import alive, world_of, worlds_of
+from tests.worlds import MEADOW, config
+
+WHAT: dict[str, Any] = {
+    **MEADOW,
+    "habitat": {"name": "tests.toys:Meadow", "lifespan": 90},
+    "cells": 24,
+    "seeds": 3,
+    "replication": 0.05,
+    "hazard": 0.01,
+    "sample_every": 100,
+}
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Three worlds with births, copies and deaths of several causes."""
+    where = tmp_path_factory.mktemp("figures") / "run"
+    loop.start(config(WHAT, stop={"ticks": 900}), where)
+    return where
+
+
+def test_population_and_mean_age_are_as_sampled_while_it_ran(run: Path) -> None:
+    metrics, everyone = primordia.Run(run).table("metrics"), lives(run)
+    columns = {
+        name: metrics[name].to_numpy() for name in ("world", "tick", "population", "mean_age")
+    }
+    for number in range(3):
+        mine = columns["world"] == number
+        world, ticks = everyone.of_world(number), columns["tick"][mine]
+        np.testing.assert_array_equal(series.population(world, ticks), columns["population"][mine])
+        np.testing.assert_allclose(
+            series.mean_age(world, ticks), columns["mean_age"][mine], rtol=1e-5
+        )
+
+
+def test_cohorts_are_quarters_of_each_worlds_births(run: Path) -> None:
+    everyone = lives(run)
+    cohorts = survival.quarters(everyone)
+    assert sum(map(len, cohorts)) == len(everyone)
+    for world in range(3):
+        parts = [cohort.of_world(world).id for cohort in cohorts]
+        assert np.concatenate(parts).tolist() == list(range(len(everyone.of_world(world))))
+        assert max(map(len, parts)) - min(map(len, parts)) <= 1
+
+
+def test_quartiles_are_of_stretches_with_equally_many_dead() -> None:
+    number = np.arange(4 * ages.ENOUGH)
+    middle, quarter, half, three = ages.quartiles(number, number % ages.ENOUGH)
+    assert middle.tolist() == [(k + 0.5) * ages.ENOUGH - 0.5 for k in range(4)]
+    assert set(half) == {(ages.ENOUGH - 1) / 2}
+    assert (quarter < half).all()
+    assert (half < three).all()
+
+
+def test_space_time_finds_who_lived_where(run: Path) -> None:
+    world = lives(run).of_world(1)
+    cells, ticks = np.arange(24), np.array([0, 1, 50, 333, 900])
+    found = spacetime.living(world, cells, ticks)
+    for place, tick in enumerate(ticks.tolist()):
+        expected = np.full(24, spacetime.NOBODY)
+        for row in range(len(world)):
+            if alive(world, row, tick):
+                expected[world.cell[row]] = row
+        np.testing.assert_array_equal(found[place], expected)
+
+
+def test_space_time_shows_lines_in_colours_that_say_what_became_of_them(run: Path) -> None:
+    world = lives(run).of_world(0)
+    cells, ticks = np.arange(24), np.arange(901)
+    of = spacetime.told_apart(world)
+    found = spacetime.living(world, cells, ticks)
+    image = spacetime.picture(world, of, cells, ticks)
+    np.testing.assert_array_equal((image == 1).all(axis=-1), found == spacetime.NOBODY)
+    young = colours_in(image[: of.anew[0]])
+    assert {len(set(each)) for each in young} == {1}, "greys"
+    assert to_rgb(spacetime.YOUNG) in young
+    at_the_end = found[-1] >= 0
+    assert colours_in(image[-1]) <= colours_in(spacetime.STRONG)
+    lines = of.of(found[-1][at_the_end], ticks[-1:])
+    shown = set(zip(lines.tolist(), map(tuple, image[-1][at_the_end].tolist()), strict=True))
+    assert len(shown) == len(set(lines.tolist())), "one colour each"
+
+
+def colours_in(image: np.ndarray) -> set[tuple[float, ...]]:
+    """But for white."""
+    return set(map(tuple, image.reshape(-1, 3).tolist())) - {(1.0, 1.0, 1.0)}
+
+
+@pytest.mark.parametrize(("cells", "shown"), [(24, 24), (512, 512), (513, 257), (1_000_000, 512)])
+def test_space_time_never_has_more_columns_than_a_screen(cells: int, shown: int) -> None:
+    world = world_of([(0, 10, True), (11, 0, False)])
+    with style.look():
+        figure = spacetime.draw(world, config(WHAT, cells=cells), 0)
+    assert figure.axes[0].images[0].get_array().shape[1] == shown
+    assert ("shown" in figure.axes[0].get_xlabel()) == (shown < cells)
+
+
+@pytest.fixture(scope="module")
+def pictures(run: Path) -> list[Path]:
+    """Its figures, where they are put by default."""
+    before = primordia.Run(run).info()
+    found = primordia.Run(run).plot()
+    assert primordia.Run(run).info() == before
+    return found
+
+
+def test_plot_makes_every_figure_twice_in_the_runs_folder(run: Path, pictures: list[Path]) -> None:
+    names = [f"{name}.{kind}" for name in FIGURES for kind in ("png", "svg")]
+    assert pictures == [run / "figures" / name for name in names]
+    assert sorted(path.name for path in (run / "figures").iterdir()) == sorted(names)
+
+
+def test_svg_keeps_text_as_text_and_dots_as_a_picture(pictures: list[Path]) -> None:
+    for path in pictures:
+        if path.suffix == ".svg":
+            text = re.findall(r"<text[^>]*>([^<]+)</text>", path.read_text(encoding="utf-8"))
+            assert any("(ticks)" in each for each in text), path
+            assert path.stat().st_size < 2**19
+
+
+def test_same_bytes_each_time_whatever_the_users_style_but_for_the_world_asked_for(
+    run: Path, pictures: list[Path], tmp_path: Path
+) -> None:
+    with matplotlib.rc_context({"font.size": 30, "lines.linewidth": 9, "svg.fonttype": "path"}):
+        done = here("plot", run, "--out", tmp_path / "some" / "where", "--world", 2)
+        assert matplotlib.rcParams["font.size"] == 30
+    assert done.returncode == 0, done.stderr
+    again = [tmp_path / "some" / "where" / path.name for path in pictures]
+    assert done.stdout.split() == [str(path) for path in again]
+    same = [one.read_bytes() == two.read_bytes() for one, two in zip(pictures, again, strict=True)]
+    assert same == [True] * 6 + [False] * 2
+    assert "world 2 (of 3)" in again[-1].read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    "everyone",
+    [
+        world_of([(0, 0, False)], until=0),
+        world_of([(0, 0, False)], until=1),
+        world_of([(0, 0, False), (3, 0, False)], until=50),
+        world_of([(0, 4, True), (5, 0, True), (6, 0, False)], until=7),
+        worlds_of([(0, 0, False)], [(0, 0, False)], until=1),
+        worlds_of([(0, 2, True)] * 9, [(0, 70, True), (1, 0, False)], [(0, 0, False)], until=90),
+    ],
+    ids=["tick 0", "tick 1", "no deaths", "hardly any", "two worlds", "three worlds"],
+)
+def test_what_can_be_drawn_is_drawn(everyone: Lives) -> None:
+    settings = config(WHAT, cells=24, seeds=everyone.worlds)
+    with style.look():
+        for name, draw in FIGURES.items():
+            figure = draw(everyone, settings, 0)
+            figure.draw_without_rendering()
+            said = {text.get_text() for text in figure.findobj(Text)}
+            remark = "no deaths yet" in said
+            assert remark == (name in {"ages", "survival"} and not everyone.died.any())
+
+
+@pytest.mark.parametrize(
+    ("placement", "says"),
+    [
+        ({}, "cell of the ring"),
+        ({"topology": "torus8"}, "torus, row after row"),
+        ({"topology": "well-mixed"}, "all are neighbours"),
+    ],
+)
+def test_space_time_says_what_the_order_of_cells_means(
+    placement: dict[str, Any], says: str
+) -> None:
+    with style.look():
+        figure = spacetime.draw(world_of([(0, 0, False)]), config(WHAT, placement=placement), 0)
+    assert says in figure.axes[0].get_xlabel()
+
+
+def test_every_cause_of_death_has_a_colour_of_its_own() -> None:
+    assert set(population.COLOURS) == set(Cause)
+    assert len(set(population.COLOURS.values())) == len(Cause)
+
+
+@pytest.mark.parametrize(
+    ("number", "text"),
+    [(0, "0"), (0.5, "0.5"), (0.01, "1/100"), (1e-4, "1/10k"), (999, "999"), (1500, "1.5k"),
+     (1e6, "1M"), (2.5e9, "2.5G")],
+)  # fmt: skip
+def test_numbers_are_short(number: float, text: str) -> None:
+    assert style.short(number) == text
+
+
+def test_what_cannot_be_drawn_is_said_in_one_line(run: Path, tmp_path: Path) -> None:
+    complains(here("plot", tmp_path / "nothing"), 2, "nothing")
+    complains(here("plot", run, "--world", 3), 2, "no world 3", "0 to 2")
+    complains(here("plot", run, "--world", -1), 2, "no world -1")
+    (tmp_path / "file").write_text("")
+    complains(here("plot", run, "--out", tmp_path / "file" / "in"), 1, "cannot be made")
+    (tmp_path / "taken" / "ages.png").mkdir(parents=True)
+    complains(here("plot", run, "--out", tmp_path / "taken"), 1, "ages.png cannot be written")
+    empty = Path(shutil.copytree(run, tmp_path / "run"))
+    shutil.rmtree(empty / "checkpoints")
+    complains(here("plot", empty), 2, "no checkpoint yet")

@@ -1,0 +1,144 @@
+"""The grammar of conditions: what it computes is what Python would, and nothing else is let in."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from primordia.habitats.conditions import Names, parse
+
+NAMES: Names = {
+    "points": "amount",
+    "lives": "amount",
+    "ram": 4,
+    "speed": 3,
+    "place": {"hand": 2, "target": 2},
+}
+VALUES = {
+    "points": np.array([0.0, -1.0, 2.5], np.float32),
+    "lives": np.array([3, 0, 1]),
+    "ram": np.array([[1, 2, 3, 4], [0, 0, 0, 0], [255, 17, 1, 0]], np.uint8),
+    "speed": np.array([[0.5, -1.0, 2.0], [0.0, 0.0, 0.0], [-3.0, 4.0, 12.0]]),
+    "place": {
+        "hand": np.array([[1.0, 2.0], [3.0, 4.0], [5.0, 6.0]]),
+        "target": np.array([[0.0, 0.5], [1.0, 1.5], [2.0, 2.5]]),
+    },
+}
+
+number = st.deferred(
+    lambda: st.one_of(
+        st.sampled_from(["points", "lives", "ram[0]", "ram[3]", "0", "1", "2.5", "speed[2]"]),
+        st.sampled_from(["sum(speed)", "sum(ram[1:])", 'place["hand"][1]', "sum(2 * speed[:2])"]),
+        st.builds(lambda a, op, b: f"({a} {op} {b})", number, st.sampled_from("+-*"), number),
+        st.builds(lambda a: f"-{a}", number),
+        st.builds(
+            lambda f, a, b: f"{f}({a}, {b})", st.sampled_from(["min", "max"]), number, number
+        ),
+        st.builds(lambda a: f"abs({a})", number),
+    )
+)
+comparison = st.sampled_from(["<", "<=", ">", ">=", "==", "!="])
+condition = st.deferred(
+    lambda: st.one_of(
+        st.builds(lambda a, op, b: f"{a} {op} {b}", number, comparison, number),
+        st.builds(lambda a, b, c: f"{a} < {b} <= {c}", number, number, number),
+        st.builds(
+            lambda a, op, b: f"({a} {op} {b})", condition, st.sampled_from(["and", "or"]), condition
+        ),
+        st.builds(lambda a: f"(not {a})", condition),
+    )
+)
+
+
+def by_python(text: str, body: int) -> Any:
+    """What Python makes of it, for one body."""
+    names: dict[str, Any] = {
+        name: values[body].astype(float) if isinstance(values, np.ndarray) else values
+        for name, values in VALUES.items()
+    }
+    names["place"] = {part: values[body] for part, values in VALUES["place"].items()}
+    known = {"abs": abs, "min": min, "max": max, "sum": sum}
+    return eval(text, {"__builtins__": {}, **known}, names)
+
+
+@settings(max_examples=150)
+@given(condition)
+def test_conditions_mean_what_they_mean_in_python(text: str) -> None:
+    found = np.broadcast_to(parse(text, "condition", NAMES)(VALUES), 3)
+    assert found.dtype == bool
+    assert found.tolist() == [bool(by_python(text, body)) for body in range(3)]
+
+
+@settings(max_examples=150)
+@given(number)
+def test_amounts_too(text: str) -> None:
+    found = np.broadcast_to(parse(text, "amount", NAMES)(VALUES), 3)
+    np.testing.assert_allclose(found, [by_python(text, body) for body in range(3)], rtol=1e-5)
+
+
+def test_a_condition_is_an_amount_of_one_where_it_holds() -> None:
+    assert parse("points > 0", "amount", NAMES)(VALUES).tolist() == [0.0, 0.0, 1.0]
+
+
+@pytest.mark.parametrize(
+    ("text", "means"),
+    [
+        ("speed[1:]", VALUES["speed"][:, 1:]),
+        ("cos(speed) * 2 - 1", np.cos(VALUES["speed"]) * 2 - 1),
+        ("min(max(speed, -10), points)", np.minimum(VALUES["speed"], VALUES["points"][:, None])),
+        ('place["hand"] - place["target"]', VALUES["place"]["hand"] - VALUES["place"]["target"]),
+        ('norm(place["hand"])', np.hypot(*VALUES["place"]["hand"].T)),
+        ("ram - 128", VALUES["ram"].astype(int) - 128),
+        ("lives < 2", np.array([0.0, 1.0, 1.0])),
+    ],
+)
+def test_lists_of_numbers(text: str, means: np.ndarray) -> None:
+    found = parse(text, "numbers", NAMES)
+    np.testing.assert_allclose(found(VALUES), means)
+    assert found.kind == (means.shape[1] if means.ndim == 2 else "amount")
+    assert found.names == {n for n in NAMES if n in text}
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("ram[4] == 0", r"column 1: ram goes from ram\[0\] to ram\[3\]"),
+        ("ram[-1] == 0", "ram goes from"),
+        ("lives < 1 or ram == 0", "column 14: 'ram' has 4 numbers; say which"),
+        ("pionts < 0", "there is no 'pionts'; known: points, lives, ram"),
+        ("points <", "cannot be read at column"),
+        ("", "cannot be read"),
+        ("points", "is a number, not a condition"),
+        ("points and lives", "column 1: this is a number, where a condition is needed"),
+        ("(points < 1) + 1 < 2", "column 2: this is a condition, where a number is needed"),
+        ("points / 2 < 1", "there are"),
+        ("points ** 9 < 1", "there are"),
+        ("not points", "where a condition is needed"),
+        ("~lives < 1", "of signs there is -"),
+        ("lives is 1", "of comparisons there are"),
+        ("'a' < 1", "only numbers can be written out"),
+        ("True", "only numbers can be written out"),
+        ("__import__('os').system('x') == 0", "of functions there are"),
+        ("points.real < 0", "not part of the grammar"),
+        ("[x for x in ram] == 0", "not part of the grammar"),
+        ("(lambda: 0)() == 0", "of functions there are"),
+        ("max(points, 1, 2) < 1", "of functions there are"),
+        ("lives[0] == 1", "only what has several numbers can be indexed"),
+        ("lives := 3", "cannot be read"),
+        ("speed + ram < 1", "column 9: this is a list of 4 numbers, beside a list of 3 numbers"),
+        ("speed < 1", "'speed' has 3 numbers; say which"),
+        ("speed[1:] < 1", "this is a list of 2 numbers, where a number is needed"),
+        ("sum(speed[3:]) < 1", "takes none of speed, which has 3 numbers"),
+        ("sum(speed[::2]) < 1", "takes none"),
+        ("sum(speed[:points]) < 1", "column 12: numbers are taken from"),
+        ("sum(points) < 1", "column 5: this is a number, where a list of numbers is needed"),
+        ("place < 1", "'place' is of parts; say of which: place\\[\"hand\"\\]"),
+        ('place["foot"][0] < 1', "place is known of hand, target"),
+        ("(" * 500 + "1" + ")" * 500 + " < 2", "cannot be read"),
+    ],
+)
+def test_what_is_not_in_the_grammar(text: str, says: str) -> None:
+    with pytest.raises(ValueError, match=says):
+        parse(text, "condition", NAMES)

@@ -1,0 +1,154 @@
+"""Promise 2: nothing that lived is lost. Genomes come back from birth records, bit for bit."""
+
+import signal
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import primordia
+from primordia.brains.contract import join
+from primordia.errors import InputError
+from primordia.history.lineage import descent, rebuild, rebuild_all
+from primordia.runs import checkpoint, loop, record
+from primordia.runs.directory import read_config
+from primordia.runs.lives import lives
+from tests.worlds import MEADOW, MILL, config, merged
+
+SMALL = {"hidden": 6}
+SHIFTING = {
+    **MILL,
+    "brain": SMALL,
+    "seasons": [
+        {"kind": "ratchet", "setting": "mutation.scale", "when": "mean_age", "above": 5.0,
+         "factor": 0.9, "every": 70},
+        {"kind": "schedule", "setting": "mutation.probability", "at": 333, "value": 0.9},
+        {"kind": "schedule", "setting": "mutation.blocks.output.scale", "at": 500, "value": 0.0},
+    ],
+}  # fmt: skip
+BLOCKS = {
+    "probability": 0.3,
+    "scale": 0.02,
+    "founder_scale": 0.1,
+    "blocks": {
+        "input": {"probability": 0.8, "founder_scale": 1.0},
+        "output": {"probability": 0.0, "scale": 0.5},
+    },
+}
+LIVES = {"brain": SMALL, "hazard": 0.03, "replication": 0.3}
+WORLDS: dict[str, tuple[dict[str, Any], int]] = {
+    "seasons that change mutation, several worlds": ({**SHIFTING, "seeds": 3, "seed": 7}, 1_200),
+    "blocks that mutate apart": ({**MEADOW, **LIVES, "mutation": BLOCKS, "seed": 2**63}, 1_000),
+    "every child a founder": ({**MEADOW, **LIVES, "inheritance": "founder"}, 500),
+    "children that replace others on a torus": (
+        {**MEADOW, **LIVES, "placement": {"topology": "torus8", "rule": "replacing"}, "seeds": 2},
+        400,
+    ),
+}
+
+
+def living(run: Path) -> list[tuple[int, int, np.ndarray]]:
+    """World, birth number and genome of everybody in the newest checkpoint."""
+    config = read_config(run)
+    brain = config.build_law(config.build_habitat()).brain
+    last, _ = checkpoint.newest(run)
+    assert last is not None
+    arrays = last.arrays()
+    genomes = join(brain, {n: arrays[f"world.organisms.genome.{n}"] for n in brain.blocks})
+    hi, lo = (arrays[f"world.organisms.number.{half}"].astype(int) for half in ("hi", "lo"))
+    cells = np.flatnonzero(arrays["world.organisms.alive"])
+    return [(c // config.cells, int(hi[c] << 32 | lo[c]), genomes[c]) for c in cells]
+
+
+def comes_back(run: Path) -> None:
+    everybody = living(run)
+    assert len(everybody) > 5
+    assert len({genome.tobytes() for *_, genome in everybody}) > 3
+    rebuilt = rebuild_all(run, [(organism, world) for world, organism, _ in everybody])
+    for (*_, genome), again in zip(everybody, rebuilt, strict=True):
+        np.testing.assert_array_equal(bits(again), bits(genome))
+
+
+def bits(genome: np.ndarray) -> np.ndarray:
+    assert genome.dtype == np.float32
+    return genome.view(np.uint32)
+
+
+def depth(run: Path, organism: int, world: int = 0) -> int:
+    return len(descent(lives(run), organism, world)) - 1
+
+
+@pytest.fixture(scope="module")
+def deep(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """CartPole-survival with poles that may swing far: thousands of births, no saturation."""
+    run = tmp_path_factory.mktemp("deep") / "run"
+    freely = {"angle_limit": 180.0, "track_limit": 1e9}
+    primordia.run(
+        "CartPole-survival", run, habitat=freely, hazard=0.03, replication=0.3, stop={"ticks": 9000}
+    )
+    return run
+
+
+def test_hundreds_of_generations_deep(deep: Path) -> None:
+    found = primordia.Run(deep).info()
+    assert found["births"] > 3_000
+    assert found["saturation"] is None
+    assert max(depth(deep, organism) for _, organism, _ in living(deep)) >= 200
+    comes_back(deep)
+
+
+@pytest.mark.parametrize("name", WORLDS)
+def test_everybody_alive(name: str, tmp_path: Path) -> None:
+    values, ticks = WORLDS[name]
+    run = tmp_path / "run"
+    loop.start(config(merged(values, {"stop": {"ticks": ticks}})), run)
+    comes_back(run)
+    births = primordia.Run(run).table("births")
+    causes = set(births["cause"].to_pylist())
+    assert causes == ({"founder"} if values.get("inheritance") else {"founder", "copy", "mutant"})
+    assert set(births["world"].to_pylist()) == set(range(values.get("seeds", 1)))
+
+
+def test_while_a_run_is_under_way(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Some rows are in segments, others in open tails."""
+    monkeypatch.setattr(record, "SEGMENT_ROWS", 100)
+    values, _ = WORLDS["blocks that mutate apart"]
+    run = tmp_path / "run"
+
+    def press(status: loop.Status) -> None:
+        if int(status.engine.state.world.worlds.births.lo[0]) > 250:
+            signal.raise_signal(signal.SIGINT)
+
+    with pytest.raises(KeyboardInterrupt):
+        loop.start(config(values), run, listen=press)
+    last, _ = checkpoint.newest(run)
+    assert last is not None
+    assert len(last.manifest["segments"]["births"]) >= 2
+    assert len(last.arrays()["tail.births"]) > 0
+    comes_back(run)
+
+
+def test_a_copy_has_its_parents_genome_and_a_mutant_has_not(deep: Path) -> None:
+    births = primordia.Run(deep).table("births").slice(1000, 30).to_pylist()
+    for birth in births:
+        child, parent = rebuild(deep, birth["id"]), rebuild(deep, birth["parent"])
+        assert birth["cause"] == "mutant"
+        assert (child != parent).mean() > 0.99
+        assert 0.009 < (child - parent).std() < 0.011
+
+
+@pytest.mark.parametrize(("organism", "world"), [(-1, 0), (10**9, 0), (0, 1), (0, -1)])
+def test_somebody_who_never_lived(deep: Path, organism: int, world: int) -> None:
+    with pytest.raises(InputError, match=f"no organism {organism} was born in world {world}"):
+        primordia.Run(deep).rebuild(organism, world)
+
+
+def test_genomes_that_came_to_infinity(tmp_path: Path) -> None:
+    """They cannot live, but they were born."""
+    run = tmp_path / "run"
+    values = {**MEADOW, **LIVES, "mutation": {"scale": 3e38}, "stop": {"births": 200}}
+    loop.start(config(values), run)
+    births = primordia.Run(run).table("births").to_pylist()
+    mutants = [birth["id"] for birth in births if birth["cause"] == "mutant"]
+    assert not all(np.isfinite(rebuild(run, organism)).all() for organism in mutants[:20])

@@ -1,0 +1,109 @@
+"""Lines of descent as the live view follows them are what their rule says."""
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from primordia.engine.engine import Engine
+from primordia.history.lines import DIES, NOBODY, Lines, Turnover, turnovers
+from tests import worlds
+
+Event = tuple[int, int, int]
+"""tick, birth number, parent or DIES"""
+
+
+@st.composite
+def histories(draw: st.DrawFn) -> list[Event]:
+    """What may happen in a small world: it begins and begins again with one founder or several."""
+    events: list[Event] = []
+    living: list[int] = []
+    born = 0
+    for tick in range(draw(st.integers(1, 40))):
+        parents = draw(st.lists(st.sampled_from(living), max_size=3)) if living else []
+        dying = draw(st.lists(st.sampled_from(living), unique=True)) if living else []
+        left = [each for each in living if each not in dying]
+        founders = 0 if left or parents else draw(st.integers(1, 3))
+        for parent in [*parents, *[NOBODY] * founders]:
+            events.append((tick, born, parent))
+            left.append(born)
+            born += 1
+        events += [(tick, number, DIES) for number in sorted(dying)]
+        living = left
+    return events
+
+
+def followed(events: list[Event], lines: Lines) -> Lines:
+    """Through a turnover, as the view does."""
+    births = [event for event in events if event[2] != DIES]
+    deaths = [event for event in events if event[2] == DIES]
+    ticks, born, parent = np.array(births, np.int64).reshape(-1, 3).T
+    dead_at, dead, _ = np.array(deaths, np.int64).reshape(-1, 3).T
+    lines.follow(Turnover(born, parent, ticks, dead, dead_at))
+    return lines
+
+
+def by_the_rule(events: list[Event], crowd: int) -> tuple[dict[int, int], int]:
+    """The line of each of the living, and takeovers: walk up from everybody after every tick."""
+    parent = {number: of for _, number, of in events if of != DIES}
+    living: set[int] = set()
+    roots: set[int] = set()
+    takeovers, young = 0, True
+    for tick in sorted({tick for tick, _, _ in events}):
+        now = [event for event in events if event[0] == tick]
+        founders = {number for _, number, of in now if of == NOBODY}
+        living |= {number for _, number, of in now if of != DIES}
+        living -= {number for _, number, of in now if of == DIES}
+        roots |= founders
+        young |= bool(founders)
+        lines = {_root(number, parent, roots) for number in living}
+        if len(living) >= crowd if young else len(lines) == 1:
+            takeovers += not young
+            roots, young = set(living), False
+    return {number: _root(number, parent, roots) for number in living}, takeovers
+
+
+def _root(number: int, parent: dict[int, int], roots: set[int]) -> int:
+    while number not in roots:
+        number = parent[number]
+    return number
+
+
+@given(histories(), st.lists(st.integers(0, 40), max_size=4), st.integers(1, 4))
+def test_lines_follow_the_rule_however_a_history_is_cut(
+    events: list[Event], cuts: list[int], crowd: int
+) -> None:
+    lines, since = Lines([], crowd), -1
+    for cut in [*sorted(cuts), 40]:
+        followed([event for event in events if since < event[0] <= cut], lines)
+        since = cut
+    assert (lines.of, len(lines.takeovers)) == by_the_rule(events, crowd)
+
+
+def test_each_of_those_met_alive_is_a_line() -> None:
+    lines = followed([(9, 7, 3), (9, 3, DIES), (12, 8, 7)], Lines([3, 5], crowd=2))
+    assert lines.of == {5: 5, 7: 3, 8: 3}
+    followed([(13, 5, DIES)], lines)
+    assert lines.of == {7: 7, 8: 8}
+    assert lines.takeovers == [13]
+
+
+def test_a_founder_after_extinction_takes_nothing_over() -> None:
+    events = [(0, 0, NOBODY), (3, 1, 0), (5, 2, NOBODY), (5, 0, DIES), (5, 1, DIES), (6, 3, 2)]
+    assert followed(events[:2], Lines([], crowd=2)).of == {0: 0, 1: 1}
+    assert followed(events[:2], Lines([], crowd=3)).of == {0: 0, 1: 0}
+    lines = followed(events, Lines([], crowd=3))
+    assert lines.of == {2: 2, 3: 2}
+    assert lines.takeovers == []
+
+
+def test_chunks_of_any_length_give_the_same_lines() -> None:
+    found, meadow = [], worlds.config(worlds.MEADOW, hazard=0.02, metabolism=None)
+    for ticks in (7, 2**20):
+        made = Engine(meadow)
+        lines, limits = Lines([], crowd=8), made.limits({"ticks": 5000})
+        while made.any_running(limits):
+            made._ticks = ticks
+            lines.follow(turnovers(made.advance(limits), 16, 1)[0])
+        found.append((lines.of, lines.takeovers))
+    assert found[0] == found[1]
+    assert found[0][1]

@@ -1,0 +1,274 @@
+"""Seasons: changes come when they should, where they should, and by what they should."""
+
+from pathlib import Path
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from pydantic import TypeAdapter, ValidationError
+
+import primordia
+from primordia.habitats.contract import Habitat
+from primordia.law.genesis import begin
+from primordia.law.law import Law
+from primordia.law.metabolism import break_even
+from primordia.law.seasons import Ratchet, Season, turn
+from tests.chronicle import History
+from tests.worlds import MEADOW, MILL, Lived, config
+
+SMALL = {"brain": {"kind": "feed-forward", "hidden": 1}}
+
+
+def schedule(setting: str, at: int, value: float) -> dict[str, Any]:
+    return {"kind": "schedule", "setting": setting, "at": at, "value": value}
+
+
+def ratchet(setting: str, when: str, above: float, factor: float, every: int) -> dict[str, Any]:
+    return {
+        "kind": "ratchet",
+        "setting": setting,
+        "when": when,
+        "above": above,
+        "factor": factor,
+        "every": every,
+    }
+
+
+def test_a_schedule_is_felt_first_in_the_tick_after() -> None:
+    """One organism at a time until 80, with 1000 units; the last then fills the world."""
+    seasons = [
+        schedule("metabolism.drain", 41, 5000.0),  # dies in 42, the next in 43
+        schedule("metabolism.drain", 43, 0.0),
+        schedule("hazard", 60, 1.0),  # dies in 61 and in 62
+        schedule("hazard", 62, 0.0),
+        schedule("replication", 80, 1.0),  # a child in 81
+    ]
+    values = {"metabolism": {"store": 1000.0}, "replication": 0.0, "seasons": seasons}
+    rule = {"placement": {"rule": "empty-only"}}
+    run = Lived(config(MEADOW, **SMALL, **values, **rule, sample_every=25), 100)
+    births, deaths, metrics = (run.table(name) for name in ("births", "deaths", "metrics"))
+    assert deaths["tick"].tolist() == [42, 43, 61, 62]
+    assert deaths["cause"].tolist() == ["starved"] * 2 + ["hazard"] * 2
+    assert births["tick"][:7].tolist() == [0, 42, 43, 61, 62, 81, 82]
+    assert births["tick"][-1] < 95
+    assert metrics["tick"].tolist() == [25, 41, 43, 50, 60, 62, 75, 80, 100]
+    drain, hazard = metrics["metabolism.drain"].tolist(), metrics["hazard"].tolist()
+    assert drain == [1, 5000, 0, 0, 0, 0, 0, 0, 0]
+    assert hazard == [0, 0, 0, 0, 1, 0, 0, 0, 0]
+    assert metrics["replication"].tolist() == [0] * 7 + [1, 1]
+    assert metrics["population"].tolist() == [1] * 8 + [16]
+
+
+RATCHETS = [
+    ratchet("metabolism.gain", "mean_age", 12.0, 0.93, 20),
+    ratchet("replication", "saturation", 0.1, 0.9, 30),
+    ratchet("mutation.scale", "food", 0.12, 1.25, 40),
+    ratchet("mutation.blocks.output.scale", "mean_age", 8.0, 0.5, 50),
+    schedule("metabolism.gain", 205, 2.5),
+]
+SETTINGS = {
+    "metabolism.gain": "metabolism.gain",
+    "replication": "replication",
+    "mutation.scale": "mutation.input.scale",
+    "mutation.blocks.output.scale": "mutation.output.scale",
+}
+"""A season's setting -> the column of the metrics that shows it."""
+
+
+@pytest.fixture(scope="module")
+def mills() -> Lived:
+    """MILL with RATCHETS; output has a scale of its own, which mutation.scale does not govern."""
+    mutation = {**MILL["mutation"], "blocks": {"output": {"scale": 0.1}}}
+    values = {"seeds": 3, "sample_every": 10, "replication": 0.1, "cells": 12}
+    return Lived(config(MILL, **values, mutation=mutation, seasons=RATCHETS), 600)
+
+
+def of_world(run: Lived, world: int) -> dict[str, np.ndarray]:
+    metrics = run.table("metrics")
+    return {column: values[metrics["world"] == world] for column, values in metrics.items()}
+
+
+def expected_climate(rows: dict[str, np.ndarray]) -> list[dict[str, np.float32]]:
+    """What the seasons make of the populations seen in the rows, which include every look."""
+    now = {
+        "metabolism.gain": np.float32(3.0),
+        "replication": np.float32(0.1),
+        "mutation.scale": np.float32(0.2),
+        "mutation.blocks.output.scale": np.float32(0.1),
+    }
+    last = dict.fromkeys(range(len(RATCHETS)), (0.0, 0))
+    climates = []
+    for i, tick in enumerate(rows["tick"]):
+        for s, season in enumerate(RATCHETS):
+            if season["kind"] == "schedule":
+                if tick == season["at"]:
+                    now[season["setting"]] = np.float32(season["value"])
+                continue
+            if tick % season["every"]:
+                continue
+            food, lived = float(rows["food"][i]), int(rows["organism_ticks"][i])
+            seen = {
+                "mean_age": rows["mean_age"][i],
+                "saturation": rows["population"][i] / 12,
+                "food": (food - last[s][0]) / (lived - last[s][1]),
+            }[season["when"]]
+            last[s] = food, lived
+            if seen > season["above"]:
+                now[season["setting"]] *= np.float32(season["factor"])
+        climates.append(dict(now))
+    return climates
+
+
+@pytest.mark.parametrize("world", range(3))
+def test_ratchets_turn_when_and_only_when_their_condition_holds(mills: Lived, world: int) -> None:
+    rows = of_world(mills, world)
+    ticks = [*range(10, 601, 10), 205]
+    assert rows["tick"].tolist() == sorted(ticks)
+    expected = expected_climate(rows)
+    for setting, column in SETTINGS.items():
+        found = rows[column].astype(np.float32)
+        np.testing.assert_array_equal(found, [row[setting] for row in expected], err_msg=column)
+    np.testing.assert_array_equal(rows["mutation.recurrent.scale"], rows["mutation.input.scale"])
+    for column in ("hazard", "metabolism.store", "mutation.input.probability", "metabolism.cap"):
+        assert len(set(rows[column].tolist())) == 1
+
+
+def test_ratchets_turned_for_each_world_by_itself(mills: Lived) -> None:
+    """That there was something to see in the test above."""
+    for setting, column in SETTINGS.items():
+        series = [tuple(of_world(mills, world)[column].tolist()) for world in range(3)]
+        assert all(len(set(each)) > 1 for each in series), setting
+    looks = [season for season in RATCHETS if season["kind"] == "ratchet"]
+    for season in looks[:3]:
+        column = SETTINGS[season["setting"]]
+        turned = {len(set(of_world(mills, world)[column].tolist())) for world in range(3)}
+        assert max(turned) < 600 // season["every"] + 1, "always turned: nothing was decided"
+    series = [tuple(of_world(mills, w)[c].tolist() for c in SETTINGS.values()) for w in range(3)]
+    assert series[0] != series[1] != series[2] != series[0]
+
+
+@pytest.mark.parametrize("world", range(3))
+def test_what_ratchets_look_at_is_what_the_records_say(mills: Lived, world: int) -> None:
+    rows, history = of_world(mills, world), History(mills, world)
+    for i, tick in enumerate(rows["tick"]):
+        living = [
+            life
+            for life in history.lives
+            if life.born <= tick and (life.died is None or life.died > tick)
+        ]
+        assert rows["population"][i] == len(living)
+        ages = [int(tick) - life.born for life in living]
+        assert rows["mean_age"][i] == pytest.approx(np.mean(ages))
+        assert rows["oldest_age"][i] == max(ages)
+        lived = sum(
+            min(life.died or tick, tick) - life.born for life in history.lives if life.born <= tick
+        )
+        assert rows["organism_ticks"][i] == lived
+    eaten = sum(life.food for life in history.dead)
+    organisms = mills.engine.state.world.organisms
+    mine = np.asarray(organisms.alive) & (np.arange(36) // 12 == world)
+    eaten += np.asarray(organisms.eaten)[mine].sum() / 1024
+    assert rows["food"][-1] == eaten
+
+
+def test_a_blocks_own_scale_changes_that_block_only() -> None:
+    """Nobody dies and everybody mutates, so children can be compared with their parents."""
+    last = 40
+    values = {"cells": 128, "replication": 0.3, "placement": {"topology": "well-mixed"}}
+    mutation = {"probability": 1.0, "scale": 0.1, "blocks": {"output": {"scale": 0.2}}}
+    seasons = [
+        schedule("mutation.blocks.recurrent.scale", 8, 0.0),
+        schedule("mutation.scale", 13, 0.0),
+    ]
+    run = Lived(config(MEADOW, **values, mutation=mutation, seasons=seasons), last)
+    births, genome = run.table("births"), run.engine.state.world.organisms.genome
+    assert len(births["id"]) > 100
+    cell_of = dict(zip(births["id"].tolist(), births["cell"].tolist(), strict=True))
+    children = births["cell"][1:]
+    parents = [cell_of[int(number)] for number in births["parent"][1:]]
+    when = births["tick"][1:]
+    until = {"input": 13, "recurrent": 8, "output": last}
+    for block, scale in {"input": 0.1, "recurrent": 0.1, "output": 0.2}.items():
+        flat = np.asarray(genome[block]).reshape(128, -1)
+        change = flat[children] - flat[parents]
+        early = when <= until[block]
+        assert change[early].std() == pytest.approx(scale, rel=5 / np.sqrt(2 * change[early].size))
+        assert not change[~early].any()
+        assert early.sum() > 5
+    metrics = run.table("metrics")
+    assert metrics["tick"].tolist() == [8, 13]
+    shown = [metrics[f"mutation.{block}.scale"].tolist() for block in until]
+    np.testing.assert_array_equal(np.float32(shown), np.float32([[0.1, 0], [0, 0], [0.2, 0.2]]))
+
+
+def law_of(seasons: list[dict[str, Any]]) -> tuple[Law, Habitat]:
+    made = config(MEADOW, seeds=2, seasons=seasons, metabolism={"store": 10.0})
+    habitat = made.build_habitat()
+    return made.build_law(habitat), habitat
+
+
+def test_two_ratchets_that_are_alike_both_turn() -> None:
+    """With one look each; neither keeps the other from going on."""
+    twin = ratchet("metabolism.gain", "saturation", 0.5, 0.5, 10)
+    law, _ = law_of([twin, twin])
+    world = begin(law, [1, 2])
+    full = world.organisms.alive.at[:16].set(True)
+    looks = world.worlds.looks._replace(wait=jnp.zeros((2, 2), jnp.int32))
+    world = world._replace(
+        organisms=world.organisms._replace(alive=full), worlds=world.worlds._replace(looks=looks)
+    )
+    worlds, changed = turn(law.seasons, law.columns, world, jnp.ones(2, bool))
+    assert changed.tolist() == [True, False]
+    assert worlds.climate.metabolism.gain.tolist() == [0.25, 1.0]
+    assert worlds.looks.wait.tolist() == [[10, 10], [10, 10]], "a look that is not over never ends"
+
+
+def test_a_world_that_has_stopped_has_no_seasons() -> None:
+    law, _ = law_of(
+        [ratchet("replication", "saturation", 0.0, 0.5, 10), schedule("hazard", 7, 0.5)]
+    )
+    world = begin(law, [1, 2], tick=7)
+    looks = world.worlds.looks._replace(wait=jnp.zeros((2, 1), jnp.int32))
+    alive = jnp.ones_like(world.organisms.alive)
+    world = world._replace(
+        organisms=world.organisms._replace(alive=alive), worlds=world.worlds._replace(looks=looks)
+    )
+    worlds, changed = turn(law.seasons, law.columns, world, jnp.array([True, False]))
+    assert changed.tolist() == [True, False]
+    assert worlds.climate.hazard.tolist() == [0.5, 0.0]
+    np.testing.assert_array_equal(worlds.climate.replication, np.float32([0.025, 0.05]))
+    assert worlds.looks.wait.tolist() == [[10], [0]]
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"setting": "metabolism.speed"},
+        {"setting": "cells"},
+        {"setting": "mutation.founder_scale"},
+        {"when": "energy"},
+        {"every": 0},
+        {"factor": 0.0},
+        {"above": -1.0},
+        {"kind": "never"},
+    ],
+)
+def test_seasons_that_make_no_sense_are_refused(change: dict[str, Any]) -> None:
+    good = ratchet("replication", "mean_age", 1.0, 0.5, 10)
+    season = TypeAdapter(Season)
+    assert isinstance(season.validate_python(good), Ratchet)
+    with pytest.raises(ValidationError):
+        season.validate_python({**good, **change})
+
+
+def test_break_even_is_told_as_the_world_stands_now(tmp_path: Path) -> None:
+    """Food that keeps energy where it is: drain over gain, by the tick and by the second."""
+    season = {"kind": "schedule", "setting": "metabolism.gain", "at": 20, "value": 0.5}
+    rates = {"store": 100.0, "drain": 2.0, "gain": 4.0}
+    settings = {"metabolism": rates, "seasons": [season], "cells": 4}
+    run = primordia.run("CartPole-survival", tmp_path / "run", **settings, stop={"ticks": 10})
+    assert run.info()["break_even"] == {"food_per_tick": 0.5, "food_per_second": 25.0}
+    run.resume(ticks=30)
+    assert run.info()["break_even"] == {"food_per_tick": 4.0, "food_per_second": 200.0}
+    assert break_even(2.0, 0.0) is None

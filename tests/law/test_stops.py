@@ -1,0 +1,65 @@
+"""When a world is saturated, and when it stops."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from primordia.random.wide import to_host
+from tests.chronicle import History
+from tests.worlds import MEADOW, Lived, config
+
+CALM = {
+    "cells": 12,
+    "seeds": 4,
+    "brain": {"kind": "feed-forward", "hidden": 1},
+    "replication": 0.05,
+    "hazard": 0.002,
+    "saturation_ticks": 40,
+}
+
+
+@pytest.fixture(scope="module")
+def calm() -> list[History]:
+    run = Lived(config(MEADOW, **CALM), 3000)
+    return [History(run, world) for world in range(4)]
+
+
+def test_saturation_is_noted_when_a_full_world_was_calm_for_long_enough(
+    calm: list[History],
+) -> None:
+    worlds = calm[0].lived.engine.state.world.worlds
+    expected = [history.saturation() for history in calm]
+    assert None not in expected
+    assert len(set(expected)) > 1
+    assert any(len(history.dead) for history in calm)
+    assert any(history.calm_but_not_full() for history in calm)
+    assert to_host(worlds.saturated).tolist() == [tick for tick, _ in expected]
+    assert to_host(worlds.saturated_births).tolist() == [births for _, births in expected]
+
+
+def prefix(table: dict[str, np.ndarray], world: int, last: int) -> dict[str, list]:
+    mine = (table["world"] == world) & (table["tick"] <= last)
+    return {column: values[mine].tolist() for column, values in table.items()}
+
+
+@pytest.mark.parametrize("stop", [{"until": "saturation"}, {"births": 20}])
+def test_each_world_stops_in_its_own_tick(calm: list[History], stop: dict[str, Any]) -> None:
+    run = Lived(config(MEADOW, **CALM), 3000, **stop)
+    worlds = run.engine.state.world.worlds
+    for world, history in enumerate(calm):
+        last = history.lives[19].born if "births" in stop else history.saturation()[0]
+        assert to_host(worlds.tick)[world] == last
+        History(run, world)
+        for name in ("births", "deaths"):
+            free = prefix(history.lived.table(name), world, last)
+            stopped = prefix(run.table(name), world, 3000)
+            np.testing.assert_equal(stopped, free)
+    assert len(set(to_host(worlds.tick).tolist())) > 1
+
+
+def test_a_limit_of_ticks_is_exact() -> None:
+    run = Lived(config(MEADOW, **CALM), 123)
+    assert to_host(run.engine.state.world.worlds.tick).tolist() == [123] * 4
+    run.on(124)
+    assert to_host(run.engine.state.world.worlds.tick).tolist() == [124] * 4

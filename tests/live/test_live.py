@@ -1,0 +1,265 @@
+"""The live view: what is drawn, in terminals of any size; plain lines elsewhere; Ctrl-C."""
+
+import io
+import json
+import os
+import pty
+import re
+import select
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from rich.console import Console, ConsoleDimensions
+
+from primordia.engine.state import Limits, State
+from primordia.law.world import World
+from primordia.live import view as live
+from primordia.live.census import Census, Pace
+from primordia.live.paint import EMPTY, Cells, Row, field, skyline, strip
+from primordia.live.panel import duration, short
+from primordia.random.wide import Wide, wide
+from primordia.runs import loop
+from tests import commands
+from tests.commands import COMMAND, environment, here
+from tests.worlds import MEADOW, config
+
+# What is drawn.
+
+
+def text(rows: list[Row]) -> list[str]:
+    return ["".join(segment.text for segment in row) for row in rows]
+
+
+def cells(line: list[int], ticks: list[int]) -> Cells:
+    return Cells.of(np.array(line), np.array(ticks), full=1000)
+
+
+def test_bars_grow_with_age_and_empty_cells_are_dots() -> None:
+    some = cells([4, 4, EMPTY, 9, 9], [0, 30, 0, 1000, 10**9])
+    assert text(skyline(some, wide=2, tall=2, letters=False)) == ["      █ █ ", "▁ █ · █ █ "]
+    assert text(skyline(some, wide=1, tall=1, letters=True)) == ["▁▄ ▇▇", "ee·jj"]
+    assert text([strip(some, letters=False)]) == ["▁▄·▇▇"]
+    assert text([strip(some, letters=True)]) == ["ee·JJ"]
+
+
+def test_each_line_has_a_colour_of_its_own() -> None:
+    first, second, third = strip(cells([0, 1, 0], [9, 9, 9]), letters=False)
+    assert first.style == third.style != second.style
+
+
+def test_a_torus_is_a_picture_two_rows_to_a_line() -> None:
+    some = cells([1, 1, 2, 2, 3, EMPTY], [1000] * 6)
+    rows = field(some, columns=2, scale=1, letters=False)
+    assert text(rows) == ["▀▀", "▀▀"]
+    assert [len(row) for row in rows] == [1, 2], "a segment for each stretch of one style"
+    assert len(field(some, columns=2, scale=4, letters=False)) == 6
+    assert text(field(some, columns=2, scale=1, letters=True)) == ["BB", "CC", "D·"]
+
+
+def test_numbers_are_short() -> None:
+    assert [short(x) for x in (None, 0, 999, 1500, 1.234e6, 4.56e8)] == [
+        "-", "0", "999", "1.5 k", "1.2 M", "456 M",
+    ]  # fmt: skip
+    assert [duration(x) for x in (0.4, 75, 3725)] == ["0 s", "1 min 15 s", "1 h 2 min"]
+
+
+# The view as a whole.
+
+WORLDS: dict[str, dict[str, Any]] = {
+    "ring": {"cells": 30},
+    "torus": {"cells": 48, "placement": {"topology": "torus8"}},
+    "worlds": {"cells": 20, "seeds": 30},
+    "big": {"cells": 17_000, "genesis": "fill"},
+}
+
+
+def meadow(name: str) -> loop.Engine:
+    return loop.Engine(config(MEADOW, hazard=0.02, metabolism=None, **WORLDS[name]))
+
+
+@pytest.fixture(scope="module", params=WORLDS)
+def running(request: pytest.FixtureRequest) -> tuple[str, loop.Engine]:
+    """A world of each shape, on its way; most only made to look so, which spares compiling."""
+    name, made = request.param, meadow(request.param)
+    if name == "ring":
+        made.advance(made.limits({}))
+    else:
+        look_alive(made)
+    return name, made
+
+
+def look_alive(made: loop.Engine) -> None:
+    """Pose four fifths of the cells as organisms of many ages, to whom nothing happens."""
+    world, bodies = made.state
+    cells = np.arange(len(world.organisms.alive), dtype=np.uint32)
+    number, born = (Wide(jnp.zeros_like(cells), jnp.asarray(n)) for n in (cells, cells % 999))
+    organisms = world.organisms._replace(alive=cells % 5 > 0, number=number, born=born)
+    thousand = wide([1000] * made.law.worlds)
+    worlds = world.worlds._replace(tick=thousand, births=thousand)
+    made.state = State(World(organisms, worlds), bodies)
+    made.advance = lambda _: made.events  # type: ignore[method-assign]
+
+
+def shown(made: loop.Engine, chunks: int = 2, **options: Any) -> tuple[str, list[str]]:
+    """What is written in a terminal, and the lines of the last frame."""
+    options = {"force_terminal": True, "color_system": "truecolor", **options}
+    console = Console(file=io.StringIO(), **options)
+    limits = made.limits({"ticks": 10**6})
+    with live.View(console) as view:
+        for _ in range(chunks):
+            made._ticks = 20
+            made.advance(limits)
+            view(loop.Status(made, 1.0, limits))
+    assert isinstance(console.file, io.StringIO)
+    written = console.file.getvalue()
+    frame = re.split(r"\x1b\[2K(?!\r?\x1b\[1A)", written)[-1]
+    return written, re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", frame).splitlines()
+
+
+@pytest.mark.parametrize(("width", "height"), [(80, 24), (40, 24), (200, 60), (20, 8), (3, 2)])
+def test_it_fits_any_terminal(running: tuple[str, loop.Engine], width: int, height: int) -> None:
+    for letters in (False, True):
+        _, frame = shown(running[1], width=width, height=height, no_color=letters)
+        assert 0 < len(frame) <= height
+        assert max(map(len, frame)) <= width
+
+
+def test_it_tells_what_is_going_on(running: tuple[str, loop.Engine]) -> None:
+    name, made = running
+    written, frame = shown(made, width=80, height=24)
+    text = "\n".join(frame)
+    assert "\x1b[38;2" in written
+    assert written.endswith("\x1b[?25h"), "the cursor is back"
+    census = Census.of(made.state.world)
+    for what in (f"{census.births.sum():,}", "died of", "oldest", "organism-ticks/s", "saturated"):
+        assert what in text
+    assert ("shown: the first" in text) == (name in ("worlds", "big"))
+    assert ("takeovers" in text) == (name in ("ring", "torus")), "only if all are followed"
+    colours = "branch of the founder" if name == "big" else "line of descent"
+    assert f"colour: {colours}" in text
+    assert int(made.state.world.organisms.alive.sum()) == census.alive.sum()
+
+
+def test_a_terminal_may_change_its_size(running: tuple[str, loop.Engine]) -> None:
+    made = running[1]
+    console = Console(file=io.StringIO(), force_terminal=True, width=80, height=10)
+    with live.View(console) as view:
+        for size in ((80, 10), (40, 30), (40, 60), (90, 12)):
+            console.size = ConsoleDimensions(*size)
+            made.advance(made.limits({}))
+            view(loop.Status(made, 1.0))
+            rows = text(view._frame(loop.Status(made, 1.0)))
+            assert len(rows) < size[1]
+            assert size[0] // 2 < max(map(len, rows))
+
+
+def test_without_colours_letters_tell_the_lines(running: tuple[str, loop.Engine]) -> None:
+    written, frame = shown(running[1], width=80, height=24, no_color=True)
+    assert not re.search(r"\x1b\[[0-9;]*[34]8;", written)
+    assert "letter: " in "\n".join(frame)
+    assert any(re.search(r"[a-zA-Z·]{8}|([a-z·] ){8}", line) for line in frame[1:])
+
+
+def test_who_is_followed_is_who_lives(running: tuple[str, loop.Engine]) -> None:
+    name, made = running
+    view = live.View(Console(file=io.StringIO(), force_terminal=True, width=80, height=24))
+    for _ in range(3):
+        made._ticks = 30
+        made.advance(made.limits({}))
+        view._follow(loop.Status(made, 1.0))
+    assert len(view._lines) == {"worlds": 24, "big": 0}.get(name, 1), "at most one for each row"
+    organisms, cells = made.state.world.organisms, made.law.cells
+    for world, lines in enumerate(view._lines):
+        here = slice(world * cells, (world + 1) * cells)
+        alive, number = np.asarray(organisms.alive)[here], np.asarray(organisms.number.lo)[here]
+        assert set(lines.of) == set(number[alive].tolist())
+
+
+def test_time_left_is_that_of_the_world_which_stops_last() -> None:
+    def census(tick: list[int], births: list[int]) -> Census:
+        each = np.zeros(2, np.int64)
+        return Census(
+            tick=np.array(tick), alive=each, births=np.array(births), deaths=each, calm=each,
+            extinctions=each, organism_ticks=10 * np.array(tick), saturated=np.array([-1, -1]),
+            mean_age=0.0, oldest=0,
+        )  # fmt: skip
+
+    def left(ticks: int, births: int) -> float | None:
+        saturation = jnp.bool_(False)
+        return pace.seconds_left(Limits(wide([ticks] * 2), wide([births] * 2), saturation))
+
+    pace, never = Pace(), 2**64 - 1
+    pace.see(10.0, census([0, 0], [10, 10]))
+    assert pace.organism_ticks() is None
+    assert left(500, never) is None
+    pace.see(12.0, census([100, 200], [20, 10]))
+    assert pace.organism_ticks() == 1500
+    assert left(500, never) == pytest.approx(8.0)
+    assert left(500, 40) == pytest.approx(4.0), "the second world comes to its 500 ticks in 3"
+    assert left(never, 40) is None, "the second world has no births"
+
+
+# Elsewhere than in a terminal.
+
+SMALL = ("CartPole-survival", "--cells", "8", "--hazard", "0.002", "--sample_every", "500")
+
+
+def test_plain_lines_where_there_is_no_terminal(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(live.Plain, "EVERY", 0.0)
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    done = here("run", *SMALL, "--ticks", 2000, "--out", tmp_path / "run")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "\x1b" not in done.stdout
+    assert re.search(r"^ +\d+\.\d s  tick \d+  alive \d  births \d+  \S.*/s$", done.stdout, re.M)
+    assert done.stdout.endswith(f"primordia replay {tmp_path / 'run'}\n")
+    quiet = here("resume", tmp_path / "run", "--ticks", 3000, "--until", "none", "--quiet")
+    assert (quiet.stdout, quiet.stderr) == ("", "")
+
+
+# A terminal, a process, and Ctrl-C.
+
+
+@pytest.fixture
+def terminal() -> Iterator[tuple[int, int]]:
+    """A pseudo-terminal of 80 x 24: our end, and the program's."""
+    ours, theirs = pty.openpty()
+    yield ours, theirs
+    for end in (ours, theirs):
+        os.close(end)
+
+
+def read_until(end: int, *parts: str, seconds: float = 60.0) -> str:
+    """What is written until all parts are in it."""
+    read = ""
+    while not all(part in read for part in parts):
+        assert select.select([end], [], [], seconds)[0], f"nothing more after {read[-500:]!r}"
+        read += os.read(end, 65536).decode(errors="replace")
+    return read
+
+
+def test_a_terminal_shows_the_strip_and_control_c_saves(
+    terminal: tuple[int, int], tmp_path: Path
+) -> None:
+    ours, theirs = terminal
+    words = (*SMALL, "--until", "none", "--out", str(tmp_path / "run"))
+    settings = {"TERM": "xterm-256color", "COLUMNS": "80", "LINES": "24", "COLORTERM": "truecolor"}
+    variables = environment(commands.CACHE) | settings
+    variables.pop("NO_COLOR", None)
+    process = subprocess.Popen(
+        ["sh", "-c", 'exec <"$0" >"$0" 2>&1 "$@"', os.ttyname(theirs), *COMMAND, "run", *words],
+        env=variables,
+        start_new_session=True,  # so that the terminal it opens is the one that Ctrl-C comes from
+    )
+    read_until(ours, "\x1b[?25l", "█", "line of descent", "takeovers", "\x1b[38;2")
+    os.write(ours, b"\x03")
+    read_until(ours, "\x1b[?25h", "Stopped and saved. Go on with: primordia resume")
+    assert process.wait(timeout=60) == 130
+    found = json.loads(here("info", tmp_path / "run", "--json").stdout)
+    assert found["births"] > 0

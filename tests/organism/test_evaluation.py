@@ -1,0 +1,139 @@
+"""An organism plays by itself: its lifespan, whole games, without seeing, and what the command says."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import primordia
+from primordia.errors import InputError
+from primordia.organism import games
+from primordia.organism.evaluation import evaluate
+from primordia.organism.organism import Organism
+from primordia.runs import loop
+from primordia.runs.lives import lives
+from tests.commands import complains, here
+from tests.worlds import MEADOW, config
+
+
+@pytest.fixture(scope="module")
+def pong(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    pytest.importorskip("ale_py")
+    run = tmp_path_factory.mktemp("pong") / "run"
+    settings = {"cells": 6, "genesis": "fill", "mutation": {"founder_scale": 1.0}}
+    return primordia.run(
+        "Pong-survival", run, stop={"ticks": 400, "until": "none"}, **settings
+    ).path
+
+
+@pytest.fixture(scope="module")
+def poles(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    run = tmp_path_factory.mktemp("poles") / "run"
+    return primordia.run("CartPole-survival", run, stop={"ticks": 3000, "until": "none"}).path
+
+
+def test_where_nothing_is_random_a_life_is_lived_again(pong: Path) -> None:
+    """To the tick, and one game is enough to know."""
+    everyone = lives(pong)
+    died = np.flatnonzero(everyone.died)[:4]
+    assert len(died) == 4
+    played = primordia.load(pong).evaluate(Organism(pong, everyone, row) for row in died)
+    for row, found in zip(died, played, strict=True):
+        assert (found.games, found.distinct) == (1, 1)
+        assert found.lived.ticks[0] == everyone.lifespan[row]
+        assert found.whole is not None
+        assert found.whole.ticks[0] > everyone.lifespan[row]
+        assert found.whole.food[0] <= -20
+
+
+@pytest.mark.parametrize("senses", ["live", "frozen", "ignored"])
+def test_side_by_side_each_plays_as_by_itself(
+    poles: Path, monkeypatch: pytest.MonkeyPatch, senses: Any
+) -> None:
+    """However many there are, and however few find room at once."""
+    some = [(0, 0), (7, 0), (3, 0), (11, 0), (7, 0)]
+    monkeypatch.setattr(games, "AT_ONCE", 6)
+    together = evaluate(poles, some, games=3, ticks=300, senses=senses)
+    for each, found in zip(some, together, strict=True):
+        (alone,) = evaluate(poles, [each], games=3, ticks=300, senses=senses)
+        assert found.lived.ticks.tolist() == alone.lived.ticks.tolist()
+        assert found.lived.course.tolist() == alone.lived.course.tolist()
+        assert np.array_equal(found.lived.actions[0], alone.lived.actions[0])
+        assert found.to_dict() == alone.to_dict()
+    assert len({found.lived.course[0] for found in together}) == 4
+    assert evaluate(poles, []) == []
+
+
+def test_doing_it_again_blindly_comes_to_the_same(pong: Path) -> None:
+    """In the same game, for as long as it lives; with buttons that stick it does not."""
+    oldest = primordia.load(pong).oldest()
+    live, ignored = oldest.evaluate(), oldest.evaluate(senses="ignored")
+    assert live.lived.ticks == ignored.lived.ticks == oldest.age
+    assert live.lived.course == ignored.lived.course
+    assert np.array_equal(live.lived.actions[0], ignored.lived.actions[0])
+    assert len(live.lived.actions[0]) == oldest.age
+    sticky = oldest.evaluate(senses="ignored", games=3, sticky=0.5, noops=30)
+    assert sticky.distinct == 3
+
+
+def test_frozen_senses_are_those_of_the_start(tmp_path: Path) -> None:
+    """One without memory who sees the clock stand still does the same thing over and over."""
+    habitat, brain = {"name": "tests.toys:Watch"}, {"kind": "feed-forward"}
+    settings = {**MEADOW, "stop": {"ticks": 5}, "habitat": habitat, "brain": brain}
+    loop.start(config(settings), tmp_path / "run")
+    (live,) = evaluate(tmp_path / "run", [(0, 0)], ticks=20)
+    (frozen,) = evaluate(tmp_path / "run", [(0, 0)], ticks=20, senses="frozen")
+    assert live.lived.food[0] != frozen.lived.food[0]
+    always = float(frozen.lived.actions[0][0, 0])
+    assert frozen.lived.food[0] == pytest.approx(20 * always, rel=1e-5)
+
+
+def test_games_begin_at_random_where_lives_do(poles: Path) -> None:
+    found = primordia.load(poles).oldest().evaluate(games=12, ticks=2000)
+    assert (found.games, found.distinct) == (12, 12)
+    assert found.whole is None
+    assert (found.lived.over | (found.lived.ticks == 2000)).all()
+    again = primordia.load(poles).oldest().evaluate(games=12, ticks=2000)
+    np.testing.assert_array_equal(found.lived.ticks, again.lived.ticks)
+
+
+def test_it_starves_by_its_tasks_metabolism(tmp_path: Path) -> None:
+    hungry = {"metabolism": {"store": 30.0, "gain": 0.5}, "stop": {"ticks": 10}}
+    loop.start(
+        config({**MEADOW, **hungry, "habitat": {**MEADOW["habitat"], "food": 1.0}}),
+        tmp_path / "run",
+    )
+    (found,) = evaluate(tmp_path / "run", [(0, 0)], games=2)
+    assert found.lived.ticks.tolist() == [60, 60]
+    (cut,) = evaluate(tmp_path / "run", [(0, 0)], games=2, ticks=59)
+    assert not cut.lived.over.any()
+    assert cut.to_dict()["alive_when_cut"] == 2
+
+
+def test_what_the_command_says(pong: Path) -> None:
+    one = here("evaluate", pong).stdout
+    assert "1 distinct game; nothing is drawn at random" in one
+    many = here("evaluate", pong, "--episodes", "3", "--sticky", "0.25", "--ticks", "300").stdout
+    assert "3 games, sticky 0.25" in many
+    assert "3 still going on when cut" in many
+    told = json.loads(here("evaluate", pong, "--freeze-senses", "--json").stdout)
+    assert (told["games"], told["senses"]) == (1, "frozen")
+    assert set(told["score"]) == {"q1", "median", "q3", "maximum"}
+
+
+def test_bad_input(pong: Path, poles: Path) -> None:
+    for words, part in (
+        ((poles, "--sticky", "0.1"), "no setting 'habitat.sticky'"),
+        ((pong, "--sticky", "1.5"), "sticky"),
+        ((pong, "--open-loop", "--freeze-senses"), "one or the other"),
+        ((pong, "--episodes", "0"), "one game or more"),
+        ((pong, "--organism", "9999"), "no organism 9999"),
+    ):
+        complains(here("evaluate", *words), 2, part)
+
+
+def test_the_brain_must_fit(pong: Path) -> None:
+    with pytest.raises(InputError, match=r"3 senses and 2 actions; .* made for 3 and 6"):
+        primordia.load(pong).oldest().evaluate(actions="NOOP UP")

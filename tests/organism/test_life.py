@@ -1,0 +1,304 @@
+"""Lives lived again, seen on video, and what an organism is asked: all from its records."""
+
+from pathlib import Path
+
+import av
+import numpy as np
+import pytest
+from PIL import Image
+
+import primordia
+from primordia.engine.state import named_leaves
+from primordia.errors import InputError, Trouble
+from primordia.habitats.cartpole.habitat import CartPole
+from primordia.law.metabolism import ONE
+from primordia.law.world import Cause
+from primordia.organism import replay
+from primordia.organism.life.fused import Fused
+from primordia.organism.life.hosted import Hosted
+from primordia.organism.life.instant import Stretch
+from primordia.organism.life.life import Life
+from primordia.organism.organism import Organism
+from primordia.runs import checkpoint, loop
+from primordia.runs.lives import lives
+from tests.commands import complains, here
+from tests.toys import HOST_CARTPOLE, HostCartPole, Mirror
+from tests.worlds import MEADOW, MILL, config
+
+
+@pytest.fixture(scope="module")
+def mill(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Seasons that change the metabolism, a noisy motor, three worlds."""
+    run = tmp_path_factory.mktemp("mill") / "run"
+    loop.start(config({**MILL, "seeds": 3, "seed": 5, "stop": {"ticks": 700}}), run)
+    return run
+
+
+@pytest.fixture(scope="module")
+def mirror(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The same on the host."""
+    run = tmp_path_factory.mktemp("mirror") / "run"
+    habitat = {"name": "tests.toys:Mirror", "inner": "mill"}
+    changed = {"habitat": habitat, "seeds": 2, "seed": 5, "stop": {"ticks": 700}}
+    loop.start(config({**MILL, **changed}), run)
+    return run
+
+
+@pytest.fixture(scope="module")
+def poles(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    run = tmp_path_factory.mktemp("poles") / "run"
+    return primordia.run("CartPole-survival", run, stop={"ticks": 6000, "until": "none"}).path
+
+
+def at_the_end(run: Path, life: Life) -> dict[str, np.ndarray]:
+    """What the checkpoint holds of somebody alive."""
+    last, _ = checkpoint.newest(run)
+    assert last is not None
+    cell = life.world * life.config.cells + int(life.record.cell[0])
+    return {name: array[cell] for name, array in last.arrays().items() if len(array) > cell}
+
+
+def comes_out(life: Life) -> list[Stretch]:
+    """It lives again as recorded: to its death, or to the checkpoint's body and energy."""
+    seen = list(life.again())
+    last, hungry = seen[-1], life.law.metabolism is not None
+    assert last.tick[-1] == life.ends
+    assert sum(len(each.tick) for each in seen) == life.ends - life.begins
+    if life.cause is None:
+        stored = at_the_end(life.run, life)
+        names = [name for name in stored if name.startswith("bodies") and name != "bodies.senses"]
+        for name, (_, leaf) in zip(names, named_leaves({"bodies": last.bodies}), strict=True):
+            np.testing.assert_array_equal(leaf[-1], stored[name])
+        assert not hungry or last.energy[-1] * ONE == stored["world.organisms.energy"]
+    assert last.fatal[-1] == (life.cause is Cause.FATAL)
+    assert (last.energy[-1] <= 0) == (life.cause is Cause.STARVED)
+    assert all((each.energy[:-1] > 0).all() for each in seen)
+    return seen
+
+
+@pytest.mark.parametrize("which", ["mill", "poles", "mirror"])
+def test_the_living_come_to_where_they_are(
+    which: str, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Alone, and long after, to the last bit: bodies, energy, with noisy motors and seasons."""
+    monkeypatch.setattr(Fused, "TICKS", 512)
+    monkeypatch.setattr(Hosted, "TICKS", 20)
+    run = request.getfixturevalue(which)
+    everyone = lives(run)
+    alive = np.flatnonzero(~everyone.died & (everyone.lifespan > 0))
+    for row in alive[:: max(1, len(alive) // 6)]:
+        comes_out(Life.of(run, everyone.id[row], everyone.world[row]))
+
+
+def test_a_body_begins_as_it_was_born(tmp_path: Path) -> None:
+    """Also where compiled code rounds a product and a sum once, and each operation by itself would."""
+    full = {"genesis": "fill", "replication": 0.0, "cells": 32, "stop": {"ticks": 2}}
+    loop.start(config(MEADOW, habitat={"name": "tests.toys:Slope"}, **full), tmp_path / "run")
+    for row in range(32):
+        comes_out(Life.of(tmp_path / "run", row))
+
+
+@pytest.mark.parametrize("which", ["mill", "mirror"])
+def test_the_dead_die_when_they_died(which: str, request: pytest.FixtureRequest) -> None:
+    """Of starvation in the tick in which energy runs out, of their bodies when those fail."""
+    run = request.getfixturevalue(which)
+    everyone = lives(run)
+    for cause in (Cause.STARVED, Cause.FATAL):
+        rows = np.flatnonzero(everyone.cause == cause)[-5:]
+        assert len(rows)
+        for row in rows:
+            comes_out(Life.of(run, everyone.id[row], everyone.world[row]))
+
+
+@pytest.mark.parametrize("which", ["mill", "mirror"])
+def test_in_a_fork_an_older_life_goes_on_from_there(
+    which: str, request: pytest.FixtureRequest, tmp_path: Path
+) -> None:
+    """Also that of somebody born in the very tick, whose body still owes its shape to the old seed."""
+    run = request.getfixturevalue(which)
+    before = lives(run)
+    at = int(before.born[(before.born > 300) & (before.lifespan > 12)][0])
+    fork = primordia.load(run).fork(at, tmp_path / "fork", seed=9).path
+    everyone = lives(fork)
+    older = (everyone.born <= at) & (everyone.ended > at + 3)
+    newest = older & (everyone.born == at)
+    assert newest.any()
+    for row in [*np.flatnonzero(newest)[:1], *np.flatnonzero(older & ~newest)[:4]]:
+        life = Life.of(fork, everyone.id[row], everyone.world[row])
+        assert comes_out(life)[0].tick[0] == at + 1
+
+
+def test_bodies_that_cannot_be_saved_are_not_found_in_a_fork(
+    mirror: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fork = primordia.load(mirror).fork(300, tmp_path / "fork").path
+    everyone = lives(fork)
+    monkeypatch.setattr(Mirror, "exact", False, raising=False)
+    with pytest.raises(InputError, match="is older than the fork"):
+        Life.of(fork, everyone.id[0], everyone.world[0])
+
+
+@pytest.mark.parametrize("kind", ["Meadow", "Mirror"])
+def test_a_simulation_that_failed_may_have_called_it_death(kind: str, tmp_path: Path) -> None:
+    inner = {"inner": "meadow"} if kind == "Mirror" else {}
+    broken = {"name": f"tests.toys:{kind}", **inner, "lifespan": 9, "broken_at": 9}
+    loop.start(config(MEADOW, habitat=broken, stop={"ticks": 30}), tmp_path / "run")
+    everyone = lives(tmp_path / "run")
+    row = np.flatnonzero(everyone.cause == Cause.FAULT)[0]
+    (seen,) = Life.of(tmp_path / "run", everyone.id[row]).again()
+    assert len(seen.tick) == 9
+
+
+def test_a_habitat_on_the_host_is_closed(mirror: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Lived to the end or not; each life has a habitat to itself."""
+    closed: list[Mirror] = []
+    monkeypatch.setattr(Mirror, "close", lambda self: closed.append(self), raising=False)
+    monkeypatch.setattr(Hosted, "TICKS", 5)
+    life = Life.of(mirror, primordia.load(mirror).oldest().id)
+    one, other = life.again(), life.again()
+    first = next(other)
+    assert next(one).action.tobytes() == first.action.tobytes()
+    one.close()
+    assert len(closed) == 1
+    assert len(list(other)) == -(-(life.ends - life.begins) // 5) - 1
+    assert len(set(map(id, closed))) == 2
+
+
+def test_a_record_that_does_not_fit_is_noticed(
+    poles: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    everyone = lives(poles)
+    row = int(np.flatnonzero(everyone.died)[40])
+    life = Life.of(poles, int(everyone.id[row]))
+    life.record.ended[0] += 1
+    with pytest.raises(Trouble, match="did not live again as recorded"):
+        list(life.again())
+
+
+def test_a_policy_acts_as_the_organism_did(poles: Path) -> None:
+    organism = primordia.load(poles).oldest()
+    seen = next(Life.of(poles, organism.id).again())
+    policy = organism.policy()
+    assert [policy(each) for each in seen.senses[:200]] == seen.action[:200].tolist()
+    policy.reset()
+    assert policy(seen.senses[0]) == seen.action[0]
+
+
+def test_a_policy_of_continuous_actions(mill: Path) -> None:
+    policy = primordia.load(mill).policy()
+    action = policy(np.zeros(3))
+    assert isinstance(action, np.ndarray)
+    assert (action.shape, action.dtype) == ((2,), np.float32)
+
+
+def test_an_organism_tells_what_is_recorded(poles: Path) -> None:
+    run = primordia.load(poles)
+    births = run.table("births").to_pylist()
+    deaths = {row["id"]: row for row in run.table("deaths").to_pylist()}
+    everyone = run.lives()
+    by_id = {row["id"]: Organism(poles, everyone, everyone.row(row["id"])) for row in births}
+    for row in births[::40]:
+        organism = by_id[row["id"]]
+        assert (organism.parent, organism.cell, organism.born) == (
+            row["parent"], row["cell"], row["tick"])  # fmt: skip
+        died = deaths.get(row["id"])
+        assert organism.cause == (died["cause"] if died else None)
+        assert organism.age == (died["tick"] if died else 6000) - row["tick"]
+        line = organism.descent()
+        assert line[-1] == organism.id
+        assert by_id[line[0]].origin == "founder"
+        assert [by_id[child].parent for child in line[1:]] == line[:-1]
+    assert run.oldest().age == max(organism.age for organism in by_id.values())
+    assert run.organism(organism.id).descent() == organism.descent()
+
+
+def test_tables_as_arrow_pandas_and_numpy(poles: Path) -> None:
+    run = primordia.load(poles)
+    arrow, arrays = run.table("births"), run.arrays("births")
+    assert arrow.to_pandas()["tick"].tolist() == arrays["tick"].tolist()
+    assert arrays["cause"][0] == "founder"
+
+
+def frames(path: Path) -> list[Image.Image]:
+    with av.open(str(path)) as container:
+        return [frame.to_image() for frame in container.decode(video=0)]
+
+
+def test_a_short_life_on_video(poles: Path, tmp_path: Path) -> None:
+    everyone = lives(poles)
+    row = int(np.flatnonzero(everyone.died & (everyone.lifespan < 60))[0])
+    path = tmp_path / "life.mp4"
+    done = here("replay", poles, "--organism", everyone.id[row], "--out", path)
+    assert (done.returncode, done.stdout.strip()) == (0, str(path))
+    seen = frames(path)
+    assert len(seen) == everyone.lifespan[row] + 50  # its last picture stands for a second
+    assert seen[0].size == (640, 360)
+    assert seen[0].tobytes() != seen[-1].tobytes()
+
+
+def test_the_beginning_and_end_of_the_longest(poles: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Half a minute each; here less, for the tests' sake."""
+    assert replay.PART == 30
+    monkeypatch.setattr(replay, "PART", 4.0)
+    done = here("replay", poles)
+    assert done.returncode == 0, done.stderr
+    oldest = primordia.load(poles).oldest()
+    assert oldest.age > 3000
+    assert done.stdout.strip() == str(poles / "videos" / f"world0-organism{oldest.id}.mp4")
+    assert len(frames(Path(done.stdout.strip()))) == 200 + 50 + 200 + 50
+
+
+def test_a_part_as_a_gif(poles: Path, tmp_path: Path) -> None:
+    path = tmp_path / "life.gif"
+    done = here("replay", poles, "--from", 10, "--to", 49, "--out", path)
+    assert done.returncode == 0, done.stderr
+    with Image.open(path) as gif:
+        shown = sum(1 for _ in range(gif.n_frames))
+        assert gif.size == (320, 180)
+        assert 2 <= shown <= 20 + 25
+        total = 0
+        for number in range(gif.n_frames):
+            gif.seek(number)
+            total += gif.info["duration"]
+    assert total == (20 + 25) * 40
+
+
+def test_a_picture_shows_where_the_cart_is_and_the_push() -> None:
+    habitat = CartPole()
+    middle, right = (
+        np.asarray(habitat.picture(np.array([x, 0, 0, 0], np.float32), np.int32(1)))
+        for x in (0.0, 2.0)
+    )
+    cart = np.array([35, 57, 91])
+    at = [np.flatnonzero((each == cart).all(axis=2).any(axis=0)).mean() for each in (middle, right)]
+    assert at[0] == pytest.approx(319.5, abs=1)
+    assert at[1] == pytest.approx(319.5 + 260 * 2.0 / 2.4, abs=1.5)
+    assert arrow_at(habitat, action=1) < 320 - 37 < 320 + 37 < arrow_at(habitat, action=0)
+
+
+def arrow_at(habitat: CartPole, action: int) -> float:
+    """Where the push is drawn: at the side it comes from."""
+    picture = np.asarray(habitat.picture(np.zeros(4, np.float32), np.int32(action)))
+    push = (picture == np.array([224, 160, 48])).all(axis=2)
+    return float(np.flatnonzero(push.any(axis=0)).mean())
+
+
+def test_bad_input(poles: Path, mill: Path, tmp_path: Path) -> None:
+    complains(here("replay", poles, "--organism", 10**6), 2, "no organism 1000000")
+    complains(here("replay", poles, "--world", 2), 2, "no world 2")
+    complains(here("replay", poles, "--from", 10**7), 2, "can be seen from age 1 to")
+    complains(here("replay", poles, "--out", tmp_path / "x.avi"), 2, ".mp4 or a .gif")
+    complains(here("replay", mill), 2, "draws no pictures (it has no `picture`)")
+    complains(here("replay", tmp_path), 2, "is not a run")
+
+
+def test_a_habitat_on_the_host_that_cannot_be_seen(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    values = {"task": "host", "habitat": HOST_CARTPOLE, "cells": 4, "stop": {"ticks": 20}}
+    loop.start(config(values), tmp_path / "run")
+    complains(here("replay", tmp_path / "run"), 2, "draws no pictures (it has no `picture`)")
+    monkeypatch.setattr(HostCartPole, "picture", None, raising=False)
+    complains(here("replay", tmp_path / "run"), 2, "draws no pictures (it has no `seen`)")
+    (seen,) = Life.of(tmp_path / "run", 0).again()
+    assert seen.bodies is None

@@ -1,0 +1,178 @@
+"""Simulators in worker processes: what they do, and what happens when they do not."""
+
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from primordia.errors import Trouble
+from primordia.pool import pool as pools
+from primordia.pool.board import STEP
+from primordia.pool.pool import Pool
+from tests.counters import FIELDS
+
+ALL = np.ones(7, bool)
+
+
+@contextmanager
+def counters(cells: int = 7, workers: int = 3) -> Iterator[Pool]:
+    pool = Pool("tests.counters:Counters", {"start": 100}, FIELDS, cells, workers)
+    try:
+        yield pool
+    finally:
+        pool.close()
+
+
+def gone(process: int) -> bool:
+    """Whether it has ended, or is a zombie that nobody waits for."""
+    try:
+        state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
+    except FileNotFoundError:
+        return True
+    return state == "Z"
+
+
+def wait_until_gone(process: int) -> None:
+    deadline = time.monotonic() + 30
+    while not gone(process):
+        assert time.monotonic() < deadline, "it lives on"
+        time.sleep(0.01)
+
+
+def test_each_cell_has_a_simulator_in_one_of_the_workers() -> None:
+    with counters() as pool:
+        pool.reset(ALL)
+        pool.arrays["add"][:] = np.arange(7)
+        for _ in range(3):
+            pool.step(ALL)
+        assert pool.arrays["total"].tolist() == [100 + 3 * cell for cell in range(7)]
+        assert len(set(pool.arrays["who"].tolist())) == 3
+
+
+def test_only_cells_asked_for_are_stepped_and_reset() -> None:
+    with counters() as pool:
+        pool.reset(ALL)
+        pool.arrays["add"][:] = 5
+        pool.step(np.arange(7) % 2 == 0)
+        pool.reset(np.arange(7) == 0)
+        assert pool.arrays["total"].tolist() == [100, 100, 105, 100, 105, 100, 105]
+
+
+def test_saved_states_go_on_with_any_number_of_workers() -> None:
+    with counters(workers=3) as pool:
+        pool.reset(ALL)
+        pool.arrays["add"][:] = np.arange(7) * 1000
+        pool.step(ALL)
+        states = pool.save()
+    with counters(workers=2) as pool:
+        pool.load(states)
+        assert pool.arrays["total"].tolist() == [100 + 1000 * cell for cell in range(7)]
+
+
+def test_no_more_workers_than_cells() -> None:
+    with counters(cells=2, workers=5) as pool:
+        pool.reset(np.ones(2, bool))
+        assert len(set(pool.arrays["who"].tolist())) == 2
+
+
+@pytest.mark.parametrize(("add", "status"), [(-1, "1"), (-2, "7")])
+def test_a_worker_that_fails_is_noticed_at_once(
+    add: int, status: str, capfd: pytest.CaptureFixture[str]
+) -> None:
+    with counters() as pool:
+        pool.reset(ALL)
+        pool.arrays["add"][4] = add
+        with pytest.raises(Trouble, match=f"ended with status {status}.*resume the run"):
+            pool.step(ALL)
+    assert ("told to fail" in capfd.readouterr().err) == (add == -1)
+
+
+def test_a_worker_that_is_killed_is_noticed() -> None:
+    with counters() as pool:
+        pool.reset(ALL)
+        os.kill(int(pool.arrays["who"][2]), signal.SIGKILL)
+        with pytest.raises(Trouble, match="ended with status -9"):
+            pool.step(ALL)
+
+
+def test_a_worker_that_hangs_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    with counters() as pool:
+        pool.reset(ALL)
+        monkeypatch.setattr(pools, "PATIENCE", 0.2)
+        pool.arrays["add"][3] = -3
+        with pytest.raises(Trouble, match="has not answered for"):
+            pool.step(ALL)
+
+
+def test_a_worker_that_cannot_start(capfd: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(Trouble, match="ended with status 1"):
+        Pool("tests.counters:Nobody", {"start": 0}, FIELDS, 2, 1)
+    assert "Nobody" in capfd.readouterr().err
+
+
+def test_a_worker_whose_run_is_gone_says_nothing(capfd: pytest.CaptureFixture[str]) -> None:
+    """Whoever kills a run in the midst of a tick reads no tracebacks of its workers."""
+    with counters(cells=1, workers=1) as pool:
+        worker = pool._workers[0]
+        assert worker.stdin is not None
+        assert worker.stdout is not None
+        worker.stdout.close()
+        worker.stdin.write(STEP)
+        assert worker.wait(timeout=30) == 0
+    assert capfd.readouterr().err == ""
+
+
+def test_a_closed_pool_leaves_no_process() -> None:
+    with counters() as pool:
+        pool.reset(ALL)
+        workers = set(pool.arrays["who"].tolist())
+    for worker in workers:
+        wait_until_gone(worker)
+
+
+def test_a_pool_that_is_forgotten_is_closed() -> None:
+    pool = Pool("tests.counters:Counters", {"start": 0}, FIELDS, 2, 2)
+    pool.reset(np.ones(2, bool))
+    workers = pool.arrays["who"].tolist()
+    del pool
+    for worker in workers:
+        wait_until_gone(worker)
+
+
+@pytest.mark.parametrize("kill", [signal.SIGKILL, signal.SIGTERM])
+def test_workers_end_with_their_run_however_it_ends(kill: int) -> None:
+    """And shared memory with them: its file never had a name."""
+    script = textwrap.dedent(
+        """
+        import sys, time
+        import numpy as np
+        from primordia.pool import Pool
+        from tests.counters import FIELDS
+        pool = Pool("tests.counters:Counters", {"start": 0}, FIELDS, 2, 2)
+        pool.reset(np.ones(2, bool))
+        print(*pool.arrays["who"].tolist(), flush=True)
+        time.sleep(100)
+        """
+    )
+    before = set(Path("/dev/shm").iterdir())
+    command = [sys.executable, "-c", script]
+    run = subprocess.Popen(
+        command, stdout=subprocess.PIPE, text=True, cwd=Path(__file__).parents[2].parent
+    )
+    assert run.stdout is not None
+    workers = [int(word) for word in run.stdout.readline().split()]
+    assert len(workers) == 2
+    assert set(Path("/dev/shm").iterdir()) == before
+    run.send_signal(kill)
+    run.wait()
+    run.stdout.close()
+    for worker in workers:
+        wait_until_gone(worker)

@@ -1,0 +1,153 @@
+"""Randomness: the published cipher, and draws that depend on nothing but what they are for."""
+
+from fractions import Fraction
+from itertools import product
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from jax.extend.random import threefry_2x32
+
+from primordia.random.keys import Purpose, below, bits, bits_if, chance, stream, threefry
+from primordia.random.wide import Wide, to_host, wide
+from tests.chance import binomial, even
+
+FEW = settings(max_examples=50)
+word = st.integers(0, 2**32 - 1)
+
+
+def draws(
+    seed: int = 1, purpose: Purpose = Purpose.PLACE, tick: int = 7, cells: int = 1 << 20
+) -> Wide:
+    key = stream(wide(np.full(1, seed, np.uint64)), purpose, wide(np.full(1, tick, np.uint64)))
+    return bits(key, jnp.arange(cells))
+
+
+@pytest.mark.parametrize(
+    ("key", "counter", "expected"),
+    [
+        (0, 0, 0x6B20015999BA4EFE),
+        (2**64 - 1, 2**64 - 1, 0x1CB996FCBB002BE7),
+        (0x13198A2E03707344, 0x243F6A8885A308D3, 0xC4923A9C483DF7A0),
+    ],
+)
+def test_known_answers_of_random123(key: int, counter: int, expected: int) -> None:
+    assert int(to_host(threefry(wide(key), wide(counter)))) == expected
+
+
+@FEW
+@given(word, word, st.lists(word, min_size=16, max_size=16))
+def test_the_cipher_is_that_of_jax(k0: int, k1: int, counters: list[int]) -> None:
+    a, b = np.array(counters, np.uint32).reshape(2, 8)
+    expected = threefry_2x32(jnp.array([k0, k1], jnp.uint32), jnp.concatenate([a, b]))
+    mine = threefry(Wide(jnp.uint32(k0), jnp.uint32(k1)), Wide(jnp.asarray(a), jnp.asarray(b)))
+    np.testing.assert_array_equal(jnp.concatenate(mine), expected)
+
+
+def test_every_part_of_a_draws_name_matters() -> None:
+    seeds, ticks = [0, 1, 2**32, 2**64 - 1], [0, 1, 2**32, 10**12]
+    names = np.array(list(product(seeds, list(Purpose), ticks)), object)
+    keys = [
+        to_host(
+            stream(wide(np.array(seeds, np.uint64)), purpose, wide(np.full(4, tick, np.uint64)))
+        )
+        for purpose in Purpose
+        for tick in ticks
+    ]
+    distinct = np.unique(np.concatenate(keys))
+    assert len(distinct) == len(names)
+    key = wide(distinct[:, None, None])
+    words = to_host(bits(key, jnp.arange(16)[:, None], jnp.arange(4)))
+    assert len(np.unique(words)) == len(names) * 16 * 4
+    for half in (words >> np.uint64(32), words & np.uint64(0xFFFFFFFF)):
+        assert len(np.unique(half)) > 0.999 * half.size
+
+
+@jax.jit
+def noise(seed: Wide, tick: Wide, cells: jax.Array, index: jax.Array) -> Wide:
+    return bits(stream(seed, Purpose.NOISE, tick), cells, index)
+
+
+@FEW
+@given(st.permutations(range(12)), st.integers(0, 2**64 - 1), st.integers(0, 2**64 - 1))
+def test_a_draw_does_not_depend_on_others_drawn_with_it(
+    order: list[int], seed: int, tick: int
+) -> None:
+    numbers = [(seed + i // 2) % 2**64 for i in range(12)]
+    seeds, ticks = wide(np.array(numbers, np.uint64)), wide(np.full(12, tick, np.uint64))
+    cells, index = jnp.arange(12) * 1_000_003, jnp.arange(12) % 5
+    together = to_host(noise(seeds, ticks, cells, index))
+    some = np.array(order)
+    shuffled = noise(seeds.take(some), ticks, cells[some], index[some])
+    assert to_host(shuffled).tolist() == together[some].tolist()
+    one = order[0]
+    key = stream(seeds.take(one), Purpose.NOISE, ticks.take(0))
+    assert int(to_host(bits(key, cells[one], index[one]))) == together[one]
+
+
+def test_bits_if_are_bits_or_nothing() -> None:
+    key = stream(
+        wide(np.full((3, 1), 9, np.uint64)), Purpose.PLACE, wide(np.full((3, 1), 2, np.uint64))
+    )
+    cells, index = jnp.arange(5), jnp.uint32(4)
+    needed = bits_if(jnp.bool_(True), key, cells, index)
+    assert to_host(needed).tolist() == to_host(bits(key, cells, index)).tolist()
+    assert to_host(bits_if(jnp.bool_(False), key, cells, index)).tolist() == [[0] * 5] * 3
+
+
+@settings(max_examples=200)
+@given(st.floats(0, 1, width=32), word)
+def test_chance_compares_integers(probability: float, any_word: int) -> None:
+    threshold = int(Fraction(probability) * 2**32)
+    words = np.array([0, any_word, max(threshold - 1, 0), min(threshold, 2**32 - 1), 2**32 - 1])
+    happens = chance(jnp.asarray(words.astype(np.uint32)), jnp.float32(probability))
+    assert happens.tolist() == [int(each) < threshold for each in words]
+
+
+def test_chance_at_its_ends() -> None:
+    words = jnp.array([0, 1, 2**31, 2**32 - 1], jnp.uint32)
+    assert not chance(words, 0.0).any()
+    assert chance(words, 1.0).all()
+    assert chance(words, 1.5).all(), "a ratchet may drive a probability beyond 1"
+    assert not chance(words, np.nextafter(np.float32(1), np.float32(0)))[-1]
+
+
+@pytest.mark.parametrize("probability", [0.001, 0.05, 0.5, 0.9])
+@pytest.mark.parametrize("half", [0, 1])
+def test_chance_happens_as_often_as_it_should(probability: float, half: int) -> None:
+    words = draws()[half]
+    assert binomial(int(chance(words, probability).sum()), words.size, probability)
+
+
+@FEW
+@given(st.lists(word, min_size=8, max_size=8), st.integers(1, 2**31))
+def test_below_is_the_high_word_of_the_product(words: list[int], n: int) -> None:
+    edges = np.array([*words, 0, 2**32 - 1], np.uint32)
+    answer = below(jnp.asarray(edges), n)
+    assert answer.dtype == jnp.int32
+    assert answer.tolist() == [int(each) * n >> 32 for each in edges]
+    assert 0 <= int(answer.min()) <= int(answer.max()) < n
+
+
+@pytest.mark.parametrize("n", [2, 3, 8, 31])
+def test_below_is_even(n: int) -> None:
+    assert even(np.bincount(np.asarray(below(draws().hi, n)), minlength=n))
+
+
+def test_draws_of_neighbouring_names_are_unrelated() -> None:
+    def standard(value: Wide) -> np.ndarray:
+        return (np.asarray(value.hi, np.float64) / 2**32 - 0.5) * np.sqrt(12)
+
+    base = standard(draws())
+    others = {
+        "word": standard(Wide(draws().lo, draws().hi)),
+        "next cell": np.roll(base, 1),
+        "next tick": standard(draws(tick=8)),
+        "next seed": standard(draws(seed=2)),
+        "other purpose": standard(draws(purpose=Purpose.MUTATE)),
+    }
+    for name, other in others.items():
+        assert abs((base * other).mean()) < 5 / np.sqrt(base.size), name

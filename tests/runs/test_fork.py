@@ -1,0 +1,292 @@
+"""Forks: the tape replayed from a tick, the same or another way."""
+
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import primordia
+from primordia.errors import InputError, Trouble
+from primordia.figures.survival import quarters
+from primordia.history.foraging import foraging, harvests
+from primordia.random.wide import to_host
+from primordia.runs import checkpoint, loop
+from primordia.runs.lives import lives
+from primordia.runs.verify import verify
+from tests.commands import complains, here
+from tests.history.test_lineage import comes_back
+from tests.worlds import MILL, config, merged
+
+SHIFTING = {**MILL, "brain": {"hidden": 6}, "seeds": 2, "seed": 11, "stop": {"ticks": 1500}}
+
+
+@pytest.fixture(scope="module")
+def mill(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Seasons, metabolism, a noisy motor, two worlds."""
+    run = tmp_path_factory.mktemp("mill") / "run"
+    loop.start(config(SHIFTING), run)
+    return run
+
+
+@pytest.fixture(scope="module")
+def poles(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    run = tmp_path_factory.mktemp("poles") / "run"
+    return primordia.run("CartPole-survival", run, stop={"ticks": 3000, "until": "none"}).path
+
+
+def arrays(run: Path) -> dict[str, np.ndarray]:
+    last, _ = checkpoint.newest(run)
+    assert last is not None
+    return {name: array for name, array in last.arrays().items() if not name.startswith("tail.")}
+
+
+def same(a: Path, b: Path) -> bool:
+    one, other = arrays(a), arrays(b)
+    return all(np.array_equal(one[name], other[name]) for name in one)
+
+
+@pytest.mark.parametrize("at", [1, 333, 334, 1499, 1500])
+def test_with_nothing_changed_it_lives_the_same(mill: Path, tmp_path: Path, at: int) -> None:
+    """Seasons that are due, food counted since the last look, motors: all of it goes on."""
+    fork = primordia.load(mill).fork(at, tmp_path / "fork").path
+    assert same(mill, fork)
+    after = after_the_fork(mill, at)
+    assert after == after_the_fork(fork, at)
+    assert (len(after) > 0) == (at < 1500)
+
+
+def after_the_fork(run: Path, at: int) -> list[tuple[int, ...]]:
+    """Everybody who died or was born later."""
+    found = lives(run)
+    found = found.take(np.flatnonzero((found.ended > at) | (found.born > at)))
+    columns = (found.world, found.id, found.parent, found.cell, found.born, found.ended)
+    return list(zip(*(column.tolist() for column in columns), strict=True))
+
+
+def test_from_a_checkpoint_or_lived_again(mill: Path, tmp_path: Path) -> None:
+    """Only the newest checkpoints are kept; both ways lead to the same."""
+    again, kept = primordia.load(mill).fork(700, tmp_path / "again"), tmp_path / "kept"
+    loop.start(config(merged(SHIFTING, {"stop": {"ticks": 700}})), tmp_path / "short")
+    primordia.load(tmp_path / "short").fork(700, kept, stop={"ticks": 1500})
+    assert same(again.path, kept)
+    assert same(mill, kept)
+
+
+@pytest.mark.parametrize("at", [300, 1400])
+def test_what_is_told_of_a_fork_begins_with_it(mill: Path, tmp_path: Path, at: int) -> None:
+    """As of the run it is a fork of, from then on: who died when, at which ages, what was eaten."""
+    fork = primordia.load(mill).fork(at, tmp_path / "fork").path
+    whole, part = primordia.compare(mill, fork).arms
+    assert part.pace.edges[[0, -1]].tolist() == [at, 1500]
+    for one, other in ((whole.pace, part.pace), (whole.survival, part.survival)):
+        for field in fields(one):
+            np.testing.assert_array_equal(getattr(one, field.name), getattr(other, field.name))
+    np.testing.assert_array_equal(lives(mill).since(at).seen, lives(fork).seen)
+    np.testing.assert_array_equal(whole.figures["first"].value, part.figures["first"].value)
+    later = [lives(fork).of_world(world).born > at for world in range(2)]
+    assert (part.figures["first"].value <= [1 + born.sum() for born in later]).all()
+    found, before = harvests(fork, 2), harvests(mill, 2)
+    for world in range(2):
+        sampled = before[world].tick >= at
+        for one, other in zip(found[world], before[world], strict=True):
+            np.testing.assert_array_equal(one, other[sampled])
+    assert foraging(fork, config(SHIFTING)).since == at
+    anew, alive = lives(fork).since_fork(), lives(fork).born <= at
+    assert (anew.seen >= 0).all()
+    assert ((anew.seen == 0) == alive).all()
+    assert (anew.lifespan == lives(fork).lifespan).all()
+    primordia.load(fork).plot(tmp_path)
+    for name in ("ages", "survival", "population"):
+        assert "since the fork" in (tmp_path / f"{name}.svg").read_text(encoding="utf-8")
+    assert (tmp_path / "foraging.svg").exists()
+
+
+def test_a_season_does_what_a_fork_does(tmp_path: Path) -> None:
+    """To the last bit, so what a fork has shown can be shipped as a season."""
+    settings = {**MILL, "seasons": [], "seeds": 2, "brain": {"hidden": 6}, "stop": {"ticks": 500}}
+    change = {"mutation": {"probability": 0.1}, "hazard": 0.03}
+    then = [
+        {"kind": "schedule", "setting": name, "at": 250, "value": value}
+        for name, value in (("mutation.probability", 0.1), ("hazard", 0.03))
+    ]
+    loop.start(config(settings), tmp_path / "plain")
+    loop.start(config({**settings, "seasons": then}), tmp_path / "seasons")
+    primordia.load(tmp_path / "plain").fork(250, tmp_path / "fork", **change)
+    forked = after_the_fork(tmp_path / "fork", 250)
+    assert forked == after_the_fork(tmp_path / "seasons", 250)
+    assert forked != after_the_fork(tmp_path / "plain", 250)
+
+
+def test_what_is_lived_again_for_a_fork_is_told_too(mill: Path, tmp_path: Path) -> None:
+    ticks: list[int] = []
+
+    def listen(status: loop.Status) -> None:
+        ticks.append(int(to_host(status.engine.state.world.worlds.tick).min()))
+
+    primordia.load(mill).fork(700, tmp_path / "fork", listen=listen)
+    assert ticks == sorted(ticks)
+    assert 700 in ticks
+    assert ticks[-1] == 1500
+
+
+def test_ctrl_c_before_a_fork_is_begun(
+    mill: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """While its past is lived again there is nothing to resume."""
+
+    def interrupt(_: object, __: loop.Status) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("primordia.live.view.Plain.__call__", interrupt)
+    done = here("fork", mill, "--at", 700, "--out", tmp_path)  # empty, and may be used
+    assert (done.returncode, list(tmp_path.iterdir())) == (130, [])
+    assert done.stderr.strip() == f"Stopped before {tmp_path} was begun"
+
+
+def test_forks_are_compared_where_they_have_time_in_common(mill: Path, tmp_path: Path) -> None:
+    late = primordia.load(mill).fork(1500, tmp_path / "late", stop={"ticks": 1600}).path
+    with pytest.raises(InputError, match=r"forked at tick 1,500, .* ends at 1,500"):
+        primordia.compare(mill, late)
+
+
+def test_another_seed_is_another_future_of_the_same_past(poles: Path, tmp_path: Path) -> None:
+    two = primordia.load(poles).fork(800, tmp_path / "two", seed=5).path
+    again = primordia.load(poles).fork(800, tmp_path / "again", seed=5).path
+    assert same(two, again)
+    assert not same(poles, two)
+    here_, there = (living(run, 800) for run in (poles, two))
+    assert here_ == there
+    assert len(here_) > 3
+
+
+def living(run: Path, at: int) -> set[tuple[int, ...]]:
+    found = lives(run)
+    mine = (found.born <= at) & ((found.ended > at) | ~found.died)
+    columns = (found.id, found.parent, found.cell, found.born, found.origin)
+    return set(zip(*(column[mine].tolist() for column in columns), strict=True))
+
+
+def test_forks_of_forks_keep_the_promises(poles: Path, tmp_path: Path) -> None:
+    """They can be verified, resumed, and everybody's genome comes back."""
+    one = primordia.load(poles).fork(500, tmp_path / "one", seed=3, mutation={"scale": 0.02})
+    two = one.fork(1200, tmp_path / "two", seed=4, stop={"ticks": 1500})
+    two.resume(ticks=3000)
+    for run in (one, two):
+        assert verify(run.path) == []
+        comes_back(run.path)
+    straight = one.fork(1200, tmp_path / "straight", seed=4)
+    assert same(straight.path, two.path)
+
+
+def test_a_fork_whose_checkpoints_are_lost_begins_again(poles: Path, tmp_path: Path) -> None:
+    fork = primordia.load(poles).fork(500, tmp_path / "fork", seed=3)
+    before = arrays(fork.path)
+    for path in (tmp_path / "fork" / "checkpoints").glob("*/state.npz"):
+        path.write_bytes(b"damaged")
+    notes = fork.resume()
+    assert "passed over a bad checkpoint" in notes[0]
+    assert all(np.array_equal(before[name], array) for name, array in arrays(fork.path).items())
+    for path in fork.path.rglob("state.npz"):
+        path.write_bytes(b"damaged")
+    with pytest.raises(Trouble, match=r"no checkpoint of .* is whole: .*; fork it again"):
+        fork.resume()
+
+
+def climate(run: Path) -> dict[str, Any]:
+    return primordia.load(run).info()["worlds"][0]["climate"]
+
+
+def test_changed_settings_hold_and_others_stay_as_seasons_left_them(
+    mill: Path, tmp_path: Path
+) -> None:
+    at_once = {"stop": {"ticks": 1001}, "seasons": [
+        {"kind": "schedule", "setting": "hazard", "at": 2000, "value": 0.5}]}  # fmt: skip
+    stays = primordia.load(mill).fork(1000, tmp_path / "a", **at_once)
+    changed = primordia.load(mill).fork(
+        1000, tmp_path / "b", **at_once, metabolism={"gain": 2.0}, replication=0.01
+    )
+    a, b = climate(stays.path), climate(changed.path)
+    assert a["mutation_scale"] == pytest.approx([0.05] * 3)  # the season's, not the settings'
+    assert b["mutation_scale"] == a["mutation_scale"]
+    assert (b["metabolism.gain"], b["replication"]) == (2.0, pytest.approx(0.01))
+    assert a["metabolism.gain"] < 3.0 * 0.9 + 1e-6
+    assert a["replication"] != pytest.approx(0.01)
+
+
+def test_hunger_brought_to_a_world_that_knew_none(poles: Path, tmp_path: Path) -> None:
+    """Everybody starts with a full store, so those alive starve together."""
+    fork = primordia.load(poles).fork(
+        2000, tmp_path / "fork", metabolism={"store": 50.0}, stop={"ticks": 2050}
+    )
+    found = lives(fork.path)
+    starved = found.cause == 1
+    assert starved.sum() > 10
+    assert (found.ended[starved & (found.born <= 2000)] == 2050).all()
+
+
+def test_a_harder_world_is_saturated_anew(tmp_path: Path) -> None:
+    easy = {"saturation_ticks": 50, "habitat": {"track_limit": 1e9, "angle_limit": 180.0}}
+    run = primordia.run("CartPole-survival", tmp_path / "run", **easy)
+    moment = run.info()["saturation"]
+    assert moment["tick"] == run.info()["ticks"]
+    same_world = run.fork(moment["tick"], tmp_path / "same")
+    assert same_world.info()["saturation"] == moment
+    other = run.fork(moment["tick"], tmp_path / "other", seed=1)
+    assert other.info()["saturation"]["tick"] >= moment["tick"] + 50
+
+
+def test_a_habitat_on_the_host(tmp_path: Path) -> None:
+    values = {"task": "m", "habitat": {"name": "tests.toys:Mirror"}, "cells": 8,
+              "brain": {"hidden": 4}, "stop": {"ticks": 200}}  # fmt: skip
+    loop.start(config(values), tmp_path / "run")
+    fork = primordia.load(tmp_path / "run").fork(90, tmp_path / "fork")
+    assert same(tmp_path / "run", fork.path)
+    assert verify(fork.path) == []
+
+
+def test_figures_of_a_fork_leave_nobody_out(poles: Path, tmp_path: Path) -> None:
+    """Its birth numbers do not begin at 0, nor are they without gaps."""
+    fork = primordia.load(poles).fork(1500, tmp_path / "fork", seed=2)
+    found = lives(fork.path)
+    assert found.id[-1] > len(found)
+    assert sum(map(len, quarters(found))) == len(found)
+    assert found.rank.tolist() == list(range(len(found)))
+    assert len(fork.plot()) == 8
+
+
+@pytest.mark.parametrize("at", [0, -1, 3001])
+def test_before_the_first_tick_or_after_the_last(poles: Path, tmp_path: Path, at: int) -> None:
+    done = here("fork", poles, "--at", at, "--out", tmp_path / "fork")
+    complains(done, 2, f"--at {at}", "from 1 to 3000")
+    assert not (tmp_path / "fork").exists()
+
+
+@pytest.mark.parametrize(
+    "change",
+    [("--cells", 64), ("--seeds", 2), ("--brain.hidden", 8), ("--habitat.senses", '["x"]')],
+)
+def test_what_a_living_world_cannot_change(poles: Path, tmp_path: Path, change: tuple) -> None:
+    done = here("fork", poles, "--at", 100, *change, "--out", tmp_path / "fork")
+    complains(done, 2, "a fork cannot change")
+    assert not (tmp_path / "fork").exists()
+
+
+def test_bad_input(poles: Path, tmp_path: Path) -> None:
+    complains(here("fork", poles), 2, "--at")
+    complains(here("fork", poles, "--at", 5, "--colour", 3), 2, "there is no setting 'colour'")
+    complains(here("fork", poles, "--at", 5, "--out", poles), 2, "exists already")
+    complains(here("fork", tmp_path / "no", "--at", 5), 2, "is not a run")
+    fork = primordia.load(poles).fork(5, tmp_path / "fork", stop={"ticks": 6})
+    done = here("run", fork.path / "config.toml", "--out", tmp_path / "again")
+    complains(done, 2, "these are the settings of a fork")
+
+
+def test_a_fork_cut_off_before_it_began(poles: Path, tmp_path: Path) -> None:
+    """Killed between its settings and its origin."""
+    fork = primordia.load(poles).fork(5, tmp_path / "fork", stop={"ticks": 6})
+    for folder in ("origin", "checkpoints"):
+        (fork.path / folder).rename(tmp_path / folder)
+    with pytest.raises(InputError, match="cut off before it began"):
+        fork.resume()

@@ -1,0 +1,197 @@
+"""Records: every event is in exactly one segment or tail, in tables that any reader understands."""
+
+import signal
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import primordia
+from primordia.law.world import Cause
+from primordia.runs import checkpoint, loop, record
+from primordia.runs.digest import row_hashes
+from tests.worlds import MILL, Lived, config
+
+WHAT: dict[str, Any] = {**MILL, "brain": {"hidden": 6}, "seeds": 3, "hazard": 0.02}
+TICKS = 900
+WORDS = st.integers(0, 2**32 - 1)
+
+
+@pytest.fixture(scope="module")
+def lived() -> Lived:
+    """The same worlds in memory, with the events as the law gave them."""
+    return Lived(config(WHAT), TICKS)
+
+
+def recorded(run: Path, interrupted_after: int | None = None) -> primordia.Run:
+    """A run to the same tick; on the way it may be interrupted, and is then resumed."""
+
+    def press(status: loop.Status) -> None:
+        ticks = int(status.engine.state.world.worlds.tick.lo[0])
+        if interrupted_after is not None and ticks > interrupted_after:
+            signal.raise_signal(signal.SIGINT)
+
+    settings = config(WHAT, stop={"ticks": TICKS})
+    if interrupted_after is None:
+        loop.start(settings, run, listen=press)
+    else:
+        with pytest.raises(KeyboardInterrupt):
+            loop.start(settings, run, listen=press)
+    return primordia.Run(run)
+
+
+def has_all_rows(run: primordia.Run, lived: Lived) -> None:
+    for name in record.TABLES:
+        expected, found = lived.table(name), run.table(name)
+        assert found.num_rows > 0
+        for column, values in expected.items():
+            got = found[column].to_numpy(zero_copy_only=False)
+            np.testing.assert_array_equal(got, values, err_msg=f"{name}.{column}")
+
+
+def segments(run: Path, name: str) -> list[int]:
+    """Rows of each segment on disk, in order."""
+    return [pq.read_metadata(path).num_rows for path in sorted((run / name).iterdir())]
+
+
+@pytest.mark.parametrize("size", [17, 100, 2**20])
+def test_segments_of_any_size_hold_the_same_rows(
+    lived: Lived, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, size: int
+) -> None:
+    monkeypatch.setattr(record, "SEGMENT_ROWS", size)
+    run = recorded(tmp_path / "run")
+    has_all_rows(run, lived)
+    assert [world["digest"] for world in run.info()["worlds"]] == lived.digests()
+    for name in record.TABLES:
+        *full, last = segments(run.path, name)
+        assert set(full) <= {record.SEGMENT_ROWS}
+        assert 0 < last <= record.SEGMENT_ROWS
+        assert sum(full) + last == len(np.concatenate(lived.rows[name]))
+
+
+@pytest.mark.parametrize("size", [50, 2**20])
+def test_tails_and_segments_together_hold_every_row(
+    lived: Lived, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, size: int
+) -> None:
+    monkeypatch.setattr(record, "SEGMENT_ROWS", size)
+    run = recorded(tmp_path / "run", interrupted_after=TICKS // 3)
+    last, _ = checkpoint.newest(run.path)
+    assert last is not None
+    arrays = last.arrays()
+    for name in record.TABLES:
+        tail, closed = len(arrays[f"tail.{name}"]), segments(run.path, name)
+        assert run.table(name).num_rows == sum(closed) + tail
+        assert tail < size
+    assert bool(segments(run.path, "births")) == (size == 50)
+    assert len(arrays["tail.births"]) > 0
+    some = run.table("births")
+    assert run.resume() == []
+    has_all_rows(run, lived)
+    assert run.table("births").slice(0, some.num_rows).equals(some)
+    assert [world["digest"] for world in run.info()["worlds"]] == lived.digests()
+
+
+CLIMATE = [
+    "replication", "hazard",
+    *(f"mutation.{block}.{each}" for each in ("probability", "scale")
+      for block in ("input", "recurrent", "output")),
+    *(f"metabolism.{name}" for name in ("store", "drain", "gain", "effort_cost", "cap")),
+]  # fmt: skip
+WORD = pa.dictionary(pa.int8(), pa.string())
+SCHEMAS = {
+    "births": {
+        "world": pa.int32(), "id": pa.int64(), "parent": pa.int64(), "tick": pa.int64(),
+        "cell": pa.int32(), "cause": WORD,
+    },
+    "deaths": {
+        "world": pa.int32(), "id": pa.int64(), "tick": pa.int64(), "cell": pa.int32(),
+        "cause": WORD, "energy": pa.float64(), "food": pa.float64(),
+    },
+    "metrics": {
+        "world": pa.int32(), "tick": pa.int64(), "population": pa.int32(), "births": pa.int64(),
+        **{f"deaths_{cause.name.lower()}": pa.int64() for cause in Cause},
+        "extinctions": pa.int64(), "organism_ticks": pa.int64(), "oldest_age": pa.int64(),
+        "mean_age": pa.float64(), "mean_energy": pa.float64(), "food": pa.float64(),
+        **dict.fromkeys(CLIMATE, pa.float32()),
+    },
+}  # fmt: skip
+
+
+def test_files_are_plain_parquet(lived: Lived, tmp_path: Path) -> None:
+    run = recorded(tmp_path / "run")
+    for name, columns in SCHEMAS.items():
+        files = sorted((run.path / name).iterdir())
+        assert [file.name for file in files] == ["000000.parquet"]
+        schema = pq.read_schema(files[0])
+        assert dict(zip(schema.names, schema.types, strict=True)) == columns
+        assert run.table(name).schema.equals(schema)
+    births = pq.read_table(run.path / "births").to_pylist()
+    deaths = pq.read_table(run.path / "deaths").to_pylist()
+    assert {birth["cause"] for birth in births} == {"founder", "copy", "mutant"}
+    assert {death["cause"] for death in deaths} <= {"fatal", "starved", "hazard"}
+    consistent(births, deaths, run.info()["worlds"])
+
+
+def consistent(births: list[dict], deaths: list[dict], worlds: list[dict]) -> None:
+    """What the tables say of lives fits together, and fits the counts."""
+    for number, world in enumerate(worlds):
+        born = {birth["id"]: birth for birth in births if birth["world"] == number}
+        died = {death["id"]: death for death in deaths if death["world"] == number}
+        assert list(born) == list(range(world["births"]))
+        assert len(died) == world["deaths"] == world["births"] - world["alive"]
+        for birth in born.values():
+            assert (birth["parent"] is None) == (birth["cause"] == "founder")
+            if birth["parent"] is not None:
+                assert birth["parent"] < birth["id"]
+                assert born[birth["parent"]]["tick"] < birth["tick"]
+                parent_died = died.get(birth["parent"], {"tick": TICKS})["tick"]
+                assert parent_died >= birth["tick"]
+        for death in died.values():
+            assert born[death["id"]]["cell"] == death["cell"]
+            assert born[death["id"]]["tick"] < death["tick"] <= world["ticks"]
+
+
+def test_metrics_are_sampled_on_time_and_agree_with_the_events(lived: Lived) -> None:
+    metrics, births = lived.table("metrics"), lived.table("births")
+    for world in range(3):
+        mine = metrics["world"] == world
+        ticks = metrics["tick"][mine]
+        assert (np.diff(ticks) > 0).all()
+        assert set(range(100, TICKS + 1, 100)) <= set(ticks.tolist())
+        born = births["tick"][births["world"] == world]
+        counted = np.searchsorted(born, ticks, side="right")
+        np.testing.assert_array_equal(metrics["births"][mine], counted)
+
+
+@given(
+    rows=st.integers(1, 5).flatmap(
+        lambda fields: st.lists(
+            st.lists(WORDS, min_size=fields, max_size=fields), min_size=1, max_size=6
+        )
+    ),
+    at=st.tuples(st.integers(0), st.integers(0)),
+    change=st.integers(1, 2**32 - 1),
+)
+def test_any_changed_word_changes_its_rows_hash_and_no_other(
+    rows: list[list[int]], at: tuple[int, int], change: int
+) -> None:
+    before = np.array(rows, np.uint32)
+    after = before.copy()
+    row, field = at[0] % len(before), at[1] % before.shape[1]
+    after[row, field] ^= np.uint32(change)
+    differs = row_hashes(before) != row_hashes(after)
+    assert differs[row].all(), "in both of its words"
+    assert differs.sum() == 2
+
+
+def test_swapped_words_and_rows_are_told_apart() -> None:
+    row = np.array([[1, 2, 3]], np.uint32)
+    assert (row_hashes(row) != row_hashes(row[:, ::-1])).all()
+    assert (row_hashes(row) != row_hashes(row[:, :2])).all()
+    many = np.arange(300_000, dtype=np.uint32).reshape(-1, 3)
+    assert len(np.unique(row_hashes(many), axis=0)) == len(many)

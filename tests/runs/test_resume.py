@@ -1,0 +1,141 @@
+"""Promise 3: a crash costs time, never data."""
+
+import random
+import signal
+import time
+from pathlib import Path
+
+import pytest
+
+from primordia.runs import report
+from tests.commands import begin, complains, here
+
+WHAT = ("CartPole-survival", "--seeds", "8", "--cells", "64", "--stop.until", "saturation")
+TICKS = 12_000
+SLOWLY = ("--checkpoint-every", "0.05")
+
+
+@pytest.fixture(scope="module")
+def through(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
+    """Digests of the run that was never disturbed."""
+    run = tmp_path_factory.mktemp("through") / "run"
+    assert here("run", *WHAT, "--ticks", TICKS, "--out", run).returncode == 0
+    return digests(run)
+
+
+def digests(run: Path) -> list[str]:
+    return [world["digest"] for world in report.info(run)["worlds"]]
+
+
+def test_checkpoint_intervals_make_no_difference(through: list[str], tmp_path: Path) -> None:
+    run = tmp_path / "run"
+    assert here("run", *WHAT, "--ticks", TICKS, "--out", run, *SLOWLY).returncode == 0
+    assert digests(run) == through
+
+
+def test_more_ticks_later_equal_all_at_once(through: list[str], tmp_path: Path) -> None:
+    run = tmp_path / "run"
+    assert here("run", *WHAT, "--ticks", 7_001, "--out", run).returncode == 0
+    assert here("resume", run, "--ticks", 9_999).returncode == 0
+    assert here("resume", run, "--ticks", TICKS).returncode == 0
+    assert digests(run) == through
+
+
+def interrupted(run: Path, how: signal.Signals, rng: random.Random) -> int:
+    """Start or resume, and disturb at a random instant -> exit status."""
+    words = ("resume", run) if run.exists() else ("run", *WHAT, "--ticks", TICKS, "--out", run)
+    process = begin(*words, *SLOWLY, "--quiet")
+    deadline = time.monotonic() + 60
+    known = len(list(run.glob("checkpoints/0*")))
+    while time.monotonic() < deadline and process.poll() is None:
+        if (run / "lock").exists() and (known or list(run.glob("checkpoints/*"))):
+            break
+        time.sleep(0.01)
+    time.sleep(rng.uniform(0.0, 2.0))
+    process.send_signal(how)
+    process.communicate(timeout=60)
+    return process.returncode
+
+
+def killed_and_resumed(run: Path, seed: int) -> list[str]:
+    interrupted(run, signal.SIGKILL, random.Random(seed))
+    done = here("resume", run)
+    assert done.returncode == 0, done.stderr
+    return digests(run)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_kill_9_then_resume_equals_never_killed(
+    through: list[str], tmp_path: Path, seed: int
+) -> None:
+    assert killed_and_resumed(tmp_path / "run", seed) == through
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(100, 150))
+def test_kill_9_fifty_times(through: list[str], tmp_path: Path, seed: int) -> None:
+    assert killed_and_resumed(tmp_path / "run", seed) == through
+
+
+def test_ctrl_c_saves_and_says_how_to_go_on(through: list[str], tmp_path: Path) -> None:
+    run = tmp_path / "run"
+    process = begin("run", *WHAT, "--ticks", TICKS, "--out", run, *SLOWLY)
+    while not list(run.glob("checkpoints/0*/manifest.json")):
+        time.sleep(0.005)
+    process.send_signal(signal.SIGINT)
+    _, stderr = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert stderr.strip() == f"Stopped and saved. Go on with: primordia resume {run}"
+    assert report.info(run)["worlds"][0]["ticks"] < TICKS
+    assert here("resume", run).returncode == 0
+    assert digests(run) == through
+
+
+@pytest.mark.parametrize(
+    "junk", ["checkpoints/.writing-000007/state.npz", "births/.writing-000003.parquet"]
+)
+def test_half_written_files_do_not_exist(through: list[str], tmp_path: Path, junk: str) -> None:
+    run = tmp_path / "run"
+    assert here("run", *WHAT, "--ticks", 5_000, "--out", run).returncode == 0
+    (run / junk).parent.mkdir(exist_ok=True)
+    (run / junk).write_bytes(b"half")
+    (run / "deaths" / "000099.parquet").write_bytes(b"named by no manifest")
+    assert here("resume", run, "--ticks", TICKS).returncode == 0
+    assert digests(run) == through
+    assert not (run / junk).exists()
+    assert not (run / "deaths" / "000099.parquet").exists()
+
+
+def test_a_damaged_newest_checkpoint_is_passed_over(through: list[str], tmp_path: Path) -> None:
+    run = tmp_path / "run"
+    assert here("run", *WHAT, "--ticks", 11_000, "--out", run, *SLOWLY).returncode == 0
+    newest = sorted(run.glob("checkpoints/0*"))[-1]
+    state = newest / "state.npz"
+    damaged = bytearray(state.read_bytes())
+    damaged[len(damaged) // 2] ^= 1
+    state.write_bytes(damaged)
+    done = here("resume", run, "--ticks", TICKS)
+    assert done.returncode == 0
+    assert "passed over" in done.stderr
+    assert str(state) in done.stderr
+    assert digests(run) == through
+
+
+def test_one_writer_at_a_time(tmp_path: Path) -> None:
+    run = tmp_path / "run"
+    process = begin("run", *WHAT, "--ticks", 10**9, "--out", run)
+    while not (run / "versions.json").exists():
+        time.sleep(0.01)
+    try:
+        complains(here("resume", run), 2, str(run), "another process")
+    finally:
+        process.kill()
+        process.communicate()
+
+
+def test_verify_holds(tmp_path: Path) -> None:
+    run = tmp_path / "run"
+    assert here("run", *WHAT, "--ticks", 5_000, "--out", run).returncode == 0
+    done = here("verify", run)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "holds" in done.stdout
