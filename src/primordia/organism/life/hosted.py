@@ -7,7 +7,7 @@ import numpy as np
 from jax import Array, lax
 
 from primordia.compiled import shared
-from primordia.habitats.contract import Outcome
+from primordia.habitats.contract import HostHabitat, Outcome
 from primordia.law.law import Law
 from primordia.law.metabolism import ONE, Rates, metabolise
 from primordia.organism.life.instant import Instant, Mind, Stretch, think
@@ -23,10 +23,9 @@ class Hosted:
     TICKS = 256
     """Kept at a time; a tick may have a picture of 120 kB."""
 
-    def __init__(self, law: Law, mind: Mind, habitat: Any, watched: bool) -> None:
-        habitat.open(1, watched=True) if watched else habitat.open(1)
+    def __init__(self, law: Law, mind: Mind, habitat: HostHabitat, watched: bool) -> None:
+        habitat.open(1, watched)
         self._mind, self._habitat = mind, habitat
-        self._seen = getattr(habitat, "seen", lambda: None)
         self._think = shared(think, law)
         self._energies = shared(_energies) if law.metabolism is not None else None
 
@@ -52,7 +51,7 @@ class Hosted:
             memory, action = self._think(self._mind, memory, senses, tick.take(np.s_[i : i + 1]))
             before, action = np.array(senses), np.asarray(action)
             senses, outcome = self._habitat.step(action, np.ones(1, bool))
-            lived.append(_kept((before, action, self._seen(), outcome)))
+            lived.append(_kept((before, action, self._habitat.seen(), outcome)))
         perceived, actions, bodies, outcomes = jax.tree.map(lambda *each: np.stack(each), *lived)
         energy = self._energy(now.energy, outcomes, rates)
         stretch = Stretch(
@@ -69,8 +68,7 @@ class Hosted:
 
     def close(self) -> None:
         """Let go of what the habitat took."""
-        if hasattr(self._habitat, "close"):
-            self._habitat.close()
+        self._habitat.close()
 
 
 def _kept(seen: Any) -> Any:
