@@ -298,8 +298,12 @@ def test_a_habitat_on_the_host_that_cannot_be_seen(
 ) -> None:
     values = {"task": "host", "habitat": HOST_CARTPOLE, "cells": 4, "stop": {"ticks": 20}}
     loop.start(config(values), tmp_path / "run")
-    complains(here("replay", tmp_path / "run"), 2, "draws no pictures (it has no `picture`)")
+    no_pictures = "draws no pictures (it has no "
+    complains(here("replay", tmp_path / "run"), 2, no_pictures, "`picture` and no `seen`")
     monkeypatch.setattr(HostCartPole, "picture", None, raising=False)
-    complains(here("replay", tmp_path / "run"), 2, "draws no pictures (it has no `seen`)")
+    complains(here("replay", tmp_path / "run"), 2, no_pictures + "`seen`)")
+    monkeypatch.setattr(HostCartPole, "seen", None, raising=False)
+    complains(here("replay", tmp_path / "run"), 2, no_pictures + "`rate`)")
+    monkeypatch.undo()
     (seen,) = Life.of(tmp_path / "run", 0).again()
     assert seen.bodies is None

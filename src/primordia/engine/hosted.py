@@ -32,7 +32,7 @@ class Hosted:
     """Law compiled, habitat on the host. The bodies live in the habitat; the state holds senses."""
 
     def __init__(self, law: Law, habitat: HostHabitat) -> None:
-        self.exact = getattr(habitat, "exact", True)
+        self.exact = habitat.exact
         self._law, self._habitat = law, habitat
         self._tallies = Tallies(habitat, law.worlds)
         self._lists = log.empty(law.worlds * law.cells, law.worlds, width(law.blocks))

@@ -8,7 +8,6 @@ from contextlib import closing
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
@@ -17,6 +16,7 @@ import pyarrow.compute as pc
 from primordia.brains.contract import Genome, split
 from primordia.config import Config
 from primordia.errors import InputError, Trouble
+from primordia.habitats.contract import AnyHabitat
 from primordia.history.climate import climate_at
 from primordia.history.lineage import place_in, rebuild
 from primordia.law.genesis import body_words
@@ -44,7 +44,7 @@ class Life:
     run: Path
     config: Config
     law: Law
-    habitat: Any
+    habitat: AnyHabitat
     """to ask for pictures; each time the life is lived it is in a habitat of its own"""
     genome: Genome
     """of one"""
@@ -65,7 +65,7 @@ class Life:
         law = config.build_law(habitat)
         genome = split(law.brain, jnp.asarray(rebuild(run, organism, world)[None]))
         life = cls(run, config, law, habitat, genome, everyone.take(slice(row, row + 1)))
-        if life.was_found and not getattr(habitat, "exact", True):
+        if life.was_found and not habitat.exact:
             raise InputError(
                 f"{run}: organism {organism} is older than the fork, and its habitat cannot save bodies"
             )
@@ -119,7 +119,7 @@ class Life:
     def _alone(self, watched: bool) -> LifeInJax | LifeOnHost:
         mind = Mind(self.genome, self._seed, jnp.asarray(self.record.cell))
         habitat = self.config.build_habitat()
-        if hasattr(habitat, "open"):
+        if habitat.kind == "host":
             return LifeOnHost(self.law, mind, habitat, watched)
         return LifeInJax(self.law, mind, habitat)
 
