@@ -210,9 +210,11 @@ def _check(config: Config) -> None:
             raise InputError(f"seasons: there is no metabolism, so no {season.setting}")
 
 
-def setting_fields(model: type[BaseModel], prefix: str = "") -> dict[str, Any]:
-    """Every single setting under a model: dotted path -> pydantic field."""
+def setting_fields(model: type, prefix: str = "") -> dict[str, Any]:
+    """Return every single setting under a model, dotted path -> field; {} for a class of another kind."""
     found: dict[str, Any] = {}
+    if not issubclass(model, BaseModel):
+        return found
     for name, field in model.model_fields.items():
         inner = _model_in(field.annotation)
         if inner is not None:

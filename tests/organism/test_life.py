@@ -91,11 +91,13 @@ def test_the_living_come_to_where_they_are(
         comes_out(Life.of(run, everyone.id[row], everyone.world[row]))
 
 
-def test_a_body_begins_as_it_was_born(tmp_path: Path) -> None:
-    """Also where compiled code rounds a product and a sum once, and each operation by itself would."""
-    full = {"genesis": "fill", "replication": 0.0, "cells": 32, "stop": {"ticks": 2}}
+@pytest.mark.parametrize("cells", [32, 1024])
+def test_a_body_begins_as_it_was_born(cells: int, tmp_path: Path) -> None:
+    """Also where compiled code rounds a product and a sum once, and each operation by itself would;
+    and where several are born together, as vectors."""
+    full = {"genesis": "fill", "replication": 0.0, "cells": cells, "stop": {"ticks": 2}}
     loop.start(config(MEADOW, habitat={"name": "tests.toys:Slope"}, **full), tmp_path / "run")
-    for row in range(32):
+    for row in range(0, cells, cells // 16):
         comes_out(Life.of(tmp_path / "run", row))
 
 

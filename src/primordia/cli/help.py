@@ -1,6 +1,7 @@
 """Settings explained, as the command line shows them."""
 
 import json
+from pathlib import Path
 from typing import Any
 
 from pydantic import Field
@@ -8,7 +9,7 @@ from pydantic_core import PydanticUndefined
 
 from primordia.config import Config, setting_fields
 from primordia.habitats.contract import KNOWN, find
-from primordia.settings.base import Settings
+from primordia.runs.directory import read_config
 from primordia.settings.tables import NONE, values_of
 
 
@@ -21,13 +22,22 @@ def setting_rows(task: str | None) -> list[tuple[str, str]]:
     except (LookupError, TypeError):
         found = []
     for habitat in found:
-        fields |= setting_fields(habitat, "habitat.") if issubclass(habitat, Settings) else {}
+        fields |= setting_fields(habitat, "habitat.")
     fields["habitat.name"] = Field(description=f"{', '.join(KNOWN)}, or module:Class")
     hidden = {"about", "task", "habitat", "origin.run", "origin.tick"}
+    return _rows({path: fields[path] for path in fields if path not in hidden}, values)
+
+
+def habitat_rows(run: Path) -> list[tuple[str, str]]:
+    """Return each setting of a run's habitat with its value there, and what it means."""
+    values = dict(read_config(run).habitat)
+    return _rows(setting_fields(find(values.pop("name"))), values)
+
+
+def _rows(fields: dict[str, Any], values: dict[str, Any]) -> list[tuple[str, str]]:
     return [
         (f"--{path}", f"{field.description or ''} [{_shown(values, path, field)}]")
         for path, field in fields.items()
-        if path not in hidden
     ]
 
 
