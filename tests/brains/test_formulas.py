@@ -77,13 +77,13 @@ def test_gated(biases: bool) -> None:
     assert len(g) == 7 + 4 * biases
     h = np.zeros((N, HIDDEN))
 
-    def drive(part: str, h: np.ndarray) -> np.ndarray:
+    def drive(part: str, x: np.ndarray, h: np.ndarray) -> np.ndarray:
         perceived = times(g[f"{part}_input"], x) + bias(g, f"{part}_input")
         return perceived + times(g[f"{part}_recurrent"], h)
 
     for x, memory, output in zip(senses, memories, outputs, strict=True):
-        r, z = (1 / (1 + np.exp(-drive(part, h))) for part in ("reset", "update"))
-        h = z * h + (1 - z) * np.tanh(drive("candidate", r * h))
+        r, z = (1 / (1 + np.exp(-drive(part, x, h))) for part in ("reset", "update"))
+        h = z * h + (1 - z) * np.tanh(drive("candidate", x, r * h))
         np.testing.assert_allclose(memory, h, atol=5e-5)
         y = times(g["output"], h) + bias(g, "output")
         np.testing.assert_allclose(output, y, atol=5e-4)
