@@ -5,8 +5,7 @@ integer draws, a table look-up, one product and one sum a weight are needed, so 
 version that lived it do not matter.
 """
 
-from collections.abc import Sequence
-from pathlib import Path
+from collections.abc import Mapping, Sequence
 
 import jax.numpy as jnp
 import numpy as np
@@ -20,22 +19,21 @@ from primordia.law.world import Origin
 from primordia.random.gaussian import quantiles
 from primordia.random.keys import Purpose, stream, streams
 from primordia.random.wide import wide
-from primordia.runs import checkpoint
-from primordia.runs.checkpoint import Checkpoint
-from primordia.runs.lives import Lives, lives
-from primordia.runs.report import opened
+from primordia.runs.archive import Archive
+from primordia.runs.checkpoint import count
+from primordia.runs.lives import Lives
 
 STEPS_AT_A_TIME = 64
 """Births replayed together; always as many, since JAX compiles anew for every shape."""
 
 
-def rebuild(run: Path, organism: int, world: int = 0) -> np.ndarray:
+def rebuild(run: Archive, organism: int, world: int = 0) -> np.ndarray:
     """The genome of an organism, float32 (P,), blocks of weights in the brain's order.
 
     Args:
-        run: the run's directory.
+        run: where it lived.
         organism: its birth number, `id` in the records.
-        world: where it lived.
+        world: its world.
 
     Raises:
         InputError: no such organism was born.
@@ -43,14 +41,11 @@ def rebuild(run: Path, organism: int, world: int = 0) -> np.ndarray:
     return rebuild_all(run, [(organism, world)])[0]
 
 
-def rebuild_all(run: Path, organisms: Sequence[tuple[int, int]]) -> np.ndarray:
+def rebuild_all(run: Archive, organisms: Sequence[tuple[int, int]]) -> np.ndarray:
     """The genomes of some, by birth number and world, float32 (K, P); see `rebuild`."""
-    config, _ = opened(run)
-    everyone, origin = lives(run), checkpoint.origin(run)
-    law = config.build_law(config.build_habitat())
-    lines = [everyone.take(descent(everyone, *each)) for each in organisms]
-    worlds = {world for _, world in organisms}
-    climates = {world: climate_at(run, config, law, world) for world in worlds}
+    config, law, origin = run.config, run.law, run.origin
+    lines = [run.lives.take(descent(run.lives, *each)) for each in organisms]
+    climates = {world: climate_at(run, world) for world in {world for _, world in organisms}}
     found = []
     for (_, world), line in zip(organisms, lines, strict=True):
         genome = np.zeros(int(law.block_sizes.sum()), np.float32)
@@ -79,19 +74,18 @@ def descent(everyone: Lives, organism: int, world: int) -> np.ndarray:
     return np.array(rows[::-1])
 
 
-def genome_in(stored: Checkpoint, law: Law, organism: int, world: int) -> np.ndarray:
-    """The genome of somebody alive in a checkpoint, float32 (P,)."""
-    arrays, cell = stored.arrays(), place_in(stored, law, organism, world)
-    blocks = {name: arrays[f"world.organisms.genome.{name}"][[cell]] for name in law.blocks}
+def genome_in(state: Mapping[str, np.ndarray], law: Law, organism: int, world: int) -> np.ndarray:
+    """The genome of an organism that is alive in a state, float32 (P,)."""
+    cell = place_in(state, law, organism, world)
+    blocks = {name: state[f"world.organisms.genome.{name}"][[cell]] for name in law.blocks}
     return join(law.brain, blocks)[0]
 
 
-def place_in(stored: Checkpoint, law: Law, organism: int, world: int) -> int:
-    """The cell, on the axis of all worlds, of somebody alive in a checkpoint."""
-    arrays = stored.arrays()
-    hi, lo = (arrays[f"world.organisms.number.{half}"].astype(np.int64) for half in ("hi", "lo"))
-    here = np.arange(len(hi)) // law.cells == world
-    (cell,) = np.flatnonzero(here & arrays["world.organisms.alive"] & (hi << 32 | lo == organism))
+def place_in(state: Mapping[str, np.ndarray], law: Law, organism: int, world: int) -> int:
+    """The cell, on the axis of all worlds, of an organism that is alive in a state."""
+    number = count(state, "world.organisms.number")
+    here = np.arange(len(number)) // law.cells == world
+    (cell,) = np.flatnonzero(here & state["world.organisms.alive"] & (number == organism))
     return int(cell)
 
 

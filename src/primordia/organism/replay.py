@@ -15,6 +15,7 @@ from primordia.habitats.framed import PAPER
 from primordia.organism import video
 from primordia.organism.life.instant import Stretch
 from primordia.organism.life.life import Life
+from primordia.runs.archive import Archive
 
 PART = 30.0
 """Seconds shown of each end of a life that is longer than two such parts."""
@@ -24,7 +25,7 @@ SIZE, INK = 16, "#333333"
 
 
 def replay(
-    run: Path,
+    run: Archive,
     organism: int,
     world: int = 0,
     out: Path | None = None,
@@ -33,9 +34,9 @@ def replay(
     """Make a video of a life -> its path.
 
     Args:
-        run: the run's directory.
+        run: where it lived.
         organism: birth number.
-        world: where it lived.
+        world: its world.
         out: an .mp4 or .gif; by default under the run's `videos`.
         ages: first and last age shown, in ticks. Without them all of it, or of a life longer than a
             minute its first and last 30 seconds.
@@ -44,12 +45,12 @@ def replay(
         InputError: no such organism was born, its habitat draws no pictures, or nothing is to be shown.
         Trouble: the video cannot be written, or the life does not come out as recorded.
     """
-    path = out or run / "videos" / f"world{world}-organism{organism}.mp4"
+    path = out or run.path / "videos" / f"world{world}-organism{organism}.mp4"
     video.check_name(path)
     life = Life.of(run, organism, world)
     for name in ("picture", "seen") if hasattr(life.habitat, "open") else ("picture",):
         if not hasattr(life.habitat, name):
-            raise InputError(f"{run}: this habitat draws no pictures (it has no `{name}`)")
+            raise InputError(f"{run.path}: this habitat draws no pictures (it has no `{name}`)")
     rate = float(life.habitat.rate)
     step = ceil(rate / video.FASTEST[path.suffix])
     parts = _parts(life, rate, ages)

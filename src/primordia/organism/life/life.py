@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator
 from contextlib import closing
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import Any
 
 import jax.numpy as jnp
@@ -27,16 +26,15 @@ from primordia.organism.life.hosted import Hosted
 from primordia.organism.life.instant import Instant, Mind, Stretch
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import Wide, wide
-from primordia.runs import checkpoint
-from primordia.runs.lives import Lives, lives
-from primordia.runs.report import opened
+from primordia.runs.archive import Archive
+from primordia.runs.lives import Lives
 
 
 @dataclass(frozen=True)
 class Life:
     """What a life is a function of, and what is recorded of it."""
 
-    run: Path
+    run: Archive
     config: Config
     law: Law
     habitat: Any
@@ -47,22 +45,20 @@ class Life:
     """of one"""
 
     @classmethod
-    def of(cls, run: Path, organism: int, world: int = 0) -> "Life":
+    def of(cls, run: Archive, organism: int, world: int = 0) -> "Life":
         """An organism's.
 
         Raises:
             InputError: no such organism was born, or it cannot be lived again.
         """
-        config, _ = opened(run)
-        everyone = lives(run)
-        row = everyone.row(organism, world)
-        habitat = config.build_habitat()
-        law = config.build_law(habitat)
+        habitat, law, row = run.habitat, run.law, run.lives.row(organism, world)
         genome = split(law.brain, jnp.asarray(rebuild(run, organism, world)[None]))
-        life = cls(run, config, law, habitat, genome, everyone.take(slice(row, row + 1)))
+        record = run.lives.take(np.array([row]))
+        life = cls(run, run.config, law, habitat, genome, record)
         if life.was_found and not getattr(habitat, "exact", True):
             raise InputError(
-                f"{run}: organism {organism} is older than the fork, and its habitat cannot save bodies"
+                f"{run.path}: organism {organism} is older than the fork, and its habitat cannot save"
+                " bodies"
             )
         return life
 
@@ -129,10 +125,9 @@ class Life:
         return Instant(memory, fixed(store), alone.born(words))
 
     def _as_found(self, alone: Fused | Hosted) -> Instant:
-        origin = checkpoint.origin(self.run)
-        assert origin is not None
-        arrays = origin.arrays()
-        cell = [place_in(origin, self.law, int(self.record.id[0]), self.world)]
+        arrays = self.run.origin
+        assert arrays is not None
+        cell = [place_in(arrays, self.law, int(self.record.id[0]), self.world)]
         return Instant(
             jnp.asarray(arrays["world.organisms.memory"][cell]),
             jnp.asarray(arrays["world.organisms.energy"][cell]),
@@ -147,7 +142,7 @@ class Life:
             expected |= last & stretch.fatal
         if not np.array_equal(stretch.fatal, expected):
             raise Trouble(
-                f"{self.run}: organism {self.record.id[0]} did not live again as recorded;"
+                f"{self.run.path}: organism {self.record.id[0]} did not live again as recorded;"
                 " `primordia verify` tells whether this machine gives the run's bits"
             )
 
@@ -158,7 +153,7 @@ class Life:
 
     @cached_property
     def _climate(self) -> Callable[[np.ndarray], dict[str, np.ndarray]]:
-        return climate_at(self.run, self.config, self.law, self.world)
+        return climate_at(self.run, self.world)
 
     def _rates(self, ticks: np.ndarray) -> Rates:
         """The metabolism in force, float32 (n,) each."""
