@@ -12,9 +12,9 @@ from primordia.law import events as log
 from primordia.law.events import Events
 from primordia.law.genesis import birth_words
 from primordia.law.law import Law
-from primordia.law.life import Fates, judge, keys_of, no_fates, think
-from primordia.law.population import rest, settle
+from primordia.law.population import settle
 from primordia.law.sample import width
+from primordia.law.tick import Fates, judge, keys_of, no_fates, rest, think
 from primordia.law.world import World
 
 
@@ -93,10 +93,9 @@ def _quiet(
 
     def tick(carry: tuple) -> tuple:
         world, bodies, _, keys, passed = carry
-        world, action = think(law, world, habitat.sense(bodies), keys)
-        bodies, outcome = habitat.step(bodies, action)
-        fault = broken(bodies) if outcome.fault is None else broken(bodies) | outcome.fault
-        world, fates = judge(law, world, outcome._replace(fault=fault), keys, active)
+        thought = think(law, world, habitat.sense(bodies), keys)
+        bodies, outcome = habitat.step(bodies, thought.action)
+        world, fates = judge(law, world, thought, bodies, outcome, keys, active)
         return world, bodies, fates, keys_of(first.worlds, passed + 2), passed + 1
 
     keys = keys_of(first.worlds, jnp.int32(1))
@@ -124,10 +123,3 @@ def choose(cells: Array, yes: Bodies, no: Bodies) -> Bodies:
         return jnp.where(cells.reshape(-1, *[1] * (a.ndim - 1)), a, b)
 
     return jax.tree.map(leaf, yes, no)
-
-
-def broken(bodies: Bodies) -> Array:
-    """Which bodies (C,) have a coordinate that is no finite number."""
-    leaves = [leaf for leaf in jax.tree.leaves(bodies) if jnp.issubdtype(leaf.dtype, jnp.floating)]
-    flat = [(~jnp.isfinite(leaf.reshape(len(leaf), -1))).any(axis=1) for leaf in leaves]
-    return jnp.stack(flat).any(axis=0) if flat else jnp.zeros((), bool)

@@ -12,6 +12,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from primordia.errors import InputError
 from primordia.habitats.framed import PAPER
+from primordia.law.metabolism import ONE
 from primordia.organism import video
 from primordia.organism.life.instant import Stretch
 from primordia.organism.life.life import Life
@@ -105,7 +106,7 @@ def _picture(life: Life, stretch: Stretch, i: int) -> Image.Image:
     picture = life.habitat.picture(body, stretch.action[i])
     words = [f"organism {life.record.id[0]}", f"age {tick - life.record.born[0]:,}"]
     if life.law.metabolism is not None:
-        words.append(f"energy {stretch.energy[i]:,.1f}")
+        words.append(f"energy {stretch.energy[i] / ONE:,.1f}")
     if tick == life.ends and life.cause is not None:
         words.append(f"dies ({life.cause.label})")
     left, right, below = "   ".join(words), f"tick {tick:,}", ""

@@ -120,7 +120,8 @@ class Archive:
         wanted, tail = columns and list(columns), self.state[f"tail.{name}"]
         closed = self.last.manifest["segments"][name]
         for each in closed:
-            yield pq.read_table(self.path / name / each["name"], columns=wanted)
+            with pq.ParquetFile(self.path / name / each["name"]) as file:
+                yield file.read(wanted)
         if len(tail) or not closed:
             rows = self._recorder.arrow(name, tail)
             yield rows.select(wanted) if wanted else rows
