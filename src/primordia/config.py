@@ -166,8 +166,28 @@ def validated(values: dict[str, Any], source: str) -> Config:
     Raises:
         InputError: in one line, what is wrong and where.
     """
+    return checked(parsed(values, source), source)
+
+
+def parsed(values: dict[str, Any], source: str) -> Config:
+    """A Config of these values, each checked by itself: the habitat's code is not needed.
+
+    Raises:
+        InputError: in one line, what is wrong and where.
+    """
     try:
-        config = Config.model_validate(replaced(values, NONE, None))
+        return Config.model_validate(replaced(values, NONE, None))
+    except ValidationError as error:
+        raise InputError(f"{source}: {first_fault(error, Config)}") from None
+
+
+def checked(config: Config, source: str) -> Config:
+    """The same Config, checked as a whole.
+
+    Raises:
+        InputError: in one line, what is wrong and where.
+    """
+    try:
         _check(config)
     except ValidationError as error:
         raise InputError(f"{source}: {first_fault(error, Config)}") from None

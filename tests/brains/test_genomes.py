@@ -16,6 +16,7 @@ from primordia.errors import InputError
 from primordia.law.mutation import ancestor_of
 from primordia.random.wide import wide
 from primordia.runs import loop
+from primordia.runs.archive import Archive
 from primordia.runs.verify import verify
 from tests.commands import complains, here
 from tests.worlds import MEADOW, config, merged
@@ -59,7 +60,7 @@ def test_a_run_that_starts_from_ancestors(tmp_path: Path, inheritance: str) -> N
     for birth in founders[:20] + founders[-20:]:
         expected = given_[(2 + birth["world"] + birth["id"]) % 3]
         np.testing.assert_array_equal(found.rebuild(birth["id"], birth["world"]), expected)
-    assert verify(run) == []
+    assert verify(Archive(run)) == []
     again = primordia.run(str(run / "config.toml"), tmp_path / "again")
     assert [w["digest"] for w in again.info()["worlds"]] == [
         w["digest"] for w in found.info()["worlds"]
