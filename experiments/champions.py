@@ -33,9 +33,9 @@ def report(file: Path) -> None:
     }
     path = file.parent / "genomes" / f"{file.stem}.safetensors"
     path.parent.mkdir(exist_ok=True)
-    brain = config.build_brain(config.build_habitat())
+    layout = config.build_layout(config.build_habitat())
     kept = rebuild_all(run, [(each.id, each.world) for each in champions])
-    genomes.write(path, brain, kept, about)
+    genomes.write(path, layout, kept, about)
     print(path)
 
 

@@ -84,14 +84,14 @@ class Run:
     def export(self, out: str | Path, *organisms: int, world: int = 0) -> None:
         """Write genomes of organisms of a world to a safetensors file; see `genomes`."""
         settings = read_config(self.path)
-        brain = settings.build_brain(settings.build_habitat())
+        layout = settings.build_layout(settings.build_habitat())
         about = {
             "task": settings.task,
             "seed": str(settings.seed + world),
             "organisms": " ".join(map(str, organisms)),
         }
         found = lineage.rebuild_all(self.path, [(each, world) for each in organisms])
-        genomes.write(Path(out), brain, found, about)
+        genomes.write(Path(out), layout, found, about)
 
     def rebuild(self, organism: int, world: int = 0) -> np.ndarray:
         """An organism's genome, float32 (P,), from the birth records alone."""

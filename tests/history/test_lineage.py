@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import primordia
-from primordia.brains.contract import join
 from primordia.errors import InputError
 from primordia.history.lineage import descent, rebuild, rebuild_all
 from primordia.runs import checkpoint, loop, record
@@ -51,11 +50,11 @@ WORLDS: dict[str, tuple[dict[str, Any], int]] = {
 def living(run: Path) -> list[tuple[int, int, np.ndarray]]:
     """World, birth number and genome of everybody in the newest checkpoint."""
     config = read_config(run)
-    brain = config.build_law(config.build_habitat()).brain
+    layout = config.build_layout(config.build_habitat())
     last, _ = checkpoint.newest(run)
     assert last is not None
     arrays = last.arrays()
-    genomes = join(brain, {n: arrays[f"world.organisms.genome.{n}"] for n in brain.blocks})
+    genomes = layout.join({n: arrays[f"world.organisms.genome.{n}"] for n in layout.names})
     hi, lo = (arrays[f"world.organisms.number.{half}"].astype(int) for half in ("hi", "lo"))
     cells = np.flatnonzero(arrays["world.organisms.alive"])
     return [(c // config.cells, int(hi[c] << 32 | lo[c]), genomes[c]) for c in cells]

@@ -6,24 +6,30 @@ from typing import Any
 from pydantic import Field
 from pydantic_core import PydanticUndefined
 
-from primordia.config import Config, setting_fields
-from primordia.habitats.contract import KNOWN, find
-from primordia.settings.base import Settings
-from primordia.settings.tables import NONE, values_of
+from primordia.brains import contract as brains
+from primordia.config import Config
+from primordia.habitats import contract as habitats
+from primordia.settings.fields import setting_fields
+from primordia.settings.tables import NONE, PARTS, values_of
 
 
 def setting_rows(task: str | None) -> list[tuple[str, str]]:
-    """Each setting with its value in a task (or by default), and what it means."""
+    """Return each setting with its value in a task (or by default), and what it means."""
     values = values_of(task) if task else {}
     fields = setting_fields(Config)
-    try:
-        found = [find(values["habitat"]["name"])] if "habitat" in values else map(find, KNOWN)
-    except (LookupError, TypeError):
-        found = []
-    for habitat in found:
-        fields |= setting_fields(habitat, "habitat.") if issubclass(habitat, Settings) else {}
-    fields["habitat.name"] = Field(description=f"{', '.join(KNOWN)}, or module:Class")
-    hidden = {"about", "task", "habitat", "origin.run", "origin.tick"}
+    hidden = {"about", "task", *PARTS, "origin.run", "origin.tick"}
+    for part, default, known, find in (
+        ("habitat", PydanticUndefined, habitats.KNOWN, habitats.find),
+        ("brain", brains.DEFAULT, brains.KNOWN, brains.find),
+    ):
+        key = PARTS[part]
+        description = f"{', '.join(known)}, or module:Class"
+        fields[f"{part}.{key}"] = Field(default, description=description)
+        for each in [values.get(part, {}).get(key, default)] if task else known:
+            try:
+                fields |= setting_fields(find(each), f"{part}.")
+            except LookupError:
+                continue  # `run` says what is wrong with the name
     return [
         (f"--{path}", f"{field.description or ''} [{_shown(values, path, field)}]")
         for path, field in fields.items()

@@ -11,7 +11,6 @@ from pathlib import Path
 import jax.numpy as jnp
 import numpy as np
 
-from primordia.brains.contract import join
 from primordia.config import Config
 from primordia.history.climate import climate_at
 from primordia.law.law import Law
@@ -53,7 +52,7 @@ def rebuild_all(run: Path, organisms: Sequence[tuple[int, int]]) -> np.ndarray:
     climates = {world: climate_at(run, config, law, world) for world in worlds}
     found = []
     for (_, world), line in zip(organisms, lines, strict=True):
-        genome = np.zeros(int(law.block_sizes.sum()), np.float32)
+        genome = np.zeros(law.layout.length, np.float32)
         if origin is not None and config.origin is not None:  # of a fork: genomes as it began
             older = line.born <= config.origin.tick
             if older.any():
@@ -82,8 +81,8 @@ def descent(everyone: Lives, organism: int, world: int) -> np.ndarray:
 def genome_in(stored: Checkpoint, law: Law, organism: int, world: int) -> np.ndarray:
     """The genome of somebody alive in a checkpoint, float32 (P,)."""
     arrays, cell = stored.arrays(), place_in(stored, law, organism, world)
-    blocks = {name: arrays[f"world.organisms.genome.{name}"][[cell]] for name in law.blocks}
-    return join(law.brain, blocks)[0]
+    blocks = {name: arrays[f"world.organisms.genome.{name}"][[cell]] for name in law.layout.names}
+    return law.layout.join(blocks)[0]
 
 
 def place_in(stored: Checkpoint, law: Law, organism: int, world: int) -> int:
@@ -101,7 +100,7 @@ def _replay(
     """Births of one line (D,) in order, from a genome (P,) -> the last one's."""
     columns = ("probability", "scale")
     probability, scale = (
-        np.stack([climate[f"mutation.{block}.{each}"] for block in law.blocks], axis=1)
+        np.stack([climate[f"mutation.{block}.{each}"] for block in law.layout.names], axis=1)
         for each in columns
     )
     for first in range(0, len(line), STEPS_AT_A_TIME):
@@ -110,10 +109,9 @@ def _replay(
         seed = np.uint64(config.seed) + births.world.astype(np.uint64)
         cells = jnp.asarray(births.cell)
         drawn = streams(wide(seed), wide(births.born), Purpose.MUTATE, Purpose.NOISE)
-        per_weight = (
-            np.repeat(each[rows], law.block_sizes, axis=1) for each in (probability, scale)
+        chance, size = (
+            np.repeat(each[rows], law.layout.sizes, axis=1) for each in (probability, scale)
         )
-        chance, size = per_weight
         takes = np.asarray(mutates(drawn[Purpose.MUTATE], cells, jnp.asarray(chance)))
         noise = quantiles()[np.asarray(noise_index(drawn[Purpose.NOISE], cells, length))] * size
         founders = _founders(law, config, births)
@@ -130,6 +128,6 @@ def _founders(law: Law, config: Config, births: Lives) -> np.ndarray:
     seeds = wide(np.uint64(config.seed) + births.world.astype(np.uint64))
     if law.ancestors is not None:
         return law.ancestors[np.asarray(ancestor_of(seeds, wide(births.id), len(law.ancestors)))]
-    drawn, length = stream(seeds, Purpose.FOUNDER, wide(births.born)), int(law.block_sizes.sum())
+    drawn, length = stream(seeds, Purpose.FOUNDER, wide(births.born)), law.layout.length
     index = noise_index(drawn, jnp.asarray(births.cell), length)
     return quantiles()[np.asarray(index)] * law.founder_scale

@@ -10,7 +10,6 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from primordia.brains.contract import split
 from primordia.compiled import shared
 from primordia.engine.fused import fresh
 from primordia.habitats.contract import Bodies, Habitat, HostHabitat, Outcome
@@ -144,9 +143,9 @@ class _Tries:
         self._keys = players.keys.map(each)
         self._cells = jnp.asarray(np.tile(np.arange(games), len(players.genomes)), jnp.int32)
         self._mind = Mind(
-            split(law.brain, each(jnp.asarray(players.genomes))), self._keys, self._cells
+            law.layout.split(each(jnp.asarray(players.genomes))), self._keys, self._cells
         )
-        self._memory = jnp.zeros((len(self._cells), law.brain.memory), jnp.float32)
+        self._memory = jnp.zeros((len(self._cells), law.memory), jnp.float32)
         self._rates = Rates(*map(each, players.rates))
         self._energy = fixed(self._rates.store)
         self._think, self._eat = shared(think, law), shared(metabolise)

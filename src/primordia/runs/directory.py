@@ -34,8 +34,9 @@ def new(run: Path, config: Config) -> Iterator[None]:
     with locked(run):
         versions = {"format": FORMAT, **device.versions(), **_habitat_versions(config)}
         if config.ancestors:
-            brain = config.build_brain(config.build_habitat())
-            genomes.write(run / genomes.FOUNDERS, brain, genomes.read(config.ancestors, brain), {})
+            layout = config.build_layout(config.build_habitat())
+            founders = genomes.read(config.ancestors, layout)
+            genomes.write(run / genomes.FOUNDERS, layout, founders, {})
             config = config.model_copy(update={"ancestors": (genomes.FOUNDERS,)})
         _write_text(run / "config.toml", config.to_toml())
         _write_text(run / "versions.json", json.dumps(versions, indent=1))

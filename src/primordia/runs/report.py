@@ -79,7 +79,7 @@ def _table(run: Path, name: str, config: Config, last: Checkpoint) -> pa.Table:
     assert name in TABLES
     parts = [pq.read_table(run / name / each["name"]) for each in last.manifest["segments"][name]]
     habitat = config.build_habitat()
-    blocks = list(config.build_brain(habitat).blocks)
+    blocks = config.build_layout(habitat).names
     recorder = Recorder(None, config.seeds, config.cells, blocks, names_of(habitat))
     parts.append(recorder.arrow(name, last.arrays()[f"tail.{name}"]))
     return pa.concat_tables(parts)

@@ -13,7 +13,7 @@ from typing import Any
 import jax.numpy as jnp
 import numpy as np
 
-from primordia.brains.contract import Genome, split
+from primordia.brains.contract import Genome
 from primordia.config import Config
 from primordia.errors import InputError, Trouble
 from primordia.history.climate import climate_at
@@ -58,7 +58,7 @@ class Life:
         row = everyone.row(organism, world)
         habitat = config.build_habitat()
         law = config.build_law(habitat)
-        genome = split(law.brain, jnp.asarray(rebuild(run, organism, world)[None]))
+        genome = law.layout.split(jnp.asarray(rebuild(run, organism, world)[None]))
         life = cls(run, config, law, habitat, genome, everyone.take(slice(row, row + 1)))
         if life.was_found and not getattr(habitat, "exact", True):
             raise InputError(
@@ -124,7 +124,7 @@ class Life:
             return self._as_found(alone)
         key = stream(self._seed, Purpose.BODY, wide(self.record.born))
         words = body_words(key, jnp.asarray(self.record.cell), self.habitat.words)
-        memory = jnp.zeros((1, self.law.brain.memory), jnp.float32)
+        memory = jnp.zeros((1, self.law.memory), jnp.float32)
         store = self._rates(np.array([self.begins])).store
         return Instant(memory, fixed(store), alone.born(words))
 
