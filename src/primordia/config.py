@@ -12,16 +12,16 @@ from primordia.brains.contract import Brain
 from primordia.brains.layout import Layout
 from primordia.errors import InputError
 from primordia.habitats import contract as habitats
-from primordia.habitats.contract import Continuous, Habitat, HostHabitat
+from primordia.habitats.contract import AnyHabitat, Continuous
 from primordia.law.law import Law
 from primordia.law.metabolism import Metabolism
 from primordia.law.motor import Motor
 from primordia.law.mutation import Mutation
 from primordia.law.placement import Placement
 from primordia.law.seasons import Season
-from primordia.settings import parts
 from primordia.settings.base import Settings
 from primordia.settings.fields import first_fault
+from primordia.settings.making import make
 from primordia.settings.tables import NONE, found_in, merged, replaced, values_of
 
 
@@ -99,28 +99,27 @@ class Config(Settings):
         """All settings of the brain, so that `config.toml` has them when defaults have changed."""
         return {"kind": brains.DEFAULT, **table, **brains.build(table).model_dump()}
 
-    def build_habitat(self) -> Habitat | HostHabitat:
+    def build_habitat(self) -> AnyHabitat:
         """The habitat, from its class and settings.
 
         Raises:
             InputError: there is no such habitat, or it does not take these settings.
         """
-        built: Any = parts.build("habitat", "name", self.habitat, habitats.KNOWN, object)
-        for needed in ("senses_size", "action", "words", "reset", "step"):
-            if not hasattr(built, needed):
-                name = type(built).__name__
-                raise InputError(f"habitat: {name} is no habitat: it has no {needed!r}")
-        return built
+        habitat = make("habitat", self.habitat, habitats.find)
+        try:
+            return habitats.complete(habitat)
+        except TypeError as error:
+            raise InputError(f"habitat: {error}") from None
 
     def build_brain(self) -> Brain:
         """Return the brain of this run's organisms."""
         return brains.build(self.brain)
 
-    def build_layout(self, habitat: Habitat | HostHabitat) -> Layout:
+    def build_layout(self, habitat: AnyHabitat) -> Layout:
         """Return the layout of the genomes of organisms that live in the habitat."""
         return self.build_brain().layout(habitat.senses_size, habitat.action.size)
 
-    def build_law(self, habitat: Habitat | HostHabitat) -> Law:
+    def build_law(self, habitat: AnyHabitat) -> Law:
         """The law that holds in this run's worlds."""
         brain, layout = self.build_brain(), self.build_layout(habitat)
         return Law(
@@ -204,9 +203,10 @@ def _check(config: Config) -> None:
         raise InputError("seed + seeds: seeds must be below 2^64")
     if config.cells * config.seeds > 2**26:
         raise InputError(f"cells x seeds: {config.cells * config.seeds} cells are more than 2^26")
-    workers, cells = getattr(habitat, "workers", None), config.cells * config.seeds
-    if workers is not None and workers > cells:
-        raise InputError(f"habitat.workers: {workers} workers are more than the {cells} cells")
+    try:
+        habitat.check(config.cells * config.seeds)
+    except ValueError as error:
+        raise InputError(f"habitat: {error}") from None
     if config.motor.kind == "gaussian" and not isinstance(habitat.action, Continuous):
         raise InputError(
             "motor.kind: this habitat's actions are discrete, so a gaussian motor has no use"

@@ -46,7 +46,7 @@ def test_one_step_from_the_same_state_agrees_with_gymnasium(gym_cartpole: gymnas
 
 EPISODES = """
 import gymnasium, jax, numpy as np
-from primordia.habitats.cartpole import CartPole
+from primordia.habitats.cartpole.habitat import CartPole
 gym, step = gymnasium.make("CartPole-v1").unwrapped, jax.jit(CartPole().step)
 rng, free, forced, lengths = np.random.default_rng(1), 0.0, 0.0, []
 
