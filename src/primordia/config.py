@@ -11,7 +11,7 @@ from primordia.brains import genomes
 from primordia.brains.contract import Brain
 from primordia.brains.layout import Layout
 from primordia.errors import InputError
-from primordia.habitats import lookup as habitats
+from primordia.habitats import contract as habitats
 from primordia.habitats.contract import AnyHabitat, Continuous
 from primordia.law.law import Law
 from primordia.law.metabolism import Metabolism
@@ -21,6 +21,7 @@ from primordia.law.placement import Placement
 from primordia.law.seasons import Season
 from primordia.settings.base import Settings
 from primordia.settings.fields import first_fault
+from primordia.settings.making import make
 from primordia.settings.tables import NONE, found_in, merged, replaced, values_of
 
 
@@ -104,7 +105,11 @@ class Config(Settings):
         Raises:
             InputError: there is no such habitat, or it does not take these settings.
         """
-        return habitats.build(self.habitat)
+        habitat = make("habitat", self.habitat, habitats.find)
+        try:
+            return habitats.complete(habitat)
+        except TypeError as error:
+            raise InputError(f"habitat: {error}") from None
 
     def build_brain(self) -> Brain:
         """Return the brain of this run's organisms."""

@@ -221,7 +221,7 @@ def test_brains_are_found() -> None:
         ({"kind": 5}, "brain.kind: no brain named 5"),
         (
             {"kind": "tests.toys:Meadow"},
-            "Meadow is no brain: make it a subclass of .*contract.Brain",
+            "brain.kind: Meadow is no brain: subclass Brain of primordia.brains",
         ),
         ({"kind": "tests.toys:Nothing"}, "'tests.toys:Nothing' cannot be loaded"),
         (

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from pydantic import BaseModel
 
 from primordia.config import Config, load, validated
-from primordia.habitats.lookup import KNOWN, find
+from primordia.habitats.contract import KNOWN, find
 from primordia.law.mutation import BlockMutation
 from primordia.law.seasons import Ratchet, Schedule
 from primordia.settings.base import Settings

@@ -17,6 +17,7 @@ from jax import Array
 from primordia.brains.layout import Layout, Shape
 from primordia.settings import parts
 from primordia.settings.base import Settings
+from primordia.settings.making import make
 
 Genome: TypeAlias = dict[str, Array]
 
@@ -76,9 +77,13 @@ def find(name: object) -> type[Brain]:
     """Return the brain class called `name`.
 
     Raises:
-        LookupError: there is no such brain; the message says why.
+        LookupError: there is no such name, module or class, or the class is no brain; the message
+            says which.
     """
-    return parts.find("brain", name, KNOWN, Brain)
+    found = parts.find("brain", name, KNOWN)
+    if not issubclass(found, Brain):
+        raise LookupError(f"{found.__name__} is no brain: subclass Brain of {__name__}")
+    return found
 
 
 def build(table: Mapping[str, Any]) -> Brain:
@@ -87,5 +92,4 @@ def build(table: Mapping[str, Any]) -> Brain:
     Raises:
         InputError: there is no such brain, or it does not take these settings.
     """
-    brain: Brain = parts.build("brain", "kind", {"kind": DEFAULT, **table}, find)
-    return brain
+    return make("brain", {"kind": DEFAULT, **table}, find)

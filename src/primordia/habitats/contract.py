@@ -5,8 +5,8 @@ what happened to its bodies; what that means for a life is decided by the law.
 
 A habitat subclasses `JaxHabitat` or `HostHabitat`, alone or together with `Settings`:
 `class Pond(JaxHabitat, Settings)`. It must have what is abstract here, and `senses_size`, `action` and
-`words`; for everything else there is a default. `name` in a task's `[habitat]` table is one of
-`lookup.KNOWN`, or `module:Class`. The other keys of the table are the class's own settings.
+`words`; for everything else there is a default. `name` in a task's `[habitat]` table is one of KNOWN, or
+`module:Class`. The other keys of the table are the class's own settings.
 
 Simulators in worker processes load this file, so it imports neither JAX nor pydantic.
 """
@@ -19,11 +19,19 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
+from primordia.settings import parts
+
 if TYPE_CHECKING:
     from builtins import property as default
 
     from jax import Array
     from PIL.Image import Image
+
+KNOWN = {
+    "cartpole": "primordia.habitats.cartpole.habitat:CartPole",
+    "atari": "primordia.habitats.atari.habitat:Atari",
+    "mujoco": "primordia.habitats.mujoco.habitat:MuJoCo",
+}
 
 Bodies: TypeAlias = Any
 """A tree of arrays, each with cells as its first axis."""
@@ -232,3 +240,35 @@ AnyHabitat: TypeAlias = JaxHabitat | HostHabitat
 
 def _missing(habitat: Habitat, name: str) -> TypeError:
     return TypeError(f"{type(habitat).__name__} is no habitat yet: it has no {name!r}")
+
+
+def find(name: object) -> type[AnyHabitat]:
+    """Return the habitat class called `name`.
+
+    Raises:
+        LookupError: there is no such name, module or class, or the class keeps no contract; the message
+            says which.
+    """
+    found = parts.find("habitat", name, KNOWN)
+    if not issubclass(found, JaxHabitat | HostHabitat):
+        raise LookupError(
+            f"{found.__name__} is no habitat: subclass JaxHabitat (with reset, sense and step) or"
+            " HostHabitat (with open, reset and step) of primordia.habitats, and state senses_size,"
+            " action and words"
+        )
+    return found
+
+
+def complete(habitat: AnyHabitat) -> AnyHabitat:
+    """Return a habitat that states all that has no default.
+
+    Raises:
+        TypeError: it does not; the message says what it lacks.
+    """
+    for name in ("senses_size", "action", "words"):
+        getattr(habitat, name)
+    if habitat.tallies and not habitat.can(Ability.TALLY):
+        raise TypeError(
+            f"{type(habitat).__name__} names tallies, which need a HostHabitat's tally()"
+        )
+    return habitat
