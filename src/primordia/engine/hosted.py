@@ -27,10 +27,6 @@ from primordia.law.population import rest, settle
 from primordia.law.sample import width
 from primordia.law.world import World
 
-# Small calls are computed in the thread that makes them and waits for them: handing them to another costs
-# a third of their time. Read when JAX makes its first array.
-jax.config.update("jax_cpu_enable_async_dispatch", False)  # type: ignore[no-untyped-call]
-
 
 class Thought(NamedTuple):
     """What `think` gives."""

@@ -11,6 +11,7 @@ from pathlib import Path
 import jax.numpy as jnp
 import numpy as np
 
+from primordia import device
 from primordia.brains.contract import join
 from primordia.config import Config
 from primordia.history.climate import climate_at
@@ -45,6 +46,7 @@ def rebuild(run: Path, organism: int, world: int = 0) -> np.ndarray:
 
 def rebuild_all(run: Path, organisms: Sequence[tuple[int, int]]) -> np.ndarray:
     """The genomes of some, by birth number and world, float32 (K, P); see `rebuild`."""
+    device.prepare()
     config, _ = opened(run)
     everyone, origin = lives(run), checkpoint.origin(run)
     law = config.build_law(config.build_habitat())
