@@ -3,6 +3,7 @@
 from math import prod
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
@@ -53,7 +54,7 @@ def test_the_recurrent_brain_remembers() -> None:
     genome, memory, senses = organisms(brain)
     assert brain.memory == HIDDEN
     expected = np.zeros((N, HIDDEN))
-    now = np.zeros((N, HIDDEN), np.float32)
+    now = jnp.zeros((N, HIDDEN), jnp.float32)
     for tick in range(4):
         seen = senses * np.float32(1 + tick)
         now, output = brain(genome, now, seen)

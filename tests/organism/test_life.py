@@ -1,6 +1,7 @@
 """Lives lived again, seen on video, and what an organism is asked: all from its records."""
 
 from pathlib import Path
+from typing import Any
 
 import av
 import numpy as np
@@ -155,7 +156,8 @@ def test_a_habitat_on_the_host_is_closed(mirror: Path, monkeypatch: pytest.Monke
     monkeypatch.setattr(Mirror, "close", lambda self: closed.append(self), raising=False)
     monkeypatch.setattr(Hosted, "TICKS", 5)
     life = Life.of(mirror, primordia.load(mirror).oldest().id)
-    one, other = life.again(), life.again()
+    one: Any = life.again()
+    other = life.again()
     first = next(other)
     assert next(one).action.tobytes() == first.action.tobytes()
     one.close()
@@ -253,11 +255,11 @@ def test_a_part_as_a_gif(poles: Path, tmp_path: Path) -> None:
     done = here("replay", poles, "--from", 10, "--to", 49, "--out", path)
     assert done.returncode == 0, done.stderr
     with Image.open(path) as gif:
-        shown = sum(1 for _ in range(gif.n_frames))
+        shown = getattr(gif, "n_frames", 1)
         assert gif.size == (320, 180)
         assert 2 <= shown <= 20 + 25
         total = 0
-        for number in range(gif.n_frames):
+        for number in range(shown):
             gif.seek(number)
             total += gif.info["duration"]
     assert total == (20 + 25) * 40

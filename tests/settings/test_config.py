@@ -13,6 +13,7 @@ from pydantic import BaseModel
 
 from primordia.brains.contract import genome_length
 from primordia.config import Config, load, setting_fields, validated
+from primordia.habitats.cartpole.habitat import CartPole
 from primordia.habitats.contract import KNOWN, find
 from primordia.law.mutation import BlockMutation
 from primordia.law.seasons import Ratchet, Schedule
@@ -171,7 +172,7 @@ def help_text(*words: object) -> str:
 def test_help_lists_every_setting_with_its_value_and_meaning(tmp_path: Path) -> None:
     text = help_text(TASK)
     paths = set(setting_fields(Config)) - {"task", "about", "habitat", "origin.run", "origin.tick"}
-    paths |= {f"habitat.{name}" for name in find("cartpole").model_fields} | {"habitat.name"}
+    paths |= {f"habitat.{name}" for name in CartPole.model_fields} | {"habitat.name"}
     for path in paths:
         assert f"--{path} " in text, path
     squeezed = " ".join(text.split())
