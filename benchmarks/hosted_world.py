@@ -124,7 +124,7 @@ class Ours:
         simulator = habitat._pool if hasattr(habitat, "_pool") else habitat._bodies
         newborn = ("reset", "forward") if hasattr(simulator, "forward") else ("reset",)
         return [
-            ("law and brains, compiled", law._calls, ("think", "live", "settle", "look")),
+            ("law and brains, compiled", law._calls, ("think", "live", "settle", "survey")),
             ("habitat, NumPy", habitat, ("step", "reset")),
             ("simulation", simulator, ("step",)),
             ("simulators of the newborn", simulator, newborn),

@@ -11,7 +11,7 @@ from primordia.brains import genomes
 from primordia.brains.contract import Brain, BrainSettings
 from primordia.errors import InputError
 from primordia.habitats import contract as habitats
-from primordia.habitats.contract import Continuous, Habitat, HostHabitat
+from primordia.habitats.contract import AnyHabitat, Continuous
 from primordia.law.law import Law
 from primordia.law.metabolism import Metabolism
 from primordia.law.motor import Motor
@@ -88,7 +88,7 @@ class Config(Settings):
     stop: Stop = Stop()
     origin: ForkedFrom | None = Field(None, description="set by `primordia fork`")
 
-    def build_habitat(self) -> Habitat | HostHabitat:
+    def build_habitat(self) -> AnyHabitat:
         """The habitat, from its class and settings.
 
         Raises:
@@ -97,21 +97,17 @@ class Config(Settings):
         options = dict(self.habitat)
         try:
             kind = habitats.find(options.pop("name", ""))
-            built: Habitat | HostHabitat = kind(**options)
+            return habitats.complete(kind(**options))
         except ValidationError as error:
             raise InputError(_first(error, "habitat", kind)) from None
         except (LookupError, TypeError, ValueError) as error:
             raise InputError(f"habitat: {error}") from None
-        for needed in ("senses_size", "action", "words", "reset", "step"):
-            if not hasattr(built, needed):
-                raise InputError(f"habitat: {kind.__name__} is no habitat: it has no {needed!r}")
-        return built
 
-    def build_brain(self, habitat: Habitat | HostHabitat) -> Brain:
+    def build_brain(self, habitat: AnyHabitat) -> Brain:
         """The brain of this run's organisms."""
         return self.brain.build(habitat.senses_size, habitat.action.size)
 
-    def build_law(self, habitat: Habitat | HostHabitat) -> Law:
+    def build_law(self, habitat: AnyHabitat) -> Law:
         """The law that holds in this run's worlds."""
         brain = self.build_brain(habitat)
         return Law(
@@ -194,9 +190,10 @@ def _check(config: Config) -> None:
         raise InputError("seed + seeds: seeds must be below 2^64")
     if config.cells * config.seeds > 2**26:
         raise InputError(f"cells x seeds: {config.cells * config.seeds} cells are more than 2^26")
-    workers, cells = getattr(habitat, "workers", None), config.cells * config.seeds
-    if workers is not None and workers > cells:
-        raise InputError(f"habitat.workers: {workers} workers are more than the {cells} cells")
+    try:
+        habitat.check(config.cells * config.seeds)
+    except ValueError as error:
+        raise InputError(f"habitat: {error}") from None
     if config.motor.kind == "gaussian" and not isinstance(habitat.action, Continuous):
         raise InputError(
             "motor.kind: this habitat's actions are discrete, so a gaussian motor has no use"

@@ -12,6 +12,7 @@ from primordia.habitats.atari.games import screen_size
 from primordia.habitats.atari.habitat import SCALED, Atari
 from primordia.habitats.atari.picture import draw
 from primordia.habitats.framed import ROOM
+from primordia.law.life import BODILY
 from primordia.law.metabolism import ONE
 from primordia.law.world import Cause
 from primordia.organism.life.life import Life
@@ -60,19 +61,18 @@ def comes_out(run: Path, organism: int, world: int) -> None:
     seen = list(life.again())
     last, scores = seen[-1], [each.bodies["tally"][:, 0] for each in seen]
     assert last.tick[-1] == life.ends
-    assert last.fatal[-1] == (life.cause is Cause.FATAL)
-    assert (last.energy[-1] <= 0) == (life.cause is Cause.STARVED)
+    assert last.cause[-1] == (life.cause if life.cause in BODILY else -1)
     if life.cause is None:
         stored = at_the_end(run, life)
         np.testing.assert_array_equal(
             SCALED[last.bodies["ram"][-1, SENSES]], stored["bodies.senses"]
         )
-        assert last.energy[-1] * ONE == stored["world.organisms.energy"]
+        assert last.energy[-1] == stored["world.organisms.energy"]
         assert last.bodies["tally"][-1].tolist() == stored["bodies.tally"].tolist()
     else:
         rows = primordia.load(run).table("deaths").to_pylist()
         (death,) = (row for row in rows if (row["id"], row["world"]) == (organism, world))
-        assert last.energy[-1] == death["energy"]
+        assert last.energy[-1] / ONE == death["energy"]
         assert scores[-1][-1] == death["score"]
 
 

@@ -12,13 +12,13 @@ import primordia
 from primordia.engine.state import named_leaves
 from primordia.errors import InputError, Trouble
 from primordia.habitats.cartpole.habitat import CartPole
-from primordia.law.metabolism import ONE
+from primordia.law.life import BODILY
 from primordia.law.world import Cause
 from primordia.organism import replay
-from primordia.organism.life.fused import Fused
-from primordia.organism.life.hosted import Hosted
+from primordia.organism.life.in_jax import LifeInJax
 from primordia.organism.life.instant import Stretch
 from primordia.organism.life.life import Life
+from primordia.organism.life.on_host import LifeOnHost
 from primordia.organism.organism import Organism
 from primordia.runs import checkpoint, loop
 from primordia.runs.lives import lives
@@ -70,9 +70,10 @@ def comes_out(life: Life) -> list[Stretch]:
         names = [name for name in stored if name.startswith("bodies") and name != "bodies.senses"]
         for name, (_, leaf) in zip(names, named_leaves({"bodies": last.bodies}), strict=True):
             np.testing.assert_array_equal(leaf[-1], stored[name])
-        assert not hungry or last.energy[-1] * ONE == stored["world.organisms.energy"]
-    assert last.fatal[-1] == (life.cause is Cause.FATAL)
-    assert (last.energy[-1] <= 0) == (life.cause is Cause.STARVED)
+        assert last.energy[-1] == stored["world.organisms.energy"]
+        assert last.eaten[-1] == stored["world.organisms.eaten"]
+    assert not hungry or (last.energy[-1] <= 0) == (life.cause is Cause.STARVED)
+    assert last.cause[-1] == (life.cause if life.cause in BODILY else -1)
     assert all((each.energy[:-1] > 0).all() for each in seen)
     return seen
 
@@ -82,8 +83,8 @@ def test_the_living_come_to_where_they_are(
     which: str, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Alone, and long after, to the last bit: bodies, energy, with noisy motors and seasons."""
-    monkeypatch.setattr(Fused, "TICKS", 512)
-    monkeypatch.setattr(Hosted, "TICKS", 20)
+    monkeypatch.setattr(LifeInJax, "TICKS", 512)
+    monkeypatch.setattr(LifeOnHost, "TICKS", 20)
     run = request.getfixturevalue(which)
     everyone = lives(run)
     alive = np.flatnonzero(~everyone.died & (everyone.lifespan > 0))
@@ -154,7 +155,7 @@ def test_a_habitat_on_the_host_is_closed(mirror: Path, monkeypatch: pytest.Monke
     """Lived to the end or not; each life has a habitat to itself."""
     closed: list[Mirror] = []
     monkeypatch.setattr(Mirror, "close", lambda self: closed.append(self), raising=False)
-    monkeypatch.setattr(Hosted, "TICKS", 5)
+    monkeypatch.setattr(LifeOnHost, "TICKS", 5)
     life = Life.of(mirror, primordia.load(mirror).oldest().id)
     one: Any = life.again()
     other = life.again()
@@ -299,8 +300,12 @@ def test_a_habitat_on_the_host_that_cannot_be_seen(
 ) -> None:
     values = {"task": "host", "habitat": HOST_CARTPOLE, "cells": 4, "stop": {"ticks": 20}}
     loop.start(config(values), tmp_path / "run")
-    complains(here("replay", tmp_path / "run"), 2, "draws no pictures (it has no `picture`)")
+    no_pictures = "draws no pictures (it has no "
+    complains(here("replay", tmp_path / "run"), 2, no_pictures, "`picture` and no `seen`")
     monkeypatch.setattr(HostCartPole, "picture", None, raising=False)
-    complains(here("replay", tmp_path / "run"), 2, "draws no pictures (it has no `seen`)")
+    complains(here("replay", tmp_path / "run"), 2, no_pictures + "`seen`)")
+    monkeypatch.setattr(HostCartPole, "seen", None, raising=False)
+    complains(here("replay", tmp_path / "run"), 2, no_pictures + "`rate`)")
+    monkeypatch.undo()
     (seen,) = Life.of(tmp_path / "run", 0).again()
     assert seen.bodies is None

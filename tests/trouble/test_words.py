@@ -45,7 +45,11 @@ WRONG = {
     (TASK, "--habitat.name", ":Pond"): ["no habitat named ':Pond'"],
     (TASK, "--habitat.name", "no.such:Pond"): ["'no.such:Pond'", "No module named 'no'"],
     (TASK, "--habitat.name", "tests.toys:Pond"): ["'tests.toys:Pond'", "no attribute 'Pond'"],
-    (TASK, "--habitat.name", "json:JSONDecoder"): ["JSONDecoder is no habitat", "senses_size"],
+    (TASK, "--habitat.name", "json:JSONDecoder"): [
+        "JSONDecoder is no habitat",
+        "JaxHabitat",
+        "senses_size",
+    ],
     (TASK, "--habitat", "pond"): ["habitat", "'pond'"],
     (TASK, "--cells"): ["--cells needs a value"],
     (TASK, "--cells", "--seed", "3"): ["--cells needs a value"],

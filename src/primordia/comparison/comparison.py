@@ -146,7 +146,7 @@ def compare(
     moments = [_saturation(path, births, ticks) for path in runs]
     if not any(map(saturates, moments)):
         everyone = [each.until(until) for each in everyone]
-    arms, rate = [], getattr(configs[0].build_habitat(), "rate", None)
+    arms, rate = [], configs[0].build_habitat().rate
     each_run = zip(runs, everyone, moments, names, differing(configs), strict=True)
     for path, lived, saturation, name, own in each_run:
         worlds = _worlds(lived)

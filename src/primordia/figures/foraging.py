@@ -16,7 +16,7 @@ def draw(run: Path, config: Config) -> Figure:
     """Food an organism gathers, a second where the habitat knows of seconds, and the break-even."""
     figure = Figure(figsize=(style.COLUMN, 2.4))
     axes, found = figure.subplots(), foraging(run, config)
-    rate = getattr(config.build_habitat(), "rate", None)
+    rate = config.build_habitat().rate
     food, enough = (each * (rate or 1) for each in (found.food, found.break_even))
     worlds = len(food)
     if len(found.middle):

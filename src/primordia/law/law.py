@@ -79,6 +79,11 @@ class Law:
         return found
 
     @property
+    def has_hazard(self) -> bool:
+        """Whether accidents can happen, now or in a later season."""
+        return self.hazard > 0 or any(season.setting == "hazard" for season in self.seasons)
+
+    @property
     def cell_numbers(self) -> Array:
         """Number of each cell within its world, int32 (C,)."""
         return jnp.tile(jnp.arange(self.cells, dtype=jnp.int32), self.worlds)

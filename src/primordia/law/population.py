@@ -6,25 +6,11 @@ from jax import Array, lax
 from primordia.law import turnover
 from primordia.law.events import Events
 from primordia.law.law import Law
-from primordia.law.life import Fates
 from primordia.law.sample import note_samples
 from primordia.law.seasons import Schedule, turn
-from primordia.law.world import Organisms, World
+from primordia.law.tick import Fates
+from primordia.law.world import World
 from primordia.random.wide import happened, select, times, wide
-
-
-def rest(before: Organisms, after: Organisms, active: Array) -> Organisms:
-    """Who is not active, in an empty cell or a world that has stopped, stays as before."""
-
-    def keep(new: Array, old: Array) -> Array:
-        return jnp.where(active.reshape(-1, *[1] * (new.ndim - 1)), new, old)
-
-    return before._replace(
-        memory=keep(after.memory, before.memory),
-        energy=keep(after.energy, before.energy),
-        eaten=keep(after.eaten, before.eaten),
-        faulty=keep(after.faulty, before.faulty),
-    )
 
 
 def lifeless(law: Law, world: World, running: Array) -> Array:

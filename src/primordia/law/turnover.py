@@ -202,7 +202,6 @@ def _begin_lives(
         memory=jnp.where(born[:, None], 0, organisms.memory),
         energy=jnp.where(born, store, organisms.energy),
         eaten=jnp.where(born, 0, organisms.eaten),
-        faulty=organisms.faulty & ~born,
         born=select(born, worlds.tick.map(law.per_cell), organisms.born),
         number=select(born, births.number, organisms.number),
         branch=select(born, branch, organisms.branch),

@@ -4,19 +4,19 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
 from itertools import chain
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import jax.numpy as jnp
 import numpy as np
-from jax import Array
 
 from primordia.brains.contract import split
 from primordia.compiled import shared
-from primordia.engine.fused import fresh
-from primordia.habitats.contract import Bodies, Habitat, HostHabitat, Outcome
+from primordia.habitats.contract import AnyHabitat, HostHabitat, Outcome
+from primordia.habitats.on_host import OnHost
 from primordia.law.genesis import body_words
 from primordia.law.law import Law
-from primordia.law.metabolism import Rates, fixed, metabolise
+from primordia.law.life import Vitals, judge
+from primordia.law.metabolism import Rates, fixed
 from primordia.organism.life.instant import Mind, think
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import Wide, wide
@@ -31,7 +31,7 @@ class Players(NamedTuple):
     """Who play, K of them, and what their games are a function of."""
 
     law: Law
-    habitat: Habitat | HostHabitat
+    habitat: AnyHabitat
     genomes: np.ndarray
     """float32 (K, P)"""
     keys: Wide
@@ -110,8 +110,9 @@ def _side_by_side(
     with _opened(players.habitat, count) as table:
         senses = first = np.array(table.reset(np.arange(count), tries.words()))
         for tick in range(1, ticks + 1):
-            action = tries.think(first if frozen else senses, tick)
-            if script is not None:
+            if script is None:
+                action = tries.think(first if frozen else senses, tick)
+            else:
                 action = np.repeat(script.done(tick), games, axis=0)
             actions.append(action[::games].copy())
             senses, outcome = table.step(action, playing)
@@ -136,78 +137,43 @@ def _stirred(course: np.ndarray, senses: np.ndarray, food: np.ndarray) -> np.nda
 
 
 class _Tries:
-    """Brains and energy, one for each game."""
+    """Brains and stores, one for each game."""
 
     def __init__(self, players: Players, games: int) -> None:
-        law, self._players = players.law, players
+        law, self._words = players.law, players.habitat.words
         each = partial(jnp.repeat, repeats=games, axis=0)
-        self._keys = players.keys.map(each)
-        self._cells = jnp.asarray(np.tile(np.arange(games), len(players.genomes)), jnp.int32)
-        self._mind = Mind(
-            split(law.brain, each(jnp.asarray(players.genomes))), self._keys, self._cells
-        )
-        self._memory = jnp.zeros((len(self._cells), law.brain.memory), jnp.float32)
+        cells = jnp.asarray(np.tile(np.arange(games), len(players.genomes)), jnp.int32)
+        genome = split(law.brain, each(jnp.asarray(players.genomes)))
+        self._mind = Mind(genome, players.keys.map(each), cells)
+        self._memory = jnp.zeros((len(cells), law.brain.memory), jnp.float32)
         self._rates = Rates(*map(each, players.rates))
-        self._energy = fixed(self._rates.store)
-        self._think, self._eat = shared(think, law), shared(metabolise)
+        self._vitals = Vitals(fixed(self._rates.store), jnp.zeros(len(cells), jnp.int32))
+        self._faulty = jnp.zeros(len(cells), bool)
+        self._think, self._judge = shared(think, law), shared(judge, law)
 
     def words(self) -> np.ndarray:
-        """What the games are begun with, uint32 (K E, words)."""
-        key = stream(self._keys, Purpose.BODY, wide([0]))
-        return np.asarray(body_words(key, self._cells, self._players.habitat.words))
+        """Return what the games are begun with, uint32 (K E, words)."""
+        key = stream(self._mind.key, Purpose.BODY, wide([0]))
+        return np.asarray(body_words(key, self._mind.cell, self._words))
 
     def think(self, senses: np.ndarray, tick: int) -> np.ndarray:
-        """Senses (K E, S) -> actions, int32 (K E,) or float32 (K E, A)."""
-        self._memory, action = self._think(self._mind, self._memory, senses, wide([tick]))
-        return np.asarray(action)
+        """Return the actions for senses (K E, S), int32 (K E,) or float32 (K E, A)."""
+        thought = self._think(self._mind, self._memory, senses, wide([tick]))
+        self._memory, self._faulty = thought.memory, thought.faulty
+        return np.asarray(thought.action)
 
     def judge(self, outcome: Outcome, senses: np.ndarray) -> np.ndarray:
-        """Who is dead after a tick, bool (K E,)."""
-        dies = np.asarray(outcome.fatal) | ~np.isfinite(senses).all(axis=1)
-        if outcome.fault is not None:
-            dies = dies | np.asarray(outcome.fault)
-        if self._players.law.metabolism is None:
-            return dies
-        self._energy = self._eat(self._energy, outcome.food, outcome.effort, self._rates)
-        return dies | (np.asarray(self._energy) <= 0)
+        """Return which organisms have died at the end of a tick, bool (K E,)."""
+        self._vitals, cause = self._judge(self._vitals, self._faulty, senses, outcome, self._rates)
+        return np.asarray(cause) >= 0
 
 
 @contextmanager
-def _opened(habitat: Any, games: int) -> Iterator[Any]:
-    """A habitat to be stepped on the host, with room for so many bodies."""
-    table = habitat if hasattr(habitat, "open") else _OnHost(habitat)
+def _opened(habitat: AnyHabitat, games: int) -> Iterator[HostHabitat]:
+    """A habitat to be stepped on the host, with room for that many bodies."""
+    table = habitat if habitat.kind == "host" else OnHost(habitat)
     table.open(games)
     try:
         yield table
     finally:
-        if hasattr(table, "close"):
-            table.close()
-
-
-def _sense(habitat: Habitat, bodies: Bodies) -> Array:
-    return habitat.sense(bodies)
-
-
-def _step(habitat: Habitat, bodies: Bodies, action: Array) -> tuple[Bodies, Outcome]:
-    return habitat.step(bodies, action)
-
-
-class _OnHost:
-    """A habitat in JAX, stepped as those on the host are."""
-
-    def __init__(self, inner: Habitat) -> None:
-        each = (fresh, _sense, _step)
-        self._reset, self._sense, self._step = (shared(function, inner) for function in each)
-
-    def open(self, cells: int) -> None:
-        """Bodies are made as they are needed."""
-
-    def reset(self, born: np.ndarray, words: np.ndarray) -> np.ndarray:
-        """All are born at once."""
-        self._bodies = self._reset(jnp.asarray(words))
-        return np.asarray(self._sense(self._bodies))
-
-    def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
-        """All are stepped, whoever is alive."""
-        self._bodies, outcome = self._step(self._bodies, jnp.asarray(action))
-        return np.asarray(self._sense(self._bodies)), outcome
+        table.close()

@@ -88,7 +88,7 @@ def other_versions(run: Path) -> list[str]:
 
 
 def _habitat_versions(config: Config) -> dict[str, str]:
-    return getattr(config.build_habitat(), "versions", {})
+    return config.build_habitat().versions
 
 
 def _recorded_versions(run: Path) -> dict[str, Any]:

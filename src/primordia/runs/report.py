@@ -10,8 +10,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from primordia.config import Config
-from primordia.engine.tallies import names_of
 from primordia.errors import InputError
+from primordia.habitats.contract import AnyHabitat
 from primordia.law.metabolism import break_even
 from primordia.law.world import Cause
 from primordia.runs import checkpoint
@@ -80,7 +80,7 @@ def _table(run: Path, name: str, config: Config, last: Checkpoint) -> pa.Table:
     parts = [pq.read_table(run / name / each["name"]) for each in last.manifest["segments"][name]]
     habitat = config.build_habitat()
     blocks = list(config.build_brain(habitat).blocks)
-    recorder = Recorder(None, config.seeds, config.cells, blocks, names_of(habitat))
+    recorder = Recorder(None, config.seeds, config.cells, blocks, habitat.tallies)
     parts.append(recorder.arrow(name, last.arrays()[f"tail.{name}"]))
     return pa.concat_tables(parts)
 
@@ -97,7 +97,7 @@ def counts(arrays: dict[str, np.ndarray], name: str) -> np.ndarray:
 
 
 def _world(
-    config: Config, habitat: Any, arrays: dict[str, np.ndarray], world: int, digest: str
+    config: Config, habitat: AnyHabitat, arrays: dict[str, np.ndarray], world: int, digest: str
 ) -> dict[str, Any]:
     def count(name: str) -> Any:
         return counts(arrays, f"world.worlds.{name}")[world].tolist()
@@ -125,9 +125,9 @@ def _world(
         "digest": digest,
     }
     if (tally := arrays.get(TALLY)) is not None and alive.any():
-        found["tallies"] = _of_the_living(names_of(habitat), tally[here][alive])
+        found["tallies"] = _of_the_living(habitat.tallies, tally[here][alive])
     if config.metabolism is not None:
-        found["break_even"] = _break_even(arrays, world, getattr(habitat, "rate", None))
+        found["break_even"] = _break_even(arrays, world, habitat.rate)
     if config.seasons:
         found["climate"] = _climate(arrays, world)
     return found

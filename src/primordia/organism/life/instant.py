@@ -7,8 +7,9 @@ from jax import Array
 
 from primordia.brains.contract import Genome
 from primordia.habitats.contract import Bodies
+from primordia.law import life
 from primordia.law.law import Law
-from primordia.law.life import act
+from primordia.law.life import Thought, Vitals
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import Wide
 
@@ -17,8 +18,7 @@ class Instant(NamedTuple):
     """Where a life stands; one organism, so the first axis of everything is 1."""
 
     memory: Array
-    energy: Array
-    """int32, fixed point"""
+    vitals: Vitals
     bodies: Bodies
     """its senses, where the body itself is in a habitat on the host"""
 
@@ -31,27 +31,28 @@ class Stretch(NamedTuple):
     senses: np.ndarray
     """float32 (n, S): perceived, and acted upon"""
     action: np.ndarray
-    """int32 (n,) or float32 (n, A): what it did"""
+    """int32 (n,) or float32 (n, A)"""
     bodies: Bodies
-    """as they then are; in a habitat on the host, what is `seen` of them, None if it shows nothing"""
+    """after the tick; in a habitat on the host, what is `seen` of them, None if it shows nothing"""
     energy: np.ndarray
-    """float64, units; it has no meaning without a metabolism"""
-    fatal: np.ndarray
-    """bool"""
+    """int32 after the tick, fixed point; it has no meaning without a metabolism"""
+    eaten: np.ndarray
+    """int32, fixed point: food of the whole life"""
+    cause: np.ndarray
+    """int32: cause of death that brain, body or store gives in the tick, or -1"""
 
 
 class Mind(NamedTuple):
-    """What an organism's actions are a function of, beside the law and what it perceives."""
+    """What the actions of N organisms depend on, beside the law and their senses."""
 
     genome: Genome
-    """of one"""
-    seed: Wide
-    """(1,), its world's"""
+    key: Wide
+    """(N,), of everything random in a life, such as its world's seed"""
     cell: Array
-    """int32 (1,), within its world"""
+    """int32 (N,), within its world"""
 
 
-def think(law: Law, mind: Mind, memory: Array, senses: Array, tick: Wide) -> tuple[Array, Array]:
-    """One tick, Wide (1,), of memory (1, M) and senses (1, S) -> memory, action."""
-    memory, output = law.brain(mind.genome, memory, senses)
-    return memory, act(law, stream(mind.seed, Purpose.MOTOR, tick), mind.cell, output)
+def think(law: Law, mind: Mind, memory: Array, senses: Array, tick: Wide) -> Thought:
+    """Think one tick, Wide (1,), with memory (N, M) and senses (N, S)."""
+    key = stream(mind.key, Purpose.MOTOR, tick)
+    return life.think(law, mind.genome, memory, senses, key, mind.cell)

@@ -8,28 +8,33 @@ from contextlib import closing
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
+import pyarrow.compute as pc
 
 from primordia.brains.contract import Genome, split
 from primordia.config import Config
 from primordia.errors import InputError, Trouble
+from primordia.habitats.contract import AnyHabitat
 from primordia.history.climate import climate_at
 from primordia.history.lineage import place_in, rebuild
 from primordia.law.genesis import body_words
 from primordia.law.law import Law
-from primordia.law.metabolism import Rates, fixed
+from primordia.law.life import BODILY, Vitals
+from primordia.law.metabolism import ONE, Rates, fixed
 from primordia.law.world import Cause
-from primordia.organism.life.fused import Fused
-from primordia.organism.life.hosted import Hosted
+from primordia.organism.life.in_jax import LifeInJax
 from primordia.organism.life.instant import Instant, Mind, Stretch
+from primordia.organism.life.on_host import LifeOnHost
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import Wide, wide
 from primordia.runs import checkpoint
 from primordia.runs.lives import Lives, lives
-from primordia.runs.report import opened
+from primordia.runs.report import opened, table
+
+KEPT = "memory", "energy", "eaten"
+"""What a fork keeps of an organism, beside its genome and body."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +44,7 @@ class Life:
     run: Path
     config: Config
     law: Law
-    habitat: Any
+    habitat: AnyHabitat
     """to ask for pictures; each time the life is lived it is in a habitat of its own"""
     genome: Genome
     """of one"""
@@ -60,7 +65,7 @@ class Life:
         law = config.build_law(habitat)
         genome = split(law.brain, jnp.asarray(rebuild(run, organism, world)[None]))
         life = cls(run, config, law, habitat, genome, everyone.take(slice(row, row + 1)))
-        if life.was_found and not getattr(habitat, "exact", True):
+        if life.was_found and not habitat.exact:
             raise InputError(
                 f"{run}: organism {organism} is older than the fork, and its habitat cannot save bodies"
             )
@@ -111,14 +116,14 @@ class Life:
                 self._check(stretch)
                 yield stretch
 
-    def _alone(self, watched: bool) -> Fused | Hosted:
+    def _alone(self, watched: bool) -> LifeInJax | LifeOnHost:
         mind = Mind(self.genome, self._seed, jnp.asarray(self.record.cell))
         habitat = self.config.build_habitat()
-        if hasattr(habitat, "open"):
-            return Hosted(self.law, mind, habitat, watched)
-        return Fused(self.law, mind, habitat)
+        if habitat.kind == "host":
+            return LifeOnHost(self.law, mind, habitat, watched)
+        return LifeInJax(self.law, mind, habitat)
 
-    def _start(self, alone: Fused | Hosted) -> Instant:
+    def _start(self, alone: LifeInJax | LifeOnHost) -> Instant:
         """Where it begins: at birth, or where a fork found it."""
         if self.was_found:
             return self._as_found(alone)
@@ -126,30 +131,44 @@ class Life:
         words = body_words(key, jnp.asarray(self.record.cell), self.habitat.words)
         memory = jnp.zeros((1, self.law.brain.memory), jnp.float32)
         store = self._rates(np.array([self.begins])).store
-        return Instant(memory, fixed(store), alone.born(words))
+        vitals = Vitals(fixed(store), jnp.zeros(1, jnp.int32))
+        return Instant(memory, vitals, alone.embody(words))
 
-    def _as_found(self, alone: Fused | Hosted) -> Instant:
+    def _as_found(self, alone: LifeInJax | LifeOnHost) -> Instant:
         origin = checkpoint.origin(self.run)
         assert origin is not None
         arrays = origin.arrays()
         cell = [place_in(origin, self.law, int(self.record.id[0]), self.world)]
-        return Instant(
-            jnp.asarray(arrays["world.organisms.memory"][cell]),
-            jnp.asarray(arrays["world.organisms.energy"][cell]),
-            alone.found({n: a[cell] for n, a in arrays.items() if n.startswith("bodies")}),
-        )
+        own = {name: jnp.asarray(arrays[f"world.organisms.{name}"][cell]) for name in KEPT}
+        bodies = {n: a[cell] for n, a in arrays.items() if n.startswith("bodies")}
+        vitals = Vitals(own["energy"], own["eaten"])
+        return Instant(own["memory"], vitals, alone.restore(bodies))
 
     def _check(self, stretch: Stretch) -> None:
-        """Its body must meet its end where that is recorded, and nowhere else."""
+        """Compare with the record: the tick and cause of death, the energy left and the food eaten.
+
+        A death that only neighbours or chance can give is not repeated; the body lives on until then.
+        """
         last = stretch.tick == self.ends
-        expected = last & (self.cause is Cause.FATAL)
-        if self.cause is Cause.FAULT:  # a simulation that failed may have said anything
-            expected |= last & stretch.fatal
-        if not np.array_equal(stretch.fatal, expected):
+        expected = np.where(last & (self.cause in BODILY), int(self.cause or 0), -1)
+        same = np.array_equal(stretch.cause, expected)
+        if last.any() and self.cause is not None:
+            same &= (stretch.energy[-1], stretch.eaten[-1]) == self.at_death
+        if not same:
             raise Trouble(
                 f"{self.run}: organism {self.record.id[0]} did not live again as recorded;"
                 " `primordia verify` tells whether this machine gives the run's bits"
             )
+
+    @cached_property
+    def at_death(self) -> tuple[int, int]:
+        """Energy left and food eaten, as recorded at its death; fixed point."""
+        deaths = table(self.run, "deaths")
+        own = pc.and_(
+            pc.equal(deaths["world"], self.world), pc.equal(deaths["id"], int(self.record.id[0]))
+        )
+        (row,) = deaths.select(["energy", "food"]).filter(own).to_pylist()
+        return round(row["energy"] * ONE), round(row["food"] * ONE)
 
     @property
     def _seed(self) -> Wide:

@@ -1,0 +1,128 @@
+"""What is compiled for a habitat on the host: halves of ticks, and their settling."""
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import jax.numpy as jnp
+from jax import Array
+
+from primordia.brains.contract import Genome
+from primordia.compiled import shared
+from primordia.engine.held import Form, Held
+from primordia.engine.state import Limits, running, ticks_left
+from primordia.habitats.contract import Outcome
+from primordia.law import events as log
+from primordia.law.events import Events
+from primordia.law.genesis import birth_words
+from primordia.law.law import Law
+from primordia.law.life import Thought
+from primordia.law.population import settle
+from primordia.law.tick import Fates, judge, keys_of, rest, think
+from primordia.law.world import World
+
+
+class Decision(NamedTuple):
+    """What the host needs to know of a tick that is settled."""
+
+    alive: Array
+    """bool (C,)"""
+    active: Array
+    """bool (C,): to be stepped next"""
+    died: Array
+    """bool (C,): their lives have ended"""
+    newborn: Array
+    """bool (C,): they need bodies"""
+    words: Array
+    """uint32 (C, words) to make bodies from"""
+    go_on: Array
+    """bool (): some world runs, and the lists have room"""
+    due: Array
+    """int32 (): ticks after which the world is to be settled at the latest"""
+
+
+class Calls:
+    """Compiled functions of a law, for worlds held in a form, with bodies of some random words."""
+
+    def __init__(self, law: Law, form: Form, words: int) -> None:
+        steps = _Steps(law, form, words)
+        self.hold, self.release = shared(Form.hold, form), shared(Form.release, form)
+        self.think = shared(_Steps.think, steps)
+        self.live = shared(_Steps.live, steps)
+        self.survey = shared(_Steps.survey, steps)
+        self.settle = shared(_Steps.settle, steps, donate=(0, 1))
+
+
+class Since(NamedTuple):
+    """What was lived since the last settled tick."""
+
+    held: Held
+    """the world, not settled yet"""
+    fates: Fates
+    """of the latest tick"""
+    ticks: Any
+    """int32 (): how many"""
+
+
+@dataclass(frozen=True)
+class _Steps:
+    law: Law
+    form: Form
+    words: int
+
+    def think(self, genome: Genome, held: Held, senses: Array) -> Thought:
+        """Think the first tick after a settled one."""
+        world = self.form.release(held, genome)
+        return think(self.law, world, senses, keys_of(world.worlds, jnp.int32(1)))
+
+    def live(
+        self,
+        genome: Genome,
+        now: Held,
+        thought: Thought,
+        senses: Array,
+        outcome: Outcome,
+        active: Array,
+        passed: Array,
+    ) -> tuple[Held, Thought, Fates]:
+        """Judge the tick `passed` ticks after the last settled one, and think the next one."""
+        world = self.form.release(now, genome)
+        keys = keys_of(world.worlds, passed)
+        world, fates = judge(self.law, world, thought, senses, outcome, keys, active)
+        thought = think(self.law, world, senses, keys_of(world.worlds, passed + 1))
+        return self.form.hold(world), thought, fates
+
+    def survey(self, genome: Genome, held: Held, events: Events, limits: Limits) -> Decision:
+        """Decide for a world in which no organism has died or is born."""
+        world = self.form.release(held, genome)
+        none = jnp.zeros_like(world.organisms.alive)
+        return self._decide(world, events, none, none, limits)
+
+    def settle(
+        self, genome: Genome, events: Events, held: Held, since: Since, limits: Limits
+    ) -> tuple[Genome, Events, Held, Decision]:
+        """Bring a world, as held after the last settled tick, up to date by what was lived since."""
+        law, before = self.law, self.form.release(held, genome)
+        after = self.form.release(since.held, genome)
+        live_worlds = running(before.worlds, limits)
+        active = before.organisms.alive & law.per_cell(live_worlds)
+        world = World(rest(before.organisms, after.organisms, active), after.worlds)
+        world, events, newborn = settle(law, world, events, since.fates, since.ticks, live_worlds)
+        died = before.organisms.alive & (~world.organisms.alive | newborn)
+        decision = self._decide(world, events, died, newborn, limits)
+        return world.organisms.genome, events, self.form.hold(world), decision
+
+    def _decide(
+        self, world: World, events: Events, died: Array, newborn: Array, limits: Limits
+    ) -> Decision:
+        law, alive = self.law, world.organisms.alive
+        live_worlds = running(world.worlds, limits)
+        room = log.have_room(events, law.worlds * law.cells, law.worlds)
+        return Decision(
+            alive=alive,
+            active=alive & law.per_cell(live_worlds),
+            died=died,
+            newborn=newborn,
+            words=birth_words(law, world.worlds, newborn.any(), self.words),
+            go_on=live_worlds.any() & room,
+            due=ticks_left(law, world, limits, live_worlds),
+        )

@@ -1,0 +1,116 @@
+"""One tick of all cells: each organism's own (`life`), with what its cell and its world add to it.
+
+Cells draw accidents and attempts to replicate; worlds count food. Brains of empty cells and of stopped
+worlds think too, since that is cheaper than choosing; `rest` then puts those back that must not change.
+"""
+
+from typing import NamedTuple
+
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from primordia.habitats.contract import Bodies, Outcome
+from primordia.law import life
+from primordia.law.law import Law
+from primordia.law.life import Thought, Vitals
+from primordia.law.metabolism import Rates, fixed
+from primordia.law.world import Cause, Organisms, World, Worlds
+from primordia.random.keys import Purpose, Streams, bits, chance, streams
+from primordia.random.wide import Wide, signed, total
+
+
+class Fates(NamedTuple):
+    """What becomes of the organisms in one tick, (C,)."""
+
+    cause: Array
+    """int32: of its death, or -1"""
+    wants: Array
+    """bool: lives on, and would copy itself now if there is room"""
+    eventful: Array
+    """bool (): an organism dies, or may be born"""
+
+
+def no_fates(law: Law) -> Fates:
+    """Return fates of a tick in which nothing happens."""
+    cells = law.worlds * law.cells
+    none = jnp.zeros(cells, bool)
+    return Fates(jnp.full(cells, -1, jnp.int32), none, jnp.zeros((), bool))
+
+
+def keys_of(worlds: Worlds, ticks: Array) -> Streams:
+    """Return what `think` and `judge` draw from, (W,), int32 () `ticks` after the last settled tick."""
+    tick = worlds.tick.plus(jnp.full_like(worlds.calm, ticks))
+    return streams(worlds.seed, tick, Purpose.MOTOR, Purpose.HAZARD, Purpose.REPLICATE)
+
+
+def think(law: Law, world: World, senses: Array, keys: Streams) -> Thought:
+    """Advance the brains and motors of all cells by one tick, with senses float32 (C, S)."""
+    organisms, key = world.organisms, keys[Purpose.MOTOR].map(law.per_cell)
+    return life.think(law, organisms.genome, organisms.memory, senses, key, law.cell_numbers)
+
+
+def judge(
+    law: Law,
+    world: World,
+    thought: Thought,
+    bodies: Bodies,
+    outcome: Outcome,
+    keys: Streams,
+    active: Array,
+) -> tuple[World, Fates]:
+    """Judge what a tick means for the active: they remember, eat, die, want to copy themselves.
+
+    Args:
+        law: the law.
+        world: before the tick.
+        thought: of the tick.
+        bodies: after the tick; see `life.judge`.
+        outcome: of the habitat, (C,) each.
+        keys: of the tick.
+        active: the living in worlds that run, bool (C,).
+
+    Returns:
+        world with memory, energy and food brought up to date; fates.
+    """
+    organisms, worlds = world
+    rates = Rates(*(law.per_cell(rate) for rate in worlds.climate.metabolism))
+    vitals = Vitals(organisms.energy, organisms.eaten)
+    vitals, cause = life.judge(law, vitals, thought.faulty, bodies, outcome, rates)
+    organisms = organisms._replace(memory=thought.memory, **vitals._asdict())
+    if outcome.food is not None:
+        worlds = worlds._replace(food=worlds.food + _food(law, outcome.food, active))
+    if law.has_hazard:
+        struck = _drawn(law, keys[Purpose.HAZARD], worlds.climate.hazard)
+        cause = jnp.where(struck & (cause < 0), Cause.HAZARD, cause)
+    cause = jnp.where(active, cause, -1)
+    replicates = _drawn(law, keys[Purpose.REPLICATE], worlds.climate.replication)
+    wants = replicates & active & (cause < 0)
+    room = law.placement.room(law.by_world(organisms.alive)).ravel()
+    eventful = ((cause >= 0) | (wants & room)).any()
+    return World(organisms, worlds), Fates(cause, wants, eventful)
+
+
+def _food(law: Law, food: Array, active: Array) -> Wide:
+    """Return what the active of each world ate in a tick, fixed point, (W,)."""
+    eaten = signed(jnp.where(active, fixed(food), 0))
+    return total(eaten.map(law.by_world), axis=1)
+
+
+def _drawn(law: Law, key: Wide, probability: Array) -> Array:
+    """Draw an event of a given probability (W,) for every cell: bool (C,)."""
+    word = bits(key.take(np.s_[:, None]), jnp.arange(law.cells)[None]).hi
+    return chance(word, probability[:, None]).ravel()
+
+
+def rest(before: Organisms, after: Organisms, active: Array) -> Organisms:
+    """Return organisms after some ticks, those not active (C,) unchanged."""
+
+    def keep(new: Array, old: Array) -> Array:
+        return jnp.where(active.reshape(-1, *[1] * (new.ndim - 1)), new, old)
+
+    return before._replace(
+        memory=keep(after.memory, before.memory),
+        energy=keep(after.energy, before.energy),
+        eaten=keep(after.eaten, before.eaten),
+    )

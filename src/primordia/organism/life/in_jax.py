@@ -1,0 +1,65 @@
+"""A life in a habitat in JAX: brain and body in one compiled loop."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array, lax
+
+from primordia.compiled import shared
+from primordia.engine.state import named_leaves
+from primordia.habitats.bodies import fresh
+from primordia.habitats.contract import Bodies, JaxHabitat
+from primordia.law.law import Law
+from primordia.law.life import judge
+from primordia.law.metabolism import Rates
+from primordia.organism.life.instant import Instant, Mind, Stretch, think
+from primordia.random.wide import Wide, wide
+
+
+class LifeInJax:
+    """One organism in a habitat in JAX."""
+
+    TICKS = 4096
+    """Lived in one compiled call."""
+
+    def __init__(self, law: Law, mind: Mind, habitat: JaxHabitat) -> None:
+        self._mind, self._habitat = mind, habitat
+        self._lived = shared(_lived, law, habitat)
+
+    def embody(self, words: Array) -> Bodies:
+        """Return a fresh body from random words uint32 (1, words)."""
+        return shared(fresh, self._habitat)(words)
+
+    def restore(self, stored: dict[str, np.ndarray]) -> Bodies:
+        """Return the body, (1, ...) each, that a checkpoint holds under names with `bodies` before."""
+        like = self._habitat.reset(jnp.zeros((1, self._habitat.words), jnp.uint32))
+        leaves = [jnp.asarray(stored[name]) for name, _ in named_leaves({"bodies": like})]
+        return jax.tree.unflatten(jax.tree.structure(like), leaves)
+
+    def live(
+        self, now: Instant, ticks: np.ndarray, rates: Rates, count: int
+    ) -> tuple[Instant, Stretch]:
+        """Live the first `count` of TICKS ticks, with their rates (TICKS,); ignore the others."""
+        now, lived = self._lived(self._mind, now, wide(ticks), rates)
+        columns = jax.tree.map(lambda each: np.asarray(each[:count, 0]), lived)
+        return now, Stretch(ticks[:count], *columns)
+
+    def close(self) -> None:
+        """Do nothing: there is nothing to let go of."""
+
+
+def _lived(
+    law: Law, habitat: JaxHabitat, mind: Mind, now: Instant, ticks: Wide, rates: Rates
+) -> tuple[Instant, tuple]:
+    """Live ticks (n,) -> where the life then stands; the columns of a Stretch, (n, 1, ...) each."""
+
+    def step(now: Instant, given: tuple[Wide, Rates]) -> tuple[Instant, tuple]:
+        tick, rates = given
+        senses = habitat.sense(now.bodies)
+        thought = think(law, mind, now.memory, senses, tick.map(jnp.atleast_1d))
+        bodies, outcome = habitat.step(now.bodies, thought.action)
+        vitals, cause = judge(law, now.vitals, thought.faulty, bodies, outcome, rates)
+        columns = senses, thought.action, bodies, *vitals, cause
+        return Instant(thought.memory, vitals, bodies), columns
+
+    return lax.scan(step, now, (ticks, rates))
