@@ -1,6 +1,7 @@
 """The tested versions: every package that the project asks for has one, in the range it asks for."""
 
 import tomllib
+from itertools import chain
 from pathlib import Path
 
 from packaging.requirements import Requirement
@@ -17,7 +18,7 @@ def test_every_requirement_has_a_tested_version() -> None:
     wanted = [
         *about["build-system"]["requires"],
         *about["project"]["dependencies"],
-        *sum(about["project"]["optional-dependencies"].values(), []),
+        *chain(*about["project"]["optional-dependencies"].values()),
         *about["dependency-groups"]["dev"],
     ]
     for requirement in map(Requirement, wanted):
