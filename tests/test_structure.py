@@ -107,3 +107,25 @@ def test_no_pickle_no_eval_and_no_randomness_but_our_own(module: str) -> None:
 def test_files_are_short_and_say_what_they_are(module: str) -> None:
     assert len(FILES[module].read_text(encoding="utf-8").splitlines()) < 350
     assert ast.get_docstring(tree(module))
+
+
+Function = ast.FunctionDef | ast.AsyncFunctionDef
+LONGEST = 40
+"""Lines of a function, without its docstring."""
+STILL_LONGER = {("law.turnover", "_inherit")}
+"""Functions to be cut."""
+
+
+@pytest.mark.parametrize("module", FILES)
+def test_functions_are_short(module: str) -> None:
+    functions = [node for node in ast.walk(tree(module)) if isinstance(node, Function)]
+    longer = {(module, each.name) for each in functions if length(each) > LONGEST}
+    assert longer <= STILL_LONGER
+
+
+def length(function: Function) -> int:
+    """Lines from `def` to the last, without the docstring's."""
+    documented = ast.get_docstring(function) is not None
+    parts = [function, *function.body[:documented]]
+    whole, *docstring = [(each.end_lineno or 0) - each.lineno + 1 for each in parts]
+    return whole - sum(docstring)
