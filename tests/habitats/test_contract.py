@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from jax import Array
 
+import primordia
 from primordia.config import validated
 from primordia.errors import InputError
 from primordia.habitats import Ability, Discrete, HostHabitat, JaxHabitat, Outcome
 from primordia.habitats.cartpole.habitat import CartPole
 from primordia.runs import loop
-from primordia.runs.report import info
 from primordia.settings.base import Settings
 from tests.commands import environment
 from tests.toys import Clocked, HostCartPole, Meadow, Mirror
@@ -189,10 +189,11 @@ def test_bodies_that_cannot_be_saved_begin_again(tmp_path: Path) -> None:
     """A run goes on with them as they were at birth, and says that it is not exact."""
     habitat, run = {"name": f"{__name__}:Forgetful"}, tmp_path / "run"
     loop.start(config(MEADOW, habitat=habitat, hazard=0.01, stop={"ticks": 60}), run)
-    assert info(run)["exact"] is False
+    assert primordia.load(run).info()["exact"] is False
     loop.resume(run, {"ticks": 90})
-    assert info(run)["ticks"] == 90
-    assert info(run)["deaths"] > 0
+    info = primordia.load(run).info()
+    assert info["ticks"] == 90
+    assert info["deaths"] > 0
 
 
 def test_neither_contract_nor_simulator_load_jax() -> None:

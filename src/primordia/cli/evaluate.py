@@ -50,20 +50,12 @@ def evaluate(
     --help` lists them.
     """
     from primordia.cli.look import who
-    from primordia.organism import evaluation
 
     if freeze_senses and open_loop:
         raise InputError("--freeze-senses and --open-loop: one or the other")
     senses: Any = "frozen" if freeze_senses else "ignored" if open_loop else "live"
     chosen = who(run, organism, world)
-    (found,) = evaluation.evaluate(
-        run,
-        [(chosen.id, chosen.world)],
-        games=episodes,
-        ticks=ticks,
-        senses=senses,
-        habitat=habitat,
-    )
+    found = chosen.evaluate(games=episodes, ticks=ticks, senses=senses, habitat=habitat)
     click.echo(json.dumps(found.to_dict()) if as_json else sheet(found, habitat))
 
 

@@ -7,13 +7,12 @@ whether they look at the game at all, is asked here.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
 import jax.numpy as jnp
 import numpy as np
 
-from primordia.config import setting_fields
+from primordia.config import Config
 from primordia.errors import InputError
 from primordia.habitats.contract import AnyHabitat
 from primordia.history.climate import climate_at
@@ -22,8 +21,8 @@ from primordia.law.metabolism import Rates
 from primordia.organism.games import Games, Players, play
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
-from primordia.runs.directory import read_config
-from primordia.runs.report import opened, world_ticks
+from primordia.runs.archive import Archive
+from primordia.settings.fields import setting_fields
 from primordia.settings.tables import NONE, did_you_mean, merged, replaced
 
 GAMES = 30
@@ -86,7 +85,7 @@ class Evaluation:
 
 
 def evaluate(
-    run: Path,
+    run: Archive,
     organisms: Sequence[tuple[int, int]],
     *,
     games: int = GAMES,
@@ -98,7 +97,7 @@ def evaluate(
     """Let organisms play, side by side; how many there are changes nothing for any of them.
 
     Args:
-        run: the run's directory.
+        run: where they lived.
         organisms: birth number and world of each.
         games: how many each; one is played where all would be the same.
         ticks: a game that still goes on then is cut; whole games also where others cut them.
@@ -116,7 +115,8 @@ def evaluate(
     if not organisms:
         return []
     own = players_of(run, organisms)
-    players = own._replace(habitat=_changed(run, own.habitat, {**(habitat or {}), **changes}))
+    wanted = {**(habitat or {}), **changes}
+    players = own._replace(habitat=_changed(run.config, own.habitat, wanted))
     script = play(own, 1, ticks) if senses == "ignored" else None
     count = 1 if players.deterministic else games
     played = partial(play, games=count, frozen=senses == "frozen", script=script)
@@ -130,33 +130,28 @@ def evaluate(
     ]
 
 
-def players_of(run: Path, organisms: Sequence[tuple[int, int]]) -> Players:
+def players_of(run: Archive, organisms: Sequence[tuple[int, int]]) -> Players:
     """Organisms by birth number and world, with all that games in their own task are a function of.
 
     Raises:
         InputError: no such organism was born.
     """
     genomes = rebuild_all(run, organisms)
-    config, last = opened(run)
-    habitat = config.build_habitat()
-    law = config.build_law(habitat)
     births, worlds = np.array(organisms, np.int64).T
-    ends = world_ticks(last.arrays()).astype(np.int64)
-    climates = {w: climate_at(run, config, law, w)(ends[[w]]) for w in set(worlds.tolist())}
+    climates = {w: climate_at(run, w)(run.ends[[w]]) for w in set(worlds.tolist())}
     each = (np.concatenate([climates[w][f"metabolism.{n}"] for w in worlds]) for n in Rates._fields)
     rates = Rates(*map(jnp.asarray, each))
-    keys = stream(wide(config.seed + worlds), Purpose.EVALUATION, wide(births))
-    return Players(law, habitat, genomes, keys, rates)
+    keys = stream(wide(run.config.seed + worlds), Purpose.EVALUATION, wide(births))
+    return Players(run.law, run.config.build_habitat(), genomes, keys, rates)
 
 
-def _changed(run: Path, before: AnyHabitat, changes: dict[str, Any]) -> AnyHabitat:
-    """Return the run's habitat with some settings changed."""
+def _changed(config: Config, before: AnyHabitat, changes: dict[str, Any]) -> AnyHabitat:
+    """Return a run's habitat with some settings changed."""
     known = list(setting_fields(type(before)))
     for name in changes:
         if known and name not in {each.partition(".")[0] for each in known}:
             meant = did_you_mean(name, known)
             raise InputError(f"evaluate: this run's habitat has no setting {name!r}{meant}")
-    config = read_config(run)
     values = replaced(merged(config.habitat, changes), NONE, None)
     habitat = config.model_copy(update={"habitat": values}).build_habitat()
     if (habitat.senses_size, habitat.action) != (before.senses_size, before.action):
