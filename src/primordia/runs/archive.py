@@ -24,24 +24,21 @@ from primordia.runs.record import TABLES, Recorder
 class Archive:
     """A run directory opened for reading; each part is read, checked or built once, when first used.
 
-    It shows the run as its newest checkpoint had it when that was first used. A run that has gone on
-    since is opened again. Every file of that checkpoint, segments of the tables included, is held
-    against its checksum before anything is read from it.
+    Only the settings are read at once. It shows the run as its newest checkpoint had it when that was
+    first used; a run that has gone on since is opened again. Every file of that checkpoint, segments of
+    the tables included, is held against its checksum before anything is read from it.
     """
 
     def __init__(self, path: str | Path) -> None:
-        self.path = Path(path)
-        self.fault_in = cache(files.fault_in)
-        """`files.fault_in`, which reads no file twice"""
-
-    @cached_property
-    def config(self) -> Config:
-        """The settings.
+        """Open a run by its directory.
 
         Raises:
             InputError: this is no run, or one that this version cannot read.
         """
-        return directory.read_config(self.path)
+        self.path = Path(path)
+        self.config: Config = directory.read_config(self.path)
+        self.fault_in = cache(files.fault_in)
+        """`files.fault_in`, which reads no file twice"""
 
     @cached_property
     def habitat(self) -> Habitat | HostHabitat:
@@ -77,10 +74,9 @@ class Archive:
         """The newest whole checkpoint.
 
         Raises:
-            InputError: this is no run, or it has no checkpoint yet.
+            InputError: the run has no checkpoint yet.
             Trouble: none of its checkpoints is whole.
         """
-        assert self.config is not None  # or it is no run
         last, faults = self.newest
         if last is None and faults:
             raise checkpoint.none_whole(self.path, faults)
