@@ -33,7 +33,7 @@ def report(file: Path) -> None:
     path = file.parent / "genomes" / f"{file.stem}.safetensors"
     path.parent.mkdir(exist_ok=True)
     kept = rebuild_all(run, [(each.id, each.world) for each in champions])
-    genomes.write(path, run.law.brain, kept, about)
+    genomes.write(path, run.law.layout, kept, about)
     print(path)
 
 

@@ -1,18 +1,21 @@
-"""Habitats for tests: simple enough to know what must happen, on both sides of the contract."""
+"""Habitats and a brain for tests: simple enough to know what must happen."""
 
 from typing import Any
 
-import jax
 import jax.numpy as jnp
 import numpy as np
-from jax import Array
+from jax import Array, lax
+from pydantic import Field
 
+from primordia.brains.contract import Brain, Genome
+from primordia.brains.layout import Shape
+from primordia.habitats import Continuous, Discrete, HostHabitat, JaxHabitat, Outcome
 from primordia.habitats.cartpole.habitat import COORDINATES, CartPole
-from primordia.habitats.contract import Continuous, Discrete, Outcome
+from primordia.habitats.on_host import OnHost
 from primordia.settings.base import Settings
 
 
-class Meadow(Settings):
+class Meadow(JaxHabitat, Settings):
     """Nothing moves. Bodies have a clock; food and effort are constant; death comes at an age."""
 
     lifespan: int = 2**30
@@ -39,7 +42,7 @@ class Meadow(Settings):
         return jnp.stack([clock, broken], axis=1), outcome
 
 
-class Mill(Settings):
+class Mill(JaxHabitat, Settings):
     """A wheel that a continuous action turns; food is how far, and it wears out at random."""
 
     senses_size: int = 3
@@ -59,7 +62,7 @@ class Mill(Settings):
         return after, Outcome(angle > 0.999, food=turn, effort=jnp.abs(action[:, 1]))
 
 
-class Slope(Settings):
+class Slope(JaxHabitat, Settings):
     """Bodies begin somewhere between two bounds, a sum of products, and stay there."""
 
     senses_size: int = 2
@@ -77,7 +80,7 @@ class Slope(Settings):
         return bodies, Outcome(jnp.zeros(len(bodies), bool))
 
 
-class Echo(Settings):
+class Echo(JaxHabitat, Settings):
     """Food is the first number of the action, effort the second; at a given clock food is infinite."""
 
     rotten_at: int = 2**30
@@ -97,7 +100,7 @@ class Echo(Settings):
         return clock, Outcome(jnp.zeros_like(clock, bool), food, action[:, 1])
 
 
-class Watch(Settings):
+class Watch(JaxHabitat, Settings):
     """It perceives the time, and food is the first number of its action."""
 
     senses_size: int = 2
@@ -114,39 +117,18 @@ class Watch(Settings):
         return bodies + 1, Outcome(jnp.zeros_like(bodies, bool), action[:, 0])
 
 
-class Mirror:
-    """Any habitat in JAX, made to keep the contract of those on the host."""
+class Mirror(OnHost):
+    """A habitat in JAX on the host. Its bodies are stored under a name that old digests know."""
 
     def __init__(self, inner: str = "cartpole", **options: Any) -> None:
         kinds = {"cartpole": CartPole, "mill": Mill, "meadow": Meadow}
-        self.inner = kinds[inner](**options)
-        self.senses_size, self.action = self.inner.senses_size, self.inner.action
-        self.words = self.inner.words
-        self._step, self._reset = jax.jit(self.inner.step), jax.jit(self.inner.reset)
-        self._sense = jax.jit(self.inner.sense)
-
-    def open(self, cells: int) -> None:
-        self.bodies = np.array(self._reset(np.zeros((cells, self.words), np.uint32)))
-
-    def reset(self, born: np.ndarray, words: np.ndarray) -> np.ndarray:
-        fresh = np.asarray(self._reset(words))
-        self.bodies[born] = fresh
-        return np.asarray(self._sense(fresh))
-
-    def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
-        stepped, outcome = self._step(self.bodies, action)
-        self.bodies[alive] = np.asarray(stepped)[alive]
-        fault = ~np.isfinite(self.bodies).all(axis=1)
-        return np.array(self._sense(self.bodies)), outcome._replace(fault=fault)
-
-    def seen(self) -> np.ndarray:
-        return self.bodies
+        super().__init__(kinds[inner](**options))
 
     def save(self) -> dict[str, np.ndarray]:
-        return {"mirror": self.bodies}
+        return {"mirror": super().save()["body0"]}
 
     def load(self, arrays: dict[str, np.ndarray]) -> None:
-        self.bodies = np.array(arrays["mirror"])
+        super().load({"body0": arrays["mirror"]})
 
 
 class Clocked(Mirror):
@@ -154,7 +136,7 @@ class Clocked(Mirror):
 
     tallies = "ticks", "ticks_down"
 
-    def open(self, cells: int) -> None:
+    def open(self, cells: int, watched: bool = False) -> None:
         super().open(cells)
         self.clock = np.zeros(cells, np.int32)
 
@@ -177,12 +159,12 @@ class Clocked(Mirror):
         self.clock = np.array(arrays["tally"][:, 0])
 
 
-class HostCartPole:
+class HostCartPole(HostHabitat):
     """CartPole in plain NumPy, float64, a loop over cells: a simulator as people write them."""
 
     senses_size, action, words = 4, Discrete(2), len(COORDINATES)
 
-    def open(self, cells: int) -> None:
+    def open(self, cells: int, watched: bool = False) -> None:
         self.state = np.zeros((cells, 4))
 
     def reset(self, born: np.ndarray, words: np.ndarray) -> np.ndarray:
@@ -191,11 +173,11 @@ class HostCartPole:
 
     def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
         for cell in np.flatnonzero(alive):
-            self.state[cell] = self._one(*self.state[cell], push=10.0 if action[cell] else -10.0)
+            self.state[cell] = self._one(10.0 if action[cell] else -10.0, *self.state[cell])
         fatal = (np.abs(self.state[:, 0]) > 2.4) | (np.abs(self.state[:, 2]) > np.deg2rad(12))
         return self.state.astype(np.float32), Outcome(fatal)
 
-    def _one(self, x: float, x_dot: float, theta: float, theta_dot: float, push: float) -> list:
+    def _one(self, push: float, x: float, x_dot: float, theta: float, theta_dot: float) -> list:
         cos, sin = np.cos(theta), np.sin(theta)
         temp = (push + 0.05 * theta_dot**2 * sin) / 1.1
         theta_acc = (9.8 * sin - cos * temp) / (0.5 * (4.0 / 3.0 - 0.1 * cos**2 / 1.1))
@@ -211,3 +193,29 @@ class HostCartPole:
 
 
 HOST_CARTPOLE = {"name": "tests.toys:HostCartPole"}
+
+
+class Sliding(Brain):
+    """Kernels slide over what has changed since the last tick; blocks have any rank and name."""
+
+    width: int = Field(2, ge=1)
+    channels: int = Field(3, ge=1)
+
+    def blocks(self, senses: int, outputs: int) -> dict[str, Shape]:
+        places = senses - self.width + 1
+        tensor = outputs, self.channels, places
+        return {"slide-2": (self.channels, self.width), "OUT_3d": tensor, "0": (outputs,)}
+
+    def memory(self, senses: int, outputs: int) -> int:
+        return senses
+
+    def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:
+        places, change = senses.shape[1] - self.width + 1, senses - memory
+        seen = jnp.stack([change[:, i : i + self.width] for i in range(places)], axis=1)
+        found = jnp.tanh(_dot(genome["slide-2"], seen, (2,), (2,)))
+        return senses, _dot(genome["OUT_3d"], found, (2, 3), (1, 2)) + genome["0"]
+
+
+def _dot(a: Array, b: Array, of_a: tuple[int, ...], of_b: tuple[int, ...]) -> Array:
+    """Products of each organism's a and b, summed over axes of both."""
+    return lax.dot_general(a, b, ((of_a, of_b), ((0,), (0,))), precision=lax.Precision.HIGHEST)

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import primordia
-from primordia.brains.contract import join
 from primordia.errors import InputError
 from primordia.history.lineage import descent, rebuild_all
 from primordia.runs import checkpoint, loop, record
@@ -50,8 +49,8 @@ WORLDS: dict[str, tuple[dict[str, Any], int]] = {
 def living(run: Path) -> list[tuple[int, int, np.ndarray]]:
     """World, birth number and genome of everybody in the newest checkpoint."""
     opened = Archive(run)
-    brain, arrays = opened.law.brain, opened.state
-    genomes = join(brain, {n: arrays[f"world.organisms.genome.{n}"] for n in brain.blocks})
+    layout, arrays = opened.law.layout, opened.state
+    genomes = layout.join({n: arrays[f"world.organisms.genome.{n}"] for n in layout.names})
     hi, lo = (arrays[f"world.organisms.number.{half}"].astype(int) for half in ("hi", "lo"))
     cells = np.flatnonzero(arrays["world.organisms.alive"])
     return [(c // opened.config.cells, int(hi[c] << 32 | lo[c]), genomes[c]) for c in cells]

@@ -255,11 +255,11 @@ def test_a_part_as_a_gif(poles: Path, tmp_path: Path) -> None:
     done = here("replay", poles, "--from", 10, "--to", 49, "--out", path)
     assert done.returncode == 0, done.stderr
     with Image.open(path) as gif:
-        shown = sum(1 for _ in range(gif.n_frames))
+        shown = getattr(gif, "n_frames", 1)
         assert gif.size == (320, 180)
         assert 2 <= shown <= 20 + 25
         total = 0
-        for number in range(gif.n_frames):
+        for number in range(shown):
             gif.seek(number)
             total += gif.info["duration"]
     assert total == (20 + 25) * 40
@@ -299,7 +299,8 @@ def test_a_habitat_on_the_host_that_cannot_be_seen(
 ) -> None:
     values = {"task": "host", "habitat": HOST_CARTPOLE, "cells": 4, "stop": {"ticks": 20}}
     loop.start(config(values), tmp_path / "run")
-    complains(here("replay", tmp_path / "run"), 2, "draws no pictures (it has no `picture`)")
+    no_pictures = "draws no pictures (it has no "
+    complains(here("replay", tmp_path / "run"), 2, no_pictures, "`picture` and no `seen`")
     monkeypatch.setattr(HostCartPole, "picture", None, raising=False)
     complains(here("replay", tmp_path / "run"), 2, "draws no pictures (it has no `seen`)")
     (seen,) = Life.of(Archive(tmp_path / "run"), 0).again()

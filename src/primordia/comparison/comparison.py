@@ -145,7 +145,7 @@ def compare(
     moments = [_saturation(run, births, ticks) for run in runs]
     if not any(map(saturates, moments)):
         everyone = [each.until(until) for each in everyone]
-    arms, rate = [], getattr(runs[0].habitat, "rate", None)
+    arms, rate = [], runs[0].habitat.rate
     each_run = zip(runs, everyone, moments, names, differing(configs), strict=True)
     for run, lived, saturation, name, own in each_run:
         worlds = _worlds(lived)

@@ -7,11 +7,12 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from primordia import device
 from primordia.config import Config
 from primordia.engine.fused import Fused
 from primordia.engine.hosted import Hosted
 from primordia.engine.state import Limits, State, running
-from primordia.engine.tallies import names_of
+from primordia.habitats.contract import AnyHabitat
 from primordia.law.events import Events
 from primordia.law.genesis import begin
 from primordia.law.law import Law
@@ -27,10 +28,11 @@ class Engine:
     """A run in memory: law, habitat and where they stand."""
 
     def __init__(self, config: Config) -> None:
+        device.prepare()
         self.config = config
         habitat = config.build_habitat()
         self.law = config.build_law(habitat)
-        self.tallies = names_of(habitat)
+        self.tallies = habitat.tallies
         self.chunks: Fused | Hosted = _chunks(self.law, habitat)
         seeds = [config.seed + world for world in range(config.seeds)]
         self.state: State = self.chunks.begin(begin(self.law, seeds))
@@ -72,6 +74,5 @@ class Engine:
         self.state = self.chunks.load(self.state, arrays)
 
 
-def _chunks(law: Law, habitat: Any) -> Fused | Hosted:
-    """By which of the two contracts the habitat keeps: only those on the host are opened."""
-    return Hosted(law, habitat) if hasattr(habitat, "open") else Fused(law, habitat)
+def _chunks(law: Law, habitat: AnyHabitat) -> Fused | Hosted:
+    return Hosted(law, habitat) if habitat.kind == "host" else Fused(law, habitat)

@@ -7,15 +7,17 @@ from jax import Array, lax
 
 from primordia.compiled import shared
 from primordia.engine.state import Limits, State, named_leaves, running, ticks_left
-from primordia.habitats.contract import Bodies, Habitat
+from primordia.habitats.bodies import choose, fresh, put, unborn
+from primordia.habitats.contract import Bodies, JaxHabitat
 from primordia.law import events as log
 from primordia.law.events import Events
-from primordia.law.genesis import birth_words
+from primordia.law.genesis import body_words
 from primordia.law.law import Law
 from primordia.law.population import settle
 from primordia.law.sample import width
 from primordia.law.tick import Fates, judge, keys_of, no_fates, rest, think
 from primordia.law.world import World
+from primordia.random.keys import Purpose, stream
 
 
 class Fused:
@@ -24,16 +26,15 @@ class Fused:
     exact = True
     """Whether a run goes on exactly from a checkpoint."""
 
-    def __init__(self, law: Law, habitat: Habitat) -> None:
+    def __init__(self, law: Law, habitat: JaxHabitat) -> None:
         self._law, self._habitat = law, habitat
         self._advance = shared(_advance, law, habitat, donate=(0, 1))
-        self.events = log.empty(law.worlds * law.cells, law.worlds, width(law.blocks))
+        self.events = log.empty(law.worlds * law.cells, law.worlds, width(law.layout.names))
         """of the latest chunk"""
 
     def begin(self, world: World) -> State:
         """The state of a run before genesis."""
-        words = np.zeros((len(world.organisms.alive), self._habitat.words), np.uint32)
-        return State(world, shared(fresh, self._habitat)(words))
+        return State(world, unborn(self._habitat, len(world.organisms.alive)))
 
     def advance(self, state: State, limits: Limits, ticks: int) -> tuple[State, int]:
         """At most so many ticks, fewer if every world stops or the lists are full -> ticks done."""
@@ -50,16 +51,8 @@ class Fused:
         return jax.tree.unflatten(jax.tree.structure(template), leaves)
 
 
-def fresh(habitat: Habitat, words: Array) -> Bodies:
-    """Bodies from random words uint32 (N, words); to be compiled, as in the loop.
-
-    Operation by operation, a product and a sum are each rounded; compiled, they may be rounded once.
-    """
-    return habitat.reset(words)
-
-
 def _advance(
-    law: Law, habitat: Habitat, state: State, events: Events, limits: Limits, ticks: Array
+    law: Law, habitat: JaxHabitat, state: State, events: Events, limits: Limits, ticks: Array
 ) -> tuple[State, Events, Array]:
     cells = law.worlds * law.cells
 
@@ -81,7 +74,7 @@ def _advance(
 
 
 def _quiet(
-    law: Law, habitat: Habitat, state: State, live_worlds: Array, at_most: Array
+    law: Law, habitat: JaxHabitat, state: State, live_worlds: Array, at_most: Array
 ) -> tuple[State, Fates, Array]:
     """Ticks up to and with the first eventful one, at most so many -> state, fates, ticks."""
     first = state.world
@@ -106,20 +99,13 @@ def _quiet(
     return State(World(organisms, world.worlds), bodies), fates, passed
 
 
-def _embody(law: Law, habitat: Habitat, world: World, bodies: Bodies, born: Array) -> Bodies:
-    """Fresh bodies for the newborn."""
-    words = birth_words(law, world.worlds, born.any(), habitat.words)
+def _embody(law: Law, habitat: JaxHabitat, world: World, bodies: Bodies, born: Array) -> Bodies:
+    """Put fresh bodies into the cells of the newborn, (C,), a batch at a time: one may cost much."""
+    key = stream(world.worlds.seed, Purpose.BODY, world.worlds.tick)
 
-    def embodied(bodies: Bodies, words: Array) -> Bodies:
-        return choose(born, fresh(habitat, words), bodies)
+    def one_batch(cells: Array, valid: Array, carry: tuple[Bodies]) -> tuple[Bodies]:
+        words = body_words(key.take(cells // law.cells), cells % law.cells, habitat.words)
+        where = jnp.where(valid, cells, len(born))
+        return (put(carry[0], where, fresh(habitat, words)),)
 
-    return lax.cond(born.any(), embodied, lambda bodies, _: bodies, bodies, words)
-
-
-def choose(cells: Array, yes: Bodies, no: Bodies) -> Bodies:
-    """Bodies `yes` in the given cells (C,), `no` elsewhere."""
-
-    def leaf(a: Array, b: Array) -> Array:
-        return jnp.where(cells.reshape(-1, *[1] * (a.ndim - 1)), a, b)
-
-    return jax.tree.map(leaf, yes, no)
+    return log.for_each(born, (bodies,), one_batch)[0]

@@ -23,19 +23,15 @@ from primordia.law.sample import width
 from primordia.law.tick import no_fates
 from primordia.law.world import World
 
-# Small calls are computed in the thread that makes them and waits for them: handing them to another costs
-# a third of their time. Read when JAX makes its first array.
-jax.config.update("jax_cpu_enable_async_dispatch", False)  # type: ignore[no-untyped-call]
-
 
 class Hosted:
     """Law compiled, habitat on the host. The bodies live in the habitat; the state holds senses."""
 
     def __init__(self, law: Law, habitat: HostHabitat) -> None:
-        self.exact = getattr(habitat, "exact", True)
+        self.exact = habitat.exact
         self._law, self._habitat = law, habitat
         self._tallies = Tallies(habitat, law.worlds)
-        self._lists = log.empty(law.worlds * law.cells, law.worlds, width(law.blocks))
+        self._lists = log.empty(law.worlds * law.cells, law.worlds, width(law.layout.names))
         self.events = self._lists
         """of the latest chunk"""
         habitat.open(law.worlds * law.cells)

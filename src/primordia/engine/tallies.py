@@ -1,7 +1,7 @@
 """Tallies: what organisms have made of their lives (a score, kills), for people; the law never sees them.
 
 A habitat on the host may keep them: `tallies`, their names, and `tally()`, int32 (C, K), of the lives
-under way. They are noted beside the law's own lists, when somebody dies and when a sample is taken.
+under way. They are noted beside the law's own lists, at each death and at each sample.
 """
 
 from typing import Any
@@ -9,12 +9,8 @@ from typing import Any
 import numpy as np
 from jax import Array
 
+from primordia.habitats.contract import HostHabitat
 from primordia.law.events import Events, Rows
-
-
-def names_of(habitat: Any) -> tuple[str, ...]:
-    """What a habitat keeps count of."""
-    return tuple(getattr(habitat, "tallies", ()))
 
 
 def tally_columns(names: tuple[str, ...]) -> list[str]:
@@ -25,8 +21,8 @@ def tally_columns(names: tuple[str, ...]) -> list[str]:
 class Tallies:
     """Rows of tallies that belong to the rows of a chunk's lists."""
 
-    def __init__(self, habitat: Any, worlds: int) -> None:
-        self.names = names_of(habitat)
+    def __init__(self, habitat: HostHabitat, worlds: int) -> None:
+        self.names = habitat.tallies
         self._habitat, self._worlds = habitat, worlds
         self.begin()
 

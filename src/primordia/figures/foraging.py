@@ -14,7 +14,7 @@ def draw(run: Archive) -> Figure:
     """Food an organism gathers, a second where the habitat knows of seconds, and the break-even."""
     figure = Figure(figsize=(style.COLUMN, 2.4))
     axes, found = figure.subplots(), foraging(run)
-    rate = getattr(run.habitat, "rate", None)
+    rate = run.habitat.rate
     food, enough = (each * (rate or 1) for each in (found.food, found.break_even))
     worlds = len(food)
     if len(found.middle):

@@ -1,5 +1,12 @@
-"""Habitats: simulators as places to live in, one folder each; and the contract that they keep."""
+"""Habitats: simulators as places to live in, one folder each, and the contract that they keep."""
 
-from primordia.habitats.contract import Continuous, Discrete, Habitat, HostHabitat, Outcome
+from primordia.habitats.contract import (
+    Ability,
+    Continuous,
+    Discrete,
+    HostHabitat,
+    JaxHabitat,
+    Outcome,
+)
 
-__all__ = ["Continuous", "Discrete", "Habitat", "HostHabitat", "Outcome"]
+__all__ = ["Ability", "Continuous", "Discrete", "HostHabitat", "JaxHabitat", "Outcome"]

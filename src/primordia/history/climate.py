@@ -38,5 +38,5 @@ def _at_the_beginning(run: Archive, world: int) -> dict[str, np.float32]:
     if (stored := run.origin) is not None:
         leaves = [stored[f"world.worlds.climate.{name}"] for name, _ in named_leaves(climate)]
         climate = jax.tree.unflatten(jax.tree.structure(climate), leaves)
-    pairs = zip(climate_columns(run.law.blocks), climate_values(climate), strict=True)
+    pairs = zip(climate_columns(run.law.layout.names), climate_values(climate), strict=True)
     return {name: np.asarray(values)[world] for name, values in pairs}

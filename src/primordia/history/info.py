@@ -5,7 +5,6 @@ from typing import Any
 
 import numpy as np
 
-from primordia.engine.tallies import names_of
 from primordia.law.metabolism import break_even
 from primordia.law.world import Cause
 from primordia.runs.archive import Archive
@@ -70,9 +69,9 @@ def _world(run: Archive, world: int, digest: str) -> dict[str, Any]:
         "digest": digest,
     }
     if (tally := arrays.get(TALLY)) is not None and alive.any():
-        found["tallies"] = _of_the_living(names_of(run.habitat), tally[here][alive])
+        found["tallies"] = _of_the_living(run.habitat.tallies, tally[here][alive])
     if config.metabolism is not None:
-        found["break_even"] = _break_even(arrays, world, getattr(run.habitat, "rate", None))
+        found["break_even"] = _break_even(arrays, world, run.habitat.rate)
     if config.seasons:
         found["climate"] = _climate(arrays, world)
     return found

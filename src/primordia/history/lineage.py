@@ -10,7 +10,6 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from jax import Array
 
-from primordia.brains.contract import join
 from primordia.compiled import shared
 from primordia.config import Config
 from primordia.history.climate import climate_at
@@ -73,8 +72,8 @@ def descent(everyone: Lives, organism: int, world: int) -> np.ndarray:
 def genome_in(state: Mapping[str, np.ndarray], law: Law, organism: int, world: int) -> np.ndarray:
     """The genome of an organism that is alive in a state, float32 (P,)."""
     cell = place_in(state, law, organism, world)
-    blocks = {name: state[f"world.organisms.genome.{name}"][[cell]] for name in law.blocks}
-    return join(law.brain, blocks)[0]
+    blocks = {name: state[f"world.organisms.genome.{name}"][[cell]] for name in law.layout.names}
+    return law.layout.join(blocks)[0]
 
 
 def place_in(state: Mapping[str, np.ndarray], law: Law, organism: int, world: int) -> int:
@@ -104,14 +103,14 @@ def _replay(
     """Births of children of one line (D,) in order, from a genome (P,) -> the last one's."""
     columns = ("probability", "scale")
     probability, scale = (
-        np.stack([climate[f"mutation.{block}.{each}"] for block in law.blocks], axis=1)
+        np.stack([climate[f"mutation.{block}.{each}"] for block in law.layout.names], axis=1)
         for each in columns
     )
     draw = shared(_drawn, len(genome))
     for first in range(0, len(line), STEPS_AT_A_TIME):
         rows = np.arange(first, first + STEPS_AT_A_TIME) % len(line)  # past the end, some again
         chance, size = (
-            np.repeat(each[rows], law.block_sizes, axis=1) for each in (probability, scale)
+            np.repeat(each[rows], law.layout.sizes, axis=1) for each in (probability, scale)
         )
         births = line.take(rows)
         takes, index = draw(_seeds(config, births), wide(births.born), births.cell, chance)
@@ -136,7 +135,7 @@ def _founder(law: Law, config: Config, birth: Lives) -> np.ndarray:
     seeds = _seeds(config, birth)
     if law.ancestors is not None:
         return law.ancestors[np.asarray(ancestor_of(seeds, wide(birth.id), len(law.ancestors)))][0]
-    draw = shared(_drawn_by_founder, int(law.block_sizes.sum()))
+    draw = shared(_drawn_by_founder, law.layout.length)
     index = np.asarray(draw(seeds, wide(birth.born), birth.cell))
     return (quantiles()[index] * law.founder_scale)[0]
 

@@ -6,12 +6,12 @@ everywhere. What depends on a cell's neighbours, its world or chance is in `popu
 
 from typing import NamedTuple
 
-import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
 from primordia.brains.contract import Genome
+from primordia.habitats.bodies import broken
 from primordia.habitats.contract import Bodies, Discrete, Outcome
 from primordia.law.law import Law
 from primordia.law.metabolism import Rates, add, fixed, metabolise
@@ -102,14 +102,7 @@ def judge(
 
 def has_failed(bodies: Bodies, outcome: Outcome) -> Array:
     """Return whose simulation has failed, bool (N,): the habitat says so, or a number is not finite."""
-    failed = not_finite(bodies)
+    failed = broken(bodies)
     for number in (outcome.food, outcome.effort):
         failed = failed if number is None else failed | ~jnp.isfinite(number)
     return failed if outcome.fault is None else failed | outcome.fault
-
-
-def not_finite(bodies: Bodies) -> Array:
-    """Return which bodies (N,) have a number that is NaN or infinite, bool; () False if none has any."""
-    leaves = [leaf for leaf in jax.tree.leaves(bodies) if jnp.issubdtype(leaf.dtype, jnp.floating)]
-    flat = [(~jnp.isfinite(leaf.reshape(len(leaf), -1))).any(axis=1) for leaf in leaves]
-    return jnp.stack(flat).any(axis=0) if flat else jnp.zeros((), bool)

@@ -116,7 +116,7 @@ def evaluate(
     played = partial(play, games=count, frozen=senses == "frozen", script=script)
     lived, original = played(players, ticks=ticks), _in_the_original(players)
     if original is not None:
-        episode = getattr(original.habitat, "episode", None) or ticks
+        episode = original.habitat.episode or ticks
         whole = played(original, ticks=min(ticks, episode))
     return [
         Evaluation(organism, world, senses, lived.of(k), original and whole.of(k))
@@ -153,8 +153,7 @@ def _changed(config: Config, before: Any, changes: dict[str, Any]) -> Any:
 
 def _in_the_original(players: Players) -> Players | None:
     """The same in the original game, where there is one; nobody starves in it."""
-    habitat = players.habitat
-    original = habitat.original() if hasattr(habitat, "original") else None
+    original = players.habitat.original()
     if original is None:
         return None
     return players._replace(habitat=original, law=replace(players.law, metabolism=None))

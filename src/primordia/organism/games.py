@@ -4,16 +4,14 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
 from itertools import chain
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import jax.numpy as jnp
 import numpy as np
-from jax import Array
 
-from primordia.brains.contract import split
 from primordia.compiled import shared
-from primordia.engine.fused import fresh
-from primordia.habitats.contract import Bodies, Habitat, HostHabitat, Outcome
+from primordia.habitats.contract import AnyHabitat, HostHabitat, Outcome
+from primordia.habitats.on_host import OnHost
 from primordia.law.genesis import body_words
 from primordia.law.law import Law
 from primordia.law.life import Vitals, judge
@@ -32,7 +30,7 @@ class Players(NamedTuple):
     """Who play, K of them, and what their games are a function of."""
 
     law: Law
-    habitat: Habitat | HostHabitat
+    habitat: AnyHabitat
     genomes: np.ndarray
     """float32 (K, P)"""
     keys: Wide
@@ -144,9 +142,9 @@ class _Tries:
         law, self._words = players.law, players.habitat.words
         each = partial(jnp.repeat, repeats=games, axis=0)
         cells = jnp.asarray(np.tile(np.arange(games), len(players.genomes)), jnp.int32)
-        genome = split(law.brain, each(jnp.asarray(players.genomes)))
+        genome = law.layout.split(each(jnp.asarray(players.genomes)))
         self._mind = Mind(genome, players.keys.map(each), cells)
-        self._memory = jnp.zeros((len(cells), law.brain.memory), jnp.float32)
+        self._memory = jnp.zeros((len(cells), law.memory), jnp.float32)
         self._rates = Rates(*map(each, players.rates))
         self._vitals = Vitals(fixed(self._rates.store), jnp.zeros(len(cells), jnp.int32))
         self._faulty = jnp.zeros(len(cells), bool)
@@ -170,41 +168,11 @@ class _Tries:
 
 
 @contextmanager
-def _opened(habitat: Any, games: int) -> Iterator[Any]:
-    """A habitat to be stepped on the host, with room for so many bodies."""
-    table = habitat if hasattr(habitat, "open") else _OnHost(habitat)
+def _opened(habitat: AnyHabitat, games: int) -> Iterator[HostHabitat]:
+    """A habitat to be stepped on the host, with room for that many bodies."""
+    table = habitat if habitat.kind == "host" else OnHost(habitat)
     table.open(games)
     try:
         yield table
     finally:
-        if hasattr(table, "close"):
-            table.close()
-
-
-def _sense(habitat: Habitat, bodies: Bodies) -> Array:
-    return habitat.sense(bodies)
-
-
-def _step(habitat: Habitat, bodies: Bodies, action: Array) -> tuple[Bodies, Outcome]:
-    return habitat.step(bodies, action)
-
-
-class _OnHost:
-    """A habitat in JAX, stepped as those on the host are."""
-
-    def __init__(self, inner: Habitat) -> None:
-        each = (fresh, _sense, _step)
-        self._reset, self._sense, self._step = (shared(function, inner) for function in each)
-
-    def open(self, cells: int) -> None:
-        """Bodies are made as they are needed."""
-
-    def reset(self, born: np.ndarray, words: np.ndarray) -> np.ndarray:
-        """All are born at once."""
-        self._bodies = self._reset(jnp.asarray(words))
-        return np.asarray(self._sense(self._bodies))
-
-    def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
-        """All are stepped, whoever is alive."""
-        self._bodies, outcome = self._step(self._bodies, jnp.asarray(action))
-        return np.asarray(self._sense(self._bodies)), outcome
+        table.close()

@@ -11,6 +11,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from primordia.errors import InputError
+from primordia.habitats.contract import Ability
 from primordia.habitats.framed import PAPER
 from primordia.law.metabolism import ONE
 from primordia.organism import video
@@ -49,14 +50,20 @@ def replay(
     path = out or run.path / "videos" / f"world{world}-organism{organism}.mp4"
     video.check_name(path)
     life = Life.of(run, organism, world)
-    for name in ("picture", "seen") if hasattr(life.habitat, "open") else ("picture",):
-        if not hasattr(life.habitat, name):
-            raise InputError(f"{run.path}: this habitat draws no pictures (it has no `{name}`)")
-    rate = float(life.habitat.rate)
+    rate = _drawn(life)
     step = ceil(rate / video.FASTEST[path.suffix])
     parts = _parts(life, rate, ages)
     video.write(path, _pictures(life, parts, step, rate / step), rate / step)
     return path
+
+
+def _drawn(life: Life) -> float:
+    """Return the ticks per second of a life that can be drawn."""
+    lacking, rate = life.habitat.lacks(Ability.PICTURE), life.habitat.rate
+    if lacking or not rate:
+        lacks = " and no ".join(f"`{name}`" for name in lacking or ["rate"])
+        raise InputError(f"{life.run}: this habitat draws no pictures (it has no {lacks})")
+    return rate
 
 
 def _parts(life: Life, rate: float, ages: tuple[int | None, int | None]) -> list[range]:
@@ -109,12 +116,8 @@ def _picture(life: Life, stretch: Stretch, i: int) -> Image.Image:
         words.append(f"energy {stretch.energy[i] / ONE:,.1f}")
     if tick == life.ends and life.cause is not None:
         words.append(f"dies ({life.cause.label})")
-    left, right, below = "   ".join(words), f"tick {tick:,}", ""
-    if hasattr(life.habitat, "caption"):
-        below = life.habitat.caption(body, stretch.action[i])
-    else:
-        right += f"   action {np.array2string(stretch.action[i], precision=2)}"
-    return _captioned(picture, left, right, below)
+    below = life.habitat.caption(body, stretch.action[i])
+    return _captioned(picture, "   ".join(words), f"tick {tick:,}", below)
 
 
 def _captioned(picture: Image.Image, left: str, right: str, below: str) -> Image.Image:

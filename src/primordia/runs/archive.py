@@ -11,9 +11,8 @@ import pyarrow.parquet as pq
 
 from primordia import files
 from primordia.config import Config
-from primordia.engine.tallies import names_of
 from primordia.errors import InputError
-from primordia.habitats.contract import Habitat, HostHabitat
+from primordia.habitats.contract import AnyHabitat
 from primordia.law.law import Law
 from primordia.runs import checkpoint, directory
 from primordia.runs.checkpoint import Arrays, Checkpoint
@@ -41,7 +40,7 @@ class Archive:
         """`files.fault_in`, which reads no file twice"""
 
     @cached_property
-    def habitat(self) -> Habitat | HostHabitat:
+    def habitat(self) -> AnyHabitat:
         """The habitat, to be asked for its properties; where bodies are needed, build another."""
         return self.config.build_habitat()
 
@@ -144,5 +143,5 @@ class Archive:
     @cached_property
     def _recorder(self) -> Recorder:
         """Tells what the words of rows that are in no segment yet mean."""
-        config, tallies = self.config, names_of(self.habitat)
-        return Recorder(None, config.seeds, config.cells, self.law.blocks, tallies)
+        config, tallies = self.config, self.habitat.tallies
+        return Recorder(None, config.seeds, config.cells, self.law.layout.names, tallies)

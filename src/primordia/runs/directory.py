@@ -12,7 +12,7 @@ from primordia import device, files
 from primordia.brains import genomes
 from primordia.config import Config, parsed
 from primordia.errors import InputError, Trouble
-from primordia.habitats.contract import Habitat, HostHabitat
+from primordia.habitats.contract import AnyHabitat
 from primordia.runs.record import TABLES
 from primordia.settings.tables import from_toml
 
@@ -35,8 +35,9 @@ def new(run: Path, config: Config) -> Iterator[None]:
     with locked(run):
         versions = {"format": FORMAT, **versions_here(config.build_habitat())}
         if config.ancestors:
-            brain = config.build_brain(config.build_habitat())
-            genomes.write(run / genomes.FOUNDERS, brain, genomes.read(config.ancestors, brain), {})
+            layout = config.build_layout(config.build_habitat())
+            founders = genomes.read(config.ancestors, layout)
+            genomes.write(run / genomes.FOUNDERS, layout, founders, {})
             config = config.model_copy(update={"ancestors": (genomes.FOUNDERS,)})
         _write_text(run / "config.toml", config.to_toml())
         _write_text(run / "versions.json", json.dumps(versions, indent=1))
@@ -77,9 +78,9 @@ def read_config(run: Path) -> Config:
     return parsed(from_toml(run / "config.toml"), source=str(run / "config.toml"))
 
 
-def versions_here(habitat: Habitat | HostHabitat) -> dict[str, str]:
+def versions_here(habitat: AnyHabitat) -> dict[str, str]:
     """Return the versions that a run begun here would depend on, by name."""
-    return {**device.versions(), **getattr(habitat, "versions", {})}
+    return {**device.versions(), **habitat.versions}
 
 
 def recorded_versions(run: Path) -> dict[str, Any]:

@@ -123,7 +123,7 @@ def resume(
 def recorder_for(engine: Engine, run: Path | None) -> Recorder:
     """What takes down an engine's events in a run's directory; without one, digests only."""
     config = engine.config
-    return Recorder(run, config.seeds, config.cells, engine.law.blocks, engine.tallies)
+    return Recorder(run, config.seeds, config.cells, engine.law.layout.names, engine.tallies)
 
 
 def stand_at(engine: Engine, recorder: Recorder, last: Checkpoint) -> None:

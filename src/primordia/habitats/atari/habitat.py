@@ -21,7 +21,7 @@ from primordia.habitats.atari.games import (
 )
 from primordia.habitats.atari.simulator import FIELDS, RAM, WATCHED
 from primordia.habitats.conditions import Expression, Names
-from primordia.habitats.contract import Discrete, Outcome
+from primordia.habitats.contract import Discrete, HostHabitat, Outcome
 from primordia.pool.pool import Pool
 from primordia.settings.base import Settings
 
@@ -42,7 +42,7 @@ FRAMES = 60
 """in a second"""
 
 
-class Atari(Settings):
+class Atari(HostHabitat, Settings):
     """A game as a habitat: senses are bytes of RAM, (byte - 128) / 128."""
 
     game: str = Field(description="the game's name, such as pong or space_invaders")
@@ -151,6 +151,11 @@ class Atari(Settings):
     def rate(self) -> float:
         """Ticks in a second."""
         return FRAMES / self.frame_skip
+
+    def check(self, cells: int) -> None:
+        """Raise ValueError if there are more workers than cells."""
+        if self.workers is not None and self.workers > cells:
+            raise ValueError(f"workers: {self.workers} workers are more than the {cells} cells")
 
     def open(self, cells: int, watched: bool = False) -> None:
         """Start the emulators, with screens if they are watched."""

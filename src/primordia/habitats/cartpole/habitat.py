@@ -13,7 +13,7 @@ import numpy as np
 from jax import Array
 from pydantic import Field
 
-from primordia.habitats.contract import Discrete, Outcome
+from primordia.habitats.contract import Discrete, JaxHabitat, Outcome
 from primordia.settings.base import Settings
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ TAU = 0.02  # s per tick
 COORDINATES: tuple[Coordinate, ...] = ("x", "x_dot", "theta", "theta_dot")  # m, m/s, rad, rad/s
 
 
-class CartPole(Settings):
+class CartPole(JaxHabitat, Settings):
     """CartPole as a habitat: action 0 pushes left, 1 right; death beyond an angle or the track.
 
     Bodies are one array (N, 4) of COORDINATES; theta is the pole's angle from the vertical.

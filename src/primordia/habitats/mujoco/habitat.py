@@ -17,7 +17,7 @@ from pydantic import Field, PrivateAttr, model_validator
 
 from primordia.habitats import conditions
 from primordia.habitats.conditions import Expression, Names
-from primordia.habitats.contract import Continuous, Outcome
+from primordia.habitats.contract import Continuous, HostHabitat, Outcome
 from primordia.habitats.mujoco.simulator import (
     ROOT,
     compiled,
@@ -39,7 +39,7 @@ PLACES = {"xpos", "site", "height", "pitch", "travelled", "com_forward", "reache
 """Names of what is not in the state itself, but follows from it."""
 
 
-class MuJoCo(Settings):
+class MuJoCo(HostHabitat, Settings):
     """A model as a habitat; actions are its controls, kept within their ranges."""
 
     file: str = Field(description="an MJCF file, or gymnasium:NAME.xml, one that Gymnasium brings")

@@ -6,9 +6,9 @@ import numpy as np
 from jax import Array, lax
 
 from primordia.compiled import shared
-from primordia.engine.fused import fresh
 from primordia.engine.state import named_leaves
-from primordia.habitats.contract import Bodies, Habitat
+from primordia.habitats.bodies import fresh
+from primordia.habitats.contract import Bodies, JaxHabitat
 from primordia.law.law import Law
 from primordia.law.life import judge
 from primordia.law.metabolism import Rates
@@ -22,7 +22,7 @@ class LifeInJax:
     TICKS = 4096
     """Lived in one compiled call."""
 
-    def __init__(self, law: Law, mind: Mind, habitat: Habitat) -> None:
+    def __init__(self, law: Law, mind: Mind, habitat: JaxHabitat) -> None:
         self._mind, self._habitat = mind, habitat
         self._lived = shared(_lived, law, habitat)
 
@@ -49,7 +49,7 @@ class LifeInJax:
 
 
 def _lived(
-    law: Law, habitat: Habitat, mind: Mind, now: Instant, ticks: Wide, rates: Rates
+    law: Law, habitat: JaxHabitat, mind: Mind, now: Instant, ticks: Wide, rates: Rates
 ) -> tuple[Instant, tuple]:
     """Live ticks (n,) -> where the life then stands; the columns of a Stretch, (n, 1, ...) each."""
 

@@ -7,15 +7,15 @@ from collections.abc import Callable, Iterator
 from contextlib import closing
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
 import pyarrow.compute as pc
 
-from primordia.brains.contract import Genome, split
+from primordia.brains.contract import Genome
 from primordia.config import Config
 from primordia.errors import InputError, Trouble
+from primordia.habitats.contract import AnyHabitat
 from primordia.history.climate import climate_at
 from primordia.history.lineage import place_in, rebuild
 from primordia.law.genesis import body_words
@@ -42,7 +42,7 @@ class Life:
     run: Archive
     config: Config
     law: Law
-    habitat: Any
+    habitat: AnyHabitat
     """to ask for pictures; each time the life is lived it is in a habitat of its own"""
     genome: Genome
     """of one"""
@@ -57,10 +57,10 @@ class Life:
             InputError: no such organism was born, or it cannot be lived again.
         """
         habitat, law, row = run.habitat, run.law, run.lives.row(organism, world)
-        genome = split(law.brain, jnp.asarray(rebuild(run, organism, world)[None]))
+        genome = law.layout.split(jnp.asarray(rebuild(run, organism, world)[None]))
         record = run.lives.take(np.array([row]))
         life = cls(run, run.config, law, habitat, genome, record)
-        if life.was_found and not getattr(habitat, "exact", True):
+        if life.was_found and not habitat.exact:
             raise InputError(
                 f"{run.path}: organism {organism} is older than the fork, and its habitat cannot save"
                 " bodies"
@@ -115,7 +115,7 @@ class Life:
     def _alone(self, watched: bool) -> LifeInJax | LifeOnHost:
         mind = Mind(self.genome, self._seed, jnp.asarray(self.record.cell))
         habitat = self.config.build_habitat()
-        if hasattr(habitat, "open"):
+        if habitat.kind == "host":
             return LifeOnHost(self.law, mind, habitat, watched)
         return LifeInJax(self.law, mind, habitat)
 
@@ -125,7 +125,7 @@ class Life:
             return self._as_found(alone)
         key = stream(self._seed, Purpose.BODY, wide(self.record.born))
         words = body_words(key, jnp.asarray(self.record.cell), self.habitat.words)
-        memory = jnp.zeros((1, self.law.brain.memory), jnp.float32)
+        memory = jnp.zeros((1, self.law.memory), jnp.float32)
         store = self._rates(np.array([self.begins])).store
         vitals = Vitals(fixed(store), jnp.zeros(1, jnp.int32))
         return Instant(memory, vitals, alone.embody(words))

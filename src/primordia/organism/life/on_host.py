@@ -7,6 +7,7 @@ import numpy as np
 from jax import Array, lax
 
 from primordia.compiled import shared
+from primordia.habitats.contract import HostHabitat
 from primordia.law.law import Law
 from primordia.law.life import Vitals, judge
 from primordia.law.metabolism import Rates
@@ -23,10 +24,9 @@ class LifeOnHost:
     TICKS = 256
     """Kept at a time; a tick may have a picture of 120 kB."""
 
-    def __init__(self, law: Law, mind: Mind, habitat: Any, watched: bool) -> None:
-        habitat.open(1, watched=True) if watched else habitat.open(1)
+    def __init__(self, law: Law, mind: Mind, habitat: HostHabitat, watched: bool) -> None:
+        habitat.open(1, watched)
         self._mind, self._habitat = mind, habitat
-        self._seen = getattr(habitat, "seen", lambda: None)
         self._think, self._judged = shared(think, law), shared(_judged, law)
 
     def embody(self, words: Array) -> np.ndarray:
@@ -52,7 +52,7 @@ class LifeOnHost:
             memory, before, action = thought.memory, np.array(senses), np.asarray(thought.action)
             senses, outcome = self._habitat.step(action, np.ones(1, bool))
             judged = thought.faulty, senses, outcome
-            lived.append(_kept((before, action, self._seen(), judged)))
+            lived.append(_kept((before, action, self._habitat.seen(), judged)))
         perceived, actions, seen, judged = jax.tree.map(lambda *each: np.stack(each), *lived)
         vitals, cause = self._judged(now.vitals, _padded(judged, self.TICKS), rates)
         after = jax.tree.map(lambda each: np.asarray(each)[:count], (*vitals, cause))
@@ -62,8 +62,7 @@ class LifeOnHost:
 
     def close(self) -> None:
         """Let go of what the habitat took."""
-        if hasattr(self._habitat, "close"):
-            self._habitat.close()
+        self._habitat.close()
 
 
 def _kept(seen: Any) -> Any:
