@@ -3,7 +3,7 @@
 Nothing else enters (the first of the promises), so the neighbours need not live again with it.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
 from contextlib import closing
 from dataclasses import dataclass
 from functools import cached_property
@@ -94,7 +94,7 @@ class Life:
         """Of its death, if it died."""
         return Cause(self.record.cause[0]) if self.record.died[0] else None
 
-    def again(self, watched: bool = False) -> Iterator[Stretch]:
+    def again(self, watched: bool = False) -> Generator[Stretch, None, None]:
         """All of it, in order, some ticks at a time.
 
         Args:
