@@ -265,7 +265,13 @@ def test_before_the_first_tick_or_after_the_last(poles: Path, tmp_path: Path, at
 
 @pytest.mark.parametrize(
     "change",
-    [("--cells", 64), ("--seeds", 2), ("--brain.hidden", 8), ("--habitat.senses", '["x"]')],
+    [
+        ("--cells", 64),
+        ("--seeds", 2),
+        ("--brain.hidden", 8),
+        ("--brain.kind", "tests.toys:Twin"),
+        ("--habitat.senses", '["x"]'),
+    ],
 )
 def test_what_a_living_world_cannot_change(poles: Path, tmp_path: Path, change: tuple) -> None:
     done = here("fork", poles, "--at", 100, *change, "--out", tmp_path / "fork")

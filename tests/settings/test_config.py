@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import BaseModel
 
+from primordia.brains import contract as brains
 from primordia.config import Config, load, validated
 from primordia.habitats.contract import KNOWN, find
 from primordia.law.mutation import BlockMutation
@@ -143,10 +144,11 @@ def models(model: type[BaseModel]) -> list[type[BaseModel]]:
     return [model, *(one for each in found for one in models(each))]
 
 
+BRAINS = [brains.find(name) for name in brains.KNOWN]
 HABITATS = [find(name) for name in KNOWN if issubclass(find(name), Settings)]
 
 
-@pytest.mark.parametrize("model", [Config, BlockMutation, Schedule, Ratchet, *HABITATS])
+@pytest.mark.parametrize("model", [Config, BlockMutation, Schedule, Ratchet, *BRAINS, *HABITATS])
 def test_every_setting_is_explained(model: type[Settings]) -> None:
     for path, field in setting_fields(model).items():
         assert field.description, path
@@ -154,7 +156,7 @@ def test_every_setting_is_explained(model: type[Settings]) -> None:
         assert each.__doc__, each
 
 
-@pytest.mark.parametrize("model", [Config, *HABITATS])
+@pytest.mark.parametrize("model", [Config, *BRAINS, *HABITATS])
 def test_settings_are_frozen_and_strict(model: type[Settings]) -> None:
     for each in models(model):
         assert each.model_config["frozen"]
