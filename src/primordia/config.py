@@ -96,8 +96,15 @@ class Config(Settings):
     @field_validator("brain")
     @classmethod
     def _complete(cls, table: dict[str, Any]) -> dict[str, Any]:
-        """All settings of the brain, so that `config.toml` has them when defaults have changed."""
-        return {"kind": brains.DEFAULT, **table, **brains.build(table).model_dump()}
+        """All settings of the brain, so that `config.toml` has them when defaults have changed.
+
+        A table of which no brain can be made stays as it is: records are read without its code, and
+        `checked` says what is wrong.
+        """
+        try:
+            return {"kind": brains.DEFAULT, **table, **brains.build(table).model_dump()}
+        except InputError:
+            return table
 
     def build_habitat(self) -> AnyHabitat:
         """The habitat, from its class and settings.

@@ -8,7 +8,7 @@ import pytest
 import tomli_w
 
 from primordia.brains.contract import KNOWN, find
-from primordia.config import load, validated
+from primordia.config import load, parsed, validated
 from primordia.errors import InputError
 from primordia.settings.tables import merged
 from tests.commands import complains, here
@@ -30,6 +30,11 @@ def test_settings_of_an_older_version_are_read() -> None:
     for kind in ("recurrent", "feed-forward"):
         old = {**MEADOW, "brain": {"kind": kind, "hidden": 5}}
         assert validated(old, source="test").brain == {**old["brain"], "biases": False}
+
+
+def test_settings_are_read_without_the_code_of_the_brain() -> None:
+    table = {"kind": "no.such:Brain", "width": 7}
+    assert parsed({**MEADOW, "brain": table}, source="test").brain == table
 
 
 def test_another_part_takes_none_of_the_settings_of_the_one_before() -> None:
