@@ -1,8 +1,10 @@
 # Needs Python >= 3.11, git and make; everything else is installed into .venv by these targets.
 PYTHON ?= python3
 BIN := .venv/bin
+# Versions that were tested; `make CONSTRAINTS= demo` takes the newest releases instead.
+CONSTRAINTS ?= --constraint constraints.txt --build-constraint constraints.txt
 
-.PHONY: demo test slow check format bench clean
+.PHONY: demo test quick slow check format bench constraints clean
 
 demo: .venv/installed  ## evolve pole balancers; draw what happened, and film the longest life
 	rm -rf runs/demo
@@ -29,6 +31,13 @@ format: .venv/installed-dev
 bench: .venv/installed-dev  ## every figure; `make bench JSON=file.json` keeps them
 	$(BIN)/python benchmarks/bench.py $(if $(JSON),--json $(JSON))
 
+constraints:  ## the newest releases into constraints.txt; run `make check` before it is committed
+	rm -rf .venv
+	$(MAKE) CONSTRAINTS= .venv/installed-dev
+	sed -n '/^#/p' constraints.txt > .venv/constraints
+	$(BIN)/python -m pip freeze --exclude-editable | sed 's/$$/; python_version < "3.14"/' >> .venv/constraints
+	mv .venv/constraints constraints.txt
+
 clean:
 	rm -rf .venv
 
@@ -38,10 +47,10 @@ clean:
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --upgrade pip
 
-.venv/installed: .venv/bin/python pyproject.toml
-	$(BIN)/python -m pip install --quiet --editable .
+.venv/installed: .venv/bin/python pyproject.toml constraints.txt
+	$(BIN)/python -m pip install --quiet $(CONSTRAINTS) --editable .
 	@touch $@
 
 .venv/installed-dev: .venv/installed
-	$(BIN)/python -m pip install --quiet --group dev
+	$(BIN)/python -m pip install --quiet $(CONSTRAINTS) --group dev
 	@touch $@

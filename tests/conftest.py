@@ -1,15 +1,20 @@
 import os
 from pathlib import Path
 
-# Less to wait for: XLA compiles faster with its older emitters. Their code is slower, but gives the same
-# bits: the digests that these tests know were made with the others.
-os.environ["XLA_FLAGS"] = f"{os.environ.get('XLA_FLAGS', '')} --xla_cpu_use_fusion_emitters=false"
-
 import jax
 import pytest
 from hypothesis import HealthCheck, settings
 
+from primordia import device
 from tests import commands
+
+# XLA compiles faster with its older emitters. Their code is slower and gives the same bits: the digests
+# that these tests know were made with the new ones.
+EMITTERS = "--xla_cpu_use_fusion_emitters"
+flags = os.environ.get("XLA_FLAGS", "")
+if EMITTERS not in flags:
+    os.environ["XLA_FLAGS"] = f"{flags} {EMITTERS}=false".strip()
+device.prepare()
 
 # What is slow is not wrong: a machine may be busy, and Python collects garbage for a third of a second.
 settings.register_profile("patient", deadline=None, suppress_health_check=[HealthCheck.too_slow])

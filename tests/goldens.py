@@ -147,7 +147,7 @@ FIELD = {
     "replication": 0.2, "hazard": 0.03, "mutation": {"probability": 0.5}, "sample_every": 10,
     "stop": ticks(120),
 }  # fmt: skip
-MILL = {
+MILL: dict[str, Any] = {
     "habitat": {"name": "tests.toys:Mill"}, "motor": {"kind": "gaussian", "sd": 0.3}, "cells": 24,
     "metabolism": {"store": 40.0, "gain": 3.0, "effort_cost": 0.25, "cap": 80.0},
     "mutation": {"probability": 0.5, "scale": 0.2, "founder_scale": 0.5},

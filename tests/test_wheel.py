@@ -50,6 +50,7 @@ def test_it_holds_the_package_and_its_licence_and_nothing_else(wheel: Path) -> N
         names = archive.namelist()
     source = ROOT / "src"
     ours = [path for path in (source / "primordia").rglob("*") if path.suffix in (".py", ".toml")]
+    ours.append(source / "primordia" / "py.typed")
     expected = {path.relative_to(source).as_posix() for path in ours}
     assert {name for name in names if name.startswith("primordia/")} == expected
     (info,) = {name.partition("/")[0] for name in names if not name.startswith("primordia/")}

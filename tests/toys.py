@@ -174,11 +174,11 @@ class HostCartPole(HostHabitat):
 
     def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
         for cell in np.flatnonzero(alive):
-            self.state[cell] = self._one(*self.state[cell], push=10.0 if action[cell] else -10.0)
+            self.state[cell] = self._one(10.0 if action[cell] else -10.0, *self.state[cell])
         fatal = (np.abs(self.state[:, 0]) > 2.4) | (np.abs(self.state[:, 2]) > np.deg2rad(12))
         return self.state.astype(np.float32), Outcome(fatal)
 
-    def _one(self, x: float, x_dot: float, theta: float, theta_dot: float, push: float) -> list:
+    def _one(self, push: float, x: float, x_dot: float, theta: float, theta_dot: float) -> list:
         cos, sin = np.cos(theta), np.sin(theta)
         temp = (push + 0.05 * theta_dot**2 * sin) / 1.1
         theta_acc = (9.8 * sin - cos * temp) / (0.5 * (4.0 / 3.0 - 0.1 * cos**2 / 1.1))

@@ -3,10 +3,6 @@
 from importlib import import_module
 from typing import Any
 
-from primordia.device import configure
-
-configure()
-
 _HOMES = {
     "run": "api",
     "load": "api",

@@ -5,21 +5,38 @@ import platform
 from importlib.metadata import version
 from pathlib import Path
 
+import jax
+from jax._src.xla_bridge import backends_are_initialized  # JAX has no public name for it
+
 from primordia.errors import InputError
 
 PACKAGES = ("primordia", "jax", "jaxlib", "numpy")
 ISA_FLAG = "--xla_cpu_max_isa"
 
 
-def configure() -> None:
-    """Prepare XLA; must run before JAX makes its first array.
+def prepare() -> None:
+    """Start JAX in the way runs need, unless it has started; call this before JAX makes an array.
 
-    Vector instructions are held to AVX2, so that x86-64 machines with and without AVX-512 give
-    the same bits (measured: no slower). A choice made in XLA_FLAGS stands.
+    XLA may use AVX2 and nothing newer, so that x86-64 machines with and without AVX-512 give the same
+    bits (measured: no slower). A choice made in XLA_FLAGS stands. XLA reads the flag once in a process,
+    and ignores it as a compiler option of `jax.jit`. If the program has used JAX before, nothing
+    is changed, and the run records the instruction set that XLA_FLAGS then allow.
     """
+    if backends_are_initialized():
+        return
     flags = os.environ.get("XLA_FLAGS", "")
     if ISA_FLAG not in flags:
+        # It stays: JAX's cache of compiled code tells code for AVX2 from other code by it.
         os.environ["XLA_FLAGS"] = f"{flags} {ISA_FLAG}=AVX2".strip()
+    # The thread that makes a small call computes it: to hand it to another thread costs a third of the
+    # time of a tick. JAX reads this when it starts.
+    name = "jax_cpu_enable_async_dispatch"
+    before = jax.config.read(name)
+    jax.config.update(name, False)
+    try:
+        jax.devices()
+    finally:
+        jax.config.update(name, before)
 
 
 def select(name: str) -> None:
@@ -28,10 +45,9 @@ def select(name: str) -> None:
     Raises:
         InputError: JAX has no such device here.
     """
-    import jax
-
     try:
-        jax.config.update("jax_default_device", jax.devices(name)[0])  # type: ignore[no-untyped-call]
+        prepare()
+        jax.config.update("jax_default_device", jax.devices(name)[0])
     except RuntimeError:
         raise InputError(f"--device: JAX finds no {name!r} device here") from None
 
@@ -49,8 +65,7 @@ def instruction_set() -> str:
 
 def versions() -> dict[str, str]:
     """What must be equal for a run to go on bit for bit."""
-    import jax
-
+    prepare()
     default = getattr(jax.config, "jax_default_device", None) or jax.devices()[0]
     return {
         **{name: version(name) for name in PACKAGES},

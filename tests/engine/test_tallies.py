@@ -1,6 +1,7 @@
 """What habitats count for people: noted at each death and in each sample, and no part of the law."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests.worlds import config
 
-WORLDS = {
+WORLDS: dict[str, Any] = {
     "task": "clocked",
     "cells": 8,
     "seeds": 3,

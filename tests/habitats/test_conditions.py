@@ -16,7 +16,7 @@ NAMES: Names = {
     "speed": 3,
     "place": {"hand": 2, "target": 2},
 }
-VALUES = {
+VALUES: dict[str, Any] = {
     "points": np.array([0.0, -1.0, 2.5], np.float32),
     "lives": np.array([3, 0, 1]),
     "ram": np.array([[1, 2, 3, 4], [0, 0, 0, 0], [255, 17, 1, 0]], np.uint8),
@@ -27,7 +27,7 @@ VALUES = {
     },
 }
 
-number = st.deferred(
+number: st.SearchStrategy[str] = st.deferred(
     lambda: st.one_of(
         st.sampled_from(["points", "lives", "ram[0]", "ram[3]", "0", "1", "2.5", "speed[2]"]),
         st.sampled_from(["sum(speed)", "sum(ram[1:])", 'place["hand"][1]', "sum(2 * speed[:2])"]),
@@ -40,7 +40,7 @@ number = st.deferred(
     )
 )
 comparison = st.sampled_from(["<", "<=", ">", ">=", "==", "!="])
-condition = st.deferred(
+condition: st.SearchStrategy[str] = st.deferred(
     lambda: st.one_of(
         st.builds(lambda a, op, b: f"{a} {op} {b}", number, comparison, number),
         st.builds(lambda a, b, c: f"{a} < {b} <= {c}", number, number, number),

@@ -90,7 +90,7 @@ def test_scores_are_gymnasiums(task: str, name: str, tolerance: float) -> None:
         action = rng.uniform(-limit, limit, (4, habitat.action.size)).astype(np.float32)
         _, outcome = habitat.step(action, FOUR)
         _, reward, terminated, _, parts = env.step(action[2])
-        paid, ours = paid + reward - parts.get("reward_contact", 0), ours + outcome.food[2]
+        paid, ours = paid + reward - parts.get("reward_contact", 0), ours + float(outcome.food[2])
         assert outcome.fatal[2] == terminated
         if terminated:
             ours -= env._healthy_reward

@@ -39,8 +39,8 @@ class Walked:
         return row
 
     def lines(self, crowd: int) -> Clades:
-        columns = map(np.array, (self.parent, self.born, self.ended))
-        return clades(*columns, np.array(self.ended) >= 0, crowd)
+        parent, born, ended = map(np.array, (self.parent, self.born, self.ended))
+        return clades(parent, born, ended, ended >= 0, crowd)
 
 
 @given(history=HISTORY, crowd=st.integers(1, 4))

@@ -70,7 +70,8 @@ def test_ratchets_look_at_the_same_multiples_beyond_2_32() -> None:
     begun = SHORTLY_BEFORE_2_32
     run = Lived(config(MILL, seeds=2), begun[0] + 700, begun=begun)
     metrics = run.table("metrics")
-    gains, replications = set(), set()
+    gains: set[float] = set()
+    replications: set[float] = set()
     for world in range(2):
         history = History(run, world, begun)
         assert history.lives[-1].born > 2**32

@@ -9,7 +9,7 @@ import pytest
 from pydantic import TypeAdapter, ValidationError
 
 import primordia
-from primordia.habitats.contract import Habitat
+from primordia.habitats.contract import Habitat, HostHabitat
 from primordia.law.genesis import begin
 from primordia.law.law import Law
 from primordia.law.metabolism import break_even
@@ -202,7 +202,7 @@ def test_a_blocks_own_scale_changes_that_block_only() -> None:
     np.testing.assert_array_equal(np.float32(shown), np.float32([[0.1, 0], [0, 0], [0.2, 0.2]]))
 
 
-def law_of(seasons: list[dict[str, Any]]) -> tuple[Law, Habitat]:
+def law_of(seasons: list[dict[str, Any]]) -> tuple[Law, Habitat | HostHabitat]:
     made = config(MEADOW, seeds=2, seasons=seasons, metabolism={"store": 10.0})
     habitat = made.build_habitat()
     return made.build_law(habitat), habitat

@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 from rich.console import Console, ConsoleDimensions
 
+from primordia.engine.engine import Engine
 from primordia.engine.state import Limits, State
 from primordia.law.world import World
 from primordia.live import view as live
@@ -78,12 +79,12 @@ WORLDS: dict[str, dict[str, Any]] = {
 }
 
 
-def meadow(name: str) -> loop.Engine:
-    return loop.Engine(config(MEADOW, hazard=0.02, metabolism=None, **WORLDS[name]))
+def meadow(name: str) -> Engine:
+    return Engine(config(MEADOW, hazard=0.02, metabolism=None, **WORLDS[name]))
 
 
 @pytest.fixture(scope="module", params=WORLDS)
-def running(request: pytest.FixtureRequest) -> tuple[str, loop.Engine]:
+def running(request: pytest.FixtureRequest) -> tuple[str, Engine]:
     """A world of each shape, on its way; most only made to look so, which spares compiling."""
     name, made = request.param, meadow(request.param)
     if name == "ring":
@@ -93,7 +94,7 @@ def running(request: pytest.FixtureRequest) -> tuple[str, loop.Engine]:
     return name, made
 
 
-def look_alive(made: loop.Engine) -> None:
+def look_alive(made: Engine) -> None:
     """Pose four fifths of the cells as organisms of many ages, to whom nothing happens."""
     world, bodies = made.state
     cells = np.arange(len(world.organisms.alive), dtype=np.uint32)
@@ -102,10 +103,10 @@ def look_alive(made: loop.Engine) -> None:
     thousand = wide([1000] * made.law.worlds)
     worlds = world.worlds._replace(tick=thousand, births=thousand)
     made.state = State(World(organisms, worlds), bodies)
-    made.advance = lambda _: made.events  # type: ignore[method-assign]
+    made.advance = lambda _: made.events  # type: ignore[assignment, method-assign]
 
 
-def shown(made: loop.Engine, chunks: int = 2, **options: Any) -> tuple[str, list[str]]:
+def shown(made: Engine, chunks: int = 2, **options: Any) -> tuple[str, list[str]]:
     """What is written in a terminal, and the lines of the last frame."""
     options = {"force_terminal": True, "color_system": "truecolor", **options}
     console = Console(file=io.StringIO(), **options)
@@ -122,14 +123,14 @@ def shown(made: loop.Engine, chunks: int = 2, **options: Any) -> tuple[str, list
 
 
 @pytest.mark.parametrize(("width", "height"), [(80, 24), (40, 24), (200, 60), (20, 8), (3, 2)])
-def test_it_fits_any_terminal(running: tuple[str, loop.Engine], width: int, height: int) -> None:
+def test_it_fits_any_terminal(running: tuple[str, Engine], width: int, height: int) -> None:
     for letters in (False, True):
         _, frame = shown(running[1], width=width, height=height, no_color=letters)
         assert 0 < len(frame) <= height
         assert max(map(len, frame)) <= width
 
 
-def test_it_tells_what_is_going_on(running: tuple[str, loop.Engine]) -> None:
+def test_it_tells_what_is_going_on(running: tuple[str, Engine]) -> None:
     name, made = running
     written, frame = shown(made, width=80, height=24)
     text = "\n".join(frame)
@@ -145,7 +146,7 @@ def test_it_tells_what_is_going_on(running: tuple[str, loop.Engine]) -> None:
     assert int(made.state.world.organisms.alive.sum()) == census.alive.sum()
 
 
-def test_a_terminal_may_change_its_size(running: tuple[str, loop.Engine]) -> None:
+def test_a_terminal_may_change_its_size(running: tuple[str, Engine]) -> None:
     made = running[1]
     console = Console(file=io.StringIO(), force_terminal=True, width=80, height=10)
     with live.View(console) as view:
@@ -158,14 +159,14 @@ def test_a_terminal_may_change_its_size(running: tuple[str, loop.Engine]) -> Non
             assert size[0] // 2 < max(map(len, rows))
 
 
-def test_without_colours_letters_tell_the_lines(running: tuple[str, loop.Engine]) -> None:
+def test_without_colours_letters_tell_the_lines(running: tuple[str, Engine]) -> None:
     written, frame = shown(running[1], width=80, height=24, no_color=True)
     assert not re.search(r"\x1b\[[0-9;]*[34]8;", written)
     assert "letter: " in "\n".join(frame)
     assert any(re.search(r"[a-zA-Z·]{8}|([a-z·] ){8}", line) for line in frame[1:])
 
 
-def test_who_is_followed_is_who_lives(running: tuple[str, loop.Engine]) -> None:
+def test_who_is_followed_is_who_lives(running: tuple[str, Engine]) -> None:
     name, made = running
     view = live.View(Console(file=io.StringIO(), force_terminal=True, width=80, height=24))
     for _ in range(3):

@@ -255,11 +255,11 @@ def test_a_part_as_a_gif(poles: Path, tmp_path: Path) -> None:
     done = here("replay", poles, "--from", 10, "--to", 49, "--out", path)
     assert done.returncode == 0, done.stderr
     with Image.open(path) as gif:
-        shown = sum(1 for _ in range(gif.n_frames))
+        shown = getattr(gif, "n_frames", 1)
         assert gif.size == (320, 180)
         assert 2 <= shown <= 20 + 25
         total = 0
-        for number in range(gif.n_frames):
+        for number in range(shown):
             gif.seek(number)
             total += gif.info["duration"]
     assert total == (20 + 25) * 40

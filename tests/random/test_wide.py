@@ -138,7 +138,7 @@ def test_totals_and_the_largest_along_either_axis(a: list[int]) -> None:
 
 
 def test_the_largest_is_of_whole_numbers_not_of_words() -> None:
-    assert ints(largest(whole([2**32, 2**32 - 1, 5]), axis=0)) == 2**32
+    assert to_host(largest(whole([2**32, 2**32 - 1, 5]), axis=0)) == 2**32
 
 
 @FEW

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from primordia.engine import fused as chunk
+from primordia.engine.state import State
 from primordia.runs import checkpoint, directory, loop
 from tests.commands import begin, complains, here
 from tests.trouble import HALF, SMALL, TASK, TICKS, contents, digest, goes_on, newest, started
@@ -144,7 +144,7 @@ def test_zero_seconds_between_checkpoints_means_after_every_chunk(tmp_path: Path
 
 
 def test_weights_that_are_no_numbers_are_a_fault(run: Path) -> None:
-    struck = []
+    struck: list[int] = []
 
     def strike(status: loop.Status) -> None:
         """Let one weight of everybody be NaN, once."""
@@ -155,7 +155,7 @@ def test_weights_that_are_no_numbers_are_a_fault(run: Path) -> None:
         genome = world.organisms.genome
         genome = {**genome, "output": genome["output"].at[:, 0, 3].set(float("nan"))}
         world = world._replace(organisms=world.organisms._replace(genome=genome))
-        status.engine.state = chunk.State(world, bodies)
+        status.engine.state = State(world, bodies)
 
     loop.resume(run, {"ticks": TICKS}, listen=strike)
     found = json.loads(here("info", run, "--json").stdout)

@@ -159,7 +159,7 @@ def test_the_python_interface_raises(run: Path, tmp_path: Path) -> None:
         primordia.Run(run).resume(ticks=-1)
     with pytest.raises(InputError, match="is not a run"):
         primordia.Run(tmp_path / "none").info()
-    assert primordia.Run(run).info() == primordia.Run(str(run)).info()  # type: ignore[arg-type]
+    assert primordia.Run(run).info() == primordia.Run(str(run)).info()
     assert device.versions() == {
         name: value for name, value in primordia.Run(run).info()["versions"].items()
         if name != "format"

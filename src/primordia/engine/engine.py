@@ -7,6 +7,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from primordia import device
 from primordia.config import Config
 from primordia.engine.fused import Fused
 from primordia.engine.hosted import Hosted
@@ -27,6 +28,7 @@ class Engine:
     """A run in memory: law, habitat and where they stand."""
 
     def __init__(self, config: Config) -> None:
+        device.prepare()
         self.config = config
         habitat = config.build_habitat()
         self.law = config.build_law(habitat)

@@ -23,10 +23,6 @@ from primordia.law.sample import width
 from primordia.law.tick import no_fates
 from primordia.law.world import World
 
-# Small calls are computed in the thread that makes them and waits for them: handing them to another costs
-# a third of their time. Read when JAX makes its first array.
-jax.config.update("jax_cpu_enable_async_dispatch", False)  # type: ignore[no-untyped-call]
-
 
 class Hosted:
     """Law compiled, habitat on the host. The bodies live in the habitat; the state holds senses."""

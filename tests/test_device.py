@@ -1,0 +1,86 @@
+"""What Primordia changes in a user's process: nothing when it is imported, little when a run starts."""
+
+import platform
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import primordia
+from primordia.device import ISA_FLAG
+from tests.commands import environment
+
+SETTINGS = """
+import os, sys
+import jax
+def settings():
+    names = [name for name in dir(jax.config) if name.startswith("jax_")]
+    read = {name: getattr(jax.config, name) for name in names}
+    return read | {"async": jax.config.read("jax_cpu_enable_async_dispatch")}
+variables, before = dict(os.environ), settings()
+"""
+LOOK = (
+    SETTINGS
+    + """
+import primordia
+primordia.load(sys.argv[1]).info()
+assert (dict(os.environ), settings()) == (variables, before)
+"""
+)
+LIVE = (
+    SETTINGS
+    + """
+import primordia
+primordia.load(sys.argv[1]).rebuild(3)
+assert settings() == before
+assert {**os.environ, "XLA_FLAGS": ""} == {**variables, "XLA_FLAGS": ""}
+primordia.run("CartPole-survival", sys.argv[2], cells=8, stop={"ticks": 50})
+print(primordia.load(sys.argv[2]).info()["versions"]["instruction_set"], os.environ["XLA_FLAGS"])
+"""
+)
+
+
+on_x86 = pytest.mark.skipif(
+    platform.machine() not in ("x86_64", "AMD64"), reason="only there XLA has sets to choose from"
+)
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("device") / "run"
+    return primordia.run("CartPole-survival", path, cells=8, stop={"ticks": 50}).path
+
+
+def python(program: str, *words: object, flags: str = "") -> str:
+    """What a program prints in a process of its own."""
+    command = [sys.executable, "-c", program, *map(str, words)]
+    flagged = environment() | {"XLA_FLAGS": flags}
+    return subprocess.run(
+        command, env=flagged, capture_output=True, text=True, check=True
+    ).stdout.strip()
+
+
+def test_looking_at_a_run_changes_no_setting_of_the_process(run: Path) -> None:
+    python(LOOK, run)
+
+
+@on_x86
+@pytest.mark.parametrize(
+    ("flags", "allowed"),
+    [("", "AVX2"), ("--xla_cpu_use_fusion_emitters=false", "AVX2"), (f"{ISA_FLAG}=AVX", "AVX")],
+)
+def test_a_run_is_held_to_avx2_unless_the_user_chose(
+    run: Path, tmp_path: Path, flags: str, allowed: str
+) -> None:
+    said = python(LIVE, run, tmp_path / "other", flags=flags)
+    kept = flags if ISA_FLAG in flags else f"{flags} {ISA_FLAG}=AVX2".strip()
+    assert said.split(maxsplit=2)[1:] == [allowed, kept]
+
+
+@on_x86
+def test_jax_that_the_user_started_stays_as_it_is_and_the_run_says_so(
+    run: Path, tmp_path: Path
+) -> None:
+    said = python("import jax; jax.devices()\n" + LIVE, run, tmp_path / "other")
+    assert said.split(maxsplit=2)[1:] == ["native"]
