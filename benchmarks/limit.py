@@ -9,7 +9,8 @@ from functools import partial
 import jax
 from jax import Array, lax
 
-from primordia.brains.contract import BrainSettings, Genome
+from primordia.brains.contract import Genome
+from primordia.brains.recurrent import Recurrent
 from primordia.habitats.cartpole.habitat import CartPole
 from primordia.law.motor import argmax
 
@@ -17,8 +18,7 @@ from primordia.law.motor import argmax
 @partial(jax.jit, static_argnames=("ticks",), donate_argnums=(1, 2))
 def limit(genome: Genome, memory: Array, bodies: tuple, ticks: int) -> tuple:
     """Advance CartPole brains and bodies `ticks` ticks; -> (memory, bodies)."""
-    habitat = CartPole()
-    brain = BrainSettings().build(habitat.senses_size, habitat.action.size)
+    habitat, brain = CartPole(), Recurrent()
 
     def tick(carry: tuple, _: None) -> tuple:
         memory, bodies = carry

@@ -78,7 +78,7 @@ def _on_disk(run: Path, seed: int) -> float:
     (run / "config.toml").write_text(config.to_toml())
     warm, made = Engine(config), Engine(config)
     warm.advance(warm.limits({}))
-    recorder = Recorder(run, 1, config.cells, made.law.blocks)
+    recorder = Recorder(run, 1, config.cells, made.law.layout.names)
     began = time.perf_counter()
     drive(made, recorder, run, Progress({"ticks": 3_000_000}, 0.0, True), 1.0, None)
     return organism_ticks(made) / (time.perf_counter() - began)

@@ -14,17 +14,16 @@ from pathlib import Path
 import files
 from games import BEST, longest_lived
 
-import primordia
 from primordia.brains import genomes
 from primordia.history.lineage import rebuild_all
 from primordia.organism.organism import Organism
-from primordia.runs.directory import read_config
+from primordia.runs.archive import Archive
 
 
 def report(file: Path) -> None:
     """Write the genomes, in the order of worlds."""
-    run = files.runs(file)[0]
-    config, champions = read_config(run), best_known(file, run)
+    run = Archive(files.runs(file)[0])
+    config, champions = run.config, best_known(file, run)
     about = {
         "task": config.task,
         "seeds": words(config.seed + each.world for each in champions),
@@ -33,20 +32,21 @@ def report(file: Path) -> None:
     }
     path = file.parent / "genomes" / f"{file.stem}.safetensors"
     path.parent.mkdir(exist_ok=True)
-    brain = config.build_brain(config.build_habitat())
     kept = rebuild_all(run, [(each.id, each.world) for each in champions])
-    genomes.write(path, brain, kept, about)
+    genomes.write(path, run.law.layout, kept, about)
     print(path)
 
 
-def best_known(file: Path, run: Path) -> list[Organism]:
+def best_known(file: Path, run: Archive) -> list[Organism]:
     """Of each world."""
     games = file.parent / "results" / f"{file.stem}-games.csv"
     rows = csv.DictReader(games.read_text().splitlines()) if games.exists() else []
-    found = {int(r["world"]): int(r["organism"]) for r in rows if r["who"] == BEST.format(run.name)}
+    found = {
+        int(r["world"]): int(r["organism"]) for r in rows if r["who"] == BEST.format(run.path.name)
+    }
     if not found:
-        return longest_lived(run)
-    return [primordia.Run(run).organism(found[world], world) for world in sorted(found)]
+        return longest_lived(run.path)
+    return [Organism(run, run.lives.row(found[world], world)) for world in sorted(found)]
 
 
 def words(numbers: Iterable[int]) -> str:

@@ -50,7 +50,7 @@ def trial(name: str, settings: dict[str, Any]) -> list[str]:
     """A row of the table."""
     chosen = config.load(settings.pop("task"), settings)
     law = chosen.build_law(chosen.build_habitat())
-    scales = np.repeat(law.mutation.of_blocks("scale", law.blocks), law.block_sizes)
+    scales = np.repeat(law.mutation.of_blocks("scale", law.layout.names), law.layout.sizes)
     noise = np.random.default_rng(0)
     founders = law.founder_scale * noise.standard_normal((FOUNDERS, len(scales)))
     lived = lifespans(chosen, founders)

@@ -76,8 +76,9 @@ def write_rows(stem: Path, rows: list[dict[str, Any]], told: str) -> None:
 
 def longest_lived(run: Path) -> list[Organism]:
     """Of each world."""
-    found = primordia.load(run)
-    return [found.oldest(world) for world in range(found.lives().worlds)]
+    opened = primordia.load(run).opened()
+    everyone = opened.lives
+    return [Organism(opened, everyone.oldest(world)) for world in range(everyone.worlds)]
 
 
 def unforked(run: Path) -> Path:
@@ -88,22 +89,23 @@ def unforked(run: Path) -> Path:
 
 def founders(run: Path) -> list[Organism]:
     """The first that lived in each world."""
-    found = primordia.load(run)
-    return [found.organism(0, world) for world in range(found.lives().worlds)]
+    opened = primordia.load(run).opened()
+    everyone = opened.lives
+    return [Organism(opened, everyone.row(0, world)) for world in range(everyone.worlds)]
 
 
 def alive(run: Path) -> list[Organism]:
     """At the end, in all worlds."""
-    everyone = primordia.load(run).lives()
-    return [Organism(run, everyone, int(row)) for row in np.flatnonzero(~everyone.died)]
+    opened = primordia.load(run).opened()
+    return [Organism(opened, int(row)) for row in np.flatnonzero(~opened.lives.died)]
 
 
 def best(run: Path, rows: list[dict[str, Any]]) -> list[Organism]:
     """Of each world, who scored most in its one game."""
-    found = primordia.load(run)
+    opened = primordia.load(run).opened()
     rising = sorted(rows, key=lambda row: (row["score"], row["lifespan"]))
     last = {row["world"]: row["organism"] for row in rising}
-    return [found.organism(last[world], world) for world in sorted(last)]
+    return [Organism(opened, opened.lives.row(last[world], world)) for world in sorted(last)]
 
 
 def played(

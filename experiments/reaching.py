@@ -53,12 +53,12 @@ def report(names: list[Path]) -> None:
 
 def some_alive(run: Path) -> list[Organism]:
     """Of each world, those that have lived longest."""
-    found = primordia.load(run)
-    everyone, chosen = found.lives(), []
+    opened = primordia.load(run).opened()
+    everyone, chosen = opened.lives, []
     for world in range(everyone.worlds):
         rows = np.flatnonzero(~everyone.died & (everyone.world == world))
         order = np.argsort(-everyone.lifespan[rows], kind="stable")
-        chosen += [Organism(run, everyone, int(row)) for row in rows[order[:EACH]]]
+        chosen += [Organism(opened, int(row)) for row in rows[order[:EACH]]]
     return chosen
 
 

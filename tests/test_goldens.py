@@ -38,6 +38,6 @@ def test_it_lives_as_it_did(name: str, tmp_path: Path) -> None:
 
 
 def said(name: str, differ: list[str], golden: dict[str, Any], found: dict[str, Any]) -> str:
-    """Which entries of a case differ, and how."""
-    lines = [f"{each}: {golden.get(each)} was {found.get(each)}" for each in differ]
+    """Say which entries of a case differ, and how."""
+    lines = [f"{each}: golden {golden.get(each)}, found {found.get(each)}" for each in differ]
     return "\n  ".join([f"{name} differs in {', '.join(differ)}", *lines])

@@ -11,7 +11,7 @@ SOURCE = Path(__file__).parent.parent / "src" / "primordia"
 
 LAYERS = [
     {"errors"},
-    {"compiled", "device", "files", "random", "settings", "tasks"},
+    {"compiled", "device", "files", "random", "rounding", "settings", "tasks"},
     {"brains", "pool"},
     {"habitats"},
     {"law"},

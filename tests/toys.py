@@ -1,11 +1,14 @@
-"""Habitats for tests: simple enough to know what must happen, on both sides of the contract."""
+"""Habitats and a brain for tests: simple enough to know what must happen."""
 
 from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
-from jax import Array
+from jax import Array, lax
+from pydantic import Field
 
+from primordia.brains.contract import Brain, Genome
+from primordia.brains.layout import Shape
 from primordia.habitats import Continuous, Discrete, HostHabitat, JaxHabitat, Outcome
 from primordia.habitats.cartpole.habitat import COORDINATES, CartPole
 from primordia.habitats.on_host import OnHost
@@ -190,3 +193,29 @@ class HostCartPole(HostHabitat):
 
 
 HOST_CARTPOLE = {"name": "tests.toys:HostCartPole"}
+
+
+class Sliding(Brain):
+    """Kernels slide over what has changed since the last tick; blocks have any rank and name."""
+
+    width: int = Field(2, ge=1)
+    channels: int = Field(3, ge=1)
+
+    def blocks(self, senses: int, outputs: int) -> dict[str, Shape]:
+        places = senses - self.width + 1
+        tensor = outputs, self.channels, places
+        return {"slide-2": (self.channels, self.width), "OUT_3d": tensor, "0": (outputs,)}
+
+    def memory(self, senses: int, outputs: int) -> int:
+        return senses
+
+    def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:
+        places, change = senses.shape[1] - self.width + 1, senses - memory
+        seen = jnp.stack([change[:, i : i + self.width] for i in range(places)], axis=1)
+        found = jnp.tanh(_dot(genome["slide-2"], seen, (2,), (2,)))
+        return senses, _dot(genome["OUT_3d"], found, (2, 3), (1, 2)) + genome["0"]
+
+
+def _dot(a: Array, b: Array, of_a: tuple[int, ...], of_b: tuple[int, ...]) -> Array:
+    """Products of each organism's a and b, summed over axes of both."""
+    return lax.dot_general(a, b, ((of_a, of_b), ((0,), (0,))), precision=lax.Precision.HIGHEST)

@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 
-from primordia.brains.contract import join
 from primordia.config import Config, load, validated
 from primordia.engine.engine import Engine
 from primordia.law.genesis import begin
@@ -92,7 +91,7 @@ class Lived:
         """Of the living, float32 (n, P)."""
         organisms = self.engine.state.world.organisms
         blocks = {name: np.asarray(block) for name, block in organisms.genome.items()}
-        return join(self.engine.law.brain, blocks)[np.asarray(organisms.alive)]
+        return self.engine.law.layout.join(blocks)[np.asarray(organisms.alive)]
 
     def digests(self) -> list[str]:
         """Of each world."""

@@ -100,11 +100,11 @@ class Published(Loop):
         from primordia.habitats.atari.games import minimal_actions
         from primordia.habitats.atari.simulator import console
 
-        config, habitat, brain = described(game)
+        config, habitat, law = described(game)
         buttons, seen = list(minimal_actions(game).values()), _seen(habitat)
-        hidden, noise = config.brain.hidden, np.random.default_rng(0)
+        hidden, noise = config.brain["hidden"], np.random.default_rng(0)
         shapes = ((hidden, len(seen)), (hidden, hidden), (len(buttons), hidden))
-        blocks = list(zip(scales(config, brain), shapes, strict=True))
+        blocks = list(zip(scales(law), shapes, strict=True))
         self._organisms = [
             Organism(
                 [s * noise.standard_normal(b) for s, b in blocks], console(game), buttons, seen

@@ -62,17 +62,17 @@ def envpool() -> Any:
 
 
 def described(game: str) -> tuple:
-    """The task's settings, habitat and brain."""
+    """The task's settings, habitat and law."""
     from primordia.config import load
 
     config = load(TASKS[game])
     habitat = config.build_habitat()
-    return config, habitat, config.build_brain(habitat)
+    return config, habitat, config.build_law(habitat)
 
 
-def scales(config: Any, brain: Any) -> list[float]:
+def scales(law: Any) -> list[float]:
     """How far a founder's weights are spread in each block."""
-    return config.mutation.of_blocks("founder_scale", list(brain.blocks))
+    return law.mutation.of_blocks("founder_scale", law.layout.names)
 
 
 class Brains:
@@ -85,18 +85,16 @@ class Brains:
         from primordia.habitats.contract import Discrete
         from primordia.law.motor import argmax
 
-        config, habitat, brain = described(game)
+        _, habitat, law = described(game)
         noise, discrete = np.random.default_rng(0), isinstance(habitat.action, Discrete)
         self._genome = {
             name: jnp.asarray(scale * noise.standard_normal((cells, *shape)), jnp.float32)
-            for scale, (name, shape) in zip(
-                scales(config, brain), brain.blocks.items(), strict=True
-            )
+            for scale, (name, shape) in zip(scales(law), law.layout.blocks, strict=True)
         }
-        self._memory = jnp.zeros((cells, brain.memory), jnp.float32)
+        self._memory = jnp.zeros((cells, law.memory), jnp.float32)
 
         def think(genome: Any, memory: Any, senses: Any) -> tuple:
-            memory, output = brain(genome, memory, senses)
+            memory, output = law.brain(genome, memory, senses)
             return memory, argmax(output) if discrete else output
 
         self._think = jax.jit(think)

@@ -19,37 +19,42 @@ import pyarrow as pa
 
 from primordia import config
 from primordia import device as devices
-from primordia.brains import genomes
 from primordia.comparison import comparison
-from primordia.errors import InputError
-from primordia.history import lineage
+from primordia.history.info import info
+from primordia.history.lineage import rebuild
 from primordia.organism.evaluation import Evaluation, evaluate
+from primordia.organism.export import export
 from primordia.organism.organism import Organism
 from primordia.organism.policy import Policy
-from primordia.runs import loop, report
+from primordia.runs import loop
+from primordia.runs.archive import Archive
 from primordia.runs.directory import read_config
 from primordia.runs.fork import fork
-from primordia.runs.lives import Lives, lives
+from primordia.runs.lives import Lives
 from primordia.runs.loop import Listener
 from primordia.runs.verify import verify
 
 
 @dataclass(frozen=True)
 class Run:
-    """A run directory."""
+    """A run directory. Each call opens it as it stands then; an `Organism` keeps what it came from."""
 
     path: Path
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "path", Path(self.path))
 
+    def opened(self) -> Archive:
+        """The run as it stands now, to be read."""
+        return Archive(self.path)
+
     def info(self) -> dict[str, Any]:
-        """The run in one object; see `report.info`."""
-        return report.info(self.path)
+        """The run in one object; see `info.info`."""
+        return info(self.opened())
 
     def table(self, name: str) -> pa.Table:
         """`births`, `deaths` or `metrics`, as an Arrow table."""
-        return report.table(self.path, name)
+        return self.opened().table(name)
 
     def arrays(self, name: str) -> dict[str, np.ndarray]:
         """The same as NumPy arrays, by column."""
@@ -58,50 +63,39 @@ class Run:
 
     def lives(self) -> Lives:
         """Births and deaths joined: everyone who ever lived."""
-        return lives(self.path)
+        return self.opened().lives
 
     def organism(self, organism: int, world: int = 0) -> Organism:
-        """Somebody who lived, by birth number."""
-        everyone = self.lives()
-        return Organism(self.path, everyone, everyone.row(organism, world))
+        """An organism, by birth number."""
+        run = self.opened()
+        return Organism(run, run.lives.row(organism, world))
 
     def oldest(self, world: int | None = None) -> Organism:
-        """Whoever lived longest, in one world or in all."""
-        everyone = self.lives()
-        if world is not None and len(everyone.of_world(world)) == 0:
-            raise InputError(f"{self.path} has no world {world}")
-        mine = everyone if world is None else everyone.of_world(world)
-        return Organism(self.path, mine, mine.oldest())
+        """The organism that lived longest, in one world or in all."""
+        run = self.opened()
+        return Organism(run, run.lives.oldest(world))
 
     def evaluate(self, organisms: Iterable[Organism], **options: Any) -> list[Evaluation]:
         """How they do in whole games, which they play side by side; see `evaluation.evaluate`."""
-        return evaluate(self.path, [(each.id, each.world) for each in organisms], **options)
+        return evaluate(self.opened(), [(each.id, each.world) for each in organisms], **options)
 
     def policy(self) -> Policy:
         """The brain of the longest-lived, as `policy(senses) -> action`."""
         return self.oldest().policy()
 
-    def export(self, out: str | Path, *organisms: int, world: int = 0) -> None:
-        """Write genomes of organisms of a world to a safetensors file; see `genomes`."""
-        settings = read_config(self.path)
-        brain = settings.build_brain(settings.build_habitat())
-        about = {
-            "task": settings.task,
-            "seed": str(settings.seed + world),
-            "organisms": " ".join(map(str, organisms)),
-        }
-        found = lineage.rebuild_all(self.path, [(each, world) for each in organisms])
-        genomes.write(Path(out), brain, found, about)
+    def export(self, out: str | Path, *organisms: int, world: int = 0) -> tuple[int, ...]:
+        """Write genomes of organisms of a world to a safetensors file; see `export.export`."""
+        return export(self.opened(), Path(out), organisms, world)
 
     def rebuild(self, organism: int, world: int = 0) -> np.ndarray:
         """An organism's genome, float32 (P,), from the birth records alone."""
-        return lineage.rebuild(self.path, organism, world)
+        return rebuild(self.opened(), organism, world)
 
     def plot(self, out: str | Path | None = None, world: int = 0) -> list[Path]:
         """Draw its figures into a folder, by default its own -> the files; see `figures.plot`."""
         from primordia.figures import plot as figures  # Matplotlib takes a second to load
 
-        return figures.plot(self.path, Path(out) if out is not None else None, world)
+        return figures.plot(self.opened(), Path(out) if out is not None else None, world)
 
     def fork(
         self,
@@ -116,7 +110,7 @@ class Run:
         """A new run that goes on from the end of tick `at`, with some settings changed; see `fork`."""
         devices.select(device)
         path = Path(out) if out is not None else fresh_directory(f"{self.path.name}-at{at}")
-        fork(self.path, at, path, settings, listen)
+        fork(self.opened(), at, path, settings, listen)
         loop.resume(path, checkpoint_every=checkpoint_every, listen=listen)
         return Run(path)
 
@@ -138,7 +132,7 @@ class Run:
     def verify(self, device: str = "cpu", listen: Listener | None = None) -> list[str]:
         """Do it again and compare -> what differs."""
         devices.select(device)
-        return verify(self.path, listen)
+        return verify(self.opened(), listen)
 
 
 def run(
@@ -179,8 +173,8 @@ def compare(
 
     `figures.comparison.save` draws what comes back.
     """
-    paths = [each.path if isinstance(each, Run) else Path(each) for each in runs]
-    return comparison.compare(paths, births, ticks)
+    opened = [Archive(each.path if isinstance(each, Run) else each) for each in runs]
+    return comparison.compare(opened, births, ticks)
 
 
 def load(run: str | Path) -> Run:

@@ -1,14 +1,15 @@
 """Settings of a run: from a task's TOML, a file and flags to one validated, frozen object."""
 
 from pathlib import Path
-from types import UnionType
-from typing import Any, Literal, Union, get_args, get_origin
+from typing import Any, Literal
 
 import tomli_w
-from pydantic import BaseModel, Field, ValidationError
+from pydantic import Field, ValidationError, field_validator
 
+from primordia.brains import contract as brains
 from primordia.brains import genomes
-from primordia.brains.contract import Brain, BrainSettings
+from primordia.brains.contract import Brain
+from primordia.brains.layout import Layout
 from primordia.errors import InputError
 from primordia.habitats import contract as habitats
 from primordia.habitats.contract import AnyHabitat, Continuous
@@ -19,7 +20,9 @@ from primordia.law.mutation import Mutation
 from primordia.law.placement import Placement
 from primordia.law.seasons import Season
 from primordia.settings.base import Settings
-from primordia.settings.tables import NONE, did_you_mean, found_in, merged, replaced, values_of
+from primordia.settings.fields import first_fault
+from primordia.settings.making import make
+from primordia.settings.tables import NONE, found_in, merged, replaced, values_of
 
 
 class Stop(Settings):
@@ -48,7 +51,9 @@ class Config(Settings):
     task: str = Field(min_length=1, description="name of the task")
     about: str = Field("", description="what the task is, in a line")
     habitat: dict[str, Any] = Field(description="`name` of the habitat, and its own settings")
-    brain: BrainSettings = BrainSettings()
+    brain: dict[str, Any] = Field(
+        {}, validate_default=True, description="`kind` of the brain, and its own settings"
+    )
     motor: Motor = Motor()
     cells: int = Field(32, ge=2, le=2**24, description="cells of one world")
     placement: Placement = Placement()
@@ -88,37 +93,46 @@ class Config(Settings):
     stop: Stop = Stop()
     origin: ForkedFrom | None = Field(None, description="set by `primordia fork`")
 
+    @field_validator("brain")
+    @classmethod
+    def _complete(cls, table: dict[str, Any]) -> dict[str, Any]:
+        """All settings of the brain, so that `config.toml` has them when defaults have changed."""
+        return {"kind": brains.DEFAULT, **table, **brains.build(table).model_dump()}
+
     def build_habitat(self) -> AnyHabitat:
         """The habitat, from its class and settings.
 
         Raises:
             InputError: there is no such habitat, or it does not take these settings.
         """
-        options = dict(self.habitat)
+        habitat = make("habitat", self.habitat, habitats.find)
         try:
-            kind = habitats.find(options.pop("name", ""))
-            return habitats.complete(kind(**options))
-        except ValidationError as error:
-            raise InputError(_first(error, "habitat", kind)) from None
-        except (LookupError, TypeError, ValueError) as error:
+            return habitats.complete(habitat)
+        except TypeError as error:
             raise InputError(f"habitat: {error}") from None
 
-    def build_brain(self, habitat: AnyHabitat) -> Brain:
-        """The brain of this run's organisms."""
-        return self.brain.build(habitat.senses_size, habitat.action.size)
+    def build_brain(self) -> Brain:
+        """Return the brain of this run's organisms."""
+        return brains.build(self.brain)
+
+    def build_layout(self, habitat: AnyHabitat) -> Layout:
+        """Return the layout of the genomes of organisms that live in the habitat."""
+        return self.build_brain().layout(habitat.senses_size, habitat.action.size)
 
     def build_law(self, habitat: AnyHabitat) -> Law:
         """The law that holds in this run's worlds."""
-        brain = self.build_brain(habitat)
+        brain, layout = self.build_brain(), self.build_layout(habitat)
         return Law(
             worlds=self.seeds,
             cells=self.cells,
             brain=brain,
+            layout=layout,
+            memory=brain.memory(habitat.senses_size, habitat.action.size),
             action=habitat.action,
             motor=self.motor,
             placement=self.placement,
             mutation=self.mutation,
-            ancestors=genomes.read(self.ancestors, brain) if self.ancestors else None,
+            ancestors=genomes.read(self.ancestors, layout) if self.ancestors else None,
             metabolism=self.metabolism,
             replication=self.replication,
             hazard=self.hazard,
@@ -157,12 +171,31 @@ def validated(values: dict[str, Any], source: str) -> Config:
     Raises:
         InputError: in one line, what is wrong and where.
     """
+    return checked(parsed(values, source), source)
+
+
+def parsed(values: dict[str, Any], source: str) -> Config:
+    """A Config of these values, each checked by itself: the habitat's code is not needed.
+
+    Raises:
+        InputError: in one line, what is wrong and where.
+    """
     try:
-        config = Config.model_validate(replaced(values, NONE, None))
+        return Config.model_validate(replaced(values, NONE, None))
     except ValidationError as error:
-        raise InputError(f"{source}: {_first(error, '', Config)}") from None
+        raise InputError(f"{source}: {first_fault(error, Config)}") from None
+
+
+def checked(config: Config, source: str) -> Config:
+    """The same Config, checked as a whole.
+
+    Raises:
+        InputError: in one line, what is wrong and where.
+    """
     try:
         _check(config)
+    except ValidationError as error:
+        raise InputError(f"{source}: {first_fault(error, Config)}") from None
     except (InputError, ValueError) as error:
         raise InputError(f"{source}: {error}") from None
     return config
@@ -178,7 +211,7 @@ def limits(values: dict[str, Any]) -> dict[str, Any]:
     try:
         Stop.model_validate(values)
     except ValidationError as error:
-        raise InputError(_first(error, "", Stop)) from None
+        raise InputError(first_fault(error, Stop)) from None
     return values
 
 
@@ -208,41 +241,3 @@ def _check(config: Config) -> None:
             raise InputError(f"seasons: this brain has no {season.setting}")
         if group == "metabolism" and config.metabolism is None:
             raise InputError(f"seasons: there is no metabolism, so no {season.setting}")
-
-
-def setting_fields(model: type[BaseModel], prefix: str = "") -> dict[str, Any]:
-    """Every single setting under a model: dotted path -> pydantic field."""
-    found: dict[str, Any] = {}
-    for name, field in model.model_fields.items():
-        inner = _model_in(field.annotation)
-        if inner is not None:
-            found |= setting_fields(inner, f"{prefix}{name}.")
-        else:
-            found[prefix + name] = field
-    return found
-
-
-def _model_in(annotation: Any) -> type[BaseModel] | None:
-    options = (
-        get_args(annotation) if get_origin(annotation) in (Union, UnionType) else (annotation,)
-    )
-    models = [o for o in options if isinstance(o, type) and issubclass(o, BaseModel)]
-    return models[0] if models else None
-
-
-def _first(error: ValidationError, prefix: str, model: type) -> str:
-    """A validation error as one line: the first of its faults."""
-    faults = error.errors(include_url=False)
-    fault = faults[0]
-    path = ".".join([prefix] * bool(prefix) + [str(part) for part in fault["loc"]])
-    more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
-    if fault["type"] == "extra_forbidden":
-        known = [f"{prefix}." * bool(prefix) + name for name in setting_fields(model)]
-        known += sorted({name.rpartition(".")[0] for name in known} - {""})
-        return f"there is no setting {path!r}{did_you_mean(path, known)}{more}"
-    if fault["type"] == "missing":
-        return f"{path} is missing{more}"
-    if fault["type"] == "value_error":  # ours, which says all that is to be said
-        return f"{path}: {fault['ctx']['error']}{more}"
-    message = fault["msg"][0].lower() + fault["msg"][1:]
-    return f"{path}: {message}, not {fault['input']!r}{more}"

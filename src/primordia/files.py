@@ -46,12 +46,12 @@ def seal(path: Path) -> dict[str, object]:
     return {"bytes": path.stat().st_size, "sha256": digest}
 
 
-def fault_in(path: Path, sealed: dict[str, object]) -> str | None:
-    """What is wrong with a file that should be as it was sealed, or None."""
+def fault_in(path: Path, size: int, sha256: str) -> str | None:
+    """Return what is wrong with a file that was sealed with this size and checksum, or None."""
     if not path.is_file():
         return f"{path} is missing"
-    if path.stat().st_size != sealed["bytes"]:
-        return f"{path} has {path.stat().st_size} bytes instead of {sealed['bytes']}"
-    if seal(path) != {key: sealed[key] for key in ("bytes", "sha256")}:
+    if path.stat().st_size != size:
+        return f"{path} has {path.stat().st_size} bytes instead of {size}"
+    if seal(path)["sha256"] != sha256:
         return f"{path} was changed or damaged: its checksum does not hold"
     return None

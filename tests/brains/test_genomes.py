@@ -10,17 +10,18 @@ from safetensors.numpy import load_file, save_file
 
 import primordia
 from primordia.brains import genomes
-from primordia.brains.contract import BrainSettings
+from primordia.brains.recurrent import Recurrent
 from primordia.config import load
 from primordia.errors import InputError
 from primordia.law.mutation import ancestor_of
 from primordia.random.wide import wide
 from primordia.runs import loop
+from primordia.runs.archive import Archive
 from primordia.runs.verify import verify
 from tests.commands import complains, here
 from tests.worlds import MEADOW, config, merged
 
-BRAIN = BrainSettings(hidden=6).build(2, 2)
+LAYOUT = Recurrent(hidden=6).layout(2, 2)
 SMALL = {"brain": {"hidden": 6}, "hazard": 0.03, "replication": 0.3, "stop": {"ticks": 300}}
 
 
@@ -31,11 +32,11 @@ def some(count: int, seed: int = 0) -> np.ndarray:
 def test_what_is_written_is_read(tmp_path: Path) -> None:
     one, three = some(1), some(3, seed=1)
     for name, each in (("one", one), ("three", three)):
-        genomes.write(tmp_path / name, BRAIN, each, {"task": "meadow"})
-    both = genomes.read([str(tmp_path / "one"), str(tmp_path / "three")], BRAIN)
+        genomes.write(tmp_path / name, LAYOUT, each, {"task": "meadow"})
+    both = genomes.read([str(tmp_path / "one"), str(tmp_path / "three")], LAYOUT)
     np.testing.assert_array_equal(both, np.concatenate([one, three]))
     shapes = {name: block.shape for name, block in load_file(tmp_path / "three").items()}
-    assert shapes == {name: (3, *shape) for name, shape in BRAIN.blocks.items()}
+    assert shapes == {name: (3, *shape) for name, shape in LAYOUT.blocks}
 
 
 @given(st.integers(0, 2**64 - 1), st.integers(0, 2**64 - 1), st.integers(1, genomes.MOST))
@@ -47,7 +48,7 @@ def test_founders_take_ancestors_in_turn(seed: int, number: int, count: int) -> 
 def test_a_run_that_starts_from_ancestors(tmp_path: Path, inheritance: str) -> None:
     """Founders have the ancestors' genomes, bit for bit, also those after an extinction."""
     given_, run = some(3), tmp_path / "run"
-    genomes.write(tmp_path / "a.safetensors", BRAIN, given_, {})
+    genomes.write(tmp_path / "a.safetensors", LAYOUT, given_, {})
     values = merged(MEADOW, SMALL | {"ancestors": [str(tmp_path / "a.safetensors")], "seed": 2})
     values |= {"inheritance": inheritance, "hazard": 0.2, "seeds": 2}
     loop.start(config(values), run)
@@ -59,7 +60,7 @@ def test_a_run_that_starts_from_ancestors(tmp_path: Path, inheritance: str) -> N
     for birth in founders[:20] + founders[-20:]:
         expected = given_[(2 + birth["world"] + birth["id"]) % 3]
         np.testing.assert_array_equal(found.rebuild(birth["id"], birth["world"]), expected)
-    assert verify(run) == []
+    assert verify(Archive(run)) == []
     again = primordia.run(str(run / "config.toml"), tmp_path / "again")
     assert [w["digest"] for w in again.info()["worlds"]] == [
         w["digest"] for w in found.info()["worlds"]
@@ -85,23 +86,23 @@ def test_export_takes_the_longest_life(tmp_path: Path) -> None:
     run = primordia.run("CartPole-survival", tmp_path / "run", stop={"ticks": 200})
     file = tmp_path / "one.safetensors"
     assert here("export", run.path, file).returncode == 0
-    brain = config().build_brain(config().build_habitat())
+    layout = config().build_layout(config().build_habitat())
     oldest = run.rebuild(run.oldest().id)
-    np.testing.assert_array_equal(genomes.read([str(file)], brain)[0], oldest)
+    np.testing.assert_array_equal(genomes.read([str(file)], layout)[0], oldest)
 
 
 def broken(path: Path, kind: str) -> None:
     if kind == "no safetensors":
         path.write_bytes(b"pickle?")
     elif kind == "another brain":
-        genomes.write(path, BrainSettings(hidden=5).build(2, 2), np.zeros((1, 45), np.float32), {})
+        genomes.write(path, Recurrent(hidden=5).layout(2, 2), np.zeros((1, 45), np.float32), {})
     elif kind == "no numbers":
-        genomes.write(path, BRAIN, np.full((1, 60), np.nan, np.float32), {})
+        genomes.write(path, LAYOUT, np.full((1, 60), np.nan, np.float32), {})
     elif kind == "torn":
-        genomes.write(path, BRAIN, some(2), {})
+        genomes.write(path, LAYOUT, some(2), {})
         save_file({**load_file(path), "output": np.zeros((1, 2, 6), np.float32)}, path)
     elif kind == "nobody":
-        genomes.write(path, BRAIN, some(0), {})
+        genomes.write(path, LAYOUT, some(0), {})
 
 
 @pytest.mark.parametrize(
@@ -123,8 +124,8 @@ def test_a_file_that_cannot_be_used(tmp_path: Path, kind: str, says: str) -> Non
 
 
 def test_files_are_looked_for_beside_the_settings(tmp_path: Path) -> None:
-    brain = config().build_brain(config().build_habitat())
-    genomes.write(tmp_path / "x.safetensors", brain, np.zeros((1, 1216), np.float32), {})
+    layout = config().build_layout(config().build_habitat())
+    genomes.write(tmp_path / "x.safetensors", layout, np.zeros((1, 1216), np.float32), {})
     file = tmp_path / "task.toml"
     file.write_text('task = "CartPole-survival"\nancestors = ["x.safetensors"]\n')
     assert load(str(file)).ancestors == (str(tmp_path / "x.safetensors"),)

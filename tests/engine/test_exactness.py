@@ -9,7 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from primordia.brains.contract import BrainSettings
+from primordia.brains.contract import KNOWN, build
 from primordia.habitats.cartpole.habitat import CartPole
 from tests.toys import Mill
 from tests.worlds import MILL, Lived, config
@@ -86,12 +86,12 @@ def test_a_numpy_habitat_is_exact_in_chunks_of_any_length() -> None:
     assert Lived(config(values), 400, chunk=9).digests() == whole.digests()
 
 
-@pytest.mark.parametrize("kind", ["recurrent", "feed-forward"])
+@pytest.mark.parametrize("kind", KNOWN)
 @pytest.mark.parametrize("habitat", [CartPole(), Mill()])
 def test_brains_and_bodies_do_not_depend_on_how_many_there_are(kind: str, habitat) -> None:
-    brain = BrainSettings(kind=kind).build(habitat.senses_size, habitat.action.size)
-    rng = np.random.default_rng(0)
-    genome = {n: rng.normal(size=(1024, *s)).astype(np.float32) for n, s in brain.blocks.items()}
+    brain, sizes = build({"kind": kind}), (habitat.senses_size, habitat.action.size)
+    rng, layout = np.random.default_rng(0), brain.layout(*sizes)
+    genome = layout.split(rng.normal(size=(1024, layout.length)).astype(np.float32))
     words = rng.integers(0, 2**32, (1024, habitat.words), dtype=np.uint32)
 
     @jax.jit
@@ -99,13 +99,12 @@ def test_brains_and_bodies_do_not_depend_on_how_many_there_are(kind: str, habita
         def tick(carry: tuple, _: None) -> tuple:
             memory, bodies = carry
             memory, output = brain(genome, memory, habitat.sense(bodies))
-            action = output[:, 0] > 0 if habitat.action.size != 2 or kind == "" else output
-            if isinstance(habitat, CartPole):
-                action = (output[:, 1] > output[:, 0]).astype(jnp.int32)
+            right = (output[:, 1] > output[:, 0]).astype(jnp.int32)
+            action = right if isinstance(habitat, CartPole) else output
             bodies, _ = habitat.step(bodies, action)
             return (memory, bodies), None
 
-        start = jnp.zeros((len(words), brain.memory)), habitat.reset(words)
+        start = jnp.zeros((len(words), brain.memory(*sizes))), habitat.reset(words)
         return jax.lax.scan(tick, start, None, length=50)[0]
 
     memory, bodies = lives(genome, words)

@@ -9,7 +9,7 @@ import pytest
 import primordia
 from primordia.history.summary import summary
 from primordia.runs import loop
-from primordia.runs.lives import lives
+from primordia.runs.archive import Archive
 from tests.worlds import config
 
 WORLDS: dict[str, Any] = {
@@ -33,7 +33,7 @@ def clocked(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_the_dead_have_what_they_came_to(clocked: Path) -> None:
     """Also those whose cell is taken again in the tick of their death."""
-    everyone, dead = lives(clocked), primordia.load(clocked).arrays("deaths")
+    everyone, dead = Archive(clocked).lives, primordia.load(clocked).arrays("deaths")
     rows = [everyone.row(*pair) for pair in zip(dead["id"], dead["world"], strict=True)]
     assert len(rows) > 100
     np.testing.assert_array_equal(dead["ticks"], everyone.lifespan[rows])
@@ -52,7 +52,7 @@ def test_info_tells_of_the_living(clocked: Path) -> None:
     found = primordia.load(clocked).info()
     world = found["worlds"][1]
     assert world["tallies"]["ticks"]["best"] == world["oldest_age"]
-    everyone = lives(clocked).of_world(1)
+    everyone = Archive(clocked).lives.of_world(1)
     ages = everyone.lifespan[~everyone.died]
     assert world["tallies"]["ticks"]["median"] == np.median(ages)
     assert f"ticks {np.median(ages):,.0f} (best {ages.max():,})" in summary(found)

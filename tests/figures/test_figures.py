@@ -17,7 +17,8 @@ from primordia.figures.plot import FIGURES
 from primordia.history import series
 from primordia.law.world import Cause
 from primordia.runs import loop
-from primordia.runs.lives import Lives, lives
+from primordia.runs.archive import Archive
+from primordia.runs.lives import Lives
 from tests.commands import complains, here
 from tests.synthetic import alive, world_of, worlds_of
 from tests.worlds import MEADOW, config
@@ -42,7 +43,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_population_and_mean_age_are_as_sampled_while_it_ran(run: Path) -> None:
-    metrics, everyone = primordia.Run(run).table("metrics"), lives(run)
+    metrics, everyone = primordia.Run(run).table("metrics"), Archive(run).lives
     columns = {
         name: metrics[name].to_numpy() for name in ("world", "tick", "population", "mean_age")
     }
@@ -56,7 +57,7 @@ def test_population_and_mean_age_are_as_sampled_while_it_ran(run: Path) -> None:
 
 
 def test_cohorts_are_quarters_of_each_worlds_births(run: Path) -> None:
-    everyone = lives(run)
+    everyone = Archive(run).lives
     cohorts = survival.quarters(everyone)
     assert sum(map(len, cohorts)) == len(everyone)
     for world in range(3):
@@ -75,7 +76,7 @@ def test_quartiles_are_of_stretches_with_equally_many_dead() -> None:
 
 
 def test_space_time_finds_who_lived_where(run: Path) -> None:
-    world = lives(run).of_world(1)
+    world = Archive(run).lives.of_world(1)
     cells, ticks = np.arange(24), np.array([0, 1, 50, 333, 900])
     found = spacetime.living(world, cells, ticks)
     for place, tick in enumerate(ticks.tolist()):
@@ -87,7 +88,7 @@ def test_space_time_finds_who_lived_where(run: Path) -> None:
 
 
 def test_space_time_shows_lines_in_colours_that_say_what_became_of_them(run: Path) -> None:
-    world = lives(run).of_world(0)
+    world = Archive(run).lives.of_world(0)
     cells, ticks = np.arange(24), np.arange(901)
     of = spacetime.told_apart(world)
     found = spacetime.living(world, cells, ticks)

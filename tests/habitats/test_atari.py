@@ -13,6 +13,7 @@ from primordia.habitats.atari.games import games
 from primordia.habitats.atari.habitat import Atari
 from primordia.habitats.atari.simulator import FIELDS, Arcade, console
 from primordia.pool import board
+from primordia.runs.archive import Archive
 from primordia.runs.verify import verify
 from tests.commands import complains, here
 
@@ -176,7 +177,7 @@ def test_runs_are_exact(tmp_path: Path) -> None:
     whole, half = lived("whole", 300, 1), lived("half", 130, 3)
     half.resume(ticks=300)
     assert half.info()["digest"] == whole.info()["digest"]
-    assert verify(half.path) == []
+    assert verify(Archive(half.path)) == []
     fork = whole.fork(200, tmp_path / "fork")
     assert fork.info()["births"] == whole.info()["births"]
 

@@ -16,7 +16,8 @@ from primordia.law.life import BODILY
 from primordia.law.metabolism import ONE
 from primordia.law.world import Cause
 from primordia.organism.life.life import Life
-from primordia.runs.lives import Lives, lives
+from primordia.runs.archive import Archive
+from primordia.runs.lives import Lives
 from tests.commands import here
 from tests.organism.test_life import at_the_end
 
@@ -55,7 +56,7 @@ def some(everyone: Lives, which: np.ndarray, count: int) -> list[tuple[int, int]
     return [(int(everyone.id[row]), int(everyone.world[row])) for row in chosen]
 
 
-def comes_out(run: Path, organism: int, world: int) -> None:
+def comes_out(run: Archive, organism: int, world: int) -> None:
     """What is recorded of its end comes out: energy, score, and of the living what they perceive."""
     life = Life.of(run, organism, world)
     seen = list(life.again())
@@ -63,14 +64,14 @@ def comes_out(run: Path, organism: int, world: int) -> None:
     assert last.tick[-1] == life.ends
     assert last.cause[-1] == (life.cause if life.cause in BODILY else -1)
     if life.cause is None:
-        stored = at_the_end(run, life)
+        stored = at_the_end(life)
         np.testing.assert_array_equal(
             SCALED[last.bodies["ram"][-1, SENSES]], stored["bodies.senses"]
         )
         assert last.energy[-1] == stored["world.organisms.energy"]
         assert last.bodies["tally"][-1].tolist() == stored["bodies.tally"].tolist()
     else:
-        rows = primordia.load(run).table("deaths").to_pylist()
+        rows = run.table("deaths").to_pylist()
         (death,) = (row for row in rows if (row["id"], row["world"]) == (organism, world))
         assert last.energy[-1] / ONE == death["energy"]
         assert scores[-1][-1] == death["score"]
@@ -78,16 +79,17 @@ def comes_out(run: Path, organism: int, world: int) -> None:
 
 @pytest.mark.parametrize("cause", [Cause.FATAL, Cause.STARVED, Cause.HAZARD, None])
 def test_a_life_comes_out_as_recorded(pong: Path, cause: Cause | None) -> None:
-    everyone = lives(pong)
+    run = Archive(pong)
+    everyone = run.lives
     which = ~everyone.died if cause is None else everyone.cause == cause
     for organism, world in some(everyone, which, 2):
-        comes_out(pong, organism, world)
+        comes_out(run, organism, world)
 
 
 def test_through_a_fork(pong: Path, tmp_path: Path) -> None:
     """Another seed, and fate; the emulator, its dice and the score go on from where they stood."""
-    fork = primordia.load(pong).fork(200, tmp_path / "fork", seed=8).path
-    everyone = lives(fork)
+    fork = Archive(primordia.load(pong).fork(200, tmp_path / "fork", seed=8).path)
+    everyone = fork.lives
     older = everyone.born <= 200
     for organism, world in [*some(everyone, older, 3), *some(everyone, ~older, 1)]:
         comes_out(fork, organism, world)
@@ -96,12 +98,12 @@ def test_through_a_fork(pong: Path, tmp_path: Path) -> None:
 def test_a_policy_acts_as_the_organism_did(pong: Path) -> None:
     organism = primordia.load(pong).oldest()
     policy = organism.policy()
-    (seen,) = Life.of(pong, organism.id, organism.world).again()
+    (seen,) = Life.of(organism.run, organism.id, organism.world).again()
     assert [policy(senses) for senses in seen.senses] == seen.action.tolist()
 
 
 def test_a_life_on_video(pong: Path, tmp_path: Path) -> None:
-    everyone = lives(pong)
+    everyone = Archive(pong).lives
     ((organism, world),) = some(everyone, everyone.cause == Cause.FATAL, 1)
     path = tmp_path / "life.mp4"
     done = here("replay", pong, "--organism", organism, "--world", world, "--out", path)

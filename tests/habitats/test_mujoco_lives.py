@@ -12,7 +12,7 @@ from primordia.errors import InputError
 from primordia.habitats.mujoco import picture as mujoco_picture
 from primordia.law.metabolism import ONE
 from primordia.organism.life.life import Life
-from primordia.runs.lives import lives
+from primordia.runs.archive import Archive
 from tests.commands import complains, here
 from tests.robots import born, of_task
 
@@ -42,8 +42,8 @@ def test_a_run_that_was_stopped_goes_on_exactly(task: str, tmp_path: Path) -> No
 
 
 def test_lives_come_out_again_through_a_fork(reachers: Path, tmp_path: Path) -> None:
-    fork = primordia.load(reachers).fork(200, tmp_path / "fork", seed=9).path
-    everyone = lives(fork)
+    fork = Archive(primordia.load(reachers).fork(200, tmp_path / "fork", seed=9).path)
+    everyone = fork.lives
     older = np.flatnonzero(everyone.born <= 200)[:4]
     for row in older:
         life = Life.of(fork, int(everyone.id[row]), int(everyone.world[row]))
@@ -51,14 +51,15 @@ def test_lives_come_out_again_through_a_fork(reachers: Path, tmp_path: Path) -> 
 
 
 def test_lives_come_out_again_as_recorded(reachers: Path) -> None:
-    everyone = lives(reachers)
+    run = Archive(reachers)
+    everyone = run.lives
     dead = primordia.load(reachers).arrays("deaths")
     energy = {(w, i): e for w, i, e in zip(dead["world"], dead["id"], dead["energy"], strict=True)}
     rows = np.flatnonzero(everyone.died & (everyone.lifespan > 20))[:6]
     assert len(rows) == 6
     for row in rows:
         who = int(everyone.world[row]), int(everyone.id[row])
-        stretches = list(Life.of(reachers, who[1], who[0]).again())
+        stretches = list(Life.of(run, who[1], who[0]).again())
         assert stretches[-1].energy[-1] / ONE == energy[who]
 
 

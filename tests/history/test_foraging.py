@@ -14,6 +14,7 @@ from primordia.figures import foraging as figure
 from primordia.figures import style
 from primordia.history.foraging import Harvest, foraging
 from primordia.runs import loop
+from primordia.runs.archive import Archive
 from tests.commands import here
 from tests.worlds import MEADOW, config
 
@@ -44,7 +45,7 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
 
 
 def test_all_find_what_there_is_and_seasons_move_the_break_even(runs: dict[str, Path]) -> None:
-    found = foraging(runs["fed"], config(FED))
+    found = foraging(Archive(runs["fed"]))
     assert found.food.shape == found.break_even.shape == (2, len(found.middle))
     assert len(found.middle) >= 400 // FED["sample_every"]
     np.testing.assert_allclose(found.food, FOOD)
@@ -81,20 +82,19 @@ def test_the_figure_is_of_foragers_only(runs: dict[str, Path], tmp_path: Path) -
 
 
 def test_a_run_too_short_for_a_sample_has_a_figure_that_says_so(tmp_path: Path) -> None:
-    short = config(FED, stop={"ticks": 30})
-    loop.start(short, tmp_path / "run")
+    loop.start(config(FED, stop={"ticks": 30}), tmp_path / "run")
     with style.look():
-        drawn = figure.draw(tmp_path / "run", short)
+        drawn = figure.draw(Archive(tmp_path / "run"))
         drawn.draw_without_rendering()
     assert "no samples yet" in {text.get_text() for text in drawn.axes[0].texts}
 
 
 def test_what_nobody_can_live_on_has_no_break_even(tmp_path: Path) -> None:
-    hungry = config(FED, metabolism={"store": 30.0, "gain": 0.0}, seasons=[])
-    loop.start(hungry, tmp_path / "run")
-    assert np.isinf(foraging(tmp_path / "run", hungry).break_even).all()
+    hungry = {"metabolism": {"store": 30.0, "gain": 0.0}, "seasons": []}
+    loop.start(config(FED, **hungry), tmp_path / "run")
+    assert np.isinf(foraging(Archive(tmp_path / "run")).break_even).all()
     with style.look():
-        drawn = figure.draw(tmp_path / "run", hungry)
+        drawn = figure.draw(Archive(tmp_path / "run"))
         drawn.draw_without_rendering()
     assert "break-even" not in {text.get_text() for text in drawn.axes[0].texts}
 

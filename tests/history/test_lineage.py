@@ -8,12 +8,10 @@ import numpy as np
 import pytest
 
 import primordia
-from primordia.brains.contract import join
 from primordia.errors import InputError
-from primordia.history.lineage import descent, rebuild, rebuild_all
+from primordia.history.lineage import descent, rebuild_all
 from primordia.runs import checkpoint, loop, record
-from primordia.runs.directory import read_config
-from primordia.runs.lives import lives
+from primordia.runs.archive import Archive
 from tests.worlds import MEADOW, MILL, config, merged
 
 SMALL = {"hidden": 6}
@@ -50,22 +48,19 @@ WORLDS: dict[str, tuple[dict[str, Any], int]] = {
 
 def living(run: Path) -> list[tuple[int, int, np.ndarray]]:
     """World, birth number and genome of everybody in the newest checkpoint."""
-    config = read_config(run)
-    brain = config.build_law(config.build_habitat()).brain
-    last, _ = checkpoint.newest(run)
-    assert last is not None
-    arrays = last.arrays()
-    genomes = join(brain, {n: arrays[f"world.organisms.genome.{n}"] for n in brain.blocks})
+    opened = Archive(run)
+    layout, arrays = opened.law.layout, opened.state
+    genomes = layout.join({n: arrays[f"world.organisms.genome.{n}"] for n in layout.names})
     hi, lo = (arrays[f"world.organisms.number.{half}"].astype(int) for half in ("hi", "lo"))
     cells = np.flatnonzero(arrays["world.organisms.alive"])
-    return [(c // config.cells, int(hi[c] << 32 | lo[c]), genomes[c]) for c in cells.tolist()]
+    return [(c // opened.config.cells, int(hi[c] << 32 | lo[c]), genomes[c]) for c in cells]
 
 
 def comes_back(run: Path) -> None:
     everybody = living(run)
     assert len(everybody) > 5
     assert len({genome.tobytes() for *_, genome in everybody}) > 3
-    rebuilt = rebuild_all(run, [(organism, world) for world, organism, _ in everybody])
+    rebuilt = rebuild_all(Archive(run), [(organism, world) for world, organism, _ in everybody])
     for (*_, genome), again in zip(everybody, rebuilt, strict=True):
         np.testing.assert_array_equal(bits(again), bits(genome))
 
@@ -76,7 +71,7 @@ def bits(genome: np.ndarray) -> np.ndarray:
 
 
 def depth(run: Path, organism: int, world: int = 0) -> int:
-    return len(descent(lives(run), organism, world)) - 1
+    return len(descent(Archive(run).lives, organism, world)) - 1
 
 
 @pytest.fixture(scope="module")
@@ -130,9 +125,10 @@ def test_while_a_run_is_under_way(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
 
 def test_a_copy_has_its_parents_genome_and_a_mutant_has_not(deep: Path) -> None:
-    births = primordia.Run(deep).table("births").slice(1000, 30).to_pylist()
+    opened = Archive(deep)
+    births = opened.table("births").slice(1000, 30).to_pylist()
     for birth in births:
-        child, parent = rebuild(deep, birth["id"]), rebuild(deep, birth["parent"])
+        child, parent = rebuild_all(opened, [(birth["id"], 0), (birth["parent"], 0)])
         assert birth["cause"] == "mutant"
         assert (child != parent).mean() > 0.99
         assert 0.009 < (child - parent).std() < 0.011
@@ -150,5 +146,5 @@ def test_genomes_that_came_to_infinity(tmp_path: Path) -> None:
     values = {**MEADOW, **LIVES, "mutation": {"scale": 3e38}, "stop": {"births": 200}}
     loop.start(config(values), run)
     births = primordia.Run(run).table("births").to_pylist()
-    mutants = [birth["id"] for birth in births if birth["cause"] == "mutant"]
-    assert not all(np.isfinite(rebuild(run, organism)).all() for organism in mutants[:20])
+    mutants = [(birth["id"], 0) for birth in births if birth["cause"] == "mutant"]
+    assert not np.isfinite(rebuild_all(Archive(run), mutants[:20])).all()

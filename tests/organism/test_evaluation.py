@@ -13,7 +13,7 @@ from primordia.organism import games
 from primordia.organism.evaluation import evaluate
 from primordia.organism.organism import Organism
 from primordia.runs import loop
-from primordia.runs.lives import lives
+from primordia.runs.archive import Archive
 from tests.commands import complains, here
 from tests.worlds import MEADOW, config
 
@@ -36,10 +36,11 @@ def poles(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_where_nothing_is_random_a_life_is_lived_again(pong: Path) -> None:
     """To the tick, and one game is enough to know."""
-    everyone = lives(pong)
+    run = Archive(pong)
+    everyone = run.lives
     died = np.flatnonzero(everyone.died)[:4]
     assert len(died) == 4
-    played = primordia.load(pong).evaluate(Organism(pong, everyone, row) for row in died)
+    played = primordia.load(pong).evaluate(Organism(run, row) for row in died)
     for row, found in zip(died, played, strict=True):
         assert (found.games, found.distinct) == (1, 1)
         assert found.lived.ticks[0] == everyone.lifespan[row]
@@ -55,15 +56,16 @@ def test_side_by_side_each_plays_as_by_itself(
     """However many there are, and however few find room at once."""
     some = [(0, 0), (7, 0), (3, 0), (11, 0), (7, 0)]
     monkeypatch.setattr(games, "AT_ONCE", 6)
-    together = evaluate(poles, some, games=3, ticks=300, senses=senses)
+    run = Archive(poles)
+    together = evaluate(run, some, games=3, ticks=300, senses=senses)
     for each, found in zip(some, together, strict=True):
-        (alone,) = evaluate(poles, [each], games=3, ticks=300, senses=senses)
+        (alone,) = evaluate(run, [each], games=3, ticks=300, senses=senses)
         assert found.lived.ticks.tolist() == alone.lived.ticks.tolist()
         assert found.lived.course.tolist() == alone.lived.course.tolist()
         assert np.array_equal(found.lived.actions[0], alone.lived.actions[0])
         assert found.to_dict() == alone.to_dict()
     assert len({found.lived.course[0] for found in together}) == 4
-    assert evaluate(poles, []) == []
+    assert evaluate(run, []) == []
 
 
 def test_doing_it_again_blindly_comes_to_the_same(pong: Path) -> None:
@@ -83,8 +85,9 @@ def test_frozen_senses_are_those_of_the_start(tmp_path: Path) -> None:
     habitat, brain = {"name": "tests.toys:Watch"}, {"kind": "feed-forward"}
     settings = {**MEADOW, "stop": {"ticks": 5}, "habitat": habitat, "brain": brain}
     loop.start(config(settings), tmp_path / "run")
-    (live,) = evaluate(tmp_path / "run", [(0, 0)], ticks=20)
-    (frozen,) = evaluate(tmp_path / "run", [(0, 0)], ticks=20, senses="frozen")
+    run = Archive(tmp_path / "run")
+    (live,) = evaluate(run, [(0, 0)], ticks=20)
+    (frozen,) = evaluate(run, [(0, 0)], ticks=20, senses="frozen")
     assert live.lived.food[0] != frozen.lived.food[0]
     always = float(frozen.lived.actions[0][0, 0])
     assert frozen.lived.food[0] == pytest.approx(20 * always, rel=1e-5)
@@ -105,9 +108,10 @@ def test_it_starves_by_its_tasks_metabolism(tmp_path: Path) -> None:
         config({**MEADOW, **hungry, "habitat": {**MEADOW["habitat"], "food": 1.0}}),
         tmp_path / "run",
     )
-    (found,) = evaluate(tmp_path / "run", [(0, 0)], games=2)
+    run = Archive(tmp_path / "run")
+    (found,) = evaluate(run, [(0, 0)], games=2)
     assert found.lived.ticks.tolist() == [60, 60]
-    (cut,) = evaluate(tmp_path / "run", [(0, 0)], games=2, ticks=59)
+    (cut,) = evaluate(run, [(0, 0)], games=2, ticks=59)
     assert not cut.lived.over.any()
     assert cut.to_dict()["alive_when_cut"] == 2
 

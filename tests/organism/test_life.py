@@ -1,7 +1,6 @@
 """Lives lived again, seen on video, and what an organism is asked: all from its records."""
 
 from pathlib import Path
-from typing import Any
 
 import av
 import numpy as np
@@ -20,8 +19,8 @@ from primordia.organism.life.instant import Stretch
 from primordia.organism.life.life import Life
 from primordia.organism.life.on_host import LifeOnHost
 from primordia.organism.organism import Organism
-from primordia.runs import checkpoint, loop
-from primordia.runs.lives import lives
+from primordia.runs import loop
+from primordia.runs.archive import Archive
 from tests.commands import complains, here
 from tests.toys import HOST_CARTPOLE, HostCartPole, Mirror
 from tests.worlds import MEADOW, MILL, config
@@ -51,12 +50,10 @@ def poles(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return primordia.run("CartPole-survival", run, stop={"ticks": 6000, "until": "none"}).path
 
 
-def at_the_end(run: Path, life: Life) -> dict[str, np.ndarray]:
-    """What the checkpoint holds of somebody alive."""
-    last, _ = checkpoint.newest(run)
-    assert last is not None
+def at_the_end(life: Life) -> dict[str, np.ndarray]:
+    """What the checkpoint holds of an organism that is alive."""
     cell = life.world * life.config.cells + int(life.record.cell[0])
-    return {name: array[cell] for name, array in last.arrays().items() if len(array) > cell}
+    return {name: array[cell] for name, array in life.run.state.items() if len(array) > cell}
 
 
 def comes_out(life: Life) -> list[Stretch]:
@@ -66,7 +63,7 @@ def comes_out(life: Life) -> list[Stretch]:
     assert last.tick[-1] == life.ends
     assert sum(len(each.tick) for each in seen) == life.ends - life.begins
     if life.cause is None:
-        stored = at_the_end(life.run, life)
+        stored = at_the_end(life)
         names = [name for name in stored if name.startswith("bodies") and name != "bodies.senses"]
         for name, (_, leaf) in zip(names, named_leaves({"bodies": last.bodies}), strict=True):
             np.testing.assert_array_equal(leaf[-1], stored[name])
@@ -85,8 +82,8 @@ def test_the_living_come_to_where_they_are(
     """Alone, and long after, to the last bit: bodies, energy, with noisy motors and seasons."""
     monkeypatch.setattr(LifeInJax, "TICKS", 512)
     monkeypatch.setattr(LifeOnHost, "TICKS", 20)
-    run = request.getfixturevalue(which)
-    everyone = lives(run)
+    run = Archive(request.getfixturevalue(which))
+    everyone = run.lives
     alive = np.flatnonzero(~everyone.died & (everyone.lifespan > 0))
     for row in alive[:: max(1, len(alive) // 6)]:
         comes_out(Life.of(run, everyone.id[row], everyone.world[row]))
@@ -96,15 +93,16 @@ def test_a_body_begins_as_it_was_born(tmp_path: Path) -> None:
     """Also where compiled code rounds a product and a sum once, and each operation by itself would."""
     full = {"genesis": "fill", "replication": 0.0, "cells": 32, "stop": {"ticks": 2}}
     loop.start(config(MEADOW, habitat={"name": "tests.toys:Slope"}, **full), tmp_path / "run")
+    run = Archive(tmp_path / "run")
     for row in range(32):
-        comes_out(Life.of(tmp_path / "run", row))
+        comes_out(Life.of(run, row))
 
 
 @pytest.mark.parametrize("which", ["mill", "mirror"])
 def test_the_dead_die_when_they_died(which: str, request: pytest.FixtureRequest) -> None:
     """Of starvation in the tick in which energy runs out, of their bodies when those fail."""
-    run = request.getfixturevalue(which)
-    everyone = lives(run)
+    run = Archive(request.getfixturevalue(which))
+    everyone = run.lives
     for cause in (Cause.STARVED, Cause.FATAL):
         rows = np.flatnonzero(everyone.cause == cause)[-5:]
         assert len(rows)
@@ -118,10 +116,10 @@ def test_in_a_fork_an_older_life_goes_on_from_there(
 ) -> None:
     """Also that of somebody born in the very tick, whose body still owes its shape to the old seed."""
     run = request.getfixturevalue(which)
-    before = lives(run)
+    before = Archive(run).lives
     at = int(before.born[(before.born > 300) & (before.lifespan > 12)][0])
-    fork = primordia.load(run).fork(at, tmp_path / "fork", seed=9).path
-    everyone = lives(fork)
+    fork = Archive(primordia.load(run).fork(at, tmp_path / "fork", seed=9).path)
+    everyone = fork.lives
     older = (everyone.born <= at) & (everyone.ended > at + 3)
     newest = older & (everyone.born == at)
     assert newest.any()
@@ -133,8 +131,8 @@ def test_in_a_fork_an_older_life_goes_on_from_there(
 def test_bodies_that_cannot_be_saved_are_not_found_in_a_fork(
     mirror: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    fork = primordia.load(mirror).fork(300, tmp_path / "fork").path
-    everyone = lives(fork)
+    fork = Archive(primordia.load(mirror).fork(300, tmp_path / "fork").path)
+    everyone = fork.lives
     monkeypatch.setattr(Mirror, "exact", False, raising=False)
     with pytest.raises(InputError, match="is older than the fork"):
         Life.of(fork, everyone.id[0], everyone.world[0])
@@ -145,9 +143,10 @@ def test_a_simulation_that_failed_may_have_called_it_death(kind: str, tmp_path: 
     inner = {"inner": "meadow"} if kind == "Mirror" else {}
     broken = {"name": f"tests.toys:{kind}", **inner, "lifespan": 9, "broken_at": 9}
     loop.start(config(MEADOW, habitat=broken, stop={"ticks": 30}), tmp_path / "run")
-    everyone = lives(tmp_path / "run")
+    run = Archive(tmp_path / "run")
+    everyone = run.lives
     row = np.flatnonzero(everyone.cause == Cause.FAULT)[0]
-    (seen,) = Life.of(tmp_path / "run", everyone.id[row]).again()
+    (seen,) = Life.of(run, everyone.id[row]).again()
     assert len(seen.tick) == 9
 
 
@@ -156,9 +155,9 @@ def test_a_habitat_on_the_host_is_closed(mirror: Path, monkeypatch: pytest.Monke
     closed: list[Mirror] = []
     monkeypatch.setattr(Mirror, "close", lambda self: closed.append(self), raising=False)
     monkeypatch.setattr(LifeOnHost, "TICKS", 5)
-    life = Life.of(mirror, primordia.load(mirror).oldest().id)
-    one: Any = life.again()
-    other = life.again()
+    oldest = primordia.load(mirror).oldest()
+    life = Life.of(oldest.run, oldest.id)
+    one, other = life.again(), life.again()
     first = next(other)
     assert next(one).action.tobytes() == first.action.tobytes()
     one.close()
@@ -170,9 +169,9 @@ def test_a_habitat_on_the_host_is_closed(mirror: Path, monkeypatch: pytest.Monke
 def test_a_record_that_does_not_fit_is_noticed(
     poles: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    everyone = lives(poles)
-    row = int(np.flatnonzero(everyone.died)[40])
-    life = Life.of(poles, int(everyone.id[row]))
+    run = Archive(poles)
+    row = int(np.flatnonzero(run.lives.died)[40])
+    life = Life.of(run, int(run.lives.id[row]))
     life.record.ended[0] += 1
     with pytest.raises(Trouble, match="did not live again as recorded"):
         list(life.again())
@@ -180,7 +179,7 @@ def test_a_record_that_does_not_fit_is_noticed(
 
 def test_a_policy_acts_as_the_organism_did(poles: Path) -> None:
     organism = primordia.load(poles).oldest()
-    seen = next(Life.of(poles, organism.id).again())
+    seen = next(Life.of(organism.run, organism.id).again())
     policy = organism.policy()
     assert [policy(each) for each in seen.senses[:200]] == seen.action[:200].tolist()
     policy.reset()
@@ -198,8 +197,8 @@ def test_an_organism_tells_what_is_recorded(poles: Path) -> None:
     run = primordia.load(poles)
     births = run.table("births").to_pylist()
     deaths = {row["id"]: row for row in run.table("deaths").to_pylist()}
-    everyone = run.lives()
-    by_id = {row["id"]: Organism(poles, everyone, everyone.row(row["id"])) for row in births}
+    opened = run.opened()
+    by_id = {row["id"]: Organism(opened, opened.lives.row(row["id"])) for row in births}
     for row in births[::40]:
         organism = by_id[row["id"]]
         assert (organism.parent, organism.cell, organism.born) == (
@@ -228,7 +227,7 @@ def frames(path: Path) -> list[Image.Image]:
 
 
 def test_a_short_life_on_video(poles: Path, tmp_path: Path) -> None:
-    everyone = lives(poles)
+    everyone = Archive(poles).lives
     row = int(np.flatnonzero(everyone.died & (everyone.lifespan < 60))[0])
     path = tmp_path / "life.mp4"
     done = here("replay", poles, "--organism", everyone.id[row], "--out", path)
@@ -303,9 +302,6 @@ def test_a_habitat_on_the_host_that_cannot_be_seen(
     no_pictures = "draws no pictures (it has no "
     complains(here("replay", tmp_path / "run"), 2, no_pictures, "`picture` and no `seen`")
     monkeypatch.setattr(HostCartPole, "picture", None, raising=False)
-    complains(here("replay", tmp_path / "run"), 2, no_pictures + "`seen`)")
-    monkeypatch.setattr(HostCartPole, "seen", None, raising=False)
-    complains(here("replay", tmp_path / "run"), 2, no_pictures + "`rate`)")
-    monkeypatch.undo()
-    (seen,) = Life.of(tmp_path / "run", 0).again()
+    complains(here("replay", tmp_path / "run"), 2, "draws no pictures (it has no `seen`)")
+    (seen,) = Life.of(Archive(tmp_path / "run"), 0).again()
     assert seen.bodies is None

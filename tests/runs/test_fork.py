@@ -12,8 +12,8 @@ from primordia.errors import InputError, Trouble
 from primordia.figures.survival import quarters
 from primordia.history.foraging import foraging, harvests
 from primordia.random.wide import to_host
-from primordia.runs import checkpoint, loop
-from primordia.runs.lives import lives
+from primordia.runs import loop
+from primordia.runs.archive import Archive
 from primordia.runs.verify import verify
 from tests.commands import complains, here
 from tests.history.test_lineage import comes_back
@@ -37,9 +37,8 @@ def poles(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def arrays(run: Path) -> dict[str, np.ndarray]:
-    last, _ = checkpoint.newest(run)
-    assert last is not None
-    return {name: array for name, array in last.arrays().items() if not name.startswith("tail.")}
+    state = Archive(run).state
+    return {name: state[name] for name in state if not name.startswith("tail.")}
 
 
 def same(a: Path, b: Path) -> bool:
@@ -59,7 +58,7 @@ def test_with_nothing_changed_it_lives_the_same(mill: Path, tmp_path: Path, at: 
 
 def after_the_fork(run: Path, at: int) -> list[tuple[int, ...]]:
     """Everybody who died or was born later."""
-    found = lives(run)
+    found = Archive(run).lives
     found = found.take(np.flatnonzero((found.ended > at) | (found.born > at)))
     columns = (found.world, found.id, found.parent, found.cell, found.born, found.ended)
     return list(zip(*(column.tolist() for column in columns), strict=True))
@@ -77,27 +76,28 @@ def test_from_a_checkpoint_or_lived_again(mill: Path, tmp_path: Path) -> None:
 @pytest.mark.parametrize("at", [300, 1400])
 def test_what_is_told_of_a_fork_begins_with_it(mill: Path, tmp_path: Path, at: int) -> None:
     """As of the run it is a fork of, from then on: who died when, at which ages, what was eaten."""
-    fork = primordia.load(mill).fork(at, tmp_path / "fork").path
-    whole, part = primordia.compare(mill, fork).arms
+    forked = primordia.load(mill).fork(at, tmp_path / "fork")
+    fork, source = Archive(forked.path), Archive(mill)
+    whole, part = primordia.compare(mill, fork.path).arms
     assert part.pace.edges[[0, -1]].tolist() == [at, 1500]
     for one, other in ((whole.pace, part.pace), (whole.survival, part.survival)):
         for field in fields(one):
             np.testing.assert_array_equal(getattr(one, field.name), getattr(other, field.name))
-    np.testing.assert_array_equal(lives(mill).since(at).seen, lives(fork).seen)
+    np.testing.assert_array_equal(source.lives.since(at).seen, fork.lives.seen)
     np.testing.assert_array_equal(whole.figures["first"].value, part.figures["first"].value)
-    later = [lives(fork).of_world(world).born > at for world in range(2)]
+    later = [fork.lives.of_world(world).born > at for world in range(2)]
     assert (part.figures["first"].value <= [1 + born.sum() for born in later]).all()
-    found, before = harvests(fork, 2), harvests(mill, 2)
+    found, before = harvests(fork, 2), harvests(source, 2)
     for world in range(2):
         sampled = before[world].tick >= at
         for one, other in zip(found[world], before[world], strict=True):
             np.testing.assert_array_equal(one, other[sampled])
-    assert foraging(fork, config(SHIFTING)).since == at
-    anew, alive = lives(fork).since_fork(), lives(fork).born <= at
+    assert foraging(fork).since == at
+    anew, alive = fork.lives.since_fork(), fork.lives.born <= at
     assert (anew.seen >= 0).all()
     assert ((anew.seen == 0) == alive).all()
-    assert (anew.lifespan == lives(fork).lifespan).all()
-    primordia.load(fork).plot(tmp_path)
+    assert (anew.lifespan == fork.lives.lifespan).all()
+    forked.plot(tmp_path)
     for name in ("ages", "survival", "population"):
         assert "since the fork" in (tmp_path / f"{name}.svg").read_text(encoding="utf-8")
     assert (tmp_path / "foraging.svg").exists()
@@ -162,7 +162,7 @@ def test_another_seed_is_another_future_of_the_same_past(poles: Path, tmp_path: 
 
 
 def living(run: Path, at: int) -> set[tuple[int, ...]]:
-    found = lives(run)
+    found = Archive(run).lives
     mine = (found.born <= at) & ((found.ended > at) | ~found.died)
     columns = (found.id, found.parent, found.cell, found.born, found.origin)
     return set(zip(*(column[mine].tolist() for column in columns), strict=True))
@@ -174,7 +174,7 @@ def test_forks_of_forks_keep_the_promises(poles: Path, tmp_path: Path) -> None:
     two = one.fork(1200, tmp_path / "two", seed=4, stop={"ticks": 1500})
     two.resume(ticks=3000)
     for run in (one, two):
-        assert verify(run.path) == []
+        assert verify(Archive(run.path)) == []
         comes_back(run.path)
     straight = one.fork(1200, tmp_path / "straight", seed=4)
     assert same(straight.path, two.path)
@@ -220,7 +220,7 @@ def test_hunger_brought_to_a_world_that_knew_none(poles: Path, tmp_path: Path) -
     fork = primordia.load(poles).fork(
         2000, tmp_path / "fork", metabolism={"store": 50.0}, stop={"ticks": 2050}
     )
-    found = lives(fork.path)
+    found = Archive(fork.path).lives
     starved = found.cause == 1
     assert starved.sum() > 10
     assert (found.ended[starved & (found.born <= 2000)] == 2050).all()
@@ -243,13 +243,13 @@ def test_a_habitat_on_the_host(tmp_path: Path) -> None:
     loop.start(config(values), tmp_path / "run")
     fork = primordia.load(tmp_path / "run").fork(90, tmp_path / "fork")
     assert same(tmp_path / "run", fork.path)
-    assert verify(fork.path) == []
+    assert verify(Archive(fork.path)) == []
 
 
 def test_figures_of_a_fork_leave_nobody_out(poles: Path, tmp_path: Path) -> None:
     """Its birth numbers do not begin at 0, nor are they without gaps."""
     fork = primordia.load(poles).fork(1500, tmp_path / "fork", seed=2)
-    found = lives(fork.path)
+    found = Archive(fork.path).lives
     assert found.id[-1] > len(found)
     assert sum(map(len, quarters(found))) == len(found)
     assert found.rank.tolist() == list(range(len(found)))

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from primordia.runs import report
+from primordia.history.info import info
+from primordia.runs.archive import Archive
 from tests.commands import begin, complains, here
 
 WHAT = ("CartPole-survival", "--seeds", "8", "--cells", "64", "--stop.until", "saturation")
@@ -24,7 +25,7 @@ def through(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
 
 
 def digests(run: Path) -> list[str]:
-    return [world["digest"] for world in report.info(run)["worlds"]]
+    return [world["digest"] for world in info(Archive(run))["worlds"]]
 
 
 def test_checkpoint_intervals_make_no_difference(through: list[str], tmp_path: Path) -> None:
@@ -86,7 +87,7 @@ def test_ctrl_c_saves_and_says_how_to_go_on(through: list[str], tmp_path: Path) 
     _, stderr = process.communicate(timeout=60)
     assert process.returncode == 130
     assert stderr.strip() == f"Stopped and saved. Go on with: primordia resume {run}"
-    assert report.info(run)["worlds"][0]["ticks"] < TICKS
+    assert info(Archive(run))["worlds"][0]["ticks"] < TICKS
     assert here("resume", run).returncode == 0
     assert digests(run) == through
 

@@ -11,13 +11,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import BaseModel
 
-from primordia.brains.contract import genome_length
-from primordia.config import Config, load, setting_fields, validated
-from primordia.habitats.cartpole.habitat import CartPole
+from primordia.config import Config, load, validated
 from primordia.habitats.contract import KNOWN, find
 from primordia.law.mutation import BlockMutation
 from primordia.law.seasons import Ratchet, Schedule
 from primordia.settings.base import Settings
+from primordia.settings.fields import setting_fields
 from primordia.settings.tables import from_toml, merged, tasks
 from tests.commands import here
 from tests.worlds import MEADOW, MILL, config
@@ -31,7 +30,7 @@ def test_built_in_tasks_load_and_build(name: str) -> None:
     assert loaded.task == name
     assert loaded.about
     law = loaded.build_law(loaded.build_habitat())
-    assert genome_length(law.brain) == law.block_sizes.sum() > 0
+    assert law.layout.length == sum(law.layout.sizes) > 0
 
 
 def test_tasks_are_listed() -> None:
@@ -125,7 +124,7 @@ def test_flags_override_the_file_and_the_file_the_task(tmp_path: Path) -> None:
     assert (config.mutation.scale, config.mutation.probability) == (0.125, 0.25), "flag, file"
     assert (config.stop.ticks, config.stop.until) == (2, None), "flags"
     assert config.placement.rule == "empty-only"
-    assert config.brain.hidden == 4, "file"
+    assert config.brain["hidden"] == 4, "file"
     assert config.mutation.founder_scale == tasks()[TASK]["mutation"]["founder_scale"], "task"
     assert config.seasons == (Schedule(kind="schedule", setting="hazard", at=9, value=0.0),)
     assert json.loads(here("info", run, "--json").stdout)["ticks"] == 2
@@ -171,8 +170,9 @@ def help_text(*words: object) -> str:
 
 def test_help_lists_every_setting_with_its_value_and_meaning(tmp_path: Path) -> None:
     text = help_text(TASK)
-    paths = set(setting_fields(Config)) - {"task", "about", "habitat", "origin.run", "origin.tick"}
-    paths |= {f"habitat.{name}" for name in CartPole.model_fields} | {"habitat.name"}
+    hidden = {"task", "about", "habitat", "brain", "origin.run", "origin.tick"}
+    paths = set(setting_fields(Config)) - hidden | {"brain.kind", "brain.hidden", "brain.biases"}
+    paths |= {f"habitat.{name}" for name in find("cartpole").model_fields} | {"habitat.name"}
     for path in paths:
         assert f"--{path} " in text, path
     squeezed = " ".join(text.split())

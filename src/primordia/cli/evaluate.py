@@ -48,14 +48,13 @@ def evaluate(
     A lifespan is what its task makes of a game; score and length are those of the whole game.
     """
     from primordia.cli.look import who
-    from primordia.organism import evaluation
 
     if freeze_senses and open_loop:
         raise InputError("--freeze-senses and --open-loop: one or the other")
     senses: Any = "frozen" if freeze_senses else "ignored" if open_loop else "live"
-    chosen, given = who(run, organism, world), {n: v for n, v in changes.items() if v is not None}
-    whose = [(chosen.id, chosen.world)]
-    (found,) = evaluation.evaluate(run, whose, games=episodes, ticks=ticks, senses=senses, **given)
+    given = {name: value for name, value in changes.items() if value is not None}
+    chosen = who(run, organism, world)
+    found = chosen.evaluate(games=episodes, ticks=ticks, senses=senses, **given)
     click.echo(json.dumps(found.to_dict()) if as_json else sheet(found, given))
 
 

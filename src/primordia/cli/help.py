@@ -1,34 +1,50 @@
 """Settings explained, as the command line shows them."""
 
 import json
+from contextlib import suppress
 from typing import Any
 
 from pydantic import Field
 from pydantic_core import PydanticUndefined
 
-from primordia.config import Config, setting_fields
-from primordia.habitats.contract import KNOWN, find
-from primordia.settings.base import Settings
-from primordia.settings.tables import NONE, values_of
+from primordia.brains import contract as brains
+from primordia.config import Config
+from primordia.habitats import contract as habitats
+from primordia.settings.fields import setting_fields
+from primordia.settings.tables import NONE, PARTS, values_of
+
+CONTRACTS: dict[str, tuple[Any, str | None]] = {
+    "habitat": (habitats, None),
+    "brain": (brains, brains.DEFAULT),
+}
+"""Where each replaceable part is found, and its name if a task gives none."""
 
 
 def setting_rows(task: str | None) -> list[tuple[str, str]]:
-    """Each setting with its value in a task (or by default), and what it means."""
+    """Return each setting with its value in a task (or by default), and what it means."""
     values = values_of(task) if task else {}
-    fields = setting_fields(Config)
-    try:
-        found = [find(values["habitat"]["name"])] if "habitat" in values else map(find, KNOWN)
-    except (LookupError, TypeError):
-        found = []
-    for habitat in found:
-        fields |= setting_fields(habitat, "habitat.") if issubclass(habitat, Settings) else {}
-    fields["habitat.name"] = Field(description=f"{', '.join(KNOWN)}, or module:Class")
-    hidden = {"about", "task", "habitat", "origin.run", "origin.tick"}
+    fields: dict[str, Any] = {}
+    for path, field in setting_fields(Config).items():
+        fields |= _of_part(path, values) if path in PARTS else {path: field}
+    hidden = {"about", "task", "origin.run", "origin.tick"}
     return [
         (f"--{path}", f"{field.description or ''} [{_shown(values, path, field)}]")
         for path, field in fields.items()
         if path not in hidden
     ]
+
+
+def _of_part(part: str, values: dict[str, Any]) -> dict[str, Any]:
+    """Settings of the habitat or brain of a task, or else of all known ones: path -> field."""
+    contract, default = CONTRACTS[part]
+    key, table = PARTS[part], values.get(part, {})
+    named = table.get(key, default) if values and isinstance(table, dict) else None
+    described = f"{', '.join(contract.KNOWN)}, or module:Class"
+    fields: dict[str, Any] = {f"{part}.{key}": Field(default, description=described)}
+    for name in contract.KNOWN if named is None else [named]:
+        with suppress(LookupError):  # `run` says what is wrong with a name
+            fields |= setting_fields(contract.find(name), f"{part}.")
+    return fields
 
 
 def _shown(values: dict[str, Any], path: str, field: Any) -> str:

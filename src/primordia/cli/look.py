@@ -2,12 +2,15 @@
 
 import json
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import click
 
 from primordia.cli.flags import device_option, run_argument
 from primordia.errors import Trouble
+
+if TYPE_CHECKING:
+    from primordia.organism.organism import Organism
 
 
 @click.command()
@@ -49,10 +52,7 @@ def replay(
     run: Path, begin: int | None, end: int | None, out: Path | None, **chosen: int | None
 ) -> None:
     """A life on video: all of it, or the first and last 30 seconds of a long one."""
-    from primordia.organism.replay import replay as show
-
-    organism = who(run, **chosen)
-    click.echo(show(run, organism.id, organism.world, out, (begin, end)))
+    click.echo(who(run, **chosen).replay(out, (begin, end)))
 
 
 @click.command(short_help="Write genomes to a file, to start from.")
@@ -69,12 +69,11 @@ def export(run: Path, organisms: tuple[int, ...], world: int, file: Path) -> Non
     """
     from primordia.api import Run
 
-    chosen = organisms or (Run(run).oldest(world).id,)
-    Run(run).export(file, *chosen, world=world)
+    chosen = Run(run).export(file, *organisms, world=world)
     click.echo(f"{file}: organism {', '.join(map(str, chosen))}")
 
 
-def who(run: Path, organism: int | None, world: int | None) -> Any:
+def who(run: Path, organism: int | None, world: int | None) -> "Organism":
     """The organism asked for."""
     from primordia.api import Run
 

@@ -10,7 +10,6 @@ up to the tick that all worlds have lived through.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -22,9 +21,9 @@ from primordia.comparison.pace import Pace, pace
 from primordia.comparison.survival import Survival, survival
 from primordia.config import Config
 from primordia.errors import InputError
-from primordia.runs import report
-from primordia.runs.directory import read_config
-from primordia.runs.lives import Lives, lives
+from primordia.runs.archive import Archive
+from primordia.runs.checkpoint import NEVER, count
+from primordia.runs.lives import Lives
 
 OUTCOMES = {
     "first": "births to first long life",
@@ -124,12 +123,12 @@ class Comparison:
 
 
 def compare(
-    runs: Sequence[Path], births: int | None = None, ticks: int | None = None
+    runs: Sequence[Archive], births: int | None = None, ticks: int | None = None
 ) -> Comparison:
     """Read runs and put them side by side.
 
     Args:
-        runs: directories; the first is the reference.
+        runs: the first is the reference.
         births: horizon: only worlds that saturate before they have so many births count as saturated.
         ticks: the same in ticks.
 
@@ -139,19 +138,19 @@ def compare(
     """
     configs = _configs(runs)
     age = min(config.saturation_ticks for config in configs)
-    names = [path.resolve().name for path in runs]
-    everyone = [lives(path) for path in runs]
+    names = [run.path.resolve().name for run in runs]
+    everyone = [run.lives for run in runs]
     since, until = _common(runs, configs, everyone)
     everyone = [each.since(since) for each in everyone]
-    moments = [_saturation(path, births, ticks) for path in runs]
+    moments = [_saturation(run, births, ticks) for run in runs]
     if not any(map(saturates, moments)):
         everyone = [each.until(until) for each in everyone]
-    arms, rate = [], configs[0].build_habitat().rate
+    arms, rate = [], runs[0].habitat.rate
     each_run = zip(runs, everyone, moments, names, differing(configs), strict=True)
-    for path, lived, saturation, name, own in each_run:
+    for run, lived, saturation, name, own in each_run:
         worlds = _worlds(lived)
         survived, dying = survival(lived, len(worlds), age), pace(worlds, since, until)
-        gathered = gathering(path, len(worlds), since, until, rate or 1)
+        gathered = gathering(run, len(worlds), since, until, rate or 1)
         figures = {
             "first": first_long(worlds, age),
             **saturation,
@@ -160,14 +159,14 @@ def compare(
             "pace": dying.late,
             "food": gathered.late,
         }
-        label = name if names.count(name) == 1 else str(path)
+        label = name if names.count(name) == 1 else str(run.path)
         arms.append(Arm(label, own, figures, survived, dying, gathered))
     span = "second" if rate else "tick"
     return Comparison(configs[0].task, tuple(arms), age, births, ticks, span)
 
 
 def _common(
-    runs: Sequence[Path], configs: Sequence[Config], everyone: Sequence[Lives]
+    runs: Sequence[Archive], configs: Sequence[Config], everyone: Sequence[Lives]
 ) -> tuple[int, int]:
     """The ticks between which all worlds of all runs are on record: since the last fork."""
     begun = [config.begins for config in configs]
@@ -175,8 +174,8 @@ def _common(
     if 0 < max(begun) >= min(ended):
         late, early = runs[begun.index(max(begun))], runs[ended.index(min(ended))]
         raise InputError(
-            f"{late} was forked at tick {max(begun):,}, {early} ends at {min(ended):,}: they have no"
-            " time in common"
+            f"{late.path} was forked at tick {max(begun):,}, {early.path} ends at {min(ended):,}:"
+            " they have no time in common"
         )
     return max(begun), min(ended)
 
@@ -192,20 +191,20 @@ def _worlds(lived: Lives) -> list[Lives]:
     return [lived.of_world(world) for world in range(lived.worlds)]
 
 
-def _configs(runs: Sequence[Path]) -> list[Config]:
+def _configs(runs: Sequence[Archive]) -> list[Config]:
     """Settings of runs that can be compared."""
     if len(runs) < 2:
         raise InputError("compare needs two runs or more; the first is the reference of the others")
-    if len({path.resolve() for path in runs}) < len(runs):
+    if len({run.path.resolve() for run in runs}) < len(runs):
         raise InputError("a run is given twice; its worlds cannot be compared with themselves")
-    configs = [read_config(path) for path in runs]
-    for path, config in zip(runs, configs, strict=True):
-        if config.task != configs[0].task:
+    first, *others = runs
+    for run in others:
+        if run.config.task != first.config.task:
             raise InputError(
-                f"{runs[0]} is a run of {configs[0].task}, {path} one of {config.task}; only runs"
-                " of one task can be compared"
+                f"{first.path} is a run of {first.config.task}, {run.path} one of"
+                f" {run.config.task}; only runs of one task can be compared"
             )
-    return configs
+    return [run.config for run in runs]
 
 
 def differing(configs: Sequence[Config]) -> list[dict[str, Any]]:
@@ -237,24 +236,24 @@ def first_long(worlds: Sequence[Lives], age: int) -> Figures:
     return Figures(np.array(value, float), np.array(known))
 
 
-def _saturation(path: Path, births: int | None, ticks: int | None) -> dict[str, Figures]:
+def _saturation(run: Archive, births: int | None, ticks: int | None) -> dict[str, Figures]:
     """Births and ticks to saturation, of each world of a run."""
-    worlds = report.info(path)["worlds"]
-    known = np.array([world["saturation"] is not None for world in worlds])
-    at = [
-        world["saturation"] or {"births": world["births"], "tick": world["ticks"]}
-        for world in worlds
-    ]
+
+    def of_worlds(name: str) -> np.ndarray:
+        return count(run.state, f"world.worlds.{name}")
+
+    known = of_worlds("saturated") != NEVER
+    now_and_then = {"births": ("births", "saturated_births"), "ticks": ("tick", "saturated")}
     found = {
-        "births": Figures(np.array([each["births"] for each in at], float), known),
-        "ticks": Figures(np.array([each["tick"] for each in at], float), known),
+        unit: Figures(np.where(known, of_worlds(then), of_worlds(now)).astype(float), known)
+        for unit, (now, then) in now_and_then.items()
     }
     for unit, horizon in (("births", births), ("ticks", ticks)):
         if horizon is not None:
             try:
                 found[unit] = found[unit].before(horizon)
             except InputError as error:
-                raise InputError(f"--{unit} {horizon}: in {path}, {error}") from None
+                raise InputError(f"--{unit} {horizon}: in {run.path}, {error}") from None
     return found
 
 

@@ -1,13 +1,13 @@
 """What organisms gather as time goes on, in the windows that pace has too."""
 
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
 from primordia.comparison.contrast import Figures
 from primordia.comparison.pace import LATE, WINDOWS
 from primordia.history.foraging import harvests
+from primordia.runs.archive import Archive
 
 
 @dataclass(frozen=True)
@@ -20,7 +20,7 @@ class Gathering:
     """in the last quarter of the time; known if there was any food at all"""
 
 
-def gathering(run: Path, worlds: int, since: int, until: int, span: float) -> Gathering:
+def gathering(run: Archive, worlds: int, since: int, until: int, span: float) -> Gathering:
     """Of the worlds of a run, between two ticks at which all are on record; a span is so many ticks."""
     edges = np.linspace(since, until, WINDOWS + 1)
     found = harvests(run, worlds)

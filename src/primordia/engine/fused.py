@@ -29,7 +29,7 @@ class Fused:
     def __init__(self, law: Law, habitat: JaxHabitat) -> None:
         self._law, self._habitat = law, habitat
         self._advance = shared(_advance, law, habitat, donate=(0, 1))
-        self.events = log.empty(law.worlds * law.cells, law.worlds, width(law.blocks))
+        self.events = log.empty(law.worlds * law.cells, law.worlds, width(law.layout.names))
         """of the latest chunk"""
 
     def begin(self, world: World) -> State:

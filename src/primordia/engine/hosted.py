@@ -31,7 +31,7 @@ class Hosted:
         self.exact = habitat.exact
         self._law, self._habitat = law, habitat
         self._tallies = Tallies(habitat, law.worlds)
-        self._lists = log.empty(law.worlds * law.cells, law.worlds, width(law.blocks))
+        self._lists = log.empty(law.worlds * law.cells, law.worlds, width(law.layout.names))
         self.events = self._lists
         """of the latest chunk"""
         habitat.open(law.worlds * law.cells)

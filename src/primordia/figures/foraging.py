@@ -1,22 +1,20 @@
 """Do they gather more? What organisms find to eat as time goes on, and what would keep them alive."""
 
-from pathlib import Path
-
 import numpy as np
 from matplotlib.figure import Figure
 
-from primordia.config import Config
 from primordia.figures import style
 from primordia.history.foraging import foraging
+from primordia.runs.archive import Archive
 
 BREAK_EVEN = style.ORANGE
 
 
-def draw(run: Path, config: Config) -> Figure:
+def draw(run: Archive) -> Figure:
     """Food an organism gathers, a second where the habitat knows of seconds, and the break-even."""
     figure = Figure(figsize=(style.COLUMN, 2.4))
-    axes, found = figure.subplots(), foraging(run, config)
-    rate = config.build_habitat().rate
+    axes, found = figure.subplots(), foraging(run)
+    rate = run.habitat.rate
     food, enough = (each * (rate or 1) for each in (found.food, found.break_even))
     worlds = len(food)
     if len(found.middle):

@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 from primordia.config import Config
 from primordia.errors import InputError, Trouble
 from primordia.figures import ages, foraging, population, spacetime, style, survival
-from primordia.runs.lives import Lives, lives
-from primordia.runs.report import opened
+from primordia.runs.archive import Archive
+from primordia.runs.lives import Lives
 
 FIGURES: dict[str, Callable[[Lives, Config, int], Figure]] = {
     "ages": lambda lives, config, world: ages.draw(lives.since_fork()),
@@ -19,11 +19,11 @@ FIGURES: dict[str, Callable[[Lives, Config, int], Figure]] = {
 }
 
 
-def plot(run: Path, out: Path | None = None, world: int = 0) -> list[Path]:
+def plot(run: Archive, out: Path | None = None, world: int = 0) -> list[Path]:
     """Draw every figure of a run, up to its newest checkpoint -> the files made.
 
     Args:
-        run: its directory.
+        run: opened for reading.
         out: folder for the figures; by default `figures` in the run.
         world: whose lines of descent are drawn; all other figures show all worlds.
 
@@ -31,11 +31,12 @@ def plot(run: Path, out: Path | None = None, world: int = 0) -> list[Path]:
         InputError: this is no run, nothing has lived in it yet, or it has no such world.
         Trouble: a figure cannot be written.
     """
-    config, _ = opened(run)
-    found = lives(run)
+    config, found = run.config, run.lives
     if not 0 <= world < config.seeds:
-        raise InputError(f"{run} has no world {world}; they count from 0 to {config.seeds - 1}")
-    folder = out if out is not None else run / "figures"
+        raise InputError(
+            f"{run.path} has no world {world}; they count from 0 to {config.seeds - 1}"
+        )
+    folder = out if out is not None else run.path / "figures"
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -43,7 +44,7 @@ def plot(run: Path, out: Path | None = None, world: int = 0) -> list[Path]:
     with style.look():
         drawn = {name: draw(found, config, world) for name, draw in FIGURES.items()}
         if config.metabolism is not None:
-            drawn["foraging"] = foraging.draw(run, config)
+            drawn["foraging"] = foraging.draw(run)
         return [
             path for name, figure in drawn.items() for path in style.save(figure, folder / name)
         ]

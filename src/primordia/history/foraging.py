@@ -1,15 +1,13 @@
 """What organisms gathered as time went on, from the metrics."""
 
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from primordia.config import Config
 from primordia.history.climate import climate_at
 from primordia.law.metabolism import ONE, break_even
-from primordia.runs import checkpoint
-from primordia.runs.report import counts, table
+from primordia.runs.archive import Archive
+from primordia.runs.checkpoint import count
 
 STRETCHES = 60
 """Most parts that a world's time is cut into."""
@@ -44,11 +42,10 @@ class Harvest(NamedTuple):
         return np.where(lived > 0, food / np.maximum(lived, 1), np.nan)
 
 
-def harvests(run: Path, worlds: int) -> list[Harvest]:
-    """Of each world of a run."""
-    metrics = table(run, "metrics")
-    world = metrics["world"].to_numpy()
-    columns = [metrics[name].to_numpy() for name in ("tick", "food", "organism_ticks")]
+def harvests(run: Archive, worlds: int) -> list[Harvest]:
+    """Of each of the first worlds of a run."""
+    world = run.metrics["world"].to_numpy()
+    columns = [run.metrics[name].to_numpy() for name in ("tick", "food", "organism_ticks")]
     begun = _beginning(run, worlds)
     return [
         Harvest._make(
@@ -59,28 +56,27 @@ def harvests(run: Path, worlds: int) -> list[Harvest]:
     ]
 
 
-def _beginning(run: Path, worlds: int) -> list[np.ndarray]:
+def _beginning(run: Archive, worlds: int) -> list[np.ndarray]:
     """Tick, food and organism-ticks of each world before its first tick on record, (W,) each."""
-    origin = checkpoint.origin(run)
-    if origin is None:
+    if run.origin is None:
         return [np.zeros(worlds, np.int64)] * 3
     names = "tick", "food", "organism_ticks"
     tick, food, lived = (
-        counts(origin.arrays(), f"world.worlds.{name}").astype(np.int64) for name in names
+        count(run.origin, f"world.worlds.{name}").astype(np.int64) for name in names
     )
     return [tick, food / ONE, lived]
 
 
-def foraging(run: Path, config: Config) -> Foraging:
+def foraging(run: Archive) -> Foraging:
     """Of a run that has a metabolism."""
-    gathered = harvests(run, config.seeds)
+    worlds = run.config.seeds
+    gathered = harvests(run, worlds)
     samples = max(len(harvest.tick) for harvest in gathered) - 1
     last = max(int(harvest.tick[-1]) for harvest in gathered)
     first = min(int(harvest.tick[0]) for harvest in gathered)
     edges = np.linspace(first, last, min(STRETCHES, samples) + 1)
     middle = (edges[1:] + edges[:-1]) / 2
-    law = config.build_law(config.build_habitat())
-    enough = [_break_even(climate_at(run, config, law, w)(middle)) for w in range(config.seeds)]
+    enough = [_break_even(climate_at(run, world)(middle)) for world in range(worlds)]
     food = [harvest.between(edges) for harvest in gathered]
     return Foraging(first, middle, np.array(food), np.array(enough))
 

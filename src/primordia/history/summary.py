@@ -10,7 +10,7 @@ FEW = 4
 
 
 def summary(info: dict[str, Any]) -> str:
-    """Of `report.info`."""
+    """Of `info.info`."""
     worlds, heredity = info["worlds"], info["inheritance"] == "parent"
     count = "1 world" if len(worlds) == 1 else f"{len(worlds):,} worlds"
     lines = [

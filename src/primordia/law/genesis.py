@@ -41,13 +41,11 @@ def _begin(law: Law, tick: int, births: int, seed: Wide) -> World:
         climate=climate(law, count),
         looks=looks(law, count, tick),
     )
-    genome = {
-        name: jnp.zeros((each, *shape), jnp.float32) for name, shape in law.brain.blocks.items()
-    }
+    genome = {name: jnp.zeros((each, *shape), jnp.float32) for name, shape in law.layout.blocks}
     organisms = Organisms(
         alive=jnp.zeros(each, bool),
         genome=genome,
-        memory=jnp.zeros((each, law.brain.memory), jnp.float32),
+        memory=jnp.zeros((each, law.memory), jnp.float32),
         energy=jnp.zeros(each, jnp.int32),
         eaten=jnp.zeros(each, jnp.int32),
         faulty=jnp.zeros(each, bool),
@@ -89,8 +87,8 @@ def climate(law: Law, count: int) -> Climate:
     return Climate(
         replication=each(law.replication),
         hazard=each(law.hazard),
-        mutation_probability=each(law.mutation.of_blocks("probability", law.blocks)),
-        mutation_scale=each(law.mutation.of_blocks("scale", law.blocks)),
+        mutation_probability=each(law.mutation.of_blocks("probability", law.layout.names)),
+        mutation_scale=each(law.mutation.of_blocks("scale", law.layout.names)),
         metabolism=Rates(*(each(getattr(rates, name)) for name in Rates._fields)),
     )
 

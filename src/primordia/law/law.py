@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import prod
 from typing import Literal
 
 import jax.numpy as jnp
@@ -10,6 +9,7 @@ import numpy as np
 from jax import Array
 
 from primordia.brains.contract import Brain
+from primordia.brains.layout import Layout
 from primordia.habitats.contract import Continuous, Discrete
 from primordia.law.metabolism import Metabolism
 from primordia.law.motor import Motor
@@ -26,6 +26,10 @@ class Law:
     cells: int
     """of one world"""
     brain: Brain
+    layout: Layout
+    """of genomes"""
+    memory: int
+    """M, the length of an organism's memory"""
     action: Discrete | Continuous
     motor: Motor
     placement: Placement
@@ -51,20 +55,10 @@ class Law:
         return jnp.broadcast_to(per_world[:, None], (self.worlds, self.cells)).ravel()
 
     @cached_property
-    def blocks(self) -> list[str]:
-        """Names of the genome's blocks, in order."""
-        return list(self.brain.blocks)
-
-    @cached_property
-    def block_sizes(self) -> np.ndarray:
-        """Weights in each block, (B,)."""
-        return np.array([prod(shape) for shape in self.brain.blocks.values()])
-
-    @cached_property
     def founder_scale(self) -> np.ndarray:
         """Standard deviation of each of a founder's weights, float32 (P,)."""
-        scales = self.mutation.of_blocks("founder_scale", self.blocks)
-        return np.repeat(np.array(scales, np.float32), self.block_sizes)
+        scales = self.mutation.of_blocks("founder_scale", self.layout.names)
+        return np.repeat(np.array(scales, np.float32), self.layout.sizes)
 
     @cached_property
     def columns(self) -> Columns:
@@ -72,9 +66,9 @@ class Law:
         found: Columns = {}
         fields: tuple[BlockSetting, ...] = ("probability", "scale")
         for field in fields:
-            own = self.mutation.own(field, self.blocks)
+            own = self.mutation.own(field, self.layout.names)
             found[f"mutation.{field}"] = [i for i, value in enumerate(own) if value is None]
-            for i, block in enumerate(self.blocks):
+            for i, block in enumerate(self.layout.names):
                 found[f"mutation.blocks.{block}.{field}"] = [i]
         return found
 

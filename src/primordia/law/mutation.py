@@ -8,11 +8,12 @@ from typing import Literal, TypeAlias
 
 import jax.numpy as jnp
 import numpy as np
-from jax import Array, lax
+from jax import Array
 from pydantic import Field
 
 from primordia.random.keys import bits, chance
 from primordia.random.wide import Wide, modulo
+from primordia.rounding import rounded_product
 from primordia.settings.base import Settings
 
 BlockSetting: TypeAlias = Literal["probability", "scale", "founder_scale"]
@@ -97,22 +98,10 @@ def newborns(
 
     A weight is one product and one sum, each rounded.
     """
-    inherited = jnp.where(takes, parents + _rounded_product(standard, scale), parents)
+    inherited = jnp.where(takes, parents + rounded_product(standard, scale), parents)
     return jnp.where(founder[:, None], standard * founder_scale, inherited)
 
 
 def ancestor_of(seed: Wide, number: Wide, count: int) -> Array:
     """Which of `count` ancestors the founder with a birth number takes, int32: worlds start apart."""
     return modulo(seed + number, count)
-
-
-def _rounded_product(a: Array, positive: Array) -> Array:
-    """a x positive in float32, rounded before anything is added to it.
-
-    Left alone, compilers contract product and sum into a fused multiply-add, which rounds once: then
-    24 of 60 weights differed from what two IEEE operations give. The sign bit of a number that is
-    never negative is a zero they cannot know, and an integer operation they cannot contract across.
-    """
-    product = lax.bitcast_convert_type(a * positive, jnp.uint32)
-    nothing = lax.bitcast_convert_type(positive, jnp.uint32) >> np.uint32(31)
-    return lax.bitcast_convert_type(product ^ nothing, jnp.float32)

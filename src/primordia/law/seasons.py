@@ -7,13 +7,14 @@ import numpy as np
 from jax import Array
 from pydantic import Field
 
+from primordia.brains.layout import NAME
 from primordia.law.metabolism import ONE
 from primordia.law.world import Climate, Looks, World, Worlds, ages_total
 from primordia.random.wide import Wide, select, to_float, wide
 from primordia.settings.base import Settings
 
 SETTING = r"replication|hazard|metabolism\.(store|drain|gain|effort_cost|cap)"
-MUTATION = r"mutation\.(blocks\.[a-z]+\.)?(probability|scale)"
+MUTATION = rf"mutation\.(blocks\.{NAME}\.)?(probability|scale)"
 
 
 class Schedule(Settings):

@@ -10,7 +10,6 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from primordia.brains.contract import split
 from primordia.law import events as log
 from primordia.law.events import Events, Rows
 from primordia.law.law import Law
@@ -132,7 +131,7 @@ def _inherit(
     """Write the genomes of the newborn, and note their births."""
     organisms, worlds = world
     climate, before = worlds.climate, organisms.genome
-    sizes, length = law.block_sizes, int(law.block_sizes.sum())
+    sizes, length = law.layout.sizes, law.layout.length
 
     def one_batch(cells: Array, valid: Array, carry: tuple) -> tuple:
         genome, listed = carry
@@ -146,7 +145,7 @@ def _inherit(
         # and reading the array that is written spares a copy of all genomes.
         pool = before if law.placement.rule == "replacing" else genome
         parents = jnp.concatenate(
-            [pool[block][parent].reshape(len(cells), -1) for block in law.blocks], axis=1
+            [pool[block][parent].reshape(len(cells), -1) for block in law.layout.names], axis=1
         )
         children = newborns(
             parents,
@@ -163,7 +162,7 @@ def _inherit(
         where = jnp.where(valid, cells, len(births.born))
         genome = {
             name: genome[name].at[where].set(block, mode="drop")
-            for name, block in split(law.brain, children).items()
+            for name, block in law.layout.split(children).items()
         }
         listed = log.append(
             listed, _birth_columns(law, world, births, cells, founder, mutated), valid

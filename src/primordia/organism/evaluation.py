@@ -7,12 +7,12 @@ whether they look at the game at all, is asked here.
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
 import jax.numpy as jnp
 import numpy as np
 
+from primordia.config import Config
 from primordia.errors import InputError
 from primordia.history.climate import climate_at
 from primordia.history.lineage import rebuild_all
@@ -20,8 +20,7 @@ from primordia.law.metabolism import Rates
 from primordia.organism.games import Games, Players, play
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
-from primordia.runs.directory import read_config
-from primordia.runs.report import opened, world_ticks
+from primordia.runs.archive import Archive
 
 GAMES = 30
 TICKS = 100_000
@@ -83,7 +82,7 @@ class Evaluation:
 
 
 def evaluate(
-    run: Path,
+    run: Archive,
     organisms: Sequence[tuple[int, int]],
     *,
     games: int = GAMES,
@@ -94,7 +93,7 @@ def evaluate(
     """Let organisms play, side by side; how many there are changes nothing for any of them.
 
     Args:
-        run: the run's directory.
+        run: where they lived.
         organisms: birth number and world of each.
         games: how many each; one is played where all would be the same.
         ticks: a game that still goes on then is cut; whole games also where others cut them.
@@ -111,7 +110,7 @@ def evaluate(
     if not organisms:
         return []
     own = players_of(run, organisms)
-    players = own._replace(habitat=_changed(run, own.habitat, changes))
+    players = own._replace(habitat=_changed(run.config, own.habitat, changes))
     script = play(own, 1, ticks) if senses == "ignored" else None
     count = 1 if players.deterministic else games
     played = partial(play, games=count, frozen=senses == "frozen", script=script)
@@ -125,28 +124,23 @@ def evaluate(
     ]
 
 
-def players_of(run: Path, organisms: Sequence[tuple[int, int]]) -> Players:
+def players_of(run: Archive, organisms: Sequence[tuple[int, int]]) -> Players:
     """Organisms by birth number and world, with all that games in their own task are a function of.
 
     Raises:
         InputError: no such organism was born.
     """
     genomes = rebuild_all(run, organisms)
-    config, last = opened(run)
-    habitat = config.build_habitat()
-    law = config.build_law(habitat)
     births, worlds = np.array(organisms, np.int64).T
-    ends = world_ticks(last.arrays()).astype(np.int64)
-    climates = {w: climate_at(run, config, law, w)(ends[[w]]) for w in set(worlds.tolist())}
+    climates = {w: climate_at(run, w)(run.ends[[w]]) for w in set(worlds.tolist())}
     each = (np.concatenate([climates[w][f"metabolism.{n}"] for w in worlds]) for n in Rates._fields)
     rates = Rates(*map(jnp.asarray, each))
-    keys = stream(wide(config.seed + worlds), Purpose.EVALUATION, wide(births))
-    return Players(law, habitat, genomes, keys, rates)
+    keys = stream(wide(run.config.seed + worlds), Purpose.EVALUATION, wide(births))
+    return Players(run.law, run.config.build_habitat(), genomes, keys, rates)
 
 
-def _changed(run: Path, before: Any, changes: dict[str, Any]) -> Any:
-    """The run's habitat with some settings changed."""
-    config = read_config(run)
+def _changed(config: Config, before: Any, changes: dict[str, Any]) -> Any:
+    """A run's habitat with some settings changed."""
     habitat = config.model_copy(update={"habitat": {**config.habitat, **changes}}).build_habitat()
     if (habitat.senses_size, habitat.action) != (before.senses_size, before.action):
         raise InputError(

@@ -9,7 +9,6 @@ from typing import NamedTuple
 import jax.numpy as jnp
 import numpy as np
 
-from primordia.brains.contract import split
 from primordia.compiled import shared
 from primordia.habitats.contract import AnyHabitat, HostHabitat, Outcome
 from primordia.habitats.on_host import OnHost
@@ -143,9 +142,9 @@ class _Tries:
         law, self._words = players.law, players.habitat.words
         each = partial(jnp.repeat, repeats=games, axis=0)
         cells = jnp.asarray(np.tile(np.arange(games), len(players.genomes)), jnp.int32)
-        genome = split(law.brain, each(jnp.asarray(players.genomes)))
+        genome = law.layout.split(each(jnp.asarray(players.genomes)))
         self._mind = Mind(genome, players.keys.map(each), cells)
-        self._memory = jnp.zeros((len(cells), law.brain.memory), jnp.float32)
+        self._memory = jnp.zeros((len(cells), law.memory), jnp.float32)
         self._rates = Rates(*map(each, players.rates))
         self._vitals = Vitals(fixed(self._rates.store), jnp.zeros(len(cells), jnp.int32))
         self._faulty = jnp.zeros(len(cells), bool)

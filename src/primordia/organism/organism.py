@@ -11,23 +11,28 @@ from primordia.law.world import Cause, Origin
 from primordia.organism.evaluation import Evaluation, evaluate
 from primordia.organism.policy import Policy
 from primordia.organism.replay import replay as show
-from primordia.runs.directory import read_config
+from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
 
 
 @dataclass(frozen=True)
 class Organism:
-    """Somebody who lived."""
+    """An organism that lives or has lived."""
 
-    run: Path
-    everyone: Lives
+    run: Archive
     row: int
+    """of the run's lives"""
 
     def __repr__(self) -> str:
         end = self.cause or "alive"
         return (
             f"<organism {self.id} of world {self.world}: born {self.born}, age {self.age}, {end}>"
         )
+
+    @property
+    def everyone(self) -> Lives:
+        """All lives of the run."""
+        return self.run.lives
 
     @property
     def id(self) -> int:
@@ -81,13 +86,14 @@ class Organism:
 
     def policy(self) -> Policy:
         """Its brain by itself."""
-        config = read_config(self.run)
-        return Policy(config.build_law(config.build_habitat()), self.genome())
+        return Policy(self.run.law, self.genome())
 
     def evaluate(self, **options: Any) -> Evaluation:
         """How it does in whole games; see `evaluation.evaluate`."""
         return evaluate(self.run, [(self.id, self.world)], **options)[0]
 
-    def replay(self, out: str | Path | None = None) -> Path:
+    def replay(
+        self, out: str | Path | None = None, ages: tuple[int | None, int | None] = (None, None)
+    ) -> Path:
         """Its life on video -> the file; see `replay.replay`."""
-        return show(self.run, self.id, self.world, Path(out) if out is not None else None)
+        return show(self.run, self.id, self.world, Path(out) if out is not None else None, ages)

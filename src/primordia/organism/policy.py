@@ -3,7 +3,6 @@
 import jax.numpy as jnp
 import numpy as np
 
-from primordia.brains.contract import split
 from primordia.compiled import shared
 from primordia.habitats.contract import Discrete
 from primordia.law.law import Law
@@ -16,13 +15,13 @@ class Policy:
     def __init__(self, law: Law, genome: np.ndarray) -> None:
         """`genome` is float32 (P,)."""
         self._law = law
-        self._genome = split(law.brain, jnp.asarray(genome, jnp.float32)[None])
+        self._genome = law.layout.split(jnp.asarray(genome, jnp.float32)[None])
         self._think = shared(type(law.brain).__call__, law.brain)
         self.reset()
 
     def reset(self) -> None:
         """Forget, as at birth."""
-        self._memory = jnp.zeros((1, self._law.brain.memory), jnp.float32)
+        self._memory = jnp.zeros((1, self._law.memory), jnp.float32)
 
     def __call__(self, senses: np.ndarray) -> int | np.ndarray:
         """One tick.

@@ -17,6 +17,7 @@ from primordia.law.metabolism import ONE
 from primordia.organism import video
 from primordia.organism.life.instant import Stretch
 from primordia.organism.life.life import Life
+from primordia.runs.archive import Archive
 
 PART = 30.0
 """Seconds shown of each end of a life that is longer than two such parts."""
@@ -26,7 +27,7 @@ SIZE, INK = 16, "#333333"
 
 
 def replay(
-    run: Path,
+    run: Archive,
     organism: int,
     world: int = 0,
     out: Path | None = None,
@@ -35,9 +36,9 @@ def replay(
     """Make a video of a life -> its path.
 
     Args:
-        run: the run's directory.
+        run: where it lived.
         organism: birth number.
-        world: where it lived.
+        world: its world.
         out: an .mp4 or .gif; by default under the run's `videos`.
         ages: first and last age shown, in ticks. Without them all of it, or of a life longer than a
             minute its first and last 30 seconds.
@@ -46,7 +47,7 @@ def replay(
         InputError: no such organism was born, its habitat draws no pictures, or nothing is to be shown.
         Trouble: the video cannot be written, or the life does not come out as recorded.
     """
-    path = out or run / "videos" / f"world{world}-organism{organism}.mp4"
+    path = out or run.path / "videos" / f"world{world}-organism{organism}.mp4"
     video.check_name(path)
     life = Life.of(run, organism, world)
     rate = _drawn(life)

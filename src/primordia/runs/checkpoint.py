@@ -9,7 +9,7 @@ A fork begins at a checkpoint of its own, RUN/origin, which stays.
 import hashlib
 import json
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -40,6 +40,46 @@ class Progress:
     """whether all of it can be repeated bit for bit"""
 
 
+NEVER = 2**64 - 1
+"""A count of a state for what has not happened."""
+
+FaultIn = Callable[[Path, int, str], str | None]
+"""Like `files.fault_in`, which it is unless the caller remembers what was checked before."""
+
+
+class Arrays(Mapping[str, np.ndarray]):
+    """State and open tails of a checkpoint by name, each read when it is first asked for.
+
+    The file stays open, so the arrays can be read even if the run has gone on and removed it.
+    """
+
+    def __init__(self, file: Path) -> None:
+        self._stored = np.load(file, allow_pickle=False)
+        self._read: dict[str, np.ndarray] = {}
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        if name not in self._read:
+            self._read[name] = self._stored[name]
+        return self._read[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._stored.files)
+
+    def __len__(self) -> int:
+        return len(self._stored.files)
+
+
+def count(arrays: Mapping[str, np.ndarray], name: str) -> np.ndarray:
+    """Return a state's 64-bit numbers of one name, uint64, which it holds in two words."""
+    hi, lo = arrays[f"{name}.hi"].astype(np.uint64), arrays[f"{name}.lo"]
+    return (hi << np.uint64(32)) | lo
+
+
+def world_ticks(arrays: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Return the ticks that each world of a state has lived through, uint64 (W,)."""
+    return count(arrays, "world.worlds.tick")
+
+
 @dataclass(frozen=True)
 class Checkpoint:
     """A checkpoint whose checksums hold."""
@@ -47,10 +87,9 @@ class Checkpoint:
     path: Path
     manifest: dict[str, Any]
 
-    def arrays(self) -> dict[str, np.ndarray]:
-        """State and tails, by name."""
-        with np.load(self.path / "state.npz", allow_pickle=False) as stored:
-            return dict(stored)
+    def arrays(self) -> Arrays:
+        """Open its state and tails."""
+        return Arrays(self.path / "state.npz")
 
     @property
     def progress(self) -> Progress:
@@ -146,22 +185,22 @@ def numbered(run: Path) -> list[Path]:
     return sorted(found, key=lambda path: int(path.name))
 
 
-def newest(run: Path) -> tuple[Checkpoint | None, list[str]]:
+def newest(run: Path, fault_in: FaultIn = files.fault_in) -> tuple[Checkpoint | None, list[str]]:
     """The newest checkpoint that is whole, segments included; and what is wrong with newer ones."""
     faults: list[str] = []
-    for found in _newest_first(run):
+    for found in _newest_first(run, fault_in):
         if isinstance(found, Checkpoint):
             return found, faults
         faults.append(found)
     return None, faults
 
 
-def whole(run: Path) -> list[Checkpoint]:
+def whole(run: Path, fault_in: FaultIn = files.fault_in) -> Iterator[Checkpoint]:
     """All that are whole, newest first, a fork's origin last."""
-    return [found for found in _newest_first(run) if isinstance(found, Checkpoint)]
+    return (found for found in _newest_first(run, fault_in) if isinstance(found, Checkpoint))
 
 
-def origin(run: Path) -> Checkpoint | None:
+def origin(run: Path, fault_in: FaultIn = files.fault_in) -> Checkpoint | None:
     """What a fork began with; None if the run is no fork.
 
     Raises:
@@ -169,20 +208,20 @@ def origin(run: Path) -> Checkpoint | None:
     """
     if not (run / ORIGIN).exists():
         return None
-    found = _read(run, run / ORIGIN)
+    found = _read(run, run / ORIGIN, fault_in)
     if isinstance(found, str):
         raise Trouble(found)
     return found
 
 
-def _newest_first(run: Path) -> Iterator[Checkpoint | str]:
+def _newest_first(run: Path, fault_in: FaultIn) -> Iterator[Checkpoint | str]:
     for path in reversed(numbered(run)):
-        yield _read(run, path)
+        yield _read(run, path, fault_in)
     if (run / ORIGIN).exists():
-        yield _read(run, run / ORIGIN)
+        yield _read(run, run / ORIGIN, fault_in)
 
 
-def _read(run: Path, path: Path) -> Checkpoint | str:
+def _read(run: Path, path: Path, fault_in: FaultIn) -> Checkpoint | str:
     """It, or what is wrong with it; raises Trouble if an input of all is no longer what it was."""
     try:
         manifest = json.loads((path / "manifest.json").read_text())
@@ -195,10 +234,10 @@ def _read(run: Path, path: Path) -> Checkpoint | str:
     except (OSError, ValueError, KeyError, TypeError):
         return f"{path / 'manifest.json'} is missing or damaged"
     for name, seal in inputs:
-        if fault := files.fault_in(run / name, seal):
+        if fault := fault_in(run / name, seal["bytes"], seal["sha256"]):
             raise Trouble(f"{fault}; put it back (`primordia fork` goes on with other settings)")
     for file, seal in sealed:
-        if fault := files.fault_in(file, seal):
+        if fault := fault_in(file, seal["bytes"], seal["sha256"]):
             return fault
     return Checkpoint(path, manifest)
 

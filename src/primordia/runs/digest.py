@@ -5,6 +5,7 @@ of rows, chunks or segments. The state enters as it stands, empty cells left out
 """
 
 import hashlib
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -33,7 +34,7 @@ def _stir(h: np.ndarray) -> np.ndarray:
 
 
 def digests(
-    records: dict[str, np.ndarray], arrays: dict[str, np.ndarray], worlds: int
+    records: dict[str, np.ndarray], arrays: Mapping[str, np.ndarray], worlds: int
 ) -> list[str]:
     """Digest of each world, hexadecimal.
 
@@ -42,7 +43,7 @@ def digests(
         arrays: the state by name, first axis worlds or cells; open tails are not part of it.
         worlds: how many there are.
     """
-    state = {name: array for name, array in arrays.items() if not name.startswith("tail.")}
+    state = {name: arrays[name] for name in arrays if not name.startswith("tail.")}
     return [_world_digest(records, state, world, worlds) for world in range(worlds)]
 
 

@@ -10,8 +10,9 @@ from filelock import FileLock, Timeout
 
 from primordia import device, files
 from primordia.brains import genomes
-from primordia.config import Config, validated
+from primordia.config import Config, parsed
 from primordia.errors import InputError, Trouble
+from primordia.habitats.contract import AnyHabitat
 from primordia.runs.record import TABLES
 from primordia.settings.tables import from_toml
 
@@ -32,10 +33,11 @@ def new(run: Path, config: Config) -> Iterator[None]:
     refuse_if_taken(run)
     make_folders(run)
     with locked(run):
-        versions = {"format": FORMAT, **device.versions(), **_habitat_versions(config)}
+        versions = {"format": FORMAT, **versions_here(config.build_habitat())}
         if config.ancestors:
-            brain = config.build_brain(config.build_habitat())
-            genomes.write(run / genomes.FOUNDERS, brain, genomes.read(config.ancestors, brain), {})
+            layout = config.build_layout(config.build_habitat())
+            founders = genomes.read(config.ancestors, layout)
+            genomes.write(run / genomes.FOUNDERS, layout, founders, {})
             config = config.model_copy(update={"ancestors": (genomes.FOUNDERS,)})
         _write_text(run / "config.toml", config.to_toml())
         _write_text(run / "versions.json", json.dumps(versions, indent=1))
@@ -58,13 +60,13 @@ def make_folders(run: Path) -> None:
 
 
 def read_config(run: Path) -> Config:
-    """The configuration of a run directory.
+    """Return the configuration of a run directory; it was checked as a whole when the run began.
 
     Raises:
         InputError: this is no run directory, or one this version cannot read.
     """
     try:
-        made_by = int(_recorded_versions(run)["format"])
+        made_by = int(recorded_versions(run)["format"])
     except (OSError, ValueError, KeyError, TypeError):
         raise InputError(
             f"{run} is not a run of primordia: it has no readable versions.json"
@@ -73,25 +75,16 @@ def read_config(run: Path) -> Config:
         raise InputError(
             f"{run} was made by a newer primordia (format {made_by}, this one reads {FORMAT}); upgrade"
         )
-    return validated(from_toml(run / "config.toml"), source=str(run / "config.toml"))
+    return parsed(from_toml(run / "config.toml"), source=str(run / "config.toml"))
 
 
-def other_versions(run: Path) -> list[str]:
-    """What a run was begun with and is not so here; while this is empty it goes on bit for bit."""
-    recorded = _recorded_versions(run)
-    here = {**device.versions(), **_habitat_versions(read_config(run))}
-    return [
-        f"{name} {recorded.get(name)} then, {now} now"
-        for name, now in here.items()
-        if recorded.get(name) != now
-    ]
+def versions_here(habitat: AnyHabitat) -> dict[str, str]:
+    """Return the versions that a run begun here would depend on, by name."""
+    return {**device.versions(), **habitat.versions}
 
 
-def _habitat_versions(config: Config) -> dict[str, str]:
-    return config.build_habitat().versions
-
-
-def _recorded_versions(run: Path) -> dict[str, Any]:
+def recorded_versions(run: Path) -> dict[str, Any]:
+    """Return what `versions.json` says: the format, and all that `versions_here` gave."""
     recorded: dict[str, Any] = json.loads((run / "versions.json").read_text())
     return recorded
 

@@ -21,10 +21,10 @@ from primordia.law.metabolism import fixed
 from primordia.law.world import Climate, Looks, World, Worlds
 from primordia.random.wide import Wide, never, wide
 from primordia.runs import checkpoint, directory
-from primordia.runs.checkpoint import Progress
-from primordia.runs.lives import Lives, lives
+from primordia.runs.archive import Archive
+from primordia.runs.checkpoint import Progress, world_ticks
+from primordia.runs.lives import Lives
 from primordia.runs.loop import Listener, Status, recorder_for
-from primordia.runs.report import opened, world_ticks
 from primordia.settings.tables import from_toml, merged
 
 INNOCENT = {"stop", "origin", "about", "sample_every"}
@@ -32,7 +32,7 @@ INNOCENT = {"stop", "origin", "about", "sample_every"}
 
 
 def fork(
-    source: Path,
+    source: Archive,
     at: int,
     out: Path,
     settings: dict[str, Any],
@@ -51,15 +51,14 @@ def fork(
         InputError: no such tick, a setting that cannot change in a living world, or `out` is taken.
         Trouble: something cannot be written, or the source does not come out as recorded.
     """
-    config, last = opened(source)
-    changed = _changed(source, settings, at)
+    ticks = int(source.ends.min())
+    changed = _changed(source.path, settings, at)
     directory.refuse_if_taken(out)
-    ticks = int(world_ticks(last.arrays()).min())
     if not 1 <= at <= ticks:
-        raise InputError(f"--at {at}: {source} can be forked at any tick from 1 to {ticks}")
-    before = _stood_at(source, config, at, listen)
-    living = _living(lives(source), before, config, at)
-    after = _transplanted(before, config, changed, at)
+        raise InputError(f"--at {at}: {source.path} can be forked at any tick from 1 to {ticks}")
+    before = _stood_at(source, at, listen)
+    living = _living(source.lives, before, source.config, at)
+    after = _transplanted(before, source.config, changed, at)
     recorder = recorder_for(after, out)
     recorder.add("births", _birth_rows(living, changed.cells))
     progress = Progress(changed.stop.model_dump(), 0.0, after.chunks.exact)
@@ -74,21 +73,20 @@ def _changed(source: Path, settings: dict[str, Any], at: int) -> Config:
     return validated(values, source=str(source))
 
 
-def _stood_at(source: Path, config: Config, at: int, listen: Listener | None) -> Engine:
+def _stood_at(source: Archive, at: int, listen: Listener | None) -> Engine:
     """The source at the end of a tick: from the newest checkpoint before it, or lived again."""
-    engine = Engine(config)
+    engine = Engine(source.config)
     limits = engine.limits({"ticks": at})
-    for stored in checkpoint.whole(source):
-        arrays = stored.arrays()
-        if (world_ticks(arrays) <= at).all():
-            engine.load(arrays)
-            break
+    stored = (each.arrays() for each in checkpoint.whole(source.path, source.fault_in))
+    if before := next((each for each in stored if (world_ticks(each) <= at).all()), None):
+        engine.load(dict(before))
     if not engine.any_running(limits):
         return engine
-    if differ := directory.other_versions(source):
-        raise InputError(f"{source} cannot be lived again up to tick {at}: {'; '.join(differ)}")
+    again = f"lived again up to tick {at}"
+    if source.other_versions:
+        raise InputError(f"{source.path} cannot be {again}: {'; '.join(source.other_versions)}")
     if not engine.chunks.exact:
-        raise InputError(f"{source} is not exact, so it cannot be lived again up to tick {at}")
+        raise InputError(f"{source.path} is not exact, so it cannot be {again}")
     began = time.perf_counter()
     while engine.any_running(limits):
         engine.advance(limits)
@@ -128,7 +126,8 @@ def _transplanted(before: Engine, old: Config, new: Config, at: int) -> Engine:
     after = Engine(new)
     arrays, own = before.arrays(), after.arrays()
     for name, array in own.items():
-        if ".looks." not in name and np.shape(arrays.get(name, 0)) != array.shape:
+        same = new.brain == old.brain and np.shape(arrays.get(name, 0)) == array.shape
+        if ".looks." not in name and not same:
             raise InputError("a fork cannot change cells, seeds, senses, the brain or the habitat")
     after.load(arrays)
     world, bodies = after.state

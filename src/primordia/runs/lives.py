@@ -1,15 +1,14 @@
 """Everyone who ever lived in a run, one row each: births and deaths joined."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
 
 from primordia.errors import InputError
 from primordia.law.world import Cause, Named, Origin
-from primordia.runs.report import opened, table, world_ticks
 
 ALIVE = -1
 """In place of a cause of death."""
@@ -75,8 +74,7 @@ class Lives:
 
     def of_world(self, world: int) -> "Lives":
         """Those of one world."""
-        first, last = np.searchsorted(self.world, [world, world + 1])
-        return self.take(slice(first, last))
+        return self.take(self._rows_of_world(world))
 
     def since(self, tick: int) -> "Lives":
         """As they would be on record had that begun at the end of a tick."""
@@ -99,9 +97,16 @@ class Lives:
         then = int(self.seen[inherited].min()) if inherited.any() else 0
         return replace(self, born=self.born - then, seen=self.seen - then, ended=self.ended - then)
 
-    def oldest(self) -> int:
-        """Row of the longest life, of equals the first."""
-        return int(np.argmax(self.lifespan))
+    def oldest(self, world: int | None = None) -> int:
+        """Row of the longest life, in one world or in all, of equals the first.
+
+        Raises:
+            InputError: nothing has lived there.
+        """
+        here = self._rows_of_world(world) if world is not None else slice(0, len(self))
+        if here.start == here.stop:
+            raise InputError(f"there is no world {world}; they count from 0 to {self.worlds - 1}")
+        return here.start + int(np.argmax(self.ended[here] - self.born[here]))
 
     def row(self, organism: int, world: int = 0) -> int:
         """Where an organism stands.
@@ -109,8 +114,9 @@ class Lives:
         Raises:
             InputError: no such organism was born.
         """
-        row = int(np.searchsorted(_key(self.world, self.id), (int(world) << 47) + int(organism)))
-        if row == len(self) or (self.world[row], self.id[row]) != (world, organism):
+        here = self._rows_of_world(world)
+        row = here.start + int(np.searchsorted(self.id[here], organism))
+        if row == here.stop or self.id[row] != organism:
             raise InputError(f"no organism {organism} was born in world {world}")
         return row
 
@@ -121,27 +127,32 @@ class Lives:
     @cached_property
     def parent_row(self) -> np.ndarray:
         """Row of each one's parent, int64 (L,), or -1 where it is not among these."""
-        keys = _key(self.world, self.id)
-        wanted = _key(self.world, self.parent)
-        rows = np.minimum(np.searchsorted(keys, wanted), max(len(keys) - 1, 0))
-        return np.where((self.parent >= 0) & (keys[rows] == wanted), rows, -1)
+        return _rows(self.world, self.id, self.world, self.parent)
+
+    def _rows_of_world(self, world: int) -> slice:
+        first, last = np.searchsorted(self.world, [world, world + 1])
+        return slice(int(first), int(last))
 
 
-def lives(run: Path) -> Lives:
-    """All lives of a run, up to its newest checkpoint.
+def joined(
+    births: Iterable[pa.Table], deaths: Iterable[pa.Table], ends: np.ndarray, begins: int
+) -> Lives:
+    """Return the lives that a run's tables tell of; segments are let go of one by one.
 
-    Raises:
-        InputError: this is no run, or nothing has lived in it yet.
+    Args:
+        births: one or more segments, in the order of events: within a world by birth number.
+        deaths: segments; their world, id, tick and cause are enough.
+        ends: tick at which each world stands, int64 (W,).
+        begins: tick at the end of which the records begin.
     """
-    config, last = opened(run)
-    ends = world_ticks(last.arrays()).astype(np.int64)
-    born = _by_life(table(run, "births"), Origin)
-    if not len(born["id"]):
-        raise InputError(f"{run} is empty: nothing has lived in it yet")
-    dead = _by_life(table(run, "deaths"), Cause)
-    rows = np.searchsorted(_key(born["world"], born["id"]), _key(dead["world"], dead["id"]))
+    born = _concatenated([_columns(segment, Origin) for segment in births])
+    if len(ends) > 1:  # world by world; NumPy sorts numbers of 16 bits in linear time
+        order = np.argsort(born["world"].astype(np.uint16), kind="stable")
+        born = {name: array[order] for name, array in born.items()}
     ended, cause = ends[born["world"]], np.full(len(born["id"]), ALIVE, np.int8)
-    ended[rows], cause[rows] = dead["tick"], dead["cause"]
+    for dead in (_columns(segment, Cause) for segment in deaths):
+        rows = _rows(born["world"], born["id"], dead["world"], dead["id"])
+        ended[rows], cause[rows] = dead["tick"], dead["cause"]
     return Lives(
         world=born["world"],
         id=born["id"],
@@ -149,10 +160,38 @@ def lives(run: Path) -> Lives:
         cell=born["cell"],
         origin=born["cause"],
         born=born["tick"],
-        seen=np.maximum(born["tick"], config.begins),
+        seen=np.maximum(born["tick"], begins) if begins else born["tick"],
         ended=ended,
         cause=cause,
     )
+
+
+def _rows(
+    worlds: np.ndarray, numbers: np.ndarray, world: np.ndarray, number: np.ndarray
+) -> np.ndarray:
+    """Return the row of each organism among others, int64 (n,), or -1 where it is not one of them.
+
+    Args:
+        worlds: of the others, (L,), not falling.
+        numbers: birth numbers of the others, (L,), rising within a world.
+        world: of those looked for, (n,).
+        number: birth numbers of those looked for, (n,).
+    """
+    if not len(numbers):
+        return np.full(len(number), -1)
+    # Birth numbers mostly have no gaps up to the last of a world, so they are distances from its row.
+    last = np.searchsorted(worlds, np.arange(2**16), side="right") - 1
+    row = (last - numbers[last])[world] + number
+    there = (row >= 0) & (row < len(numbers))
+    row[~there] = 0
+    there &= (numbers[row] == number) & (worlds[row] == world)
+    row[~there] = -1
+    rest = np.flatnonzero(~there & (number >= 0))
+    if len(rest):  # those alive at a fork, and where lives were left out
+        keys, wanted = _key(worlds, numbers), _key(world[rest], number[rest])
+        found = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
+        row[rest] = np.where(keys[found] == wanted, found, -1)
+    return row
 
 
 def _key(world: np.ndarray, number: np.ndarray) -> np.ndarray:
@@ -160,13 +199,19 @@ def _key(world: np.ndarray, number: np.ndarray) -> np.ndarray:
     return world.astype(np.int64) << 47 | number
 
 
-def _by_life(found: pa.Table, kind: type[Named]) -> dict[str, np.ndarray]:
-    """Columns of a table of births or deaths, sorted by world and birth number; nobody is -1."""
-    columns = {name: found[name].combine_chunks() for name in found.column_names}
+def _columns(segment: pa.Table, kind: type[Named]) -> dict[str, np.ndarray]:
+    """Columns of births or deaths as arrays; nobody is -1, and causes are numbers of a kind."""
+    arrays = {
+        name: segment[name].fill_null(-1).to_numpy()
+        for name in segment.column_names
+        if name != "cause"
+    }
+    causes = segment["cause"].combine_chunks()
     codes = {each.label: each for each in kind}
-    cause = columns.pop("cause")
-    of_word = np.array([codes[word] for word in cause.dictionary.to_pylist()], np.int8)
-    arrays = {name: column.fill_null(-1).to_numpy() for name, column in columns.items()}
-    arrays["cause"] = of_word[cause.indices.to_numpy()]
-    order = np.argsort(_key(arrays["world"], arrays["id"]), kind="stable")
-    return {name: array[order] for name, array in arrays.items()}
+    of_word = np.array([codes[word] for word in causes.dictionary.to_pylist()], np.int8)
+    return {**arrays, "cause": of_word[causes.indices.to_numpy()]}
+
+
+def _concatenated(parts: list[dict[str, np.ndarray]]) -> dict[str, np.ndarray]:
+    """Return the columns of all parts, which are emptied on the way."""
+    return {name: np.concatenate([part.pop(name) for part in parts]) for name in list(parts[0])}

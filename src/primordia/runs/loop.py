@@ -11,12 +11,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from primordia.config import Config
+from primordia.config import Config, checked
 from primordia.config import limits as valid_limits
 from primordia.engine.engine import Engine
 from primordia.engine.state import Limits
 from primordia.errors import InputError
 from primordia.runs import checkpoint, directory
+from primordia.runs.archive import Archive
 from primordia.runs.checkpoint import Checkpoint, Progress
 from primordia.runs.record import Recorder
 
@@ -88,15 +89,14 @@ def resume(
         Trouble: something cannot be written, or no checkpoint is whole.
     """
     _check_interval(checkpoint_every)
-    given = valid_limits(limits or {})
-    config = directory.read_config(run)
-    differ = directory.other_versions(run)
-    if differ and not inexact:
+    given, archive = valid_limits(limits or {}), Archive(run)
+    config = checked(archive.config, source=str(run / "config.toml"))
+    if (differ := archive.other_versions) and not inexact:
         raise InputError(
             f"{run} cannot go on bit for bit: {'; '.join(differ)}. Restore that, or add --inexact"
         )
     with directory.locked(run):
-        last, faults = checkpoint.newest(run)
+        last, faults = archive.newest  # what does change is not read before the lock is held
         if last is None and faults:
             raise checkpoint.none_whole(run, faults)
         if last is None and config.origin is not None:
@@ -123,12 +123,12 @@ def resume(
 def recorder_for(engine: Engine, run: Path | None) -> Recorder:
     """What takes down an engine's events in a run's directory; without one, digests only."""
     config = engine.config
-    return Recorder(run, config.seeds, config.cells, engine.law.blocks, engine.tallies)
+    return Recorder(run, config.seeds, config.cells, engine.law.layout.names, engine.tallies)
 
 
 def stand_at(engine: Engine, recorder: Recorder, last: Checkpoint) -> None:
     """Put an engine and a recorder where a checkpoint stands."""
-    arrays = last.arrays()
+    arrays = dict(last.arrays())
     recorder.resume(last.manifest["segments"], last.digests, arrays)
     engine.load(arrays)
 

@@ -12,6 +12,10 @@ NONE = "none"
 """How TOML and flags write None."""
 
 
+PARTS = {"habitat": "name", "brain": "kind"}
+"""Tables of replaceable parts, and the setting of each that says which part it is."""
+
+
 def tasks() -> dict[str, dict[str, Any]]:
     """The tasks that come with the package, by name."""
     found = {}
@@ -58,11 +62,17 @@ def from_toml(path: Path) -> dict[str, Any]:
 
 
 def merged(base: dict[str, Any], change: dict[str, Any]) -> dict[str, Any]:
-    """`base` with the values of `change` put in, table by table."""
+    """`base` with the values of `change` put in, table by table.
+
+    A table that names another part than before keeps nothing of the old one's settings.
+    """
     result = dict(base)
     for name, value in change.items():
-        both = isinstance(value, dict) and isinstance(result.get(name), dict)
-        result[name] = merged(result[name], value) if both else value
+        old, key = result.get(name), PARTS.get(name)
+        if isinstance(value, dict) and isinstance(old, dict):
+            exchanged = key in old and key in value and old[key] != value[key]
+            value = value if exchanged else merged(old, value)
+        result[name] = value
     return result
 
 

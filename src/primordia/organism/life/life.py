@@ -7,13 +7,12 @@ from collections.abc import Callable, Iterator
 from contextlib import closing
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 
 import jax.numpy as jnp
 import numpy as np
 import pyarrow.compute as pc
 
-from primordia.brains.contract import Genome, split
+from primordia.brains.contract import Genome
 from primordia.config import Config
 from primordia.errors import InputError, Trouble
 from primordia.habitats.contract import AnyHabitat
@@ -29,9 +28,8 @@ from primordia.organism.life.instant import Instant, Mind, Stretch
 from primordia.organism.life.on_host import LifeOnHost
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import Wide, wide
-from primordia.runs import checkpoint
-from primordia.runs.lives import Lives, lives
-from primordia.runs.report import opened, table
+from primordia.runs.archive import Archive
+from primordia.runs.lives import Lives
 
 KEPT = "memory", "energy", "eaten"
 """What a fork keeps of an organism, beside its genome and body."""
@@ -41,7 +39,7 @@ KEPT = "memory", "energy", "eaten"
 class Life:
     """What a life is a function of, and what is recorded of it."""
 
-    run: Path
+    run: Archive
     config: Config
     law: Law
     habitat: AnyHabitat
@@ -52,22 +50,20 @@ class Life:
     """of one"""
 
     @classmethod
-    def of(cls, run: Path, organism: int, world: int = 0) -> "Life":
+    def of(cls, run: Archive, organism: int, world: int = 0) -> "Life":
         """An organism's.
 
         Raises:
             InputError: no such organism was born, or it cannot be lived again.
         """
-        config, _ = opened(run)
-        everyone = lives(run)
-        row = everyone.row(organism, world)
-        habitat = config.build_habitat()
-        law = config.build_law(habitat)
-        genome = split(law.brain, jnp.asarray(rebuild(run, organism, world)[None]))
-        life = cls(run, config, law, habitat, genome, everyone.take(slice(row, row + 1)))
+        habitat, law, row = run.habitat, run.law, run.lives.row(organism, world)
+        genome = law.layout.split(jnp.asarray(rebuild(run, organism, world)[None]))
+        record = run.lives.take(np.array([row]))
+        life = cls(run, run.config, law, habitat, genome, record)
         if life.was_found and not habitat.exact:
             raise InputError(
-                f"{run}: organism {organism} is older than the fork, and its habitat cannot save bodies"
+                f"{run.path}: organism {organism} is older than the fork, and its habitat cannot save"
+                " bodies"
             )
         return life
 
@@ -129,16 +125,15 @@ class Life:
             return self._as_found(alone)
         key = stream(self._seed, Purpose.BODY, wide(self.record.born))
         words = body_words(key, jnp.asarray(self.record.cell), self.habitat.words)
-        memory = jnp.zeros((1, self.law.brain.memory), jnp.float32)
+        memory = jnp.zeros((1, self.law.memory), jnp.float32)
         store = self._rates(np.array([self.begins])).store
         vitals = Vitals(fixed(store), jnp.zeros(1, jnp.int32))
         return Instant(memory, vitals, alone.embody(words))
 
     def _as_found(self, alone: LifeInJax | LifeOnHost) -> Instant:
-        origin = checkpoint.origin(self.run)
-        assert origin is not None
-        arrays = origin.arrays()
-        cell = [place_in(origin, self.law, int(self.record.id[0]), self.world)]
+        arrays = self.run.origin
+        assert arrays is not None
+        cell = [place_in(arrays, self.law, int(self.record.id[0]), self.world)]
         own = {name: jnp.asarray(arrays[f"world.organisms.{name}"][cell]) for name in KEPT}
         bodies = {n: a[cell] for n, a in arrays.items() if n.startswith("bodies")}
         vitals = Vitals(own["energy"], own["eaten"])
@@ -156,18 +151,16 @@ class Life:
             same &= (stretch.energy[-1], stretch.eaten[-1]) == self.at_death
         if not same:
             raise Trouble(
-                f"{self.run}: organism {self.record.id[0]} did not live again as recorded;"
+                f"{self.run.path}: organism {self.record.id[0]} did not live again as recorded;"
                 " `primordia verify` tells whether this machine gives the run's bits"
             )
 
     @cached_property
     def at_death(self) -> tuple[int, int]:
         """Energy left and food eaten, as recorded at its death; fixed point."""
-        deaths = table(self.run, "deaths")
-        own = pc.and_(
-            pc.equal(deaths["world"], self.world), pc.equal(deaths["id"], int(self.record.id[0]))
-        )
-        (row,) = deaths.select(["energy", "food"]).filter(own).to_pylist()
+        own = (pc.field("world") == self.world) & (pc.field("id") == int(self.record.id[0]))
+        deaths = self.run.segments("deaths", ("world", "id", "energy", "food"))
+        row = next(row for segment in deaths for row in segment.filter(own).to_pylist())
         return round(row["energy"] * ONE), round(row["food"] * ONE)
 
     @property
@@ -177,7 +170,7 @@ class Life:
 
     @cached_property
     def _climate(self) -> Callable[[np.ndarray], dict[str, np.ndarray]]:
-        return climate_at(self.run, self.config, self.law, self.world)
+        return climate_at(self.run, self.world)
 
     def _rates(self, ticks: np.ndarray) -> Rates:
         """The metabolism in force, float32 (n,) each."""

@@ -1,0 +1,77 @@
+"""The layout of a genome: its blocks of weights, by name, and the order in which they lie flat."""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from math import prod
+from typing import TypeAlias, TypeVar
+
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from primordia.errors import InputError
+
+Shape: TypeAlias = tuple[int, ...]
+Arrays = TypeVar("Arrays", Array, np.ndarray)
+
+NAME = "[A-Za-z0-9_-]+"
+"""What a block may be called, as a regular expression: names are parts of settings and columns."""
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Name and shape of each block of weights, in the order of the flat genome.
+
+    Raises:
+        InputError: there is no block, or one has a name or a shape that cannot be used.
+    """
+
+    blocks: tuple[tuple[str, Shape], ...]
+
+    def __post_init__(self) -> None:
+        if not self.blocks:
+            raise InputError("brain: it has no blocks of weights, so nothing could evolve")
+        for name, shape in self.blocks:
+            if not isinstance(name, str) or not re.fullmatch(NAME, name):
+                raise InputError(
+                    f"brain: {name!r} cannot name a block of weights; use letters, digits, _ and -"
+                )
+            if not isinstance(shape, tuple) or not shape or not all(map(_is_axis, shape)):
+                raise InputError(
+                    f"brain: block {name!r} has the shape {shape!r}; use a tuple of positive integers"
+                )
+
+    @cached_property
+    def names(self) -> list[str]:
+        """Names of the blocks, B of them."""
+        return [name for name, _ in self.blocks]
+
+    @cached_property
+    def sizes(self) -> np.ndarray:
+        """Weights in each block, int64 (B,)."""
+        return np.array([prod(shape) for _, shape in self.blocks], np.int64)
+
+    @property
+    def length(self) -> int:
+        """P, the number of weights of one organism."""
+        return int(self.sizes.sum())
+
+    def split(self, flat: Arrays) -> dict[str, Arrays]:
+        """Cut flat genomes (..., P) into blocks (..., *shape), in NumPy or in JAX as they are."""
+        library = np if isinstance(flat, np.ndarray) else jnp
+        parts = library.split(flat, np.cumsum(self.sizes)[:-1], axis=-1)
+        return {
+            name: part.reshape(*flat.shape[:-1], *shape)
+            for (name, shape), part in zip(self.blocks, parts, strict=True)
+        }
+
+    def join(self, genome: Mapping[str, np.ndarray]) -> np.ndarray:
+        """Lay blocks (N, *shape) flat on the host: (N, P)."""
+        parts = zip(self.names, self.sizes, strict=True)
+        return np.concatenate([genome[name].reshape(-1, size) for name, size in parts], axis=1)
+
+
+def _is_axis(length: object) -> bool:
+    return type(length) is int and length > 0

@@ -1,0 +1,33 @@
+"""Export: genomes of organisms, rebuilt from the records, in a file that founders can be made from."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from primordia.brains import genomes
+from primordia.history.lineage import rebuild_all
+from primordia.runs.archive import Archive
+
+
+def export(
+    run: Archive, out: Path, organisms: Sequence[int] = (), world: int = 0
+) -> tuple[int, ...]:
+    """Write genomes of organisms to a safetensors file -> their birth numbers; see `genomes`.
+
+    Args:
+        run: where they lived.
+        out: the file.
+        organisms: birth numbers; without any, the organism that lived longest.
+        world: their world.
+
+    Raises:
+        InputError: no such organism was born.
+        Trouble: the file cannot be written.
+    """
+    chosen = tuple(organisms) or (int(run.lives.id[run.lives.oldest(world)]),)
+    about = {
+        "task": run.config.task,
+        "seed": str(run.config.seed + world),
+        "organisms": " ".join(map(str, chosen)),
+    }
+    genomes.write(out, run.law.layout, rebuild_all(run, [(each, world) for each in chosen]), about)
+    return chosen

@@ -1,0 +1,151 @@
+"""An opened run: everything that looks at a run directory reads it through one of these."""
+
+from collections.abc import Iterator, Sequence
+from functools import cache, cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from primordia import files
+from primordia.config import Config
+from primordia.errors import InputError
+from primordia.habitats.contract import AnyHabitat
+from primordia.law.law import Law
+from primordia.runs import checkpoint, directory
+from primordia.runs.checkpoint import Arrays, Checkpoint
+from primordia.runs.lives import Lives, joined
+from primordia.runs.record import TABLES, Recorder
+
+
+class Archive:
+    """A run directory opened for reading; each part is read, checked or built once, when first used.
+
+    It shows the run as its newest checkpoint had it when that was first used. A run that has gone on
+    since is opened again. Every file of that checkpoint, segments of the tables included, is held
+    against its checksum before anything is read from it.
+    """
+
+    def __init__(self, path: str | Path) -> None:
+        self.path = Path(path)
+        self.fault_in = cache(files.fault_in)
+        """`files.fault_in`, which reads no file twice"""
+
+    @cached_property
+    def config(self) -> Config:
+        """The settings.
+
+        Raises:
+            InputError: this is no run, or one that this version cannot read.
+        """
+        return directory.read_config(self.path)
+
+    @cached_property
+    def habitat(self) -> AnyHabitat:
+        """The habitat, to be asked for its properties; where bodies are needed, build another."""
+        return self.config.build_habitat()
+
+    @cached_property
+    def law(self) -> Law:
+        """The law that holds in the run's worlds."""
+        return self.config.build_law(self.habitat)
+
+    @cached_property
+    def versions(self) -> dict[str, Any]:
+        """What the run was begun with: format, versions of packages, device."""
+        return directory.recorded_versions(self.path)
+
+    @cached_property
+    def other_versions(self) -> list[str]:
+        """Versions that are not here what the run was begun with; if none, it goes on bit for bit."""
+        return [
+            f"{name} {self.versions.get(name)} then, {now} now"
+            for name, now in directory.versions_here(self.habitat).items()
+            if self.versions.get(name) != now
+        ]
+
+    @cached_property
+    def newest(self) -> tuple[Checkpoint | None, list[str]]:
+        """The newest whole checkpoint, if there is one, and what is wrong with newer ones."""
+        return checkpoint.newest(self.path, self.fault_in)
+
+    @property
+    def last(self) -> Checkpoint:
+        """The newest whole checkpoint.
+
+        Raises:
+            InputError: this is no run, or it has no checkpoint yet.
+            Trouble: none of its checkpoints is whole.
+        """
+        assert self.config is not None  # or it is no run
+        last, faults = self.newest
+        if last is None and faults:
+            raise checkpoint.none_whole(self.path, faults)
+        if last is None:
+            raise InputError(
+                f"{self.path} has no checkpoint yet; `primordia resume {self.path}` goes on with it"
+            )
+        return last
+
+    @cached_property
+    def state(self) -> Arrays:
+        """The arrays of that checkpoint."""
+        return self.last.arrays()
+
+    @cached_property
+    def origin(self) -> Arrays | None:
+        """The arrays that a fork began with; None if the run is no fork.
+
+        Raises:
+            Trouble: they are damaged.
+        """
+        found = checkpoint.origin(self.path, self.fault_in)
+        return None if found is None else found.arrays()
+
+    @cached_property
+    def ends(self) -> np.ndarray:
+        """Ticks that each world has lived through, int64 (W,)."""
+        return checkpoint.world_ticks(self.state).astype(np.int64)
+
+    def table(self, name: str, columns: Sequence[str] | None = None) -> pa.Table:
+        """Read `births`, `deaths` or `metrics`, or some columns: rows in the order of events."""
+        return pa.concat_tables(self.segments(name, columns))
+
+    def segments(self, name: str, columns: Sequence[str] | None = None) -> Iterator[pa.Table]:
+        """Read a table segment by segment, the open tail last; see `table`."""
+        assert name in TABLES
+        wanted, tail = columns and list(columns), self.state[f"tail.{name}"]
+        closed = self.last.manifest["segments"][name]
+        for each in closed:
+            with pq.ParquetFile(self.path / name / each["name"]) as file:
+                yield file.read(wanted)
+        if len(tail) or not closed:
+            rows = self._recorder.arrow(name, tail)
+            yield rows.select(wanted) if wanted else rows
+
+    @cached_property
+    def metrics(self) -> pa.Table:
+        """All samples."""
+        return self.table("metrics")
+
+    @cached_property
+    def lives(self) -> Lives:
+        """All lives, one row each.
+
+        Raises:
+            InputError: nothing has lived in the run yet.
+        """
+        births = self.segments("births")
+        deaths = self.segments("deaths", ("world", "id", "tick", "cause"))
+        found = joined(births, deaths, self.ends, self.config.begins)
+        if not len(found):
+            raise InputError(f"{self.path} is empty: nothing has lived in it yet")
+        return found
+
+    @cached_property
+    def _recorder(self) -> Recorder:
+        """Tells what the words of rows that are in no segment yet mean."""
+        config, tallies = self.config, self.habitat.tallies
+        return Recorder(None, config.seeds, config.cells, self.law.layout.names, tallies)

@@ -1,0 +1,36 @@
+"""Replaceable parts made from a table of settings, one of which says which part it is."""
+
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar
+
+from pydantic import ValidationError
+
+from primordia.errors import InputError
+from primordia.settings.fields import first_fault
+from primordia.settings.tables import PARTS
+
+Part = TypeVar("Part")
+
+
+def make(what: str, table: Mapping[str, Any], find: Callable[[object], type[Part]]) -> Part:
+    """Return the part that a table describes.
+
+    Args:
+        what: the kind of part and the name of its table, one of PARTS.
+        table: settings by name.
+        find: name -> the part's class; LookupError if there is none.
+
+    Raises:
+        InputError: there is no such part, or it does not take these settings.
+    """
+    own, key = dict(table), PARTS[what]
+    try:
+        kind = find(own.pop(key, ""))
+    except LookupError as error:
+        raise InputError(f"{what}.{key}: {error}") from None
+    try:
+        return kind(**own)
+    except ValidationError as error:
+        raise InputError(first_fault(error, kind, what)) from None
+    except (LookupError, TypeError, ValueError) as error:
+        raise InputError(f"{what}: {error}") from None

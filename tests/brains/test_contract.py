@@ -1,0 +1,245 @@
+"""The contract of brains, for every brain that comes with the package and for one that does not."""
+
+import os
+import subprocess
+import sys
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+import jax
+import numpy as np
+import pytest
+
+from primordia.brains.contract import KNOWN, Brain, build, find
+from primordia.errors import InputError
+from primordia.runs import loop
+from tests.history.test_lineage import comes_back
+from tests.toys import Sliding
+from tests.worlds import CLOCKWORK, MILL, Lived, config
+
+TABLES: dict[str, dict[str, Any]] = {
+    "recurrent": {"hidden": 12},
+    "recurrent, biases": {"hidden": 12, "biases": True},
+    "feed-forward": {"kind": "feed-forward", "hidden": 33},
+    "feed-forward, biases": {"kind": "feed-forward", "hidden": 2, "biases": True},
+    "gated": {"kind": "gated", "hidden": 32},
+    "gated, biases": {"kind": "gated", "hidden": 7, "biases": True},
+    "linear": {"kind": "linear"},
+    "linear, biases": {"kind": "linear", "biases": True},
+    "somebody's": {"kind": "tests.toys:Sliding"},
+}
+BRAINS = {name: build(table) for name, table in TABLES.items()}
+SENSES, OUTPUTS, MOST, TICKS = 5, 3, 1024, 6
+
+each_brain = pytest.mark.parametrize("brain", BRAINS.values(), ids=BRAINS)
+
+
+def minds(brain: Brain) -> tuple[dict[str, np.ndarray], np.ndarray, np.ndarray]:
+    """Genomes, memories and what is perceived in some ticks (T, N, S), of as many as there can be."""
+    rng = np.random.default_rng(1)
+
+    def normal(*shape: int) -> np.ndarray:
+        return rng.normal(size=shape).astype(np.float32)
+
+    layout = brain.layout(SENSES, OUTPUTS)
+    genome = {name: normal(MOST, *shape) for name, shape in layout.blocks}
+    memory = np.tanh(normal(MOST, brain.memory(SENSES, OUTPUTS)))
+    return genome, memory, normal(TICKS, MOST, SENSES)
+
+
+def lived(brain: Brain, genome: Any, memory: Any, senses: Any) -> tuple:
+    """Some ticks in one compiled loop -> memory (N, M), outputs (T, N, A)."""
+    return jax.lax.scan(lambda memory, seen: brain(genome, memory, seen), memory, senses)
+
+
+@each_brain
+def test_shapes_and_types(brain: Brain) -> None:
+    genome, memory, senses = minds(brain)
+    after, output = brain(genome, memory, senses[0])
+    assert (after.shape, after.dtype) == (memory.shape, np.float32)
+    assert (output.shape, output.dtype) == ((MOST, OUTPUTS), np.float32)
+    assert np.isfinite(output).all()
+    assert len(np.unique(output)) > MOST
+
+
+@each_brain
+def test_an_organism_thinks_the_same_among_any_number(brain: Brain) -> None:
+    genome, memory, senses = minds(brain)
+    think = jax.jit(brain)
+    after, output = (np.asarray(each) for each in think(genome, memory, senses[0]))
+    shuffled = np.random.default_rng(3).permutation(MOST)
+    for some in (shuffled, np.arange(1), np.arange(2), shuffled[:31], shuffled[:32]):
+        few = {name: block[some] for name, block in genome.items()}
+        few_after, few_output = think(few, memory[some], senses[0, some])
+        np.testing.assert_array_equal(few_after, after[some])
+        np.testing.assert_array_equal(few_output, output[some])
+
+
+@each_brain
+@pytest.mark.parametrize("count", [1, 31, MOST])
+def test_it_thinks_the_same_inside_a_loop_and_outside(brain: Brain, count: int) -> None:
+    genome, memory, senses = minds(brain)
+    genome = {name: block[:count] for name, block in genome.items()}
+    memory, senses = memory[:count], senses[:, :count]
+    last, outputs = jax.jit(lambda *given: lived(brain, *given))(genome, memory, senses)
+    think = jax.jit(brain)
+    for tick in range(TICKS):
+        memory, output = think(genome, memory, senses[tick])
+        np.testing.assert_array_equal(output, outputs[tick])
+    np.testing.assert_array_equal(memory, last)
+
+
+@each_brain
+def test_it_is_pure(brain: Brain) -> None:
+    given = minds(brain)
+    genome, memory, senses = given
+    think = jax.jit(brain)
+    one = jax.tree.map(np.asarray, think(genome, memory, senses[0]))
+    think(genome, memory + 1, senses[1])
+    brain(genome, memory, senses[2])
+    jax.tree.map(np.testing.assert_array_equal, one, think(genome, memory, senses[0]))
+    jax.tree.map(np.testing.assert_array_equal, given, minds(brain))
+
+
+@each_brain
+def test_a_broken_organism_breaks_no_other(brain: Brain) -> None:
+    genome, memory, senses = minds(brain)
+    think = jax.jit(brain)
+    whole = think(genome, memory, senses[0])
+    broken = {name: block.copy() for name, block in genome.items()}
+    for block in broken.values():
+        block[7] = np.nan
+    senses[0, 9] = np.inf
+    after = think(broken, memory, senses[0])
+    others = np.delete(np.arange(MOST), [7, 9])
+    assert np.isnan(after[1][7]).all()
+    for one, other in zip(after, whole, strict=True):
+        np.testing.assert_array_equal(one[others], other[others])
+
+
+@each_brain
+def test_memory_counts_where_there_is_one(brain: Brain) -> None:
+    genome, memory, senses = minds(brain)
+    _, output = brain(genome, memory, senses[0])
+    _, other = brain(genome, -memory, senses[0])
+    remembers = brain.memory(SENSES, OUTPUTS) > 0
+    assert (np.abs(np.asarray(output) - other).max() > 0.1) == remembers
+
+
+@each_brain
+def test_every_block_counts(brain: Brain) -> None:
+    genome, memory, senses = minds(brain)
+    _, output = brain(genome, memory, senses[0])
+    for name, block in genome.items():
+        _, other = brain({**genome, name: block + np.float32(0.5)}, memory, senses[0])
+        assert (np.asarray(output) != other).any(axis=1).mean() > 0.9, name
+
+
+def fingerprint() -> str:
+    """Hash of what all of them think; printed by the processes below."""
+    found = sha256()
+    for brain in BRAINS.values():
+        for each in jax.tree.leaves(
+            jax.jit(lambda *given, b=brain: lived(b, *given))(*minds(brain))
+        ):
+            found.update(np.asarray(each).tobytes())
+    return found.hexdigest()
+
+
+PROGRAM = """
+import os, sys
+os.sched_setaffinity(0, [int(cpu) for cpu in sys.argv[1:]])
+from tests.brains.test_contract import fingerprint
+print(fingerprint())
+"""
+
+
+def test_threads_make_no_difference() -> None:
+    if not hasattr(os, "sched_setaffinity") or len(os.sched_getaffinity(0)) < 2:
+        pytest.skip("needs Linux and two processors")
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(["src", "."])}
+    command = [sys.executable, "-c", PROGRAM, str(min(os.sched_getaffinity(0)))]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == fingerprint()
+
+
+LIVING = {"replication": 0.3, "hazard": 0.03, "metabolism": None, "seasons": []}
+
+
+@pytest.mark.parametrize("name", ["recurrent, biases", "gated, biases", "linear", "somebody's"])
+def test_it_lives_and_evolves_and_is_rebuilt(name: str, tmp_path: Path) -> None:
+    values = {**MILL, **LIVING, "brain": TABLES[name], "seeds": 2, "stop": {"ticks": 200}}
+    loop.start(config(values), tmp_path / "run")
+    comes_back(tmp_path / "run")
+
+
+@pytest.mark.parametrize("name", ["gated, biases", "somebody's"])
+def test_it_lives_the_same_with_a_habitat_in_jax_and_on_the_host(name: str) -> None:
+    values = {**MILL, **LIVING, "brain": TABLES[name], "seeds": 2}
+    mirror = {**values, "habitat": {"name": "tests.toys:Mirror", "inner": "mill"}}
+    one, other = Lived(config(values), 200), Lived(config(mirror), 200, chunk=77)
+    for table in ("births", "deaths", "metrics"):
+        np.testing.assert_array_equal(
+            np.concatenate(one.rows[table]), np.concatenate(other.rows[table])
+        )
+    assert len(one.table("births")["id"]) > 100
+
+
+@pytest.mark.parametrize("name", ["gated, biases", "somebody's"])
+def test_memory_is_zero_at_birth(name: str) -> None:
+    """In CLOCKWORK all starve in tick 31, and every cell is filled again."""
+    lived = Lived(config({**CLOCKWORK, "brain": TABLES[name]}), 30)
+
+    def memory() -> np.ndarray:
+        return np.asarray(lived.engine.state.world.organisms.memory)
+
+    assert memory().shape == (32, lived.engine.law.memory)
+    assert memory().all()
+    lived.on(31)
+    assert not memory().any()
+
+
+def test_brains_are_found() -> None:
+    assert [find(name).__name__ for name in KNOWN] == [
+        "Recurrent",
+        "FeedForward",
+        "Gated",
+        "Linear",
+    ]
+    assert find("tests.toys:Sliding") is Sliding
+    assert build({}) == build({"kind": "recurrent", "hidden": 32, "biases": False})
+
+
+@pytest.mark.parametrize(
+    ("table", "says"),
+    [
+        (
+            {"kind": "gatd"},
+            "brain.kind: no brain named 'gatd'; known: recurrent, feed-forward, gated",
+        ),
+        ({"kind": 5}, "brain.kind: no brain named 5"),
+        (
+            {"kind": "tests.toys:Meadow"},
+            "brain.kind: Meadow is no brain: subclass Brain of primordia.brains",
+        ),
+        ({"kind": "tests.toys:Nothing"}, "'tests.toys:Nothing' cannot be loaded"),
+        (
+            {"kind": "primordia.brains.contract:Brain"},
+            "brain: Can't instantiate abstract class Brain",
+        ),
+        ({"kind": "gated", "hiden": 3}, "no setting 'brain.hiden'; did you mean 'brain.hidden'"),
+        ({"kind": "linear", "hidden": 3}, "there is no setting 'brain.hidden'"),
+        (
+            {"kind": "gated", "hidden": 0},
+            "brain.hidden: input should be greater than or equal to 1",
+        ),
+        ({"kind": "gated", "biases": 1}, "brain.biases: input should be a valid boolean, not 1"),
+        ({"kind": "tests.toys:Sliding", "width": 0}, "brain.width: .*, not 0"),
+    ],
+)
+def test_one_that_cannot_be_made(table: dict[str, Any], says: str) -> None:
+    with pytest.raises(InputError, match=says):
+        build(table)
+    with pytest.raises(InputError, match=f"^mill: .*{says}"):
+        config({**MILL, "brain": table})

@@ -1,0 +1,101 @@
+"""Brains against their formulas in NumPy, in float64."""
+
+import numpy as np
+import pytest
+
+from primordia.brains.contract import Brain
+from primordia.brains.feedforward import FeedForward
+from primordia.brains.gated import Gated
+from primordia.brains.linear import Linear
+from primordia.brains.recurrent import Recurrent
+from tests.brains.test_layers import times
+
+SENSES, HIDDEN, OUTPUTS, N = 5, 12, 3, 64
+
+
+def thought(brain: Brain, ticks: int = 4) -> tuple:
+    """Genomes, senses (T, N, S), memories (T, N, M) and outputs (T, N, A) of N organisms."""
+    rng, shape = np.random.default_rng(1), (ticks, N, SENSES)
+    layout = brain.layout(SENSES, OUTPUTS)
+    genome = layout.split(rng.normal(size=(N, layout.length)).astype(np.float32))
+    senses = rng.normal(size=shape).astype(np.float32)
+    memory, seen = np.zeros((N, brain.memory(SENSES, OUTPUTS)), np.float32), []
+    for each in senses:
+        memory, output = brain(genome, memory, each)
+        seen.append((memory, output))
+    return genome, senses, *(np.stack(each) for each in zip(*seen, strict=True))
+
+
+def bias(genome: dict[str, np.ndarray], name: str) -> np.ndarray | int:
+    return genome.get(f"{name}_bias", 0)
+
+
+def blocks(brain: Brain) -> list[str]:
+    return brain.layout(SENSES, OUTPUTS).names
+
+
+def test_blocks_of_the_papers_brain() -> None:
+    assert blocks(Recurrent()) == ["input", "recurrent", "output"]
+    assert blocks(FeedForward()) == ["input", "output"]
+    assert Recurrent().layout(4, 2).length == 4 * 32 + 32 * 32 + 32 * 2
+    with_biases = ["input", "input_bias", "recurrent", "output", "output_bias"]
+    assert blocks(Recurrent(biases=True)) == with_biases
+
+
+@pytest.mark.parametrize("biases", [False, True])
+def test_recurrent(biases: bool) -> None:
+    g, senses, memories, outputs = thought(Recurrent(hidden=HIDDEN, biases=biases))
+    h = np.zeros((N, HIDDEN))
+    for x, memory, output in zip(senses, memories, outputs, strict=True):
+        h = np.tanh(times(g["input"], x) + bias(g, "input") + times(g["recurrent"], h))
+        np.testing.assert_allclose(memory, h, atol=5e-5)
+        y = times(g["output"], h) + bias(g, "output")
+        np.testing.assert_allclose(output, y, atol=5e-4)
+
+
+@pytest.mark.parametrize("biases", [False, True])
+def test_feed_forward(biases: bool) -> None:
+    g, senses, memories, outputs = thought(FeedForward(hidden=HIDDEN, biases=biases))
+    assert memories.size == 0
+    for x, output in zip(senses, outputs, strict=True):
+        hidden = np.tanh(times(g["input"], x) + bias(g, "input"))
+        y = times(g["output"], hidden) + bias(g, "output")
+        np.testing.assert_allclose(output, y, atol=5e-4)
+
+
+@pytest.mark.parametrize("biases", [False, True])
+def test_linear(biases: bool) -> None:
+    g, senses, memories, outputs = thought(Linear(biases=biases))
+    assert memories.size == 0
+    for x, output in zip(senses, outputs, strict=True):
+        np.testing.assert_allclose(output, times(g["output"], x) + bias(g, "output"), atol=5e-5)
+
+
+@pytest.mark.parametrize("biases", [False, True])
+def test_gated(biases: bool) -> None:
+    g, senses, memories, outputs = thought(Gated(hidden=HIDDEN, biases=biases))
+    assert len(g) == 7 + 4 * biases
+    h = np.zeros((N, HIDDEN))
+
+    def drive(part: str, x: np.ndarray, h: np.ndarray) -> np.ndarray:
+        perceived = times(g[f"{part}_input"], x) + bias(g, f"{part}_input")
+        return perceived + times(g[f"{part}_recurrent"], h)
+
+    for x, memory, output in zip(senses, memories, outputs, strict=True):
+        r, z = (1 / (1 + np.exp(-drive(part, x, h))) for part in ("reset", "update"))
+        h = z * h + (1 - z) * np.tanh(drive("candidate", x, r * h))
+        np.testing.assert_allclose(memory, h, atol=5e-5)
+        y = times(g["output"], h) + bias(g, "output")
+        np.testing.assert_allclose(output, y, atol=5e-4)
+
+
+def test_a_closed_update_gate_keeps_a_memory_for_good() -> None:
+    brain = Gated(hidden=HIDDEN, biases=True)
+    layout = brain.layout(SENSES, OUTPUTS)
+    genome = layout.split(np.random.default_rng(0).normal(size=(N, layout.length)).astype("f4"))
+    genome["update_input_bias"][:] = 1000
+    memory = np.random.default_rng(1).random((N, HIDDEN), np.float32)
+    after = memory
+    for _ in range(20):
+        after, _ = brain(genome, after, np.ones((N, SENSES), np.float32))
+    np.testing.assert_array_equal(after, memory)

@@ -1,0 +1,62 @@
+"""Layers against their formulas in NumPy."""
+
+import numpy as np
+import pytest
+
+from primordia.brains.layers import gate, layer, linear, matvec, mix
+
+
+def normal(*shape: int) -> np.ndarray:
+    return np.random.default_rng(0).normal(size=shape).astype(np.float32)
+
+
+def times(weights: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """W x in float64; the longer side of W (K, *) is stored last, inputs first if they are equal."""
+    inputs_first = weights.shape[1] == x.shape[1]
+    return np.einsum("kio,ki->ko" if inputs_first else "koi,ki->ko", weights.astype(float), x)
+
+
+SIZES = [
+    (4, 32, (4, 32)),
+    (32, 4, (4, 32)),
+    (7, 7, (7, 7)),
+    (128, 32, (32, 128)),
+    (1, 1, (1, 1)),
+    (1, 5, (1, 5)),
+    (5, 1, (1, 5)),
+]
+
+
+@pytest.mark.parametrize(("inputs", "outputs", "shape"), SIZES)
+def test_a_layer_stores_the_longer_axis_last(
+    inputs: int, outputs: int, shape: tuple[int, int]
+) -> None:
+    assert layer("w", inputs, outputs) == {"w": shape}
+    weights, x = normal(3, *shape), normal(3, inputs)
+    np.testing.assert_allclose(matvec(weights, x), times(weights, x), rtol=1e-4, atol=1e-4)
+
+
+@pytest.mark.parametrize(("inputs", "outputs", "shape"), SIZES)
+def test_a_bias_is_a_block_of_its_own(inputs: int, outputs: int, shape: tuple[int, int]) -> None:
+    blocks = layer("w", inputs, outputs, bias=True)
+    assert blocks == {"w": shape, "w_bias": (outputs,)}
+    genome = {name: normal(3, *each) for name, each in blocks.items()}
+    x = normal(3, inputs)
+    expected = times(genome["w"], x) + genome["w_bias"]
+    np.testing.assert_allclose(linear(genome, "w", x), expected, rtol=1e-4, atol=1e-4)
+    np.testing.assert_array_equal(linear({"w": genome["w"]}, "w", x), matvec(genome["w"], x))
+
+
+def test_a_gate_is_the_logistic_function() -> None:
+    x = np.linspace(-20, 20, 401, dtype=np.float32)
+    np.testing.assert_allclose(gate(x), 1 / (1 + np.exp(-x.astype(float))), atol=2e-7)
+    np.testing.assert_array_equal(gate(np.array([-np.inf, 0, np.inf], np.float32)), [0, 0.5, 1])
+    assert np.isnan(gate(np.float32(np.nan)))
+
+
+def test_a_mixture_goes_from_one_to_the_other() -> None:
+    share, a, b = np.random.default_rng(1).random((3, 1000), np.float32) + np.float32(1e-3)
+    rounded = share * a + (np.float32(1) - share) * b
+    np.testing.assert_array_equal(mix(np.minimum(share, 1), a, b), np.where(share > 1, a, rounded))
+    np.testing.assert_array_equal(mix(np.ones_like(a), a, b), a)
+    np.testing.assert_array_equal(mix(np.zeros_like(a), a, b), b)

@@ -1,0 +1,71 @@
+"""Layouts: what a flat genome consists of."""
+
+from math import prod
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from jax import Array
+
+from primordia.brains.layout import Layout
+from primordia.errors import InputError
+
+LAYOUT = Layout((("input", (2, 3)), ("gate-2", (4,)), ("K_3", (2, 2, 3))))
+
+
+def test_names_sizes_and_length() -> None:
+    assert LAYOUT.names == ["input", "gate-2", "K_3"]
+    assert LAYOUT.sizes.tolist() == [6, 4, 12]
+    assert LAYOUT.length == 22
+
+
+@pytest.mark.parametrize("library", [np, jnp])
+def test_a_flat_genome_is_its_blocks_in_order(library) -> None:
+    flat = np.random.default_rng(0).normal(size=(64, 22)).astype(np.float32)
+    blocks = LAYOUT.split(library.asarray(flat))
+    assert all(isinstance(block, np.ndarray | Array) for block in blocks.values())
+    assert all(isinstance(block, Array) == (library is jnp) for block in blocks.values())
+    assert {name: block.shape[1:] for name, block in blocks.items()} == dict(LAYOUT.blocks)
+    on_host = {name: np.asarray(block) for name, block in blocks.items()}
+    np.testing.assert_array_equal(LAYOUT.join(on_host), flat)
+    in_order = np.concatenate([on_host[name][5].ravel() for name in LAYOUT.names])
+    np.testing.assert_array_equal(in_order, flat[5])
+    for name, block in LAYOUT.split(library.asarray(flat[5])).items():
+        np.testing.assert_array_equal(block, on_host[name][5])
+
+
+def test_no_genomes_are_laid_flat_too() -> None:
+    empty = np.zeros((0, 22), np.float32)
+    assert LAYOUT.join(LAYOUT.split(empty)).shape == (0, 22)
+
+
+def test_equal_layouts_are_one_value() -> None:
+    again = Layout(LAYOUT.blocks)
+    assert again == LAYOUT
+    assert hash(again) == hash(LAYOUT)
+    assert Layout(LAYOUT.blocks[::-1]) != LAYOUT
+    assert sum(prod(shape) for _, shape in LAYOUT.blocks) == again.length
+
+
+@pytest.mark.parametrize(
+    ("blocks", "says"),
+    [
+        ((), "it has no blocks of weights"),
+        (
+            (("in.put", (2,)),),
+            "'in.put' cannot name a block of weights; use letters, digits, _ and -",
+        ),
+        ((("", (2,)),), "'' cannot name a block"),
+        ((("two words", (2,)),), "'two words' cannot name a block"),
+        ((("größe", (2,)),), "'größe' cannot name a block"),
+        (((7, (2,)),), "7 cannot name a block"),
+        ((("w", (2, 0)),), r"block 'w' has the shape \(2, 0\); use a tuple of positive integers"),
+        ((("w", ()),), r"block 'w' has the shape \(\)"),
+        ((("w", [2, 3]),), r"block 'w' has the shape \[2, 3\]"),
+        ((("w", (2.0,)),), r"block 'w' has the shape \(2.0,\)"),
+        ((("w", 3),), "block 'w' has the shape 3"),
+    ],
+)
+def test_blocks_that_cannot_be(blocks: tuple, says: str) -> None:
+    with pytest.raises(InputError, match=f"^brain: .*{says}"):
+        Layout(blocks)

@@ -1,0 +1,182 @@
+"""A run is opened once: each part of it is read, checked and built when it is first asked for."""
+
+import shutil
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import primordia
+from primordia import files
+from primordia.config import Config
+from primordia.errors import InputError, Trouble
+from primordia.history.foraging import foraging
+from primordia.history.info import info
+from primordia.history.lineage import rebuild_all
+from primordia.runs import loop, record
+from primordia.runs.archive import Archive
+from tests.commands import here
+from tests.trouble import flip
+from tests.worlds import MILL, config
+
+SETTINGS = {**MILL, "brain": {"hidden": 4}, "seeds": 2, "seed": 3, "stop": {"ticks": 400}}
+
+
+@pytest.fixture(scope="module")
+def mill(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Seasons, a metabolism, two worlds."""
+    run = tmp_path_factory.mktemp("mill") / "run"
+    loop.start(config(SETTINGS), run)
+    return run
+
+
+@pytest.fixture
+def fork(mill: Path, tmp_path: Path) -> Path:
+    return primordia.load(mill).fork(250, tmp_path / "fork", seed=8).path
+
+
+@pytest.fixture
+def checked(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
+    """How often each file's checksum is computed."""
+    counted, seal = Counter[str](), files.seal
+
+    def counting(path: Path) -> dict[str, object]:
+        counted[str(path)] += 1
+        return seal(path)
+
+    monkeypatch.setattr(files, "seal", counting)
+    return counted
+
+
+def test_no_file_is_checked_twice(fork: Path, checked: Counter[str]) -> None:
+    """Whatever is asked of it: settings and genomes, checkpoints, segments and a fork's origin."""
+    run = Archive(fork)
+    assert info(run)["worlds"]
+    assert foraging(run).since == 250
+    rebuild_all(run, [(int(run.lives.id[row]), int(run.lives.world[row])) for row in (0, -1)])
+    assert {*checked.values()} == {1}
+    names = {str(Path(path).relative_to(fork)) for path in checked}
+    assert {"config.toml", "origin/state.npz", "births/000000.parquet"} < names
+
+
+@pytest.mark.parametrize("words", [("replay", "--to", 20), ("evaluate", "--episodes", 2), "export"])
+def test_a_command_opens_its_run_once(
+    words: str | tuple[object, ...], tmp_path: Path, checked: Counter[str]
+) -> None:
+    made = primordia.run("CartPole-survival", tmp_path / "run", cells=8, stop={"ticks": 100})
+    checked.clear()
+    name, *options = (words, tmp_path / "genome") if isinstance(words, str) else words
+    done = here(name, made.path, *options)
+    assert done.returncode == 0, done.stderr
+    assert {*checked.values()} == {1}
+
+
+def test_from_python_too(tmp_path: Path, checked: Counter[str]) -> None:
+    made = primordia.run("CartPole-survival", tmp_path / "run", cells=8, stop={"ticks": 100})
+    checked.clear()
+    oldest = made.oldest()
+    oldest.replay(tmp_path / "life.gif", ages=(0, 20))
+    oldest.policy()
+    assert {*checked.values()} == {1}
+    made.info()
+    assert {*checked.values()} == {2}, "each call of a run opens it as it stands then"
+
+
+def test_the_law_is_built_once(mill: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    built, build = [], Config.build_law
+
+    def building(self: Config, habitat: object) -> object:
+        built.append(habitat)
+        return build(self, habitat)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(Config, "build_law", building)
+    run = Archive(mill)
+    foraging(run)
+    rebuild_all(run, [(0, 0), (0, 1)])
+    assert len(built) == 1
+
+
+def test_records_are_read_without_the_habitats_code(
+    mill: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole = Archive(mill)
+    births, lives = whole.table("births"), whole.lives
+
+    def missing(self: Config) -> None:
+        raise InputError("there is no such module")
+
+    monkeypatch.setattr(Config, "build_habitat", missing)
+    run = Archive(mill)
+    assert run.table("births") == births
+    np.testing.assert_array_equal(run.lives.ended, lives.ended)
+    assert run.config.task == "mill"
+    with pytest.raises(InputError, match="no such module"):
+        _ = run.law
+
+
+def test_an_opened_run_does_not_see_it_grow(tmp_path: Path) -> None:
+    """Although the checkpoint that it was opened at has been removed since."""
+    path = tmp_path / "run"
+    loop.start(config(SETTINGS), path)
+    run = Archive(path)
+    assert run.ends.tolist() == [400, 400]
+    before = run.last.path
+    for ticks in (450, 500, 550):
+        loop.resume(path, {"ticks": ticks})
+    assert not before.exists()
+    assert info(run)["worlds"][1]["ticks"] == 400
+    assert run.table("births")["tick"].to_numpy().max() <= 400
+    assert run.lives.ended.max() == 400
+    assert Archive(path).ends.tolist() == [550, 550]
+    assert Archive(path).table("births").slice(0, len(run.table("births"))) == run.table("births")
+
+
+def test_some_columns_of_closed_and_open_segments(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(record, "SEGMENT_ROWS", 9)
+    monkeypatch.setattr(record.Recorder, "finish", lambda _: None)
+    loop.start(config(SETTINGS), tmp_path / "run")
+    run = Archive(tmp_path / "run")
+    for name, columns in {"births": ("tick", "cause"), "metrics": ("world", "hazard")}.items():
+        assert len(run.state[f"tail.{name}"])
+        assert run.table(name, columns) == run.table(name).select(columns)
+    assert len(list(run.segments("births"))) > 2
+    assert len(run.lives) == len(run.table("births"))
+
+
+def test_what_a_fork_began_with(mill: Path, fork: Path) -> None:
+    assert Archive(mill).origin is None
+    origin, run = Archive(fork).origin, Archive(fork)
+    assert origin is not None
+    alive = int(origin["world.organisms.alive"].sum())
+    assert alive == int((run.lives.born <= 250).sum())
+    flip(fork / "origin" / "state.npz")
+    assert len(run.lives)
+    with pytest.raises(Trouble, match=r"origin/state\.npz was changed or damaged"):
+        _ = run.origin
+
+
+@pytest.mark.parametrize("table", record.TABLES)
+def test_damage_is_noticed_whatever_is_read(mill: Path, tmp_path: Path, table: str) -> None:
+    run = Archive(shutil.copytree(mill, tmp_path / "run"))
+    flip(run.path / table / "000000.parquet")
+    with pytest.raises(Trouble, match=rf"{table}/000000\.parquet was changed or damaged"):
+        info(run)
+
+
+def test_a_fork_whose_records_are_damaged_is_seen_as_it_began(fork: Path) -> None:
+    flip(fork / "births" / "000000.parquet")
+    run = Archive(fork)
+    _, faults = run.newest
+    assert "births/000000.parquet was changed or damaged" in faults[0]
+    assert run.ends.tolist() == [250, 250]
+    assert (run.lives.born <= 250).all()
+
+
+def test_what_is_no_run(tmp_path: Path) -> None:
+    run = Archive(tmp_path)
+    for ask in ("config", "last", "state", "lives", "law", "ends"):
+        with pytest.raises(InputError, match="is not a run of primordia"):
+            getattr(run, ask)

@@ -1,0 +1,79 @@
+"""Births and deaths joined, and who is whose parent, against the plainest way to find out."""
+
+import numpy as np
+import pyarrow as pa
+from hypothesis import given
+from hypothesis import strategies as st
+
+from primordia.law.world import Cause, Origin
+from primordia.runs.lives import ALIVE, Lives, joined
+
+WORLDS = st.lists(st.lists(st.booleans(), max_size=30), min_size=1, max_size=4)
+"""Of each world, which of its birth numbers are on record: all, but where a fork began."""
+
+
+def dictionary(codes: np.ndarray, names: type[Origin] | type[Cause]) -> pa.Array:
+    return pa.DictionaryArray.from_arrays(codes.astype(np.int8), [each.label for each in names])
+
+
+def tables(worlds: list[list[bool]], cuts: int) -> tuple[list[pa.Table], list[pa.Table]]:
+    """Births and deaths of worlds in the order of events, in several segments."""
+    rows = [
+        (n, w) for w, there in enumerate(worlds) for n, on_record in enumerate(there) if on_record
+    ]
+    number, world = np.array(sorted(rows), np.int64).reshape(-1, 2).T
+    parent, causes = number // 2 - 1, np.minimum(number, 2)
+    births = pa.table(
+        {
+            "world": world.astype(np.int32),
+            "id": number,
+            "parent": pa.array(parent, mask=parent == -1),
+            "tick": 10 * number,
+            "cell": (number % 7).astype(np.int32),
+            "cause": dictionary(causes, Origin),
+        }
+    )
+    dead = np.flatnonzero(number % 3 > 0)[::-1]
+    died = {"world": births["world"].take(dead), "id": number[dead], "tick": 10 * number[dead] + 5}
+    deaths = pa.table({**died, "cause": dictionary(number[dead] % 3, Cause)})
+    size = len(births) // cuts + 1
+    return tuple([each.slice(at * size, size) for at in range(cuts)] for each in (births, deaths))  # type: ignore[return-value]
+
+
+def found(worlds: list[list[bool]], cuts: int) -> Lives:
+    births, deaths = tables(worlds, cuts)
+    return joined(births, deaths, np.array([1000 + w for w in range(len(worlds))]), 40)
+
+
+@given(WORLDS, st.integers(1, 3))
+def test_every_birth_with_its_death(worlds: list[list[bool]], cuts: int) -> None:
+    lives = found(worlds, cuts)
+    expected = [(w, n) for w, there in enumerate(worlds) for n, here in enumerate(there) if here]
+    assert list(zip(lives.world.tolist(), lives.id.tolist(), strict=True)) == expected
+    for row, (world, number) in enumerate(expected):
+        died = number % 3 > 0
+        assert lives.ended[row] == (10 * number + 5 if died else 1000 + world)
+        assert lives.cause[row] == (number % 3 if died else ALIVE)
+        assert lives.parent[row] == number // 2 - 1
+        assert lives.origin[row] == min(number, 2)
+        assert (lives.born[row], lives.seen[row]) == (10 * number, max(10 * number, 40))
+        assert lives.row(number, world) == row
+
+
+@given(WORLDS, st.integers(0, 2**30))
+def test_parents_are_found_wherever_numbers_have_gaps(worlds: list[list[bool]], mask: int) -> None:
+    lives = found(worlds, 1)
+    some = lives.take(np.array([bool(mask >> row % 30 & 1) for row in range(len(lives))], bool))
+    where = {(w, n): row for row, (w, n) in enumerate(zip(some.world, some.id, strict=True))}
+    expected = [where.get(each, -1) for each in zip(some.world, some.parent, strict=True)]
+    assert some.parent_row.tolist() == expected
+
+
+@given(WORLDS)
+def test_the_oldest_of_one_world_or_of_all(worlds: list[list[bool]]) -> None:
+    lives = found(worlds, 1)
+    for world in {None, *lives.world.tolist()}:
+        here = np.arange(len(lives)) if world is None else np.flatnonzero(lives.world == world)
+        if len(here):
+            longest = max(lives.lifespan[here])
+            assert lives.oldest(world) == min(here[lives.lifespan[here] == longest])

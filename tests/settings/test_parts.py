@@ -1,0 +1,123 @@
+"""Replaceable parts in settings: a table that says which part, and that part's own settings."""
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+import tomli_w
+
+from primordia.brains.contract import KNOWN, find
+from primordia.config import load, validated
+from primordia.errors import InputError
+from primordia.settings.tables import merged
+from tests.commands import complains, here
+from tests.worlds import MEADOW, MILL, config
+
+TASK = "CartPole-survival"
+
+
+def test_settings_of_a_brain_are_its_own_and_complete() -> None:
+    assert config(MEADOW).brain == {"kind": "recurrent", "hidden": 32, "biases": False}
+    assert config(MEADOW, brain={"kind": "linear"}).brain == {"kind": "linear", "biases": False}
+    other = config(MEADOW, brain={"kind": "tests.toys:Sliding", "width": 1})
+    assert other.brain == {"kind": "tests.toys:Sliding", "width": 1, "channels": 3}
+    assert tomllib.loads(other.to_toml())["brain"] == other.brain
+
+
+def test_settings_of_an_older_version_are_read() -> None:
+    """It knew a kind and a number of neurons."""
+    for kind in ("recurrent", "feed-forward"):
+        old = {**MEADOW, "brain": {"kind": kind, "hidden": 5}}
+        assert validated(old, source="test").brain == {**old["brain"], "biases": False}
+
+
+def test_another_part_takes_none_of_the_settings_of_the_one_before() -> None:
+    assert load(TASK, {"brain": {"kind": "linear"}}).brain == {"kind": "linear", "biases": False}
+    base = {"brain": {"kind": "gated", "hidden": 4}, "motor": {"kind": "direct", "sd": 0.5}}
+    assert merged(base, {"brain": {"kind": "gated", "biases": True}})["brain"] == {
+        "kind": "gated",
+        "hidden": 4,
+        "biases": True,
+    }
+    assert merged(base, {"brain": {"kind": "linear"}})["brain"] == {"kind": "linear"}
+    assert merged(base, {"motor": {"kind": "gaussian"}})["motor"] == {"kind": "gaussian", "sd": 0.5}
+    hidden = load("CartPole-survival-hidden", {"habitat": {"name": "tests.toys:Meadow"}})
+    assert hidden.habitat == {"name": "tests.toys:Meadow"}
+
+
+def test_blocks_of_any_name_are_settings(tmp_path: Path) -> None:
+    seasons = [
+        {"kind": "schedule", "setting": f"mutation.blocks.{block}.scale", "at": 9, "value": 0.5}
+        for block in ("slide-2", "OUT_3d", "0")
+    ]
+    values = {**MILL, "brain": {"kind": "tests.toys:Sliding"}, "seasons": seasons}
+    ready = config({**values, "mutation": {"blocks": {"slide-2": {"scale": 0.5}}}})
+    law = ready.build_law(ready.build_habitat())
+    assert [law.columns[season.setting] for season in law.seasons] == [[0], [1], [2]]
+    assert law.columns["mutation.scale"] == [1, 2]
+    done = here(
+        "run", TASK, "--brain.biases", "true", "--mutation.blocks.input_bias.scale", "0.5",
+        "--ticks", "1", "--quiet", "--out", tmp_path / "run",
+    )  # fmt: skip
+    assert (done.returncode, done.stderr) == (0, "")
+    assert load(str(tmp_path / "run" / "config.toml")).mutation.blocks["input_bias"].scale == 0.5
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["--brain.kind", "clever"], "brain.kind: no brain named 'clever'; known: recurrent,"),
+        (["--brain.kind", "gated", "--brain.hiden", "3"], "did you mean 'brain.hidden'?"),
+        (["--brain.kind", "linear", "--brain.hidden", "3"], "no setting 'brain.hidden'"),
+        (
+            ["--brain.hidden", "0"],
+            "brain.hidden: input should be greater than or equal to 1, not 0",
+        ),
+        (["--brain", "pond"], "brain: input should be a valid dictionary, not 'pond'"),
+        (["--mutation.blocks.input_bias.scale", "1"], "this brain has no block 'input_bias'"),
+    ],
+)
+def test_what_is_wrong_is_said(words: list[str], says: str) -> None:
+    complains(here("run", TASK, *words), 2, f"{TASK}: ", says)
+
+
+def helped(*words: object) -> str:
+    done = here("run", *words, "--help")
+    assert (done.returncode, done.stderr) == (0, "")
+    return " ".join(done.stdout.split())
+
+
+def test_help_shows_the_settings_of_the_brain_that_a_task_names(tmp_path: Path) -> None:
+    file = tmp_path / "mine.toml"
+    for table, shown, others in [
+        ({"kind": "linear"}, {"biases"}, {"hidden"}),
+        ({"kind": "tests.toys:Sliding", "width": 7}, {"width", "channels"}, {"hidden", "biases"}),
+        ({}, {"hidden", "biases"}, {"width"}),
+        ({"kind": "no.such:Brain"}, set(), {"hidden", "biases"}),
+    ]:
+        text = helped(_written(file, table))
+        assert all(f"--brain.{name} " in text for name in {"kind", *shown}), table
+        assert not any(f"--brain.{name} " in text for name in others), table
+        assert f'or module:Class ["{table.get("kind", "recurrent")}"]' in text
+        assert ("--brain.width [7]" in text) == ("width" in table)
+
+
+def _written(file: Path, brain: dict[str, Any]) -> Path:
+    file.write_text(tomli_w.dumps({"task": "own", "habitat": {"name": "cartpole"}, "brain": brain}))
+    return file
+
+
+def test_help_without_a_task_shows_the_settings_of_all_brains() -> None:
+    text = helped()
+    for name in {field for kind in KNOWN for field in find(kind).model_fields}:
+        assert f"--brain.{name} " in text
+    assert ', or module:Class ["recurrent"]' in text
+
+
+def test_a_part_that_is_no_table_has_no_settings_to_show(tmp_path: Path) -> None:
+    file = tmp_path / "mine.toml"
+    file.write_text('task = "own"\nhabitat = "pond"\nbrain = 5\n')
+    assert "--brain.hidden " in helped(file)
+    with pytest.raises(InputError, match="habitat: input should be a valid dictionary"):
+        load(str(file))
