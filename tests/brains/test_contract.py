@@ -164,7 +164,7 @@ def test_threads_make_no_difference() -> None:
     assert done.stdout.strip() == fingerprint()
 
 
-LIVING = {"replication": 0.3, "hazard": 0.03, "metabolism": None, "seasons": []}
+LIVING: dict[str, Any] = {"replication": 0.3, "hazard": 0.03, "metabolism": None, "seasons": []}
 
 
 @pytest.mark.parametrize("name", ["recurrent, biases", "gated, biases", "linear", "somebody's"])

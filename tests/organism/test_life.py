@@ -1,6 +1,7 @@
 """Lives lived again, seen on video, and what an organism is asked: all from its records."""
 
 from pathlib import Path
+from typing import Any
 
 import av
 import numpy as np
@@ -157,7 +158,8 @@ def test_a_habitat_on_the_host_is_closed(mirror: Path, monkeypatch: pytest.Monke
     monkeypatch.setattr(LifeOnHost, "TICKS", 5)
     oldest = primordia.load(mirror).oldest()
     life = Life.of(oldest.run, oldest.id)
-    one, other = life.again(), life.again()
+    one: Any = life.again()
+    other = life.again()
     first = next(other)
     assert next(one).action.tobytes() == first.action.tobytes()
     one.close()

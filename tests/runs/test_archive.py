@@ -88,7 +88,7 @@ def test_the_law_is_built_once(mill: Path, monkeypatch: pytest.MonkeyPatch) -> N
 
     def building(self: Config, habitat: object) -> object:
         built.append(habitat)
-        return build(self, habitat)  # type: ignore[arg-type]
+        return build(self, habitat)
 
     monkeypatch.setattr(Config, "build_law", building)
     run = Archive(mill)

@@ -90,12 +90,13 @@ def helped(*words: object) -> str:
 
 def test_help_shows_the_settings_of_the_brain_that_a_task_names(tmp_path: Path) -> None:
     file = tmp_path / "mine.toml"
-    for table, shown, others in [
+    cases: list[tuple[dict[str, Any], set[str], set[str]]] = [
         ({"kind": "linear"}, {"biases"}, {"hidden"}),
         ({"kind": "tests.toys:Sliding", "width": 7}, {"width", "channels"}, {"hidden", "biases"}),
         ({}, {"hidden", "biases"}, {"width"}),
         ({"kind": "no.such:Brain"}, set(), {"hidden", "biases"}),
-    ]:
+    ]
+    for table, shown, others in cases:
         text = helped(_written(file, table))
         assert all(f"--brain.{name} " in text for name in {"kind", *shown}), table
         assert not any(f"--brain.{name} " in text for name in others), table

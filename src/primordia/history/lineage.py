@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from jax import Array
 
+from primordia import device
 from primordia.compiled import shared
 from primordia.config import Config
 from primordia.history.climate import climate_at
@@ -43,6 +44,7 @@ def rebuild(run: Archive, organism: int, world: int = 0) -> np.ndarray:
 
 def rebuild_all(run: Archive, organisms: Sequence[tuple[int, int]]) -> np.ndarray:
     """The genomes of some, by birth number and world, float32 (K, P); see `rebuild`."""
+    device.prepare()
     lines = [run.lives.take(descent(run.lives, *each)) for each in organisms]
     climates = {world: climate_at(run, world) for world in {world for _, world in organisms}}
     found = []
