@@ -15,6 +15,9 @@ demo: .venv/installed  ## evolve pole balancers; draw what happened, and film th
 test: .venv/installed-dev  ## ten minutes on two cores
 	$(BIN)/python -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder
 
+quick: .venv/installed-dev  ## a minute on two cores: each promise once, by the tests in tests/quick.txt
+	$(BIN)/python -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder @tests/quick.txt
+
 slow: .venv/installed-dev  ## long campaigns: fifty kills, and what else is marked slow
 	$(BIN)/python -m pytest --numprocesses 2 -m slow
 

@@ -76,19 +76,19 @@ def births_recorded_per_second() -> float:
     """From rows as the law gives them to closed, checksummed segments on disk."""
     import jax.numpy as jnp
 
-    from primordia.law.events import BIRTH_FIELDS, DEATH_FIELDS, Events, Rows
-    from primordia.runs.record import Recorder, sample_fields
+    from primordia.law.events import BIRTHS, Events, Rows
+    from primordia.runs.record import Recorder
+    from primordia.runs.schema import Schema
 
-    blocks = ["input", "recurrent", "output"]
     rng, rows, chunks = np.random.default_rng(0), 2**18, 24
-    births = rng.integers(0, 1000, (rows, len(BIRTH_FIELDS)), dtype=np.uint32)
-    births[:, 7] %= 3
-    nothing = [np.zeros((1, n), np.uint32) for n in (len(DEATH_FIELDS), len(sample_fields(blocks)))]
-    events = Events(Rows(births, jnp.int32(rows)), *(Rows(r, jnp.int32(0)) for r in nothing))
+    births = rng.integers(0, 1000, (rows, BIRTHS.width), dtype=np.uint32)
+    births[:, -1] %= 3  # causes
+    nothing = Rows(np.zeros((1, 1), np.uint32), jnp.int32(0))
+    events = Events(Rows(births, jnp.int32(rows)), nothing, nothing)
     with tempfile.TemporaryDirectory() as folder:
         for name in ("births", "deaths", "metrics"):
             Path(folder, name).mkdir()
-        recorder = Recorder(Path(folder), 32, 32, blocks)
+        recorder = Recorder(Path(folder), 32, Schema(32, (), (), ()))
         began = time.perf_counter()
         for _ in range(chunks):
             recorder.append(events)

@@ -13,6 +13,7 @@ from primordia.engine.engine import Engine
 from primordia.runs.checkpoint import Progress
 from primordia.runs.loop import drive
 from primordia.runs.record import Recorder
+from primordia.runs.schema import Schema
 from worlds import median, organism_ticks, random_phase, random_rate, rate, saturated_phase
 
 SHAPES = {"1 x 32": (32, 1), "16 x 32": (32, 16), "1 x 1,024": (1024, 1)}
@@ -78,7 +79,7 @@ def _on_disk(run: Path, seed: int) -> float:
     (run / "config.toml").write_text(config.to_toml())
     warm, made = Engine(config), Engine(config)
     warm.advance(warm.limits({}))
-    recorder = Recorder(run, 1, config.cells, made.law.layout.names)
+    recorder = Recorder(run, 1, Schema.of(made.law, ()))
     began = time.perf_counter()
     drive(made, recorder, run, Progress({"ticks": 3_000_000}, 0.0, True), 1.0, None)
     return organism_ticks(made) / (time.perf_counter() - began)

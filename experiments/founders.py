@@ -50,9 +50,12 @@ def trial(name: str, settings: dict[str, Any]) -> list[str]:
     """A row of the table."""
     chosen = config.load(settings.pop("task"), settings)
     law = chosen.build_law(chosen.build_habitat())
-    scales = np.repeat(law.mutation.of_blocks("scale", law.layout.names), law.layout.sizes)
+    scales, spread = (
+        np.repeat(np.array(law.mutation.per_block(field, law.layout), np.float32), law.layout.sizes)
+        for field in ("scale", "founder_scale")
+    )
     noise = np.random.default_rng(0)
-    founders = law.founder_scale * noise.standard_normal((FOUNDERS, len(scales)))
+    founders = spread * noise.standard_normal((FOUNDERS, len(scales)))
     lived = lifespans(chosen, founders)
     best = np.argsort(-lived, kind="stable")[:PARENTS]
     steps = scales * noise.standard_normal((PARENTS * MUTANTS, len(scales)))

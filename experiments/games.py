@@ -83,8 +83,8 @@ def longest_lived(run: Path) -> list[Organism]:
 
 def unforked(run: Path) -> Path:
     """The run that a fork goes back to; of any other, itself."""
-    origin = read_config(run).origin
-    return run if origin is None else unforked(Path(origin.run))
+    fork = read_config(run).fork
+    return run if fork is None else unforked(Path(fork.run))
 
 
 def founders(run: Path) -> list[Organism]:

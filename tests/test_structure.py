@@ -13,7 +13,7 @@ LAYERS = [
     {"errors"},
     {"compiled", "device", "files", "random", "rounding", "settings", "tasks"},
     {"brains", "pool"},
-    {"habitats"},
+    {"habitats", "mutations"},
     {"law"},
     {"config"},
     {"engine"},

@@ -9,6 +9,7 @@ from pydantic import Field
 
 from primordia.brains.contract import Brain, Genome
 from primordia.brains.layout import Shape
+from primordia.brains.recurrent import Recurrent
 from primordia.habitats import Continuous, Discrete, HostHabitat, JaxHabitat, Outcome
 from primordia.habitats.cartpole.habitat import COORDINATES, CartPole
 from primordia.habitats.on_host import OnHost
@@ -214,6 +215,10 @@ class Sliding(Brain):
         seen = jnp.stack([change[:, i : i + self.width] for i in range(places)], axis=1)
         found = jnp.tanh(_dot(genome["slide-2"], seen, (2,), (2,)))
         return senses, _dot(genome["OUT_3d"], found, (2, 3), (1, 2)) + genome["0"]
+
+
+class Twin(Recurrent):
+    """A brain of another name whose genomes have the same blocks."""
 
 
 def _dot(a: Array, b: Array, of_a: tuple[int, ...], of_b: tuple[int, ...]) -> Array:

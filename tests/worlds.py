@@ -82,7 +82,7 @@ class Lived:
 
     def table(self, name: str) -> dict[str, np.ndarray]:
         """Columns of a table as NumPy arrays."""
-        arrow = self.recorder.arrow(name, np.concatenate(self.rows[name]))
+        arrow = self.recorder.schema.arrow(name, np.concatenate(self.rows[name]))
         return {
             column: arrow[column].to_numpy(zero_copy_only=False) for column in arrow.column_names
         }

@@ -72,7 +72,7 @@ def described(game: str) -> tuple:
 
 def scales(law: Any) -> list[float]:
     """How far a founder's weights are spread in each block."""
-    return law.mutation.of_blocks("founder_scale", law.layout.names)
+    return law.mutation.per_block("founder_scale", law.layout)
 
 
 class Brains:

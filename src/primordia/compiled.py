@@ -6,8 +6,6 @@ from typing import Any
 
 import jax
 
-from primordia import device
-
 KEPT = 64
 """functions, those used last; each with its code for every shape it was called with"""
 
@@ -18,7 +16,6 @@ def shared(function: Callable, *fixed: Any, donate: tuple[int, ...] = ()) -> Cal
     Where function and `fixed` are equal, so is the code; what cannot be hashed shares with nothing.
     `donate` are those of the other arguments that are used up, as in `donate_argnums`.
     """
-    device.prepare()
     try:
         hash(fixed)
     except TypeError:

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 import tomli_w
-from pydantic import Field, ValidationError, field_validator
+from pydantic import Field, ValidationError, ValidationInfo, field_validator
 
 from primordia.brains import contract as brains
 from primordia.brains import genomes
@@ -16,13 +16,14 @@ from primordia.habitats.contract import AnyHabitat, Continuous
 from primordia.law.law import Law
 from primordia.law.metabolism import Metabolism
 from primordia.law.motor import Motor
-from primordia.law.mutation import Mutation
 from primordia.law.placement import Placement
 from primordia.law.seasons import Season
-from primordia.settings.base import Settings
-from primordia.settings.fields import first_fault
+from primordia.mutations import contract as mutations
+from primordia.mutations.contract import Mutation
+from primordia.settings.base import Rate, Settings
+from primordia.settings.fields import first_fault, rates_of
 from primordia.settings.making import make
-from primordia.settings.tables import NONE, found_in, merged, replaced, values_of
+from primordia.settings.tables import NONE, did_you_mean, found_in, merged, replaced, values_of
 
 
 class Stop(Settings):
@@ -57,10 +58,12 @@ class Config(Settings):
     motor: Motor = Motor()
     cells: int = Field(32, ge=2, le=2**24, description="cells of one world")
     placement: Placement = Placement()
-    replication: float = Field(
+    replication: Rate = Field(
         0.05, ge=0, le=1, description="probability that an organism replicates in a tick"
     )
-    mutation: Mutation = Mutation()
+    mutation: dict[str, Any] = Field(
+        {}, validate_default=True, description="`kind` of the mutation, and its own settings"
+    )
     ancestors: tuple[str, ...] = Field(
         (),
         strict=False,
@@ -72,7 +75,7 @@ class Config(Settings):
     genesis: Literal["one", "fill"] = Field(
         "one", description="life starts, and restarts, with one founder in a random cell, or in all"
     )
-    hazard: float = Field(
+    hazard: Rate = Field(
         0.0, ge=0, le=1, description="probability of death in a tick, whoever it is"
     )
     metabolism: Metabolism | None = Field(None, description="none: nobody starves")
@@ -91,13 +94,21 @@ class Config(Settings):
     seed: int = Field(0, ge=0, lt=2**64, description="seed of the first world")
     seeds: int = Field(1, ge=1, le=2**16, description="worlds, with consecutive seeds")
     stop: Stop = Stop()
-    origin: ForkedFrom | None = Field(None, description="set by `primordia fork`")
+    fork: ForkedFrom | None = Field(None, description="set by `primordia fork`")
 
-    @field_validator("brain")
+    @field_validator("brain", "mutation")
     @classmethod
-    def _complete(cls, table: dict[str, Any]) -> dict[str, Any]:
-        """All settings of the brain, so that `config.toml` has them when defaults have changed."""
-        return {"kind": brains.DEFAULT, **table, **brains.build(table).model_dump()}
+    def _complete(cls, table: dict[str, Any], info: ValidationInfo) -> dict[str, Any]:
+        """Add all settings of the part, so that `config.toml` has them when defaults have changed.
+
+        A table of which no part can be made stays unchanged: records are read without its code, and
+        `checked` says what is wrong.
+        """
+        contract: Any = {"brain": brains, "mutation": mutations}[str(info.field_name)]
+        try:
+            return {"kind": contract.DEFAULT, **table, **contract.build(table).model_dump()}
+        except InputError:
+            return table
 
     def build_habitat(self) -> AnyHabitat:
         """The habitat, from its class and settings.
@@ -121,7 +132,8 @@ class Config(Settings):
 
     def build_law(self, habitat: AnyHabitat) -> Law:
         """The law that holds in this run's worlds."""
-        brain, layout = self.build_brain(), self.build_layout(habitat)
+        brain, mutation = self.build_brain(), mutations.build(self.mutation)
+        layout = self.build_layout(habitat)
         return Law(
             worlds=self.seeds,
             cells=self.cells,
@@ -131,11 +143,10 @@ class Config(Settings):
             action=habitat.action,
             motor=self.motor,
             placement=self.placement,
-            mutation=self.mutation,
+            mutation=mutation,
             ancestors=genomes.read(self.ancestors, layout) if self.ancestors else None,
             metabolism=self.metabolism,
-            replication=self.replication,
-            hazard=self.hazard,
+            beginning=tuple(self._rates(mutation, layout).items()),
             inheritance=self.inheritance,
             genesis=self.genesis,
             seasons=self.seasons,
@@ -143,10 +154,19 @@ class Config(Settings):
             sample_every=self.sample_every,
         )
 
+    def _rates(self, mutation: Mutation, layout: Layout) -> dict[str, float]:
+        """Return the settings that seasons may change, by dotted name."""
+        own = mutation.rates(layout).items()
+        return {
+            **rates_of(self),
+            **{f"mutation.{name}": value for name, value in own},
+            **rates_of(self.metabolism or Metabolism(), "metabolism."),
+        }
+
     @property
     def begins(self) -> int:
         """The tick at the end of which its records begin: that of the fork, or 0."""
-        return 0 if self.origin is None else self.origin.tick
+        return 0 if self.fork is None else self.fork.tick
 
     def to_toml(self) -> str:
         """As TOML that `validated` takes back."""
@@ -231,13 +251,21 @@ def _check(config: Config) -> None:
         raise InputError(
             "motor.kind: this habitat's actions are discrete, so a gaussian motor has no use"
         )
-    columns = config.build_law(habitat).columns
-    for name in config.mutation.blocks:
-        if f"mutation.blocks.{name}.scale" not in columns:
-            raise InputError(f"mutation.blocks: this brain has no block {name!r}")
+    law = config.build_law(habitat)
+    try:
+        law.mutation.check(law.layout)
+    except ValueError as error:
+        raise InputError(f"mutation.{error}") from None
     for season in config.seasons:
-        group = season.setting.partition(".")[0]
-        if group == "mutation" and season.setting not in columns:
-            raise InputError(f"seasons: this brain has no {season.setting}")
-        if group == "metabolism" and config.metabolism is None:
-            raise InputError(f"seasons: there is no metabolism, so no {season.setting}")
+        _check_season(season.setting, config, law)
+
+
+def _check_season(setting: str, config: Config, law: Law) -> None:
+    if not law.governed(setting):
+        known = sorted({*law.rates, *(f"mutation.{name}" for name in rates_of(law.mutation))})
+        raise InputError(
+            f"seasons: {setting} is no setting that seasons can change in this task"
+            f"{did_you_mean(setting, known)}"
+        )
+    if setting.startswith("metabolism.") and config.metabolism is None:
+        raise InputError(f"seasons: there is no metabolism, so no {setting}")

@@ -1,5 +1,8 @@
 """Brains against their formulas in NumPy, in float64."""
 
+from typing import Any
+
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
@@ -17,9 +20,9 @@ def thought(brain: Brain, ticks: int = 4) -> tuple:
     """Genomes, senses (T, N, S), memories (T, N, M) and outputs (T, N, A) of N organisms."""
     rng, shape = np.random.default_rng(1), (ticks, N, SENSES)
     layout = brain.layout(SENSES, OUTPUTS)
-    genome = layout.split(rng.normal(size=(N, layout.length)).astype(np.float32))
+    genome: Any = layout.split(rng.normal(size=(N, layout.length)).astype(np.float32))
     senses = rng.normal(size=shape).astype(np.float32)
-    memory, seen = np.zeros((N, brain.memory(SENSES, OUTPUTS)), np.float32), []
+    memory, seen = jnp.zeros((N, brain.memory(SENSES, OUTPUTS))), []
     for each in senses:
         memory, output = brain(genome, memory, each)
         seen.append((memory, output))
@@ -94,7 +97,7 @@ def test_a_closed_update_gate_keeps_a_memory_for_good() -> None:
     layout = brain.layout(SENSES, OUTPUTS)
     genome = layout.split(np.random.default_rng(0).normal(size=(N, layout.length)).astype("f4"))
     genome["update_input_bias"][:] = 1000
-    memory = np.random.default_rng(1).random((N, HIDDEN), np.float32)
+    memory = jnp.asarray(np.random.default_rng(1).random((N, HIDDEN), np.float32))
     after = memory
     for _ in range(20):
         after, _ = brain(genome, after, np.ones((N, SENSES), np.float32))

@@ -1,5 +1,7 @@
 """Layers against their formulas in NumPy."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -40,7 +42,7 @@ def test_a_layer_stores_the_longer_axis_last(
 def test_a_bias_is_a_block_of_its_own(inputs: int, outputs: int, shape: tuple[int, int]) -> None:
     blocks = layer("w", inputs, outputs, bias=True)
     assert blocks == {"w": shape, "w_bias": (outputs,)}
-    genome = {name: normal(3, *each) for name, each in blocks.items()}
+    genome: dict[str, Any] = {name: normal(3, *each) for name, each in blocks.items()}
     x = normal(3, inputs)
     expected = times(genome["w"], x) + genome["w_bias"]
     np.testing.assert_allclose(linear(genome, "w", x), expected, rtol=1e-4, atol=1e-4)

@@ -53,7 +53,8 @@ def living(run: Path) -> list[tuple[int, int, np.ndarray]]:
     genomes = layout.join({n: arrays[f"world.organisms.genome.{n}"] for n in layout.names})
     hi, lo = (arrays[f"world.organisms.number.{half}"].astype(int) for half in ("hi", "lo"))
     cells = np.flatnonzero(arrays["world.organisms.alive"])
-    return [(c // opened.config.cells, int(hi[c] << 32 | lo[c]), genomes[c]) for c in cells]
+    number = hi << 32 | lo
+    return [(int(c) // opened.config.cells, int(number[c]), genomes[c]) for c in cells]
 
 
 def comes_back(run: Path) -> None:

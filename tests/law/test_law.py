@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from primordia.law.mutation import noise_index
+from primordia.mutations.noise import noise_index
 from primordia.random.gaussian import quantiles
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide

@@ -198,7 +198,7 @@ def test_a_blocks_own_scale_changes_that_block_only() -> None:
         assert early.sum() > 5
     metrics = run.table("metrics")
     assert metrics["tick"].tolist() == [8, 13]
-    shown = [metrics[f"mutation.{block}.scale"].tolist() for block in until]
+    shown = [metrics[f"mutation.blocks.{block}.scale"].tolist() for block in until]
     np.testing.assert_array_equal(np.float32(shown), np.float32([[0.1, 0], [0, 0], [0.2, 0.2]]))
 
 
@@ -218,9 +218,9 @@ def test_two_ratchets_that_are_alike_both_turn() -> None:
     world = world._replace(
         organisms=world.organisms._replace(alive=full), worlds=world.worlds._replace(looks=looks)
     )
-    worlds, changed = turn(law.seasons, law.columns, world, jnp.ones(2, bool))
+    worlds, changed = turn(law.seasons, law.governed, world, jnp.ones(2, bool))
     assert changed.tolist() == [True, False]
-    assert worlds.climate.metabolism.gain.tolist() == [0.25, 1.0]
+    assert worlds.climate["metabolism.gain"].tolist() == [0.25, 1.0]
     assert worlds.looks.wait.tolist() == [[10, 10], [10, 10]], "a look that is not over never ends"
 
 
@@ -234,10 +234,10 @@ def test_a_world_that_has_stopped_has_no_seasons() -> None:
     world = world._replace(
         organisms=world.organisms._replace(alive=alive), worlds=world.worlds._replace(looks=looks)
     )
-    worlds, changed = turn(law.seasons, law.columns, world, jnp.array([True, False]))
+    worlds, changed = turn(law.seasons, law.governed, world, jnp.array([True, False]))
     assert changed.tolist() == [True, False]
-    assert worlds.climate.hazard.tolist() == [0.5, 0.0]
-    np.testing.assert_array_equal(worlds.climate.replication, np.float32([0.025, 0.05]))
+    assert worlds.climate["hazard"].tolist() == [0.5, 0.0]
+    np.testing.assert_array_equal(worlds.climate["replication"], np.float32([0.025, 0.05]))
     assert worlds.looks.wait.tolist() == [[10], [0]]
 
 

@@ -103,7 +103,7 @@ def look_alive(made: Engine) -> None:
     thousand = wide([1000] * made.law.worlds)
     worlds = world.worlds._replace(tick=thousand, births=thousand)
     made.state = State(World(organisms, worlds), bodies)
-    made.advance = lambda _: made.events  # type: ignore[assignment, method-assign]
+    made.advance = lambda _: made.events
 
 
 def shown(made: Engine, chunks: int = 2, **options: Any) -> tuple[str, list[str]]:

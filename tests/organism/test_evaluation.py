@@ -127,9 +127,32 @@ def test_what_the_command_says(pong: Path) -> None:
     assert set(told["score"]) == {"q1", "median", "q3", "maximum"}
 
 
+def test_any_setting_of_the_habitat_is_a_flag(poles: Path) -> None:
+    """Also one that has the name of an argument of `evaluate` in Python."""
+    wide = here("evaluate", poles, "--ticks", "50", "--angle_limit", "180", "--track_limit", "1e9")
+    assert "30 games, angle_limit 180, track_limit 1000000000.0" in wide.stdout
+    assert "30 still alive when cut" in wide.stdout
+    same = '["x", "x_dot", "theta", "theta_dot"]'
+    told = here("evaluate", poles, "--episodes", "2", "--senses", same, "--json")
+    plain = here("evaluate", poles, "--episodes", "2", "--json")
+    assert json.loads(told.stdout)["lifespan"] == json.loads(plain.stdout)["lifespan"]
+
+
+def test_help_on_a_run_lists_the_settings_of_its_habitat(pong: Path, poles: Path) -> None:
+    told = here("evaluate", pong, "--help").stdout
+    assert "--sticky" in told
+    assert "probability that a frame repeats the last button [0.0]" in " ".join(told.split())
+    assert "--angle_limit" in here("evaluate", poles, "--help").stdout
+    assert "--sticky" not in here("evaluate", poles, "--help").stdout.partition("Options")[2]
+    assert "Settings of the habitat" not in here("evaluate", "--help").stdout
+
+
 def test_bad_input(pong: Path, poles: Path) -> None:
     for words, part in (
-        ((poles, "--sticky", "0.1"), "no setting 'habitat.sticky'"),
+        ((poles, "--sticky", "0.1"), "this run's habitat has no setting 'sticky'"),
+        ((poles, "--angle_limt", "9"), "did you mean 'angle_limit'?"),
+        ((poles, "--angle_limit"), "--angle_limit needs a value"),
+        ((poles, "--angle_limit", "-1"), "habitat.angle_limit"),
         ((pong, "--sticky", "1.5"), "sticky"),
         ((pong, "--open-loop", "--freeze-senses"), "one or the other"),
         ((pong, "--episodes", "0"), "one game or more"),

@@ -1,6 +1,7 @@
 """Lives lived again, seen on video, and what an organism is asked: all from its records."""
 
 from pathlib import Path
+from typing import Any
 
 import av
 import numpy as np
@@ -89,12 +90,14 @@ def test_the_living_come_to_where_they_are(
         comes_out(Life.of(run, everyone.id[row], everyone.world[row]))
 
 
-def test_a_body_begins_as_it_was_born(tmp_path: Path) -> None:
-    """Also where compiled code rounds a product and a sum once, and each operation by itself would."""
-    full = {"genesis": "fill", "replication": 0.0, "cells": 32, "stop": {"ticks": 2}}
+@pytest.mark.parametrize("cells", [32, 1024])
+def test_a_body_begins_as_it_was_born(cells: int, tmp_path: Path) -> None:
+    """Also where compiled code rounds a product and a sum once, and each operation by itself would;
+    and where several are born together, as vectors."""
+    full = {"genesis": "fill", "replication": 0.0, "cells": cells, "stop": {"ticks": 2}}
     loop.start(config(MEADOW, habitat={"name": "tests.toys:Slope"}, **full), tmp_path / "run")
     run = Archive(tmp_path / "run")
-    for row in range(32):
+    for row in range(0, cells, cells // 16):
         comes_out(Life.of(run, row))
 
 
@@ -157,7 +160,8 @@ def test_a_habitat_on_the_host_is_closed(mirror: Path, monkeypatch: pytest.Monke
     monkeypatch.setattr(LifeOnHost, "TICKS", 5)
     oldest = primordia.load(mirror).oldest()
     life = Life.of(oldest.run, oldest.id)
-    one, other = life.again(), life.again()
+    one: Any = life.again()
+    other = life.again()
     first = next(other)
     assert next(one).action.tobytes() == first.action.tobytes()
     one.close()
@@ -208,7 +212,7 @@ def test_an_organism_tells_what_is_recorded(poles: Path) -> None:
         assert organism.age == (died["tick"] if died else 6000) - row["tick"]
         line = organism.descent()
         assert line[-1] == organism.id
-        assert by_id[line[0]].origin == "founder"
+        assert by_id[line[0]].birth_cause == "founder"
         assert [by_id[child].parent for child in line[1:]] == line[:-1]
     assert run.oldest().age == max(organism.age for organism in by_id.values())
     assert run.organism(organism.id).descent() == organism.descent()

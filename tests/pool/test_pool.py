@@ -154,7 +154,7 @@ def test_workers_end_with_their_run_however_it_ends(kill: int) -> None:
         """
         import sys, time
         import numpy as np
-        from primordia.pool import Pool
+        from primordia.pool.pool import Pool
         from tests.counters import FIELDS
         pool = Pool("tests.counters:Counters", {"start": 0}, FIELDS, 2, 2)
         pool.reset(np.ones(2, bool))
@@ -165,7 +165,7 @@ def test_workers_end_with_their_run_however_it_ends(kill: int) -> None:
     before = set(Path("/dev/shm").iterdir())
     command = [sys.executable, "-c", script]
     run = subprocess.Popen(
-        command, stdout=subprocess.PIPE, text=True, cwd=Path(__file__).parents[2].parent
+        command, stdout=subprocess.PIPE, text=True, cwd=Path(__file__).parents[2]
     )
     assert run.stdout is not None
     workers = [int(word) for word in run.stdout.readline().split()]

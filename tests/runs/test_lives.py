@@ -5,14 +5,14 @@ import pyarrow as pa
 from hypothesis import given
 from hypothesis import strategies as st
 
-from primordia.law.world import Cause, Origin
+from primordia.law.world import BirthCause, Cause
 from primordia.runs.lives import ALIVE, Lives, joined
 
 WORLDS = st.lists(st.lists(st.booleans(), max_size=30), min_size=1, max_size=4)
 """Of each world, which of its birth numbers are on record: all, but where a fork began."""
 
 
-def dictionary(codes: np.ndarray, names: type[Origin] | type[Cause]) -> pa.Array:
+def dictionary(codes: np.ndarray, names: type[BirthCause] | type[Cause]) -> pa.Array:
     return pa.DictionaryArray.from_arrays(codes.astype(np.int8), [each.label for each in names])
 
 
@@ -30,7 +30,7 @@ def tables(worlds: list[list[bool]], cuts: int) -> tuple[list[pa.Table], list[pa
             "parent": pa.array(parent, mask=parent == -1),
             "tick": 10 * number,
             "cell": (number % 7).astype(np.int32),
-            "cause": dictionary(causes, Origin),
+            "cause": dictionary(causes, BirthCause),
         }
     )
     dead = np.flatnonzero(number % 3 > 0)[::-1]
@@ -55,7 +55,7 @@ def test_every_birth_with_its_death(worlds: list[list[bool]], cuts: int) -> None
         assert lives.ended[row] == (10 * number + 5 if died else 1000 + world)
         assert lives.cause[row] == (number % 3 if died else ALIVE)
         assert lives.parent[row] == number // 2 - 1
-        assert lives.origin[row] == min(number, 2)
+        assert lives.birth_cause[row] == min(number, 2)
         assert (lives.born[row], lives.seen[row]) == (10 * number, max(10 * number, 40))
         assert lives.row(number, world) == row
 

@@ -15,6 +15,7 @@ import primordia
 from primordia.law.world import Cause
 from primordia.runs import checkpoint, loop, record
 from primordia.runs.digest import row_hashes
+from primordia.runs.schema import TABLES
 from tests.worlds import MILL, Lived, config
 
 WHAT: dict[str, Any] = {**MILL, "brain": {"hidden": 6}, "seeds": 3, "hazard": 0.02}
@@ -46,7 +47,7 @@ def recorded(run: Path, interrupted_after: int | None = None) -> primordia.Run:
 
 
 def has_all_rows(run: primordia.Run, lived: Lived) -> None:
-    for name in record.TABLES:
+    for name in TABLES:
         expected, found = lived.table(name), run.table(name)
         assert found.num_rows > 0
         for column, values in expected.items():
@@ -67,7 +68,7 @@ def test_segments_of_any_size_hold_the_same_rows(
     run = recorded(tmp_path / "run")
     has_all_rows(run, lived)
     assert [world["digest"] for world in run.info()["worlds"]] == lived.digests()
-    for name in record.TABLES:
+    for name in TABLES:
         *full, last = segments(run.path, name)
         assert set(full) <= {record.SEGMENT_ROWS}
         assert 0 < last <= record.SEGMENT_ROWS
@@ -83,7 +84,7 @@ def test_tails_and_segments_together_hold_every_row(
     last, _ = checkpoint.newest(run.path)
     assert last is not None
     arrays = last.arrays()
-    for name in record.TABLES:
+    for name in TABLES:
         tail, closed = len(arrays[f"tail.{name}"]), segments(run.path, name)
         assert run.table(name).num_rows == sum(closed) + tail
         assert tail < size
@@ -98,7 +99,7 @@ def test_tails_and_segments_together_hold_every_row(
 
 CLIMATE = [
     "replication", "hazard",
-    *(f"mutation.{block}.{each}" for each in ("probability", "scale")
+    *(f"mutation.blocks.{block}.{each}" for each in ("probability", "scale")
       for block in ("input", "recurrent", "output")),
     *(f"metabolism.{name}" for name in ("store", "drain", "gain", "effort_cost", "cap")),
 ]  # fmt: skip

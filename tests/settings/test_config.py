@@ -11,10 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import BaseModel
 
+from primordia.brains import contract as brains
 from primordia.config import Config, load, validated
 from primordia.habitats.contract import KNOWN, find
-from primordia.law.mutation import BlockMutation
 from primordia.law.seasons import Ratchet, Schedule
+from primordia.mutations.gaussian import Block, Gaussian
 from primordia.settings.base import Settings
 from primordia.settings.fields import setting_fields
 from primordia.settings.tables import from_toml, merged, tasks
@@ -91,8 +92,8 @@ def test_a_file_that_names_a_task_changes_only_what_it_says(tmp_path: Path) -> N
     file = tmp_path / "mine.toml"
     file.write_text(f'task = "{TASK}"\nhazard = 0.25\n[mutation]\nscale = 0.5\n')
     mine, theirs = load(str(file)), load(TASK)
-    assert (mine.hazard, mine.mutation.scale) == (0.25, 0.5)
-    mutation = theirs.mutation.model_copy(update={"scale": 0.5})
+    assert (mine.hazard, mine.mutation["scale"]) == (0.25, 0.5)
+    mutation = {**theirs.mutation, "scale": 0.5}
     assert mine == theirs.model_copy(update={"hazard": 0.25, "mutation": mutation})
 
 
@@ -121,11 +122,11 @@ def test_flags_override_the_file_and_the_file_the_task(tmp_path: Path) -> None:
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
     config = load(str(run / "config.toml"))
     assert config.cells == 8, "flag"
-    assert (config.mutation.scale, config.mutation.probability) == (0.125, 0.25), "flag, file"
+    assert (config.mutation["scale"], config.mutation["probability"]) == (0.125, 0.25), "flag, file"
     assert (config.stop.ticks, config.stop.until) == (2, None), "flags"
     assert config.placement.rule == "empty-only"
     assert config.brain["hidden"] == 4, "file"
-    assert config.mutation.founder_scale == tasks()[TASK]["mutation"]["founder_scale"], "task"
+    assert config.mutation["founder_scale"] == tasks()[TASK]["mutation"]["founder_scale"], "task"
     assert config.seasons == (Schedule(kind="schedule", setting="hazard", at=9, value=0.0),)
     assert json.loads(here("info", run, "--json").stdout)["ticks"] == 2
 
@@ -143,10 +144,11 @@ def models(model: type[BaseModel]) -> list[type[BaseModel]]:
     return [model, *(one for each in found for one in models(each))]
 
 
+BRAINS = [brains.find(name) for name in brains.KNOWN]
 HABITATS = [find(name) for name in KNOWN if issubclass(find(name), Settings)]
 
 
-@pytest.mark.parametrize("model", [Config, BlockMutation, Schedule, Ratchet, *HABITATS])
+@pytest.mark.parametrize("model", [Config, Gaussian, Block, Schedule, Ratchet, *BRAINS, *HABITATS])
 def test_every_setting_is_explained(model: type[Settings]) -> None:
     for path, field in setting_fields(model).items():
         assert field.description, path
@@ -154,7 +156,7 @@ def test_every_setting_is_explained(model: type[Settings]) -> None:
         assert each.__doc__, each
 
 
-@pytest.mark.parametrize("model", [Config, *HABITATS])
+@pytest.mark.parametrize("model", [Config, *BRAINS, *HABITATS])
 def test_settings_are_frozen_and_strict(model: type[Settings]) -> None:
     for each in models(model):
         assert each.model_config["frozen"]
@@ -170,7 +172,7 @@ def help_text(*words: object) -> str:
 
 def test_help_lists_every_setting_with_its_value_and_meaning(tmp_path: Path) -> None:
     text = help_text(TASK)
-    hidden = {"task", "about", "habitat", "brain", "origin.run", "origin.tick"}
+    hidden = {"task", "about", "habitat", "brain", "mutation", "fork.run", "fork.tick"}
     paths = set(setting_fields(Config)) - hidden | {"brain.kind", "brain.hidden", "brain.biases"}
     paths |= {f"habitat.{name}" for name in find("cartpole").model_fields} | {"habitat.name"}
     for path in paths:

@@ -8,7 +8,7 @@ import pytest
 import tomli_w
 
 from primordia.brains.contract import KNOWN, find
-from primordia.config import load, validated
+from primordia.config import load, parsed, validated
 from primordia.errors import InputError
 from primordia.settings.tables import merged
 from tests.commands import complains, here
@@ -30,6 +30,11 @@ def test_settings_of_an_older_version_are_read() -> None:
     for kind in ("recurrent", "feed-forward"):
         old = {**MEADOW, "brain": {"kind": kind, "hidden": 5}}
         assert validated(old, source="test").brain == {**old["brain"], "biases": False}
+
+
+def test_settings_are_read_without_the_code_of_the_brain() -> None:
+    table = {"kind": "no.such:Brain", "width": 7}
+    assert parsed({**MEADOW, "brain": table}, source="test").brain == table
 
 
 def test_another_part_takes_none_of_the_settings_of_the_one_before() -> None:
@@ -54,14 +59,20 @@ def test_blocks_of_any_name_are_settings(tmp_path: Path) -> None:
     values = {**MILL, "brain": {"kind": "tests.toys:Sliding"}, "seasons": seasons}
     ready = config({**values, "mutation": {"blocks": {"slide-2": {"scale": 0.5}}}})
     law = ready.build_law(ready.build_habitat())
-    assert [law.columns[season.setting] for season in law.seasons] == [[0], [1], [2]]
-    assert law.columns["mutation.scale"] == [1, 2]
+    assert [law.governed(season.setting) for season in law.seasons] == [
+        [season.setting] for season in law.seasons
+    ]
+    assert law.governed("mutation.scale") == [
+        f"mutation.blocks.{block}.scale" for block in ("OUT_3d", "0")
+    ]
     done = here(
         "run", TASK, "--brain.biases", "true", "--mutation.blocks.input_bias.scale", "0.5",
         "--ticks", "1", "--quiet", "--out", tmp_path / "run",
     )  # fmt: skip
     assert (done.returncode, done.stderr) == (0, "")
-    assert load(str(tmp_path / "run" / "config.toml")).mutation.blocks["input_bias"].scale == 0.5
+    assert (
+        load(str(tmp_path / "run" / "config.toml")).mutation["blocks"]["input_bias"]["scale"] == 0.5
+    )
 
 
 @pytest.mark.parametrize(
@@ -90,12 +101,13 @@ def helped(*words: object) -> str:
 
 def test_help_shows_the_settings_of_the_brain_that_a_task_names(tmp_path: Path) -> None:
     file = tmp_path / "mine.toml"
-    for table, shown, others in [
+    cases: list[tuple[dict[str, Any], set[str], set[str]]] = [
         ({"kind": "linear"}, {"biases"}, {"hidden"}),
         ({"kind": "tests.toys:Sliding", "width": 7}, {"width", "channels"}, {"hidden", "biases"}),
         ({}, {"hidden", "biases"}, {"width"}),
         ({"kind": "no.such:Brain"}, set(), {"hidden", "biases"}),
-    ]:
+    ]
+    for table, shown, others in cases:
         text = helped(_written(file, table))
         assert all(f"--brain.{name} " in text for name in {"kind", *shown}), table
         assert not any(f"--brain.{name} " in text for name in others), table

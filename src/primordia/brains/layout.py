@@ -58,6 +58,15 @@ class Layout:
         """P, the number of weights of one organism."""
         return int(self.sizes.sum())
 
+    def flat(self, genome: Mapping[str, Array], cells: Array) -> Array:
+        """Return the flat genomes (K, P) of the organisms in cells int32 (K,), of blocks (C, *shape)."""
+        blocks = [genome[name][cells].reshape(len(cells), -1) for name in self.names]
+        return jnp.concatenate(blocks, axis=1)
+
+    def per_weight(self, per_block: Array) -> Array:
+        """Repeat values (K, B) of blocks for each of their weights: (K, P)."""
+        return jnp.repeat(per_block, self.sizes, axis=1, total_repeat_length=self.length)
+
     def split(self, flat: Arrays) -> dict[str, Arrays]:
         """Cut flat genomes (..., P) into blocks (..., *shape), in NumPy or in JAX as they are."""
         library = np if isinstance(flat, np.ndarray) else jnp

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from primordia.cli.flags import run_argument
+from primordia.cli.flags import HabitatCommand, run_argument
 from primordia.errors import InputError
 
 if TYPE_CHECKING:
@@ -19,20 +19,21 @@ SENSES = {
 }
 
 
-@click.command(short_help="How an organism does in whole games.")
+@click.command(cls=HabitatCommand, short_help="How an organism does in whole games.")
 @run_argument
 @click.option("--organism", type=int, help="Birth number [who lived longest].")
 @click.option("--world", type=int, help="Where it lived [0, or where somebody lived longest].")
 @click.option("--episodes", default=30, show_default=True, help="Games.")
 @click.option("--ticks", default=100_000, show_default=True, help="Cut games that go on then.")
-@click.option("--sticky", type=float, help="Probability that a frame repeats the last button.")
-@click.option("--noops", type=int, help="Begin after up to so many no-ops.")
 @click.option("--freeze-senses", is_flag=True, help="Senses stay as they are at the start.")
 @click.option(
     "--open-loop", is_flag=True, help="It does what it did in a game of its task, whatever happens."
 )
 @click.option("--json", "as_json", is_flag=True, help="One JSON object.")
+@click.pass_obj
 def evaluate(
+    habitat: dict[str, Any],
+    /,
     run: Path,
     organism: int | None,
     world: int | None,
@@ -41,21 +42,21 @@ def evaluate(
     freeze_senses: bool,
     open_loop: bool,
     as_json: bool,
-    **changes: Any,
 ) -> None:
     """Let an organism play the game its task is made of, from fresh starts, and say how it does.
 
-    A lifespan is what its task makes of a game; score and length are those of the whole game.
+    A lifespan is what its task makes of a game; score and length are those of the whole game. Any
+    setting of the habitat can be changed by a flag, such as --sticky 0.25; `primordia evaluate RUN
+    --help` lists them.
     """
     from primordia.cli.look import who
 
     if freeze_senses and open_loop:
         raise InputError("--freeze-senses and --open-loop: one or the other")
     senses: Any = "frozen" if freeze_senses else "ignored" if open_loop else "live"
-    given = {name: value for name, value in changes.items() if value is not None}
     chosen = who(run, organism, world)
-    found = chosen.evaluate(games=episodes, ticks=ticks, senses=senses, **given)
-    click.echo(json.dumps(found.to_dict()) if as_json else sheet(found, given))
+    found = chosen.evaluate(games=episodes, ticks=ticks, senses=senses, habitat=habitat)
+    click.echo(json.dumps(found.to_dict()) if as_json else sheet(found, habitat))
 
 
 def sheet(found: "Evaluation", changes: dict[str, Any]) -> str:

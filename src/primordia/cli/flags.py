@@ -41,7 +41,7 @@ def limits_in(options: dict[str, Any]) -> dict[str, Any]:
 
 
 class SettingsCommand(click.Command):
-    """A command that takes any setting as a flag, and lists them all under --help."""
+    """A command that takes any setting as a flag, and lists them under --help."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Set aside the flags that are settings, as nested tables in `ctx.obj`."""
@@ -62,17 +62,32 @@ class SettingsCommand(click.Command):
         return super().parse_args(ctx, own)
 
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Append every setting with its value in the task named, and what it means."""
+        """Append every setting with its value, and what it means."""
+        title, rows = self.settings(ctx.meta["words"])
+        if rows:
+            with formatter.section(title):
+                formatter.write_dl(rows)
+
+    def settings(self, words: tuple[str, ...]) -> tuple[str, list[tuple[str, str]]]:
+        """Return a title and rows for --help: all settings of a run, with values of the task named."""
         from primordia.cli.help import setting_rows
         from primordia.settings.tables import tasks
 
         known = tasks()
-        words = ctx.meta["words"]
         task = next((word for word in words if word in known or word.endswith(".toml")), None)
-        with formatter.section(
-            f"Settings, as in TOML ({'values of ' + task if task else 'defaults'})"
-        ):
-            formatter.write_dl(setting_rows(task))
+        values = f"values of {task}" if task else "defaults"
+        return f"Settings, as in TOML ({values})", setting_rows(task)
+
+
+class HabitatCommand(SettingsCommand):
+    """A command on a RUN that takes any setting of its habitat as a flag."""
+
+    def settings(self, words: tuple[str, ...]) -> tuple[str, list[tuple[str, str]]]:
+        """Return a title and rows for --help: the settings of the habitat of the run named."""
+        from primordia.cli.help import habitat_rows
+
+        run = next((Path(word) for word in words if Path(word, "config.toml").exists()), None)
+        return f"Settings of the habitat (values of {run})", habitat_rows(run) if run else []
 
 
 def put(settings: dict[str, Any], path: str, value: Any) -> None:

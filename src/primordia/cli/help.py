@@ -2,6 +2,7 @@
 
 import json
 from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
 from pydantic import Field
@@ -10,12 +11,15 @@ from pydantic_core import PydanticUndefined
 from primordia.brains import contract as brains
 from primordia.config import Config
 from primordia.habitats import contract as habitats
+from primordia.mutations import contract as mutations
+from primordia.runs.archive import Archive
 from primordia.settings.fields import setting_fields
 from primordia.settings.tables import NONE, PARTS, values_of
 
 CONTRACTS: dict[str, tuple[Any, str | None]] = {
     "habitat": (habitats, None),
     "brain": (brains, brains.DEFAULT),
+    "mutation": (mutations, mutations.DEFAULT),
 }
 """Where each replaceable part is found, and its name if a task gives none."""
 
@@ -26,11 +30,20 @@ def setting_rows(task: str | None) -> list[tuple[str, str]]:
     fields: dict[str, Any] = {}
     for path, field in setting_fields(Config).items():
         fields |= _of_part(path, values) if path in PARTS else {path: field}
-    hidden = {"about", "task", "origin.run", "origin.tick"}
+    hidden = {"about", "task", "fork.run", "fork.tick"}
+    return _rows({path: fields[path] for path in fields if path not in hidden}, values)
+
+
+def habitat_rows(run: Path) -> list[tuple[str, str]]:
+    """Return each setting of a run's habitat with its value there, and what it means."""
+    archive = Archive(run)
+    return _rows(setting_fields(type(archive.habitat)), archive.config.habitat)
+
+
+def _rows(fields: dict[str, Any], values: dict[str, Any]) -> list[tuple[str, str]]:
     return [
         (f"--{path}", f"{field.description or ''} [{_shown(values, path, field)}]")
         for path, field in fields.items()
-        if path not in hidden
     ]
 
 

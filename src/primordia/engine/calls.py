@@ -116,7 +116,7 @@ class _Steps:
     ) -> Decision:
         law, alive = self.law, world.organisms.alive
         live_worlds = running(world.worlds, limits)
-        room = log.have_room(events, law.worlds * law.cells, law.worlds)
+        room = log.have_room(law, events)
         return Decision(
             alive=alive,
             active=alive & law.per_cell(live_worlds),

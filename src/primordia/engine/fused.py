@@ -14,7 +14,6 @@ from primordia.law.events import Events
 from primordia.law.genesis import body_words
 from primordia.law.law import Law
 from primordia.law.population import settle
-from primordia.law.sample import width
 from primordia.law.tick import Fates, judge, keys_of, no_fates, rest, think
 from primordia.law.world import World
 from primordia.random.keys import Purpose, stream
@@ -29,7 +28,7 @@ class Fused:
     def __init__(self, law: Law, habitat: JaxHabitat) -> None:
         self._law, self._habitat = law, habitat
         self._advance = shared(_advance, law, habitat, donate=(0, 1))
-        self.events = log.empty(law.worlds * law.cells, law.worlds, width(law.layout.names))
+        self.events = log.empty(law)
         """of the latest chunk"""
 
     def begin(self, world: World) -> State:
@@ -54,11 +53,9 @@ class Fused:
 def _advance(
     law: Law, habitat: JaxHabitat, state: State, events: Events, limits: Limits, ticks: Array
 ) -> tuple[State, Events, Array]:
-    cells = law.worlds * law.cells
-
     def go_on(carry: tuple) -> Array:
         _, events, live_worlds, done = carry
-        return (done < ticks) & live_worlds.any() & log.have_room(events, cells, law.worlds)
+        return (done < ticks) & live_worlds.any() & log.have_room(law, events)
 
     def until_something_happens(carry: tuple) -> tuple:
         state, events, live_worlds, done = carry

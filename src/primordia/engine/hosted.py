@@ -15,13 +15,14 @@ from primordia.engine.calls import Calls, Decision, Since
 from primordia.engine.held import Form, Held
 from primordia.engine.state import Limits, State, named_leaves
 from primordia.engine.tallies import Tallies
-from primordia.habitats.contract import HostHabitat
+from primordia.habitats.contract import Ability, HostHabitat
 from primordia.law import events as log
+from primordia.law.genesis import body_words
 from primordia.law.law import Law
 from primordia.law.life import Thought
-from primordia.law.sample import width
 from primordia.law.tick import no_fates
 from primordia.law.world import World
+from primordia.random.keys import Purpose, stream
 
 
 class Hosted:
@@ -31,7 +32,7 @@ class Hosted:
         self.exact = habitat.exact
         self._law, self._habitat = law, habitat
         self._tallies = Tallies(habitat, law.worlds)
-        self._lists = log.empty(law.worlds * law.cells, law.worlds, width(law.layout.names))
+        self._lists = log.empty(law)
         self.events = self._lists
         """of the latest chunk"""
         habitat.open(law.worlds * law.cells)
@@ -113,5 +114,21 @@ class Hosted:
         prefix, senses = "bodies.", arrays["bodies.senses"]
         bodies = {n.removeprefix(prefix): a for n, a in arrays.items() if n.startswith(prefix)}
         bodies.pop("senses")
+        world = jax.tree.unflatten(jax.tree.structure(template.world), leaves)
+        if not self._habitat.can(Ability.SAVE):
+            return State(world, self._as_at_birth(world, senses))
         self._habitat.load(bodies)
-        return State(jax.tree.unflatten(jax.tree.structure(template.world), leaves), senses)
+        return State(world, senses)
+
+    def _as_at_birth(self, world: World, senses: np.ndarray) -> np.ndarray:
+        """Give the living the bodies that they were born with, where theirs cannot be stored."""
+        alive, senses, seed = (
+            np.flatnonzero(world.organisms.alive),
+            senses.copy(),
+            world.worlds.seed,
+        )
+        key = stream(seed.map(self._law.per_cell), Purpose.BODY, world.organisms.born)
+        words = np.asarray(body_words(key, self._law.cell_numbers, self._habitat.words))
+        if len(alive):
+            senses[alive] = self._habitat.reset(alive, words[alive])
+        return senses

@@ -1,9 +1,11 @@
 """Bodies in JAX: made from random words, put into cells, and found to be broken."""
 
+from functools import partial
+
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jax import Array
+from jax import Array, lax
 
 from primordia.compiled import shared
 from primordia.habitats.contract import Bodies, JaxHabitat
@@ -12,9 +14,15 @@ from primordia.habitats.contract import Bodies, JaxHabitat
 def fresh(habitat: JaxHabitat, words: Array) -> Bodies:
     """Return fresh bodies from random words uint32 (N, words). It must be compiled everywhere.
 
-    Operation by operation, a product and a sum are each rounded; compiled, they may be rounded once.
+    Operation by operation, a product and a sum are each rounded; compiled, they may be rounded once. On a
+    CPU they may also be rounded otherwise for other N, since one body is no vector: there each is made
+    by itself, so that bits do not depend on how many are born together.
     """
-    return habitat.reset(words)
+
+    def one(words: Array) -> Bodies:
+        return jax.tree.map(lambda leaf: leaf[0], habitat.reset(words[None]))
+
+    return lax.platform_dependent(words, cpu=partial(lax.map, one), default=habitat.reset)
 
 
 def unborn(habitat: JaxHabitat, cells: int) -> Bodies:

@@ -2,13 +2,9 @@
 
 from collections.abc import Callable
 
-import jax
 import numpy as np
 import pyarrow.compute as pc
 
-from primordia.engine.state import named_leaves
-from primordia.law import genesis
-from primordia.law.sample import climate_columns, climate_values
 from primordia.runs.archive import Archive
 
 
@@ -34,9 +30,7 @@ def climate_at(run: Archive, world: int) -> Callable[[np.ndarray], dict[str, np.
 
 
 def _at_the_beginning(run: Archive, world: int) -> dict[str, np.float32]:
-    climate = genesis.climate(run.law, run.law.worlds)
-    if (stored := run.origin) is not None:
-        leaves = [stored[f"world.worlds.climate.{name}"] for name, _ in named_leaves(climate)]
-        climate = jax.tree.unflatten(jax.tree.structure(climate), leaves)
-    pairs = zip(climate_columns(run.law.layout.names), climate_values(climate), strict=True)
-    return {name: np.asarray(values)[world] for name, values in pairs}
+    """Return the climate that a world's records begin with."""
+    if (stored := run.origin) is None:
+        return {name: np.float32(value) for name, value in run.law.beginning}
+    return {name: stored[f"world.worlds.climate.{name}"][world] for name in run.law.rates}

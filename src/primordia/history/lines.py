@@ -11,7 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from primordia.law.events import BIRTH_FIELDS, DEATH_FIELDS, Events, Rows
+from primordia.law.columns import Columns
+from primordia.law.events import BIRTHS, DEATHS, Events, Rows
 
 NOBODY, DIES = -1, -2
 """In place of a parent's number."""
@@ -99,18 +100,16 @@ def _in_order(turnover: Turnover) -> Iterator[tuple[int, int, int]]:
 
 
 def turnovers(events: Events, cells: int, worlds: int) -> list[Turnover]:
-    """What a chunk's events say of each of the first so many worlds, of so many cells each."""
-    births = _by_world(events.births, BIRTH_FIELDS, ("id", "parent", "tick"), cells, worlds)
-    deaths = _by_world(events.deaths, DEATH_FIELDS, ("id", "tick"), cells, worlds)
+    """Return what a chunk's events say of each of the first `worlds` worlds, of `cells` cells each."""
+    births = _by_world(events.births, BIRTHS, ("id", "parent", "tick"), cells, worlds)
+    deaths = _by_world(events.deaths, DEATHS, ("id", "tick"), cells, worlds)
     return [Turnover(*born, *dead) for born, dead in zip(births, deaths, strict=True)]
 
 
 def _by_world(
-    list_: Rows, fields: tuple[str, ...], names: tuple[str, ...], cells: int, worlds: int
+    list_: Rows, columns: Columns, names: tuple[str, ...], cells: int, worlds: int
 ) -> list[list[np.ndarray]]:
-    """The named pairs of columns, of each world; all ones are NOBODY."""
-    rows = np.asarray(list_.rows)[: int(list_.filled)].astype(np.int64)
-    of = rows[:, fields.index("cell")] // cells
-    high = [fields.index(f"{name}.hi") for name in names]
-    columns = [rows[:, hi] << 32 | rows[:, hi + 1] for hi in high]
-    return [[column[of == world] for column in columns] for world in range(worlds)]
+    """Return the named columns of each world; all ones are NOBODY."""
+    found = columns.of(np.asarray(list_.rows)[: int(list_.filled)])
+    world = found["cell"] // cells
+    return [[found[name][world == each] for name in names] for each in range(worlds)]

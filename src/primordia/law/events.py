@@ -10,8 +10,34 @@ from typing import NamedTuple
 import jax.numpy as jnp
 from jax import Array, lax
 
-BIRTH_FIELDS = ("cell", "id.hi", "id.lo", "parent.hi", "parent.lo", "tick.hi", "tick.lo", "cause")
-DEATH_FIELDS = ("cell", "id.hi", "id.lo", "tick.hi", "tick.lo", "cause", "energy", "eaten")
+from primordia.law.columns import Columns
+from primordia.law.law import Law
+from primordia.law.world import Cause
+
+BIRTHS = Columns(("cell", "id", "parent", "tick", "cause"), frozenset({"id", "parent", "tick"}))
+"""Columns of a birth, to which the mutation's notes are added; a founder's parent is all ones."""
+DEATHS = Columns(("cell", "id", "tick", "cause", "energy", "food"), frozenset({"id", "tick"}))
+"""Columns of a death."""
+
+
+TOTALS = (
+    "tick",
+    "births",
+    *(f"deaths_{cause.name.lower()}" for cause in Cause),
+    "extinctions",
+    "organism_ticks",
+    "age_total",
+    "oldest_age",
+    "energy_total",
+    "food_total",
+)
+"""Numbers of 64 bits in a sample. Totals are over the living; food over all that ever lived.
+Energy and food are in 1/1024 units, two's complement."""
+
+
+def sample_columns(rates: tuple[str, ...]) -> Columns:
+    """Return the columns of a sample: counts, and the settings that seasons may change (float32)."""
+    return Columns(("world", "population", *TOTALS, *rates), frozenset(TOTALS))
 
 
 class Rows(NamedTuple):
@@ -35,33 +61,37 @@ def batch(cells: int) -> int:
     return min(max(cells // 256, 1), 1024)
 
 
-def empty(cells: int, worlds: int, sample_fields: int) -> Events:
-    """Empty lists for C cells and W worlds, with room for several ticks' worth of events."""
+def empty(law: Law) -> Events:
+    """Return empty lists, with room for several ticks' worth of events."""
+    cells = law.worlds * law.cells
 
-    def rows(most_a_tick: int, least: int, fields: int) -> Rows:
+    def rows(most_a_tick: int, least: int, columns: Columns) -> Rows:
         capacity = max(2 * most_a_tick, least) + batch(cells)
-        return Rows(jnp.zeros((capacity, fields), jnp.uint32), jnp.int32(0))
+        return Rows(jnp.zeros((capacity, columns.width), jnp.uint32), jnp.int32(0))
 
     return Events(
-        births=rows(cells, 1 << 15, len(BIRTH_FIELDS)),
-        deaths=rows(cells, 1 << 15, len(DEATH_FIELDS)),
-        samples=rows(worlds, 1 << 10, sample_fields),
+        births=rows(cells, 1 << 15, BIRTHS.plus(*law.mutation.notes)),
+        deaths=rows(cells, 1 << 15, DEATHS),
+        samples=rows(law.worlds, 1 << 10, sample_columns(law.rates)),
     )
 
 
 def emptied(events: Events) -> Events:
-    """The same lists, to be filled anew."""
+    """Return the same lists, to be filled again."""
     return Events(*(rows._replace(filled=jnp.int32(0)) for rows in events))
 
 
-def have_room(events: Events, cells: int, worlds: int) -> Array:
-    """Whether one more tick's events fit, however many: bool ()."""
+def have_room(law: Law, events: Events) -> Array:
+    """Return whether one more tick's events fit, whatever happens in it: bool ()."""
+    cells = law.worlds * law.cells
     spare = batch(cells)
 
     def fits(list_: Rows, most: int) -> Array:
         return list_.filled + most + spare <= len(list_.rows)
 
-    return fits(events.births, cells) & fits(events.deaths, cells) & fits(events.samples, worlds)
+    return (
+        fits(events.births, cells) & fits(events.deaths, cells) & fits(events.samples, law.worlds)
+    )
 
 
 def for_each(mask: Array, carry: tuple, act: Callable[[Array, Array, tuple], tuple]) -> tuple:
@@ -83,8 +113,7 @@ def for_each(mask: Array, carry: tuple, act: Callable[[Array, Array, tuple], tup
     return lax.while_loop(lambda state: state[0] < rank[-1], body, (jnp.int32(0), carry))[1]
 
 
-def append(list_: Rows, columns: list[Array], valid: Array) -> Rows:
-    """Add a batch of rows given as columns (K,); those not valid will be written over."""
-    block = jnp.stack([column.astype(jnp.uint32) for column in columns], axis=1)
+def append(list_: Rows, block: Array, valid: Array) -> Rows:
+    """Add a batch of rows uint32 (K, fields); those not valid will be written over."""
     rows = lax.dynamic_update_slice(list_.rows, block, (list_.filled, jnp.int32(0)))
     return Rows(rows, list_.filled + valid.sum(dtype=jnp.int32))

@@ -6,7 +6,6 @@ from jax import Array, lax
 
 from primordia.compiled import shared
 from primordia.law.law import Law
-from primordia.law.metabolism import Metabolism, Rates
 from primordia.law.seasons import ratchets
 from primordia.law.world import Cause, Climate, Looks, Organisms, World, Worlds
 from primordia.random.keys import Purpose, bits, stream
@@ -45,10 +44,10 @@ def _begin(law: Law, tick: int, births: int, seed: Wide) -> World:
     organisms = Organisms(
         alive=jnp.zeros(each, bool),
         genome=genome,
+        notes=jnp.zeros((each, len(law.mutation.notes)), jnp.int32),
         memory=jnp.zeros((each, law.memory), jnp.float32),
         energy=jnp.zeros(each, jnp.int32),
         eaten=jnp.zeros(each, jnp.int32),
-        faulty=jnp.zeros(each, bool),
         born=zero((each,)),
         number=zero((each,)),
         branch=zero((each,)),
@@ -76,21 +75,8 @@ def body_words(key: Wide, cells: Array, words: int) -> Array:
 
 
 def climate(law: Law, count: int) -> Climate:
-    """The settings that seasons may change, as a run begins with them, in `count` worlds."""
-
-    def each(values: float | list[float]) -> Array:
-        return jnp.asarray(
-            np.tile(np.array(values, np.float32), (count, 1)).reshape(count, *np.shape(values))
-        )
-
-    rates = law.metabolism or Metabolism()
-    return Climate(
-        replication=each(law.replication),
-        hazard=each(law.hazard),
-        mutation_probability=each(law.mutation.of_blocks("probability", law.layout.names)),
-        mutation_scale=each(law.mutation.of_blocks("scale", law.layout.names)),
-        metabolism=Rates(*(each(getattr(rates, name)) for name in Rates._fields)),
-    )
+    """Return the settings that seasons may change, as a run begins with them, in `count` worlds."""
+    return {name: jnp.full(count, value, jnp.float32) for name, value in law.beginning}
 
 
 def looks(law: Law, count: int, tick: int) -> Looks:

@@ -13,9 +13,9 @@ from primordia.brains.layout import Layout
 from primordia.habitats.contract import Continuous, Discrete
 from primordia.law.metabolism import Metabolism
 from primordia.law.motor import Motor
-from primordia.law.mutation import BlockSetting, Mutation
 from primordia.law.placement import Placement
-from primordia.law.seasons import Columns, Ratchet, Schedule
+from primordia.law.seasons import Ratchet, Schedule
+from primordia.mutations.contract import Mutation
 
 
 @dataclass(frozen=True)
@@ -37,8 +37,8 @@ class Law:
     ancestors: np.ndarray | None
     """genomes that founders take in turn, float32 (K, P); None: founders are random"""
     metabolism: Metabolism | None
-    replication: float
-    hazard: float
+    beginning: tuple[tuple[str, float], ...]
+    """settings that seasons may change, by dotted name, with the values that worlds begin with"""
     inheritance: Literal["parent", "founder"]
     genesis: Literal["one", "fill"]
     seasons: tuple[Schedule | Ratchet, ...]
@@ -55,27 +55,23 @@ class Law:
         return jnp.broadcast_to(per_world[:, None], (self.worlds, self.cells)).ravel()
 
     @cached_property
-    def founder_scale(self) -> np.ndarray:
-        """Standard deviation of each of a founder's weights, float32 (P,)."""
-        scales = self.mutation.of_blocks("founder_scale", self.layout.names)
-        return np.repeat(np.array(scales, np.float32), self.layout.sizes)
+    def rates(self) -> tuple[str, ...]:
+        """Dotted names of the settings that seasons may change."""
+        return tuple(name for name, _ in self.beginning)
 
-    @cached_property
-    def columns(self) -> Columns:
-        """Which blocks each setting under `mutation` governs."""
-        found: Columns = {}
-        fields: tuple[BlockSetting, ...] = ("probability", "scale")
-        for field in fields:
-            own = self.mutation.own(field, self.layout.names)
-            found[f"mutation.{field}"] = [i for i, value in enumerate(own) if value is None]
-            for i, block in enumerate(self.layout.names):
-                found[f"mutation.blocks.{block}.{field}"] = [i]
-        return found
+    def governed(self, setting: str) -> list[str]:
+        """Return the names among `rates` that a season of a setting changes; none: it is unknown."""
+        part, _, own = setting.partition(".")
+        if part == "mutation":
+            return [f"mutation.{name}" for name in self.mutation.governed(own, self.layout)]
+        return [setting] if setting in self.rates else []
 
     @property
     def has_hazard(self) -> bool:
         """Whether accidents can happen, now or in a later season."""
-        return self.hazard > 0 or any(season.setting == "hazard" for season in self.seasons)
+        return dict(self.beginning)["hazard"] > 0 or any(
+            season.setting == "hazard" for season in self.seasons
+        )
 
     @property
     def cell_numbers(self) -> Array:

@@ -16,8 +16,8 @@ from primordia.habitats.contract import Bodies, Discrete, Outcome
 from primordia.law.law import Law
 from primordia.law.metabolism import Rates, add, fixed, metabolise
 from primordia.law.motor import argmax
-from primordia.law.mutation import noise_index
 from primordia.law.world import Cause
+from primordia.mutations.noise import noise_index
 from primordia.random.gaussian import quantiles
 from primordia.random.wide import Wide
 

@@ -4,14 +4,15 @@ Energy is fixed point, int32 in units of 1/1024, and saturates. In float32 a sto
 stop draining, and its owner seem immortal.
 """
 
-from typing import NamedTuple
+from collections.abc import Mapping
+from typing import Any, NamedTuple
 
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
 from pydantic import Field
 
-from primordia.settings.base import Settings
+from primordia.settings.base import Rate, Settings
 
 ONE = 1024
 """Fixed-point steps in one unit of energy or food."""
@@ -26,11 +27,11 @@ class Metabolism(Settings):
     food, at most cap.
     """
 
-    store: float = Field(100.0, gt=0, le=1e6, description="energy at birth")
-    drain: float = Field(1.0, ge=0, le=1e6, description="energy spent by living for one tick")
-    gain: float = Field(1.0, ge=0, le=1e6, description="energy from one unit of food")
-    effort_cost: float = Field(0.0, ge=0, le=1e6, description="energy spent on one unit of effort")
-    cap: float = Field(1e6, gt=0, le=1e6, description="energy an organism can hold")
+    store: Rate = Field(100.0, gt=0, le=1e6, description="energy at birth")
+    drain: Rate = Field(1.0, ge=0, le=1e6, description="energy spent by living for one tick")
+    gain: Rate = Field(1.0, ge=0, le=1e6, description="energy from one unit of food")
+    effort_cost: Rate = Field(0.0, ge=0, le=1e6, description="energy spent on one unit of effort")
+    cap: Rate = Field(1e6, gt=0, le=1e6, description="energy an organism can hold")
 
 
 def fixed(value: Array) -> Array:
@@ -57,6 +58,11 @@ class Rates(NamedTuple):
     gain: Array
     effort_cost: Array
     cap: Array
+
+    @classmethod
+    def of(cls, climate: Mapping[str, Any]) -> "Rates":
+        """Return those of a climate, whose names begin with `metabolism.`."""
+        return cls(*(climate[f"metabolism.{name}"] for name in cls._fields))
 
 
 def metabolise(energy: Array, food: Array | None, effort: Array | None, rates: Rates) -> Array:

@@ -88,11 +88,11 @@ def _watch(law: Law, world: World, events: Events, running: Array) -> tuple[Worl
     )
     changed = jnp.zeros_like(running)
     if law.seasons:
-        worlds, changed = turn(law.seasons, law.columns, World(organisms, worlds), running)
+        worlds, changed = turn(law.seasons, law.governed, World(organisms, worlds), running)
     periodic = worlds.sample_wait == 0
     worlds = worlds._replace(sample_wait=jnp.where(periodic, law.sample_every, worlds.sample_wait))
     world, due = World(organisms, worlds), running & (periodic | changed)
     samples = lax.cond(
-        due.any(), lambda s: note_samples(world, due, s), lambda s: s, events.samples
+        due.any(), lambda s: note_samples(law, world, due, s), lambda s: s, events.samples
     )
     return world, events._replace(samples=samples)

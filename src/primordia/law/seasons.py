@@ -1,5 +1,6 @@
 """Seasons: settings of the law that change while the run goes on, as part of the world's state."""
 
+from collections.abc import Callable
 from typing import Annotated, Literal
 
 import jax.numpy as jnp
@@ -7,21 +8,17 @@ import numpy as np
 from jax import Array
 from pydantic import Field
 
-from primordia.brains.layout import NAME
 from primordia.law.metabolism import ONE
-from primordia.law.world import Climate, Looks, World, Worlds, ages_total
+from primordia.law.world import Looks, World, Worlds, ages_total
 from primordia.random.wide import Wide, select, to_float, wide
 from primordia.settings.base import Settings
-
-SETTING = r"replication|hazard|metabolism\.(store|drain|gain|effort_cost|cap)"
-MUTATION = rf"mutation\.(blocks\.{NAME}\.)?(probability|scale)"
 
 
 class Schedule(Settings):
     """A setting takes a value once a tick has passed."""
 
     kind: Literal["schedule"] = Field(description="change at a given tick")
-    setting: str = Field(pattern=f"^({SETTING}|{MUTATION})$", description="what changes")
+    setting: str = Field(min_length=1, description="the setting that changes")
     at: int = Field(ge=1, description="the first tick after this one has the new value")
     value: float = Field(ge=0, description="the new value")
 
@@ -34,7 +31,7 @@ class Ratchet(Settings):
     """
 
     kind: Literal["ratchet"] = Field(description="change when the population meets a condition")
-    setting: str = Field(pattern=f"^({SETTING}|{MUTATION})$", description="what changes")
+    setting: str = Field(min_length=1, description="the setting that changes")
     when: Literal["mean_age", "saturation", "food"] = Field(description="what is looked at")
     above: float = Field(ge=0, description="the setting changes if it is above this")
     factor: float = Field(gt=0, description="what the setting is then multiplied by")
@@ -44,14 +41,23 @@ class Ratchet(Settings):
 Season = Annotated[Schedule | Ratchet, Field(discriminator="kind")]
 
 
-Columns = dict[str, list[int]]
-"""For each setting under `mutation`, the blocks of weights (columns of the climate) it governs."""
-
-
 def turn(
-    seasons: tuple[Schedule | Ratchet, ...], columns: Columns, world: World, running: Array
+    seasons: tuple[Schedule | Ratchet, ...],
+    governed: Callable[[str], list[str]],
+    world: World,
+    running: Array,
 ) -> tuple[Worlds, Array]:
-    """Apply the seasons at the end of a tick -> worlds, whose climate changed (bool (W,))."""
+    """Apply the seasons at the end of a tick.
+
+    Args:
+        seasons: of the law.
+        governed: which settings of the climate a season's setting stands for.
+        world: at the end of the tick.
+        running: which worlds are, bool (W,).
+
+    Returns:
+        worlds; whose climate changed, bool (W,).
+    """
     worlds = world.worlds
     changed = jnp.zeros(running.shape, bool)
     s = -1
@@ -63,7 +69,10 @@ def turn(
             look = running & (worlds.looks.wait[:, s] == 0)
             due = look & (_measure(season, s, world) > season.above)
             worlds = worlds._replace(looks=_looked(worlds, season, s, look))
-        worlds = worlds._replace(climate=_change(worlds.climate, season, columns, due))
+        new = {
+            name: _changed(worlds.climate[name], season, due) for name in governed(season.setting)
+        }
+        worlds = worlds._replace(climate=worlds.climate | new)
         changed = changed | due
     return worlds, changed
 
@@ -101,18 +110,7 @@ def _looked(worlds: Worlds, season: Ratchet, s: int, look: Array) -> Looks:
     )
 
 
-def _change(climate: Climate, season: Schedule | Ratchet, columns: Columns, due: Array) -> Climate:
-    def new(old: Array) -> Array:
-        value = season.value if isinstance(season, Schedule) else old * np.float32(season.factor)
-        due_ = due[:, None] if old.ndim == 2 else due
-        return jnp.where(due_, jnp.asarray(value, jnp.float32), old)
-
-    group, _, name = season.setting.partition(".")
-    if group == "metabolism":
-        rates = climate.metabolism
-        return climate._replace(metabolism=rates._replace(**{name: new(getattr(rates, name))}))
-    if group == "mutation":
-        field = "mutation_" + name.rpartition(".")[2]
-        blocks, old = np.array(columns[season.setting], int), getattr(climate, field)
-        return climate._replace(**{field: old.at[:, blocks].set(new(old[:, blocks]))})
-    return climate._replace(**{group: new(getattr(climate, group))})  # type: ignore[arg-type]
+def _changed(old: Array, season: Schedule | Ratchet, due: Array) -> Array:
+    """Return a setting of the climate (W,), changed in the worlds where that is due."""
+    value = season.value if isinstance(season, Schedule) else old * np.float32(season.factor)
+    return jnp.where(due, jnp.asarray(value, jnp.float32), old)

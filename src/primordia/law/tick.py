@@ -74,17 +74,17 @@ def judge(
         world with memory, energy and food brought up to date; fates.
     """
     organisms, worlds = world
-    rates = Rates(*(law.per_cell(rate) for rate in worlds.climate.metabolism))
+    rates = Rates(*map(law.per_cell, Rates.of(worlds.climate)))
     vitals = Vitals(organisms.energy, organisms.eaten)
     vitals, cause = life.judge(law, vitals, thought.faulty, bodies, outcome, rates)
     organisms = organisms._replace(memory=thought.memory, **vitals._asdict())
     if outcome.food is not None:
         worlds = worlds._replace(food=worlds.food + _food(law, outcome.food, active))
     if law.has_hazard:
-        struck = _drawn(law, keys[Purpose.HAZARD], worlds.climate.hazard)
+        struck = _drawn(law, keys[Purpose.HAZARD], worlds.climate["hazard"])
         cause = jnp.where(struck & (cause < 0), Cause.HAZARD, cause)
     cause = jnp.where(active, cause, -1)
-    replicates = _drawn(law, keys[Purpose.REPLICATE], worlds.climate.replication)
+    replicates = _drawn(law, keys[Purpose.REPLICATE], worlds.climate["replication"])
     wants = replicates & active & (cause < 0)
     room = law.placement.room(law.by_world(organisms.alive)).ravel()
     eventful = ((cause >= 0) | (wants & room)).any()

@@ -12,11 +12,11 @@ from jax import Array
 
 from primordia.law import events as log
 from primordia.law.events import Events, Rows
+from primordia.law.heredity import Birth, Newborn, mutation_rates, newborn
 from primordia.law.law import Law
 from primordia.law.metabolism import fixed
-from primordia.law.mutation import ancestor_of, mutates, newborns, noise_index
-from primordia.law.world import Cause, Organisms, Origin, World, Worlds
-from primordia.random.gaussian import quantiles
+from primordia.law.world import BirthCause, Cause, Organisms, World, Worlds
+from primordia.mutations.contract import PURPOSES, Draws
 from primordia.random.keys import Purpose, Streams, below, bits, bits_if, streams
 from primordia.random.wide import Wide, happened, largest, never, select, zero
 
@@ -36,8 +36,7 @@ class Births(NamedTuple):
 
 def birth_keys(worlds: Worlds) -> Streams:
     """What the turnover of worlds at the end of this tick draws from, (W,)."""
-    mine = Purpose.PLACE, Purpose.GENESIS, Purpose.MUTATE, Purpose.NOISE, Purpose.FOUNDER
-    return streams(worlds.seed, worlds.tick, *mine)
+    return streams(worlds.seed, worlds.tick, Purpose.PLACE, Purpose.GENESIS, *PURPOSES)
 
 
 def turnover(
@@ -111,16 +110,15 @@ def _note_deaths(
     tick = worlds.tick.map(law.per_cell)
 
     def note(cells: Array, valid: Array, carry: tuple[Rows]) -> tuple[Rows]:
-        who, when = organisms.number.take(cells), tick.take(cells)
-        columns = [
-            cells,
-            *who,
-            *when,
-            cause[cells],
-            organisms.energy[cells],
-            organisms.eaten[cells],
-        ]
-        return (log.append(carry[0], columns, valid),)
+        rows = log.DEATHS.words(
+            cell=cells,
+            id=organisms.number.take(cells),
+            tick=tick.take(cells),
+            cause=cause[cells],
+            energy=organisms.energy[cells],
+            food=organisms.eaten[cells],
+        )
+        return (log.append(carry[0], rows, valid),)
 
     return log.for_each(cause >= 0, (deaths,), note)[0]
 
@@ -128,62 +126,56 @@ def _note_deaths(
 def _inherit(
     law: Law, world: World, births: Births, keys: Streams, listed: Rows
 ) -> tuple[Organisms, Rows]:
-    """Write the genomes of the newborn, and note their births."""
+    """Write genomes and notes of the newborn, and list their births."""
     organisms, worlds = world
-    climate, before = worlds.climate, organisms.genome
-    sizes, length = law.layout.sizes, law.layout.length
+    before = (organisms.genome, organisms.notes)
 
     def one_batch(cells: Array, valid: Array, carry: tuple) -> tuple:
-        genome, listed = carry
-        of, parent = cells // law.cells, births.parent[cells]
-        founder = births.founded[cells] | (law.inheritance == "founder")
-        within = cells % law.cells
-        draw = keys[Purpose.MUTATE].take(of)
-        mutated = mutates(draw, within, climate.mutation_probability[of]) & ~founder[:, None]
-        source = select(founder, keys[Purpose.FOUNDER].take(of), keys[Purpose.NOISE].take(of))
+        genome, notes, listed = carry
         # A replaced parent's genome may be overwritten by then; elsewhere parents outlive births,
-        # and reading the array that is written spares a copy of all genomes.
-        pool = before if law.placement.rule == "replacing" else genome
-        parents = jnp.concatenate(
-            [pool[block][parent].reshape(len(cells), -1) for block in law.layout.names], axis=1
-        )
-        children = newborns(
-            parents,
-            jnp.asarray(quantiles())[noise_index(source, within, length)],
-            jnp.repeat(mutated, sizes, axis=1, total_repeat_length=length),
-            jnp.repeat(climate.mutation_scale[of], sizes, axis=1, total_repeat_length=length),
-            founder,
-            jnp.asarray(law.founder_scale),
-        )
-        if law.ancestors is not None:
-            turn = ancestor_of(worlds.seed.take(of), births.number.take(cells), len(law.ancestors))
-            ancestral = jnp.asarray(law.ancestors)[turn]
-            children = jnp.where(founder[:, None], ancestral, children)
+        # and reading the arrays that are written spares a copy of all genomes.
+        parents = before if law.placement.rule == "replacing" else (genome, notes)
+        of, parent = _birth(law, worlds, births, keys, cells), births.parent[cells]
+        made = newborn(law, of, law.layout.flat(parents[0], parent), parents[1][parent])
         where = jnp.where(valid, cells, len(births.born))
         genome = {
             name: genome[name].at[where].set(block, mode="drop")
-            for name, block in law.layout.split(children).items()
+            for name, block in law.layout.split(made.genome).items()
         }
-        listed = log.append(
-            listed, _birth_columns(law, world, births, cells, founder, mutated), valid
-        )
-        return genome, listed
+        notes = notes.at[where].set(made.notes, mode="drop")
+        rows = _birth_rows(law, world, births, cells, of.founder, made)
+        return genome, notes, log.append(listed, rows, valid)
 
-    genome, listed = log.for_each(births.born, (before, listed), one_batch)
-    return organisms._replace(genome=genome), listed
+    genome, notes, listed = log.for_each(births.born, (*before, listed), one_batch)
+    return organisms._replace(genome=genome, notes=notes), listed
 
 
-def _birth_columns(
-    law: Law, world: World, births: Births, cells: Array, founder: Array, mutated: Array
-) -> list[Array]:
-    """Columns of events.BIRTH_FIELDS; a parent of all ones is nobody."""
+def _birth(law: Law, worlds: Worlds, births: Births, keys: Streams, cells: Array) -> Birth:
+    """Gather what the genomes of those born in some cells (K,) depend on, beside their parents."""
+    world = cells // law.cells
+    return Birth(
+        seed=worlds.seed.take(world),
+        number=births.number.take(cells),
+        draws=Draws(keys.take(world), cells % law.cells),
+        founder=births.founded[cells] | (law.inheritance == "founder"),
+        rates=mutation_rates(law, {name: worlds.climate[name][world] for name in law.rates}),
+    )
+
+
+def _birth_rows(
+    law: Law, world: World, births: Births, cells: Array, founder: Array, made: Newborn
+) -> Array:
     organisms, worlds = world
     parent = organisms.number.take(births.parent[cells])
-    parent = select(births.founded[cells], never(cells.shape), parent)
-    cause = jnp.where(mutated.any(axis=1), Origin.MUTANT, Origin.COPY)
-    cause = jnp.where(founder, Origin.FOUNDER, cause)
-    tick = worlds.tick.take(cells // law.cells)
-    return [cells, *births.number.take(cells), *parent, *tick, cause]
+    cause = jnp.where(made.mutated, BirthCause.MUTANT, BirthCause.COPY)
+    return log.BIRTHS.plus(*law.mutation.notes).words(
+        cell=cells,
+        id=births.number.take(cells),
+        parent=select(births.founded[cells], never(cells.shape), parent),
+        tick=worlds.tick.take(cells // law.cells),
+        cause=jnp.where(founder, BirthCause.FOUNDER, cause),
+        **dict(zip(law.mutation.notes, made.notes.T, strict=True)),
+    )
 
 
 def _begin_lives(
@@ -195,7 +187,7 @@ def _begin_lives(
     founders_child = (parent_branch.hi | parent_branch.lo) == 0
     branch = select(founders_child, births.number.plus(jnp.ones_like(born)), parent_branch)
     branch = select(births.founded, zero(born.shape), branch)
-    store = law.per_cell(fixed(worlds.climate.metabolism.store))
+    store = law.per_cell(fixed(worlds.climate["metabolism.store"]))
     return organisms._replace(
         alive=alive,
         memory=jnp.where(born[:, None], 0, organisms.memory),

@@ -5,13 +5,12 @@ meaning.
 """
 
 from enum import IntEnum
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import jax.numpy as jnp
 from jax import Array
 
 from primordia.brains.contract import Genome
-from primordia.law.metabolism import Rates
 from primordia.random.wide import Wide, select, total, zero
 
 
@@ -36,7 +35,7 @@ class Cause(Named):
     RESTART = 6
 
 
-class Origin(Named):
+class BirthCause(Named):
     """Cause of a birth. Numbers are part of the format."""
 
     FOUNDER = 0
@@ -51,14 +50,14 @@ class Organisms(NamedTuple):
     """bool"""
     genome: Genome
     """block of weights -> float32 (C, *shape)"""
+    notes: Array
+    """int32 (C, n): what the mutation keeps with an organism; see `Mutation.notes`"""
     memory: Array
     """float32 (C, M)"""
     energy: Array
     """int32, fixed point"""
     eaten: Array
     """food of its whole life, int32, fixed point, saturating"""
-    faulty: Array
-    """bool: its brain gave something that is no number in this tick"""
     born: Wide
     """tick of birth"""
     number: Wide
@@ -68,19 +67,8 @@ class Organisms(NamedTuple):
     living, and not 0, once the population has fixed"""
 
 
-class Climate(NamedTuple):
-    """The settings that seasons may change, as they stand in each world: float32."""
-
-    replication: Array
-    """(W,) probability that an organism replicates in a tick"""
-    hazard: Array
-    """(W,) probability that it dies of nothing it did"""
-    mutation_probability: Array
-    """(W, B), blocks of weights in the genome's order"""
-    mutation_scale: Array
-    """(W, B)"""
-    metabolism: Rates
-    """each (W,)"""
+Climate: TypeAlias = dict[str, Array]
+"""The settings that seasons may change, as they stand in each world: dotted name -> float32 (W,)."""
 
 
 class Looks(NamedTuple):

@@ -4,7 +4,7 @@ They were selected for their lives in their own worlds. How they do in the game 
 whether they look at the game at all, is asked here.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Literal, NamedTuple
@@ -14,6 +14,7 @@ import numpy as np
 
 from primordia.config import Config
 from primordia.errors import InputError
+from primordia.habitats.contract import AnyHabitat
 from primordia.history.climate import climate_at
 from primordia.history.lineage import rebuild_all
 from primordia.law.metabolism import Rates
@@ -21,6 +22,8 @@ from primordia.organism.games import Games, Players, play
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
 from primordia.runs.archive import Archive
+from primordia.settings.fields import setting_fields
+from primordia.settings.tables import NONE, did_you_mean, merged, replaced
 
 GAMES = 30
 TICKS = 100_000
@@ -88,6 +91,7 @@ def evaluate(
     games: int = GAMES,
     ticks: int = TICKS,
     senses: Senses = "live",
+    habitat: Mapping[str, Any] | None = None,
     **changes: Any,
 ) -> list[Evaluation]:
     """Let organisms play, side by side; how many there are changes nothing for any of them.
@@ -99,7 +103,8 @@ def evaluate(
         ticks: a game that still goes on then is cut; whole games also where others cut them.
         senses: `live`; `frozen`, they stay as they are when a game begins; `ignored`, each does what it
             did in a game with its task's own settings, over and over, whatever happens.
-        changes: settings of the habitat, such as `sticky=0.25, noops=30`.
+        habitat: settings of the habitat to be changed, such as `{"senses": [49, 50]}`.
+        changes: more of them, such as `sticky=0.25, noops=30`.
 
     Raises:
         InputError: no such organism, a setting that the habitat does not have, or one with which the
@@ -110,7 +115,8 @@ def evaluate(
     if not organisms:
         return []
     own = players_of(run, organisms)
-    players = own._replace(habitat=_changed(run.config, own.habitat, changes))
+    wanted = {**(habitat or {}), **changes}
+    players = own._replace(habitat=_changed(run.config, own.habitat, wanted))
     script = play(own, 1, ticks) if senses == "ignored" else None
     count = 1 if players.deterministic else games
     played = partial(play, games=count, frozen=senses == "frozen", script=script)
@@ -139,9 +145,15 @@ def players_of(run: Archive, organisms: Sequence[tuple[int, int]]) -> Players:
     return Players(run.law, run.config.build_habitat(), genomes, keys, rates)
 
 
-def _changed(config: Config, before: Any, changes: dict[str, Any]) -> Any:
-    """A run's habitat with some settings changed."""
-    habitat = config.model_copy(update={"habitat": {**config.habitat, **changes}}).build_habitat()
+def _changed(config: Config, before: AnyHabitat, changes: dict[str, Any]) -> AnyHabitat:
+    """Return a run's habitat with some settings changed."""
+    known = list(setting_fields(type(before)))
+    for name in changes:
+        if known and name not in {each.partition(".")[0] for each in known}:
+            meant = did_you_mean(name, known)
+            raise InputError(f"evaluate: this run's habitat has no setting {name!r}{meant}")
+    values = replaced(merged(config.habitat, changes), NONE, None)
+    habitat = config.model_copy(update={"habitat": values}).build_habitat()
     if (habitat.senses_size, habitat.action) != (before.senses_size, before.action):
         raise InputError(
             f"evaluate: with other {', '.join(changes)} the habitat has {habitat.senses_size} senses"

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from primordia.history.lineage import descent, rebuild
-from primordia.law.world import Cause, Origin
+from primordia.law.world import BirthCause, Cause
 from primordia.organism.evaluation import Evaluation, evaluate
 from primordia.organism.policy import Policy
 from primordia.organism.replay import replay as show
@@ -56,9 +56,9 @@ class Organism:
         return int(self.everyone.cell[self.row])
 
     @property
-    def origin(self) -> str:
+    def birth_cause(self) -> str:
         """`founder`, `copy` or `mutant`."""
-        return Origin(self.everyone.origin[self.row]).label
+        return BirthCause(self.everyone.birth_cause[self.row]).label
 
     @property
     def born(self) -> int:

@@ -9,6 +9,7 @@ All functions take and give arrays of shapes that broadcast.
 
 from dataclasses import dataclass, field
 from enum import IntEnum
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -64,6 +65,10 @@ class Streams:
     def __getitem__(self, purpose: Purpose) -> Wide:
         """(...)"""
         return self.keys.take(self.purposes.index(purpose))
+
+    def take(self, index: Any) -> "Streams":
+        """Return the streams at an index of the arrays."""
+        return Streams(self.keys.map(lambda words: words[:, index]), self.purposes)
 
 
 def streams(seed: Wide, tick: Wide, *purposes: Purpose) -> Streams:

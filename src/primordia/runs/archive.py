@@ -17,30 +17,27 @@ from primordia.law.law import Law
 from primordia.runs import checkpoint, directory
 from primordia.runs.checkpoint import Arrays, Checkpoint
 from primordia.runs.lives import Lives, joined
-from primordia.runs.record import TABLES, Recorder
+from primordia.runs.schema import TABLES, Schema
 
 
 class Archive:
     """A run directory opened for reading; each part is read, checked or built once, when first used.
 
-    It shows the run as its newest checkpoint had it when that was first used. A run that has gone on
-    since is opened again. Every file of that checkpoint, segments of the tables included, is held
-    against its checksum before anything is read from it.
+    Only the settings are read at once. It shows the run as its newest checkpoint had it when that was
+    first used; a run that has gone on since is opened again. Every file of that checkpoint, segments of
+    the tables included, is held against its checksum before anything is read from it.
     """
 
     def __init__(self, path: str | Path) -> None:
-        self.path = Path(path)
-        self.fault_in = cache(files.fault_in)
-        """`files.fault_in`, which reads no file twice"""
-
-    @cached_property
-    def config(self) -> Config:
-        """The settings.
+        """Open a run by its directory.
 
         Raises:
             InputError: this is no run, or one that this version cannot read.
         """
-        return directory.read_config(self.path)
+        self.path = Path(path)
+        self.config: Config = directory.read_config(self.path)
+        self.fault_in = cache(files.fault_in)
+        """`files.fault_in`, which reads no file twice"""
 
     @cached_property
     def habitat(self) -> AnyHabitat:
@@ -76,10 +73,9 @@ class Archive:
         """The newest whole checkpoint.
 
         Raises:
-            InputError: this is no run, or it has no checkpoint yet.
+            InputError: the run has no checkpoint yet.
             Trouble: none of its checkpoints is whole.
         """
-        assert self.config is not None  # or it is no run
         last, faults = self.newest
         if last is None and faults:
             raise checkpoint.none_whole(self.path, faults)
@@ -122,7 +118,7 @@ class Archive:
             with pq.ParquetFile(self.path / name / each["name"]) as file:
                 yield file.read(wanted)
         if len(tail) or not closed:
-            rows = self._recorder.arrow(name, tail)
+            rows = self.schema.arrow(name, tail)
             yield rows.select(wanted) if wanted else rows
 
     @cached_property
@@ -145,7 +141,16 @@ class Archive:
         return found
 
     @cached_property
-    def _recorder(self) -> Recorder:
-        """Tells what the words of rows that are in no segment yet mean."""
-        config, tallies = self.config, self.habitat.tallies
-        return Recorder(None, config.seeds, config.cells, self.law.layout.names, tallies)
+    def schema(self) -> Schema:
+        """What the rows of its tables mean."""
+        return Schema.of(self.law, self.habitat.tallies)
+
+    def notes_of(self, lives: Lives) -> np.ndarray:
+        """Return what the mutation noted at the births of some lives, int32 (L, n)."""
+        if not self.schema.notes:
+            return np.zeros((len(lives), 0), np.int32)
+        births = self.table("births", ("world", "id", *self.schema.notes))
+        world, number = births["world"].to_numpy(), births["id"].to_numpy()
+        order = np.lexsort((number, world))
+        rows = order[lives.rows_in(world[order], number[order])]
+        return np.stack([births[name].to_numpy()[rows] for name in self.schema.notes], axis=1)

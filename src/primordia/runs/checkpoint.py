@@ -19,7 +19,8 @@ import numpy as np
 from primordia import files
 from primordia.brains.genomes import FOUNDERS
 from primordia.errors import Trouble
-from primordia.runs.record import TABLES, Recorder
+from primordia.runs.record import Recorder
+from primordia.runs.schema import TABLES
 
 KEPT = 2
 """Checkpoints kept; should the newest be damaged, the one before serves."""

@@ -13,11 +13,11 @@ from primordia.brains import genomes
 from primordia.config import Config, parsed
 from primordia.errors import InputError, Trouble
 from primordia.habitats.contract import AnyHabitat
-from primordia.runs.record import TABLES
+from primordia.runs.schema import TABLES
 from primordia.settings.tables import from_toml
 
-FORMAT = 1
-"""Of run directories; a higher one is refused."""
+FORMAT = 2
+"""of run directories; others are refused"""
 
 
 @contextmanager
@@ -74,6 +74,11 @@ def read_config(run: Path) -> Config:
     if made_by > FORMAT:
         raise InputError(
             f"{run} was made by a newer primordia (format {made_by}, this one reads {FORMAT}); upgrade"
+        )
+    if made_by < FORMAT:
+        raise InputError(
+            f"{run} has format {made_by}, and this primordia reads format {FORMAT} only;"
+            f" `primordia run {run / 'config.toml'}` lives it again from its beginning"
         )
     return parsed(from_toml(run / "config.toml"), source=str(run / "config.toml"))
 

@@ -8,7 +8,6 @@ import time
 from pathlib import Path
 from typing import Any
 
-import jax
 import jax.numpy as jnp
 import numpy as np
 
@@ -16,7 +15,8 @@ from primordia.config import Config, ForkedFrom, validated
 from primordia.engine.engine import Engine
 from primordia.engine.state import State
 from primordia.errors import InputError, Trouble
-from primordia.law.genesis import climate, looks
+from primordia.law.events import BIRTHS
+from primordia.law.genesis import looks
 from primordia.law.metabolism import fixed
 from primordia.law.world import Climate, Looks, World, Worlds
 from primordia.random.wide import Wide, never, wide
@@ -27,7 +27,7 @@ from primordia.runs.lives import Lives
 from primordia.runs.loop import Listener, Status, recorder_for
 from primordia.settings.tables import from_toml, merged
 
-INNOCENT = {"stop", "origin", "about", "sample_every"}
+INNOCENT = {"stop", "fork", "about", "sample_every"}
 """Settings that do not change what happens in a world."""
 
 
@@ -60,7 +60,7 @@ def fork(
     living = _living(source.lives, before, source.config, at)
     after = _transplanted(before, source.config, changed, at)
     recorder = recorder_for(after, out)
-    recorder.add("births", _birth_rows(living, changed.cells))
+    recorder.add("births", _birth_rows(living, after))
     progress = Progress(changed.stop.model_dump(), 0.0, after.chunks.exact)
     with directory.new(out, changed):
         checkpoint.save_origin(out, after.arrays(), recorder, progress)
@@ -69,7 +69,7 @@ def fork(
 def _changed(source: Path, settings: dict[str, Any], at: int) -> Config:
     """The fork's configuration."""
     values = merged(from_toml(source / "config.toml"), settings)
-    values["origin"] = ForkedFrom(run=str(source), tick=at).model_dump()
+    values["fork"] = ForkedFrom(run=str(source), tick=at).model_dump()
     return validated(values, source=str(source))
 
 
@@ -111,14 +111,19 @@ def _living(everyone: Lives, engine: Engine, config: Config, at: int) -> Lives:
     return living
 
 
-def _birth_rows(living: Lives, cells: int) -> np.ndarray:
-    """Rows of `events.BIRTH_FIELDS`, uint32 (n, fields), in the order of events."""
+def _birth_rows(living: Lives, engine: Engine) -> np.ndarray:
+    """Return the births of the living as the law lists them, uint32 (n, words), in order of events."""
     living = living.take(np.lexsort((living.cell, living.world, living.born)))
-    cell = living.world.astype(np.int64) * cells + living.cell
-    pairs = (
-        half for each in (living.id, living.parent, living.born) for half in (each >> 32, each)
+    cell = living.world.astype(np.int64) * engine.law.cells + living.cell
+    names, notes = engine.law.mutation.notes, engine.state.world.organisms.notes
+    return BIRTHS.plus(*names).rows(
+        cell=cell,
+        id=living.id,
+        parent=living.parent,
+        tick=living.born,
+        cause=living.birth_cause,
+        **dict(zip(names, np.asarray(notes)[cell].T, strict=True)),
     )
-    return np.stack([cell, *pairs, living.origin], axis=1).astype(np.uint32)
 
 
 def _transplanted(before: Engine, old: Config, new: Config, at: int) -> Engine:
@@ -127,9 +132,12 @@ def _transplanted(before: Engine, old: Config, new: Config, at: int) -> Engine:
     arrays, own = before.arrays(), after.arrays()
     for name, array in own.items():
         same = new.brain == old.brain and np.shape(arrays.get(name, 0)) == array.shape
-        if ".looks." not in name and not same:
-            raise InputError("a fork cannot change cells, seeds, senses, the brain or the habitat")
-    after.load(arrays)
+        if ".looks." not in name and ".climate." not in name and not same:
+            raise InputError(
+                "a fork cannot change cells, seeds, senses, the brain, the habitat or what the mutation"
+                " notes"
+            )
+    after.load({**own, **arrays})
     world, bodies = after.state
     after.state = State(_adapted(world, before, after, old, new, at), bodies)
     return after
@@ -147,7 +155,7 @@ def _adapted(
         looks=worlds.looks if new.seasons == old.seasons else _looks(worlds, after, at),
     )
     if new.metabolism is not None and old.metabolism is None:
-        store = after.law.per_cell(fixed(worlds.climate.metabolism.store))
+        store = after.law.per_cell(fixed(worlds.climate["metabolism.store"]))
         organisms = organisms._replace(energy=store)
     if new.model_dump(exclude=INNOCENT) != old.model_dump(exclude=INNOCENT):
         worlds = worlds._replace(  # saturation is looked for anew
@@ -169,6 +177,9 @@ def _looks(worlds: Worlds, after: Engine, at: int) -> Looks:
 
 
 def _climate(now: Climate, before: Engine, after: Engine) -> Climate:
-    """The new settings where they differ from the old, elsewhere what is now in force."""
-    old, new = (climate(engine.law, engine.law.worlds) for engine in (before, after))
-    return jax.tree.map(lambda now, a, b: jnp.where(a == b, now, b), now, old, new)
+    """Return the new settings where they differ from the old, elsewhere what is now in force."""
+    old = dict(before.law.beginning)
+    return {
+        name: now[name] if old.get(name) == value else jnp.full_like(now[name], value)
+        for name, value in after.law.beginning
+    }

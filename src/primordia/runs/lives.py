@@ -8,7 +8,7 @@ import numpy as np
 import pyarrow as pa
 
 from primordia.errors import InputError
-from primordia.law.world import Cause, Named, Origin
+from primordia.law.world import BirthCause, Cause, Named
 
 ALIVE = -1
 """In place of a cause of death."""
@@ -26,8 +26,8 @@ class Lives:
     """int64, or -1: from nothing"""
     cell: np.ndarray
     """int32"""
-    origin: np.ndarray
-    """int8, an `Origin`"""
+    birth_cause: np.ndarray
+    """int8, an `BirthCause`"""
     born: np.ndarray
     """int64, tick"""
     seen: np.ndarray
@@ -129,6 +129,10 @@ class Lives:
         """Row of each one's parent, int64 (L,), or -1 where it is not among these."""
         return _rows(self.world, self.id, self.world, self.parent)
 
+    def rows_in(self, worlds: np.ndarray, numbers: np.ndarray) -> np.ndarray:
+        """Return the row of each of these lives among births sorted by world and number, int64 (L,)."""
+        return _rows(worlds, numbers, self.world, self.id)
+
     def _rows_of_world(self, world: int) -> slice:
         first, last = np.searchsorted(self.world, [world, world + 1])
         return slice(int(first), int(last))
@@ -145,7 +149,7 @@ def joined(
         ends: tick at which each world stands, int64 (W,).
         begins: tick at the end of which the records begin.
     """
-    born = _concatenated([_columns(segment, Origin) for segment in births])
+    born = _concatenated([_columns(segment, BirthCause) for segment in births])
     if len(ends) > 1:  # world by world; NumPy sorts numbers of 16 bits in linear time
         order = np.argsort(born["world"].astype(np.uint16), kind="stable")
         born = {name: array[order] for name, array in born.items()}
@@ -158,7 +162,7 @@ def joined(
         id=born["id"],
         parent=born["parent"],
         cell=born["cell"],
-        origin=born["cause"],
+        birth_cause=born["cause"],
         born=born["tick"],
         seen=np.maximum(born["tick"], begins) if begins else born["tick"],
         ended=ended,

@@ -20,6 +20,7 @@ from primordia.runs import checkpoint, directory
 from primordia.runs.archive import Archive
 from primordia.runs.checkpoint import Checkpoint, Progress
 from primordia.runs.record import Recorder
+from primordia.runs.schema import Schema
 
 
 @dataclass
@@ -52,10 +53,8 @@ def start(
         Trouble: something cannot be written.
     """
     _check_interval(checkpoint_every)
-    if config.origin is not None:
-        raise InputError(
-            f"these are the settings of a fork, of {config.origin.run}; fork that again"
-        )
+    if config.fork is not None:
+        raise InputError(f"these are the settings of a fork, of {config.fork.run}; fork that again")
     with directory.new(run, config):
         engine = Engine(config)
         recorder = recorder_for(engine, run)
@@ -99,7 +98,7 @@ def resume(
         last, faults = archive.newest  # what does change is not read before the lock is held
         if last is None and faults:
             raise checkpoint.none_whole(run, faults)
-        if last is None and config.origin is not None:
+        if last is None and config.fork is not None:
             raise InputError(
                 f"{run} is a fork that was cut off before it began; remove it, fork again"
             )
@@ -123,7 +122,7 @@ def resume(
 def recorder_for(engine: Engine, run: Path | None) -> Recorder:
     """What takes down an engine's events in a run's directory; without one, digests only."""
     config = engine.config
-    return Recorder(run, config.seeds, config.cells, engine.law.layout.names, engine.tallies)
+    return Recorder(run, config.seeds, Schema.of(engine.law, engine.tallies))
 
 
 def stand_at(engine: Engine, recorder: Recorder, last: Checkpoint) -> None:

@@ -1,6 +1,13 @@
 """What every part that a user can configure has in common."""
 
+from typing import Annotated
+
 from pydantic import BaseModel, ConfigDict
+
+SEASONAL = "seasonal"
+Rate = Annotated[float, SEASONAL]
+"""A setting that seasons may change while a run goes on. It is then part of every world's climate, and a
+column of the metrics, under the dotted name it has in settings."""
 
 
 class Settings(BaseModel):

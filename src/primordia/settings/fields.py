@@ -5,6 +5,7 @@ from typing import Any, Union, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
+from primordia.settings.base import SEASONAL, Settings
 from primordia.settings.tables import did_you_mean
 
 
@@ -20,6 +21,14 @@ def setting_fields(model: type, prefix: str = "") -> dict[str, Any]:
         else:
             found[prefix + name] = field
     return found
+
+
+def rates_of(group: Settings, prefix: str = "") -> dict[str, float]:
+    """Return the values of a group's own settings declared as `Rate`, by name with a prefix."""
+    fields = type(group).model_fields.items()
+    return {
+        prefix + name: getattr(group, name) for name, field in fields if SEASONAL in field.metadata
+    }
 
 
 def _model_in(annotation: Any) -> type[BaseModel] | None:

@@ -12,7 +12,7 @@ NONE = "none"
 """How TOML and flags write None."""
 
 
-PARTS = {"habitat": "name", "brain": "kind"}
+PARTS = {"habitat": "name", "brain": "kind", "mutation": "kind"}
 """Tables of replaceable parts, and the setting of each that says which part it is."""
 
 

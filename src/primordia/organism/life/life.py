@@ -3,7 +3,7 @@
 Nothing else enters (the first of the promises), so the neighbours need not live again with it.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
 from contextlib import closing
 from dataclasses import dataclass
 from functools import cached_property
@@ -75,14 +75,14 @@ class Life:
     @property
     def was_found(self) -> bool:
         """Whether a fork found it, and it can be lived again only from there."""
-        origin = self.config.origin
-        return origin is not None and int(self.record.born[0]) <= origin.tick
+        fork = self.config.fork
+        return fork is not None and int(self.record.born[0]) <= fork.tick
 
     @property
     def begins(self) -> int:
         """The tick from whose end it can be lived again: its birth, or the fork's."""
-        origin = self.config.origin
-        return max(int(self.record.born[0]), origin.tick if origin else 0)
+        fork = self.config.fork
+        return max(int(self.record.born[0]), fork.tick if fork else 0)
 
     @property
     def ends(self) -> int:
@@ -94,7 +94,7 @@ class Life:
         """Of its death, if it died."""
         return Cause(self.record.cause[0]) if self.record.died[0] else None
 
-    def again(self, watched: bool = False) -> Iterator[Stretch]:
+    def again(self, watched: bool = False) -> Generator[Stretch, None, None]:
         """All of it, in order, some ticks at a time.
 
         Args:

@@ -1,4 +1,4 @@
-"""Mutation: the noise's distribution, who takes it, and children that NumPy makes bit for bit."""
+"""Gaussian mutation: the noise's distribution, the share of mutants, children as NumPy makes them."""
 
 from statistics import NormalDist
 
@@ -9,9 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from primordia.law.mutation import BlockMutation, Mutation, mutates, newborns, noise_index
+from primordia.brains.layout import Layout
+from primordia.mutations.contract import Draws
+from primordia.mutations.gaussian import Block, Gaussian
+from primordia.mutations.noise import noise_index
 from primordia.random.gaussian import quantiles
-from primordia.random.keys import Purpose, Streams, bits, stream, streams
+from primordia.random.keys import Purpose, Streams, bits, chance, stream, streams
 from primordia.random.wide import Wide, wide
 from tests.chance import binomial
 from tests.worlds import MEADOW, Lived, config
@@ -19,6 +22,8 @@ from tests.worlds import MEADOW, Lived, config
 K, P = 64, 1001
 GENETIC = Purpose.MUTATE, Purpose.NOISE, Purpose.FOUNDER
 NAMES = ["input", "recurrent", "output"]
+LAYOUT = Layout((("input", (3, 7)), ("recurrent", (31, 10)), ("output", (10, 67))))
+TINY = Layout(tuple((name, (1,)) for name in "abcd"))
 
 
 def name(number: int, count: int = K) -> Wide:
@@ -95,19 +100,41 @@ def test_noise_does_not_depend_on_who_else_is_born() -> None:
     np.testing.assert_array_equal(noise(drawn(count=3)[Purpose.NOISE], some), all_of_them[some])
 
 
+def rates(layout: Layout, probability: object, scale: object, count: int) -> dict[str, jax.Array]:
+    """Of K births alike: a value for all blocks, or one each."""
+    found = {}
+    for field, values in (("probability", probability), ("scale", scale)):
+        each = np.broadcast_to(np.array(values, np.float32), len(layout.names))
+        for block, value in zip(layout.names, each, strict=True):
+            found[f"blocks.{block}.{field}"] = jnp.full(count, value, jnp.float32)
+    return found
+
+
+def children(
+    layout: Layout, parents: np.ndarray, probability: object, scale: object = 1.0
+) -> tuple[np.ndarray, np.ndarray]:
+    count = len(parents)
+    draws = Draws(drawn(count=count), jnp.arange(count))
+    notes = jnp.zeros((count, 0), jnp.int32)
+    made = Gaussian().inherit(
+        layout, jnp.asarray(parents), notes, rates(layout, probability, scale, count), draws
+    )
+    return np.asarray(made[0]), np.asarray(made[1])
+
+
 @pytest.mark.parametrize("probability", [0.0, 0.1, 0.5, 0.999, 1.0])
 def test_the_share_of_mutants(probability: float) -> None:
     count = 100_000
-    cells, each = jnp.arange(count), jnp.full((count, 3), probability, jnp.float32)
-    taken = np.asarray(mutates(drawn(count=count)[Purpose.MUTATE], cells, each))
-    assert binomial(int(taken[:, 0].sum()), count, probability)
-    np.testing.assert_array_equal(taken, np.tile(taken[:, :1], 3))
+    found, mutated = children(TINY, np.zeros((count, 4), np.float32), probability)
+    assert binomial(int(mutated.sum()), count, probability)
+    np.testing.assert_array_equal(found != 0, np.tile(mutated[:, None], 4))
 
 
 def test_one_draw_decides_for_all_blocks() -> None:
     count = 100_000
-    each = jnp.tile(jnp.array([0.0, 0.2, 0.7, 1.0], jnp.float32), (count, 1))
-    taken = np.asarray(mutates(drawn(count=count)[Purpose.MUTATE], jnp.arange(count), each))
+    found, mutated = children(TINY, np.zeros((count, 4), np.float32), [0.0, 0.2, 0.7, 1.0])
+    taken = found != 0
+    assert mutated.all()
     assert not taken[:, 0].any()
     assert taken[:, 3].all()
     assert binomial(int(taken[:, 1].sum()), count, 0.2)
@@ -116,31 +143,28 @@ def test_one_draw_decides_for_all_blocks() -> None:
 
 
 def test_blocks_have_their_own_settings_where_given() -> None:
-    mutation = Mutation(
-        probability=0.3,
-        scale=0.02,
-        blocks={
-            "input": BlockMutation(probability=0.0),
-            "output": BlockMutation(scale=0.5, founder_scale=1.0),
-        },
-    )
-    assert mutation.of_blocks("probability", NAMES) == [0.0, 0.3, 0.3]
-    assert mutation.of_blocks("scale", NAMES) == [0.02, 0.02, 0.5]
-    assert mutation.of_blocks("founder_scale", NAMES) == [0.01, 0.01, 1.0]
-    none = Mutation(blocks={"recurrent": BlockMutation(probability=0, scale=0, founder_scale=0)})
-    assert none.of_blocks("probability", NAMES) == [0.5, 0.0, 0.5]
-    assert none.of_blocks("scale", NAMES) == [0.01, 0.0, 0.01]
-    assert none.of_blocks("founder_scale", NAMES) == [0.01, 0.0, 0.01]
+    blocks = {"input": Block(probability=0.0), "output": Block(scale=0.5, founder_scale=1.0)}
+    mutation = Gaussian(probability=0.3, scale=0.02, blocks=blocks)
+    assert mutation.rates(LAYOUT) == {
+        "blocks.input.probability": 0.0,
+        "blocks.recurrent.probability": 0.3,
+        "blocks.output.probability": 0.3,
+        "blocks.input.scale": 0.02,
+        "blocks.recurrent.scale": 0.02,
+        "blocks.output.scale": 0.5,
+    }
+    none = Gaussian(blocks={"recurrent": Block(probability=0, scale=0)}).rates(LAYOUT)
+    assert [none[f"blocks.{name}.probability"] for name in NAMES] == [0.5, 0.0, 0.5]
+    assert [none[f"blocks.{name}.scale"] for name in NAMES] == [0.01, 0.0, 0.01]
 
 
-@jax.jit
-def compiled(
-    parents: jax.Array, index: jax.Array, takes: jax.Array, scale: jax.Array, founder: jax.Array
-) -> jax.Array:
-    return newborns(parents, jnp.asarray(quantiles())[index], takes, scale, founder, FOUNDER)
-
-
-FOUNDER = np.full(P, 0.3, np.float32)
+def test_a_season_of_the_whole_changes_blocks_without_a_value_of_their_own() -> None:
+    mutation = Gaussian(blocks={"output": Block(scale=0.5)})
+    assert mutation.governed("scale", LAYOUT) == ["blocks.input.scale", "blocks.recurrent.scale"]
+    assert len(mutation.governed("probability", LAYOUT)) == 3
+    assert mutation.governed("blocks.output.scale", LAYOUT) == ["blocks.output.scale"]
+    for unknown in ("founder_scale", "blocks.input.founder_scale", "blocks.hidden.scale", "blocks"):
+        assert mutation.governed(unknown, LAYOUT) == []
 
 
 def same_bits(a: np.ndarray, b: np.ndarray) -> None:
@@ -151,35 +175,46 @@ def same_bits(a: np.ndarray, b: np.ndarray) -> None:
 @given(
     st.integers(0, 2**32),
     st.floats(0, 1e3, width=32, allow_subnormal=False).map(lambda x: x if x > 1e-30 else 0.0),
-    st.floats(0, 1),
-    st.booleans(),
+    st.lists(st.floats(0, 1), min_size=3, max_size=3),
 )
 def test_children_are_those_of_numpy_bit_for_bit(
-    number: int, scale: float, share: float, scale_differs: bool
+    number: int, scale: float, probability: list[float]
 ) -> None:
     rng = np.random.default_rng(number)
     parents = (rng.normal(size=(K, P)) * rng.choice([1e-3, 1, 100], (K, 1))).astype(np.float32)
     parents[0, :5] = [0.0, -0.0, np.nan, np.inf, -np.inf]
-    index = rng.integers(0, 65536, (K, P), dtype=np.int32)
-    takes = rng.random((K, P)) < share
-    scales = np.full((K, P), scale, np.float32)
-    if scale_differs:
-        scales *= rng.random((K, P), np.float32)
-    founder = rng.random(K) < 0.2
-    standard = quantiles()[index]
+    scales = np.float32(scale) * np.array([1, 0.3, 0.7], np.float32)
+    word = bits(drawn()[Purpose.MUTATE], jnp.arange(K)).hi
+    takes = np.asarray(chance(word[:, None], jnp.array([probability], jnp.float32)))
+    change = noise(drawn()[Purpose.NOISE]) * np.repeat(scales, LAYOUT.sizes)
     with np.errstate(invalid="ignore"):
-        inherited = np.where(takes, parents + standard * scales, parents)
-    expected = np.where(founder[:, None], standard * np.float32(0.3), inherited)
-    same_bits(newborns(parents, standard, takes, scales, founder, FOUNDER), expected)
-    same_bits(compiled(parents, index, takes, scales, founder), expected)
+        expected = np.where(np.repeat(takes, LAYOUT.sizes, axis=1), parents + change, parents)
+    found, mutated = children(LAYOUT, parents, probability, scales)
+    same_bits(found, expected)
+    np.testing.assert_array_equal(mutated, takes.any(axis=1))
+
+
+def test_children_made_in_a_compiled_function_have_the_same_bits() -> None:
+    parents = np.random.default_rng(1).normal(size=(K, P)).astype(np.float32)
+    draws, notes = Draws(drawn(), jnp.arange(K)), jnp.zeros((K, 0), jnp.int32)
+    inherit = jax.jit(lambda *given: Gaussian().inherit(LAYOUT, *given))
+    made, _ = inherit(jnp.asarray(parents), notes, rates(LAYOUT, 0.5, 0.3, K), draws)
+    same_bits(np.asarray(made), children(LAYOUT, parents, 0.5, 0.3)[0])
+
+
+def test_founders_are_noise_of_their_blocks_scales() -> None:
+    mutation = Gaussian(founder_scale=0.3, blocks={"recurrent": Block(founder_scale=0.02)})
+    scales = np.repeat(np.array([0.3, 0.02, 0.3], np.float32), LAYOUT.sizes)
+    found = mutation.found(LAYOUT, Draws(drawn(), jnp.arange(K)))
+    same_bits(np.asarray(found), noise(drawn()[Purpose.FOUNDER]) * scales)
 
 
 def test_a_copy_is_its_parent_to_the_last_bit() -> None:
     rng = np.random.default_rng(0)
     parents = rng.integers(0, 2**32, (K, P), dtype=np.uint64).astype(np.uint32).view(np.float32)
-    nothing, nobody = np.zeros((K, P), bool), np.zeros(K, bool)
-    index, scale = np.zeros((K, P), np.int32), np.full((K, P), 0.5, np.float32)
-    same_bits(compiled(parents, index, nothing, scale, nobody), parents)
+    found, mutated = children(LAYOUT, parents, 0.0, 0.5)
+    same_bits(found, parents)
+    assert not mutated.any()
 
 
 SCALES, PROBABILITIES = [0.3, 0.25, 0.01], [0.0, 0.6, 0.3]
@@ -231,9 +266,8 @@ def test_genomes_in_a_world_are_those_of_numpy_bit_for_bit(family: Lived) -> Non
     lived = np.concatenate(list(genome.values()), axis=1)
     cells, ticks = jnp.asarray(births["cell"]), wide(births["tick"])
     drawn = streams(name(family.config.seed, 256), ticks, *GENETIC)
-    takes = np.asarray(
-        mutates(drawn[Purpose.MUTATE], cells, jnp.array([PROBABILITIES] * 256, jnp.float32))
-    )
+    word = bits(drawn[Purpose.MUTATE], cells).hi
+    takes = np.asarray(chance(word[:, None], jnp.array([PROBABILITIES], jnp.float32)))
     takes, scale = np.repeat(takes, sizes, axis=1), np.repeat(np.float32(SCALES), sizes)
     spread = np.repeat(np.float32(FOUNDER_SCALES), sizes)
     same_bits((noise(drawn[Purpose.FOUNDER], cells, lived.shape[1]) * spread)[0], lived[0])

@@ -1,0 +1,1 @@
+"""Mutations, one file each: how children differ from their parents, and genomes of founders."""

@@ -1,0 +1,138 @@
+"""The contract of mutations: how children differ from their parents, and what founders begin with.
+
+A mutation is used twice: when organisms are born, and when a genome is rebuilt from the records of its
+line of descent. Both give the same bits, on any device, so a mutation is made of integer draws, table
+look-ups, and float32 products and sums that are each rounded (`noise`).
+
+`kind` in a task's `[mutation]` table is one of those listed here, or `module:Class` of any `Mutation`.
+The other keys of the table are the class's own settings.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from typing import Any, ClassVar, NamedTuple
+
+import jax.numpy as jnp
+from jax import Array
+
+from primordia.brains.layout import Layout
+from primordia.random.keys import Purpose, Streams, bits
+from primordia.random.wide import Wide
+from primordia.settings import parts
+from primordia.settings.base import Settings
+from primordia.settings.fields import rates_of
+from primordia.settings.making import make
+
+KNOWN = {"gaussian": "primordia.mutations.gaussian:Gaussian"}
+DEFAULT = "gaussian"
+
+PURPOSES = Purpose.MUTATE, Purpose.NOISE, Purpose.FOUNDER
+"""What a mutation may draw for."""
+
+
+class Draws(NamedTuple):
+    """Random words of K births; they depend on world, tick and cell of a birth, and on nothing else."""
+
+    streams: Streams
+    """for each of PURPOSES, (K,)"""
+    cell: Array
+    """int32 (K,), within its world"""
+
+    def bits(self, purpose: Purpose, index: Array | int = 0) -> Wide:
+        """Return two random words for each birth, (K,); `index` numbers further draws."""
+        return bits(self.streams[purpose], self.cell, index)
+
+
+class Mutation(Settings, ABC):
+    """A mutation's settings and its behaviour.
+
+    Settings declared as `Rate` may be changed by seasons; methods get their present values as `rates`,
+    by the names of `rates_of`. All arrays have the births as their first axis, K; births do not depend on
+    each other.
+    """
+
+    notes: ClassVar[tuple[str, ...]] = ()
+    """Names of small integers that are kept with an organism, recorded with its birth, and passed on to
+    `note` of its children, such as a heritable rate. They become columns of the births table."""
+
+    def rates(self, layout: Layout) -> dict[str, float]:
+        """Return the numbers that seasons may change, by name, with their values at the beginning."""
+        return rates_of(self)
+
+    def governed(self, setting: str, layout: Layout) -> list[str]:
+        """Return the names among `rates` that a season of a setting changes; none: it is unknown."""
+        return [setting] if setting in self.rates(layout) else []
+
+    def check(self, layout: Layout) -> None:
+        """Raise ValueError if the settings do not fit genomes of this layout."""
+
+    def note(
+        self,
+        layout: Layout,
+        parents: Array,
+        notes: Array,
+        rates: Mapping[str, Array],
+        draws: Draws,
+    ) -> Array:
+        """Return the notes of K children, int32 (K, n), before they are made.
+
+        Args:
+            layout: of the genomes.
+            parents: the parents' genomes, float32 (K, P).
+            notes: the parents' notes, int32 (K, n).
+            rates: present values, float32 (K,) each.
+            draws: random words of the births.
+        """
+        return notes
+
+    @abstractmethod
+    def inherit(
+        self,
+        layout: Layout,
+        parents: Array,
+        notes: Array,
+        rates: Mapping[str, Array],
+        draws: Draws,
+    ) -> tuple[Array, Array]:
+        """Make the genomes of K children.
+
+        Args:
+            layout: of the genomes.
+            parents: the parents' genomes, float32 (K, P).
+            notes: the children's notes, int32 (K, n).
+            rates: present values, float32 (K,) each.
+            draws: random words of the births.
+
+        Returns:
+            genomes, float32 (K, P); which of them are mutants rather than copies, bool (K,).
+        """
+
+    @abstractmethod
+    def found(self, layout: Layout, draws: Draws) -> Array:
+        """Make the genomes of K founders, float32 (K, P)."""
+
+    def founders_notes(self, count: int) -> Array:
+        """Return the notes of K founders, int32 (K, n)."""
+        return jnp.zeros((count, len(self.notes)), jnp.int32)
+
+
+def find(name: object) -> type[Mutation]:
+    """Return the mutation class called `name`.
+
+    Raises:
+        LookupError: there is no such name, module or class, or the class is no mutation; the message
+            says which.
+    """
+    found = parts.find("mutation", name, KNOWN)
+    if not issubclass(found, Mutation):
+        raise LookupError(f"{found.__name__} is no mutation: subclass Mutation of {__name__}")
+    return found
+
+
+def build(table: Mapping[str, Any]) -> Mutation:
+    """Return the mutation that a `[mutation]` table describes.
+
+    Raises:
+        InputError: there is no such mutation, or it does not take these settings.
+    """
+    return make("mutation", {"kind": DEFAULT, **table}, find)

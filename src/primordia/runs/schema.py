@@ -1,0 +1,110 @@
+"""What the rows of a run's tables mean: from the words that the law writes to Arrow columns."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+
+from primordia.engine.tallies import tally_columns
+from primordia.law.columns import Columns
+from primordia.law.events import BIRTHS, DEATHS, sample_columns
+from primordia.law.law import Law
+from primordia.law.metabolism import ONE
+from primordia.law.world import BirthCause, Cause
+
+TABLES = ("births", "deaths", "metrics")
+
+
+@dataclass(frozen=True)
+class Schema:
+    """The columns of a run's tables."""
+
+    cells: int
+    """of one world"""
+    notes: tuple[str, ...]
+    """what the mutation notes at births"""
+    rates: tuple[str, ...]
+    """settings that seasons may change"""
+    tallies: tuple[str, ...]
+    """what the habitat counts"""
+
+    @classmethod
+    def of(cls, law: Law, tallies: tuple[str, ...]) -> "Schema":
+        """Return the schema for a law and a habitat's tallies."""
+        return cls(law.cells, law.mutation.notes, law.rates, tallies)
+
+    def columns(self, table: str) -> Columns:
+        """Return the columns of a table's rows, as the law and the tallies write them."""
+        if table == "births":
+            return BIRTHS.plus(*self.notes)
+        if table == "deaths":
+            return DEATHS.plus(*self.tallies)
+        return sample_columns(self.rates).plus(*tally_columns(self.tallies))
+
+    def world_of(self, table: str, rows: np.ndarray) -> np.ndarray:
+        """Return the world that each row uint32 (n, words) belongs to, (n,)."""
+        return rows[:, 0] if table == "metrics" else rows[:, 0] // np.uint32(self.cells)
+
+    def within_world(self, table: str, rows: np.ndarray) -> np.ndarray:
+        """Return the rows as they would be if their world were the only one."""
+        own = rows.copy()
+        own[:, 0] = 0 if table == "metrics" else rows[:, 0] % np.uint32(self.cells)
+        return own
+
+    def arrow(self, table: str, rows: np.ndarray) -> pa.Table:
+        """Return rows uint32 (n, words) as people and programs read them."""
+        found = self.columns(table).of(rows)
+        world = pa.array(self.world_of(table, rows).astype(np.int32))
+        if table == "metrics":
+            return pa.table({"world": world, **self._samples(found)})
+        cell = (found["cell"] % np.uint32(self.cells)).astype(np.int32)
+        if table == "births":
+            return pa.table({"world": world, **self._births(found, cell)})
+        return pa.table({"world": world, **self._deaths(found, cell)})
+
+    def _births(self, found: dict[str, np.ndarray], cell: np.ndarray) -> dict[str, Any]:
+        parent = found["parent"]
+        return {
+            "id": found["id"],
+            "parent": pa.array(parent, mask=parent == -1),
+            "tick": found["tick"],
+            "cell": cell,
+            "cause": _named(found["cause"], BirthCause),
+            **{name: found[name].view(np.int32) for name in self.notes},
+        }
+
+    def _deaths(self, found: dict[str, np.ndarray], cell: np.ndarray) -> dict[str, Any]:
+        return {
+            "id": found["id"],
+            "tick": found["tick"],
+            "cell": cell,
+            "cause": _named(found["cause"], Cause),
+            "energy": found["energy"].view(np.int32) / ONE,
+            "food": found["food"].view(np.int32) / ONE,
+            **{name: found[name].view(np.int32) for name in self.tallies},
+        }
+
+    def _samples(self, found: dict[str, np.ndarray]) -> dict[str, Any]:
+        population = found["population"].astype(np.int32)
+        living = np.maximum(population, 1)
+        deaths = [name for name in found if name.startswith("deaths_")]
+        counts = ["births", *deaths, "extinctions", "organism_ticks", "oldest_age"]
+        return {
+            "tick": found["tick"],
+            "population": population,
+            **{name: found[name] for name in counts},
+            "mean_age": found["age_total"] / living,
+            "mean_energy": found["energy_total"] / ONE / living,
+            "food": found["food_total"] / ONE,
+            **{name: found[name].view(np.float32) for name in self.rates},
+            **{
+                name: found[name].view(np.float32 if name.endswith("_mean") else np.int32)
+                for name in tally_columns(self.tallies)
+            },
+        }
+
+
+def _named(codes: np.ndarray, names: type[BirthCause] | type[Cause]) -> pa.Array:
+    words = pa.array([each.label for each in names])
+    return pa.DictionaryArray.from_arrays(pa.array(codes.astype(np.int8)), words)

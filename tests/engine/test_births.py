@@ -1,0 +1,42 @@
+"""Bodies in JAX are made for those who are born, and for no others."""
+
+from typing import ClassVar
+
+import jax
+import numpy as np
+from jax import Array
+
+from primordia.habitats.bodies import fresh
+from primordia.law.events import batch
+from tests.toys import Meadow, Slope
+from tests.worlds import MEADOW, Lived, config
+
+
+class Costly(Meadow):
+    """It notes for how many bodies at once it is asked."""
+
+    asked: ClassVar[set[int]] = set()
+
+    def reset(self, words: Array) -> Array:
+        self.asked.add(len(words))
+        return super().reset(words)
+
+
+def test_bodies_are_never_made_for_all_cells() -> None:
+    """On a CPU one by one, elsewhere a batch at once; both are traced."""
+    cells = 1024
+    costly = {"name": f"{__name__}:Costly"}
+    lived = Lived(config(MEADOW, habitat=costly, cells=cells, genesis="fill"), 5)
+    assert np.asarray(lived.engine.state.world.organisms.alive).all()
+    assert Costly.asked == {1, batch(cells)}
+    assert batch(cells) < 10
+
+
+def test_bodies_do_not_depend_on_how_many_are_born_together() -> None:
+    """Even where a reset of many at once would be rounded otherwise."""
+    words = np.random.default_rng(3).integers(0, 2**32, (64, 2), np.uint32)
+    born = jax.jit(lambda words: fresh(Slope(), words))
+    together = np.asarray(born(words))
+    for count in (1, 2, 3, 8):
+        some = [np.asarray(born(words[i : i + count])) for i in range(0, 48, count)]
+        np.testing.assert_array_equal(np.concatenate(some), together[:48])

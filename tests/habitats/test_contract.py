@@ -1,0 +1,206 @@
+"""What a habitat must have, what it has by default, and what is said to one that lacks something."""
+
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any, ClassVar
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from jax import Array
+
+import primordia
+from primordia.config import validated
+from primordia.errors import InputError
+from primordia.habitats import Ability, Discrete, HostHabitat, JaxHabitat, Outcome
+from primordia.habitats.cartpole.habitat import CartPole
+from primordia.runs import loop
+from primordia.settings.base import Settings
+from tests.commands import environment
+from tests.toys import Clocked, HostCartPole, Meadow, Mirror
+from tests.worlds import MEADOW, config
+
+
+class Still:
+    """A body that never changes."""
+
+    def reset(self, words: Array) -> Array:
+        return jnp.zeros((len(words), 1), jnp.float32)
+
+    def sense(self, bodies: Array) -> Array:
+        return bodies
+
+    def step(self, bodies: Array, action: Array) -> tuple[Array, Outcome]:
+        return bodies, Outcome(jnp.zeros(len(bodies), bool))
+
+
+class Plain(Still, JaxHabitat):
+    senses_size, action, words, rate = 1, Discrete(2), 1, 30.0
+
+
+class Configured(Still, JaxHabitat, Settings):
+    """Its settings have the names of defaults."""
+
+    senses_size: int = 1
+    action: Any = Discrete(2)
+    words: ClassVar = 1
+    rate: float = 30.0
+    episode: int
+    exact: bool = False
+
+
+class SettingsFirst(Settings, Still, JaxHabitat):
+    size: int = 1
+    action: ClassVar = Discrete(2)
+    words: ClassVar = 1
+
+    @property
+    def senses_size(self) -> int:
+        return self.size
+
+
+class Forgetful(HostHabitat):
+    """Bodies count their ticks, and cannot be saved."""
+
+    senses_size, action, words = 1, Discrete(2), 1
+
+    def open(self, cells: int, watched: bool = False) -> None:
+        self.clock = np.zeros((cells, 1), np.float32)
+
+    def reset(self, born: np.ndarray, words: np.ndarray) -> np.ndarray:
+        self.clock[born] = words % 7
+        return self.clock[born]
+
+    def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
+        self.clock[alive] += 1
+        return self.clock.copy(), Outcome(np.zeros(len(alive), bool))
+
+
+class Proud(Plain):
+    tallies = ("score",)
+
+
+class Nameless(HostCartPole):
+    tallies = ("score",)
+
+
+class Unfinished(JaxHabitat):
+    senses_size, action, words = 1, Discrete(2), 1
+
+    def reset(self, words: Array) -> Array:
+        return words
+
+
+class Senseless(Still, JaxHabitat):
+    action, words = Discrete(2), 1
+
+
+class Stranger(Still):
+    senses_size, action, words = 1, Discrete(2), 1
+
+
+class Crowded(Plain):
+    def check(self, cells: int) -> None:
+        if cells > 8:
+            raise ValueError(f"{cells} cells are too many")
+
+
+def built(name: str, **options: Any) -> Any:
+    habitat = {"name": f"{__name__}:{name}", **options}
+    return validated({**MEADOW, "habitat": habitat}, source="here").build_habitat()
+
+
+def test_what_a_habitat_can_do_follows_from_its_methods() -> None:
+    able = {
+        CartPole(): {Ability.PICTURE, Ability.SAVE},
+        Meadow(): {Ability.SAVE},
+        HostCartPole(): {Ability.SAVE},
+        Clocked(): {Ability.SAVE, Ability.TALLY, Ability.PICTURE},
+        Mirror("mill"): {Ability.SAVE},
+        Forgetful(): set(),
+    }
+    for habitat, abilities in able.items():
+        assert {each for each in Ability if habitat.can(each)} == abilities, habitat
+
+
+def test_one_method_of_two_is_not_enough(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(HostCartPole, "picture", lambda *_: None)
+    assert HostCartPole().lacks(Ability.PICTURE) == ["seen"]
+    monkeypatch.delattr(HostCartPole, "load")
+    assert HostCartPole().lacks(Ability.SAVE) == ["load"]
+    assert not HostCartPole().exact
+
+
+def test_lives_are_exact_where_bodies_can_be_saved() -> None:
+    assert CartPole().exact
+    assert HostCartPole().exact
+    assert not Forgetful().exact
+
+
+def test_a_class_may_say_otherwise(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(HostCartPole, "exact", False, raising=False)
+    assert not HostCartPole().exact
+    assert not built("Configured", episode=3).exact
+
+
+def test_defaults() -> None:
+    meadow = Meadow()
+    assert (meadow.kind, HostCartPole().kind) == ("jax", "host")
+    assert (meadow.rate, meadow.episode, meadow.original()) == (None, None, None)
+    assert (meadow.versions, meadow.tallies) == ({}, ())
+    assert meadow.caption(None, np.array([0.5, 1.25])) == "action [0.5  1.25]"
+    assert HostCartPole().seen() is None
+    meadow.check(10**6)
+
+
+@pytest.mark.parametrize(
+    ("name", "options"), [("Plain", {}), ("Configured", {"episode": 500}), ("SettingsFirst", {})]
+)
+def test_classes_of_every_form_live(name: str, options: dict[str, Any]) -> None:
+    """Plain ones and settings; a setting may have the name of a default."""
+    habitat = built(name, **options)
+    assert habitat.senses_size == 1
+    assert habitat.rate == (None if name == "SettingsFirst" else 30.0)
+    assert habitat.episode == options.get("episode")
+
+
+@pytest.mark.parametrize(
+    ("name", "parts"),
+    [
+        ("Stranger", ["Stranger is no habitat", "JaxHabitat", "HostHabitat", "senses_size"]),
+        ("Unfinished", ["Unfinished", "abstract", "sense", "step"]),
+        ("Senseless", ["Senseless is no habitat yet: it has no 'senses_size'"]),
+        ("Proud", ["Proud names tallies", "HostHabitat's tally()"]),
+        ("Nameless", ["Nameless names tallies", "tally()"]),
+        ("Crowded", ["habitat: 16 cells are too many"]),
+        ("Configured", ["habitat.episode is missing"]),
+    ],
+)
+def test_what_is_said_to_a_class_that_keeps_no_contract(name: str, parts: list[str]) -> None:
+    with pytest.raises(InputError) as error:
+        built(name)
+    assert len(str(error.value).splitlines()) == 1
+    for part in parts:
+        assert part in str(error.value)
+
+
+def test_bodies_that_cannot_be_saved_begin_again(tmp_path: Path) -> None:
+    """A run goes on with them as they were at birth, and says that it is not exact."""
+    habitat, run = {"name": f"{__name__}:Forgetful"}, tmp_path / "run"
+    loop.start(config(MEADOW, habitat=habitat, hazard=0.01, stop={"ticks": 60}), run)
+    assert primordia.load(run).info()["exact"] is False
+    loop.resume(run, {"ticks": 90})
+    info = primordia.load(run).info()
+    assert info["ticks"] == 90
+    assert info["deaths"] > 0
+
+
+def test_neither_contract_nor_simulator_load_jax() -> None:
+    """Worker processes load both."""
+    modules = "primordia.habitats", "primordia.habitats.atari.simulator", "primordia.pool.worker"
+    code = f"import sys, {', '.join(modules)}; print({{'jax', 'pydantic'}} & set(sys.modules))"
+    done = subprocess.run(
+        [sys.executable, "-c", code], env=environment(), capture_output=True, text=True, check=True
+    )
+    assert done.stdout.strip() == "set()"

@@ -1,0 +1,95 @@
+"""A JAX habitat on the host: it keeps the contract of those on the host, and gives the same bits."""
+
+from typing import Any
+
+import jax
+import numpy as np
+import pytest
+
+from primordia.compiled import shared
+from primordia.habitats.bodies import fresh
+from primordia.habitats.cartpole.habitat import CartPole
+from primordia.habitats.on_host import OnHost
+from tests.toys import Echo, Meadow, Mill
+
+WORDS = np.random.default_rng(0).integers(0, 2**32, (8, 4), np.uint32)
+ALL = np.arange(8)
+
+
+def opened(inner: Any = None, cells: int = 8) -> OnHost:
+    habitat = OnHost(inner or CartPole())
+    habitat.open(cells)
+    return habitat
+
+
+def test_it_steps_as_the_habitat_itself() -> None:
+    inner, habitat = CartPole(), opened()
+    senses = habitat.reset(ALL, WORDS)
+    bodies, step = shared(fresh, inner)(WORDS), jax.jit(inner.step)
+    for tick in range(60):
+        np.testing.assert_array_equal(senses, inner.sense(bodies))
+        action = (WORDS[:, 0] >> np.uint32(tick % 32) & np.uint32(1)).astype(np.int32)
+        bodies, expected = step(bodies, action)
+        senses, outcome = habitat.step(action, np.ones(8, bool))
+        np.testing.assert_array_equal(outcome.fatal, expected.fatal)
+        np.testing.assert_array_equal(habitat.seen(), bodies)
+
+
+@pytest.mark.parametrize("count", [1, 3, 4])
+def test_some_are_born_and_the_others_stay(count: int) -> None:
+    habitat = opened()
+    habitat.reset(ALL, WORDS)
+    before, born = np.array(habitat.seen()), ALL[-count:]
+    senses = habitat.reset(born, WORDS[:count])
+    np.testing.assert_array_equal(senses, before[:count])
+    np.testing.assert_array_equal(habitat.seen()[born], before[:count])
+    np.testing.assert_array_equal(habitat.seen()[: 8 - count], before[: 8 - count])
+
+
+def test_only_the_living_are_stepped() -> None:
+    habitat = opened()
+    habitat.reset(ALL, WORDS)
+    before, alive = np.array(habitat.seen()), ALL % 2 == 0
+    senses, _ = habitat.step(np.ones(8, np.int32), alive)
+    assert (habitat.seen()[alive] != before[alive]).any(axis=1).all()
+    np.testing.assert_array_equal(habitat.seen()[~alive], before[~alive])
+    np.testing.assert_array_equal(senses, habitat.seen())
+
+
+def test_saved_bodies_go_on_elsewhere() -> None:
+    one, other = opened(Mill()), opened(Mill())
+    one.reset(ALL, WORDS[:, :2])
+    action, alive = np.full((8, 2), 0.3, np.float32), np.ones(8, bool)
+    for _ in range(9):
+        one.step(action, alive)
+    other.load(one.save())
+    for mine, theirs in zip(one.step(action, alive), other.step(action, alive), strict=True):
+        jax.tree.map(np.testing.assert_array_equal, mine, theirs)
+
+
+def test_a_body_that_is_not_finite_has_failed() -> None:
+    """Though its senses and what it reports are."""
+    habitat = opened(Meadow(broken_at=2))
+    senses = habitat.reset(ALL[:5], WORDS[:5, :1])
+    assert np.isfinite(senses).all()
+    for expected in (False, True):
+        senses, outcome = habitat.step(np.zeros(8, np.int32), ALL < 5)
+        assert np.isfinite(senses).all()
+        np.testing.assert_array_equal(np.asarray(outcome.fault)[:5], expected)
+
+
+def test_bodies_without_floating_point_numbers_never_fail() -> None:
+    habitat = opened(Echo())
+    habitat.reset(ALL, WORDS[:, :1])
+    _, outcome = habitat.step(np.zeros((8, 2), np.float32), np.ones(8, bool))
+    assert outcome.fault is not None
+    assert not np.asarray(outcome.fault).any()
+    assert outcome.fault.shape == (8,)
+
+
+def test_it_is_drawn_as_the_habitat_itself() -> None:
+    habitat = opened()
+    habitat.reset(ALL, WORDS)
+    body, action = habitat.seen()[3], np.int32(1)
+    assert habitat.picture(body, action).tobytes() == CartPole().picture(body, action).tobytes()
+    assert (habitat.rate, habitat.caption(body, action)) == (50.0, "action 1")
