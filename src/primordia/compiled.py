@@ -1,4 +1,4 @@
-"""Compiled code, shared by all in a process that compute the same: a second run needs no more."""
+"""Compiled functions, shared within a process: a second run of the same law compiles nothing."""
 
 from collections.abc import Callable
 from functools import lru_cache, partial
@@ -7,14 +7,19 @@ from typing import Any
 import jax
 
 KEPT = 64
-"""functions, those used last; each with its code for every shape it was called with"""
+"""compiled functions that are kept, the last ones used, each with its code for all shapes of a call"""
 
 
 def shared(function: Callable, *fixed: Any, donate: tuple[int, ...] = ()) -> Callable:
-    """`jax.jit` of a pure function of a module or class whose first arguments are `fixed`, pure too.
+    """Return `jax.jit` of a function with its first arguments bound to `fixed`.
 
-    Where function and `fixed` are equal, so is the code; what cannot be hashed shares with nothing.
-    `donate` are those of the other arguments that are used up, as in `donate_argnums`.
+    Calls with equal `function` and `fixed` share one compiled function. If `fixed` cannot be hashed, the
+    function is compiled for this caller alone.
+
+    Args:
+        function: a pure function of a module or a class.
+        fixed: its first arguments, which never change.
+        donate: positions, among the other arguments, of those that a call uses up; see `donate_argnums`.
     """
     try:
         hash(fixed)

@@ -1,4 +1,4 @@
-"""Settings of a run: from a task's TOML, a file and flags to one validated, frozen object."""
+"""Settings of a run: one validated, frozen object, made from a task's TOML, a file and flags."""
 
 from pathlib import Path
 from typing import Any, Literal
@@ -23,34 +23,41 @@ from primordia.mutations.contract import Mutation
 from primordia.settings.base import Rate, Settings
 from primordia.settings.fields import first_fault, rates_of
 from primordia.settings.making import make
-from primordia.settings.tables import NONE, did_you_mean, found_in, merged, replaced, values_of
+from primordia.settings.tables import (
+    NONE,
+    did_you_mean,
+    merged,
+    replaced,
+    values_of,
+    with_full_paths,
+)
 
 
 class Stop(Settings):
-    """When a world stops; it then stays as it is while others of the run go on."""
+    """The limits of a world; a stopped world is frozen while others of the run go on."""
 
-    ticks: int | None = Field(None, ge=1, lt=2**63, description="after so many ticks")
+    ticks: int | None = Field(None, ge=1, lt=2**63, description="ticks after which a world stops")
     births: int | None = Field(
-        None, ge=1, lt=2**63, description="after so many births, founders counted"
+        None, ge=1, lt=2**63, description="births, with founders, after which a world stops"
     )
     until: Literal["saturation"] | None = Field(
         None,
-        description="saturation: once all cells have been occupied, without a death, for long enough",
+        description="saturation: a world stops once it is saturated; see saturation_ticks",
     )
 
 
 class ForkedFrom(Settings):
-    """Where a fork comes from. What it began with is in the run's directory, under `origin`."""
+    """The source of a fork. Its first checkpoint is in the run's directory, under `origin`."""
 
-    run: str = Field(description="the run it was forked from")
-    tick: int = Field(description="the tick at whose end")
+    run: str = Field(description="the run that was forked")
+    tick: int = Field(description="the tick at the end of which it was forked")
 
 
 class Config(Settings):
-    """All that a run depends on, except package versions and the device."""
+    """All settings of a run. Besides them, it depends on package versions and the device only."""
 
     task: str = Field(min_length=1, description="name of the task")
-    about: str = Field("", description="what the task is, in a line")
+    about: str = Field("", description="the task, in one line")
     habitat: dict[str, Any] = Field(description="`name` of the habitat, and its own settings")
     brain: dict[str, Any] = Field(
         {}, validate_default=True, description="`kind` of the brain, and its own settings"
@@ -76,9 +83,9 @@ class Config(Settings):
         "one", description="life starts, and restarts, with one founder in a random cell, or in all"
     )
     hazard: Rate = Field(
-        0.0, ge=0, le=1, description="probability of death in a tick, whoever it is"
+        0.0, ge=0, le=1, description="probability of accidental death in a tick, for all organisms"
     )
-    metabolism: Metabolism | None = Field(None, description="none: nobody starves")
+    metabolism: Metabolism | None = Field(None, description="none: no organism starves")
     seasons: tuple[Season, ...] = Field(
         (), strict=False, description="settings that change with time"
     )
@@ -86,7 +93,7 @@ class Config(Settings):
         10_000,
         ge=1,
         lt=2**31,
-        description="a full world without a death for so many ticks is saturated",
+        description="a full world without a death for this many ticks is saturated",
     )
     sample_every: int = Field(
         1000, ge=1, lt=2**31, description="ticks from one row of metrics to the next"
@@ -99,10 +106,10 @@ class Config(Settings):
     @field_validator("brain", "mutation")
     @classmethod
     def _complete(cls, table: dict[str, Any], info: ValidationInfo) -> dict[str, Any]:
-        """Add all settings of the part, so that `config.toml` has them when defaults have changed.
+        """Add the part's defaults, so that `config.toml` holds even if a later version changes them.
 
-        A table of which no part can be made stays unchanged: records are read without its code, and
-        `checked` says what is wrong.
+        A table from which no part can be made stays unchanged: records are read without its code, and
+        `checked` raises the error.
         """
         contract: Any = {"brain": brains, "mutation": mutations}[str(info.field_name)]
         try:
@@ -111,7 +118,7 @@ class Config(Settings):
             return table
 
     def build_habitat(self) -> AnyHabitat:
-        """The habitat, from its class and settings.
+        """Return the habitat, made from its class and settings.
 
         Raises:
             InputError: there is no such habitat, or it does not take these settings.
@@ -131,7 +138,7 @@ class Config(Settings):
         return self.build_brain().layout(habitat.senses_size, habitat.action.size)
 
     def build_law(self, habitat: AnyHabitat) -> Law:
-        """The law that holds in this run's worlds."""
+        """Return the law that holds in this run's worlds."""
         brain, mutation = self.build_brain(), mutations.build(self.mutation)
         layout = self.build_layout(habitat)
         return Law(
@@ -165,40 +172,40 @@ class Config(Settings):
 
     @property
     def begins(self) -> int:
-        """The tick at the end of which its records begin: that of the fork, or 0."""
+        """Return the tick at the end of which the records begin: that of the fork, or 0."""
         return 0 if self.fork is None else self.fork.tick
 
     def to_toml(self) -> str:
-        """As TOML that `validated` takes back."""
+        """Return TOML from which `validated` makes the same Config."""
         return tomli_w.dumps(replaced(self.model_dump(mode="json"), None, NONE))
 
 
 def load(task: str, settings: dict[str, Any] | None = None) -> Config:
-    """The configuration for a task's name or a TOML file, with some settings changed.
+    """Return the configuration of a task's name or a TOML file, with some settings changed.
 
-    A file whose `task` is one of the built-in names changes that task; another is a task of its own.
+    A file whose `task` is a built-in name changes that task. Any other file is a task by itself.
 
     Raises:
-        InputError: no such task or file, or a setting that is unknown or out of range.
+        InputError: there is no such task or file, or a setting is unknown or out of range.
     """
-    changes = found_in(Path(), settings or {})
+    changes = with_full_paths(Path(), settings or {})
     return validated(merged(values_of(task), changes), source=task)
 
 
 def validated(values: dict[str, Any], source: str) -> Config:
-    """A Config of these values, checked as a whole.
+    """Return a Config of these values, checked as a whole.
 
     Raises:
-        InputError: in one line, what is wrong and where.
+        InputError: a value is wrong; the message names it and the source, in one line.
     """
     return checked(parsed(values, source), source)
 
 
 def parsed(values: dict[str, Any], source: str) -> Config:
-    """A Config of these values, each checked by itself: the habitat's code is not needed.
+    """Return a Config of these values, each checked by itself, which needs no code of the habitat.
 
     Raises:
-        InputError: in one line, what is wrong and where.
+        InputError: a value is wrong; the message names it and the source, in one line.
     """
     try:
         return Config.model_validate(replaced(values, NONE, None))
@@ -207,10 +214,10 @@ def parsed(values: dict[str, Any], source: str) -> Config:
 
 
 def checked(config: Config, source: str) -> Config:
-    """The same Config, checked as a whole.
+    """Return the same Config, checked as a whole.
 
     Raises:
-        InputError: in one line, what is wrong and where.
+        InputError: settings do not fit together; the message names them and the source, in one line.
     """
     try:
         _check(config)
@@ -222,10 +229,10 @@ def checked(config: Config, source: str) -> Config:
 
 
 def limits(values: dict[str, Any]) -> dict[str, Any]:
-    """Settings of `stop`, checked.
+    """Return settings of `stop`, checked.
 
     Raises:
-        InputError: an unknown one, or one out of range.
+        InputError: a setting is unknown or out of range.
     """
     values = replaced(values, NONE, None)
     try:
@@ -236,20 +243,25 @@ def limits(values: dict[str, Any]) -> dict[str, Any]:
 
 
 def _check(config: Config) -> None:
-    """What no single setting can tell."""
+    """Raise an error if settings that are right by themselves do not fit together."""
     habitat = config.build_habitat()
     config.placement.shape(config.cells)
     if config.seed + config.seeds > 2**64:
-        raise InputError("seed + seeds: seeds must be below 2^64")
+        raise InputError(
+            "seed + seeds: seeds must be below 2^64; lower seed, or the number of seeds"
+        )
     if config.cells * config.seeds > 2**26:
-        raise InputError(f"cells x seeds: {config.cells * config.seeds} cells are more than 2^26")
+        raise InputError(
+            f"cells x seeds: {config.cells * config.seeds} cells are more than 2^26; spread them over"
+            " several runs"
+        )
     try:
         habitat.check(config.cells * config.seeds)
     except ValueError as error:
         raise InputError(f"habitat: {error}") from None
     if config.motor.kind == "gaussian" and not isinstance(habitat.action, Continuous):
         raise InputError(
-            "motor.kind: this habitat's actions are discrete, so a gaussian motor has no use"
+            "motor.kind: this habitat's actions are discrete, so a gaussian motor has no use; set direct"
         )
     law = config.build_law(habitat)
     try:
@@ -268,4 +280,6 @@ def _check_season(setting: str, config: Config, law: Law) -> None:
             f"{did_you_mean(setting, known)}"
         )
     if setting.startswith("metabolism.") and config.metabolism is None:
-        raise InputError(f"seasons: there is no metabolism, so no {setting}")
+        raise InputError(
+            f"seasons: there is no metabolism, so no {setting}; remove the season or add a metabolism"
+        )

@@ -1,4 +1,4 @@
-"""What a run is computed by: instruction set, versions, device. Exactness holds within one of each."""
+"""The device, the instruction set and the versions that compute a run; it is exact within one of each."""
 
 import os
 import platform
@@ -17,19 +17,19 @@ ISA_FLAG = "--xla_cpu_max_isa"
 def prepare() -> None:
     """Start JAX in the way runs need, unless it has started; call this before JAX makes an array.
 
-    XLA may use AVX2 and nothing newer, so that x86-64 machines with and without AVX-512 give the same
-    bits (measured: no slower). A choice made in XLA_FLAGS stands. XLA reads the flag once in a process,
-    and ignores it as a compiler option of `jax.jit`. If the program has used JAX before, nothing
-    is changed, and the run records the instruction set that XLA_FLAGS then allow.
+    XLA is limited to AVX2, so that x86-64 machines with and without AVX-512 give the same bits (measured:
+    no slower). A limit that is already in XLA_FLAGS stands. XLA reads the flag once in a process, and
+    ignores it as a compiler option of `jax.jit`. If the program has used JAX before, nothing is changed,
+    and the run records the instruction set that XLA_FLAGS then allow.
     """
     if backends_are_initialized():
         return
     flags = os.environ.get("XLA_FLAGS", "")
     if ISA_FLAG not in flags:
-        # It stays: JAX's cache of compiled code tells code for AVX2 from other code by it.
+        # The flag stays set: JAX's cache of compiled code tells code for AVX2 from other code by it.
         os.environ["XLA_FLAGS"] = f"{flags} {ISA_FLAG}=AVX2".strip()
-    # The thread that makes a small call computes it: to hand it to another thread costs a third of the
-    # time of a tick. JAX reads this when it starts.
+    # A small call is computed by the thread that makes it. Handing it to another thread costs a third of
+    # the time of a tick. JAX reads this option when it starts.
     name = "jax_cpu_enable_async_dispatch"
     before = jax.config.read(name)
     jax.config.update(name, False)
@@ -53,7 +53,7 @@ def select(name: str) -> None:
 
 
 def instruction_set() -> str:
-    """Architecture, and the vector instructions XLA may use."""
+    """Return the architecture and the newest vector instructions that XLA may use."""
     machine = platform.machine()
     if machine not in ("x86_64", "AMD64"):
         return machine
@@ -64,7 +64,7 @@ def instruction_set() -> str:
 
 
 def versions() -> dict[str, str]:
-    """What must be equal for a run to go on bit for bit."""
+    """Return the versions, device and instruction set that must be equal for a run to go on exactly."""
     prepare()
     default = getattr(jax.config, "jax_default_device", None) or jax.devices()[0]
     return {

@@ -1,4 +1,4 @@
-"""Files that are either whole or not there: temporary name, fsync, rename, fsync of the folder."""
+"""Atomic files, either whole or absent: temporary name, fsync, rename, fsync of the folder."""
 
 import hashlib
 import os
@@ -9,14 +9,14 @@ from pathlib import Path
 from primordia.errors import Trouble
 
 TEMPORARY = ".writing-"
-"""Prefix of names that mean nothing yet."""
+"""Prefix of the names of unfinished files."""
 
 
 def write(path: Path, fill: Callable[[Path], object]) -> None:
-    """Make `path` from what `fill` writes to the temporary path it is given.
+    """Write the file `path`: `fill` writes a temporary path, which is then renamed.
 
     Raises:
-        Trouble: it cannot be written (disk full, no permission, ...).
+        Trouble: the file cannot be written (disk full, no permission, ...).
     """
     temporary = path.with_name(TEMPORARY + path.name)
     try:
@@ -40,14 +40,14 @@ def sync(path: Path) -> None:
 
 
 def seal(path: Path) -> dict[str, object]:
-    """Size and checksum of a file, as manifests keep them."""
+    """Return size and checksum of a file, as manifests keep them."""
     with path.open("rb") as file:
         digest = hashlib.file_digest(file, "sha256").hexdigest()
     return {"bytes": path.stat().st_size, "sha256": digest}
 
 
 def fault_in(path: Path, size: int, sha256: str) -> str | None:
-    """Return what is wrong with a file that was sealed with this size and checksum, or None."""
+    """Return the fault of a file that was sealed with this size and checksum, or None."""
     if not path.is_file():
         return f"{path} is missing"
     if path.stat().st_size != size:

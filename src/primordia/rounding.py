@@ -8,10 +8,10 @@ from jax import Array, lax
 def rounded_product(a: Array, positive: Array) -> Array:
     """Return a x positive in float32, rounded before anything is added to it.
 
-    Left alone, compilers contract product and sum into a fused multiply-add, which rounds once: then
-    24 of 60 weights differed from what two IEEE operations give. The sign bit of a number that is
-    never negative is a zero they cannot know, and an integer operation they cannot contract across.
+    A compiler may contract a product and a sum into a fused multiply-add, which rounds once. Then 24 of
+    60 weights differed from the results of two IEEE operations. The sign bit of a number that is never
+    negative is zero, which the compiler does not know, so the integer operation prevents the contraction.
     """
     product = lax.bitcast_convert_type(a * positive, jnp.uint32)
-    nothing = lax.bitcast_convert_type(positive, jnp.uint32) >> np.uint32(31)
-    return lax.bitcast_convert_type(product ^ nothing, jnp.float32)
+    sign_bit = lax.bitcast_convert_type(positive, jnp.uint32) >> np.uint32(31)
+    return lax.bitcast_convert_type(product ^ sign_bit, jnp.float32)

@@ -38,7 +38,7 @@ def test_what_is_written_is_read(tmp_path: Path) -> None:
     assert shapes == {name: (3, *shape) for name, shape in LAYOUT.blocks}
 
 
-@given(st.integers(0, 2**64 - 1), st.integers(0, 2**64 - 1), st.integers(1, genomes.MOST))
+@given(st.integers(0, 2**64 - 1), st.integers(0, 2**64 - 1), st.integers(1, genomes.MOST_ANCESTORS))
 def test_founders_take_ancestors_in_turn(seed: int, number: int, count: int) -> None:
     assert int(modulo(wide(seed) + wide(number), count)) == (seed + number) % 2**64 % count
 

@@ -98,7 +98,7 @@ def test_no_ops_are_drawn_from_none_to_all() -> None:
 def test_sticky_buttons_stay_down_as_often_as_asked() -> None:
     made, _ = arcade(sticky=0.25)
     asked = np.random.default_rng(0).integers(0, 3, 20_000).tolist()
-    changed = sum(made._pressed(0, action) == action for action in asked)
+    changed = sum(made._button(0, action) == action for action in asked)
     # A button is as asked when it is not stuck, or stuck at the same by chance (1 in 3).
     assert changed / len(asked) == pytest.approx(0.75 + 0.25 / 3, abs=0.02)
 

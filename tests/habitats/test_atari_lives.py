@@ -11,7 +11,7 @@ import primordia
 from primordia.habitats.atari.games import screen_size
 from primordia.habitats.atari.habitat import SCALED, Atari
 from primordia.habitats.atari.picture import draw
-from primordia.habitats.framed import ROOM
+from primordia.habitats.framed import MARGIN
 from primordia.law.life import BODILY
 from primordia.law.metabolism import ONE
 from primordia.law.world import Cause
@@ -113,8 +113,8 @@ def test_a_life_on_video(pong: Path, tmp_path: Path) -> None:
         frames = [frame.to_ndarray(format="rgb24") for frame in container.decode(video=0)]
     ticks = everyone.lifespan[everyone.row(organism, world)]
     assert len(frames) == ticks + 20  # its last picture stands for a second
-    assert frames[0].shape == (420 + ROOM, 640, 3)
-    game, words = (slice(ROOM + 4, None), slice(0, ROOM - 4))
+    assert frames[0].shape == (420 + MARGIN, 640, 3)
+    game, words = (slice(MARGIN + 4, None), slice(0, MARGIN - 4))
     for part in (game, words):
         assert (abs(frames[0][part].astype(int) - frames[ticks - 1][part]) > 40).any()
 
@@ -123,11 +123,11 @@ def test_a_picture_has_pixels_twice_as_wide_as_high_below_the_words() -> None:
     screen = np.zeros((210, 160, 3), np.uint8)
     screen[100, 30] = (10, 200, 30)
     picture = np.asarray(draw(screen))
-    assert picture.shape == (420 + ROOM, 640, 3)
+    assert picture.shape == (420 + MARGIN, 640, 3)
     rows, columns = np.nonzero((picture == (10, 200, 30)).all(axis=2))
-    assert (rows.min(), rows.max()) == (ROOM + 200, ROOM + 201)
+    assert (rows.min(), rows.max()) == (MARGIN + 200, MARGIN + 201)
     assert (columns.min(), columns.max()) == (120, 123)
-    assert (picture[:ROOM] == picture[0, 0]).all()
+    assert (picture[:MARGIN] == picture[0, 0]).all()
     assert picture[0, 0].min() > 240
 
 

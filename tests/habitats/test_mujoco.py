@@ -21,7 +21,7 @@ def started_alike(name: str, habitat: Any, body: int, **options: Any) -> Any:
     """Gymnasium's environment in the state that a body was born in."""
     env = gymnasium.make(name, disable_env_checker=True, **options).unwrapped
     env.reset(seed=0)
-    seen = habitat._seen
+    seen = habitat._views
     env.set_state(seen["qpos"][body].copy(), seen["qvel"][body].copy())
     return env
 
@@ -47,11 +47,11 @@ def test_senses_and_physics_are_gymnasiums_to_the_bit(
     for _ in range(TICKS):
         high = envs[0].action_space.high
         action = high * rng.uniform(-1, 1, (4, habitat.action.size)).astype(np.float32)
-        before = habitat._seen["qpos"][:, 0].copy()
+        before = habitat._views["qpos"][:, 0].copy()
         senses, outcome = habitat.step(action, FOUR)
         for body, env in enumerate(envs):
             if task == "Reacher-forager":  # its target stays where it is, ours moves when reached
-                env.data.qpos[2:] = habitat._seen["qpos"][body, 2:]
+                env.data.qpos[2:] = habitat._views["qpos"][body, 2:]
             seen, _, terminated, _, _ = env.step(action[body])
             if not alive[body] or (outcome.food[body] and task == "Reacher-forager"):
                 continue
@@ -145,13 +145,13 @@ def test_births_are_spread_as_said() -> None:
     uniform = opened(2000, position_noise=0.25, velocity_noise=0.5)
     born(uniform, 2000)
     for name, most in (("qpos", 0.25), ("qvel", 0.5)):
-        assert np.abs(uniform._seen[name]).max() == pytest.approx(most, rel=1e-3)
-        assert uniform._seen[name].std() == pytest.approx(most / np.sqrt(3), rel=0.02)
+        assert np.abs(uniform._views[name]).max() == pytest.approx(most, rel=1e-3)
+        assert uniform._views[name].std() == pytest.approx(most / np.sqrt(3), rel=0.02)
     gaussian = opened(2000, velocity_sd=2.0)
     born(gaussian, 2000)
-    assert (gaussian._seen["qpos"] == 0).all()
-    assert gaussian._seen["qvel"].std() == pytest.approx(2.0, rel=0.02)
-    assert np.abs(gaussian._seen["qvel"]).max() > 6
+    assert (gaussian._views["qpos"] == 0).all()
+    assert gaussian._views["qvel"].std() == pytest.approx(2.0, rel=0.02)
+    assert np.abs(gaussian._views["qvel"]).max() > 6
 
 
 def test_a_target_that_is_reached_feeds_once_and_is_elsewhere() -> None:
@@ -159,10 +159,10 @@ def test_a_target_that_is_reached_feeds_once_and_is_elsewhere() -> None:
     born(habitat, 1000)
     everyone, places = np.ones(1000, bool), []
     for _ in range(20):
-        before = habitat._seen["qpos"][:, 2:].copy()
+        before = habitat._views["qpos"][:, 2:].copy()
         senses, outcome = habitat.step(np.full((1000, 2), 0.05, np.float32), everyone)
-        fed, after = outcome.food == 1, habitat._seen["qpos"][:, 2:]
-        apart = np.hypot(*habitat._seen["xpos"]["fingertip"][:, :2].T)
+        fed, after = outcome.food == 1, habitat._views["qpos"][:, 2:]
+        apart = np.hypot(*habitat._views["xpos"]["fingertip"][:, :2].T)
         assert ((outcome.food == 0) | fed).all()
         assert (after[~fed] == before[~fed]).all()
         assert (after[fed] != before[fed]).all()
@@ -179,14 +179,14 @@ def test_who_is_dead_is_not_stepped_and_a_failure_disturbs_nobody() -> None:
     habitat, undisturbed = opened(), opened()
     for each in (habitat, undisturbed):
         born(each)
-    habitat._seen["qvel"][1] = 1e200
+    habitat._views["qvel"][1] = 1e200
     alive, action = np.array([True, True, False, True]), np.full((4, 6), 0.5, np.float32)
     for _ in range(5):
-        before = habitat._seen["qpos"][2].copy(), habitat._seen["qvel"][2].copy()
+        before = habitat._views["qpos"][2].copy(), habitat._views["qvel"][2].copy()
         senses, outcome = habitat.step(action, alive)
         others, _ = undisturbed.step(action, FOUR)
-        np.testing.assert_array_equal(before[0], habitat._seen["qpos"][2])
-        np.testing.assert_array_equal(before[1], habitat._seen["qvel"][2])
+        np.testing.assert_array_equal(before[0], habitat._views["qpos"][2])
+        np.testing.assert_array_equal(before[1], habitat._views["qvel"][2])
         np.testing.assert_array_equal(senses[[0, 3]], others[[0, 3]])
         assert outcome.fault[1] or not np.isfinite(senses[1]).all()
 
@@ -198,10 +198,10 @@ def test_named_amounts() -> None:
     )
     senses = born(habitat)
     assert (senses[:, 2:] == 0).all()
-    start, gone = habitat._seen["qpos"][:, 0].copy(), 0.0
+    start, gone = habitat._views["qpos"][:, 0].copy(), 0.0
     for _ in range(15):
         senses, _ = habitat.step(np.full((4, 3), -0.4, np.float32), FOUR)
-        position = habitat._seen["qpos"]
+        position = habitat._views["qpos"]
         np.testing.assert_allclose(senses[:, 0], position[:, 1], atol=1e-6)
         np.testing.assert_allclose(senses[:, 1], position[:, 2], atol=1e-6)
         assert (senses[:, 3] >= 0).all()

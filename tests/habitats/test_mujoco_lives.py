@@ -66,7 +66,7 @@ def test_lives_come_out_again_as_recorded(reachers: Path) -> None:
 def needs_gl() -> None:
     """Something that draws without a screen; where there is nothing, there are no pictures to test."""
     try:
-        mujoco_picture._screen()
+        mujoco_picture._gl_context()
     except InputError as error:
         pytest.skip(str(error))
 
@@ -103,9 +103,9 @@ def test_a_life_on_video(reachers: Path, tmp_path: Path) -> None:
 
 
 def test_without_opengl(reachers: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    mujoco_picture._screen.cache_clear()
+    mujoco_picture._gl_context.cache_clear()
     monkeypatch.setenv("MUJOCO_GL", "nothing")
     done = here("replay", reachers, "--to", 10, "--out", tmp_path / "life.mp4")
-    mujoco_picture._screen.cache_clear()
+    mujoco_picture._gl_context.cache_clear()
     complains(done, 2, "OpenGL without a screen, and nothing cannot be used: `apt-get install")
     assert not list(tmp_path.iterdir())

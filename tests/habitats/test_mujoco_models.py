@@ -70,7 +70,7 @@ def test_a_model_named_by_a_flag_is_found_from_elsewhere(
         (["--habitat.file", "still.xml"], "still.xml has no actuators"),
         (["--habitat.fatal", "heihgt < 1"], "there is no 'heihgt'; known: qpos, qvel"),
         (["--habitat.fatal", "qpos[99] < 1"], "qpos goes from qpos[0] to qpos[8]"),
-        (["--habitat.food", 'xpos["foot"][0]'], "xpos is known of world, torso"),
+        (["--habitat.food", 'xpos["foot"][0]'], "xpos has the parts world, torso"),
         (["--habitat.senses", '["qpos[1:]", "velocity"]'], "there is no 'velocity'"),
         (["--habitat.substeps", "0"], "habitat.substeps"),
     ],

@@ -11,9 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
-from primordia.law.metabolism import MOST, ONE, Metabolism, Rates, add, fixed, metabolise
+from primordia.law.metabolism import MOST, ONE, Metabolism, Rates, add, metabolise, to_fixed_point
 
-FIXED, METABOLISE = jax.jit(fixed), jax.jit(metabolise)
+FIXED, METABOLISE = jax.jit(to_fixed_point), jax.jit(metabolise)
 RATES = ("store", "drain", "gain", "effort_cost", "cap")
 
 
@@ -50,10 +50,10 @@ def test_to_the_nearest_step_halves_to_even_and_saturating(values: list[float]) 
 
 def test_steps_by_hand() -> None:
     halves = jnp.array([0.5, 1.5, 2.5, -0.5, -1.5], jnp.float32) / ONE
-    assert fixed(halves).tolist() == [0, 2, 2, 0, -2]
-    assert fixed(jnp.float32(100.5)) == 102_912
+    assert to_fixed_point(halves).tolist() == [0, 2, 2, 0, -2]
+    assert to_fixed_point(jnp.float32(100.5)) == 102_912
     assert MOST == 2**30 - 64
-    assert fixed(jnp.float32(3e38)) == MOST
+    assert to_fixed_point(jnp.float32(3e38)) == MOST
 
 
 @settings(max_examples=100)
@@ -116,7 +116,7 @@ def test_what_a_habitat_does_not_have_costs_and_gives_nothing() -> None:
 
 def test_a_store_that_float32_could_not_drain_is_drained() -> None:
     rates = Rates(*(jnp.full(1, value, jnp.float32) for value in (1e6, 1 / 1024, 0, 0, 1e6)))
-    energy = fixed(rates.store)
+    energy = to_fixed_point(rates.store)
     before = int(energy[0])
     for _ in range(5):
         energy = METABOLISE(energy, None, None, rates)

@@ -13,7 +13,7 @@ from primordia.habitats.contract import Habitat, HostHabitat
 from primordia.law.genesis import begin
 from primordia.law.law import Law
 from primordia.law.metabolism import break_even
-from primordia.law.seasons import Ratchet, Season, turn
+from primordia.law.seasons import Ratchet, Season, apply_seasons
 from tests.chronicle import History
 from tests.worlds import MEADOW, MILL, Lived, config
 
@@ -218,7 +218,7 @@ def test_two_ratchets_that_are_alike_both_turn() -> None:
     world = world._replace(
         organisms=world.organisms._replace(alive=full), worlds=world.worlds._replace(looks=looks)
     )
-    worlds, changed = turn(law.seasons, law.governed, world, jnp.ones(2, bool))
+    worlds, changed = apply_seasons(law.seasons, law.governed, world, jnp.ones(2, bool))
     assert changed.tolist() == [True, False]
     assert worlds.climate["metabolism.gain"].tolist() == [0.25, 1.0]
     assert worlds.looks.wait.tolist() == [[10, 10], [10, 10]], "a look that is not over never ends"
@@ -234,7 +234,7 @@ def test_a_world_that_has_stopped_has_no_seasons() -> None:
     world = world._replace(
         organisms=world.organisms._replace(alive=alive), worlds=world.worlds._replace(looks=looks)
     )
-    worlds, changed = turn(law.seasons, law.governed, world, jnp.array([True, False]))
+    worlds, changed = apply_seasons(law.seasons, law.governed, world, jnp.array([True, False]))
     assert changed.tolist() == [True, False]
     assert worlds.climate["hazard"].tolist() == [0.5, 0.0]
     np.testing.assert_array_equal(worlds.climate["replication"], np.float32([0.025, 0.05]))

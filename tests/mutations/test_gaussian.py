@@ -205,7 +205,7 @@ def test_children_made_in_a_compiled_function_have_the_same_bits() -> None:
 def test_founders_are_noise_of_their_blocks_scales() -> None:
     mutation = Gaussian(founder_scale=0.3, blocks={"recurrent": Block(founder_scale=0.02)})
     scales = np.repeat(np.array([0.3, 0.02, 0.3], np.float32), LAYOUT.sizes)
-    found = mutation.found(LAYOUT, Draws(drawn(), jnp.arange(K)))
+    found = mutation.founders(LAYOUT, Draws(drawn(), jnp.arange(K)))
     same_bits(np.asarray(found), noise(drawn()[Purpose.FOUNDER]) * scales)
 
 

@@ -190,8 +190,8 @@ def test_help_lists_every_setting_with_its_value_and_meaning(tmp_path: Path) -> 
 def test_help_tells_the_values_of_a_file_and_defaults_without_a_task(tmp_path: Path) -> None:
     file = tmp_path / "mine.toml"
     file.write_text(f'task = "{TASK}"\nhazard = 0.25\n')
-    assert "whoever it is [0.25]" in " ".join(help_text(file).split())
-    assert "whoever it is [0.0]" in " ".join(help_text().split())
+    assert "for all organisms [0.25]" in " ".join(help_text(file).split())
+    assert "for all organisms [0.0]" in " ".join(help_text().split())
     assert "values of" not in help_text("--out", tmp_path)
     file.write_text('task = "own"\n[habitat]\nname = "no.such:Habitat"\n')
     assert "--cells" in help_text(file)

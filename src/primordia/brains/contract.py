@@ -28,14 +28,14 @@ KNOWN = {
     "linear": "primordia.brains.linear:Linear",
 }
 DEFAULT = "recurrent"
-"""The paper's brain, which organisms have unless a task names another."""
+"""The paper's brain, the default of every task."""
 
 
 class Brain(Settings, ABC):
     """A brain's settings and its behaviour.
 
-    It is pure, treats each organism by itself, and gives the same bits for every number of organisms
-    and of threads. `layers.matvec` keeps that for sums.
+    A brain is pure and treats each organism by itself. It gives the same bits for every number of
+    organisms and of threads; for sums, `layers.matvec` ensures that.
     """
 
     @abstractmethod
@@ -80,10 +80,10 @@ def find(name: object) -> type[Brain]:
         LookupError: there is no such name, module or class, or the class is no brain; the message
             says which.
     """
-    found = parts.find("brain", name, KNOWN)
-    if not issubclass(found, Brain):
-        raise LookupError(f"{found.__name__} is no brain: subclass Brain of {__name__}")
-    return found
+    kind = parts.find("brain", name, KNOWN)
+    if not issubclass(kind, Brain):
+        raise LookupError(f"{kind.__name__} is no brain: subclass Brain of {__name__}")
+    return kind
 
 
 def build(table: Mapping[str, Any]) -> Brain:

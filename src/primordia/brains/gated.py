@@ -1,4 +1,4 @@
-"""A brain that can keep a memory for long: a gated recurrent unit."""
+"""A brain with a long memory: a gated recurrent unit."""
 
 import jax.numpy as jnp
 from jax import Array
@@ -7,7 +7,8 @@ from primordia.brains.contract import Brain, Genome
 from primordia.brains.layers import Biases, Hidden, gate, layer, linear, mix
 from primordia.brains.layout import Shape
 
-PARTS = ("reset", "update", "candidate")
+UNITS = ("reset", "update", "candidate")
+"""parts of a gated recurrent unit that have weights for senses and for memory"""
 
 
 class Gated(Brain):
@@ -27,23 +28,23 @@ class Gated(Brain):
     biases: Biases = False
 
     def blocks(self, senses: int, outputs: int) -> dict[str, Shape]:
-        """Return `reset_input` (Wr) and `reset_recurrent` (Ur), so for update and candidate; `output`."""
+        """Return `UNIT_input` and `UNIT_recurrent` for each of UNITS (Wr, Ur, ...), and `output` (V)."""
         blocks: dict[str, Shape] = {}
-        for part in PARTS:
-            blocks |= layer(f"{part}_input", senses, self.hidden, self.biases)
-            blocks |= layer(f"{part}_recurrent", self.hidden, self.hidden)
+        for unit in UNITS:
+            blocks |= layer(f"{unit}_input", senses, self.hidden, self.biases)
+            blocks |= layer(f"{unit}_recurrent", self.hidden, self.hidden)
         return blocks | layer("output", self.hidden, outputs, self.biases)
 
     def memory(self, senses: int, outputs: int) -> int:
-        """Return one number a neuron: h."""
+        """Return the length of h, one number for each neuron."""
         return self.hidden
 
     def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:
         """Think for one tick; see `Brain`."""
 
-        def drive(part: str, before: Array) -> Array:
-            perceived = linear(genome, f"{part}_input", senses)
-            return perceived + linear(genome, f"{part}_recurrent", before)
+        def drive(unit: str, before: Array) -> Array:
+            perceived = linear(genome, f"{unit}_input", senses)
+            return perceived + linear(genome, f"{unit}_recurrent", before)
 
         reset, update = gate(drive("reset", memory)), gate(drive("update", memory))
         candidate = jnp.tanh(drive("candidate", reset * memory))

@@ -1,6 +1,6 @@
-"""Genome files: organisms' weights by themselves, in safetensors, to keep, share and start from.
+"""Genome files: the weights of K organisms in safetensors, to keep, to share and to start runs from.
 
-A file holds one float32 tensor (K, *shape) for each block of the brain, for K genomes, in that order.
+A file holds one float32 tensor (K, *shape) for each block of the brain, in the blocks' order.
 """
 
 from collections.abc import Mapping, Sequence
@@ -15,13 +15,13 @@ from primordia.brains.layout import Layout, Shape
 from primordia.errors import InputError
 
 FOUNDERS = "founders.safetensors"
-"""What a run that starts from ancestors keeps them in."""
-MOST = 2**16
-"""Ancestors of one run; the arithmetic that takes them in turn is in 32 bits."""
+"""The file in a run's directory that keeps its ancestors."""
+MOST_ANCESTORS = 2**16
+"""The largest number of ancestors of a run: founders take them in turn by 32-bit arithmetic."""
 
 
 def write(path: Path, layout: Layout, genomes: np.ndarray, about: dict[str, str]) -> None:
-    """Write genomes (K, P), with a few words about them as the file's metadata.
+    """Write genomes (K, P) to a file, with `about` as its metadata.
 
     Raises:
         Trouble: the file cannot be written.
@@ -33,15 +33,17 @@ def write(path: Path, layout: Layout, genomes: np.ndarray, about: dict[str, str]
 
 
 def read(paths: Sequence[str], layout: Layout) -> np.ndarray:
-    """The genomes in some files, one after another, float32 (K, P).
+    """Return the genomes of some files, in their order, float32 (K, P).
 
     Raises:
         InputError: a file cannot be read, is no genome file, or is one of another brain.
     """
-    found = np.concatenate([_read(Path(path), layout) for path in paths])
-    if len(found) > MOST:
-        raise InputError(f"ancestors: {len(found)} genomes are more than {MOST}")
-    return found
+    genomes = np.concatenate([_read(Path(path), layout) for path in paths])
+    if len(genomes) > MOST_ANCESTORS:
+        raise InputError(
+            f"ancestors: {len(genomes)} genomes are more than {MOST_ANCESTORS}; give fewer"
+        )
+    return genomes
 
 
 def _read(path: Path, layout: Layout) -> np.ndarray:
@@ -56,17 +58,17 @@ def _read(path: Path, layout: Layout) -> np.ndarray:
     shapes = {name: block.shape[1:] for name, block in blocks.items()}
     if shapes != dict(layout.blocks):
         raise InputError(
-            f"{path} holds genomes of another brain: {_shown(shapes)}; this task's is"
-            f" {_shown(dict(layout.blocks))}"
+            f"{path} holds genomes of another brain: {_described(shapes)}; this task's is"
+            f" {_described(dict(layout.blocks))}"
         )
     counts = {len(block) for block in blocks.values()}
     if len(counts) != 1 or 0 in counts:
-        raise InputError(f"{path} holds no whole genome")
+        raise InputError(f"{path} holds no whole genome; export it again")
     genomes = layout.join(blocks).astype(np.float32)
     if not np.isfinite(genomes).all():
-        raise InputError(f"{path} has weights that are no finite numbers")
+        raise InputError(f"{path} has weights that are no finite numbers; use another genome")
     return genomes
 
 
-def _shown(shapes: Mapping[str, Shape]) -> str:
+def _described(shapes: Mapping[str, Shape]) -> str:
     return ", ".join(f"{name} {'x'.join(map(str, shape))}" for name, shape in shapes.items()) or "-"

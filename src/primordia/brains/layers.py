@@ -1,4 +1,4 @@
-"""Layers that brains are made of: products with matrices, gates, and the settings that they share."""
+"""Layers of brains: products with matrices, gates, and the settings that brains share."""
 
 from collections.abc import Mapping
 from typing import Annotated, TypeAlias
@@ -13,7 +13,7 @@ from primordia.rounding import rounded_product
 
 Hidden: TypeAlias = Annotated[int, Field(ge=1, le=4096, description="neurons in the hidden layer")]
 Biases: TypeAlias = Annotated[
-    bool, Field(description="whether layers add biases, which are blocks of weights of their own")
+    bool, Field(description="whether layers add biases, each a block of weights")
 ]
 
 
@@ -36,8 +36,8 @@ def linear(genome: Mapping[str, Array], name: str, x: Array) -> Array:
 def matvec(weights: Array, x: Array) -> Array:
     """Return W x for each organism: weights (N, *shape) as `layer` has them, x (N, inputs).
 
-    All sums go through one `dot_general`, whose bits do not depend on N or on threads (held by a
-    test); those of `(W * x).sum(-1)` do.
+    All sums go through one `dot_general`. Its bits do not depend on N or on threads (a test holds that);
+    the bits of `(W * x).sum(-1)` do.
     """
     summed = 1 if weights.shape[1] == x.shape[1] else 2
     dimensions = (((1,), (summed,)), ((0,), (0,)))
@@ -57,6 +57,6 @@ def gate(x: Array) -> Array:
 def mix(share: Array, a: Array, b: Array) -> Array:
     """Return `share a + (1 - share) b`, share from 0 to 1, each product rounded by itself.
 
-    Left to a compiler, five of six memories differed between compiled and uncompiled ticks.
+    Without the separate rounding, five of six memories differed between compiled and uncompiled ticks.
     """
     return rounded_product(a, share) + rounded_product(b, 1 - share)

@@ -1,4 +1,4 @@
-"""The layout of a genome: its blocks of weights, by name, and the order in which they lie flat."""
+"""The layout of a genome: the names, shapes and order of its blocks of weights."""
 
 import re
 from collections.abc import Mapping
@@ -17,7 +17,7 @@ Shape: TypeAlias = tuple[int, ...]
 Arrays = TypeVar("Arrays", Array, np.ndarray)
 
 NAME = "[A-Za-z0-9_-]+"
-"""What a block may be called, as a regular expression: names are parts of settings and columns."""
+"""The allowed names of blocks, as a regular expression: names are parts of settings and columns."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,9 @@ class Layout:
 
     def __post_init__(self) -> None:
         if not self.blocks:
-            raise InputError("brain: it has no blocks of weights, so nothing could evolve")
+            raise InputError(
+                "brain: it has no blocks of weights, so nothing could evolve; name them in blocks()"
+            )
         for name, shape in self.blocks:
             if not isinstance(name, str) or not re.fullmatch(NAME, name):
                 raise InputError(
@@ -59,16 +61,16 @@ class Layout:
         return int(self.sizes.sum())
 
     def flat(self, genome: Mapping[str, Array], cells: Array) -> Array:
-        """Return the flat genomes (K, P) of the organisms in cells int32 (K,), of blocks (C, *shape)."""
+        """Return the flat genomes (K, P) of the organisms in cells int32 (K,) of blocks (C, *shape)."""
         blocks = [genome[name][cells].reshape(len(cells), -1) for name in self.names]
         return jnp.concatenate(blocks, axis=1)
 
     def per_weight(self, per_block: Array) -> Array:
-        """Repeat values (K, B) of blocks for each of their weights: (K, P)."""
+        """Repeat the value of each block for each of its weights: (K, B) -> (K, P)."""
         return jnp.repeat(per_block, self.sizes, axis=1, total_repeat_length=self.length)
 
     def split(self, flat: Arrays) -> dict[str, Arrays]:
-        """Cut flat genomes (..., P) into blocks (..., *shape), in NumPy or in JAX as they are."""
+        """Cut flat genomes (..., P) into blocks (..., *shape), in NumPy or JAX like the input."""
         library = np if isinstance(flat, np.ndarray) else jnp
         parts = library.split(flat, np.cumsum(self.sizes)[:-1], axis=-1)
         return {

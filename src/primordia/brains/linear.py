@@ -1,4 +1,4 @@
-"""The simplest brain: a weighted sum of what is perceived."""
+"""The simplest brain: weighted sums of the senses."""
 
 from jax import Array
 
@@ -8,7 +8,7 @@ from primordia.brains.layout import Shape
 
 
 class Linear(Brain):
-    """No hidden layer and no memory: `y = W x`, with biases `y = W x + c`."""
+    """A single layer, without memory: `y = W x`, with biases `y = W x + c`."""
 
     biases: Biases = False
 

@@ -1,4 +1,4 @@
-"""The paper's brain, which remembers."""
+"""The paper's brain: one recurrent layer, which is its memory."""
 
 import jax.numpy as jnp
 from jax import Array
@@ -28,7 +28,7 @@ class Recurrent(Brain):
         }
 
     def memory(self, senses: int, outputs: int) -> int:
-        """Return one number a neuron: h."""
+        """Return the length of h, one number for each neuron."""
         return self.hidden
 
     def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:

@@ -1,1 +1,1 @@
-"""The engine: worlds advanced on JAX and on the host, chunk by chunk, and the loop that records them."""
+"""The engine, which advances worlds chunk by chunk with habitats in JAX and on the host."""

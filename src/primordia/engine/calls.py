@@ -1,4 +1,4 @@
-"""What is compiled for a habitat on the host: halves of ticks, and their settling."""
+"""The compiled calls for a habitat on the host: halves of ticks, and their settling."""
 
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -22,28 +22,29 @@ from primordia.law.world import World
 
 
 class Decision(NamedTuple):
-    """What the host needs to know of a tick that is settled."""
+    """The results of settling a tick that the host needs for the next ones."""
 
     alive: Array
-    """bool (C,)"""
+    """bool (C,): cells with an organism"""
     active: Array
-    """bool (C,): to be stepped next"""
+    """bool (C,): cells to be stepped next"""
     died: Array
-    """bool (C,): their lives have ended"""
+    """bool (C,): cells whose organism died in the tick"""
     newborn: Array
-    """bool (C,): they need bodies"""
+    """bool (C,): cells whose organism was born in the tick, and needs a body"""
     words: Array
-    """uint32 (C, words) to make bodies from"""
+    """uint32 (C, words): random words of the bodies of the newborn"""
     go_on: Array
     """bool (): some world runs, and the lists have room"""
     due: Array
-    """int32 (): ticks after which the world is to be settled at the latest"""
+    """int32 (): ticks after which the world must be settled at the latest"""
 
 
 class Calls:
-    """Compiled functions of a law, for worlds held in a form, with bodies of some random words."""
+    """Compiled functions of a law."""
 
     def __init__(self, law: Law, form: Form, words: int) -> None:
+        """Compile for worlds held in a form, and bodies made from `words` random words."""
         steps = _Steps(law, form, words)
         self.hold, self.release = shared(Form.hold, form), shared(Form.release, form)
         self.think = shared(_Steps.think, steps)
@@ -52,15 +53,15 @@ class Calls:
         self.settle = shared(_Steps.settle, steps, donate=(0, 1))
 
 
-class Since(NamedTuple):
-    """What was lived since the last settled tick."""
+class Unsettled(NamedTuple):
+    """The ticks lived since the last settled one."""
 
     held: Held
-    """the world, not settled yet"""
+    """the world after them, not settled yet"""
     fates: Fates
-    """of the latest tick"""
+    """fates of the latest tick"""
     ticks: Any
-    """int32 (): how many"""
+    """int32 (): number of the ticks"""
 
 
 @dataclass(frozen=True)
@@ -92,21 +93,23 @@ class _Steps:
         return self.form.hold(world), thought, fates
 
     def survey(self, genome: Genome, held: Held, events: Events, limits: Limits) -> Decision:
-        """Decide for a world in which no organism has died or is born."""
+        """Return the decision for a world in its present state, without deaths or births."""
         world = self.form.release(held, genome)
         none = jnp.zeros_like(world.organisms.alive)
         return self._decide(world, events, none, none, limits)
 
     def settle(
-        self, genome: Genome, events: Events, held: Held, since: Since, limits: Limits
+        self, genome: Genome, events: Events, held: Held, unsettled: Unsettled, limits: Limits
     ) -> tuple[Genome, Events, Held, Decision]:
-        """Bring a world, as held after the last settled tick, up to date by what was lived since."""
+        """Settle the ticks since `held`, which is the world after the last settled tick."""
         law, before = self.law, self.form.release(held, genome)
-        after = self.form.release(since.held, genome)
+        after = self.form.release(unsettled.held, genome)
         live_worlds = running(before.worlds, limits)
         active = before.organisms.alive & law.per_cell(live_worlds)
         world = World(rest(before.organisms, after.organisms, active), after.worlds)
-        world, events, newborn = settle(law, world, events, since.fates, since.ticks, live_worlds)
+        world, events, newborn = settle(
+            law, world, events, unsettled.fates, unsettled.ticks, live_worlds
+        )
         died = before.organisms.alive & (~world.organisms.alive | newborn)
         decision = self._decide(world, events, died, newborn, limits)
         return world.organisms.genome, events, self.form.hold(world), decision

@@ -1,4 +1,4 @@
-"""A run in memory: law and habitat of a configuration, advanced chunk by chunk."""
+"""A run in memory: the law and the habitat of a configuration, advanced chunk by chunk."""
 
 import time
 from typing import Any
@@ -9,8 +9,8 @@ import numpy as np
 
 from primordia import device
 from primordia.config import Config
-from primordia.engine.fused import Fused
-from primordia.engine.hosted import Hosted
+from primordia.engine.fused import FusedChunks
+from primordia.engine.hosted import HostedChunks
 from primordia.engine.state import Limits, State, running
 from primordia.habitats.contract import AnyHabitat
 from primordia.law.events import Events
@@ -21,11 +21,11 @@ from primordia.random.wide import wide
 _running = jax.jit(running)
 
 CHUNK_SECONDS = 0.2
-"""Aimed at, so that Ctrl-C is heard in time."""
+"""Target time of a chunk, short enough for Ctrl-C to take effect soon."""
 
 
 class Engine:
-    """A run in memory: law, habitat and where they stand."""
+    """A run in memory: law, habitat and state."""
 
     def __init__(self, config: Config) -> None:
         device.prepare()
@@ -33,18 +33,18 @@ class Engine:
         habitat = config.build_habitat()
         self.law = config.build_law(habitat)
         self.tallies = habitat.tallies
-        self.chunks: Fused | Hosted = _chunks(self.law, habitat)
+        self.chunks: FusedChunks | HostedChunks = _chunks(self.law, habitat)
         seeds = [config.seed + world for world in range(config.seeds)]
         self.state: State = self.chunks.begin(begin(self.law, seeds))
         self._ticks = 1
 
     @property
     def events(self) -> Events:
-        """What happened in the latest chunk; the next one uses it up."""
+        """The events of the latest chunk; the next chunk overwrites them."""
         return self.chunks.events
 
     def advance(self, limits: Limits) -> Events:
-        """One chunk of about CHUNK_SECONDS -> what happened."""
+        """Advance by a chunk of about CHUNK_SECONDS, and return its events."""
         start = time.perf_counter()
         self.state, done = self.chunks.advance(self.state, limits, self._ticks)
         spent = time.perf_counter() - start
@@ -54,25 +54,32 @@ class Engine:
         return self.events
 
     def any_running(self, limits: Limits) -> bool:
-        """Whether some world has not come to a limit."""
+        """Return whether some world has not reached a limit."""
         return bool(_running(self.state.world.worlds, limits).any())
 
     def limits(self, stop: dict[str, Any], ticks: np.ndarray | None = None) -> Limits:
-        """Limits for all worlds alike; `ticks` (W,) if each has its own."""
-        every = np.ones(self.config.seeds, np.uint64)
-        most = np.uint64(2**64 - 1)
-        each = every * np.uint64(stop.get("ticks") or most) if ticks is None else ticks
-        births = every * np.uint64(stop.get("births") or most)
-        return Limits(wide(each), wide(births), jnp.bool_(stop.get("until") == "saturation"))
+        """Return the limits of all worlds for settings of `stop`.
+
+        Args:
+            stop: settings of `config.Stop`; one that is missing or None is no limit.
+            ticks: a limit of ticks for each world, (W,), in place of that of `stop`.
+        """
+
+        def for_all(limit: int | None) -> np.ndarray:
+            return np.full(self.config.seeds, limit or 2**64 - 1, np.uint64)
+
+        ticks = for_all(stop.get("ticks")) if ticks is None else ticks
+        births = for_all(stop.get("births"))
+        return Limits(wide(ticks), wide(births), jnp.bool_(stop.get("until") == "saturation"))
 
     def arrays(self) -> dict[str, np.ndarray]:
-        """The state by name."""
+        """Return the arrays of the state, by name."""
         return self.chunks.save(self.state)
 
     def load(self, arrays: dict[str, np.ndarray]) -> None:
-        """Stand where `arrays` say."""
+        """Restore the state from its arrays."""
         self.state = self.chunks.load(self.state, arrays)
 
 
-def _chunks(law: Law, habitat: AnyHabitat) -> Fused | Hosted:
-    return Hosted(law, habitat) if habitat.kind == "host" else Fused(law, habitat)
+def _chunks(law: Law, habitat: AnyHabitat) -> FusedChunks | HostedChunks:
+    return HostedChunks(law, habitat) if habitat.kind == "host" else FusedChunks(law, habitat)

@@ -7,7 +7,7 @@ from jax import Array, lax
 
 from primordia.compiled import shared
 from primordia.engine.state import Limits, State, named_leaves, running, ticks_left
-from primordia.habitats.bodies import choose, fresh, put, unborn
+from primordia.habitats.bodies import fresh, insert_bodies, placeholder_bodies, select_bodies
 from primordia.habitats.contract import Bodies, JaxHabitat
 from primordia.law import events as log
 from primordia.law.events import Events
@@ -19,33 +19,37 @@ from primordia.law.world import World
 from primordia.random.keys import Purpose, stream
 
 
-class Fused:
-    """Law and habitat in one compiled loop. A state given to it is used up."""
+class FusedChunks:
+    """Law and habitat in one compiled loop, which overwrites the state that it is given."""
 
     exact = True
-    """Whether a run goes on exactly from a checkpoint."""
+    """True if a run goes on exactly from a checkpoint."""
 
     def __init__(self, law: Law, habitat: JaxHabitat) -> None:
         self._law, self._habitat = law, habitat
         self._advance = shared(_advance, law, habitat, donate=(0, 1))
         self.events = log.empty(law)
-        """of the latest chunk"""
+        """events of the latest chunk"""
 
     def begin(self, world: World) -> State:
-        """The state of a run before genesis."""
-        return State(world, unborn(self._habitat, len(world.organisms.alive)))
+        """Return the state of a run before genesis."""
+        return State(world, placeholder_bodies(self._habitat, len(world.organisms.alive)))
 
     def advance(self, state: State, limits: Limits, ticks: int) -> tuple[State, int]:
-        """At most so many ticks, fewer if every world stops or the lists are full -> ticks done."""
+        """Advance by at most `ticks`, fewer if every world stops or the lists are full.
+
+        Returns:
+            state; the number of ticks advanced.
+        """
         state, self.events, done = self._advance(state, self.events, limits, jnp.int32(ticks))
         return state, int(done)
 
     def save(self, state: State) -> dict[str, np.ndarray]:
-        """All that is needed to go on exactly, by name."""
+        """Return the arrays of the whole state, by name."""
         return {name: np.asarray(leaf) for name, leaf in named_leaves(state)}
 
     def load(self, template: State, arrays: dict[str, np.ndarray]) -> State:
-        """Take back what `save` gave; `template` is any state of the same run."""
+        """Return the state that `save` stored; `template` is any state of the same run."""
         leaves = [jnp.asarray(arrays[name]) for name, _ in named_leaves(template)]
         return jax.tree.unflatten(jax.tree.structure(template), leaves)
 
@@ -57,23 +61,27 @@ def _advance(
         _, events, live_worlds, done = carry
         return (done < ticks) & live_worlds.any() & log.have_room(law, events)
 
-    def until_something_happens(carry: tuple) -> tuple:
+    def advance_to_next_event(carry: tuple) -> tuple:
         state, events, live_worlds, done = carry
         at_most = jnp.minimum(ticks - done, ticks_left(law, state.world, limits, live_worlds))
         state, fates, passed = _quiet(law, habitat, state, live_worlds, at_most)
-        world, events, born = settle(law, state.world, events, fates, passed, live_worlds)
-        state = State(world, _embody(law, habitat, world, state.bodies, born))
+        world, events, newborn = settle(law, state.world, events, fates, passed, live_worlds)
+        state = State(world, _embody(law, habitat, world, state.bodies, newborn))
         return state, events, running(world.worlds, limits), done + passed
 
     carry = (state, log.emptied(events), running(state.world.worlds, limits), jnp.int32(0))
-    state, events, _, done = lax.while_loop(go_on, until_something_happens, carry)
+    state, events, _, done = lax.while_loop(go_on, advance_to_next_event, carry)
     return state, events, done
 
 
 def _quiet(
     law: Law, habitat: JaxHabitat, state: State, live_worlds: Array, at_most: Array
 ) -> tuple[State, Fates, Array]:
-    """Ticks up to and with the first eventful one, at most so many -> state, fates, ticks."""
+    """Live ticks up to and including the first eventful one, at most `at_most`.
+
+    Returns:
+        state; fates of the last tick; number of ticks, int32 ().
+    """
     first = state.world
     active = first.organisms.alive & law.per_cell(live_worlds)
 
@@ -92,17 +100,17 @@ def _quiet(
     carry = (first, state.bodies, no_fates(law), keys, jnp.int32(0))
     world, bodies, fates, _, passed = lax.while_loop(go_on, tick, carry)
     organisms = rest(first.organisms, world.organisms, active)
-    bodies = choose(active, bodies, state.bodies)
+    bodies = select_bodies(active, bodies, state.bodies)
     return State(World(organisms, world.worlds), bodies), fates, passed
 
 
-def _embody(law: Law, habitat: JaxHabitat, world: World, bodies: Bodies, born: Array) -> Bodies:
-    """Put fresh bodies into the cells of the newborn, (C,), a batch at a time: one may cost much."""
+def _embody(law: Law, habitat: JaxHabitat, world: World, bodies: Bodies, newborn: Array) -> Bodies:
+    """Insert fresh bodies for the newborn, bool (C,), a batch at a time, since a body may cost much."""
     key = stream(world.worlds.seed, Purpose.BODY, world.worlds.tick)
 
     def one_batch(cells: Array, valid: Array, carry: tuple[Bodies]) -> tuple[Bodies]:
         words = body_words(key.take(cells // law.cells), cells % law.cells, habitat.words)
-        where = jnp.where(valid, cells, len(born))
-        return (put(carry[0], where, fresh(habitat, words)),)
+        where = jnp.where(valid, cells, len(newborn))
+        return (insert_bodies(carry[0], where, fresh(habitat, words)),)
 
-    return log.for_each(born, (bodies,), one_batch)[0]
+    return log.for_each(newborn, (bodies,), one_batch)[0]

@@ -1,8 +1,9 @@
-"""Chunks with a habitat that runs on the host: one compiled call a tick, the habitat between them.
+"""Chunks with a habitat on the host: the habitat is stepped between compiled calls, one for each tick.
 
-The call judges a tick and at once thinks the next one. A quiet tick needs no more; one with an event, or
-in which something falls due, is settled by a second call, and the newborn take a third for their first
-thought. What ticks change is kept beside the state until it is settled, so a chunk may end anywhere.
+The call judges a tick and then thinks the next one. A quiet tick needs no other call. A tick with an
+event, or in which something falls due, is settled by a second call, and the newborn need a third for
+their first thought. The changes of unsettled ticks are kept beside the state, so a chunk may end at any
+tick.
 """
 
 import jax
@@ -11,7 +12,7 @@ import numpy as np
 from jax import Array
 
 from primordia.brains.contract import Genome
-from primordia.engine.calls import Calls, Decision, Since
+from primordia.engine.calls import Calls, Decision, Unsettled
 from primordia.engine.held import Form, Held
 from primordia.engine.state import Limits, State, named_leaves
 from primordia.engine.tallies import Tallies
@@ -25,8 +26,8 @@ from primordia.law.world import World
 from primordia.random.keys import Purpose, stream
 
 
-class Hosted:
-    """Law compiled, habitat on the host. The bodies live in the habitat; the state holds senses."""
+class HostedChunks:
+    """A compiled law and a habitat on the host, which owns the bodies; `State.bodies` are senses."""
 
     def __init__(self, law: Law, habitat: HostHabitat) -> None:
         self.exact = habitat.exact
@@ -34,18 +35,22 @@ class Hosted:
         self._tallies = Tallies(habitat, law.worlds)
         self._lists = log.empty(law)
         self.events = self._lists
-        """of the latest chunk"""
+        """events of the latest chunk"""
         habitat.open(law.worlds * law.cells)
 
     def begin(self, world: World) -> State:
-        """The state of a run before genesis."""
+        """Return the state of a run before genesis."""
         self._no_fates = no_fates(self._law)
         self._calls = Calls(self._law, Form.of(world), self._habitat.words)
         cells = len(world.organisms.alive)
         return State(world, np.zeros((cells, self._habitat.senses_size), np.float32))
 
     def advance(self, state: State, limits: Limits, ticks: int) -> tuple[State, int]:
-        """At most so many ticks, fewer if every world stops or the lists are full -> ticks done."""
+        """Advance by at most `ticks`, fewer if every world stops or the lists are full.
+
+        Returns:
+            state; the number of ticks advanced.
+        """
         self._tallies.begin()
         genome, held = state.world.organisms.genome, self._calls.hold(state.world)
         events, senses, done = log.emptied(self._lists), np.array(state.bodies), 0
@@ -53,21 +58,23 @@ class Hosted:
         thought = self._calls.think(genome, held, senses)
         while done < ticks and decision.go_on:
             most = min(int(decision.due), ticks - done)
-            since, thought, senses = self._quiet(
+            unsettled, thought, senses = self._quiet(
                 genome, held, thought, senses, decision.active, most
             )
-            done += int(since.ticks)
-            genome, events, held, decision = self._calls.settle(genome, events, held, since, limits)
+            done += int(unsettled.ticks)
+            genome, events, held, decision = self._calls.settle(
+                genome, events, held, unsettled, limits
+            )
             self._tallies.note_deaths(np.asarray(decision.died))
             if np.asarray(decision.newborn).any():
                 senses = self._embody(senses, decision)
                 thought = self._calls.think(genome, held, senses)
             self._tallies.note_samples(decision.alive, events.samples)
-        self._lists, self.events = events, self._tallies.beside(events)
-        return State(self._released(genome, held), senses), done
+        self._lists, self.events = events, self._tallies.added_to(events)
+        return State(self._release(genome, held), senses), done
 
-    def _released(self, genome: Genome, held: Held) -> World:
-        """The world again; its genomes do not pass through a call, which would copy them."""
+    def _release(self, genome: Genome, held: Held) -> World:
+        """Return the world; its genomes do not pass through a call, which would copy them."""
         world = self._calls.release(held, {})
         return world._replace(organisms=world.organisms._replace(genome=genome))
 
@@ -79,21 +86,21 @@ class Hosted:
         senses: np.ndarray,
         active: Array,
         most: int,
-    ) -> tuple[Since, Thought, np.ndarray]:
-        """Live ticks up to and with the first eventful one, at most `most`; none before genesis.
+    ) -> tuple[Unsettled, Thought, np.ndarray]:
+        """Live ticks up to and including the first eventful one, at most `most`; none before genesis.
 
         Returns:
-            what was lived; what is thought next; senses, float32 (C, S).
+            the ticks lived; the thought of the next tick; senses, float32 (C, S).
         """
         now, fates, passed, alive = held, self._no_fates, 0, np.asarray(active)
-        # np.asarray is three times as fast as asking JAX's array itself.
+        # np.asarray is three times as fast as bool() of JAX's array.
         while passed < most and not np.asarray(fates.eventful):
             senses, outcome = self._habitat.step(np.asarray(thought.action), alive)
             passed += 1
             now, thought, fates = self._calls.live(
                 genome, now, thought, senses, outcome, active, np.int32(passed)
             )
-        return Since(now, fates, np.int32(passed)), thought, senses
+        return Unsettled(now, fates, np.int32(passed)), thought, senses
 
     def _embody(self, senses: np.ndarray, decision: Decision) -> np.ndarray:
         newborn = np.flatnonzero(decision.newborn)
@@ -101,7 +108,7 @@ class Hosted:
         return senses
 
     def save(self, state: State) -> dict[str, np.ndarray]:
-        """All that is needed to go on exactly, by name."""
+        """Return the arrays of the whole state, with the habitat's bodies, by name."""
         bodies = {f"bodies.{name}": array for name, array in self._habitat.save().items()}
         bodies["bodies.senses"] = np.asarray(state.bodies)
         return {
@@ -109,25 +116,22 @@ class Hosted:
         } | bodies
 
     def load(self, template: State, arrays: dict[str, np.ndarray]) -> State:
-        """Take back what `save` gave; `template` is any state of the same run."""
+        """Return the state that `save` stored; `template` is any state of the same run."""
         leaves = [jnp.array(arrays[f"world.{name}"]) for name, _ in named_leaves(template.world)]
         prefix, senses = "bodies.", arrays["bodies.senses"]
         bodies = {n.removeprefix(prefix): a for n, a in arrays.items() if n.startswith(prefix)}
         bodies.pop("senses")
         world = jax.tree.unflatten(jax.tree.structure(template.world), leaves)
         if not self._habitat.can(Ability.SAVE):
-            return State(world, self._as_at_birth(world, senses))
+            return State(world, self._reset_to_birth(world, senses))
         self._habitat.load(bodies)
         return State(world, senses)
 
-    def _as_at_birth(self, world: World, senses: np.ndarray) -> np.ndarray:
-        """Give the living the bodies that they were born with, where theirs cannot be stored."""
-        alive, senses, seed = (
-            np.flatnonzero(world.organisms.alive),
-            senses.copy(),
-            world.worlds.seed,
-        )
-        key = stream(seed.map(self._law.per_cell), Purpose.BODY, world.organisms.born)
+    def _reset_to_birth(self, world: World, senses: np.ndarray) -> np.ndarray:
+        """Reset the bodies of the living to birth, if the habitat cannot save bodies; return senses."""
+        alive, senses = np.flatnonzero(world.organisms.alive), senses.copy()
+        seed = world.worlds.seed.map(self._law.per_cell)
+        key = stream(seed, Purpose.BODY, world.organisms.born)
         words = np.asarray(body_words(key, self._law.cell_numbers, self._habitat.words))
         if len(alive):
             senses[alive] = self._habitat.reset(alive, words[alive])

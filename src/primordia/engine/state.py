@@ -1,4 +1,4 @@
-"""Where a run stands, and when its worlds stop: what both kinds of chunks share.
+"""The state of a run and the limits of its worlds, which both kinds of chunks share.
 
 A chunk is many ticks of law and habitat between two visits of the host. It may have any length: no life
 depends on it.
@@ -18,7 +18,7 @@ from primordia.random.wide import Wide, happened
 
 
 class Limits(NamedTuple):
-    """When each world stops, for now: Wide (W,), `wide.never` for no limit."""
+    """The limits at which each world stops, Wide (W,); `wide.never` is no limit."""
 
     ticks: Wide
     births: Wide
@@ -27,25 +27,26 @@ class Limits(NamedTuple):
 
 
 class State(NamedTuple):
-    """Where a run stands: all of it, for a habitat in JAX."""
+    """The state of a run, complete for a habitat in JAX."""
 
     world: World
     bodies: Bodies
+    """bodies of a habitat in JAX; of one on the host, the senses, float32 (C, S)"""
 
 
 def running(worlds: Worlds, limits: Limits) -> Array:
-    """Which worlds have not come to a limit, bool (W,). The others are frozen as they stand."""
+    """Return which worlds have not reached a limit, bool (W,). The others are frozen."""
     over = worlds.tick.at_least(limits.ticks) | worlds.births.at_least(limits.births)
     return ~(over | (limits.saturation & happened(worlds.saturated)))
 
 
 def named_leaves(tree: object) -> list[tuple[str, Array]]:
-    """The arrays of a state with their paths, such as `world.organisms.genome.input`."""
+    """Return the arrays of a state with their paths, such as `world.organisms.genome.input`."""
     leaves = jax.tree_util.tree_flatten_with_path(tree)[0]
     return [(jax.tree_util.keystr(path, simple=True, separator="."), leaf) for path, leaf in leaves]
 
 
 def ticks_left(law: Law, world: World, limits: Limits, live_worlds: Array) -> Array:
-    """Ticks until a limit or something else falls due in a running world, int32 ()."""
+    """Return the ticks until a limit or something else falls due in a running world, int32 ()."""
     to_limit = jnp.where(live_worlds, world.worlds.tick.until(limits.ticks), 2**31 - 1).min()
     return jnp.minimum(to_limit, quiet_ticks(law, world, live_worlds))

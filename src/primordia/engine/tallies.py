@@ -1,7 +1,7 @@
-"""Tallies: what organisms have made of their lives (a score, kills), for people; the law never sees them.
+"""Tallies: counts of an organism's life for people, such as a score; the law never sees them.
 
-A habitat on the host may keep them: `tallies`, their names, and `tally()`, int32 (C, K), of the lives
-under way. They are noted beside the law's own lists, at each death and at each sample.
+A habitat on the host may keep them: `tallies` are their names, and `tally()` returns those of the present
+lives, int32 (C, K). They become columns of the lists of deaths and samples.
 """
 
 from typing import Any
@@ -14,12 +14,12 @@ from primordia.law.events import Events, Rows
 
 
 def tally_columns(names: tuple[str, ...]) -> list[str]:
-    """What a sample says of each of a habitat's tallies, over the living."""
+    """Return the columns that a sample has for a habitat's tallies: mean and best of the living."""
     return [f"{name}_{what}" for name in names for what in ("mean", "best")]
 
 
 class Tallies:
-    """Rows of tallies that belong to the rows of a chunk's lists."""
+    """The tallies that belong to the rows of a chunk's lists."""
 
     def __init__(self, habitat: HostHabitat, worlds: int) -> None:
         self.names = habitat.tallies
@@ -27,37 +27,42 @@ class Tallies:
         self.begin()
 
     def begin(self) -> None:
-        """A chunk begins."""
+        """Begin a chunk without tallies."""
         self._deaths = [np.zeros((0, len(self.names)), np.uint32)]
         self._samples = [np.zeros((0, len(tally_columns(self.names))), np.uint32)]
         self._sampled = 0
 
     def note_deaths(self, died: np.ndarray) -> None:
-        """Of the cells of the dead, bool (C,), before others are born there."""
+        """Note the tallies of cells whose organism died, bool (C,), before their bodies are reset."""
         if self.names and died.any():
             self._deaths.append(self._habitat.tally()[died].astype(np.uint32))
 
     def note_samples(self, alive: Array, samples: Rows) -> None:
-        """If a sample was taken: of the living, bool (C,), the newborn among them."""
+        """Note the tallies of the living, bool (C,), newborn included, if a sample was taken."""
         if self.names and (filled := int(samples.filled)) > self._sampled:
             worlds = np.asarray(samples.rows)[self._sampled : filled, 0]
             self._samples.append(self._of_worlds(worlds, np.asarray(alive)))
             self._sampled = filled
 
-    def beside(self, events: Events) -> Events:
-        """The chunk's lists with what was noted in further columns."""
+    def added_to(self, events: Events) -> Events:
+        """Return the chunk's lists with the tallies as further columns."""
         if not self.names:
             return events
         deaths = _widened(events.deaths, np.concatenate(self._deaths))
         samples = _widened(events.samples, np.concatenate(self._samples))
         return events._replace(deaths=deaths, samples=samples)
 
-    def _of_worlds(self, which: np.ndarray, alive: np.ndarray) -> np.ndarray:
-        """Mean (the bits of a float32) and best of each tally in some worlds, uint32 (n, 2 K)."""
+    def _of_worlds(self, numbers: np.ndarray, alive: np.ndarray) -> np.ndarray:
+        """Return mean (the bits of a float32) and best of each tally in some worlds, uint32 (n, 2 K).
+
+        They are 0 in a world without organisms.
+        """
         tally = self._habitat.tally().reshape(self._worlds, -1, len(self.names))
         lives, rows = alive.reshape(self._worlds, -1), []
-        for world in which:
-            living = tally[world][lives[world]] if lives[world].any() else tally[world][:1] * 0
+        for world in numbers:
+            living = tally[world][lives[world]]
+            if not len(living):
+                living = np.zeros_like(tally[world][:1])
             mean = living.mean(axis=0).astype(np.float32).view(np.uint32)
             rows.append(np.stack([mean, living.max(axis=0).astype(np.uint32)], axis=1).ravel())
         return np.stack(rows)
@@ -65,6 +70,6 @@ class Tallies:
 
 def _widened(list_: Rows, columns: np.ndarray) -> Rows:
     rows = np.asarray(list_.rows)[: int(list_.filled)]
-    assert len(rows) == len(columns), "tallies do not fit the events they belong to"
-    wide: Any = np.concatenate([rows, columns], axis=1)
-    return Rows(wide, list_.filled)
+    assert len(rows) == len(columns), "there must be a row of tallies for each row of the list"
+    widened: Any = np.concatenate([rows, columns], axis=1)
+    return Rows(widened, list_.filled)

@@ -1,8 +1,8 @@
-"""Conditions and numbers in settings, such as `ram[17] == 0 or lives < 3` and `10 * max(forward, 0)`.
+"""Conditions and amounts in settings, such as `ram[17] == 0 or lives < 3` and `10 * max(forward, 0)`.
 
-One small grammar for every habitat: numbers, names, `name[3]`, `name[1:]`, `name["part"]`, `+ - *`,
-comparisons, `and or not`, some functions and parentheses, as in Python, whose parser reads it. Nothing
-is ever executed but the operations listed here, on arrays.
+All habitats share one small grammar: numbers, names, `name[3]`, `name[1:]`, `name["part"]`, `+ - *`,
+comparisons, `and or not`, some functions and parentheses. It is a part of Python's, so Python's parser
+reads it. Only the operations listed here are executed, on arrays.
 """
 
 import ast
@@ -14,11 +14,11 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 
 Kind: TypeAlias = Literal["condition", "amount"] | int
-"""A condition, an amount, or a list of so many numbers."""
+"""A condition, an amount (one number), or the length of a list of numbers."""
 Names: TypeAlias = Mapping[str, Kind | Mapping[str, int]]
-"""What may be named; of something in parts, how many numbers each part has."""
+"""The kind of each quantity that expressions can name; of one with parts, the length of each part."""
 Values: TypeAlias = Mapping[str, Any]
-"""Arrays by name: (N,) for a condition or an amount, (N, K) for a list; in parts, arrays by part."""
+"""Arrays by name: (N,) for a condition or an amount, (N, K) for a list; with parts, arrays by part."""
 Compute: TypeAlias = Callable[[Values], Any]
 
 SUMS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul}
@@ -37,34 +37,40 @@ FUNCTIONS = {
     "min": (np.minimum, 2),
     "max": (np.maximum, 2),
 }
-"""Of single numbers, or of each number in a list; and how many arguments they take."""
-OF_LISTS = {
+"""Elementwise functions of amounts or lists, and their numbers of arguments."""
+REDUCTIONS = {
     "sum": lambda numbers: numbers.sum(axis=1),
     "norm": lambda numbers: np.sqrt((numbers * numbers).sum(axis=1)),
 }
-"""Of a list, to one number."""
+"""Functions of one list that return an amount."""
 
 
 @dataclass(frozen=True)
 class Expression:
-    """A condition, an amount or a list of numbers that has been understood."""
+    """A parsed condition, amount or list of numbers."""
 
     text: str
     kind: Kind
     names: frozenset[str]
-    """that it speaks of"""
+    """the names that it uses"""
     compute: Compute
 
     def __call__(self, values: Values) -> np.ndarray:
-        """Of each body: bool (N,) for a condition, a number for an amount, (N, K) for a list."""
+        """Return its value for each body: (N,) for a condition (bool) or an amount, (N, K) for a list."""
         return self.compute(values)
 
 
 def parse(text: str, kind: Literal["condition", "amount", "numbers"], names: Names) -> Expression:
-    """Understand a condition, an amount (a condition is one too: 1 where it holds), or either or a list.
+    """Parse an expression.
+
+    Args:
+        text: the expression.
+        kind: the required kind; "numbers" are an amount or a list. A condition is also an amount: 1 where
+            it is true, else 0.
+        names: the quantities that it may name.
 
     Raises:
-        ValueError: it cannot be; the message says what, and where.
+        ValueError: it is not of the grammar or of the required kind; the message says what, and where.
     """
     try:
         tree = ast.parse(text.strip(), mode="eval")
@@ -72,47 +78,49 @@ def parse(text: str, kind: Literal["condition", "amount", "numbers"], names: Nam
         column = getattr(error, "offset", None) or 1
         raise ValueError(f"{text!r} cannot be read at column {column}") from None
     reader = _Reader(text, names)
-    found, compute = reader.read(tree.body)
-    if kind == "condition" and found != "condition":
+    actual, compute = reader.read(tree.body)
+    if kind == "condition" and actual != "condition":
         raise ValueError(f"{text!r} is a number, not a condition; compare it with something")
-    if kind == "amount" and isinstance(found, int):
-        raise ValueError(f"{text!r} is {_a(found)}, where a number is needed")
+    if kind == "amount" and isinstance(actual, int):
+        raise ValueError(f"{text!r} is {_described(actual)}, where a number is needed")
     used = frozenset(n.id for n in ast.walk(tree) if isinstance(n, ast.Name) and n.id in names)
-    if kind != "condition" and found == "condition":
+    if kind != "condition" and actual == "condition":
         return Expression(text, "amount", used, lambda values: compute(values) * np.float32(1))
-    return Expression(text, found, used, compute)
+    return Expression(text, actual, used, compute)
 
 
 class _Reader:
-    """Turns a syntax tree into functions of values."""
+    """A translator from syntax trees to functions of values."""
 
     def __init__(self, text: str, names: Names) -> None:
         self._text, self._names = text, names
 
     def read(self, node: ast.expr) -> tuple[Kind, Compute]:
-        """What a node is, and how to compute it."""
+        """Return the kind of a node, and a function that computes it."""
         method = getattr(self, f"_read_{type(node).__name__.lower()}", None)
         if method is None:
             raise self._error(node, "this is not part of the grammar")
         return method(node)
 
-    def _of(self, kind: Kind, node: ast.expr) -> Compute:
-        found, compute = self.read(node)
-        if found == kind:
+    def _read_as(self, kind: Kind, node: ast.expr) -> Compute:
+        actual, compute = self.read(node)
+        if actual == kind:
             return compute
-        if isinstance(found, int) and isinstance(node, ast.Name):
-            raise self._error(node, f"{node.id!r} has {found} numbers; say which: {node.id}[0]")
-        raise self._error(node, f"this is {_a(found)}, where {_a(kind)} is needed")
+        if isinstance(actual, int) and isinstance(node, ast.Name):
+            raise self._error(node, f"{node.id!r} has {actual} numbers; say which: {node.id}[0]")
+        message = f"this is {_described(actual)}, where {_described(kind)} is needed"
+        raise self._error(node, message)
 
-    def _alike(self, nodes: list[ast.expr]) -> tuple[Kind, list[Compute]]:
-        """Amounts, or lists of one length; an amount beside a list stands for every number in it."""
+    def _read_operands(self, nodes: list[ast.expr]) -> tuple[Kind, list[Compute]]:
+        """Read amounts, or lists of one length; an amount beside a list is broadcast to its length."""
         kinds, parts = zip(*(self.read(node) for node in nodes), strict=True)
         lists = [kind for kind in kinds if isinstance(kind, int)]
         for node, kind in zip(nodes, kinds, strict=True):
             if kind == "condition":
-                raise self._error(node, f"this is {_a(kind)}, where a number is needed")
+                raise self._error(node, f"this is {_described(kind)}, where a number is needed")
             if isinstance(kind, int) and kind != lists[0]:
-                raise self._error(node, f"this is {_a(kind)}, beside {_a(lists[0])}")
+                beside = f"this is {_described(kind)}, beside {_described(lists[0])}"
+                raise self._error(node, beside)
         if not lists:
             return "amount", list(parts)
         return lists[0], [
@@ -133,9 +141,9 @@ class _Reader:
         kind = self._names[name]
         if isinstance(kind, Mapping):
             example = next(iter(kind), "...")
-            raise self._error(node, f'{name!r} is of parts; say of which: {name}["{example}"]')
+            raise self._error(node, f'{name!r} has parts; say which: {name}["{example}"]')
         if isinstance(kind, int):
-            return kind, lambda values: _exact(values[name])
+            return kind, lambda values: _as_int64(values[name])
         return kind, lambda values: values[name]
 
     def _read_subscript(self, node: ast.Subscript) -> tuple[Kind, Compute]:
@@ -144,62 +152,62 @@ class _Reader:
         if isinstance(base, ast.Name) and isinstance(known, Mapping):
             return self._part(node, base.id, known)
         if isinstance(base, ast.Name) and isinstance(known, int):
-            return self._some_of(node, base.id, known, operator.itemgetter(base.id))
+            return self._selection(node, base.id, known, operator.itemgetter(base.id))
         if isinstance(base, ast.Subscript):
             count, numbers = self.read(base)
             if isinstance(count, int):
-                return self._some_of(node, ast.unparse(base), count, numbers)
-        raise self._error(node, "only what has several numbers can be indexed")
+                return self._selection(node, ast.unparse(base), count, numbers)
+        raise self._error(node, "only a list of numbers, or a name with parts, can be indexed")
 
     def _part(
         self, node: ast.Subscript, name: str, known: Mapping[str, int]
     ) -> tuple[Kind, Compute]:
         part = node.slice.value if isinstance(node.slice, ast.Constant) else None
         if not isinstance(part, str) or part not in known:
-            raise self._error(node, f"{name} is known of {', '.join(known)}")
+            raise self._error(node, f"{name} has the parts {', '.join(known)}")
         return known[part], lambda values: values[name][part]
 
-    def _some_of(
+    def _selection(
         self, node: ast.Subscript, name: str, count: int, numbers: Compute
     ) -> tuple[Kind, Compute]:
-        """One number of a list, or some in a row."""
+        """Read one number of a list, or a slice of it."""
         if isinstance(node.slice, ast.Slice):
             chosen = range(count)[self._limits(node.slice)]
             if not chosen or node.slice.step is not None:
                 raise self._error(node, f"this takes none of {name}, which has {count} numbers")
-            place = slice(chosen.start, chosen.stop)
-            return len(chosen), lambda values: _exact(numbers(values)[:, place])
+            columns = slice(chosen.start, chosen.stop)
+            return len(chosen), lambda values: _as_int64(numbers(values)[:, columns])
         index = node.slice.value if isinstance(node.slice, ast.Constant) else None
         if type(index) is not int or not 0 <= index < count:
             raise self._error(node, f"{name} goes from {name}[0] to {name}[{count - 1}]")
-        return "amount", lambda values: _exact(numbers(values)[:, index])
+        return "amount", lambda values: _as_int64(numbers(values)[:, index])
 
     def _limits(self, node: ast.Slice) -> slice:
         limits = []
         for limit in (node.lower, node.upper):
             value = limit.value if isinstance(limit, ast.Constant) else None
             if limit is not None and type(value) is not int:
-                raise self._error(limit, "numbers are taken from [2] on, to [5], or [2:5]")
+                raise self._error(limit, "a slice is [2:], [:5] or [2:5], with whole numbers")
             limits.append(value)
         return slice(*limits)
 
     def _read_binop(self, node: ast.BinOp) -> tuple[Kind, Compute]:
         if (act := SUMS.get(type(node.op))) is None:
-            raise self._error(node, "of arithmetic there are +, - and *")
-        kind, (left, right) = self._alike([node.left, node.right])
+            raise self._error(node, "the arithmetic operators are +, - and *")
+        kind, (left, right) = self._read_operands([node.left, node.right])
         return kind, lambda values: act(left(values), right(values))
 
     def _read_unaryop(self, node: ast.UnaryOp) -> tuple[Kind, Compute]:
         if isinstance(node.op, ast.Not):
-            inner = self._of("condition", node.operand)
+            inner = self._read_as("condition", node.operand)
             return "condition", lambda values: ~inner(values)
         if not isinstance(node.op, ast.USub):
-            raise self._error(node, "of signs there is -")
-        kind, (inner,) = self._alike([node.operand])
+            raise self._error(node, "the only sign is -")
+        kind, (inner,) = self._read_operands([node.operand])
         return kind, lambda values: -inner(values)
 
     def _read_boolop(self, node: ast.BoolOp) -> tuple[Kind, Compute]:
-        parts = [self._of("condition", part) for part in node.values]
+        parts = [self._read_as("condition", part) for part in node.values]
         combine = operator.and_ if isinstance(node.op, ast.And) else operator.or_
 
         def compute(values: Values) -> Any:
@@ -211,15 +219,15 @@ class _Reader:
         return "condition", compute
 
     def _read_compare(self, node: ast.Compare) -> tuple[Kind, Compute]:
-        sides = [self._of("amount", side) for side in (node.left, *node.comparators)]
+        sides = [self._read_as("amount", side) for side in (node.left, *node.comparators)]
         acts = [COMPARISONS.get(type(op)) for op in node.ops]
         if None in acts:
-            raise self._error(node, "of comparisons there are <, <=, >, >=, == and !=")
+            raise self._error(node, "the comparisons are <, <=, >, >=, == and !=")
 
         def compute(values: Values) -> Any:
-            found = [side(values) for side in sides]
+            amounts = [side(values) for side in sides]
             result = np.True_
-            for act, left, right in zip(acts, found, found[1:], strict=False):
+            for act, left, right in zip(acts, amounts, amounts[1:], strict=False):
                 result = result & act(left, right)  # type: ignore[misc]
             return result
 
@@ -227,40 +235,41 @@ class _Reader:
 
     def _read_call(self, node: ast.Call) -> tuple[Kind, Compute]:
         name = node.func.id if isinstance(node.func, ast.Name) else ""
-        if name in OF_LISTS and len(node.args) == 1 and not node.keywords:
-            return "amount", self._of_a_list(name, node.args[0])
+        if name in REDUCTIONS and len(node.args) == 1 and not node.keywords:
+            return "amount", self._reduction(name, node.args[0])
         act, count = FUNCTIONS.get(name, (None, -1))
         if act is None or node.keywords or len(node.args) != count:
-            one = ", ".join(f"{each}(a)" for each in (*OF_LISTS, "abs", "cos", "sin"))
-            raise self._error(node, f"of functions there are {one}, min(a, b) and max(a, b)")
-        kind, parts = self._alike(node.args)
+            unary = ", ".join(f"{function}(a)" for function in (*REDUCTIONS, "abs", "cos", "sin"))
+            raise self._error(node, f"the functions are {unary}, min(a, b) and max(a, b)")
+        kind, parts = self._read_operands(node.args)
         return kind, lambda values: act(*(part(values) for part in parts))
 
-    def _of_a_list(self, name: str, node: ast.expr) -> Compute:
+    def _reduction(self, name: str, node: ast.expr) -> Compute:
         kind, inner = self.read(node)
         if not isinstance(kind, int):
-            raise self._error(node, f"this is {_a(kind)}, where a list of numbers is needed")
-        return lambda values: OF_LISTS[name](inner(values))
+            message = f"this is {_described(kind)}, where a list of numbers is needed"
+            raise self._error(node, message)
+        return lambda values: REDUCTIONS[name](inner(values))
 
     def _error(self, node: ast.expr, message: str) -> ValueError:
         return ValueError(f"{self._text!r}, column {node.col_offset + 1}: {message}")
 
 
-def _exact(numbers: np.ndarray) -> np.ndarray:
-    """Bytes and other small integers do not overflow when reckoned with."""
+def _as_int64(numbers: np.ndarray) -> np.ndarray:
+    """Return integers as int64, and floats unchanged, so that arithmetic on bytes does not overflow."""
     return numbers.astype(np.int64) if numbers.dtype.kind in "iu" else numbers
 
 
 def _as_column(amount: Compute) -> Compute:
-    """An amount (N,) as (N, 1), a number written out as it is."""
+    """Return a function that computes an amount (N,) as (N, 1), and leaves a constant unchanged."""
 
     def compute(values: Values) -> Any:
-        found = amount(values)
-        return found[:, None] if np.ndim(found) else found
+        numbers = amount(values)
+        return numbers[:, None] if np.ndim(numbers) else numbers
 
     return compute
 
 
-def _a(kind: Kind) -> str:
+def _described(kind: Kind) -> str:
     names = {"condition": "a condition", "amount": "a number"}
     return f"a list of {kind} numbers" if isinstance(kind, int) else names[kind]

@@ -1,12 +1,12 @@
 """The contract of habitats: the simulator side of a task, vectorised over cells.
 
 A habitat knows nothing of energy, ages, neighbours or other organisms. It reports in physical units
-what happened to its bodies; what that means for a life is decided by the law.
+what happened to its bodies; the law decides what that means for a life.
 
 A habitat subclasses `JaxHabitat` or `HostHabitat`, alone or together with `Settings`:
-`class Pond(JaxHabitat, Settings)`. It must have what is abstract here, and `senses_size`, `action` and
-`words`; for everything else there is a default. `name` in a task's `[habitat]` table is one of KNOWN, or
-`module:Class`. The other keys of the table are the class's own settings.
+`class Pond(JaxHabitat, Settings)`. It must define the abstract methods of that class, and `senses_size`,
+`action` and `words`; everything else has a default. `name` in a task's `[habitat]` table is one of KNOWN,
+or `module:Class`. The other keys of the table are the class's own settings.
 
 Simulators in worker processes load this file, so it imports neither JAX nor pydantic.
 """
@@ -46,42 +46,42 @@ class Discrete:
 
 @dataclass(frozen=True)
 class Continuous:
-    """An action is a vector: float32 (N, size). Its bounds are the habitat's to keep."""
+    """An action is a vector: float32 (N, size). The habitat keeps it within bounds."""
 
     size: int
 
 
 class Outcome(NamedTuple):
-    """What happened to the bodies in one tick. None: this habitat never reports it."""
+    """What happened to the bodies in one tick; None if the habitat does not report it."""
 
     fatal: "Array"
-    """bool (N,): this body cannot live on."""
+    """bool (N,): the body cannot live on"""
     food: "Array | None" = None
-    """float32 (N,): what was gathered, in the task's unit (metres, points, targets)."""
+    """float32 (N,): food gathered, in the task's unit (metres, points, targets)"""
     effort: "Array | None" = None
-    """float32 (N,): what was exerted, in the habitat's unit."""
+    """float32 (N,): effort exerted, in the habitat's unit"""
     fault: "Array | None" = None
-    """bool (N,): the simulation of this body has failed; NaN and infinity are found by the law."""
+    """bool (N,): the body's simulation has failed; the law itself detects NaN and infinity"""
 
 
 class Ability(StrEnum):
-    """What a habitat may be able to do; `habitat.can(Ability.PICTURE)` tells."""
+    """Optional abilities of a habitat; `habitat.can(Ability.PICTURE)` is true if it has one."""
 
     PICTURE = "picture"
-    """its bodies can be drawn, for `primordia replay`"""
+    """draw bodies, for `primordia replay`"""
     TALLY = "tally"
-    """it keeps counts for people, which the law never sees"""
+    """count what people want to know, such as a score, which the law never sees"""
     SAVE = "save"
-    """its bodies can be stored and go on exactly"""
+    """store bodies, so that they go on exactly"""
 
 
 if not TYPE_CHECKING:
 
     class default:  # noqa: N801
-        """A property that a subclass may replace by anything: an attribute, a property, a setting.
+        """A property that a subclass may replace by an attribute, a property or a setting.
 
-        It stores nothing and is hidden in the class itself, so that pydantic neither takes it for the
-        value of a setting with the same name nor warns of one.
+        The class itself does not show it. So pydantic neither takes it for the default of a setting with
+        the same name, nor warns that such a setting hides it.
         """
 
         def __init__(self, compute: Callable) -> None:
@@ -89,52 +89,52 @@ if not TYPE_CHECKING:
 
         def __get__(self, habitat: object, owner: type) -> Any:
             if habitat is None:
-                raise AttributeError("a default; a habitat has it, its class has not")
+                raise AttributeError("a default of habitats; ask a habitat, not its class")
             return self._compute(habitat)
 
 
 class Habitat(ABC):
-    """What habitats in JAX and on the host have in common; subclass one of these two."""
+    """The common part of `JaxHabitat` and `HostHabitat`; subclass one of these two."""
 
     abilities: ClassVar[Mapping[Ability, tuple[str, ...]]]
     """Methods that a class must define for each ability that it can have."""
 
     @default
     def senses_size(self) -> int:
-        """Return the number of senses S. A habitat must have it."""
+        """Return the number of senses S. A habitat must state it."""
         raise _missing(self, "senses_size")
 
     @default
     def action(self) -> Discrete | Continuous:
-        """Return what an action is. A habitat must have it."""
+        """Return the kind of actions. A habitat must state it."""
         raise _missing(self, "action")
 
     @default
     def words(self) -> int:
-        """Return the number of random uint32 words that a birth needs. A habitat must have it."""
+        """Return the number of random uint32 words that a birth needs. A habitat must state it."""
         raise _missing(self, "words")
 
     @default
     def versions(self) -> dict[str, str]:
-        """Return name -> version of each package or file that lives depend on, beside this package.
+        """Return the version of each package or file, other than this package, that lives depend on.
 
-        A run does not go on under other versions unless that is asked for.
+        A run under other versions is resumed only if the user asks for it.
         """
         return {}
 
     @default
     def rate(self) -> float | None:
-        """Return ticks per second, where time is that of the world outside."""
+        """Return the ticks in a second of simulated time; None if its time has no unit."""
         return None
 
     @default
     def episode(self) -> int | None:
-        """Return the ticks after which a game is cut where others score it; None: it is not cut."""
+        """Return the ticks after which the standard benchmark ends a game; None if it does not."""
         return None
 
     @default
     def tallies(self) -> tuple[str, ...]:
-        """Return the names of what is counted for people, such as score."""
+        """Return the names of the counts that are kept for people, such as score."""
         return ()
 
     @default
@@ -153,29 +153,30 @@ class Habitat(ABC):
         return [name for name in needed if getattr(own, name) is getattr(defaults, name)]
 
     def check(self, cells: int) -> None:  # noqa: B027 - a default
-        """Raise ValueError if a run of that many cells cannot be opened with these settings."""
+        """Raise ValueError if these settings do not allow a run of `cells` cells."""
 
     def original(self) -> "AnyHabitat | None":
-        """Return the whole game as others score it: fatal is its end, food the score."""
+        """Return the whole game as the standard benchmark scores it: food is the score, fatal its end."""
         return None
 
     def picture(self, body: Bodies, action: np.ndarray) -> "Image":
-        """Return a picture of one body (no first axis) and of the action that led there.
+        """Return a picture of one body (no first axis) and of the action that led to it.
 
-        `replay` writes two lines of words on it, 12 to 48 pixels from the top.
+        `replay` writes two lines of captions on it, 12 to 48 pixels from the top.
         """
         raise NotImplementedError
 
     def caption(self, body: Bodies, action: np.ndarray) -> str:
-        """Return the second line of words on a picture, such as the action's name and a score."""
+        """Return the second line of a picture's captions, such as the action's name and a score."""
         return f"action {np.array2string(np.asarray(action), precision=2)}"
 
 
 class JaxHabitat(Habitat):
     """A habitat in JAX: pure functions, fused with the law into one compiled loop.
 
-    Elementwise over bodies, the same bits for every N, and no random source but `words`. A class that is
-    hashed and compared by its settings, as `Settings` are, shares compiled code with its equals.
+    The functions treat each body by itself, give the same bits for every N, and have no random source but
+    `words`. Habitats that are equal share compiled code, so hash and compare them by their settings, as
+    `Settings` do.
     """
 
     kind: ClassVar[Literal["jax"]] = "jax"
@@ -187,15 +188,15 @@ class JaxHabitat(Habitat):
 
     @abstractmethod
     def sense(self, bodies: Bodies) -> "Array":
-        """Return what the organisms perceive, scaled, float32 (N, senses_size)."""
+        """Return the scaled senses of the organisms, float32 (N, senses_size)."""
 
     @abstractmethod
     def step(self, bodies: Bodies, action: "Array") -> tuple[Bodies, Outcome]:
-        """Step all bodies one tick. What comes out for a cell without an organism is not used."""
+        """Step all bodies by one tick. The results of a cell without an organism are not used."""
 
 
 class HostHabitat(Habitat):
-    """A habitat on the host, which owns its bodies and is stepped between two halves of the law."""
+    """A habitat on the host, which owns its bodies; the engine steps it between two halves of the law."""
 
     kind: ClassVar[Literal["host"]] = "host"
     abilities: ClassVar = {
@@ -206,64 +207,64 @@ class HostHabitat(Habitat):
 
     @abstractmethod
     def open(self, cells: int, watched: bool = False) -> None:
-        """Make room for that many bodies; `watched` if there will be pictures of them."""
+        """Allocate N = `cells` bodies; `watched` is true if `picture` will be called."""
 
     @abstractmethod
-    def reset(self, born: np.ndarray, words: np.ndarray) -> np.ndarray:
-        """Make fresh bodies in cells born (K,) from words uint32 (K, words) -> their senses (K, S)."""
+    def reset(self, cells: np.ndarray, words: np.ndarray) -> np.ndarray:
+        """Make fresh bodies in cells (K,) from words uint32 (K, words); return their senses (K, S)."""
 
     @abstractmethod
     def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
-        """Step the bodies in cells alive (N,), no others -> senses float32 (N, S), outcome."""
+        """Step the bodies of the cells alive, bool (N,), alone; return senses float32 (N, S), outcome."""
 
     def close(self) -> None:
-        """Let go of what `open` took."""
+        """Release what `open` allocated."""
 
     def seen(self) -> Bodies:
-        """Return what `picture` and `caption` are given; the next tick may write over it."""
+        """Return the bodies for `picture` and `caption`; the next tick may overwrite them."""
         return None
 
     def tally(self) -> np.ndarray:
-        """Return the counts of the lives under way, int32 (N, K); `save` stores them as `tally`."""
+        """Return the counts of the present lives, int32 (N, K); `save` stores them as `tally`."""
         raise NotImplementedError
 
     def save(self) -> dict[str, np.ndarray]:
-        """Return the bodies as arrays (N, ...): all that is needed to go on exactly."""
+        """Return the whole state of the bodies as arrays (N, ...), from which they go on exactly."""
         return {}
 
     def load(self, arrays: dict[str, np.ndarray]) -> None:
-        """Take back what `save` gave."""
+        """Restore the state that `save` returned."""
 
 
 AnyHabitat: TypeAlias = JaxHabitat | HostHabitat
 
 
 def _missing(habitat: Habitat, name: str) -> TypeError:
-    return TypeError(f"{type(habitat).__name__} is no habitat yet: it has no {name!r}")
+    return TypeError(f"{type(habitat).__name__} is no habitat yet: it has no {name!r}; state it")
 
 
 def find(name: object) -> type[AnyHabitat]:
     """Return the habitat class called `name`.
 
     Raises:
-        LookupError: there is no such name, module or class, or the class keeps no contract; the message
+        LookupError: there is no such name, module or class, or the class is no habitat; the message
             says which.
     """
-    found = parts.find("habitat", name, KNOWN)
-    if not issubclass(found, JaxHabitat | HostHabitat):
+    kind = parts.find("habitat", name, KNOWN)
+    if not issubclass(kind, JaxHabitat | HostHabitat):
         raise LookupError(
-            f"{found.__name__} is no habitat: subclass JaxHabitat (with reset, sense and step) or"
+            f"{kind.__name__} is no habitat: subclass JaxHabitat (with reset, sense and step) or"
             " HostHabitat (with open, reset and step) of primordia.habitats, and state senses_size,"
             " action and words"
         )
-    return found
+    return kind
 
 
 def complete(habitat: AnyHabitat) -> AnyHabitat:
-    """Return a habitat that states all that has no default.
+    """Return the habitat, checked to state everything that has no default.
 
     Raises:
-        TypeError: it does not; the message says what it lacks.
+        TypeError: something is missing; the message says what.
     """
     for name in ("senses_size", "action", "words"):
         getattr(habitat, name)

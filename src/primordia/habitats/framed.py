@@ -1,14 +1,14 @@
-"""Pictures of bodies, with room above for the words of a replay."""
+"""Pictures of bodies, with a margin above for the captions of a replay."""
 
 from PIL import Image
 
 PAPER = "#fbfaf7"
-ROOM = 56
-"""pixels, for two lines of words"""
+MARGIN = 56
+"""pixels, for two lines of captions"""
 
 
 def framed(picture: Image.Image) -> Image.Image:
-    """The picture on paper, below the room."""
-    paper = Image.new("RGB", (picture.width, picture.height + ROOM), PAPER)
-    paper.paste(picture, (0, ROOM))
+    """Return the picture with a margin above it."""
+    paper = Image.new("RGB", (picture.width, picture.height + MARGIN), PAPER)
+    paper.paste(picture, (0, MARGIN))
     return paper

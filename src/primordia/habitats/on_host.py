@@ -1,4 +1,4 @@
-"""A JAX habitat, stepped on the host: where an organism plays games rather than lives in a world."""
+"""A JAX habitat stepped on the host, for organisms that play games rather than live in a world."""
 
 from typing import TYPE_CHECKING
 
@@ -8,7 +8,13 @@ import numpy as np
 from jax import Array
 
 from primordia.compiled import shared
-from primordia.habitats.bodies import broken, choose, fresh, put, unborn
+from primordia.habitats.bodies import (
+    fresh,
+    insert_bodies,
+    not_finite,
+    placeholder_bodies,
+    select_bodies,
+)
 from primordia.habitats.contract import (
     Ability,
     Bodies,
@@ -40,21 +46,22 @@ class OnHost(HostHabitat):
         self._sense = shared(_sense, inner)
 
     def open(self, cells: int, watched: bool = False) -> None:
-        """Make room for that many bodies."""
-        self._bodies: Bodies = unborn(self.inner, cells)
+        """Allocate the bodies."""
+        self._bodies: Bodies = placeholder_bodies(self.inner, cells)
         self._cells = cells
 
-    def reset(self, born: np.ndarray, words: np.ndarray) -> np.ndarray:
-        """Make fresh bodies in cells born (K,) from words uint32 (K, words) -> their senses (K, S)."""
-        count = len(born)
-        lacking = (1 << (count - 1).bit_length()) - count  # every K would be compiled by itself
-        cells = np.pad(born, (0, lacking), constant_values=self._cells)
-        filled = np.pad(words, ((0, lacking), (0, 0)))
-        self._bodies, made = self._embody(self._bodies, cells, filled)
-        return np.array(self._sense(made))[:count]
+    def reset(self, cells: np.ndarray, words: np.ndarray) -> np.ndarray:
+        """Make fresh bodies in cells (K,) from words uint32 (K, words); return their senses (K, S)."""
+        count = len(cells)
+        # K is padded to a power of two, since JAX compiles every shape by itself.
+        padding = (1 << (count - 1).bit_length()) - count
+        padded_cells = np.pad(cells, (0, padding), constant_values=self._cells)
+        padded_words = np.pad(words, ((0, padding), (0, 0)))
+        self._bodies, newborn = self._embody(self._bodies, padded_cells, padded_words)
+        return np.array(self._sense(newborn))[:count]
 
     def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
-        """Step the bodies in cells alive (N,) -> senses float32 (N, S), outcome."""
+        """Step the bodies of the cells alive, bool (N,); return senses float32 (N, S), outcome."""
         self._bodies, outcome = self._step(self._bodies, action, alive)
         return np.array(self._sense(self._bodies)), outcome
 
@@ -67,12 +74,12 @@ class OnHost(HostHabitat):
         return {f"body{i}": leaf for i, leaf in enumerate(jax.tree.leaves(self.seen()))}
 
     def load(self, arrays: dict[str, np.ndarray]) -> None:
-        """Take back what `save` gave."""
+        """Restore the bodies that `save` returned."""
         leaves = [jnp.asarray(arrays[f"body{i}"]) for i in range(len(arrays))]
         self._bodies = jax.tree.unflatten(jax.tree.structure(self._bodies), leaves)
 
     def lacks(self, ability: Ability) -> list[str]:
-        """Return what the JAX habitat lacks to be drawn."""
+        """Return the methods that are lacking for an ability; pictures are the JAX habitat's."""
         return self.inner.lacks(ability) if ability is Ability.PICTURE else super().lacks(ability)
 
     def picture(self, body: Bodies, action: np.ndarray) -> "Image":
@@ -80,19 +87,19 @@ class OnHost(HostHabitat):
         return self.inner.picture(body, action)
 
     def caption(self, body: Bodies, action: np.ndarray) -> str:
-        """Return the JAX habitat's words."""
+        """Return the JAX habitat's caption."""
         return self.inner.caption(body, action)
 
 
 def _embody(
     habitat: JaxHabitat, bodies: Bodies, cells: Array, words: Array
 ) -> tuple[Bodies, Bodies]:
-    """Put fresh bodies (K, ...) into cells (K,), those out of range into none -> all, the fresh."""
-    made = fresh(habitat, words)
-    return put(bodies, cells, made), made
+    """Insert fresh bodies into cells (K,), except those out of range; return all, and the fresh ones."""
+    newborn = fresh(habitat, words)
+    return insert_bodies(bodies, cells, newborn), newborn
 
 
-# Senses are a call of their own: compiled together with a step, they might be rounded otherwise.
+# Senses are computed by a separate call: compiled together with a step, they might be rounded otherwise.
 def _sense(habitat: JaxHabitat, bodies: Bodies) -> Array:
     return habitat.sense(bodies)
 
@@ -100,8 +107,8 @@ def _sense(habitat: JaxHabitat, bodies: Bodies) -> Array:
 def _step(
     habitat: JaxHabitat, bodies: Bodies, action: Array, alive: Array
 ) -> tuple[Bodies, Outcome]:
-    """Step the bodies in cells alive; a body that is no longer finite is a fault."""
+    """Step the bodies of the cells alive; a body that is no longer finite is a fault."""
     after, outcome = habitat.step(bodies, action)
-    fault = broken(after) if outcome.fault is None else broken(after) | outcome.fault
+    fault = not_finite(after) if outcome.fault is None else not_finite(after) | outcome.fault
     fault = jnp.broadcast_to(fault, alive.shape)
-    return choose(alive, after, bodies), outcome._replace(fault=fault)
+    return select_bodies(alive, after, bodies), outcome._replace(fault=fault)

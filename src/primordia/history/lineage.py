@@ -14,7 +14,7 @@ from jax import Array, lax
 from primordia import device
 from primordia.compiled import shared
 from primordia.history.climate import climate_at
-from primordia.law.heredity import Birth, mutation_rates, reborn
+from primordia.law.heredity import Birth, mutation_rates, rebuild_genomes
 from primordia.law.law import Law
 from primordia.law.world import BirthCause, Climate
 from primordia.mutations.contract import PURPOSES, Draws
@@ -140,7 +140,7 @@ def _replayed(
         )
         draws = Draws(streams(seed, tick, *PURPOSES), cell)
         of = Birth(seed, number, draws, founder, mutation_rates(law, climate))
-        child = reborn(law, of, genome[None], notes.reshape(1, -1))[0]
+        child = rebuild_genomes(law, of, genome[None], notes.reshape(1, -1))[0]
         return jnp.where(meant, child, genome), None
 
     return lax.scan(birth, jnp.asarray(genome), (counts, marks, climate, notes))[0]

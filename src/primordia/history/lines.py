@@ -110,6 +110,6 @@ def _by_world(
     list_: Rows, columns: Columns, names: tuple[str, ...], cells: int, worlds: int
 ) -> list[list[np.ndarray]]:
     """Return the named columns of each world; all ones are NOBODY."""
-    found = columns.of(np.asarray(list_.rows)[: int(list_.filled)])
+    found = columns.unpacked(np.asarray(list_.rows)[: int(list_.filled)])
     world = found["cell"] // cells
     return [[found[name][world == each] for name in names] for each in range(worlds)]

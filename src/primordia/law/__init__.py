@@ -5,10 +5,11 @@
     rest(before, after, active)                                        -> organisms
     settle(law, world, events, fates, ticks, running)                  -> world, events, newborn
 
-Brains think and fates are judged in every tick (`life` for one organism, `tick` for all cells). When a
-tick has an event, or something falls due, organisms that must not change are put back, and births,
-deaths, counts and seasons are settled (`population`, `turnover`); until then ticks only pass.
+Every tick, brains think and fates are judged (`life` for organisms without neighbours, `tick` for all
+cells). A tick in which an organism dies or may be born, or in which something falls due, is settled:
+`rest` restores the organisms of cells that did not live, then births, deaths, counts and seasons are
+brought up to date (`population`, `turnover`). All other ticks only pass.
 
-A tick bears the number of ticks its world has lived through at its end: an organism born in tick b that
-dies in tick d lived d - b ticks, and acted for the first time in tick b + 1.
+A tick's number is the number of ticks that its world has lived at its end. An organism born in tick b
+that dies in tick d lived d - b ticks, and acted for the first time in tick b + 1.
 """

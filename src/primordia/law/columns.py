@@ -1,4 +1,4 @@
-"""Columns of the lists that the law writes and records keep: named once, packed and unpacked by name.
+"""Columns of the lists that the law writes and records keep; rows are packed and unpacked by name.
 
 A row is made of uint32 words. A 64-bit number takes two, high word first.
 """
@@ -18,17 +18,17 @@ class Columns:
 
     names: tuple[str, ...]
     pairs: frozenset[str] = frozenset()
-    """those of 64 bits"""
+    """names of the columns of 64 bits"""
 
     @property
     def width(self) -> int:
-        """Words of a row."""
+        """Number of words in a row."""
         return len(self.names) + len(self.pairs)
 
     def words(self, **values: Array | Wide) -> Array:
-        """Return rows uint32 (K, width) of the values (K,) of all columns, by name.
+        """Return rows uint32 (K, width) from the values (K,) of all columns, by name.
 
-        Signed integers keep their bits, and so do float32 numbers.
+        Signed integers and float32 numbers keep their bits.
         """
         assert set(values) == set(self.names)
         words: list[Array] = []
@@ -38,33 +38,34 @@ class Columns:
         return jnp.stack(words, axis=1)
 
     def rows(self, **values: np.ndarray) -> np.ndarray:
-        """Return the same on the host, of integers (K,); those of 64 bits are int64 or uint64."""
+        """Return the same on the host, from integers (K,); those of 64 bits are int64 or uint64."""
         assert set(values) == set(self.names)
-        halves = (
-            (value >> 32, value) if name in self.pairs else (value,)
-            for name, value in ((name, values[name]) for name in self.names)
-        )
-        return np.stack([half for each in halves for half in each], axis=1).astype(np.uint32)
+        words: list[np.ndarray] = []
+        for name in self.names:
+            value = values[name]
+            words += [value >> 32, value] if name in self.pairs else [value]
+        return np.stack(words, axis=1).astype(np.uint32)
 
-    def of(self, rows: np.ndarray) -> dict[str, np.ndarray]:
+    def unpacked(self, rows: np.ndarray) -> dict[str, np.ndarray]:
         """Return the columns of rows uint32 (K, width): int64 for pairs, else uint32 words, (K,)."""
-        found, place = {}, 0
+        columns, word = {}, 0
         for name in self.names:
             if name in self.pairs:
-                high, low = rows[:, place].astype(np.int64), rows[:, place + 1].astype(np.int64)
-                found[name] = high << 32 | low
+                high, low = rows[:, word].astype(np.int64), rows[:, word + 1].astype(np.int64)
+                columns[name] = high << 32 | low
+                word += 2
             else:
-                found[name] = np.ascontiguousarray(rows[:, place])
-            place += 1 + (name in self.pairs)
-        return found
+                columns[name] = np.ascontiguousarray(rows[:, word])
+                word += 1
+        return columns
 
     def plus(self, *names: str) -> "Columns":
-        """Return these columns and further ones of 32 bits after them."""
+        """Return these columns, followed by more columns of 32 bits."""
         return Columns((*self.names, *names), self.pairs)
 
 
 def _word(value: Array) -> Array:
-    """Return 32-bit numbers as words, to the bit."""
+    """Return 32-bit numbers as words with the same bits."""
     if value.dtype == jnp.float32:
         return lax.bitcast_convert_type(value, jnp.uint32)
     return value.astype(jnp.uint32)

@@ -1,7 +1,7 @@
 """Births, deaths and samples on their way from the law to the recorder.
 
-Events are rare, so they leave a compiled chunk as compact lists, in the order (tick, world, cell):
-never as masks of cells x ticks. None is dropped: a chunk ends before a list could overflow.
+Events are rare, so they leave a compiled chunk as compact lists, in the order (tick, world, cell),
+never as masks of cells x ticks. No event is dropped: a chunk ends before a list could overflow.
 """
 
 from collections.abc import Callable
@@ -15,11 +15,9 @@ from primordia.law.law import Law
 from primordia.law.world import Cause
 
 BIRTHS = Columns(("cell", "id", "parent", "tick", "cause"), frozenset({"id", "parent", "tick"}))
-"""Columns of a birth, to which the mutation's notes are added; a founder's parent is all ones."""
+"""Columns of a birth. The mutation's notes follow them. The parent of a founder is 2^64 - 1."""
 DEATHS = Columns(("cell", "id", "tick", "cause", "energy", "food"), frozenset({"id", "tick"}))
 """Columns of a death."""
-
-
 TOTALS = (
     "tick",
     "births",
@@ -31,8 +29,8 @@ TOTALS = (
     "energy_total",
     "food_total",
 )
-"""Numbers of 64 bits in a sample. Totals are over the living; food over all that ever lived.
-Energy and food are in 1/1024 units, two's complement."""
+"""Numbers of 64 bits in a sample. Totals are over the living, except that of food, which is over all
+organisms that ever lived. Energy and food are in 1/1024 units, two's complement."""
 
 
 def sample_columns(rates: tuple[str, ...]) -> Columns:
@@ -41,7 +39,7 @@ def sample_columns(rates: tuple[str, ...]) -> Columns:
 
 
 class Rows(NamedTuple):
-    """A list of events: uint32 (capacity, fields), of which the first `filled` are meant."""
+    """A list of events: rows uint32 (capacity, fields), of which the first `filled` are valid."""
 
     rows: Array
     filled: Array
@@ -49,7 +47,7 @@ class Rows(NamedTuple):
 
 
 class Events(NamedTuple):
-    """What happened in a chunk."""
+    """The births, deaths and samples of a chunk."""
 
     births: Rows
     deaths: Rows
@@ -57,32 +55,32 @@ class Events(NamedTuple):
 
 
 def batch(cells: int) -> int:
-    """How many events are handled at a time: few where few happen in a tick, many for a GPU's sake."""
+    """Return the number of events in a batch: 1 in small worlds, up to 1,024 in large ones for a GPU."""
     return min(max(cells // 256, 1), 1024)
 
 
 def empty(law: Law) -> Events:
-    """Return empty lists, with room for several ticks' worth of events."""
+    """Return empty lists, with room for the events of several ticks."""
     cells = law.worlds * law.cells
 
-    def rows(most_a_tick: int, least: int, columns: Columns) -> Rows:
-        capacity = max(2 * most_a_tick, least) + batch(cells)
+    def empty_list(most_per_tick: int, least: int, columns: Columns) -> Rows:
+        capacity = max(2 * most_per_tick, least) + batch(cells)
         return Rows(jnp.zeros((capacity, columns.width), jnp.uint32), jnp.int32(0))
 
     return Events(
-        births=rows(cells, 1 << 15, BIRTHS.plus(*law.mutation.notes)),
-        deaths=rows(cells, 1 << 15, DEATHS),
-        samples=rows(law.worlds, 1 << 10, sample_columns(law.rates)),
+        births=empty_list(cells, 1 << 15, BIRTHS.plus(*law.mutation.notes)),
+        deaths=empty_list(cells, 1 << 15, DEATHS),
+        samples=empty_list(law.worlds, 1 << 10, sample_columns(law.rates)),
     )
 
 
 def emptied(events: Events) -> Events:
-    """Return the same lists, to be filled again."""
+    """Return the same lists without their events."""
     return Events(*(rows._replace(filled=jnp.int32(0)) for rows in events))
 
 
 def have_room(law: Law, events: Events) -> Array:
-    """Return whether one more tick's events fit, whatever happens in it: bool ()."""
+    """Return whether the lists have room for the most events that a tick can have: bool ()."""
     cells = law.worlds * law.cells
     spare = batch(cells)
 
@@ -97,8 +95,14 @@ def have_room(law: Law, events: Events) -> Array:
 def for_each(mask: Array, carry: tuple, act: Callable[[Array, Array, tuple], tuple]) -> tuple:
     """Call act(cells, valid, carry) for the true cells of a mask (C,), a batch at a time, in order.
 
-    `cells` (K,) int32 and `valid` (K,): the last batch is filled up with cells not meant. The cost is
-    per batch, beside one running sum over the mask.
+    Args:
+        mask: bool (C,).
+        carry: passed to the first call of `act`, and from each call to the next.
+        act: takes cells int32 (K,), which of them are valid, bool (K,), and the carry; returns the carry.
+            The last batch is padded with cells that are not valid.
+
+    Returns:
+        carry after the last batch. The cost is per batch, and one running sum over the mask.
     """
     rank = jnp.cumsum(mask, dtype=jnp.int32)
     slots = jnp.arange(batch(len(mask)), dtype=jnp.int32)
@@ -114,6 +118,6 @@ def for_each(mask: Array, carry: tuple, act: Callable[[Array, Array, tuple], tup
 
 
 def append(list_: Rows, block: Array, valid: Array) -> Rows:
-    """Add a batch of rows uint32 (K, fields); those not valid will be written over."""
+    """Append a batch of rows uint32 (K, fields); the next batch overwrites those that are not valid."""
     rows = lax.dynamic_update_slice(list_.rows, block, (list_.filled, jnp.int32(0)))
     return Rows(rows, list_.filled + valid.sum(dtype=jnp.int32))

@@ -1,4 +1,4 @@
-"""Beginnings: worlds before anything has lived, and the random words newborn bodies are made of."""
+"""Genesis: worlds before the first organism, and the random words of newborn bodies."""
 
 import jax.numpy as jnp
 import numpy as np
@@ -13,16 +13,20 @@ from primordia.random.wide import Wide, never, wide, zero
 
 
 def begin(law: Law, seeds: list[int], tick: int = 0, births: int = 0) -> World:
-    """Worlds in which nothing has ever lived. `settle` puts founders into them before the first tick.
+    """Return worlds without organisms. `settle` adds founders before the first tick.
 
-    `tick` and `births` are what the counts start at.
+    Args:
+        law: the law.
+        seeds: a seed for each world.
+        tick: the first value of the worlds' tick counts.
+        births: the first value of their birth counts.
     """
     return shared(_begin, law, tick, births)(wide(np.array(seeds, np.uint64)))
 
 
 def _begin(law: Law, tick: int, births: int, seed: Wide) -> World:
-    """As one compiled function: its operations compiled one by one take three times as long."""
-    count, each = len(seed.lo), law.worlds * law.cells
+    """Make the worlds in one compiled function; single operations take three times as long."""
+    count, cells = len(seed.lo), law.worlds * law.cells
     worlds = Worlds(
         seed=seed,
         tick=wide(np.full(count, tick, np.uint64)),
@@ -37,26 +41,26 @@ def _begin(law: Law, tick: int, births: int, seed: Wide) -> World:
         saturated_births=never((count,)),
         fixed=never((count,)),
         fixed_births=never((count,)),
-        climate=climate(law, count),
-        looks=looks(law, count, tick),
+        climate=initial_climate(law, count),
+        looks=initial_looks(law, count, tick),
     )
-    genome = {name: jnp.zeros((each, *shape), jnp.float32) for name, shape in law.layout.blocks}
+    genome = {name: jnp.zeros((cells, *shape), jnp.float32) for name, shape in law.layout.blocks}
     organisms = Organisms(
-        alive=jnp.zeros(each, bool),
+        alive=jnp.zeros(cells, bool),
         genome=genome,
-        notes=jnp.zeros((each, len(law.mutation.notes)), jnp.int32),
-        memory=jnp.zeros((each, law.memory), jnp.float32),
-        energy=jnp.zeros(each, jnp.int32),
-        eaten=jnp.zeros(each, jnp.int32),
-        born=zero((each,)),
-        number=zero((each,)),
-        branch=zero((each,)),
+        notes=jnp.zeros((cells, len(law.mutation.notes)), jnp.int32),
+        memory=jnp.zeros((cells, law.memory), jnp.float32),
+        energy=jnp.zeros(cells, jnp.int32),
+        eaten=jnp.zeros(cells, jnp.int32),
+        born=zero((cells,)),
+        number=zero((cells,)),
+        branch=zero((cells,)),
     )
     return World(organisms, worlds)
 
 
 def birth_words(law: Law, worlds: Worlds, needed: Array, words: int) -> Array:
-    """Random words for bodies born in this tick, uint32 (C, words); zeros unless needed, bool ()."""
+    """Return random words for bodies born in this tick, uint32 (C, words); zeros unless needed."""
     key = stream(worlds.seed, Purpose.BODY, worlds.tick).map(law.per_cell)
     return lax.cond(
         needed,
@@ -67,21 +71,21 @@ def birth_words(law: Law, worlds: Worlds, needed: Array, words: int) -> Array:
 
 
 def body_words(key: Wide, cells: Array, words: int) -> Array:
-    """Random words for bodies born in these cells (N,) of their worlds, with keys (N,): (N, words)."""
+    """Return random words for bodies: uint32 (N, words), for keys (N,) and cells (N,) within worlds."""
     draws = jnp.arange(-(-words // 2), dtype=jnp.uint32)[:, None]
-    # Cells on the last axis, which compilers turn into vector instructions.
+    # Cells are the last axis, which compilers turn into vector instructions.
     pairs = bits(key, cells, draws)
     return jnp.concatenate(pairs, axis=0)[:words].T
 
 
-def climate(law: Law, count: int) -> Climate:
-    """Return the settings that seasons may change, as a run begins with them, in `count` worlds."""
+def initial_climate(law: Law, count: int) -> Climate:
+    """Return the first values of the settings that seasons may change, in `count` worlds."""
     return {name: jnp.full(count, value, jnp.float32) for name, value in law.beginning}
 
 
-def looks(law: Law, count: int, tick: int) -> Looks:
-    """What ratchets remember that have not looked yet, in worlds that stand at a tick."""
-    every = [ratchet.every for ratchet in ratchets(law.seasons)]
-    wait = np.array([e - tick % e for e in every], np.int32)
-    nothing = (zero((count, len(every))) for _ in range(2))
-    return Looks(jnp.asarray(np.tile(wait, (count, 1))), *nothing)
+def initial_looks(law: Law, count: int, tick: int) -> Looks:
+    """Return the state of ratchets before their first look, in `count` worlds at a tick."""
+    periods = [ratchet.every for ratchet in ratchets(law.seasons)]
+    wait = np.array([period - tick % period for period in periods], np.int32)
+    shape = count, len(periods)
+    return Looks(jnp.asarray(np.tile(wait, (count, 1))), zero(shape), zero(shape))

@@ -1,6 +1,6 @@
-"""Heredity: the genomes of the newborn, from parents, ancestors or nothing.
+"""Heredity: the genomes of the newborn, made from parents, ancestors or nothing.
 
-Births use `newborn`, and rebuilding a genome from its line of descent uses `reborn`; both come down to
+Births use `make_newborn`. A genome is rebuilt from its line of descent by `rebuild_genomes`. Both use
 `_genomes`, so they cannot differ.
 """
 
@@ -16,17 +16,17 @@ from primordia.random.wide import Wide, modulo
 
 
 class Birth(NamedTuple):
-    """What the genomes of K newborn depend on, beside their parents' genomes."""
+    """Everything that the genomes of K newborn depend on, except their parents' genomes and notes."""
 
     seed: Wide
-    """of the world, (K,)"""
+    """seed of the world, (K,)"""
     number: Wide
-    """birth number, (K,)"""
+    """birth number within the world, (K,)"""
     draws: Draws
     founder: Array
     """bool (K,): it inherits nothing from a parent"""
     rates: Mapping[str, Array]
-    """float32 (K,) each: the mutation's rates in the world"""
+    """the mutation's rates in the world, float32 (K,) each"""
 
 
 class Newborn(NamedTuple):
@@ -41,24 +41,24 @@ class Newborn(NamedTuple):
 
 
 def mutation_rates(law: Law, climate: Mapping[str, Array]) -> dict[str, Array]:
-    """Return the settings of a climate that belong to the mutation, by the names it knows."""
+    """Return the mutation's rates in a climate, by the names that `Mutation.rates` gives them."""
     names = law.mutation.rates(law.layout)
     return {name: climate[f"mutation.{name}"] for name in names}
 
 
-def newborn(law: Law, birth: Birth, parents: Array, notes: Array) -> Newborn:
+def make_newborn(law: Law, birth: Birth, parents: Array, notes: Array) -> Newborn:
     """Make K newborn from their parents' genomes float32 (K, P) and notes int32 (K, n)."""
     mutation = law.mutation
     if mutation.notes:
-        own = mutation.note(law.layout, parents, notes, birth.rates, birth.draws)
+        children = mutation.note(law.layout, parents, notes, birth.rates, birth.draws)
         founders = mutation.founders_notes(len(notes))
-        notes = jnp.where(birth.founder[:, None], founders, own)
+        notes = jnp.where(birth.founder[:, None], founders, children)
     genome, mutated = _genomes(law, birth, parents, notes)
     return Newborn(genome, notes, mutated)
 
 
-def reborn(law: Law, birth: Birth, parents: Array, notes: Array) -> Array:
-    """Make the genomes (K, P) of organisms again, with their own notes (K, n) as recorded."""
+def rebuild_genomes(law: Law, birth: Birth, parents: Array, notes: Array) -> Array:
+    """Return the genomes (K, P) of recorded births, whose recorded notes are (K, n)."""
     return _genomes(law, birth, parents, notes)[0]
 
 
@@ -66,7 +66,7 @@ def _genomes(law: Law, birth: Birth, parents: Array, notes: Array) -> tuple[Arra
     if law.inheritance == "founder":
         return _founders(law, birth), jnp.zeros_like(birth.founder)
     children, mutated = law.mutation.inherit(law.layout, parents, notes, birth.rates, birth.draws)
-    # Founders are rare: their genomes are made only when there are some.
+    # Founders are rare, so their genomes are made only where a birth is a founder's.
     genome = lax.cond(
         birth.founder.any(),
         lambda: jnp.where(birth.founder[:, None], _founders(law, birth), children),
@@ -76,7 +76,7 @@ def _genomes(law: Law, birth: Birth, parents: Array, notes: Array) -> tuple[Arra
 
 
 def _founders(law: Law, birth: Birth) -> Array:
-    """Make genomes from nothing, or take ancestors' in turn; worlds begin with different ones."""
+    """Make random genomes, or take ancestors' in turn, beginning with another one in each world."""
     if law.ancestors is None:
-        return law.mutation.found(law.layout, birth.draws)
+        return law.mutation.founders(law.layout, birth.draws)
     return jnp.asarray(law.ancestors)[modulo(birth.seed + birth.number, len(law.ancestors))]

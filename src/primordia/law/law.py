@@ -20,14 +20,14 @@ from primordia.mutations.contract import Mutation
 
 @dataclass(frozen=True)
 class Law:
-    """What holds in W worlds of N cells; everything here is fixed for a run."""
+    """The law of W worlds of N cells, which never changes in a run."""
 
     worlds: int
     cells: int
-    """of one world"""
+    """cells of one world"""
     brain: Brain
     layout: Layout
-    """of genomes"""
+    """layout of genomes"""
     memory: int
     """M, the length of an organism's memory"""
     action: Discrete | Continuous
@@ -43,15 +43,16 @@ class Law:
     genesis: Literal["one", "fill"]
     seasons: tuple[Schedule | Ratchet, ...]
     saturation_ticks: int
-    """a full world in which nobody died for this long is saturated"""
+    """ticks without a death after which a full world is saturated"""
     sample_every: int
+    """ticks between samples"""
 
     def by_world(self, per_cell: Array) -> Array:
-        """(C, ...) -> (W, N, ...)."""
+        """Return an array with an entry for each cell as worlds of cells: (C, ...) -> (W, N, ...)."""
         return per_cell.reshape(self.worlds, self.cells, *per_cell.shape[1:])
 
     def per_cell(self, per_world: Array) -> Array:
-        """(W,) -> (C,)."""
+        """Repeat the entry of each world for its cells: (W,) -> (C,)."""
         return jnp.broadcast_to(per_world[:, None], (self.worlds, self.cells)).ravel()
 
     @cached_property
@@ -60,15 +61,16 @@ class Law:
         return tuple(name for name, _ in self.beginning)
 
     def governed(self, setting: str) -> list[str]:
-        """Return the names among `rates` that a season of a setting changes; none: it is unknown."""
-        part, _, own = setting.partition(".")
+        """Return the names among `rates` that a season of a setting changes; [] if it is unknown."""
+        part, _, name_in_part = setting.partition(".")
         if part == "mutation":
-            return [f"mutation.{name}" for name in self.mutation.governed(own, self.layout)]
+            names = self.mutation.governed(name_in_part, self.layout)
+            return [f"mutation.{name}" for name in names]
         return [setting] if setting in self.rates else []
 
     @property
     def has_hazard(self) -> bool:
-        """Whether accidents can happen, now or in a later season."""
+        """Return whether accidents can happen, now or in a later season."""
         return dict(self.beginning)["hazard"] > 0 or any(
             season.setting == "hazard" for season in self.seasons
         )

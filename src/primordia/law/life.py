@@ -1,7 +1,7 @@
-"""One tick of N organisms that know no neighbours: brains think, motors act, outcomes are judged.
+"""One tick of N organisms without neighbours: brains think, motors act, outcomes are judged.
 
 Both engines, a life lived again and evaluations use these functions, so an organism's tick has one rule
-everywhere. What depends on a cell's neighbours, its world or chance is in `population`.
+everywhere. `tick` and `turnover` add what depends on neighbours, worlds and chance.
 """
 
 from typing import NamedTuple
@@ -11,10 +11,10 @@ import numpy as np
 from jax import Array
 
 from primordia.brains.contract import Genome
-from primordia.habitats.bodies import broken
+from primordia.habitats.bodies import not_finite
 from primordia.habitats.contract import Bodies, Discrete, Outcome
 from primordia.law.law import Law
-from primordia.law.metabolism import Rates, add, fixed, metabolise
+from primordia.law.metabolism import Rates, add, metabolise, to_fixed_point
 from primordia.law.motor import argmax
 from primordia.law.world import Cause
 from primordia.mutations.noise import noise_index
@@ -22,11 +22,11 @@ from primordia.random.gaussian import quantiles
 from primordia.random.wide import Wide
 
 BODILY = (Cause.STARVED, Cause.FATAL, Cause.FAULT)
-"""Causes of death that a brain, a body and a store can give; of several, the last one counts."""
+"""Causes of death by brain, body and store. If several hold, the last one is recorded."""
 
 
 class Thought(NamedTuple):
-    """What brains and motors made of one tick's senses, first axis N."""
+    """The results of brains and motors for one tick's senses; first axis N."""
 
     memory: Array
     """float32 (N, M)"""
@@ -37,7 +37,7 @@ class Thought(NamedTuple):
 
 
 class Vitals(NamedTuple):
-    """An organism's store, and the food of its whole life: int32 (N,) each, fixed point."""
+    """Energy of organisms, and the food of their whole lives: int32 (N,) each, fixed point."""
 
     energy: Array
     eaten: Array
@@ -53,7 +53,7 @@ def think(
         genome: blocks of weights, float32 (N, *shape) each.
         memory: float32 (N, M).
         senses: float32 (N, S).
-        key: what each organism's motor draws from in this tick, (N,).
+        key: key of each organism's motor in this tick, (N,).
         cell: each organism's cell within its world, int32 (N,).
     """
     memory, output = law.brain(genome, memory, senses)
@@ -62,7 +62,7 @@ def think(
 
 
 def act(law: Law, key: Wide, cell: Array, output: Array) -> Array:
-    """Return the actions that outputs float32 (N, A) of brains lead to; see `think`."""
+    """Return the actions for outputs float32 (N, A) of brains; see `think`."""
     if isinstance(law.action, Discrete):
         return argmax(output)
     if law.motor.kind == "direct":
@@ -74,24 +74,24 @@ def act(law: Law, key: Wide, cell: Array, output: Array) -> Array:
 def judge(
     law: Law, vitals: Vitals, faulty: Array, bodies: Bodies, outcome: Outcome, rates: Rates
 ) -> tuple[Vitals, Array]:
-    """Judge what a tick in the habitat means for N organisms: they eat, spend energy, may die.
+    """Judge a tick in the habitat for N organisms: they eat, spend energy, and may die.
 
     Args:
         law: the law.
-        vitals: before the tick.
-        faulty: of the tick's thought, bool (N,).
-        bodies: after the tick; of a habitat on the host, its senses.
-        outcome: of the habitat, (N,) each.
-        rates: of the metabolism in each organism's world; not used without a metabolism.
+        vitals: energy and food before the tick.
+        faulty: `Thought.faulty` of the tick, bool (N,).
+        bodies: the bodies after the tick, or the senses if the habitat is on the host.
+        outcome: the habitat's outcome, (N,) each.
+        rates: settings of the metabolism in each organism's world; not used without a metabolism.
 
     Returns:
-        vitals after the tick; the cause of death, one of BODILY, or -1: int32 (N,).
+        energy and food after the tick; the cause of death, one of BODILY, or -1: int32 (N,).
     """
     energy, eaten = vitals
     if law.metabolism is not None:
         energy = metabolise(energy, outcome.food, outcome.effort, rates)
     if outcome.food is not None:
-        eaten = add(eaten, fixed(outcome.food))
+        eaten = add(eaten, to_fixed_point(outcome.food))
     cause = jnp.full(faulty.shape, -1, jnp.int32)
     if law.metabolism is not None:
         cause = jnp.where(energy <= 0, Cause.STARVED, cause)
@@ -101,8 +101,8 @@ def judge(
 
 
 def has_failed(bodies: Bodies, outcome: Outcome) -> Array:
-    """Return whose simulation has failed, bool (N,): the habitat says so, or a number is not finite."""
-    failed = broken(bodies)
+    """Return whose simulation failed, bool (N,): by the habitat's report, or by a number not finite."""
+    failed = not_finite(bodies)
     for number in (outcome.food, outcome.effort):
         failed = failed if number is None else failed | ~jnp.isfinite(number)
     return failed if outcome.fault is None else failed | outcome.fault

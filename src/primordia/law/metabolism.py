@@ -1,7 +1,7 @@
-"""Metabolism: the only energy arithmetic there is.
+"""Metabolism: all energy arithmetic.
 
-Energy is fixed point, int32 in units of 1/1024, and saturates. In float32 a store of 2^24 would
-stop draining, and its owner seem immortal.
+Energy is fixed point, int32 in steps of 1/1024 unit, and saturates. In float32, an energy of 2^24 would
+not change when 1 is subtracted, and the organism would seem immortal.
 """
 
 from collections.abc import Mapping
@@ -17,11 +17,12 @@ from primordia.settings.base import Rate, Settings
 ONE = 1024
 """Fixed-point steps in one unit of energy or food."""
 MOST = 2**30 - 64
-"""Largest store or change in steps, 1,048,575.9 units: exact in float32, and two add in 32 bits."""
+"""Largest energy or change, in steps: 1,048,575.9 units. It is exact in float32, and the sum of two fits
+in int32."""
 
 
 class Metabolism(Settings):
-    """What living costs and what food gives; an organism starves when its energy reaches 0.
+    """The cost of living and the gain from food; an organism starves when its energy reaches 0.
 
     Schmidgall & Hays 2021, "Foraging". Each tick: energy - drain - effort_cost x effort + gain x
     food, at most cap.
@@ -31,27 +32,27 @@ class Metabolism(Settings):
     drain: Rate = Field(1.0, ge=0, le=1e6, description="energy spent by living for one tick")
     gain: Rate = Field(1.0, ge=0, le=1e6, description="energy from one unit of food")
     effort_cost: Rate = Field(0.0, ge=0, le=1e6, description="energy spent on one unit of effort")
-    cap: Rate = Field(1e6, gt=0, le=1e6, description="energy an organism can hold")
+    cap: Rate = Field(1e6, gt=0, le=1e6, description="largest energy of an organism")
 
 
-def fixed(value: Array) -> Array:
-    """To fixed point, rounded to the nearest step and saturating: float32 -> int32."""
+def to_fixed_point(value: Array) -> Array:
+    """Return float32 numbers as fixed point int32, rounded to the nearest step and saturating."""
     steps = jnp.clip(jnp.round(value * np.float32(ONE)), -np.float32(MOST), np.float32(MOST))
     return steps.astype(jnp.int32)
 
 
 def add(a: Array, b: Array) -> Array:
-    """a + b in fixed point, kept within +-MOST."""
+    """Return a + b in fixed point, clipped to +-MOST."""
     return jnp.clip(a + b, -MOST, MOST)
 
 
 def break_even(drain: float, gain: float) -> float | None:
-    """Food a tick that keeps energy where it is, without effort; None where no food does."""
+    """Return the food a tick that keeps energy constant without effort; None if no food does."""
     return drain / gain if gain > 0 else None
 
 
 class Rates(NamedTuple):
-    """The settings above as they stand in each organism's world: float32, (N,) or broadcast to it."""
+    """The present settings of the metabolism for each organism: float32, (N,) or broadcast to it."""
 
     store: Array
     drain: Array
@@ -61,15 +62,15 @@ class Rates(NamedTuple):
 
     @classmethod
     def of(cls, climate: Mapping[str, Any]) -> "Rates":
-        """Return those of a climate, whose names begin with `metabolism.`."""
+        """Return the metabolism's settings in a climate."""
         return cls(*(climate[f"metabolism.{name}"] for name in cls._fields))
 
 
 def metabolise(energy: Array, food: Array | None, effort: Array | None, rates: Rates) -> Array:
-    """One tick of every organism's energy, int32 (N,), before death by starvation is judged."""
-    change = -fixed(rates.drain)
+    """Return the energy of organisms after one tick, int32 (N,); starvation is judged from it."""
+    change = -to_fixed_point(rates.drain)
     if effort is not None:
-        change = add(change, -fixed(rates.effort_cost * effort))
+        change = add(change, -to_fixed_point(rates.effort_cost * effort))
     if food is not None:
-        change = add(change, fixed(rates.gain * food))
-    return jnp.minimum(add(energy, change), fixed(rates.cap))
+        change = add(change, to_fixed_point(rates.gain * food))
+    return jnp.minimum(add(energy, change), to_fixed_point(rates.cap))

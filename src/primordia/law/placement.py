@@ -1,9 +1,9 @@
-"""Placement: which cell a child goes to, and who wins a cell that several parents want.
+"""Placement: the cell of each child, and the winner among parents that pick the same cell.
 
-All parents of a tick act at once: each that replicates picks a cell, and of several on one cell
-the one with the smallest (random bits, cell number) wins. For blind placement this equals the
-paper's one-after-another in random order. Cells are numbered within their world, and a child
-never leaves it. Arrays are (W, N): worlds, cells.
+All parents of a tick act at once. Each replicating parent picks a cell. Of several parents on one cell,
+the one with the smallest (random bits, cell number) wins. For blind placement this equals the paper's
+rule, one parent after another in random order. Cells are numbered within their world, and a child never
+leaves its world. Arrays are (W, N): worlds, cells.
 """
 
 import math
@@ -30,29 +30,29 @@ Draw = Callable[[Array], Wide]
 
 
 class Placement(Settings):
-    """Neighbourhood of a cell, and what happens if the picked cell is occupied.
+    """Neighbourhood of a cell, and the rule for picked cells that are occupied.
 
-    blind: nothing is born (Schmidgall & Hays 2021, "Evolutionary self-replication", rule c);
-    empty-only: parents pick among their empty neighbours, losers of a contest pick again;
-    replacing: the occupant dies and makes room (as in Avida). A replaced organism may still copy
-    itself elsewhere in the tick of its death.
+    blind: no child is born (Schmidgall & Hays 2021, "Evolutionary self-replication", rule c);
+    empty-only: parents pick among their empty neighbours, and losers of a contest pick again;
+    replacing: the occupant dies (as in Avida). A replaced organism may still copy itself in the tick of
+    its death.
     """
 
     topology: Literal["ring", "torus4", "torus8", "well-mixed"] = Field(
         "ring", description="neighbours: two on a ring, 4 or 8 on a torus, or any cell of the world"
     )
     rule: Literal["blind", "empty-only", "replacing"] = Field(
-        "blind", description="where an occupied cell is picked: no birth; not picked; replaced"
+        "blind", description="an occupied cell that is picked: no birth; never picked; replaced"
     )
     rows: int | None = Field(
         None, ge=2, description="rows of a torus (default: as nearly square as the cells allow)"
     )
 
     def shape(self, cells: int) -> tuple[int, int]:
-        """Rows and columns of a world of so many cells.
+        """Return rows and columns of a world of `cells` cells.
 
         Raises:
-            ValueError: no torus of two or more rows and columns has this many cells.
+            ValueError: the cells do not make a torus with two or more rows and columns.
         """
         if not self.topology.startswith("torus"):
             return 1, cells
@@ -67,7 +67,7 @@ class Placement(Settings):
         return rows, cells // rows
 
     def room(self, occupied: Array) -> Array:
-        """Where a parent could have a child at all: a cell within its reach would take one."""
+        """Return which parents can have a child, bool (W, N): a cell within their reach takes one."""
         if self.rule == "replacing":
             return jnp.ones_like(occupied)
         if self.topology == "well-mixed":
@@ -75,7 +75,13 @@ class Placement(Settings):
         return jnp.stack(self._neighbours(~occupied)).any(axis=0)
 
     def parents(self, draw: Draw, wants: Array, occupied: Array) -> Array:
-        """For each cell the cell of its newborn's parent, or -1: int32 (W, N)."""
+        """Return, for each cell, the cell of its newborn's parent, or -1: int32 (W, N).
+
+        Args:
+            draw: the random words of the tick.
+            wants: organisms that replicate if they find a cell, bool (W, N).
+            occupied: cells that were occupied before the tick, bool (W, N).
+        """
         if self.rule == "empty-only":
             return self._in_rounds(draw, wants, occupied)
         choice, priority = draw(jnp.uint32(0))
@@ -85,38 +91,42 @@ class Placement(Settings):
         return _contest(wants, target, priority)
 
     def _in_rounds(self, draw: Draw, wants: Array, occupied: Array) -> Array:
-        """Contests until no parent that still wants a child has an empty neighbour."""
+        """Hold contests until no parent that still wants a child has an empty neighbour."""
 
-        def open_parents(wants: Array, occupied: Array) -> Array:
+        def candidates(wants: Array, occupied: Array) -> Array:
             return wants & self.room(occupied)
 
-        def again(carry: Any) -> Array:
+        def unfinished(carry: Any) -> Array:
             _, wants, occupied, _ = carry
-            return open_parents(wants, occupied).any()
+            return candidates(wants, occupied).any()
 
-        def contest(carry: Any) -> Any:
+        def hold_round(carry: Any) -> Any:
             number, wants, occupied, parent = carry
             choice, priority = draw(number)
             target = self._empty_target(choice, ~occupied)
-            won = _contest(open_parents(wants, occupied), target, priority)
-            satisfied = jnp.take_along_axis(won, target, axis=1) == _cells(wants)
-            parent = jnp.maximum(parent, won)
-            return number + 1, wants & ~satisfied, occupied | (won >= 0), parent
+            winner = _contest(candidates(wants, occupied), target, priority)
+            has_won = jnp.take_along_axis(winner, target, axis=1) == _cells(wants)
+            parent = jnp.maximum(parent, winner)
+            return number + 1, wants & ~has_won, occupied | (winner >= 0), parent
 
-        nobody = jnp.full(wants.shape, -1, jnp.int32)
-        return lax.while_loop(again, contest, (jnp.uint32(0), wants, occupied, nobody))[3]
+        no_parent = jnp.full(wants.shape, -1, jnp.int32)
+        carry = (jnp.uint32(0), wants, occupied, no_parent)
+        return lax.while_loop(unfinished, hold_round, carry)[3]
 
     def _any_target(self, word: Array) -> Array:
-        """A neighbour, each equally likely: int32 (W, N)."""
+        """Return a random neighbour of each cell, all equally likely: int32 (W, N)."""
         cells = _cells(word)
         if self.topology == "well-mixed":
-            other = below(word, word.shape[1] - 1)
-            return other + (other >= cells)
+            drawn = below(word, word.shape[1] - 1)
+            return drawn + (drawn >= cells)  # skip the cell itself
         offsets = np.array(OFFSETS[self.topology], np.int32)
-        return self._reach(cells, below(word, len(offsets)), offsets)
+        return self._neighbour(cells, below(word, len(offsets)), offsets)
 
     def _empty_target(self, word: Array, empty: Array) -> Array:
-        """An empty neighbour, each equally likely; any cell where there is none: int32 (W, N)."""
+        """Return a random empty neighbour of each cell, all equally likely: int32 (W, N).
+
+        It is any cell where there is no empty neighbour.
+        """
         cells = _cells(word)
         if self.topology == "well-mixed":
             rank = jnp.where(empty, jnp.cumsum(empty, axis=1) - 1, word.shape[1])
@@ -128,16 +138,16 @@ class Placement(Settings):
         is_empty = jnp.stack(self._neighbours(empty))
         nth = below(word, is_empty.sum(axis=0))
         chosen = (jnp.cumsum(is_empty, axis=0) > nth).argmax(axis=0)
-        return self._reach(cells, chosen, offsets)
+        return self._neighbour(cells, chosen, offsets)
 
-    def _reach(self, cells: Array, direction: Array, offsets: np.ndarray) -> Array:
+    def _neighbour(self, cells: Array, direction: Array, offsets: np.ndarray) -> Array:
         rows, columns = self.shape(cells.shape[1])
         step = jnp.asarray(offsets)[direction]
         row, column = cells // columns + step[..., 0], cells % columns + step[..., 1]
         return row % rows * columns + column % columns
 
     def _neighbours(self, values: Array) -> list[Array]:
-        """The values (W, N) of each cell's neighbours, one array a direction."""
+        """Return the values (W, N) of each cell's neighbours, an array for each direction."""
         grid = values.reshape(len(values), *self.shape(values.shape[1]))
         offsets = OFFSETS[self.topology]
         return [jnp.roll(grid, (-r, -c), (1, 2)).reshape(values.shape) for r, c in offsets]
@@ -148,7 +158,7 @@ def _cells(like: Array) -> Array:
 
 
 def _contest(wants: Array, target: Array, priority: Array) -> Array:
-    """The parent that wins each cell, or -1: the smallest (priority, cell) of those targeting it."""
+    """Return the parent that wins each cell, or -1: the smallest (priority, cell) that targets it."""
     worlds, cells = wants.shape
     nowhere = worlds * cells
     slot = target + cells * lax.broadcasted_iota(jnp.int32, wants.shape, 0)

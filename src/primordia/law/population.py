@@ -1,4 +1,4 @@
-"""Worlds brought up to date: ticks that only passed, births and deaths, seasons, samples."""
+"""Settling: worlds are brought up to date after some ticks, with births, deaths, seasons and samples."""
 
 import jax.numpy as jnp
 from jax import Array, lax
@@ -7,32 +7,32 @@ from primordia.law import turnover
 from primordia.law.events import Events
 from primordia.law.law import Law
 from primordia.law.sample import note_samples
-from primordia.law.seasons import Schedule, turn
+from primordia.law.seasons import Schedule, apply_seasons
 from primordia.law.tick import Fates
 from primordia.law.world import World
 from primordia.random.wide import happened, select, times, wide
 
 
 def lifeless(law: Law, world: World, running: Array) -> Array:
-    """Which running worlds have nobody alive, as before genesis: bool (W,)."""
+    """Return which running worlds have no living organism, as before genesis: bool (W,)."""
     return running & ~law.by_world(world.organisms.alive).any(axis=1)
 
 
 def settle(
     law: Law, world: World, events: Events, fates: Fates, ticks: Array, running: Array
 ) -> tuple[World, Events, Array]:
-    """Bring the counts up to date by some ticks, of which only the last may have been eventful.
+    """Bring worlds up to date after some ticks, of which only the last may have been eventful.
 
     Args:
         law: the law.
-        world: its organisms as `rest` left them after those ticks.
+        world: the world with its organisms after those ticks, as `rest` returns them.
         events: lists with room for one tick (`events.have_room`).
-        fates: of the last tick.
-        ticks: int32 (), at most as many as `quiet_ticks` said; 0 for genesis.
-        running: which worlds are, bool (W,); the others stay as they are.
+        fates: fates of the last tick.
+        ticks: int32 (), at most `quiet_ticks`; 0 for genesis.
+        running: worlds that run, bool (W,); the others do not change.
 
     Returns:
-        world, events, who was born in the last tick (bool (C,)).
+        world, events, cells whose organism was born in the last tick (bool (C,)).
     """
     organisms, worlds = world
     passed = jnp.where(running, ticks, 0)
@@ -44,24 +44,24 @@ def settle(
         sample_wait=worlds.sample_wait - passed,
         looks=worlds.looks._replace(wait=worlds.looks.wait - passed[:, None]),
     )
-    nobody = jnp.zeros_like(organisms.alive)
+    none_born = jnp.zeros_like(organisms.alive)
     keys = turnover.birth_keys(worlds)
-    world, events, born = lax.cond(
+    world, events, newborn = lax.cond(
         fates.eventful | lifeless(law, world, running).any(),
         lambda world, events: turnover.turnover(
             law, world, events, running, fates.wants, fates.cause, keys
         ),
-        lambda world, events: (world, events, nobody),
+        lambda world, events: (world, events, none_born),
         World(organisms, worlds),
         events,
     )
-    return *_watch(law, world, events, running), born
+    return *_end_tick(law, world, events, running), newborn
 
 
 def quiet_ticks(law: Law, world: World, running: Array) -> Array:
-    """How many ticks can pass before anything falls due, int32 (), if none of them is eventful.
+    """Return the ticks until something falls due, int32 (), provided that none is eventful.
 
-    None can before genesis.
+    Before genesis it is 0.
     """
     worlds, far = world.worlds, 2**31 - 1
     due = [worlds.sample_wait, *worlds.looks.wait.T]
@@ -76,19 +76,21 @@ def quiet_ticks(law: Law, world: World, running: Array) -> Array:
     return jnp.where(running, soonest, far).min()
 
 
-def _watch(law: Law, world: World, events: Events, running: Array) -> tuple[World, Events]:
-    """Saturation, seasons and samples at the end of a tick."""
+def _end_tick(law: Law, world: World, events: Events, running: Array) -> tuple[World, Events]:
+    """Record saturation, apply seasons and take samples at the end of a tick."""
     organisms, worlds = world
     full = law.by_world(organisms.alive).all(axis=1)
-    calm = worlds.calm >= law.saturation_ticks
-    newly = running & full & calm & ~happened(worlds.saturated)
+    long_calm = worlds.calm >= law.saturation_ticks
+    newly = running & full & long_calm & ~happened(worlds.saturated)
     worlds = worlds._replace(
         saturated=select(newly, worlds.tick, worlds.saturated),
         saturated_births=select(newly, worlds.births, worlds.saturated_births),
     )
     changed = jnp.zeros_like(running)
     if law.seasons:
-        worlds, changed = turn(law.seasons, law.governed, World(organisms, worlds), running)
+        worlds, changed = apply_seasons(
+            law.seasons, law.governed, World(organisms, worlds), running
+        )
     periodic = worlds.sample_wait == 0
     worlds = worlds._replace(sample_wait=jnp.where(periodic, law.sample_every, worlds.sample_wait))
     world, due = World(organisms, worlds), running & (periodic | changed)

@@ -1,4 +1,4 @@
-"""Samples: a row a world at fixed ticks, and whenever a season changes its climate."""
+"""Samples: rows of a world's counts at fixed ticks, and when a season changes its climate."""
 
 import jax.numpy as jnp
 import numpy as np
@@ -11,11 +11,11 @@ from primordia.random.wide import largest, signed, total
 
 
 def note_samples(law: Law, world: World, due: Array, samples: Rows) -> Rows:
-    """Append a row for each world that is due, bool (W,)."""
+    """Append a row for each world whose sample is due, bool (W,)."""
     rows = _rows(law, world)
-    place = samples.filled + jnp.cumsum(due, dtype=jnp.int32) - 1
-    place = jnp.where(due, place, len(samples.rows))
-    written = samples.rows.at[place].set(rows, mode="drop")
+    index = samples.filled + jnp.cumsum(due, dtype=jnp.int32) - 1
+    index = jnp.where(due, index, len(samples.rows))
+    written = samples.rows.at[index].set(rows, mode="drop")
     return Rows(written, samples.filled + due.sum(dtype=jnp.int32))
 
 

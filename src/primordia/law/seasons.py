@@ -1,6 +1,7 @@
-"""Seasons: settings of the law that change while the run goes on, as part of the world's state."""
+"""Seasons: settings of the law that change while a run goes on; they are part of the world's state."""
 
 from collections.abc import Callable
+from itertools import count
 from typing import Annotated, Literal
 
 import jax.numpy as jnp
@@ -15,7 +16,7 @@ from primordia.settings.base import Settings
 
 
 class Schedule(Settings):
-    """A setting takes a value once a tick has passed."""
+    """A setting that takes a new value at the end of a given tick."""
 
     kind: Literal["schedule"] = Field(description="change at a given tick")
     setting: str = Field(min_length=1, description="the setting that changes")
@@ -24,24 +25,24 @@ class Schedule(Settings):
 
 
 class Ratchet(Settings):
-    """A setting is multiplied whenever the living do well: life gets harder by a stated factor.
+    """A setting that is multiplied when the population does well, so that life gets harder.
 
-    Each world is looked at every so many ticks. `mean_age` is that of the living in ticks,
+    A ratchet looks at each world at regular ticks. `mean_age` is the mean age of the living in ticks,
     `saturation` the share of cells occupied, `food` the food per organism-tick since the last look.
     """
 
     kind: Literal["ratchet"] = Field(description="change when the population meets a condition")
     setting: str = Field(min_length=1, description="the setting that changes")
-    when: Literal["mean_age", "saturation", "food"] = Field(description="what is looked at")
-    above: float = Field(ge=0, description="the setting changes if it is above this")
-    factor: float = Field(gt=0, description="what the setting is then multiplied by")
-    every: int = Field(ge=1, le=2**31 - 1, description="ticks from look to look")
+    when: Literal["mean_age", "saturation", "food"] = Field(description="the measure looked at")
+    above: float = Field(ge=0, description="the setting changes if the measure is above this")
+    factor: float = Field(gt=0, description="factor by which the setting is then multiplied")
+    every: int = Field(ge=1, le=2**31 - 1, description="ticks from one look to the next")
 
 
 Season = Annotated[Schedule | Ratchet, Field(discriminator="kind")]
 
 
-def turn(
+def apply_seasons(
     seasons: tuple[Schedule | Ratchet, ...],
     governed: Callable[[str], list[str]],
     world: World,
@@ -50,25 +51,25 @@ def turn(
     """Apply the seasons at the end of a tick.
 
     Args:
-        seasons: of the law.
-        governed: which settings of the climate a season's setting stands for.
-        world: at the end of the tick.
-        running: which worlds are, bool (W,).
+        seasons: the seasons of the law.
+        governed: setting of a season -> the settings of the climate that it changes.
+        world: the world at the end of the tick.
+        running: worlds that run, bool (W,).
 
     Returns:
-        worlds; whose climate changed, bool (W,).
+        worlds; those whose climate changed, bool (W,).
     """
     worlds = world.worlds
     changed = jnp.zeros(running.shape, bool)
-    s = -1
+    ratchet_numbers = count()
     for season in seasons:
         if isinstance(season, Schedule):
             due = running & worlds.tick.equals(wide(season.at))
         else:
-            s += 1
-            look = running & (worlds.looks.wait[:, s] == 0)
-            due = look & (_measure(season, s, world) > season.above)
-            worlds = worlds._replace(looks=_looked(worlds, season, s, look))
+            s = next(ratchet_numbers)
+            looking = running & (worlds.looks.wait[:, s] == 0)
+            due = looking & (_measure(season, s, world) > season.above)
+            worlds = worlds._replace(looks=_after_look(worlds, season, s, looking))
         new = {
             name: _changed(worlds.climate[name], season, due) for name in governed(season.setting)
         }
@@ -78,12 +79,12 @@ def turn(
 
 
 def ratchets(seasons: tuple[Schedule | Ratchet, ...]) -> list[Ratchet]:
-    """Those that look at the world."""
+    """Return the ratchets among seasons, in order: ratchet s owns column s of `Looks`."""
     return [season for season in seasons if isinstance(season, Ratchet)]
 
 
 def _measure(season: Ratchet, s: int, world: World) -> Array:
-    """What the ratchet looks at, float32 (W,)."""
+    """Return the measure that ratchet s looks at, float32 (W,)."""
     worlds = world.worlds
     alive = world.organisms.alive.reshape(len(worlds.calm), -1)
     population = alive.sum(axis=1)
@@ -96,21 +97,22 @@ def _measure(season: Ratchet, s: int, world: World) -> Array:
     return to_float(food) / np.float32(ONE) / to_float(lived)
 
 
-def _looked(worlds: Worlds, season: Ratchet, s: int, look: Array) -> Looks:
+def _after_look(worlds: Worlds, season: Ratchet, s: int, looking: Array) -> Looks:
+    """Return the state of ratchets after ratchet s has looked at some worlds, bool (W,)."""
     looks = worlds.looks
 
-    def note(then: Wide, now: Wide) -> Wide:
-        new = select(look, now, then.take(np.s_[:, s]))
-        return Wide(then.hi.at[:, s].set(new.hi), then.lo.at[:, s].set(new.lo))
+    def update(last: Wide, now: Wide) -> Wide:
+        new = select(looking, now, last.take(np.s_[:, s]))
+        return Wide(last.hi.at[:, s].set(new.hi), last.lo.at[:, s].set(new.lo))
 
     return Looks(
-        wait=looks.wait.at[:, s].set(jnp.where(look, season.every, looks.wait[:, s])),
-        food=note(looks.food, worlds.food),
-        organism_ticks=note(looks.organism_ticks, worlds.organism_ticks),
+        wait=looks.wait.at[:, s].set(jnp.where(looking, season.every, looks.wait[:, s])),
+        food=update(looks.food, worlds.food),
+        organism_ticks=update(looks.organism_ticks, worlds.organism_ticks),
     )
 
 
 def _changed(old: Array, season: Schedule | Ratchet, due: Array) -> Array:
-    """Return a setting of the climate (W,), changed in the worlds where that is due."""
+    """Return a setting of the climate (W,), changed in the worlds where the season is due."""
     value = season.value if isinstance(season, Schedule) else old * np.float32(season.factor)
     return jnp.where(due, jnp.asarray(value, jnp.float32), old)

@@ -1,7 +1,7 @@
-"""One tick of all cells: each organism's own (`life`), with what its cell and its world add to it.
+"""One tick of all cells: `life` for each organism, then accidents, replication and food of its world.
 
-Cells draw accidents and attempts to replicate; worlds count food. Brains of empty cells and of stopped
-worlds think too, since that is cheaper than choosing; `rest` then puts those back that must not change.
+Brains of empty cells and of stopped worlds think too, since selecting the others costs more. `rest` then
+restores the organisms that must not change.
 """
 
 from typing import NamedTuple
@@ -14,32 +14,32 @@ from primordia.habitats.contract import Bodies, Outcome
 from primordia.law import life
 from primordia.law.law import Law
 from primordia.law.life import Thought, Vitals
-from primordia.law.metabolism import Rates, fixed
+from primordia.law.metabolism import Rates, to_fixed_point
 from primordia.law.world import Cause, Organisms, World, Worlds
 from primordia.random.keys import Purpose, Streams, bits, chance, streams
 from primordia.random.wide import Wide, signed, total
 
 
 class Fates(NamedTuple):
-    """What becomes of the organisms in one tick, (C,)."""
+    """The fates of all organisms in one tick, (C,)."""
 
     cause: Array
-    """int32: of its death, or -1"""
+    """int32: cause of death, or -1"""
     wants: Array
-    """bool: lives on, and would copy itself now if there is room"""
+    """bool: the organism lives on, and replicates in this tick if it finds a cell"""
     eventful: Array
     """bool (): an organism dies, or may be born"""
 
 
 def no_fates(law: Law) -> Fates:
-    """Return fates of a tick in which nothing happens."""
+    """Return the fates of a tick without deaths and births."""
     cells = law.worlds * law.cells
     none = jnp.zeros(cells, bool)
     return Fates(jnp.full(cells, -1, jnp.int32), none, jnp.zeros((), bool))
 
 
 def keys_of(worlds: Worlds, ticks: Array) -> Streams:
-    """Return what `think` and `judge` draw from, (W,), int32 () `ticks` after the last settled tick."""
+    """Return the keys of `think` and `judge`, (W,), int32 () `ticks` after the last settled tick."""
     tick = worlds.tick.plus(jnp.full_like(worlds.calm, ticks))
     return streams(worlds.seed, tick, Purpose.MOTOR, Purpose.HAZARD, Purpose.REPLICATE)
 
@@ -59,15 +59,15 @@ def judge(
     keys: Streams,
     active: Array,
 ) -> tuple[World, Fates]:
-    """Judge what a tick means for the active: they remember, eat, die, want to copy themselves.
+    """Judge a tick for the active organisms: they remember, eat, may die, and may want to replicate.
 
     Args:
         law: the law.
-        world: before the tick.
-        thought: of the tick.
-        bodies: after the tick; see `life.judge`.
-        outcome: of the habitat, (C,) each.
-        keys: of the tick.
+        world: the world before the tick.
+        thought: thoughts of the tick.
+        bodies: bodies after the tick; see `life.judge`.
+        outcome: the habitat's outcome, (C,) each.
+        keys: keys of the tick.
         active: the living in worlds that run, bool (C,).
 
     Returns:
@@ -92,8 +92,8 @@ def judge(
 
 
 def _food(law: Law, food: Array, active: Array) -> Wide:
-    """Return what the active of each world ate in a tick, fixed point, (W,)."""
-    eaten = signed(jnp.where(active, fixed(food), 0))
+    """Return the food of each world's active organisms in a tick, fixed point, (W,)."""
+    eaten = signed(jnp.where(active, to_fixed_point(food), 0))
     return total(eaten.map(law.by_world), axis=1)
 
 
@@ -104,7 +104,7 @@ def _drawn(law: Law, key: Wide, probability: Array) -> Array:
 
 
 def rest(before: Organisms, after: Organisms, active: Array) -> Organisms:
-    """Return organisms after some ticks, those not active (C,) unchanged."""
+    """Return organisms after some ticks; those that are not active, bool (C,), are unchanged."""
 
     def keep(new: Array, old: Array) -> Array:
         return jnp.where(active.reshape(-1, *[1] * (new.ndim - 1)), new, old)

@@ -1,6 +1,6 @@
 """The state of W worlds of N cells each: arrays over C = W x N cells on one axis, and over worlds.
 
-Everything a run needs to go on is here and in the habitat's bodies. What an empty cell holds has no
+This state and the habitat's bodies are all that a run needs to go on. The values of an empty cell have no
 meaning.
 """
 
@@ -15,11 +15,11 @@ from primordia.random.wide import Wide, select, total, zero
 
 
 class Named(IntEnum):
-    """Numbers that people read as words."""
+    """Numbers that records and messages show as words."""
 
     @property
     def label(self) -> str:
-        """As in records and messages: `time-limit`."""
+        """The word, such as `time-limit`."""
         return self.name.lower().replace("_", "-")
 
 
@@ -44,42 +44,42 @@ class BirthCause(Named):
 
 
 class Organisms(NamedTuple):
-    """What lives in the cells; first axis C."""
+    """The organisms in the cells; first axis C."""
 
     alive: Array
     """bool"""
     genome: Genome
     """block of weights -> float32 (C, *shape)"""
     notes: Array
-    """int32 (C, n): what the mutation keeps with an organism; see `Mutation.notes`"""
+    """int32 (C, n); see `Mutation.notes`"""
     memory: Array
     """float32 (C, M)"""
     energy: Array
     """int32, fixed point"""
     eaten: Array
-    """food of its whole life, int32, fixed point, saturating"""
+    """food of its life so far, int32, fixed point, saturating"""
     born: Wide
     """tick of birth"""
     number: Wide
     """birth number within its world, from 0"""
     branch: Wide
-    """1 + number of the founder's child it descends from, 0 for a founder: equal in all of the
-    living, and not 0, once the population has fixed"""
+    """1 + birth number of the founder's child from which it descends; 0 for a founder. Once a population
+    has fixed, it is equal, and not 0, in all the living"""
 
 
 Climate: TypeAlias = dict[str, Array]
-"""The settings that seasons may change, as they stand in each world: dotted name -> float32 (W,)."""
+"""The present values of the settings that seasons may change: dotted name -> float32 (W,)."""
 
 
 class Looks(NamedTuple):
-    """What each ratchet (W, S) remembers between its looks at the world."""
+    """The state of S ratchets, (W, S): their past and next looks at the worlds."""
 
     wait: Array
     """int32, ticks until the next look"""
     food: Wide
-    """the world's food, and ..."""
+    """the world's food at the last look"""
     organism_ticks: Wide
-    """... its organism-ticks, at the last look"""
+    """the world's organism-ticks at the last look"""
 
 
 class Worlds(NamedTuple):
@@ -87,46 +87,46 @@ class Worlds(NamedTuple):
 
     seed: Wide
     tick: Wide
-    """ticks lived through"""
+    """ticks lived"""
     births: Wide
     deaths: Wide
     """(W, causes)"""
     extinctions: Wide
     organism_ticks: Wide
     food: Wide
-    """gathered by all, fixed point, two's complement"""
+    """food gathered by all organisms, fixed point, two's complement"""
     calm: Array
     """int32, ticks since the last birth or death, saturating"""
     sample_wait: Array
     """int32, ticks until the next sample"""
     saturated: Wide
-    """tick at which the world was first saturated, and ..."""
+    """tick at which the world was first saturated; `wide.never` before that"""
     saturated_births: Wide
-    """... births until then; `wide.never` before it happens"""
+    """births until then; `wide.never` before that"""
     fixed: Wide
-    """tick at which all the living first descended from one organism born after the founder; a
-    world that goes extinct begins anew, and ..."""
+    """tick of fixation, at which all the living first descended from one child of a founder;
+    `wide.never` before that, and again after an extinction"""
     fixed_births: Wide
-    """... births until then"""
+    """births until then; `wide.never` before that"""
     climate: Climate
     looks: Looks
 
 
 class World(NamedTuple):
-    """All that the law acts on."""
+    """The whole state that the law acts on."""
 
     organisms: Organisms
     worlds: Worlds
 
 
 def ages(world: World) -> Wide:
-    """Ticks since birth of each cell's organism (C,), 0 where nobody lives."""
+    """Return the ticks since the birth of each cell's organism, (C,), 0 in empty cells."""
     organisms, worlds = world
-    each = organisms.alive.size // worlds.calm.size
-    now = worlds.tick.map(lambda words: jnp.repeat(words, each))
+    cells = organisms.alive.size // worlds.calm.size
+    now = worlds.tick.map(lambda words: jnp.repeat(words, cells))
     return select(organisms.alive, now - organisms.born, zero(organisms.alive.shape))
 
 
 def ages_total(world: World) -> Wide:
-    """Sum of the ages of the living of each world (W,)."""
+    """Return the sum of the ages of each world's living, (W,)."""
     return total(ages(world).map(lambda words: words.reshape(world.worlds.calm.size, -1)), axis=1)

@@ -1,1 +1,1 @@
-"""Mutations, one file each: how children differ from their parents, and genomes of founders."""
+"""Mutations, one file each: they make the genomes of children and of founders."""

@@ -1,7 +1,7 @@
-"""The contract of mutations: how children differ from their parents, and what founders begin with.
+"""The contract of mutations, which make the genomes of children and of founders.
 
-A mutation is used twice: when organisms are born, and when a genome is rebuilt from the records of its
-line of descent. Both give the same bits, on any device, so a mutation is made of integer draws, table
+A mutation is used twice: when an organism is born, and when its genome is rebuilt from the records of its
+line of descent. Both give the same bits on any device. So a mutation is made of integer draws, table
 look-ups, and float32 products and sums that are each rounded (`noise`).
 
 `kind` in a task's `[mutation]` table is one of those listed here, or `module:Class` of any `Mutation`.
@@ -27,16 +27,16 @@ KNOWN = {"gaussian": "primordia.mutations.gaussian:Gaussian"}
 DEFAULT = "gaussian"
 
 PURPOSES = Purpose.MUTATE, Purpose.NOISE, Purpose.FOUNDER
-"""What a mutation may draw for."""
+"""The purposes for which a mutation may draw random bits."""
 
 
 class Draws(NamedTuple):
     """Random words of K births; they depend on world, tick and cell of a birth, and on nothing else."""
 
     streams: Streams
-    """for each of PURPOSES, (K,)"""
+    """keys for each of PURPOSES, (K,)"""
     cell: Array
-    """int32 (K,), within its world"""
+    """cell of each birth within its world, int32 (K,)"""
 
     def bits(self, purpose: Purpose, index: Array | int = 0) -> Wide:
         """Return two random words for each birth, (K,); `index` numbers further draws."""
@@ -46,21 +46,21 @@ class Draws(NamedTuple):
 class Mutation(Settings, ABC):
     """A mutation's settings and its behaviour.
 
-    Settings declared as `Rate` may be changed by seasons; methods get their present values as `rates`,
-    by the names of `rates_of`. All arrays have the births as their first axis, K; births do not depend on
+    Seasons may change settings that are declared as `Rate`. Methods get their present values as `rates`,
+    by the names of `rates_of`. The first axis of all arrays is the births, K. Births do not depend on
     each other.
     """
 
     notes: ClassVar[tuple[str, ...]] = ()
-    """Names of small integers that are kept with an organism, recorded with its birth, and passed on to
-    `note` of its children, such as a heritable rate. They become columns of the births table."""
+    """Names of the small integers that belong to an organism beside its genome, such as a heritable rate.
+    `note` makes them from those of the parent. They are columns of the births table."""
 
     def rates(self, layout: Layout) -> dict[str, float]:
         """Return the numbers that seasons may change, by name, with their values at the beginning."""
         return rates_of(self)
 
     def governed(self, setting: str, layout: Layout) -> list[str]:
-        """Return the names among `rates` that a season of a setting changes; none: it is unknown."""
+        """Return the names among `rates` that a season of a setting changes; [] if it is unknown."""
         return [setting] if setting in self.rates(layout) else []
 
     def check(self, layout: Layout) -> None:
@@ -74,10 +74,10 @@ class Mutation(Settings, ABC):
         rates: Mapping[str, Array],
         draws: Draws,
     ) -> Array:
-        """Return the notes of K children, int32 (K, n), before they are made.
+        """Return the notes of K children, int32 (K, n), before their genomes are made.
 
         Args:
-            layout: of the genomes.
+            layout: layout of the genomes.
             parents: the parents' genomes, float32 (K, P).
             notes: the parents' notes, int32 (K, n).
             rates: present values, float32 (K,) each.
@@ -97,18 +97,18 @@ class Mutation(Settings, ABC):
         """Make the genomes of K children.
 
         Args:
-            layout: of the genomes.
+            layout: layout of the genomes.
             parents: the parents' genomes, float32 (K, P).
             notes: the children's notes, int32 (K, n).
             rates: present values, float32 (K,) each.
             draws: random words of the births.
 
         Returns:
-            genomes, float32 (K, P); which of them are mutants rather than copies, bool (K,).
+            genomes, float32 (K, P); mutants, bool (K,): false for an exact copy.
         """
 
     @abstractmethod
-    def found(self, layout: Layout, draws: Draws) -> Array:
+    def founders(self, layout: Layout, draws: Draws) -> Array:
         """Make the genomes of K founders, float32 (K, P)."""
 
     def founders_notes(self, count: int) -> Array:
@@ -123,10 +123,10 @@ def find(name: object) -> type[Mutation]:
         LookupError: there is no such name, module or class, or the class is no mutation; the message
             says which.
     """
-    found = parts.find("mutation", name, KNOWN)
-    if not issubclass(found, Mutation):
-        raise LookupError(f"{found.__name__} is no mutation: subclass Mutation of {__name__}")
-    return found
+    kind = parts.find("mutation", name, KNOWN)
+    if not issubclass(kind, Mutation):
+        raise LookupError(f"{kind.__name__} is no mutation: subclass Mutation of {__name__}")
+    return kind
 
 
 def build(table: Mapping[str, Any]) -> Mutation:

@@ -16,11 +16,11 @@ from primordia.rounding import rounded_product
 from primordia.settings.base import Rate, Settings
 
 BlockField: TypeAlias = Literal["probability", "scale", "founder_scale"]
-SEASONAL: tuple[BlockField, ...] = ("probability", "scale")
+SEASONAL_FIELDS: tuple[BlockField, ...] = ("probability", "scale")
 
 
 class Block(Settings):
-    """Mutation of one block of weights; what is not given is as for the whole genome."""
+    """Mutation of one block of weights; a setting of None has the whole genome's value."""
 
     probability: float | None = Field(
         None, ge=0, le=1, description="chance that a child's block mutates"
@@ -44,15 +44,15 @@ class Gaussian(Mutation):
         0.01, ge=0, description="standard deviation of a founder's weights around zero"
     )
     blocks: dict[str, Block] = Field(
-        {}, description="other values for single blocks of weights (input, recurrent, output)"
+        {}, description="values for single blocks of weights, such as input, recurrent, output"
     )
 
     def __hash__(self) -> int:
-        """Hash the values: dictionaries have no hash, and `blocks` is never changed."""
+        """Return a hash of the values; `blocks` is a dictionary, which has none, and never changes."""
         return hash(self.model_dump_json())
 
     def check(self, layout: Layout) -> None:
-        """Raise ValueError if a block is named that genomes of this layout do not have."""
+        """Raise ValueError if `blocks` names a block that genomes of this layout do not have."""
         for name in self.blocks:
             if name not in layout.names:
                 known = ", ".join(layout.names)
@@ -62,13 +62,13 @@ class Gaussian(Mutation):
         """Return probability and scale of each block, such as `blocks.input.scale`."""
         return {
             _rate(block, field): value
-            for field in SEASONAL
+            for field in SEASONAL_FIELDS
             for block, value in zip(layout.names, self.per_block(field, layout), strict=True)
         }
 
     def governed(self, setting: str, layout: Layout) -> list[str]:
         """Return the rates that a season of `scale`, or of `blocks.input.scale`, changes."""
-        for field in SEASONAL:
+        for field in SEASONAL_FIELDS:
             if setting == field:
                 return [
                     _rate(block, field)
@@ -88,7 +88,7 @@ class Gaussian(Mutation):
         """Add noise to the blocks that mutate; see `Mutation.inherit`."""
         probability, scale = (
             jnp.stack([rates[_rate(block, field)] for block in layout.names], axis=1)
-            for field in SEASONAL
+            for field in SEASONAL_FIELDS
         )
         mutates = chance(draws.bits(Purpose.MUTATE).hi[:, None], probability)
         noise = standard_noise(draws.streams[Purpose.NOISE], draws.cell, layout.length)
@@ -96,14 +96,14 @@ class Gaussian(Mutation):
         children = jnp.where(layout.per_weight(mutates), parents + noise, parents)
         return children, mutates.any(axis=1)
 
-    def found(self, layout: Layout, draws: Draws) -> Array:
-        """Make founders' genomes: Gaussian weights around zero."""
+    def founders(self, layout: Layout, draws: Draws) -> Array:
+        """Make the genomes of founders: Gaussian weights around zero."""
         noise = standard_noise(draws.streams[Purpose.FOUNDER], draws.cell, layout.length)
         scales = np.array(self.per_block("founder_scale", layout), np.float32)
         return noise * jnp.asarray(np.repeat(scales, layout.sizes))
 
     def per_block(self, field: BlockField, layout: Layout) -> list[float]:
-        """Return a setting's value for each block: its own, or the whole genome's."""
+        """Return a setting's value for each block: the block's, or else the whole genome's."""
         own = [getattr(self.blocks.get(block), field, None) for block in layout.names]
         return [getattr(self, field) if value is None else value for value in own]
 

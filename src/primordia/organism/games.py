@@ -15,7 +15,7 @@ from primordia.habitats.on_host import OnHost
 from primordia.law.genesis import body_words
 from primordia.law.law import Law
 from primordia.law.life import Vitals, judge
-from primordia.law.metabolism import Rates, fixed
+from primordia.law.metabolism import Rates, to_fixed_point
 from primordia.organism.life.instant import Mind, think
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import Wide, wide
@@ -146,7 +146,7 @@ class _Tries:
         self._mind = Mind(genome, players.keys.map(each), cells)
         self._memory = jnp.zeros((len(cells), law.memory), jnp.float32)
         self._rates = Rates(*map(each, players.rates))
-        self._vitals = Vitals(fixed(self._rates.store), jnp.zeros(len(cells), jnp.int32))
+        self._vitals = Vitals(to_fixed_point(self._rates.store), jnp.zeros(len(cells), jnp.int32))
         self._faulty = jnp.zeros(len(cells), bool)
         self._think, self._judge = shared(think, law), shared(judge, law)
 

@@ -1,1 +1,1 @@
-"""Simulators in worker processes. JAX is not loaded here."""
+"""Simulators in worker processes. This folder does not load JAX."""

@@ -1,4 +1,4 @@
-"""What a run and its worker processes share: arrays, one row a cell, and words for each other."""
+"""The board that a run and its worker processes share: arrays with a row for each cell, and commands."""
 
 import mmap
 import os
@@ -11,43 +11,44 @@ import numpy as np
 Field = tuple[str, tuple[int, ...]]
 """dtype, and shape of one cell's part"""
 
-READY = b"."
 STEP, RESET, SAVE, LOAD = b"s", b"r", b"g", b"l"
-"""What a worker is asked for, and its answer."""
+"""Commands to a worker."""
+READY = b"."
+"""A worker's answer to a command."""
 
-ALIGNED = 64
+ALIGNMENT = 64
 """bytes, a cache line"""
 
 
 def size(fields: dict[str, Field], cells: int) -> int:
-    """Bytes that arrays of these fields take."""
+    """Return the bytes that arrays of these fields take."""
     return sum(_bytes(field, cells) for field in fields.values())
 
 
 def arrays(memory: mmap.mmap, fields: dict[str, Field], cells: int) -> dict[str, np.ndarray]:
-    """The arrays in a piece of memory, (cells, *shape) each."""
-    found, start = {}, 0
+    """Return the arrays in a piece of memory, (cells, *shape) each."""
+    views, start = {}, 0
     for name, (dtype, shape) in fields.items():
         count = cells * int(np.prod(shape))
         flat = np.frombuffer(memory, dtype, count, start)
-        found[name] = flat.reshape(cells, *shape)
+        views[name] = flat.reshape(cells, *shape)
         start += _bytes((dtype, shape), cells)
-    return found
+    return views
 
 
 def _bytes(field: Field, cells: int) -> int:
     dtype, shape = field
-    wanted = cells * int(np.prod(shape)) * np.dtype(dtype).itemsize
-    return -(-wanted // ALIGNED) * ALIGNED
+    used = cells * int(np.prod(shape)) * np.dtype(dtype).itemsize
+    return -(-used // ALIGNMENT) * ALIGNMENT
 
 
-def shared(size: int) -> tuple[BinaryIO, mmap.mmap]:
-    """Memory that other processes can map by the file's descriptor; nothing is left when all close it.
+def shared_memory(size: int) -> tuple[BinaryIO, mmap.mmap]:
+    """Return a file and its memory, which other processes can map by the file's descriptor.
 
-    The file has no name, so not even kill -9 leaves one behind.
+    The file has no name, so nothing is left when all processes have closed it, even by kill -9.
     """
-    memory = Path("/dev/shm")
-    where = memory if memory.is_dir() and os.access(memory, os.W_OK) else None
-    file = tempfile.TemporaryFile(dir=where)  # noqa: SIM115
+    in_memory = Path("/dev/shm")
+    folder = in_memory if in_memory.is_dir() and os.access(in_memory, os.W_OK) else None
+    file = tempfile.TemporaryFile(dir=folder)  # noqa: SIM115
     file.truncate(size)
     return file, mmap.mmap(file.fileno(), size)

@@ -1,8 +1,8 @@
-"""Simulators in worker processes: one a cell, stepped side by side on all cores.
+"""Simulators in worker processes: one for each cell, stepped in parallel on all cores.
 
-Workers are started from the command line rather than by `multiprocessing`, so scripts need no guard and
-notebooks work. Rows of arrays go through shared memory, single bytes through pipes: they end when
-either side does, so a worker that dies is noticed at once, and none outlives its run.
+Workers are started by a command rather than by `multiprocessing`, so scripts need no guard and notebooks
+work. Rows of arrays go through shared memory, commands of one byte through pipes. A pipe closes when the
+process at either end does. So a worker's death is noticed at once, and no worker outlives its run.
 """
 
 import json
@@ -20,7 +20,7 @@ from primordia.pool import board
 from primordia.pool.board import LOAD, READY, RESET, SAVE, STEP
 
 PATIENCE = 20.0
-"""Seconds without a sign of life after which a worker is given up; each simulator made is one."""
+"""Seconds without an answer after which a worker is given up; each simulator that it makes is one."""
 
 
 class Pool:
@@ -34,23 +34,23 @@ class Pool:
         cells: int,
         workers: int | None = None,
     ) -> None:
-        """Start workers, as many as cores or cells unless said.
+        """Start the workers.
 
         Args:
             simulator: `module:Class` that keeps the contract of `worker.Simulator`.
-            settings: its own, as JSON can hold them.
-            fields: what the arrays are; `todo` (bool) is added: cells the next command is for.
-            cells: how many simulators.
-            workers: how many processes.
+            settings: the simulator's settings, as JSON can hold them.
+            fields: the arrays by name. `todo` (bool) is added: the cells that the next command is for.
+            cells: number of simulators.
+            workers: number of processes; None: one for each core, and at most one for each cell.
 
         Raises:
-            Trouble: a worker does not come up.
+            Trouble: a worker does not start.
         """
         fields = {"todo": ("bool", ()), **fields}
         size = board.size(fields, cells)
         self._cells = cells
         self._count = min(workers or len(os.sched_getaffinity(0)), cells)
-        file, memory = board.shared(size)
+        file, memory = board.shared_memory(size)
         self.arrays = board.arrays(memory, fields, cells)
         setup = {
             "simulator": simulator,
@@ -65,57 +65,57 @@ class Pool:
         self._finalizer = weakref.finalize(self, _stop, self._workers)
         file.close()
         for first, worker in enumerate(self._workers):
-            _put(worker, json.dumps({**setup, "first": first}).encode() + b"\n")
+            _send(worker, json.dumps({**setup, "first": first}).encode() + b"\n")
         for first, worker in enumerate(self._workers):
-            _ready(worker, len(range(first, cells, self._count)))
+            _await_ready(worker, len(range(first, cells, self._count)))
 
     def step(self, todo: np.ndarray) -> None:
-        """One tick of the cells todo, bool (N,).
+        """Step the cells of `todo`, bool (N,), by one tick.
 
         Raises:
             Trouble: a worker died, or does not answer.
         """
         self.arrays["todo"][:] = todo
-        self._ask(STEP)
-        self._gather()
+        self._command(STEP)
+        self._await_all()
 
     def reset(self, todo: np.ndarray) -> None:
-        """New lives in the cells todo, bool (N,)."""
+        """Begin new lives in the cells of `todo`, bool (N,)."""
         self.arrays["todo"][:] = todo
-        self._ask(RESET)
-        self._gather()
+        self._command(RESET)
+        self._await_all()
 
     def save(self) -> list[bytes]:
-        """The state of each cell's simulator."""
-        self._ask(SAVE)
+        """Return the state of each cell's simulator."""
+        self._command(SAVE)
         states = [b""] * self._cells
         for first, worker in enumerate(self._workers):
             for cell in range(first, self._cells, self._count):
-                length = int.from_bytes(_get(worker, 4), "little")
-                states[cell] = _get(worker, length)
-        self._gather()
+                length = int.from_bytes(_receive(worker, 4), "little")
+                states[cell] = _receive(worker, length)
+        self._await_all()
         return states
 
     def load(self, states: list[bytes]) -> None:
-        """Take back what `save` gave."""
+        """Restore the states that `save` returned."""
         for first, worker in enumerate(self._workers):
-            _put(worker, LOAD)
+            _send(worker, LOAD)
             for cell in range(first, self._cells, self._count):
-                _put(worker, len(states[cell]).to_bytes(4, "little") + states[cell])
-        self._gather()
+                _send(worker, len(states[cell]).to_bytes(4, "little") + states[cell])
+        self._await_all()
 
     def close(self) -> None:
         """Stop the workers."""
         self._finalizer()
 
-    def _ask(self, command: bytes) -> None:
+    def _command(self, command: bytes) -> None:
         for worker in self._workers:
-            _put(worker, command)
+            _send(worker, command)
 
-    def _gather(self) -> None:
-        """Hear from every worker that it is done."""
+    def _await_all(self) -> None:
+        """Wait until every worker has done its command."""
         for worker in self._workers:
-            _ready(worker)
+            _await_ready(worker)
 
 
 def _spawn(memory: int) -> subprocess.Popen:
@@ -130,22 +130,25 @@ def _spawn(memory: int) -> subprocess.Popen:
     )
 
 
-def _put(worker: subprocess.Popen, data: bytes) -> None:
+def _send(worker: subprocess.Popen, data: bytes) -> None:
     assert worker.stdin is not None
     try:
         while data:
             data = data[worker.stdin.write(data) :]
     except BrokenPipeError:
-        raise _lost(worker) from None
+        raise _has_ended(worker) from None
 
 
-def _ready(worker: subprocess.Popen, times: int = 1) -> None:
-    """Hear that it is done, with so many things."""
-    if _get(worker, times * len(READY)) != times * READY:
-        raise Trouble("a worker process gave an answer that makes no sense")
+def _await_ready(worker: subprocess.Popen, times: int = 1) -> None:
+    """Wait until a worker has answered `times` times that it is ready."""
+    if _receive(worker, times * len(READY)) != times * READY:
+        raise Trouble(
+            f"worker process {worker.pid} gave an answer that is not part of the protocol; resume the"
+            " run from its last checkpoint"
+        )
 
 
-def _get(worker: subprocess.Popen, count: int) -> bytes:
+def _receive(worker: subprocess.Popen, count: int) -> bytes:
     assert worker.stdout is not None
     parts, left = [], count
     while left:
@@ -157,21 +160,21 @@ def _get(worker: subprocess.Popen, count: int) -> bytes:
             )
         part = os.read(worker.stdout.fileno(), left)
         if not part:
-            raise _lost(worker)
+            raise _has_ended(worker)
         parts.append(part)
         left -= len(part)
     return b"".join(parts)
 
 
-def _lost(worker: subprocess.Popen) -> Trouble:
+def _has_ended(worker: subprocess.Popen) -> Trouble:
     return Trouble(
-        f"worker process {worker.pid} ended with status {worker.wait()} (what it said is above);"
+        f"worker process {worker.pid} ended with status {worker.wait()} (its messages are above);"
         " resume the run from its last checkpoint"
     )
 
 
 def _stop(workers: list[subprocess.Popen]) -> None:
-    """End of input ends a worker; one that does not listen is killed."""
+    """Close the workers' input, which ends them, and kill those that are alive a second later."""
     for worker in workers:
         assert worker.stdin is not None
         assert worker.stdout is not None

@@ -1,9 +1,9 @@
-"""A worker process: keeps the simulators of its cells, and does with them what the run asks for.
+"""A worker process, which keeps the simulators of its cells and carries out the run's commands.
 
     python -m primordia.pool.worker
 
-Asked by single bytes on standard input, answered by single bytes on standard output. When the run is
-gone, whatever became of it, standard input ends, and so does the worker. JAX is not loaded here.
+A command is one byte on standard input; the answer is one byte on standard output. When the run ends, in
+whatever way, standard input closes, and the worker ends. This file does not load JAX.
 """
 
 import json
@@ -22,38 +22,38 @@ import numpy as np
 from primordia.pool import board
 from primordia.pool.board import LOAD, READY, RESET, SAVE, STEP
 
-AWAKE = 0.002
-"""Seconds for which a worker that has nothing to do keeps its core."""
+BUSY_WAIT = 0.002
+"""Seconds for which an idle worker keeps its core."""
 
 
 class Simulator(Protocol):
-    """What a worker keeps: the simulators of some cells. Rows of `arrays` are theirs to fill."""
+    """The simulators of a worker's cells. They read and fill the cells' rows of `arrays`."""
 
     def __init__(self, arrays: dict[str, np.ndarray], **settings: Any) -> None: ...
 
     def make(self, cell: int) -> None:
-        """The simulator of one more cell."""
+        """Make the simulator of one more cell."""
 
     def step(self, cells: list[int]) -> None:
-        """One tick of each of these cells, with what their rows say."""
+        """Step each of these cells by one tick, with the actions in their rows."""
 
     def reset(self, cell: int) -> None:
-        """A new life, from the cell's random words."""
+        """Begin a new life, from the random words in the cell's row."""
 
     def save(self, cell: int) -> bytes:
-        """All that is needed to go on exactly."""
+        """Return the whole state, from which the simulator goes on exactly."""
 
     def load(self, cell: int, state: bytes) -> None:
-        """Take back what `save` gave."""
+        """Restore a state that `save` returned."""
 
 
 def main() -> None:
-    """Set up as the first line says, then do as asked until the run is gone."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the run's to hear
-    _let_others_go_on()
-    asked, answers = sys.stdin.buffer, os.fdopen(os.dup(1), "wb", buffering=0)
-    os.dup2(2, 1)  # what libraries print is not an answer
-    setup = json.loads(asked.readline())
+    """Make the simulators that the first line of input describes, then serve the run until it ends."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the run handles Ctrl-C
+    _yield_to_the_run()
+    commands, answers = sys.stdin.buffer, os.fdopen(os.dup(1), "wb", buffering=0)
+    os.dup2(2, 1)  # libraries may print, but not among the answers
+    setup = json.loads(commands.readline())
     cells = range(setup["first"], setup["cells"], setup["every"])
     memory = mmap.mmap(setup["memory"], setup["size"])
     arrays = board.arrays(memory, setup["fields"], setup["cells"])
@@ -62,26 +62,28 @@ def main() -> None:
     for cell in cells:
         simulator.make(cell)
         answers.write(READY)
-    serve(simulator, arrays["todo"], cells, asked, answers)
+    serve(simulator, arrays["todo"], cells, commands, answers)
 
 
-def _let_others_go_on() -> None:
-    """Not take the core from the run at once when woken: it has other workers to wake still.
+def _yield_to_the_run() -> None:
+    """Let the run keep its core when it wakes this worker, since it has other workers to wake.
 
-    Measured for 128 games on two cores: the second worker began 0.4 ms after the first.
+    Without this, the second worker began 0.4 ms after the first (128 games on two cores).
     """
     if hasattr(os, "SCHED_BATCH"):
         with suppress(OSError):
             os.sched_setscheduler(0, os.SCHED_BATCH, os.sched_param(0))
 
 
-def serve(simulator: Simulator, todo: np.ndarray, cells: range, asked: Any, answers: Any) -> None:
-    """Answer until nothing more is asked."""
-    unbuffered = asked.fileno()
+def serve(
+    simulator: Simulator, todo: np.ndarray, cells: range, commands: Any, answers: Any
+) -> None:
+    """Carry out and answer commands until the run closes their pipe."""
+    unbuffered = commands.fileno()
     own = np.arange(cells.start, cells.stop, cells.step)
-    ear = select.poll()
-    ear.register(unbuffered, select.POLLIN)
-    while command := _heard(ear, unbuffered):
+    poller = select.poll()
+    poller.register(unbuffered, select.POLLIN)
+    while command := _next_command(poller, unbuffered):
         if command == STEP:
             simulator.step(own[todo[own]].tolist())
         elif command == RESET:
@@ -98,17 +100,17 @@ def serve(simulator: Simulator, todo: np.ndarray, cells: range, asked: Any, answ
         answers.write(READY)
 
 
-def _heard(ear: select.poll, asked: int) -> bytes:
-    """The next command, b"" at the end; at first the worker listens without falling asleep.
+def _next_command(poller: select.poll, commands: int) -> bytes:
+    """Return the next command, b"" at the end; wait actively at first, then asleep.
 
-    The run takes half a millisecond from one tick to the next. A core that is put to sleep and woken
-    for that, above all a virtual one, costs more: 32 games went on at 0.56 of the bare emulators' speed,
-    and at 0.68 like this. The run has the core whenever it wants it.
+    The run takes half a millisecond from one tick to the next. To put a core to sleep and wake it takes
+    longer, above all a virtual one: 32 games ran at 0.56 of the bare emulators' speed, and at 0.68 with
+    active waiting. The run gets the core whenever it needs it.
     """
-    tired = time.perf_counter() + AWAKE
-    while not ear.poll(0) and time.perf_counter() < tired:
+    end = time.perf_counter() + BUSY_WAIT
+    while not poller.poll(0) and time.perf_counter() < end:
         os.sched_yield()
-    return os.read(asked, 1)
+    return os.read(commands, 1)
 
 
 def _write(answers: Any, data: bytes) -> None:
@@ -128,5 +130,5 @@ def _read(descriptor: int, count: int) -> bytes:
 
 
 if __name__ == "__main__":
-    with suppress(BrokenPipeError):  # the run is gone, and hears no answer
+    with suppress(BrokenPipeError):  # the run has ended
         main()

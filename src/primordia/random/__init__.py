@@ -1,1 +1,1 @@
-"""Randomness that is a pure function of what it is for, and the 64-bit counts that key it."""
+"""Random bits as pure functions of named keys, and the 64-bit counts that the keys are made of."""

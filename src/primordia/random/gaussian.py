@@ -1,7 +1,7 @@
 """The standard Gaussian as a table of 65,536 quantiles, read by 16 random bits.
 
-Made on the host in float32, so that whoever reads it gets the same bits on any device. The tails end at
-+-4.32 standard deviations.
+The table is made on the host in float32, so it has the same bits on any device. The tails end at +-4.32
+standard deviations.
 """
 
 import hashlib
@@ -15,12 +15,17 @@ QUANTILES_SHA256 = "1cfbba1e07e34386a57626f82aeb43e6ed54ba70a3ea6b7d964dc66a8410
 
 @cache
 def quantiles() -> np.ndarray:
-    """The standard Gaussian's quantiles at (i + 1/2) / 65536, float32 (65536,), increasing."""
+    """Return the standard Gaussian's quantiles at (i + 1/2) / 65536, float32 (65536,), increasing.
+
+    Raises:
+        RuntimeError: the quantiles differ from those of other machines.
+    """
     inverse = NormalDist().inv_cdf
     upper = np.array([inverse((i + 0.5) / 65536) for i in range(32768, 65536)], np.float32)
     table = np.concatenate([-upper[::-1], upper])
     if hashlib.sha256(table.astype("<f4").tobytes()).hexdigest() != QUANTILES_SHA256:
         raise RuntimeError(
-            "this machine's C library gives other Gaussian quantiles: genomes would differ"
+            "this machine's C library gives other Gaussian quantiles, so genomes would differ from"
+            " those of other machines; use another Python or C library"
         )
     return table

@@ -1,10 +1,10 @@
-"""Named, counter-based randomness: every random bit is a pure function of what it is for.
+"""Counter-based random bits: each is a pure function of seed, tick, purpose and cell.
 
-A draw is keyed by the world's seed, a named purpose and the tick, with the cell as its counter.
-Nothing else enters, so neither chunks, worlds run beside it, interruptions nor the order of
-evaluation can change a bit. The cipher is Threefry-2x32 with 20 rounds (Salmon et al. 2011,
-"Parallel random numbers: as easy as 1, 2, 3"), in uint32 arithmetic that every device shares.
-All functions take and give arrays of shapes that broadcast.
+The key of a draw is made of the world's seed, the tick and a named purpose; its counter is the cell.
+Nothing else enters. So chunks, other worlds of the run, interruptions and the order of evaluation
+change no bit. The cipher is Threefry-2x32 with 20 rounds (Salmon et al. 2011, "Parallel random
+numbers: as easy as 1, 2, 3"), in uint32 arithmetic that is the same on every device. All functions
+take and return arrays of shapes that broadcast.
 """
 
 from dataclasses import dataclass, field
@@ -24,7 +24,7 @@ PARITY = 0x1BD11BDA
 
 
 class Purpose(IntEnum):
-    """What a stream of bits is for. Numbers are part of the format: never reuse or change one."""
+    """The purpose of a stream of bits. Numbers are part of the format: never reuse or change one."""
 
     REPLICATE = 1
     HAZARD = 2
@@ -56,14 +56,14 @@ def threefry(key: Wide, counter: Wide) -> Wide:
 @register_dataclass
 @dataclass(frozen=True)
 class Streams:
-    """The keys of all draws for some purposes, each in one tick of a world: `streams[purpose]`."""
+    """The keys of all draws for some purposes, in one tick of each world: `streams[purpose]`."""
 
     keys: Wide
-    """(P, ...)"""
+    """(P, ...), one for each purpose"""
     purposes: tuple[Purpose, ...] = field(metadata={"static": True})
 
     def __getitem__(self, purpose: Purpose) -> Wide:
-        """(...)"""
+        """Return the key of a purpose, (...)."""
         return self.keys.take(self.purposes.index(purpose))
 
     def take(self, index: Any) -> "Streams":
@@ -72,37 +72,41 @@ class Streams:
 
 
 def streams(seed: Wide, tick: Wide, *purposes: Purpose) -> Streams:
-    """The streams of ticks of worlds with these seeds, side by side: less to compile than one by one.
+    """Return the streams of one tick of each world for several purposes.
 
-    Derive them outside the compiled loop or branch that draws with them: XLA stores what crosses that
-    border, and would else derive the keys anew for every cell (measured: 20 us a tick in 16 worlds of
-    32 cells; optimisation barriers do not help).
+    One call for all purposes compiles faster than one call for each. Call it outside the compiled loop or
+    branch that draws with the streams: XLA stores what crosses that border. Inside it, XLA derives the
+    keys again for every cell (measured: 20 us a tick in 16 worlds of 32 cells; optimisation barriers do
+    not help).
     """
-    name = threefry(seed, tick)
-    use = np.array(purposes, np.uint32).reshape(-1, *[1] * name.lo.ndim)
-    return Streams(threefry(name, Wide(jnp.asarray(use), jnp.uint32(0))), purposes)
+    tick_key = threefry(seed, tick)
+    numbers = np.array(purposes, np.uint32).reshape(-1, *[1] * tick_key.lo.ndim)
+    return Streams(threefry(tick_key, Wide(jnp.asarray(numbers), jnp.uint32(0))), purposes)
 
 
 def stream(seed: Wide, purpose: Purpose, tick: Wide) -> Wide:
-    """The key of all draws for one purpose; see `streams`."""
+    """Return the key of all draws for one purpose; see `streams`."""
     return streams(seed, tick, purpose)[purpose]
 
 
 def bits(stream: Wide, cell: Array, index: Array | int = 0) -> Wide:
-    """Two words for a cell; `index` numbers further draws of the same stream and cell."""
+    """Return two words for a cell; `index` numbers further draws of the same stream and cell."""
     cell = jnp.asarray(cell, jnp.uint32)
     return threefry(stream, Wide(cell, jnp.asarray(index, jnp.uint32)))
 
 
 def bits_if(needed: Array, stream: Wide, cell: Array, index: Array | int = 0) -> Wide:
-    """As `bits` if `needed` (bool ()), else zeros; stored, where XLA would draw per use and cell."""
+    """Return `bits` if they are `needed` (bool ()), else zeros.
+
+    The branch makes XLA store the words. Without it, XLA draws them again at each use.
+    """
     shape = jnp.broadcast_shapes(stream.hi.shape, jnp.shape(cell), jnp.shape(index))
     index = jnp.asarray(index, jnp.uint32)
     return lax.cond(needed, bits, lambda *_: zero(shape), stream, cell, index)
 
 
 def chance(word: Array, probability: Array) -> Array:
-    """True with the given probability (float32 in [0, 1]): an integer comparison with p * 2^32."""
+    """Return True with a given probability (float32 in [0, 1]): a word is compared with p * 2^32."""
     probability = jnp.asarray(probability, jnp.float32)
     below_one = jnp.minimum(probability, np.float32(1 - 2**-24))
     threshold = (below_one * np.float32(2**32)).astype(jnp.uint32)
@@ -110,5 +114,5 @@ def chance(word: Array, probability: Array) -> Array:
 
 
 def below(word: Array, n: Array | int) -> Array:
-    """An integer in [0, n), int32: the high word of word * n (bias at most n / 2^32)."""
+    """Return an integer in [0, n), int32: the high word of word * n (bias at most n / 2^32)."""
     return times(word, jnp.asarray(n, jnp.uint32)).hi.astype(jnp.int32)

@@ -1,7 +1,7 @@
 """Unsigned 64-bit counts as (hi, lo) pairs of uint32: ticks, births and numbers of organisms.
 
-JAX without its x64 flag has no 64-bit integers, and an int32 age overflows within hours. On the
-host a count is an int or a uint64 array.
+JAX without its x64 flag has no 64-bit integers, and an int32 age overflows within hours. On the host a
+count is an int or a uint64 array. A function without a shape in its docstring works elementwise.
 """
 
 from collections.abc import Callable
@@ -27,54 +27,57 @@ class Wide(NamedTuple):
         return Wide(self.hi - other.hi - borrow, self.lo - other.lo)
 
     def map(self, change: Callable[[Array], Array]) -> "Wide":
-        """The same rearrangement of both words."""
+        """Return both words rearranged in the same way."""
         return Wide(change(self.hi), change(self.lo))
 
     def take(self, index: Any) -> "Wide":
-        """Those at an index of the arrays."""
+        """Return the counts at an index of the arrays."""
         return Wide(self.hi[index], self.lo[index])
 
     def plus(self, n: Array) -> "Wide":
-        """Add a bool or non-negative integer array."""
+        """Return the sum with a bool or non-negative integer array."""
         n = n.astype(jnp.uint32)
         return self + Wide(jnp.zeros_like(n), n)
 
     def at_least(self, other: "Wide") -> Array:
-        """Elementwise self >= other."""
+        """Return whether self >= other."""
         return (self.hi > other.hi) | ((self.hi == other.hi) & (self.lo >= other.lo))
 
     def until(self, later: "Wide") -> Array:
-        """Ticks until a later one, int32, at most 2^31 - 1; that many also if it is not later."""
+        """Return the ticks from this one to a later one, int32, at most 2^31 - 1.
+
+        The result is 2^31 - 1 also where `later` is not later.
+        """
         far = np.uint32(2**31 - 1)
         gap = later - self
         near = ~self.at_least(later) & (gap.hi == 0)
         return jnp.where(near, jnp.minimum(gap.lo, far), far).astype(jnp.int32)
 
     def equals(self, other: "Wide") -> Array:
-        """Elementwise self == other."""
+        """Return whether self == other."""
         return (self.hi == other.hi) & (self.lo == other.lo)
 
 
 def wide(values: object) -> Wide:
-    """From ints or integer arrays on the host; negative ones wrap (two's complement)."""
+    """Return ints or integer arrays of the host as counts; negative ones wrap (two's complement)."""
     whole = np.asarray(np.asarray(values, dtype=object) % 2**64).astype(np.uint64)
     hi, lo = whole >> np.uint64(32), whole & np.uint64(0xFFFFFFFF)
     return Wide(jnp.asarray(hi.astype(np.uint32)), jnp.asarray(lo.astype(np.uint32)))
 
 
 def to_host(value: Wide) -> np.ndarray:
-    """As a uint64 array on the host."""
+    """Return counts as a uint64 array on the host."""
     hi, lo = np.asarray(value.hi), np.asarray(value.lo)
     return (hi.astype(np.uint64) << np.uint64(32)) | lo
 
 
 def select(condition: Array, yes: Wide, no: Wide) -> Wide:
-    """Elementwise choice."""
+    """Return `yes` where the condition is true, and `no` elsewhere."""
     return Wide(jnp.where(condition, yes.hi, no.hi), jnp.where(condition, yes.lo, no.lo))
 
 
 def total(value: Wide, axis: int) -> Wide:
-    """Sum along an axis, exact modulo 2^64."""
+    """Return the sum along an axis, exact modulo 2^64."""
     zero = jnp.uint32(0)
     hi, lo = lax.reduce(
         tuple(value), (zero, zero), lambda a, b: tuple(Wide(*a) + Wide(*b)), (axis,)
@@ -83,14 +86,14 @@ def total(value: Wide, axis: int) -> Wide:
 
 
 def largest(value: Wide, axis: int) -> Wide:
-    """Maximum along an axis."""
+    """Return the maximum along an axis."""
     hi = value.hi.max(axis, keepdims=True)
     lo = jnp.where(value.hi == hi, value.lo, jnp.uint32(0)).max(axis)
     return Wide(jnp.squeeze(hi, axis), lo)
 
 
 def times(a: Array, b: Array) -> Wide:
-    """The whole product of two uint32 or non-negative int32 arrays."""
+    """Return the 64-bit product of two uint32 or non-negative int32 arrays."""
     a, b = a.astype(jnp.uint32), b.astype(jnp.uint32)
     half, mask = np.uint32(16), np.uint32(0xFFFF)
     low = (a & mask) * (b & mask)
@@ -100,33 +103,36 @@ def times(a: Array, b: Array) -> Wide:
 
 
 def modulo(value: Wide, n: int) -> Array:
-    """The remainder after division by n, 1 to 2^16: int32."""
+    """Return the remainder after division by n, 1 to 2^16: int32."""
     high = (value.hi % np.uint32(n)) * np.uint32(2**32 % n)
     return ((high + value.lo % np.uint32(n)) % np.uint32(n)).astype(jnp.int32)
 
 
 def signed(value: Array) -> Wide:
-    """An int32 array, sign-extended."""
+    """Return an int32 array as 64 bits, sign-extended."""
     return Wide((value >> 31).astype(jnp.uint32), value.astype(jnp.uint32))
 
 
 def zero(shape: tuple[int, ...]) -> Wide:
-    """Counts at zero."""
+    """Return counts of zero."""
     return Wide(jnp.zeros(shape, jnp.uint32), jnp.zeros(shape, jnp.uint32))
 
 
 def never(shape: tuple[int, ...]) -> Wide:
-    """2^64 - 1: ticks that do not come, numbers of nobody."""
+    """Return 2^64 - 1: a tick that does not come, or the number of no organism."""
     return Wide(*(jnp.full(shape, np.uint32(2**32 - 1)) for _ in range(2)))
 
 
 def happened(value: Wide) -> Array:
-    """Whether a tick is not `never`."""
+    """Return whether a tick is not `never`."""
     return (value.hi & value.lo) != np.uint32(2**32 - 1)
 
 
 def to_float(value: Wide) -> Array:
-    """As float32, taken as two's complement; products with 2^32 are exact, so the sum rounds once."""
+    """Return counts in two's complement as float32.
+
+    The product with 2^32 is exact, so only the sum rounds.
+    """
     negative = value.hi >> np.uint32(31) == 1
     size = select(negative, zero(value.lo.shape) - value, value)
     magnitude = size.hi.astype(jnp.float32) * np.float32(2**32) + size.lo.astype(jnp.float32)

@@ -16,8 +16,8 @@ from primordia.engine.engine import Engine
 from primordia.engine.state import State
 from primordia.errors import InputError, Trouble
 from primordia.law.events import BIRTHS
-from primordia.law.genesis import looks
-from primordia.law.metabolism import fixed
+from primordia.law.genesis import initial_looks
+from primordia.law.metabolism import to_fixed_point
 from primordia.law.world import Climate, Looks, World, Worlds
 from primordia.random.wide import Wide, never, wide
 from primordia.runs import checkpoint, directory
@@ -155,7 +155,7 @@ def _adapted(
         looks=worlds.looks if new.seasons == old.seasons else _looks(worlds, after, at),
     )
     if new.metabolism is not None and old.metabolism is None:
-        store = after.law.per_cell(fixed(worlds.climate["metabolism.store"]))
+        store = after.law.per_cell(to_fixed_point(worlds.climate["metabolism.store"]))
         organisms = organisms._replace(energy=store)
     if new.model_dump(exclude=INNOCENT) != old.model_dump(exclude=INNOCENT):
         worlds = worlds._replace(  # saturation is looked for anew
@@ -168,7 +168,7 @@ def _adapted(
 
 def _looks(worlds: Worlds, after: Engine, at: int) -> Looks:
     """New ratchets look back as far as the fork."""
-    fresh = looks(after.law, len(worlds.calm), at)
+    fresh = initial_looks(after.law, len(worlds.calm), at)
 
     def now(count: Wide) -> Wide:
         return count.map(lambda words: jnp.tile(words[:, None], (1, fresh.wait.shape[1])))

@@ -54,7 +54,7 @@ class Schema:
 
     def arrow(self, table: str, rows: np.ndarray) -> pa.Table:
         """Return rows uint32 (n, words) as people and programs read them."""
-        found = self.columns(table).of(rows)
+        found = self.columns(table).unpacked(rows)
         world = pa.array(self.world_of(table, rows).astype(np.int32))
         if table == "metrics":
             return pa.table({"world": world, **self._samples(found)})

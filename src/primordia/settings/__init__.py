@@ -1,1 +1,1 @@
-"""Settings: what every group of settings has in common, and nested tables of settings."""
+"""Settings: their common base, nested tables of them, and the parts that such tables describe."""

@@ -1,4 +1,4 @@
-"""What every part that a user can configure has in common."""
+"""The base class of every part that a user can configure."""
 
 from typing import Annotated
 
@@ -6,15 +6,15 @@ from pydantic import BaseModel, ConfigDict
 
 SEASONAL = "seasonal"
 Rate = Annotated[float, SEASONAL]
-"""A setting that seasons may change while a run goes on. It is then part of every world's climate, and a
-column of the metrics, under the dotted name it has in settings."""
+"""A setting that seasons may change while a run goes on. It is part of every world's climate and a column
+of the metrics, under its dotted name in settings."""
 
 
 class Settings(BaseModel):
     """A frozen, validated group of settings; an unknown name or a wrong type is an error.
 
-    Parts of the law are such groups with methods, so that a setting is written down once,
-    beside the code that obeys it.
+    Parts of the law are such groups with methods: a setting is declared once, beside the code that uses
+    it.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)

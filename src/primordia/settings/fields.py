@@ -1,4 +1,4 @@
-"""Single settings by dotted path: those that a model has, and the first one that is wrong."""
+"""Single settings by dotted path: the settings of a model, and the first faulty one of a table."""
 
 from types import UnionType
 from typing import Any, Union, get_args, get_origin
@@ -10,17 +10,17 @@ from primordia.settings.tables import did_you_mean
 
 
 def setting_fields(model: type, prefix: str = "") -> dict[str, Any]:
-    """Return every single setting under a model, dotted path -> pydantic field; {} if it is none."""
-    found: dict[str, Any] = {}
+    """Return every single setting of a model, dotted path -> pydantic field; {} if it has none."""
+    fields: dict[str, Any] = {}
     if not issubclass(model, BaseModel):
-        return found
+        return fields
     for name, field in model.model_fields.items():
         inner = _model_in(field.annotation)
         if inner is not None:
-            found |= setting_fields(inner, f"{prefix}{name}.")
+            fields |= setting_fields(inner, f"{prefix}{name}.")
         else:
-            found[prefix + name] = field
-    return found
+            fields[prefix + name] = field
+    return fields
 
 
 def rates_of(group: Settings, prefix: str = "") -> dict[str, float]:
@@ -40,12 +40,12 @@ def _model_in(annotation: Any) -> type[BaseModel] | None:
 
 
 def first_fault(error: ValidationError, model: type, group: str = "") -> str:
-    """Return a validation error as one line: the first of its faults.
+    """Return the first fault of a validation error, in one line.
 
     Args:
-        error: of pydantic.
-        model: what was validated, for the nearest of its settings.
-        group: dotted path of the table of settings that was validated; "" for the whole.
+        error: pydantic's error.
+        model: the model of the settings; its names are suggested for a misspelt one.
+        group: dotted path of the validated table; "" for the whole.
     """
     faults, prefix = error.errors(include_url=False), f"{group}." if group else ""
     fault = faults[0]
@@ -57,7 +57,7 @@ def first_fault(error: ValidationError, model: type, group: str = "") -> str:
         return f"there is no setting {path!r}{did_you_mean(path, known)}{more}"
     if fault["type"] == "missing":
         return f"{path} is missing{more}"
-    if fault["type"] == "value_error":  # ours, which says all that is to be said
+    if fault["type"] == "value_error":  # raised by our own validators, so its message is complete
         return f"{path}: {fault['ctx']['error']}{more}"
     message = fault["msg"][0].lower() + fault["msg"][1:]
     return f"{path}: {message}, not {fault['input']!r}{more}"

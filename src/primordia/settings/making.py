@@ -1,4 +1,4 @@
-"""Replaceable parts made from a table of settings, one of which says which part it is."""
+"""Replaceable parts, made from tables of settings; one setting of a table names the part."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar

@@ -20,9 +20,9 @@ def find(what: str, name: object, known: Mapping[str, str]) -> type:
     if not module or not attribute:
         raise LookupError(f"no {what} named {name!r}; known: {', '.join(known)}, or module:Class")
     try:
-        found = getattr(import_module(module), attribute)
+        part = getattr(import_module(module), attribute)
     except Exception as error:  # the module is the user's, and may raise anything
         raise LookupError(f"{what} {name!r} cannot be loaded: {error}") from error
-    if not isinstance(found, type):
-        raise LookupError(f"{what} {name!r} is not a class")
-    return found
+    if not isinstance(part, type):
+        raise LookupError(f"{what} {name!r} is not a class; name one as module:Class")
+    return part

@@ -1,4 +1,4 @@
-"""Settings as nested tables that nobody has checked yet: of tasks and files, one put over another."""
+"""Settings as nested tables, not yet validated: those of tasks and files, and their merger."""
 
 import difflib
 import tomllib
@@ -9,28 +9,27 @@ from typing import Any
 from primordia.errors import InputError
 
 NONE = "none"
-"""How TOML and flags write None."""
-
+"""None, as TOML and flags write it."""
 
 PARTS = {"habitat": "name", "brain": "kind", "mutation": "kind"}
-"""Tables of replaceable parts, and the setting of each that says which part it is."""
+"""Tables of replaceable parts, and the setting of each that names the part."""
 
 
 def tasks() -> dict[str, dict[str, Any]]:
-    """The tasks that come with the package, by name."""
-    found = {}
+    """Return the settings of the tasks that come with the package, by name of the task."""
+    values_by_task = {}
     for file in sorted(resources.files("primordia.tasks").iterdir(), key=lambda f: f.name):
         if file.name.endswith(".toml"):
             values = tomllib.loads(file.read_text())
-            found[values["task"]] = values
-    return found
+            values_by_task[values["task"]] = values
+    return values_by_task
 
 
 def values_of(task: str) -> dict[str, Any]:
-    """What a built-in task or a TOML file says.
+    """Return the settings of a built-in task or of a TOML file.
 
     Raises:
-        InputError: there is neither, or the file cannot be read.
+        InputError: there is no such task or file, or the file cannot be read.
     """
     known = tasks()
     if task in known:
@@ -45,10 +44,12 @@ def values_of(task: str) -> dict[str, Any]:
 
 
 def from_toml(path: Path) -> dict[str, Any]:
-    """The values in a TOML file; genomes, and the file a habitat is made from, are looked for beside it.
+    """Return the values of a TOML file.
+
+    Paths of genomes and of a habitat's files are relative to the TOML file's folder.
 
     Raises:
-        InputError: it cannot be read, or is not TOML.
+        InputError: the file cannot be read, or is not TOML.
     """
     try:
         values = tomllib.loads(path.read_text(encoding="utf-8"))
@@ -56,15 +57,15 @@ def from_toml(path: Path) -> dict[str, Any]:
         raise InputError(f"{path} is not valid TOML: {error}") from None
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror}") from None
-    if isinstance(files := values.get("ancestors"), list):
-        values["ancestors"] = [str(path.parent / str(each)) for each in files]
-    return found_in(path.parent, values)
+    if isinstance(genomes := values.get("ancestors"), list):
+        values["ancestors"] = [str(path.parent / str(genome)) for genome in genomes]
+    return with_full_paths(path.parent, values)
 
 
 def merged(base: dict[str, Any], change: dict[str, Any]) -> dict[str, Any]:
-    """`base` with the values of `change` put in, table by table.
+    """Return `base` with the values of `change`, table by table.
 
-    A table that names another part than before keeps nothing of the old one's settings.
+    A table of `change` that names another part replaces the whole table of `base`.
     """
     result = dict(base)
     for name, value in change.items():
@@ -76,8 +77,8 @@ def merged(base: dict[str, Any], change: dict[str, Any]) -> dict[str, Any]:
     return result
 
 
-def found_in(folder: Path, values: dict[str, Any]) -> dict[str, Any]:
-    """Values in which files that a habitat is made from, if they are in the folder, have full paths."""
+def with_full_paths(folder: Path, values: dict[str, Any]) -> dict[str, Any]:
+    """Return values in which the habitat's files that are in the folder have full paths."""
     habitat = values.get("habitat")
     if not isinstance(habitat, dict):
         return values
@@ -85,17 +86,17 @@ def found_in(folder: Path, values: dict[str, Any]) -> dict[str, Any]:
 
 
 def _full_paths(folder: Path, table: dict[str, Any]) -> dict[str, Any]:
-    """Of each `file` in a table and in those within it."""
-    found = {}
+    """Return a table in which each `file`, also of inner tables, has its full path."""
+    changed = {}
     for name, value in table.items():
         file = folder / str(value)
         full = str(file.resolve()) if name == "file" and file.is_file() else value
-        found[name] = _full_paths(folder, value) if isinstance(value, dict) else full
-    return found
+        changed[name] = _full_paths(folder, value) if isinstance(value, dict) else full
+    return changed
 
 
 def replaced(values: Any, old: Any, new: Any) -> Any:
-    """Nested tables and lists with one value put for another."""
+    """Return nested tables and lists in which `new` stands for each `old`."""
     if isinstance(values, dict):
         return {name: replaced(value, old, new) for name, value in values.items()}
     if isinstance(values, list | tuple):
@@ -104,7 +105,7 @@ def replaced(values: Any, old: Any, new: Any) -> Any:
 
 
 def did_you_mean(name: str, known: list[str]) -> str:
-    """The nearest of the names that are known, as the end of a sentence; "" if none is near."""
+    """Return the nearest known name as the end of a sentence; "" if none is near."""
     close = difflib.get_close_matches(name, known, 1) or [
         path for path in known if path.rpartition(".")[2] == name.rpartition(".")[2]
     ]

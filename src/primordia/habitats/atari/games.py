@@ -1,4 +1,4 @@
-"""What the Arcade Learning Environment knows of its games: their names, buttons, modes and screens."""
+"""The games of the Arcade Learning Environment: their names, buttons, modes and screens."""
 
 import difflib
 from collections.abc import Mapping
@@ -10,7 +10,7 @@ from primordia.habitats.atari.simulator import REFUSED, console
 
 @cache
 def _ale() -> Any:
-    """The ale_py package.
+    """Return the ale_py package.
 
     Raises:
         ValueError: it is not installed.
@@ -24,13 +24,13 @@ def _ale() -> Any:
 
 @cache
 def games() -> list[str]:
-    """Names of the games that can be lived in."""
+    """Return the names of the games that can be habitats."""
     return sorted(set(_ale().roms.get_all_rom_ids()) - set(REFUSED))
 
 
 @cache
 def _facts(game: str) -> tuple[Mapping[str, int], Mapping[str, list[int]], tuple[int, int]]:
-    """Minimal action set; modes and difficulties; height and width of the screen.
+    """Return a game's minimal actions, its modes and difficulties, and its screen's height and width.
 
     Raises:
         ValueError: there is no such game, or it is refused.
@@ -49,21 +49,21 @@ def _facts(game: str) -> tuple[Mapping[str, int], Mapping[str, list[int]], tuple
 
 
 def minimal_actions(game: str) -> Mapping[str, int]:
-    """Names and codes of the actions that do something in a game."""
+    """Return names and codes of the actions that have an effect in a game."""
     return _facts(game)[0]
 
 
 def available_options(game: str) -> Mapping[str, list[int]]:
-    """Its modes and difficulties."""
+    """Return a game's modes and difficulties."""
     return _facts(game)[1]
 
 
 def screen_size(game: str) -> tuple[int, int]:
-    """Height and width in pixels, of which each is about twice as wide as high."""
+    """Return a screen's height and width in pixels; a pixel is about twice as wide as high."""
     return _facts(game)[2]
 
 
 @cache
 def legal_actions() -> Mapping[str, int]:
-    """Names and codes of all 18 actions."""
+    """Return names and codes of all 18 actions."""
     return {name: int(action.value) for name, action in _ale().Action.__members__.items()}

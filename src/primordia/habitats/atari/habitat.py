@@ -1,8 +1,8 @@
 """Any Atari game as a habitat, sensed through the console's memory.
 
-Schmidgall & Hays 2021, "Atari": RAM as sense, one frame a tick, the game's minimal action set, no sticky
-actions. What is fatal and what is food are conditions on RAM, points and lives. The game is the Arcade
-Learning Environment's (extra `primordia[atari]`).
+Schmidgall & Hays 2021, "Atari": RAM as senses, one frame a tick, the game's minimal action set, no sticky
+actions. Settings define death and food by expressions of RAM, points and lives. The emulator is the
+Arcade Learning Environment (extra `primordia[atari]`).
 """
 
 from functools import cached_property
@@ -19,7 +19,7 @@ from primordia.habitats.atari.games import (
     minimal_actions,
     screen_size,
 )
-from primordia.habitats.atari.simulator import FIELDS, RAM, WATCHED
+from primordia.habitats.atari.simulator import FIELDS, RAM, SCREEN
 from primordia.habitats.conditions import Expression, Names
 from primordia.habitats.contract import Discrete, HostHabitat, Outcome
 from primordia.pool.pool import Pool
@@ -35,11 +35,11 @@ NAMES: Names = {
     "lives_lost": "amount",
     "game_over": "condition",
 }
-"""What conditions can speak of: RAM and lives after the tick, points and lives lost in it."""
+"""Names in conditions and amounts: RAM and lives after the tick, points and lives lost in it."""
 SCALED = (np.arange(256, dtype=np.float32) - 128) / 128
-"""How a byte is perceived."""
-FRAMES = 60
-"""in a second"""
+"""The sense of each value of a byte."""
+FRAME_RATE = 60
+"""frames a second"""
 
 
 class Atari(HostHabitat, Settings):
@@ -59,69 +59,71 @@ class Atari(HostHabitat, Settings):
     sticky: float = Field(
         0.0, ge=0, lt=1, description="probability that a frame repeats the last button"
     )
-    noops: int = Field(0, ge=0, le=10_000, description="a life begins after up to so many no-ops")
+    noops: int = Field(
+        0, ge=0, le=10_000, description="largest number of random no-ops before a life begins"
+    )
     mode: int | None = Field(None, ge=0, description="the game's mode")
     difficulty: int | None = Field(None, ge=0, description="the game's difficulty")
     workers: int | None = Field(
         None,
         ge=1,
-        description="processes that emulate; no life depends on it (default: one a core)",
+        description="emulator processes; no life depends on it (default: one for each core)",
     )
 
     _pool: Pool = PrivateAttr()
     _tally: np.ndarray = PrivateAttr()
     """int32 (N, 3)"""
     _lives: np.ndarray = PrivateAttr()
-    """of the tick before, (N,), a view of the tally"""
+    """lives left after the latest tick, (N,), a view of the tally"""
 
     @field_validator("senses")
     @classmethod
-    def _addresses(cls, senses: tuple[int, ...]) -> tuple[int, ...]:
+    def _check_addresses(cls, senses: tuple[int, ...]) -> tuple[int, ...]:
         for address in senses:
             if not 0 <= address < RAM:
                 raise ValueError(f"RAM goes from 0 to {RAM - 1}; there is no address {address}")
         return senses
 
     @model_validator(mode="after")
-    def _can_be_played(self) -> "Atari":
+    def _check_game(self) -> "Atari":
         known = minimal_actions(self.game)
-        if lacking := [name for name in self._names if name not in legal_actions()]:
+        if unknown := [name for name in self._action_names if name not in legal_actions()]:
             raise ValueError(
-                f"actions: there is no {', '.join(lacking)}; {self.game} takes {', '.join(known)}"
+                f"actions: there is no {', '.join(unknown)}; {self.game} takes {', '.join(known)}"
             )
         for option in ("mode", "difficulty"):
             value, available = getattr(self, option), available_options(self.game)[option]
             if value is not None and value not in available:
                 raise ValueError(f"{option}: {self.game} has {available}, not {value}")
-        assert self._is_fatal
-        assert self._is_food
+        assert self._fatal_condition
+        assert self._food_amount
         return self
 
     @cached_property
-    def _is_fatal(self) -> Expression:
+    def _fatal_condition(self) -> Expression:
         return conditions.parse(self.fatal, "condition", NAMES)
 
     @cached_property
-    def _is_food(self) -> Expression:
+    def _food_amount(self) -> Expression:
         return conditions.parse(self.food, "amount", NAMES)
 
     @property
     def versions(self) -> dict[str, str]:
-        """The emulator's, which comes with its games."""
+        """Version of the emulator, whose package contains the games."""
         return {"ale-py": version("ale-py")}
 
     @property
     def senses_size(self) -> int:
-        """How many bytes are perceived."""
-        return len(self._addresses_seen)
+        """Number of bytes perceived."""
+        return len(self._addresses)
 
     @cached_property
-    def _addresses_seen(self) -> np.ndarray:
+    def _addresses(self) -> np.ndarray:
         return np.array(self.senses or range(RAM))
 
     @property
-    def _names(self) -> list[str]:
-        """Of the actions, in order."""
+    def _action_names(self) -> list[str]:
+        """Names of the actions, in order."""
         if self.actions in ("minimal", "full"):
             known = minimal_actions(self.game) if self.actions == "minimal" else legal_actions()
             return list(known)
@@ -130,36 +132,38 @@ class Atari(HostHabitat, Settings):
     @cached_property
     def _buttons(self) -> list[int]:
         """Codes of the actions."""
-        return [legal_actions()[name] for name in self._names]
+        return [legal_actions()[name] for name in self._action_names]
 
     @property
     def action(self) -> Discrete:
-        """A button."""
+        """A choice among the buttons."""
         return Discrete(len(self._buttons))
 
     @property
     def words(self) -> int:
-        """For no-ops and sticky actions; without them all games begin alike."""
+        """Random words for no-ops and sticky actions; without them all games begin alike."""
         return 2 if self.noops or self.sticky else 0
 
     @property
     def tallies(self) -> tuple[str, ...]:
-        """What is counted for people."""
+        """Names of the counts that are kept for people."""
         return "score", "kills", "lives"
 
     @property
     def rate(self) -> float:
-        """Ticks in a second."""
-        return FRAMES / self.frame_skip
+        """Ticks a second."""
+        return FRAME_RATE / self.frame_skip
 
     def check(self, cells: int) -> None:
         """Raise ValueError if there are more workers than cells."""
         if self.workers is not None and self.workers > cells:
-            raise ValueError(f"workers: {self.workers} workers are more than the {cells} cells")
+            raise ValueError(
+                f"workers: {self.workers} workers are more than the {cells} cells; use at most {cells}"
+            )
 
     def open(self, cells: int, watched: bool = False) -> None:
         """Start the emulators, with screens if they are watched."""
-        screen = {WATCHED: ("uint8", (*screen_size(self.game), 3))} if watched else {}
+        screen = {SCREEN: ("uint8", (*screen_size(self.game), 3))} if watched else {}
         settings = {
             **self.model_dump(
                 include={"game", "mode", "difficulty", "frame_skip", "sticky", "noops"}
@@ -176,18 +180,18 @@ class Atari(HostHabitat, Settings):
         self._tally = np.zeros((cells, len(self.tallies)), np.int32)
         self._lives = self._tally[:, 2]
 
-    def reset(self, born: np.ndarray, words: np.ndarray) -> np.ndarray:
-        """A game from its start for each newborn."""
+    def reset(self, cells: np.ndarray, words: np.ndarray) -> np.ndarray:
+        """Start a game in each of the cells."""
         pool, todo = self._pool, np.zeros(len(self._lives), bool)
-        todo[born] = True
-        pool.arrays["words"][born, : self.words] = words
+        todo[cells] = True
+        pool.arrays["words"][cells, : self.words] = words
         pool.reset(todo)
-        self._tally[born] = 0
-        self._lives[born] = pool.arrays["lives"][born]
-        return self._sensed()[born]
+        self._tally[cells] = 0
+        self._lives[cells] = pool.arrays["lives"][cells]
+        return self._compute_senses()[cells]
 
     def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
-        """One tick of the games that are played."""
+        """Step the games of the living by one tick."""
         pool, lives = self._pool, self._lives
         pool.arrays["action"][:] = action
         pool.step(alive)
@@ -196,53 +200,53 @@ class Atari(HostHabitat, Settings):
         lives[:] = values["lives"]
         if values["points"].any():
             self._count(values["points"], alive)
-        fatal: Any = np.full(len(lives), self._is_fatal(values), bool)
-        food: Any = np.full(len(lives), self._is_food(values), np.float32)
-        return self._sensed(), Outcome(fatal, food)
+        fatal: Any = np.full(len(lives), self._fatal_condition(values), bool)
+        food: Any = np.full(len(lives), self._food_amount(values), np.float32)
+        return self._compute_senses(), Outcome(fatal, food)
 
     def _count(self, points: np.ndarray, alive: np.ndarray) -> None:
-        """Points (N,) made, or lost to the opponent, in a tick."""
+        """Tally the points (N,) of a tick; points of the opponent are negative."""
         points = points.astype(np.int32) * alive
         self._tally[:, 0] += points
         self._tally[:, 1] += points > 0
 
     def tally(self) -> np.ndarray:
-        """Score, kills (ticks in which points were made) and lives left, int32 (N, 3)."""
+        """Return score, kills (ticks in which points were made) and lives left, int32 (N, 3)."""
         return self._tally
 
     def original(self) -> "Atari":
-        """The game until it is over; food is its points."""
+        """Return the game until it is over; food is its points."""
         return Atari(**{**self.model_dump(), "fatal": "game_over", "food": "points"})
 
     def seen(self) -> dict[str, np.ndarray]:
-        """RAM, tally, and the screen if it is watched, uint8 (N, height, width, 3)."""
+        """Return RAM, tally, and the screen if it is watched, uint8 (N, height, width, 3)."""
         arrays = self._pool.arrays
-        shown = {name: arrays[name] for name in ("ram", WATCHED) if name in arrays}
+        shown = {name: arrays[name] for name in ("ram", SCREEN) if name in arrays}
         return {**shown, "tally": self._tally}
 
     def picture(self, body: dict[str, np.ndarray], action: np.ndarray) -> "Image":
-        """The screen, with room for words above."""
+        """Return the screen, with a margin for captions above."""
         from primordia.habitats.atari.picture import draw
 
-        return draw(body[WATCHED])
+        return draw(body[SCREEN])
 
     def caption(self, body: dict[str, np.ndarray], action: np.ndarray) -> str:
-        """The score so far, and the button."""
-        return f"score {body['tally'][0]:,}   {self._names[int(action)]}"
+        """Return the score so far, and the button."""
+        return f"score {body['tally'][0]:,}   {self._action_names[int(action)]}"
 
     def close(self) -> None:
         """Stop the emulators."""
         self._pool.close()
 
-    def _sensed(self) -> np.ndarray:
-        """Float32 (N, S)."""
+    def _compute_senses(self) -> np.ndarray:
+        """Return the senses of all cells, float32 (N, S)."""
         if self.blind:
             return np.ones((len(self._lives), self.senses_size), np.float32)
         ram = self._pool.arrays["ram"]
-        return SCALED.take(ram[:, self._addresses_seen] if self.senses else ram)
+        return SCALED.take(ram[:, self._addresses] if self.senses else ram)
 
     def save(self) -> dict[str, np.ndarray]:
-        """Serialised states, padded to one length: uint8 (N, L), and their lengths."""
+        """Return the serialised states, padded to one length, uint8 (N, L), with lengths and tally."""
         states = self._pool.save()
         lengths = np.array([len(state) for state in states])
         padded = np.zeros((len(states), lengths.max()), np.uint8)
@@ -251,7 +255,7 @@ class Atari(HostHabitat, Settings):
         return {"states": padded, "lengths": lengths, "tally": self._tally.copy()}
 
     def load(self, arrays: dict[str, np.ndarray]) -> None:
-        """Take back what `save` gave."""
+        """Restore the states that `save` returned."""
         pairs = zip(arrays["states"], arrays["lengths"], strict=True)
         self._pool.load([row[:length].tobytes() for row, length in pairs])
         self._tally[:] = arrays["tally"]

@@ -1,8 +1,9 @@
-"""One Atari game a cell, on the Arcade Learning Environment (Bellemare et al. 2013); runs in workers.
+"""One Atari game for each cell, on the Arcade Learning Environment (Bellemare et al. 2013), in workers.
 
-A life begins in the state after the game's reset, which is cloned once and restored at each birth (a
-reset takes as long as some 60 frames), plus no-ops if asked for. The emulator itself draws nothing at
-random: sticky actions are ours, from a counter that begins with the organism's random words.
+A life begins in the state after the game's reset, plus no-ops if the settings say so. That state is
+cloned once and restored at each birth, since a reset takes as long as about 60 frames. The emulator
+itself draws no random numbers: sticky actions are drawn here, from dice that begin with the birth's
+random words.
 """
 
 from typing import TYPE_CHECKING
@@ -35,15 +36,15 @@ REFUSED = {
         "the emulator does not restore its states exactly, so no run of it could be repeated",
     ),
 }
-"""Games that cannot be lived in, and why; measured with ale-py 0.12.1, all others are exact."""
-WATCHED = "screen"
-"""A further field, uint8 (height, width, 3): filled after each tick if the arrays have it."""
+"""Games that cannot be habitats, and why. All others are exact (measured with ale-py 0.12.1)."""
+SCREEN = "screen"
+"""An optional field, uint8 (height, width, 3), which is filled after each tick."""
 
 
 def console(
     game: str, mode: int | None = None, difficulty: int | None = None, seed: int = 0
 ) -> "ALEInterface":
-    """A fresh emulator with a game: no frame skip, no sticky actions, no time limit of its own."""
+    """Return an emulator at the start of a game, without frame skip, sticky actions or time limit."""
     from ale_py import ALEInterface, LoggerMode, roms
 
     ALEInterface.setLoggerMode(LoggerMode.Error)
@@ -85,19 +86,19 @@ class Arcade:
         self._held: dict[int, int] = {}
 
     def make(self, cell: int) -> None:
-        """One more emulator."""
+        """Make the emulator of one more cell."""
         ale = console(*self._console)
         if not self._ale:
             self._start = ale.cloneState()
         self._ale[cell], self._ram[cell] = ale, self._arrays["ram"][cell]
-        if WATCHED in self._arrays:
-            self._screen[cell] = self._arrays[WATCHED][cell]
+        if SCREEN in self._arrays:
+            self._screen[cell] = self._arrays[SCREEN][cell]
         self._dice[cell], self._held[cell] = 0, NOOP
 
     def step(self, cells: list[int]) -> None:
-        """Frames of one tick; points are summed over them.
+        """Emulate the frames of one tick; points are summed over them.
 
-        Rows are read and written for all cells at once: done one by one it takes a fifth of the time.
+        Rows are read and written for all cells at once: one by one, they take a fifth of the time.
         """
         arrays, actions = self._arrays, self._actions
         points, lives, over = [], [], []
@@ -114,32 +115,32 @@ class Arcade:
         arrays["game_over"][cells] = over
 
     def _frames(self, ale: "ALEInterface", cell: int, action: int) -> int:
-        """The frames of a tick -> points."""
+        """Emulate the frames of a tick, and return the points made."""
         if self._skip == 1 and not self._sticky:
             return ale.act(action)
         points = 0
         for _ in range(self._skip):
-            points += ale.act(self._pressed(cell, action) if self._sticky else action)
+            points += ale.act(self._button(cell, action) if self._sticky else action)
         return points
 
-    def _pressed(self, cell: int, action: int) -> int:
-        """The button that is down in this frame: with some probability still the one before."""
+    def _button(self, cell: int, action: int) -> int:
+        """Return the button that is down in this frame: with probability `sticky`, the last frame's."""
         self._dice[cell], word = dice.roll(self._dice[cell])
         if word >= self._sticky:
             self._held[cell] = action
         return self._held[cell]
 
     def reset(self, cell: int) -> None:
-        """From the start, or after up to `noops` frames of waiting."""
+        """Begin a game at its start, or after a random number of no-ops, up to `noops`."""
         ale, words = self._ale[cell], self._arrays["words"][cell].tolist()
         ale.restoreState(self._start)
         for _ in range(words[0] % (self._noops + 1)):
             ale.act(NOOP)
         self._dice[cell], self._held[cell] = dice.begin(*words), NOOP
-        self._show(cell)
+        self._fill_row(cell)
 
-    def _show(self, cell: int) -> None:
-        """Fill the cell's row with how things stand, no points made."""
+    def _fill_row(self, cell: int) -> None:
+        """Fill the cell's row with the present state, and no points."""
         ale, arrays = self._ale[cell], self._arrays
         ale.getRAM(self._ram[cell])
         if self._screen:
@@ -149,14 +150,14 @@ class Arcade:
         arrays["game_over"][cell] = ale.game_over(with_truncation=False)
 
     def save(self, cell: int) -> bytes:
-        """Dice, the button held, and the emulator's serialised state."""
+        """Return the dice, the button held, and the emulator's serialised state."""
         state = self._ale[cell].cloneState().serialize()
         return self._dice[cell].to_bytes(8, "little") + bytes([self._held[cell]]) + state
 
     def load(self, cell: int, state: bytes) -> None:
-        """Take back what `save` gave."""
+        """Restore a state that `save` returned."""
         from ale_py import ALEState
 
         self._dice[cell], self._held[cell] = int.from_bytes(state[:8], "little"), state[8]
         self._ale[cell].restoreState(ALEState(state[9:]))
-        self._show(cell)
+        self._fill_row(cell)

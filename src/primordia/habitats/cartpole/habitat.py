@@ -34,11 +34,13 @@ class CartPole(JaxHabitat, Settings):
     rate: ClassVar = 1 / TAU
 
     senses: tuple[Coordinate, ...] = Field(
-        COORDINATES, min_length=1, strict=False, description="what is perceived, unscaled"
+        COORDINATES, min_length=1, strict=False, description="coordinates perceived, unscaled"
     )
     angle_limit: float = Field(12.0, gt=0, le=180, description="fatal angle, degrees")
     track_limit: float = Field(
-        2.4, gt=0, description="fatal distance from the middle, m; 1e9 is as good as none"
+        2.4,
+        gt=0,
+        description="fatal distance from the middle, m; 1e9: there is no limit in practice",
     )
     spread: float = Field(
         0.05, ge=0, description="each coordinate of a fresh body is uniform within +-spread"
@@ -50,7 +52,7 @@ class CartPole(JaxHabitat, Settings):
         return len(self.senses)
 
     def picture(self, body: np.ndarray, action: np.ndarray) -> "Image":
-        """Return a picture of the cart, its pole, and the push."""
+        """Return a picture of the cart, its pole and its push."""
         from primordia.habitats.cartpole.picture import draw
 
         return draw(body, int(action), self.track_limit)

@@ -1,4 +1,4 @@
-"""CartPole as one sees it: the cart on its track, the pole, and the push it is given."""
+"""Pictures of CartPole: the cart on its track, the pole and the push."""
 
 import math
 
@@ -6,8 +6,8 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 WIDTH, HEIGHT = 640, 360
-FINE = 2
-"""Drawn this many times larger and reduced, for smooth edges."""
+OVERSAMPLING = 2
+"""Pictures are drawn this many times larger and then reduced, for smooth edges."""
 SKY, TRACK, CART, POLE, PUSH, LIMIT = (
     "#fbfaf7",
     "#8a8a8a",
@@ -23,40 +23,40 @@ POLE_LENGTH = 150
 
 
 def draw(body: np.ndarray, action: int, track_limit: float) -> Image.Image:
-    """A picture (640 x 360) of a body (x, x_dot, theta, theta_dot) pushed left (0) or right (1)."""
-    large = Image.new("RGB", (WIDTH * FINE, HEIGHT * FINE), SKY)
+    """Return a picture (640 x 360) of a body (x, x_dot, theta, theta_dot); action 1 pushes right."""
+    large = Image.new("RGB", (WIDTH * OVERSAMPLING, HEIGHT * OVERSAMPLING), SKY)
     pen = _Pen(ImageDraw.Draw(large))
     reach = track_limit if track_limit < 100 else 2.4
     at = WIDTH / 2 + (WIDTH / 2 - 60) * float(body[0]) / reach
     _track(pen, track_limit < 100)
     _push(pen, at, action)
     _cart_and_pole(pen, at, float(body[2]))
-    return large.reduce(FINE)
+    return large.reduce(OVERSAMPLING)
 
 
 class _Pen:
-    """Draws in pixels of the picture as it will be."""
+    """A pen that takes coordinates in pixels of the reduced picture."""
 
-    def __init__(self, on: ImageDraw.ImageDraw) -> None:
-        self._on = on
+    def __init__(self, canvas: ImageDraw.ImageDraw) -> None:
+        self._canvas = canvas
 
     def line(self, *points: tuple[float, float], width: float, colour: str) -> None:
-        self._on.line(_fine(points), fill=colour, width=round(width * FINE))
+        self._canvas.line(_scaled(points), fill=colour, width=round(width * OVERSAMPLING))
 
     def polygon(self, *points: tuple[float, float], colour: str) -> None:
-        self._on.polygon(_fine(points), fill=colour)
+        self._canvas.polygon(_scaled(points), fill=colour)
 
     def dot(self, x: float, y: float, radius: float, colour: str) -> None:
-        corners = _fine(((x - radius, y - radius), (x + radius, y + radius)))
-        self._on.ellipse(corners, fill=colour)
+        corners = _scaled(((x - radius, y - radius), (x + radius, y + radius)))
+        self._canvas.ellipse(corners, fill=colour)
 
     def box(self, x: float, y: float, width: float, height: float, colour: str) -> None:
-        corners = _fine(((x - width / 2, y - height), (x + width / 2, y)))
-        self._on.rounded_rectangle(corners, radius=6 * FINE, fill=colour)
+        corners = _scaled(((x - width / 2, y - height), (x + width / 2, y)))
+        self._canvas.rounded_rectangle(corners, radius=6 * OVERSAMPLING, fill=colour)
 
 
-def _fine(points: tuple[tuple[float, float], ...]) -> list[tuple[float, float]]:
-    return [(x * FINE, y * FINE) for x, y in points]
+def _scaled(points: tuple[tuple[float, float], ...]) -> list[tuple[float, float]]:
+    return [(x * OVERSAMPLING, y * OVERSAMPLING) for x, y in points]
 
 
 def _track(pen: _Pen, limited: bool) -> None:
@@ -67,7 +67,7 @@ def _track(pen: _Pen, limited: bool) -> None:
 
 
 def _push(pen: _Pen, at: float, action: int) -> None:
-    """An arrow at the side that is pushed."""
+    """Draw an arrow at the side that is pushed."""
     side = -1 if action == 1 else 1
     tip, tail = at + side * (CART_SIZE[0] / 2 + 6), at + side * (CART_SIZE[0] / 2 + 34)
     y = GROUND - CART_SIZE[1] / 2 - 8

@@ -1,9 +1,9 @@
-"""Any MuJoCo model as a habitat: bodies, stepped side by side on all cores.
+"""Any MuJoCo model as a habitat: bodies, stepped in parallel on all cores.
 
-Schmidgall & Hays 2021, "Reacher", "HalfCheetah", "Walker". What is perceived, fatal, food and effort is
-said in settings, of named parts of the state. The simulator is MuJoCo's batch (extra
-`primordia[mujoco]`): results do not depend on the number of threads, and a row of its state, warm start
-included, is all that a body needs to go on exactly.
+Schmidgall & Hays 2021, "Reacher", "HalfCheetah", "Walker". Settings define senses, death, food and effort
+by expressions of named parts of the state. The simulator is MuJoCo's batch (extra `primordia[mujoco]`).
+Its results do not depend on the number of threads. A row of its state includes the warm start, so a body
+goes on exactly from it.
 """
 
 import os
@@ -20,12 +20,12 @@ from primordia.habitats.conditions import Expression, Names
 from primordia.habitats.contract import Continuous, HostHabitat, Outcome
 from primordia.habitats.mujoco.simulator import (
     ROOT,
-    compiled,
     fingerprint,
-    moves_about,
-    names,
-    numbered,
+    ids_by_name,
+    load_model,
+    observables,
     package,
+    root_translates,
 )
 from primordia.habitats.mujoco.target import Target
 from primordia.random import dice
@@ -35,174 +35,170 @@ from primordia.settings.base import Settings
 if TYPE_CHECKING:
     from PIL.Image import Image
 
-PLACES = {"xpos", "site", "height", "pitch", "travelled", "com_forward", "reached"}
-"""Names of what is not in the state itself, but follows from it."""
+DERIVED = {"xpos", "site", "height", "pitch", "travelled", "com_forward", "reached"}
+"""Observables that MuJoCo derives from the state after a step."""
 
 
 class MuJoCo(HostHabitat, Settings):
     """A model as a habitat; actions are its controls, kept within their ranges."""
 
-    file: str = Field(description="an MJCF file, or gymnasium:NAME.xml, one that Gymnasium brings")
+    file: str = Field(description="an MJCF file, or gymnasium:NAME.xml for one of Gymnasium's")
     timestep: float | None = Field(None, gt=0, description="seconds a substep, if not the model's")
     substeps: int = Field(1, ge=1, le=1000, description="steps of the simulator in a tick")
     senses: tuple[str, ...] = Field(
         ("qpos", "qvel"), strict=False, description="numbers perceived, such as qpos[1:] or qvel"
     )
     position_noise: float = Field(
-        0.0, ge=0, description="bodies are born in positions up to so far from the model's own"
+        0.0, ge=0, description="largest deviation of positions at birth from the model's"
     )
-    velocity_noise: float = Field(0.0, ge=0, description="... with velocities up to so large,")
-    velocity_sd: float = Field(0.0, ge=0, description="... or with Gaussian ones of so large an sd")
+    velocity_noise: float = Field(0.0, ge=0, description="largest velocity at birth, or")
+    velocity_sd: float = Field(0.0, ge=0, description="standard deviation of velocities at birth")
     fatal: str = Field("", description="condition that ends a life; none: nothing does")
     food: str = Field("0", description="amount gathered in a tick")
     effort: str = Field("0", description="amount exerted in a tick")
-    target: Target | None = Field(None, description="something to be reached")
+    target: Target | None = Field(None, description="an object to be reached")
     episode: int | None = Field(
         None, ge=1, description="ticks after which an evaluation ends a game; no life ends there"
     )
     scored: dict[str, Any] = Field(
-        {}, description="what is different in the game that others score, where food is the score"
+        {}, description="settings of the standard benchmark that differ; food is then its score"
     )
 
     _bodies: Any = PrivateAttr()
-    _seen: dict[str, Any] = PrivateAttr()
-    """Arrays by name that are always as the bodies are"""
-    _ways: dict[str, np.ndarray] = PrivateAttr()
-    """The same, of places between which ways are measured"""
+    _views: dict[str, Any] = PrivateAttr()
+    """Views of the bodies' state by name, which change as the bodies do"""
+    _tracked: dict[str, np.ndarray] = PrivateAttr()
+    """Views of the positions whose displacement in a tick is observed"""
     _dice: np.ndarray = PrivateAttr()
-    """uint64 (N,), of targets"""
+    """uint64 (N,): dice from which targets get their positions"""
 
     @model_validator(mode="after")
-    def _makes_sense(self) -> "MuJoCo":
-        assert self._perceived
-        assert self._used is not None
+    def _check_settings(self) -> "MuJoCo":
+        assert self._sense_expressions
+        assert self._observed is not None
         if (original := self.original()) and original.senses_size != self.senses_size:
-            raise ValueError("scored: senses must be as many as in the task itself")
+            raise ValueError(f"scored: use {self.senses_size} senses, like the task itself")
         if self.velocity_noise and self.velocity_sd:
-            raise ValueError("velocity_noise or velocity_sd: one or the other")
+            raise ValueError("velocity_noise and velocity_sd exclude each other; set one to 0")
         if self.target is not None:
             self.target.check(self._model)
         return self
 
     @cached_property
     def _model(self) -> Any:
-        return compiled(self.file, self.timestep)
+        return load_model(self.file, self.timestep)
 
     @cached_property
     def _names(self) -> Names:
-        known = names(self._model)
+        known = observables(self._model)
         return {**known, "reached": "condition"} if self.target else known
 
     @cached_property
-    def _perceived(self) -> list[Expression]:
-        return [conditions.parse(each, "numbers", self._names) for each in self.senses]
+    def _sense_expressions(self) -> list[Expression]:
+        return [conditions.parse(text, "numbers", self._names) for text in self.senses]
 
     @cached_property
-    def _is_fatal(self) -> Expression | None:
+    def _fatal_condition(self) -> Expression | None:
         return conditions.parse(self.fatal, "condition", self._names) if self.fatal else None
 
     @cached_property
-    def _is_food(self) -> Expression:
+    def _food_amount(self) -> Expression:
         return conditions.parse(self.food, "amount", self._names)
 
     @cached_property
-    def _is_effort(self) -> Expression:
+    def _effort_amount(self) -> Expression:
         return conditions.parse(self.effort, "amount", self._names)
 
     @cached_property
-    def _used(self) -> frozenset[str]:
-        """Names that are spoken of."""
-        judged = [self._is_food, self._is_effort, *filter(None, [self._is_fatal])]
-        spoken = frozenset().union(*(each.names for each in (*self._perceived, *judged)))
-        return spoken | {"reached"} if self.target else spoken
+    def _observed(self) -> frozenset[str]:
+        """Names of the observables that the settings use."""
+        expressions = [*self._sense_expressions, self._food_amount, self._effort_amount]
+        expressions += [self._fatal_condition] if self._fatal_condition else []
+        observed = frozenset().union(*(expression.names for expression in expressions))
+        return observed | {"reached"} if self.target else observed
 
     @property
     def versions(self) -> dict[str, str]:
-        """MuJoCo's, and which model the file holds."""
+        """Version of MuJoCo, and the fingerprint of the model."""
         return {"mujoco": version("mujoco"), Path(self.file).name: fingerprint(self._model)}
 
     @property
     def senses_size(self) -> int:
-        """How many numbers are perceived."""
-        return sum(each.kind if isinstance(each.kind, int) else 1 for each in self._perceived)
+        """Number of senses."""
+        kinds = [expression.kind for expression in self._sense_expressions]
+        return sum(kind if isinstance(kind, int) else 1 for kind in kinds)
 
     @property
     def action(self) -> Continuous:
-        """Controls."""
+        """Controls of the model."""
         return Continuous(self._model.nu)
 
     @property
     def words(self) -> int:
-        """One for each position and velocity, and two for the dice of a target."""
-        return self._model.nq + self._model.nv + 2 * (self.target is not None)
+        """A random word for each position and velocity, and two for the dice of a target."""
+        return self._model.nq + self._model.nv + (2 if self.target else 0)
 
     @property
     def rate(self) -> float:
-        """Ticks in a second."""
+        """Ticks a second."""
         return 1 / (self._model.opt.timestep * self.substeps)
 
     def open(self, cells: int, watched: bool = False) -> None:
-        """Make room for so many bodies, watched or not."""
+        """Allocate the bodies."""
         threads = len(os.sched_getaffinity(0))
         self._bodies = package().batch.Batch(self._model, cells, nthread=threads)
         self._dice = np.zeros(cells, np.uint64)
-        bound, model, used = self._bodies.bind, self._model, self._used
-        self._seen = {name: bound(name) for name in ("qpos", "qvel", "ctrl")}
-        if used & {"xpos", "reached"}:
-            places = bound("xpos")
-            self._seen["xpos"] = {n: places[:, i] for n, i in numbered(model, "body").items()}
-        if "site" in used:
-            places = bound("site_xpos")
-            self._seen["site"] = {n: places[:, i] for n, i in numbered(model, "site").items()}
-        if "height" in used:
-            self._seen["height"] = bound("xpos")[:, ROOT, 2]
-        if "pitch" in used:
-            self._seen["frame"] = bound("xmat")[:, ROOT]
-        self._ways = {}
-        if "forward" in used:
-            self._ways["forward"] = self._seen["qpos"][:, 0]
-        if used & {"travelled", "com_forward"}:
-            self._ways["middle"] = bound("subtree_com")[:, 0, :2]
+        bind, model, observed = self._bodies.bind, self._model, self._observed
+        self._views = {name: bind(name) for name in ("qpos", "qvel", "ctrl")}
+        if observed & {"xpos", "reached"}:
+            xpos, bodies = bind("xpos"), ids_by_name(model, "body")
+            self._views["xpos"] = {name: xpos[:, number] for name, number in bodies.items()}
+        if "site" in observed:
+            xpos, sites = bind("site_xpos"), ids_by_name(model, "site")
+            self._views["site"] = {name: xpos[:, number] for name, number in sites.items()}
+        if "height" in observed:
+            self._views["height"] = bind("xpos")[:, ROOT, 2]
+        if "pitch" in observed:
+            self._views["rotation"] = bind("xmat")[:, ROOT]
+        self._tracked = {}
+        if "forward" in observed:
+            self._tracked["forward"] = self._views["qpos"][:, 0]
+        if observed & {"travelled", "com_forward"}:
+            self._tracked["com"] = bind("subtree_com")[:, 0, :2]
 
     @cached_property
     def _stage(self) -> Any:
-        """What is computed of a state besides: places, if they are spoken of."""
+        """Stage of MuJoCo's derived quantities to compute after a step: positions, if observed."""
         stages = package().mjtStage
-        return stages.mjSTAGE_POS if self._used & PLACES else stages.mjSTAGE_NONE
+        return stages.mjSTAGE_POS if self._observed & DERIVED else stages.mjSTAGE_NONE
 
-    def reset(self, born: np.ndarray, words: np.ndarray) -> np.ndarray:
-        """The model's own pose, with noise from words uint32 (K, words)."""
+    def reset(self, cells: np.ndarray, words: np.ndarray) -> np.ndarray:
+        """Put the bodies of cells into the model's pose, with noise from words uint32 (K, words)."""
         bodies, positions = self._bodies, self._model.nq
-        bodies.reset(born, stage=package().mjtStage.mjSTAGE_NONE)
-        bodies.qpos[born] += self.position_noise * _uniform(words[:, :positions])
-        moved = words[:, positions : positions + self._model.nv]
-        gaussian = quantiles()[moved >> np.uint32(16)]
-        bodies.qvel[born] = self.velocity_noise * _uniform(moved) + self.velocity_sd * gaussian
+        bodies.reset(cells, stage=package().mjtStage.mjSTAGE_NONE)
+        bodies.qpos[cells] += self.position_noise * _uniform(words[:, :positions])
+        of_velocity = words[:, positions : positions + self._model.nv]
+        uniform, gaussian = _uniform(of_velocity), quantiles()[of_velocity >> np.uint32(16)]
+        bodies.qvel[cells] = self.velocity_noise * uniform + self.velocity_sd * gaussian
         if self.target is not None:
-            for cell, (high, low) in zip(born.tolist(), words[:, -2:].tolist(), strict=True):
+            for cell, (high, low) in zip(cells.tolist(), words[:, -2:].tolist(), strict=True):
                 self._dice[cell] = dice.begin(high, low)
-                self._put_target(self.target, cell)
-        bodies.forward(born)
-        return self._sensed(self._values(self._stood()))[born]
+                self._move_target(self.target, cell)
+        bodies.forward(cells)
+        return self._compute_senses(self._observe(self._tracked_positions()))[cells]
 
     def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
-        """One tick of the bodies that live."""
-        np.clip(action, *self._range, out=self._seen["ctrl"])
-        before, fault = self._stood(), self._advance(alive)
-        values = self._values(before)
-        fatal = self._is_fatal(values) if self._is_fatal else False
-        told: dict[str, Any] = {
-            "fatal": np.full(len(alive), fatal, bool),
-            "food": np.full(len(alive), self._is_food(values), np.float32),
-            "effort": np.full(len(alive), self._is_effort(values), np.float32),
-            "fault": fault,
-        }
+        """Step the bodies of the living by one tick."""
+        np.clip(action, *self._range, out=self._views["ctrl"])
+        before, fault = self._tracked_positions(), self._simulate(alive)
+        values = self._observe(before)
+        outcome = self._judge(values, fault)
         if self.target is not None and (reached := values["reached"] & alive).any():
             cells = np.flatnonzero(reached)
             for cell in cells.tolist():
-                self._put_target(self.target, cell)
+                self._move_target(self.target, cell)
             self._bodies.forward(cells)
-        return self._sensed(values), Outcome(**told)
+        return self._compute_senses(values), outcome
 
     @cached_property
     def _range(self) -> tuple[np.ndarray, np.ndarray]:
@@ -210,85 +206,94 @@ class MuJoCo(HostHabitat, Settings):
         limited, (low, high) = self._model.actuator_ctrllimited, self._model.actuator_ctrlrange.T
         return np.where(limited, low, -np.inf), np.where(limited, high, np.inf)
 
-    def _advance(self, alive: np.ndarray) -> np.ndarray:
-        """Step who is alive -> whose simulation failed, bool (N,); the others are not disturbed."""
+    def _simulate(self, alive: np.ndarray) -> np.ndarray:
+        """Step the bodies of the living, and return those whose simulation failed, bool (N,)."""
         fault = np.zeros(len(alive), bool)
         try:
-            who = None if alive.all() else np.flatnonzero(alive)
-            self._bodies.step(who, nstep=self.substeps, stage=self._stage)
+            cells = None if alive.all() else np.flatnonzero(alive)
+            self._bodies.step(cells, nstep=self.substeps, stage=self._stage)
         except package().batch.SimulationError as error:
             fault[error.ids] = True
         return fault
 
-    def _stood(self) -> dict[str, np.ndarray]:
-        """From where ways are measured."""
-        return {name: place.copy() for name, place in self._ways.items()}
+    def _judge(self, values: dict[str, Any], fault: Any) -> Outcome:
+        """Return the outcome of a tick, from the values of the observables after it."""
+        is_fatal = self._fatal_condition(values) if self._fatal_condition else False
+        fatal: Any = np.full(len(fault), is_fatal, bool)
+        food: Any = np.full(len(fault), self._food_amount(values), np.float32)
+        effort: Any = np.full(len(fault), self._effort_amount(values), np.float32)
+        return Outcome(fatal, food, effort, fault)
 
-    def _values(self, before: dict[str, np.ndarray]) -> dict[str, Any]:
-        """All that is spoken of, as it is now."""
-        seen, values = self._seen, dict(self._seen)
+    def _tracked_positions(self) -> dict[str, np.ndarray]:
+        """Return a copy of the positions whose displacement is observed."""
+        return {name: position.copy() for name, position in self._tracked.items()}
+
+    def _observe(self, before: dict[str, np.ndarray]) -> dict[str, Any]:
+        """Return the present values of the observables, given the tracked positions before the tick."""
+        views, values = self._views, dict(self._views)
         if "forward" in before:
-            values["forward"] = self._ways["forward"] - before["forward"]
-        if "middle" in before:
-            moved = self._ways["middle"] - before["middle"]
-            values["com_forward"], values["travelled"] = moved[:, 0], np.hypot(*moved.T)
-        if "frame" in seen:
-            values["pitch"] = np.arctan2(-seen["frame"][:, 6], seen["frame"][:, 0])
+            values["forward"] = self._tracked["forward"] - before["forward"]
+        if "com" in before:
+            displacement = self._tracked["com"] - before["com"]
+            values["com_forward"] = displacement[:, 0]
+            values["travelled"] = np.hypot(*displacement.T)
+        if "rotation" in views:
+            values["pitch"] = np.arctan2(-views["rotation"][:, 6], views["rotation"][:, 0])
         if self.target is not None:
-            values["reached"] = self.target.reached(seen["xpos"])
+            values["reached"] = self.target.reached(views["xpos"])
         return values
 
-    def _sensed(self, values: dict[str, Any]) -> np.ndarray:
-        """Float32 (N, S)."""
-        parts = [each(values) for each in self._perceived]
+    def _compute_senses(self, values: dict[str, Any]) -> np.ndarray:
+        """Return the senses of all cells, float32 (N, S)."""
+        parts = [expression(values) for expression in self._sense_expressions]
         columns = [part if part.ndim == 2 else part[:, None] for part in parts]
         return np.concatenate(columns, axis=1, dtype=np.float32)
 
-    def _put_target(self, target: Target, cell: int) -> None:
-        """Somewhere else, at rest."""
-        self._dice[cell], place = target.somewhere(int(self._dice[cell]))
-        for (position, velocity), along in zip(self._slides, place, strict=True):
-            self._seen["qpos"][cell, position] = along
-            self._seen["qvel"][cell, velocity] = 0.0
+    def _move_target(self, target: Target, cell: int) -> None:
+        """Move a cell's target to a random position, at rest."""
+        self._dice[cell], position = target.draw_position(int(self._dice[cell]))
+        for (qpos, qvel), coordinate in zip(self._target_joints, position, strict=True):
+            self._views["qpos"][cell, qpos] = coordinate
+            self._views["qvel"][cell, qvel] = 0.0
 
     @cached_property
-    def _slides(self) -> list[tuple[int, int]]:
-        return self.target.slides(self._model) if self.target else []
+    def _target_joints(self) -> list[tuple[int, int]]:
+        return self.target.joint_addresses(self._model) if self.target else []
 
     def original(self) -> "MuJoCo | None":
-        """The game that others score, if it is said what that is."""
+        """Return the game as the standard benchmark scores it, if `scored` describes it."""
         changed = {**self.model_dump(), "scored": {}, **self.scored}
         return MuJoCo(**changed) if self.scored else None
 
     def seen(self) -> dict[str, np.ndarray]:
-        """Positions of the joints, float64 (N, nq)."""
-        return {"qpos": self._seen["qpos"]}
+        """Return the positions of the joints, float64 (N, nq)."""
+        return {"qpos": self._views["qpos"]}
 
     @cached_property
-    def _eye(self) -> Any:
-        from primordia.habitats.mujoco.picture import Eye
+    def _renderer(self) -> Any:
+        from primordia.habitats.mujoco.picture import Renderer
 
-        return Eye(self._model)
+        return Renderer(self._model)
 
     def picture(self, body: dict[str, np.ndarray], action: np.ndarray) -> "Image":
-        """The robot where it stands, with room for words above."""
-        return self._eye.draw(body["qpos"])
+        """Return a picture of the robot, with a margin for captions above."""
+        return self._renderer.draw(body["qpos"])
 
     def caption(self, body: dict[str, np.ndarray], action: np.ndarray) -> str:
-        """How far it has come."""
-        return f"x {body['qpos'][0]:,.1f} m" if moves_about(self._model) else ""
+        """Return the distance travelled along x, if the robot can travel."""
+        return f"x {body['qpos'][0]:,.1f} m" if root_translates(self._model) else ""
 
     def save(self) -> dict[str, np.ndarray]:
-        """MuJoCo's states, float64 (N, L), and the dice of targets."""
+        """Return MuJoCo's states, float64 (N, L), and the dice of targets."""
         return {"state": self._bodies.state.copy(), "dice": self._dice.copy()}
 
     def load(self, arrays: dict[str, np.ndarray]) -> None:
-        """Take back what `save` gave."""
+        """Restore the states that `save` returned."""
         self._bodies.state[:], self._dice[:] = arrays["state"], arrays["dice"]
         if self._stage:
             self._bodies.forward(stage=self._stage)
 
 
 def _uniform(words: np.ndarray) -> np.ndarray:
-    """From -1 to 1, float64."""
+    """Return words uint32 as numbers from -1 to 1, float64."""
     return (words >> np.uint32(8)) * 2.0**-23 - 1

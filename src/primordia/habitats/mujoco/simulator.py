@@ -1,4 +1,4 @@
-"""MuJoCo's models: found, compiled, and what in them can be spoken of."""
+"""MuJoCo's models: how they are loaded, and their observables."""
 
 import hashlib
 from functools import cache
@@ -12,25 +12,27 @@ import numpy as np
 from primordia.habitats.conditions import Names
 
 GYMNASIUM = "gymnasium:"
-"""Begins the name of a file that comes with Gymnasium."""
+"""Prefix of the names of files that come with Gymnasium."""
 ROOT = 1
-"""The first body, after the world itself."""
-LACKING = "robots need MuJoCo and Gymnasium's models: pip install 'primordia[mujoco]'"
+"""The robot's first body; body 0 is the world."""
+NOT_INSTALLED = "robots need MuJoCo and Gymnasium's models: pip install 'primordia[mujoco]'"
 
 
 @cache
 def package() -> Any:
-    """The mujoco package. Its log is switched off: it would fill the terminal and a file in the current
-    folder with what the law knows anyway, that a body's simulation has failed.
+    """Return the mujoco package, with its log switched off.
+
+    The log would report every failed simulation, on the terminal and in a file of the current folder. The
+    law reports these as faults.
 
     Raises:
-        ValueError: it is not installed, or does not like its environment (MUJOCO_GL).
+        ValueError: it is not installed, or cannot be loaded with this MUJOCO_GL.
     """
     try:
         mujoco = import_module("mujoco")
         import_module("mujoco.batch")
     except ImportError:
-        raise ValueError(LACKING) from None
+        raise ValueError(NOT_INSTALLED) from None
     except RuntimeError as error:
         raise ValueError(f"MuJoCo cannot be loaded: {error}") from None
     log = mujoco.MjLogConfig.get()
@@ -39,11 +41,11 @@ def package() -> Any:
     return mujoco
 
 
-def compiled(file: str, timestep: float | None) -> Any:
-    """The MjModel of an MJCF file, its timestep in seconds changed if one is given.
+def load_model(file: str, timestep: float | None) -> Any:
+    """Return the MjModel of an MJCF file, with another timestep in seconds if one is given.
 
     Raises:
-        ValueError: there is no such file, or MuJoCo does not take it, or nothing in it can be moved.
+        ValueError: there is no such file, MuJoCo does not accept it, or it has no actuators.
     """
     path = _path(file)
     if not path.is_file():
@@ -56,17 +58,17 @@ def compiled(file: str, timestep: float | None) -> Any:
         raise ValueError(f"file: {path} has no actuators, so a brain could do nothing")
     if timestep is not None:
         model.opt.timestep = timestep
-    # A simulation that comes to infinity is to stay there, so that its body dies of it.
+    # A state that is not finite must stay so, not be reset: its body then dies of a fault.
     model.opt.disableflags |= package().mjtDisableBit.mjDSBL_AUTORESET
     return model
 
 
 def fingerprint(model: Any) -> str:
-    """Twelve digits of the SHA-256 of a model as MuJoCo has compiled it, meshes and all."""
+    """Return twelve digits of the SHA-256 of a model as MuJoCo has compiled it, with its meshes."""
     mujoco = package()
-    compiled = np.zeros(mujoco.mj_sizeModel(model), np.uint8)
-    mujoco.mj_saveModel(model, None, compiled)
-    return f"sha256 {hashlib.sha256(compiled.tobytes()).hexdigest()[:12]}"
+    binary = np.zeros(mujoco.mj_sizeModel(model), np.uint8)
+    mujoco.mj_saveModel(model, None, binary)
+    return f"sha256 {hashlib.sha256(binary.tobytes()).hexdigest()[:12]}"
 
 
 def _path(file: str) -> Path:
@@ -76,30 +78,30 @@ def _path(file: str) -> Path:
     try:
         assets = files("gymnasium") / "envs" / "mujoco" / "assets"
     except ModuleNotFoundError:
-        raise ValueError(LACKING) from None
+        raise ValueError(NOT_INSTALLED) from None
     return Path(str(assets / file.removeprefix(GYMNASIUM)))
 
 
-def numbered(model: Any, kind: str) -> dict[str, int]:
-    """Number of each `body`, `site` or `joint` that has a name."""
+def ids_by_name(model: Any, kind: str) -> dict[str, int]:
+    """Return the id of each `body`, `site` or `joint` that has a name."""
     count = {"body": model.nbody, "site": model.nsite, "joint": model.njnt}[kind]
-    each = (getattr(model, kind)(i) for i in range(count))
-    return {one.name: one.id for one in each if one.name}
+    elements = (getattr(model, kind)(i) for i in range(count))
+    return {element.name: element.id for element in elements if element.name}
 
 
-def moves_about(model: Any) -> bool:
-    """Whether the first joint's position is a place, and not an angle."""
+def root_translates(model: Any) -> bool:
+    """Return whether the first joint's position is a place rather than an angle."""
     return bool(model.jnt_type[0] != package().mjtJoint.mjJNT_HINGE)
 
 
-def names(model: Any) -> Names:
-    """What conditions and the rest can speak of, beside targets."""
+def observables(model: Any) -> Names:
+    """Return the names that expressions in settings can use, except those of a target."""
     return {
         "qpos": model.nq,
         "qvel": model.nv,
         "ctrl": model.nu,
-        "xpos": dict.fromkeys(numbered(model, "body"), 3),
-        "site": dict.fromkeys(numbered(model, "site"), 3),
+        "xpos": dict.fromkeys(ids_by_name(model, "body"), 3),
+        "site": dict.fromkeys(ids_by_name(model, "site"), 3),
         "height": "amount",
         "pitch": "amount",
         "forward": "amount",

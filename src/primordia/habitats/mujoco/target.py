@@ -1,4 +1,4 @@
-"""Something that a robot is to reach, and that is elsewhere in a disc as soon as it has."""
+"""A target that a robot reaches, and that then moves to a random position in a disc."""
 
 import math
 from typing import Any
@@ -6,47 +6,44 @@ from typing import Any
 import numpy as np
 from pydantic import Field
 
-from primordia.habitats.mujoco.simulator import numbered
+from primordia.habitats.mujoco.simulator import ids_by_name
 from primordia.random import dice
 from primordia.settings.base import Settings
 
 
 class Target(Settings):
-    """Something to be reached; it then is elsewhere in a disc of the plane x, y."""
+    """An object to be reached; it then moves to a random position in a disc of the plane x, y."""
 
-    body: str = Field(description="the body that is to be reached")
+    body: str = Field(description="the body to be reached")
     by: str = Field(description="the body that reaches it")
-    within: float = Field(gt=0, description="metres between the two")
-    joints: tuple[str, str] = Field(strict=False, description="slide joints of the first, x and y")
-    radius: float = Field(gt=0, description="metres; of the disc, around the origin")
+    within: float = Field(gt=0, description="distance of the two at which it is reached, metres")
+    joints: tuple[str, str] = Field(strict=False, description="its slide joints, x and y")
+    radius: float = Field(gt=0, description="radius of the disc around the origin, metres")
 
     def check(self, model: Any) -> None:
-        """Whether a model has what is spoken of.
-
-        Raises:
-            ValueError: it lacks a body or a joint.
-        """
+        """Raise ValueError if a model lacks one of the named bodies or joints."""
         named = {"body": (self.body, self.by), "joint": self.joints}
-        for kind, wanted in named.items():
-            known = numbered(model, kind)
-            if missing := [name for name in wanted if name not in known]:
+        for kind, required in named.items():
+            known = ids_by_name(model, kind)
+            if missing := [name for name in required if name not in known]:
                 raise ValueError(
                     f"target: there is no {kind} {missing[0]!r}; known: {', '.join(known)}"
                 )
 
-    def slides(self, model: Any) -> list[tuple[int, int]]:
-        """Where its joints, x and y, stand among a model's positions and among its velocities."""
+    def joint_addresses(self, model: Any) -> list[tuple[int, int]]:
+        """Return the indices in qpos and in qvel of its joints, x and y."""
         joints = map(model.joint, self.joints)
         return [(int(joint.qposadr[0]), int(joint.dofadr[0])) for joint in joints]
 
-    def reached(self, places: dict[str, np.ndarray]) -> np.ndarray:
-        """By whom, bool (N,), of the places of bodies by name, float64 (N, 3) in metres."""
-        apart = places[self.body] - places[self.by]
-        return np.sqrt((apart * apart).sum(axis=1)) < self.within
+    def reached(self, positions: dict[str, np.ndarray]) -> np.ndarray:
+        """Return which robots reach it, bool (N,), from positions of bodies by name, (N, 3) in metres."""
+        difference = positions[self.body] - positions[self.by]
+        return np.sqrt((difference * difference).sum(axis=1)) < self.within
 
-    def somewhere(self, state: int) -> tuple[int, tuple[float, float]]:
-        """Anywhere in its disc with equal chance: a state of `dice` -> the next one, x and y (m)."""
-        state, one = dice.roll(state)
-        state, other = dice.roll(state)
-        distance, angle = self.radius * math.sqrt(one / 2**32), 2 * math.pi * other / 2**32
+    def draw_position(self, state: int) -> tuple[int, tuple[float, float]]:
+        """Draw a point of the disc from a state of `dice`; return the next state, and x, y in metres."""
+        state, of_distance = dice.roll(state)
+        state, of_angle = dice.roll(state)
+        distance = self.radius * math.sqrt(of_distance / 2**32)
+        angle = 2 * math.pi * of_angle / 2**32
         return state, (distance * math.cos(angle), distance * math.sin(angle))

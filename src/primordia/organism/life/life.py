@@ -21,7 +21,7 @@ from primordia.history.lineage import place_in, rebuild
 from primordia.law.genesis import body_words
 from primordia.law.law import Law
 from primordia.law.life import BODILY, Vitals
-from primordia.law.metabolism import ONE, Rates, fixed
+from primordia.law.metabolism import ONE, Rates, to_fixed_point
 from primordia.law.world import Cause
 from primordia.organism.life.in_jax import LifeInJax
 from primordia.organism.life.instant import Instant, Mind, Stretch
@@ -127,7 +127,7 @@ class Life:
         words = body_words(key, jnp.asarray(self.record.cell), self.habitat.words)
         memory = jnp.zeros((1, self.law.memory), jnp.float32)
         store = self._rates(np.array([self.begins])).store
-        vitals = Vitals(fixed(store), jnp.zeros(1, jnp.int32))
+        vitals = Vitals(to_fixed_point(store), jnp.zeros(1, jnp.int32))
         return Instant(memory, vitals, alone.embody(words))
 
     def _as_found(self, alone: LifeInJax | LifeOnHost) -> Instant:
