@@ -1,27 +1,27 @@
-# Needs Python >= 3.11, git and make; everything else is installed into .venv by these targets.
+# Python >= 3.11, git and make are required. These targets install everything else into .venv.
 PYTHON ?= python3
 BIN := .venv/bin
-# Versions that were tested; `make CONSTRAINTS= demo` takes the newest releases instead.
+# These versions are tested. `make CONSTRAINTS= demo` takes the newest releases instead.
 CONSTRAINTS ?= --constraint constraints.txt --build-constraint constraints.txt
 
 .PHONY: demo test quick slow check format bench constraints clean
 
-demo: .venv/installed  ## evolve pole balancers; draw what happened, and film the longest life
+demo: .venv/installed  ## evolve pole balancers, draw figures of the run, and film the longest life
 	rm -rf runs/demo
 	$(BIN)/primordia run CartPole-survival --out runs/demo
 	$(BIN)/primordia plot runs/demo
 	$(BIN)/primordia replay runs/demo
 
-test: .venv/installed-dev  ## ten minutes on two cores
+test: .venv/installed-dev  ## run all tests: ten minutes on two cores
 	$(BIN)/python -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder
 
-quick: .venv/installed-dev  ## a minute on two cores: each promise once, by the tests in tests/quick.txt
+quick: .venv/installed-dev  ## test each promise once, with the tests in tests/quick.txt: a minute on two cores
 	$(BIN)/python -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder @tests/quick.txt
 
-slow: .venv/installed-dev  ## long campaigns: fifty kills, and what else is marked slow
+slow: .venv/installed-dev  ## run the tests marked slow, such as fifty kills
 	$(BIN)/python -m pytest --numprocesses 2 -m slow
 
-check: .venv/installed-dev  ## format, lint, types, tests
+check: .venv/installed-dev  ## check format, lint and types, and run all tests
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
@@ -31,10 +31,10 @@ format: .venv/installed-dev
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .
 
-bench: .venv/installed-dev  ## every figure; `make bench JSON=file.json` keeps them
+bench: .venv/installed-dev  ## measure every figure; `make bench JSON=file.json` writes them to a file
 	$(BIN)/python benchmarks/bench.py $(if $(JSON),--json $(JSON))
 
-constraints:  ## the newest releases into constraints.txt; run `make check` before it is committed
+constraints:  ## write the newest releases into constraints.txt; run `make check` before you commit it
 	rm -rf .venv
 	$(MAKE) CONSTRAINTS= .venv/installed-dev
 	sed -n '/^#/p' constraints.txt > .venv/constraints

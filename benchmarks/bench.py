@@ -1,10 +1,10 @@
-"""`make bench`: every figure that Primordia claims, measured in one run.
+"""Measure every figure that Primordia claims, in one run (`make bench`).
 
     python benchmarks/bench.py [--json FILE] [--only SECTION,...]
 
 Sections: paper, speed, plain, live, cells, atari, robots, shell, records.
 
-Speeds are compared within this run only: machines differ, and the same machine from hour to hour.
+Compare speeds within one run only. Machines differ, and one machine differs from hour to hour.
 """
 
 import argparse
@@ -35,21 +35,21 @@ SECTIONS = {
 
 
 def main() -> None:
-    """Measure, print, and write JSON if asked."""
+    """Measure and print the sections named, and write them to a file if one is named."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--json", type=Path, help="write the figures to this file")
     parser.add_argument("--only", default=",".join(SECTIONS), help="sections, with commas between")
     arguments = parser.parse_args()
-    found: dict = {"date": datetime.date.today().isoformat(), "machine": machine()}
+    figures: dict = {"date": datetime.date.today().isoformat(), "machine": machine()}
     for name in arguments.only.split(","):
-        found[name] = SECTIONS[name]()
-        print(f"== {name}\n{json.dumps(found[name], indent=1)}", flush=True)
+        figures[name] = SECTIONS[name]()
+        print(f"== {name}\n{json.dumps(figures[name], indent=1)}", flush=True)
     if arguments.json:
-        arguments.json.write_text(json.dumps(found, indent=1) + "\n")
+        arguments.json.write_text(json.dumps(figures, indent=1) + "\n")
 
 
 def machine() -> dict:
-    """What this was measured on."""
+    """Describe the machine and the versions."""
     cpuinfo = Path("/proc/cpuinfo")
     lines = cpuinfo.read_text().splitlines() if cpuinfo.exists() else []
     models = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]

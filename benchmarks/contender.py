@@ -1,10 +1,10 @@
-"""A process that plays a game when it is told to: what `hosted.py` sets against each other.
+"""A process that plays a game in one way, on request: `hosted.py` compares several of them.
 
     python benchmarks/contender.py WAY GAME CELLS
 
-It says in a line of JSON that it is ready, or what it lacks. Each line it then reads, `play 1.5`, asks
-for so many seconds of play; the answer is a line of JSON. It ends with its standard input. JAX is
-loaded late, since Gymnasium forks.
+It first writes a line of JSON that says that it is ready, or what it lacks. It then reads lines such as
+`play 1.5`, which asks for 1.5 seconds of play, and answers each with a line of JSON. It ends when its
+standard input ends. JAX is loaded late, since Gymnasium forks.
 """
 
 import json
@@ -45,7 +45,7 @@ WAYS: dict[str, Callable[[str, int], Any]] = {
 
 
 def main() -> None:
-    """Make ready, then do as asked until nothing more is."""
+    """Prepare the way of playing, then answer requests until standard input ends."""
     way, game, cells = sys.argv[1:]
     answers = os.fdopen(os.dup(1), "w", buffering=1)
     os.dup2(2, 1)  # what libraries print is not an answer
@@ -57,8 +57,8 @@ def main() -> None:
     player.play(0.5)
     print(json.dumps({"about": player.about}), file=answers)
     for line in sys.stdin:
-        asked, seconds = line.split()
-        print(json.dumps(getattr(player, asked)(float(seconds))), file=answers)
+        request, seconds = line.split()
+        print(json.dumps(getattr(player, request)(float(seconds))), file=answers)
 
 
 if __name__ == "__main__":

@@ -1,8 +1,9 @@
-"""How near worlds on the host come to the bare simulator, and what other ways of playing reach.
+"""Speed of worlds on the host, against the bare simulator and other ways of playing.
 
-Each way has a process of its own (`contender.py`), told over pipes to play for some seconds, in turn.
-`bare` has as many as cores, and neither it nor `batch` has brains. The others of 32 cells have the same
-brains as ours, with random weights, but no law: nobody is born, dies or is recorded.
+Each way has its own process (`contender.py`), which plays for some seconds on request; the ways take
+turns. `bare` has one process for each core. `bare` and `batch` have no brains. The other ways of 32
+cells have the same brains as ours, with random weights, but no law: no organism is born, dies or is
+recorded.
 """
 
 import json
@@ -24,31 +25,31 @@ SIZES = {
     32: ("bare", "ours", "in step", "async", "sync", "published", "envpool"),
     128: ("bare", "ours", "in step"),
 }
-"""Ways that are set against each other at so many cells, the first as what cannot be passed."""
+"""The ways that are compared, by the number of cells; the first is the upper bound."""
 ROBOT_SIZES = {32: ("batch", "ours", "async", "sync", "envpool"), 256: ("batch", "ours")}
 ROUNDS = 5
 STARTS = 3
 SECONDS = 1.0
 FULL = 0.95
-"""share of cells that must be occupied for a figure to count"""
+"""the least share of occupied cells for which a figure counts"""
 PATIENCE = 120.0
-"""seconds after which a process that has not answered is given up"""
+"""seconds until a process that does not answer counts as failed"""
 
 
 def against_the_emulator() -> dict:
-    """Start-up, and rates in turn, round by round, for each game and size."""
+    """Measure the start-up of emulators, and the rates of all ways for each game and size, in turn."""
     worlds = [_measured(game, cells, ways) for game in GAMES for cells, ways in SIZES.items()]
     starts = {game: _start_up(game) for game in GAMES}
     return {"seconds until 32 emulators are up": starts, "worlds": worlds}
 
 
 def against_the_batch() -> list[dict]:
-    """Rates of robots in turn, round by round, for each robot and size."""
+    """Measure the rates of all ways for each robot and size, in turn."""
     return [_measured(robot, n, ways) for robot in ROBOTS for n, ways in ROBOT_SIZES.items()]
 
 
 def _start_up(game: str) -> float:
-    """Seconds from the order to the last worker's answer, the median of some."""
+    """Return the median of the seconds from the request to the last worker's answer."""
     habitat: Any = load(TASKS[game]).build_habitat()
     taken = []
     for _ in range(STARTS):
@@ -74,7 +75,7 @@ class Contender:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """End of input ends them; one that does not listen is killed."""
+        """End the processes by the end of their input; kill a process that does not react."""
         for process in self._processes:
             process.stdin.close()
         for process in self._processes:
@@ -86,14 +87,14 @@ class Contender:
             process.stdout.close()
 
     def ask(self, what: str, seconds: float) -> list[dict]:
-        """What each process has to say of so many seconds, lived at the same time."""
+        """Send a request for some seconds of play to all processes and return their answers."""
         for process in self._processes:
             process.stdin.write(f"{what} {seconds}\n")
             process.stdin.flush()
         return self.answers()
 
     def answers(self) -> list[dict]:
-        """The next line of each."""
+        """Return the next answer of each process."""
         lines = []
         for process in self._processes:
             ready, _, _ = select.select([process.stdout], [], [], PATIENCE)
@@ -105,32 +106,32 @@ class Contender:
 
 
 def _measured(game: str, cells: int, ways: tuple[str, ...]) -> dict:
-    """One game at one size: every way in turn, some rounds; then where a tick of ours goes."""
+    """Measure one game at one size: the rates of all ways, and the shares of the parts of our tick."""
     with ExitStack() as stack:
         begun = {way: stack.enter_context(Contender(way, game, cells)) for way in ways}
-        said = {way: contender.answers()[0] for way, contender in begun.items()}
-        playing = {way: begun[way] for way in ways if "about" in said[way]}
-        told: dict[str, list[list[dict]]] = {way: [] for way in playing}
+        greetings = {way: contender.answers()[0] for way, contender in begun.items()}
+        playing = {way: begun[way] for way in ways if "about" in greetings[way]}
+        played: dict[str, list[list[dict]]] = {way: [] for way in playing}
         for _ in range(ROUNDS):
             for way, contender in playing.items():
-                told[way].append(contender.ask("play", SECONDS))
+                played[way].append(contender.ask("play", SECONDS))
         budget = playing["ours"].ask("budget", SECONDS)[0]
         if "batch" in playing:
             again = [playing["ours"].ask("again", SECONDS)[0] for _ in range(ROUNDS)]
-            shares = [each["alone"] / each["seconds"] for each in again]
+            shares = [answer["alone"] / answer["seconds"] for answer in again]
             budget["of the batch under our controls"] = median(shares)
-    words = {way: said[way]["about"] for way in playing if said[way]["about"]}
-    absent = {way: said[way]["not available"] for way in ways if way not in playing}
-    words |= {way: f"not available: {why}" for way, why in absent.items()}
-    found = {"game": game, "cells": cells, **_compared(told), **_lived(told["ours"], cells)}
-    return {**found, "budget": budget, **({"ways": words} if words else {})}
+    remarks = {way: greetings[way]["about"] for way in playing if greetings[way]["about"]}
+    absent = {way: greetings[way]["not available"] for way in ways if way not in playing}
+    remarks |= {way: f"not available: {why}" for way, why in absent.items()}
+    figures = {"game": game, "cells": cells, **_compared(played), **_lived(played["ours"], cells)}
+    return {**figures, "budget": budget, **({"ways": remarks} if remarks else {})}
 
 
-def _compared(told: dict[str, list[list[dict]]]) -> dict:
-    """Medians of frames per second, and of their ratios round by round."""
+def _compared(played: dict[str, list[list[dict]]]) -> dict:
+    """Return the medians of frames per second, and of their ratios round by round."""
     rates = {
-        way: [sum(each["frames"] / each["seconds"] for each in answers) for answers in rounds]
-        for way, rounds in told.items()
+        way: [sum(a["frames"] / a["seconds"] for a in answers) for answers in rounds]
+        for way, rounds in played.items()
     }
 
     def ratio(one: str, other: str) -> float:
@@ -138,15 +139,21 @@ def _compared(told: dict[str, list[list[dict]]]) -> dict:
 
     bare, *_ = rates
     others = [way for way in rates if way not in (bare, "ours")]
-    found: dict[str, Any] = {
+    figures: dict[str, Any] = {
         "frames per s": {way: median(values) for way, values in rates.items()},
         "of bare": {way: ratio(way, bare) for way in rates if way != bare},
     }
-    return {**found, "ours over": {w: ratio("ours", w) for w in others}} if others else found
+    if others:
+        figures["ours over"] = {way: ratio("ours", way) for way in others}
+    return figures
 
 
 def _lived(rounds: list[list[dict]], cells: int) -> dict[str, float]:
-    """How often somebody was born, and how full the world was."""
+    """Return the rate of births and the share of occupied cells.
+
+    Raises:
+        RuntimeError: the world was not full enough for its figures to count.
+    """
     whole = {name: sum(r[0][name] for r in rounds) for name in ("frames", "births", "ticks")}
     full = whole["frames"] / (whole["ticks"] * cells)
     if full < FULL:

@@ -1,4 +1,4 @@
-"""A world of a task on the host, in memory, kept full, timed, and taken apart by what its ticks cost."""
+"""A full world of a task on the host, in memory: its speed, and the cost of each part of its tick."""
 
 import time
 from collections import defaultdict
@@ -20,20 +20,20 @@ SETTINGS: dict[str, Any] = {
     "placement": {"topology": "well-mixed", "rule": "empty-only"},
     "stop": {"until": "none", "ticks": "none"},
 }
-"""Accidents at a stated rate, and cells filled again at once: births go on for ever."""
+"""Accidents at a given rate. Empty cells are filled at once, so births never end."""
 WARM = 2.5
-"""seconds until chunks have come to their length"""
+"""seconds until chunks have reached their length"""
 
 
 class Stopwatch:
-    """Seconds spent in each part, less those in parts that it calls; what is in none is the rest."""
+    """Seconds spent in each part, without the parts that it calls; time in no part is `rest`."""
 
     def __init__(self) -> None:
         self.spent: defaultdict[str, float] = defaultdict(float)
         self._inside, self._since = ["rest"], time.perf_counter()
 
     def of(self, part: str, function: Callable) -> Callable:
-        """The function, timed until what it returns has been computed."""
+        """Return the function, timed until its results have been computed."""
 
         def timed(*arguments: Any, **named: Any) -> Any:
             self._turn()
@@ -47,31 +47,31 @@ class Stopwatch:
         return timed
 
     def shares(self) -> dict[str, float]:
-        """Of all the time so far."""
+        """Return the share of each part in the time so far."""
         self._turn()
         whole = sum(self.spent.values())
         return {part: seconds / whole for part, seconds in self.spent.items()}
 
     def _turn(self) -> None:
-        """The time since the last turn was spent where we are."""
+        """Count the time since the last turn for the part that is running."""
         now = time.perf_counter()
         self.spent[self._inside[-1]] += now - self._since
         self._since = now
 
 
 class Ours:
-    """An engine that is told to play, as the others of `contender.py` are."""
+    """Our engine as one way of playing of `contender.py`."""
 
     about = ""
 
     def __init__(self, task: str, cells: int, settings: dict[str, Any]) -> None:
-        """Settings of the task under which nobody dies but by accident."""
+        """Take settings of the task under which organisms die by accident only."""
         self._engine = Engine(load(task, {**SETTINGS, **settings, "cells": cells}))
         self._limits = self._engine.limits({})
         self.play(WARM)
 
     def play(self, seconds: float) -> dict[str, float]:
-        """Frames of living cells, births and ticks in about so many seconds."""
+        """Play for about `seconds` and return frames of living cells, births, ticks and seconds."""
         before, began = self._counts(), time.perf_counter()
         self._advance(seconds)
         spent = time.perf_counter() - began
@@ -79,7 +79,7 @@ class Ours:
         return {**lived, "seconds": spent}
 
     def budget(self, seconds: float) -> dict[str, Any]:
-        """Microseconds a tick, and the shares of its parts; the stopwatch costs some of them."""
+        """Return microseconds per tick and the shares of its parts; the stopwatch costs some time."""
         before = self._counts()
         with ExitStack() as wrapped:
             watch = Stopwatch()
@@ -94,31 +94,33 @@ class Ours:
         return {"us a tick": tick, "shares": shares}
 
     def again(self, seconds: float) -> dict[str, float]:
-        """So many seconds of robots' lives, and how long the batch alone takes for the same bodies under
-        the same controls, where nobody is born: brains move bodies otherwise than chance does.
+        """Play with robots, then step the batch alone, and return the seconds of both.
+
+        The batch steps the same bodies under the same controls, without births. Random controls would
+        not do: brains move bodies in other ways than chance does, which costs other times.
         """
         habitat: Any = self._engine.chunks._habitat
         bodies, begun, controls = habitat._bodies, habitat.save(), []
         step = bodies.step
 
-        def kept(*who: Any, **how: Any) -> None:
+        def record_and_step(*arguments: Any, **named: Any) -> None:
             controls.append(bodies.ctrl.copy())
-            step(*who, **how)
+            step(*arguments, **named)
 
-        with _replaced(bodies, "step", kept):
+        with _replaced(bodies, "step", record_and_step):
             spent = self.play(seconds)["seconds"]
         ended = habitat.save()
         habitat.load(begun)
         began = time.perf_counter()
-        for each in controls:
-            bodies.ctrl[:] = each
+        for control in controls:
+            bodies.ctrl[:] = control
             step(nstep=habitat.substeps)
         alone = time.perf_counter() - began
         habitat.load(ended)
         return {"seconds": spent, "alone": alone}
 
     def _parts(self) -> list[tuple[str, Any, tuple[str, ...]]]:
-        """What is timed: name of the part, whose methods, which."""
+        """Return what is timed: the part's name, the object, and the names of its methods."""
         law: Any = self._engine.chunks
         habitat = law._habitat
         simulator = habitat._pool if hasattr(habitat, "_pool") else habitat._bodies
@@ -137,7 +139,7 @@ class Ours:
         jax.block_until_ready(self._engine.state)
 
     def _counts(self) -> dict[str, int]:
-        """So far."""
+        """Return the frames, births and ticks so far."""
         worlds = self._engine.state.world.worlds
         born, ticks = int(to_host(worlds.births).sum()), int(to_host(worlds.tick).sum())
         return {"frames": organism_ticks(self._engine), "births": born, "ticks": ticks}
@@ -145,7 +147,7 @@ class Ours:
 
 @contextmanager
 def _replaced(owner: Any, name: str, function: Callable) -> Iterator[None]:
-    """Another function in a method's place for a while, in this object only, frozen or not."""
+    """Replace a method of one object for a while; the object may be frozen."""
     held, before = name in vars(owner), getattr(owner, name)
     object.__setattr__(owner, name, function)
     try:

@@ -1,6 +1,6 @@
 """The arithmetic limit: brains and bodies of a task in one compiled scan, with no law at all.
 
-Nobody is born, dies, is counted or recorded. No implementation of a law around the same brain and
+No organism is born, dies, is counted or recorded. No implementation of a law around the same brain and
 habitat can be faster, so `bench.py` quotes organism-ticks per second as a fraction of this.
 """
 
@@ -17,7 +17,7 @@ from primordia.law.motor import argmax
 
 @partial(jax.jit, static_argnames=("ticks",), donate_argnums=(1, 2))
 def limit(genome: Genome, memory: Array, bodies: tuple, ticks: int) -> tuple:
-    """Advance CartPole brains and bodies `ticks` ticks; -> (memory, bodies)."""
+    """Advance CartPole brains and bodies by `ticks` ticks and return their memory and bodies."""
     habitat, brain = CartPole(), Recurrent()
 
     def tick(carry: tuple, _: None) -> tuple:

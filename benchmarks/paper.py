@@ -1,4 +1,4 @@
-"""The paper's CartPole figure in numbers: a hundred worlds, with heredity and without."""
+"""The paper's CartPole figure in numbers: a hundred worlds with heredity, and a hundred without."""
 
 import tempfile
 from pathlib import Path
@@ -9,11 +9,11 @@ import primordia
 from worlds import spread
 
 LONG = 10_000
-"""ticks an organism must live to count as the first long-lived one"""
+"""the fewest ticks of a long life"""
 
 
 def figure(seeds: int = 100) -> dict:
-    """Both arms, each one run of so many worlds."""
+    """Run both arms with `seeds` worlds each and return their figures."""
     return {arm: _arm(arm, seeds) for arm in ("parent", "founder")}
 
 
@@ -47,27 +47,27 @@ def _arm(inheritance: str, seeds: int) -> dict:
 
 
 def _lives(births: dict, deaths: dict, world: int, end: int) -> tuple[np.ndarray, np.ndarray]:
-    """Birth tick and ticks lived of each organism of a world; the living count up to its end."""
+    """Return birth tick and ticks lived of each organism of a world, up to the end for the living."""
     born = births["tick"][births["world"] == world]
     died = np.full(len(born), end)
-    mine = deaths["world"] == world
-    died[deaths["id"][mine]] = deaths["tick"][mine]
+    in_world = deaths["world"] == world
+    died[deaths["id"][in_world]] = deaths["tick"][in_world]
     return born, died - born
 
 
 def _first_long(born: np.ndarray, lived: np.ndarray) -> dict | None:
-    """Birth of the first organism that lived LONG ticks."""
+    """Return the birth of the first organism that lived LONG ticks, or None."""
     long = np.flatnonzero(lived >= LONG)
     return {"tick": int(born[long[0]]), "births": int(long[0]) + 1} if len(long) else None
 
 
-def _moments(found: list[dict | None]) -> dict:
-    """Medians and quartiles; a world in which it never came counts as later than all others."""
-    happened = [each for each in found if each is not None]
-    missing = [np.inf] * (len(found) - len(happened))
+def _moments(moments: list[dict | None]) -> dict:
+    """Return medians and quartiles; a world without the moment counts as later than all others."""
+    happened = [moment for moment in moments if moment is not None]
+    missing = [np.inf] * (len(moments) - len(happened))
     result: dict = {"worlds": len(happened)}
     for unit in ("births", "tick"):
-        values = np.array([each[unit] for each in happened] + missing, float)
+        values = np.array([moment[unit] for moment in happened] + missing, float)
         quartiles = np.quantile(values, [0.25, 0.5, 0.75], method="inverted_cdf")
         names = ("q1", "median", "q3")
         result[unit] = {

@@ -1,7 +1,7 @@
-"""The baseline: CartPole-survival as one writes it first, and as the paper's code is organised.
+"""The baseline: CartPole-survival as a first version is written, and as the paper's code is organised.
 
-One Python object an organism, each with a network of NumPy matrices and a simulator of its own; a
-plain loop over cells; a grid that is a list. Only the law of REFERENCE is kept (blind placement); the
+Each organism is a Python object with its own simulator and a network of NumPy matrices. A plain loop
+visits the cells of a grid, which is a list. Only the law of REFERENCE is kept (blind placement); the
 code is ours.
 """
 
@@ -12,13 +12,13 @@ import numpy as np
 
 
 class Pole:
-    """A cart and a pole, floats."""
+    """A cart and a pole, as four floats."""
 
     def __init__(self, rng: random.Random) -> None:
         self.state = [rng.uniform(-0.05, 0.05) for _ in range(4)]
 
     def step(self, action: int) -> bool:
-        """One tick -> whether the pole has fallen, or the cart left the track."""
+        """Step one tick and return whether the pole has fallen or the cart has left the track."""
         x, x_dot, theta, theta_dot = self.state
         force = 10.0 if action == 1 else -10.0
         cos, sin = math.cos(theta), math.sin(theta)
@@ -43,28 +43,28 @@ class Organism:
         self.weights, self.hidden, self.body = weights, np.zeros(32), Pole(rng)
 
     def live(self) -> bool:
-        """One tick -> whether it dies."""
+        """Live one tick and return whether the organism dies."""
         into, recurrent, out = self.weights
         self.hidden = np.tanh(into @ self.body.state + recurrent @ self.hidden)
         return self.body.step(int(np.argmax(out @ self.hidden)))
 
     def child(self, noise: np.random.Generator, rng: random.Random) -> "Organism":
-        """A copy with noise on every weight."""
+        """Return a copy with noise on every weight."""
         return Organism([w + 0.01 * noise.standard_normal(w.shape) for w in self.weights], rng)
 
 
 class Grid:
-    """A ring of cells, each an Organism or None."""
+    """A ring of cells; each holds an Organism or None."""
 
     def __init__(self, cells: int, seed: int) -> None:
         self.rng, self.noise = random.Random(seed), np.random.default_rng(seed)
         self.cells: list[Organism | None] = [None] * cells
 
     def tick(self) -> int:
-        """Everyone lives, copies itself, dies -> organisms that lived."""
+        """Let all organisms live, copy themselves and die; return how many lived."""
         if not any(self.cells):
-            nothing = Organism([np.zeros(shape) for shape in Organism.SHAPES], self.rng)
-            self.cells[self.rng.randrange(len(self.cells))] = nothing.child(self.noise, self.rng)
+            blank = Organism([np.zeros(shape) for shape in Organism.SHAPES], self.rng)
+            self.cells[self.rng.randrange(len(self.cells))] = blank.child(self.noise, self.rng)
         living = [i for i, organism in enumerate(self.cells) if organism]
         dead = [i for i in living if self.cells[i].live()]
         parents = [i for i in living if i not in dead]
@@ -80,6 +80,6 @@ class Grid:
 
 
 def organism_ticks(cells: int, seed: int, ticks: int) -> int:
-    """Run a grid -> organism-ticks lived."""
+    """Run a grid and return the organism-ticks lived."""
     grid = Grid(cells, seed)
     return sum(grid.tick() for _ in range(ticks))

@@ -1,4 +1,4 @@
-"""Cost by number of cells, memory at a million of them, records, and the way from the shell."""
+"""Cost by number of cells, memory at a million cells, speed of records, and seconds from the shell."""
 
 import json
 import resource
@@ -14,7 +14,7 @@ SIZES = [32, 256, 1024, 4096, 16_384, 65_536, 262_144, 1_048_576]
 
 
 def cost_by_cells() -> list[dict]:
-    """Each size in a process of its own, since peak memory is of a process."""
+    """Measure each size in its own process, since peak memory is a property of a process."""
     rows = []
     for cells in SIZES:
         command = [sys.executable, __file__, str(cells)]
@@ -24,7 +24,7 @@ def cost_by_cells() -> list[dict]:
 
 
 def _one_size(cells: int) -> dict:
-    """Fill a world, live for some seconds in each phase, and say what it took."""
+    """Fill a world, live for some seconds, and return its speed and memory."""
     from worlds import engine, rate
 
     base = _peak_bytes(warm=True)
@@ -49,7 +49,7 @@ def _one_size(cells: int) -> dict:
 
 
 def _peak_bytes(warm: bool = False) -> int:
-    """Peak resident memory; `warm` first loads and compiles a small world, the runtime's baseline."""
+    """Return peak resident memory in bytes; `warm` first compiles a small world, as a baseline."""
     if warm:
         from worlds import engine
 
@@ -59,7 +59,7 @@ def _peak_bytes(warm: bool = False) -> int:
 
 
 def shell_to_saturation() -> list[float]:
-    """Seconds from shell command to a finished run, compilation included, for five seeds."""
+    """Return the seconds from shell command to finished run, compilation included, for five seeds."""
     taken = []
     for seed in range(5):
         with tempfile.TemporaryDirectory() as folder:
@@ -73,7 +73,7 @@ def shell_to_saturation() -> list[float]:
 
 
 def births_recorded_per_second() -> float:
-    """From rows as the law gives them to closed, checksummed segments on disk."""
+    """Return births per second, from rows as the law gives them to closed segments on disk."""
     import jax.numpy as jnp
 
     from primordia.law.events import BIRTHS, Events, Rows

@@ -1,4 +1,4 @@
-"""What it costs to watch: organism-ticks per second with the live view, and without."""
+"""Cost of the live view: organism-ticks per second with it, and without."""
 
 import os
 import time
@@ -15,13 +15,13 @@ SECONDS = 2.0
 
 
 def cost_of_the_live_view() -> list[dict]:
-    """In a saturated world, and in one where accidents keep everybody's life short."""
+    """Measure a saturated world, and a world in which accidents keep lives short."""
     busy = engine(32, genesis="fill", hazard=0.02)
     return [_cost("saturated", saturated_phase(32, 1)), _cost("random", busy)]
 
 
 def _cost(phase: str, made: Engine) -> dict:
-    """In turns, with and without the view."""
+    """Measure one world with and without the view, in turn."""
     alone, watched, ratios, shares = [], [], [], []
     with open(os.devnull, "w") as nowhere:
         for _ in range(ROUNDS):
@@ -37,7 +37,7 @@ def _cost(phase: str, made: Engine) -> dict:
 
 
 def _rate(made: Engine, listen: Listener) -> tuple[float, float]:
-    """Organism-ticks per second, and the share of the time that the listener took."""
+    """Return organism-ticks per second, and the listener's share of the time."""
     limits, lived, listening = made.limits({}), organism_ticks(made), 0.0
     began = now = time.perf_counter()
     while now - began < SECONDS:

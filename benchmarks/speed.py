@@ -1,4 +1,4 @@
-"""How fast the law is: against the arithmetic limit, and against a plain loop over objects."""
+"""Speed of the law, against the arithmetic limit and against a plain loop over objects."""
 
 import tempfile
 import time
@@ -22,7 +22,7 @@ SECONDS = 0.5
 
 
 def against_the_limit() -> list[dict]:
-    """Rates of limit, saturated and random phase in turn, round by round."""
+    """Measure the limit, the saturated phase and the random phase, in turn, for each shape."""
     rows = []
     for name, (cells, worlds) in SHAPES.items():
         saturated, random = saturated_phase(cells, worlds), random_phase(cells, worlds)
@@ -42,7 +42,7 @@ def against_the_limit() -> list[dict]:
 
 
 def limit_rate(made: Engine) -> float:
-    """Organism-ticks per second of these same brains and bodies alone."""
+    """Return organism-ticks per second of an engine's brains and bodies without the law."""
     organisms, bodies = made.state.world.organisms, made.state.bodies + 0
     memory, cells = organisms.memory + 0, len(organisms.memory)
     ticks = max(int(2e6 / cells), 1)
@@ -55,7 +55,7 @@ def limit_rate(made: Engine) -> float:
 
 
 def against_the_plain_loop() -> dict:
-    """A whole run on disk, records and checkpoints on, against one object an organism."""
+    """Measure a whole run on disk, with records and checkpoints, against one object per organism."""
     ratios, ours, theirs = [], [], []
     with tempfile.TemporaryDirectory() as folder:
         for number in range(ROUNDS):
@@ -72,7 +72,7 @@ def _plain(seed: int) -> float:
 
 
 def _on_disk(run: Path, seed: int) -> float:
-    """Organism-ticks per second from genesis to tick 3,000,000, compilation apart."""
+    """Return organism-ticks per second from genesis to tick 3,000,000, without compilation."""
     config = load("CartPole-survival", {"seed": seed})
     for name in ("births", "deaths", "metrics", "checkpoints"):
         (run / name).mkdir(parents=True)

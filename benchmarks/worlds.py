@@ -1,4 +1,4 @@
-"""CartPole worlds in memory, brought to a phase of their life and timed."""
+"""CartPole worlds in memory, in a chosen phase, and their speed."""
 
 import statistics
 import time
@@ -14,17 +14,17 @@ from primordia.random.wide import to_host
 
 
 def engine(cells: int, worlds: int = 1, **settings: object) -> Engine:
-    """A CartPole-survival engine before genesis."""
+    """Return a CartPole-survival engine before genesis."""
     return Engine(load("CartPole-survival", {"cells": cells, "seeds": worlds, **settings}))
 
 
 def random_phase(cells: int, worlds: int) -> Engine:
-    """Worlds full of founders, before genesis."""
+    """Return worlds full of founders, before genesis."""
     return engine(cells, worlds, genesis="fill")
 
 
 def random_rate(made: Engine, first_seed: int, ticks: int = 2000) -> float:
-    """Organism-ticks per second of the first ticks of new worlds, while most still die young."""
+    """Return organism-ticks per second of the first ticks of new worlds, when most die young."""
     seeds = range(first_seed, first_seed + made.config.seeds)
     made.state = made.chunks.begin(begin(made.law, list(seeds)))
     began = time.perf_counter()
@@ -33,7 +33,7 @@ def random_rate(made: Engine, first_seed: int, ticks: int = 2000) -> float:
 
 
 def saturated_phase(cells: int, worlds: int) -> Engine:
-    """Worlds full of copies of one organism that does not die, evolved in a world of 32 cells."""
+    """Return worlds full of copies of one organism that does not die, evolved in a world of 32 cells."""
     small = engine(32)
     limits = small.limits({"until": "saturation"})
     while small.any_running(limits):
@@ -50,7 +50,7 @@ def saturated_phase(cells: int, worlds: int) -> Engine:
 
 
 def advanced(made: Engine, ticks: int) -> Engine:
-    """The engine, so many ticks on."""
+    """Advance an engine by `ticks` and return it."""
     limits = made.limits({"ticks": int(to_host(made.state.world.worlds.tick).max()) + ticks})
     while made.any_running(limits):
         made.advance(limits)
@@ -58,12 +58,12 @@ def advanced(made: Engine, ticks: int) -> Engine:
 
 
 def organism_ticks(made: Engine) -> int:
-    """Lived so far, in all worlds."""
+    """Return the organism-ticks lived so far in all worlds."""
     return int(to_host(made.state.world.worlds.organism_ticks).sum())
 
 
 def rate(made: Engine, seconds: float) -> float:
-    """Organism-ticks per second over about so many seconds."""
+    """Return organism-ticks per second over about `seconds`."""
     limits = made.limits({})
     made.advance(limits)
     began, lived = time.perf_counter(), organism_ticks(made)
@@ -74,11 +74,11 @@ def rate(made: Engine, seconds: float) -> float:
 
 
 def median(values: list[float]) -> float:
-    """Median, as a float."""
+    """Return the median as a float."""
     return float(statistics.median(values))
 
 
 def spread(values: list[float]) -> dict[str, float]:
-    """Median and quartiles."""
+    """Return median and quartiles."""
     low, middle, high = np.percentile(values, [25, 50, 75])
     return {"q1": float(low), "median": float(middle), "q3": float(high)}

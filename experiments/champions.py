@@ -2,9 +2,10 @@
 
     python experiments/champions.py experiments/atari/*.toml experiments/robots/*.toml
 
-For experiments that have been run (`experiments/run.py`): one genome from each world of the reference, to
-`genomes/` beside the file. Whose, `experiments/games.py` has found out among all that are alive; where it
-has not, the longest-lived's. `primordia run TASK --ancestor FILE --genesis fill` begins with them.
+The experiments must have been run (`experiments/run.py`). One genome from each world of the reference
+goes to `genomes/` beside the file. The organism is the one that `experiments/games.py` found best among
+all that are alive. If that script was not run, it is the longest-lived organism. `primordia run TASK
+--ancestor FILE --genesis fill` starts a run from these genomes.
 """
 
 import csv
@@ -21,38 +22,37 @@ from primordia.runs.archive import Archive
 
 
 def report(file: Path) -> None:
-    """Write the genomes, in the order of worlds."""
+    """Write the genomes of the champions of an experiment, in the order of worlds."""
     run = Archive(files.runs(file)[0])
     config, champions = run.config, best_known(file, run)
     about = {
         "task": config.task,
-        "seeds": words(config.seed + each.world for each in champions),
-        "organisms": words(each.id for each in champions),
-        "ages": words(each.age for each in champions),
+        "seeds": words(config.seed + organism.world for organism in champions),
+        "organisms": words(organism.id for organism in champions),
+        "ages": words(organism.age for organism in champions),
     }
     path = file.parent / "genomes" / f"{file.stem}.safetensors"
     path.parent.mkdir(exist_ok=True)
-    kept = rebuild_all(run, [(each.id, each.world) for each in champions])
+    kept = rebuild_all(run, [(organism.id, organism.world) for organism in champions])
     genomes.write(path, run.law.layout, kept, about)
     print(path)
 
 
 def best_known(file: Path, run: Archive) -> list[Organism]:
-    """Of each world."""
+    """Return the best organism of each world that is known."""
     games = file.parent / "results" / f"{file.stem}-games.csv"
     rows = csv.DictReader(games.read_text().splitlines()) if games.exists() else []
-    found = {
-        int(r["world"]): int(r["organism"]) for r in rows if r["who"] == BEST.format(run.path.name)
-    }
-    if not found:
+    label = BEST.format(run.path.name)
+    best = {int(row["world"]): int(row["organism"]) for row in rows if row["who"] == label}
+    if not best:
         return longest_lived(run.path)
-    return [Organism(run, run.lives.row(found[world], world)) for world in sorted(found)]
+    return [Organism(run, run.lives.row(best[world], world)) for world in sorted(best)]
 
 
 def words(numbers: Iterable[int]) -> str:
-    """As metadata can hold them."""
+    """Join numbers with spaces: metadata holds text only."""
     return " ".join(map(str, numbers))
 
 
 if __name__ == "__main__":
-    files.each(report, __doc__)
+    files.for_each_named(report, __doc__)

@@ -1,4 +1,4 @@
-"""Files of experiments: those named on the command line, and where their runs are."""
+"""Files of experiments: the names on the command line, the arms in a file, and where their runs are."""
 
 import sys
 import tomllib
@@ -9,8 +9,8 @@ from typing import Any
 from primordia.settings.tables import merged
 
 
-def each(do: Callable[[Path], None], usage: str | None) -> None:
-    """Do it with all files named, one after the other."""
+def for_each_named(do: Callable[[Path], None], usage: str | None) -> None:
+    """Call `do` with each file named on the command line; without a name, print `usage` and exit."""
     if len(sys.argv) < 2:
         sys.exit(usage)
     for name in sys.argv[1:]:
@@ -18,17 +18,20 @@ def each(do: Callable[[Path], None], usage: str | None) -> None:
 
 
 def folder(file: Path) -> Path:
-    """Where the runs of an experiment are, one an arm."""
+    """Return the folder of an experiment's runs, one for each arm."""
     return Path("runs", "experiments", file.parent.name, file.stem)
 
 
 def runs(file: Path) -> list[Path]:
-    """Of each arm, the reference first."""
+    """Return the run of each arm, the reference first."""
     return [folder(file) / name for name in arms(file)]
 
 
 def arms(file: Path) -> dict[str, dict[str, Any]]:
-    """Settings of each arm by its name, the task among them; a fork's, on top of those it comes from."""
+    """Return the settings of each arm by its name, the task among them.
+
+    The settings of a fork are those of the arm that it comes from, with its own changes.
+    """
     values = tomllib.loads(file.read_text(encoding="utf-8"))
     own, fork = values.pop("arms"), values.pop("fork", None)
     values.pop("question", None)

@@ -1,13 +1,14 @@
-"""What are founders worth, and how much of it do their mutants inherit? Short trials, by which scales of
-weights are chosen before anything is left to evolve.
+"""How long do founders live, and how much of it do their mutants inherit?
+
+Short trials. They choose the scales of weights before a run evolves anything.
 
     python experiments/founders.py experiments/atari/founders/*.toml
 
 A file has a `question`, the settings that all arms share, and `[[arms]]` with other settings of
-`[mutation]`. In each arm many founders live once, alone; then mutants of the longest-lived do. How much
-longer these live than founders, over how much longer their parents lived, is the realised heritability
-of lifespan (Falconer & Mackay 1996, chapter 11): 1 if mutants live as long as their parents, 0 if they
-might as well be founders. The table goes to `results/` beside the folder.
+`[mutation]`. In each arm many founders live once, alone; then mutants of the longest-lived founders live
+once. The realised heritability of lifespan is the gain of the mutants over the gain of their parents,
+both measured from the mean founder (Falconer & Mackay 1996, chapter 11). It is 1 if mutants live as long
+as their parents, and 0 if they live as long as founders. The table goes to `results/` beside the folder.
 """
 
 import tomllib
@@ -20,6 +21,8 @@ import numpy as np
 from primordia import config
 from primordia.config import Config
 from primordia.law.genesis import climate
+from primordia.law.law import Law
+from primordia.law.metabolism import Rates
 from primordia.organism.games import Players, play
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
@@ -32,7 +35,7 @@ HEAD = ("", "founders: median", "mean", "longest", "parents: mean", "mutants: me
 
 
 def report(file: Path) -> None:
-    """Let all live, and write what came out."""
+    """Run the trial of each arm of a file and write the table."""
     values = tomllib.loads(file.read_text(encoding="utf-8"))
     question, arms = values.pop("question"), values.pop("arms")
     rows = [trial(arm.pop("name"), merged(values, arm)) for arm in arms]
@@ -47,13 +50,10 @@ def report(file: Path) -> None:
 
 
 def trial(name: str, settings: dict[str, Any]) -> list[str]:
-    """A row of the table."""
+    """Run the trial of one arm and return its row of the table."""
     chosen = config.load(settings.pop("task"), settings)
     law = chosen.build_law(chosen.build_habitat())
-    scales, spread = (
-        np.repeat(np.array(law.mutation.per_block(field, law.layout), np.float32), law.layout.sizes)
-        for field in ("scale", "founder_scale")
-    )
+    scales, spread = per_weight(law, "scale"), per_weight(law, "founder_scale")
     noise = np.random.default_rng(0)
     founders = spread * noise.standard_normal((FOUNDERS, len(scales)))
     lived = lifespans(chosen, founders)
@@ -68,15 +68,25 @@ def trial(name: str, settings: dict[str, Any]) -> list[str]:
     return row
 
 
+def per_weight(law: Law, field: str) -> np.ndarray:
+    """Return a setting of the mutation for each weight of a genome, float32 (P,)."""
+    return np.repeat(
+        np.array(law.mutation.per_block(field, law.layout), np.float32), law.layout.sizes
+    )
+
+
 def lifespans(chosen: Config, genomes: np.ndarray, first: int = 0) -> np.ndarray:
-    """Of organisms with these genomes (K, P), numbered from `first`, one life each: (K,)."""
+    """Return the lifespans in ticks (K,) of organisms with these genomes (K, P), one life each.
+
+    Organisms are numbered from `first`. Their random draws follow from their numbers.
+    """
     habitat, numbers = chosen.build_habitat(), first + np.arange(len(genomes))
     law = chosen.build_law(habitat)
     keys = stream(wide([chosen.seed]), Purpose.EVALUATION, wide(numbers))
-    rates = climate(law, len(genomes)).metabolism
+    rates = Rates.of(climate(law, len(genomes)))
     players = Players(law, habitat, genomes.astype(np.float32), keys, rates)
     return play(players, 1, TICKS).ticks[:, 0]
 
 
 if __name__ == "__main__":
-    files.each(report, __doc__)
+    files.for_each_named(report, __doc__)

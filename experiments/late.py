@@ -14,28 +14,28 @@ COLUMNS = {
     "late_score": "their median score",
     "best_score": "best score at any death",
 }
-"""What is told of each world, and in which words."""
+"""Figures of each world, with their names in tables."""
 
 
 def last_deaths(run: Path, compared: Comparison) -> list[dict[str, float]]:
-    """COLUMNS of each world of a run, up to where runs are compared; scores where there are any."""
+    """Return COLUMNS of each world of a run, up to where runs are compared; scores if there are any."""
     edges = compared.arms[0].pace.edges
     begins, ends = edges[-1 - LATE], edges[-1]
-    found = primordia.load(run)
-    everyone, deaths = found.lives(), found.arrays("deaths")
-    told = []
-    for number in range(everyone.worlds):
-        mine = everyone.of_world(number)
-        late = mine.died & (begins < mine.ended) & (mine.ended <= ends)
-        world = {"late_deaths": int(late.sum()), "late_lifespan": median(mine.lifespan[late])}
+    opened = primordia.load(run)
+    lives, deaths = opened.lives(), opened.arrays("deaths")
+    figures = []
+    for number in range(lives.worlds):
+        in_world = lives.of_world(number)
+        late = in_world.died & (begins < in_world.ended) & (in_world.ended <= ends)
+        world = {"late_deaths": int(late.sum()), "late_lifespan": median(in_world.lifespan[late])}
         if "score" in deaths:
             here = (deaths["world"] == number) & (deaths["tick"] <= ends)
             score, then = deaths["score"][here], deaths["tick"][here] > begins
             world |= {"late_score": median(score[then]), "best_score": score.max(initial=0)}
-        told.append(world)
-    return told
+        figures.append(world)
+    return figures
 
 
 def median(values: np.ndarray) -> float:
-    """NaN of nothing."""
+    """Return the median; NaN if there are no values."""
     return float(np.median(values)) if len(values) else np.nan

@@ -2,9 +2,9 @@
 
     python experiments/mutants.py experiments/atari/*.toml
 
-For experiments that have been run (`experiments/run.py`), in tasks where nothing is drawn at random, so
-that a genome has one lifespan. Of the reference's worlds, the organism that lived longest is given
-mutants of several scales, every weight with noise; each lives once. The table goes to `results/` beside
+The experiments must have been run (`experiments/run.py`), in tasks that draw nothing at random, so that
+a genome has one lifespan. The organism that lived longest in each world of the reference gets mutants of
+several scales, with noise on every weight. Each mutant lives once. The table goes to `results/` beside
 the file, as Markdown and CSV.
 """
 
@@ -13,6 +13,7 @@ from typing import Any
 
 import files
 import numpy as np
+from founders import per_weight
 from games import longest_lived, write_rows
 
 from primordia.organism.evaluation import players_of
@@ -22,28 +23,29 @@ from results import table
 
 MUTANTS = 24
 SCALES = (0.0001, 0.0003, 0.001, 0.003, 0.01, 0.03, 0.1)
-"""standard deviations of the noise, of the founders' scale"""
+"""standard deviations of the noise, as shares of the founders' scale"""
 TICKS = 20_000
 SAME = 2
-"""ticks by which lives may differ and count as equal"""
+"""difference in ticks up to which two lives count as equal"""
 SHARES = ("as long", "longer", "longer by a tenth", "shorter by a third")
 
 
 def report(file: Path) -> None:
-    """Let mutants live, and write what came out."""
+    """Let mutants live and write the table."""
     reference = files.runs(file)[0]
     rows = [row for organism in longest_lived(reference) for row in mutants_of(organism)]
     write_rows(file.parent / "results" / f"{file.stem}-mutants", rows, summary(rows))
 
 
 def mutants_of(organism: Organism) -> list[dict[str, Any]]:
-    """A row for each scale."""
+    """Let mutants of an organism live and return a row for each scale."""
     own = (organism.id, organism.world)
     itself, noise = players_of(organism.run, [own]), np.random.default_rng(0)
     lifespan = play(itself, 1, TICKS).ticks[0, 0]
     same, rows = itself.take(np.zeros(MUTANTS, int)), []
+    spread = per_weight(same.law, "founder_scale")
     for scale in SCALES:
-        steps = scale * same.law.founder_scale * noise.standard_normal(same.genomes.shape)
+        steps = scale * spread * noise.standard_normal(same.genomes.shape)
         genomes = (same.genomes + steps).astype(np.float32)
         ticks = play(same._replace(genomes=genomes), 1, TICKS).ticks[:, 0]
         row = {
@@ -59,19 +61,19 @@ def mutants_of(organism: Organism) -> list[dict[str, Any]]:
 
 
 def shares(ticks: np.ndarray, own: int) -> list[float]:
-    """Of mutants that live so long, where their parent does: each of SHARES."""
+    """Return each of SHARES for mutants that live `ticks` and a parent that lives `own` ticks."""
     equal = abs(ticks - own) <= SAME
-    each = (equal, ~equal & (ticks > own), ticks > 1.1 * own, ticks < own * 2 / 3)
-    return [round(float(which.mean()), 3) for which in each]
+    groups = (equal, ~equal & (ticks > own), ticks > 1.1 * own, ticks < own * 2 / 3)
+    return [round(float(group.mean()), 3) for group in groups]
 
 
 def summary(rows: list[dict[str, Any]]) -> str:
-    """Medians over worlds."""
+    """Return a table of medians over worlds."""
     columns = (*SHARES, "median", "longest")
     lines = []
     for scale in SCALES:
-        mine = [row for row in rows if row["scale"] == scale]
-        lines.append([scale, *(f"{np.median([row[c] for row in mine]):,.4g}" for c in columns)])
+        of_scale = [row for row in rows if row["scale"] == scale]
+        lines.append([scale, *(f"{np.median([row[c] for row in of_scale]):,.4g}" for c in columns)])
     parents = sorted({(row["world"], int(row["lifespan"])) for row in rows})
     note = (
         f"Medians over {len(parents)} worlds of {MUTANTS} mutants each of the organism that lived longest"
@@ -82,4 +84,4 @@ def summary(rows: list[dict[str, Any]]) -> str:
 
 
 if __name__ == "__main__":
-    files.each(report, __doc__)
+    files.for_each_named(report, __doc__)

@@ -2,11 +2,11 @@
 
     python experiments/reaching.py experiments/robots/reacher.toml experiments/robots/reacher-costly.toml
 
-For experiments that have been run (`experiments/run.py`), of Reacher's tasks. In every world those that
-have lived longest of all that are alive at the end live the last part of their lives again; beside them
-the first founders, which nothing has selected. A target's time is from the tick in which it appears to
-the one in which the next appears; its path is the way that the fingertip makes in this time, against the
-shortest. One table of all files named goes to `results/` beside the first, as Markdown and CSV.
+The experiments must be of Reacher's tasks and must have been run (`experiments/run.py`). In every world
+the oldest organisms that are alive at the end live the last part of their lives again. The first founder
+does the same, as a control without selection. A target's time is from the tick in which it appears to
+the tick in which the next appears. Its path is the length of the fingertip's way in this time, over the
+shortest way. One table of all files goes to `results/` beside the first file, as Markdown and CSV.
 """
 
 import sys
@@ -23,13 +23,13 @@ from primordia.organism.organism import Organism
 from results import table
 
 EACH = 8
-"""organisms of a world"""
+"""the number of organisms of a world that are watched"""
 TICKS = 5_000
-"""of a life, its last"""
+"""the number of last ticks of a life that are watched"""
 RATE = 50.0
 """ticks in a second"""
 TARGET, SPEED, WAY = slice(4, 6), slice(6, 8), slice(8, 10)
-"""of what arms perceive: the target's place, the joints' speeds, and from target to fingertip"""
+"""parts of the senses: the target's place, the joints' speeds, and the way from target to fingertip"""
 COLUMNS = {
     "reached": "targets reached",
     "seconds": "seconds for each",
@@ -41,37 +41,37 @@ COLUMNS = {
 
 
 def report(names: list[Path]) -> None:
-    """Watch, and write what was seen."""
+    """Watch the arms of some experiments and write one table."""
     rows = []
     for file in names:
         for run in files.runs(file):
-            of = f"{file.stem}, {run.name}"
-            rows += [told(f"{of}: founders", each) for each in founders(run)]
-            rows += [told(of, each) for each in some_alive(run)]
+            name = f"{file.stem}, {run.name}"
+            rows += [watched(f"{name}: founders", organism) for organism in founders(run)]
+            rows += [watched(name, organism) for organism in some_alive(run)]
     write_rows(names[0].parent / "results" / "reaching", rows, summary(rows))
 
 
 def some_alive(run: Path) -> list[Organism]:
-    """Of each world, those that have lived longest."""
+    """Return the longest-lived organisms of each world that are alive at the end."""
     opened = primordia.load(run).opened()
-    everyone, chosen = opened.lives, []
-    for world in range(everyone.worlds):
-        rows = np.flatnonzero(~everyone.died & (everyone.world == world))
-        order = np.argsort(-everyone.lifespan[rows], kind="stable")
+    lives, chosen = opened.lives, []
+    for world in range(lives.worlds):
+        rows = np.flatnonzero(~lives.died & (lives.world == world))
+        order = np.argsort(-lives.lifespan[rows], kind="stable")
         chosen += [Organism(opened, int(row)) for row in rows[order[:EACH]]]
     return chosen
 
 
-def told(who: str, organism: Organism) -> dict[str, Any]:
-    """A row: what it does for a target."""
+def watched(name: str, organism: Organism) -> dict[str, Any]:
+    """Live the end of an organism's life again and return a row of what it does for a target."""
     life = Life.of(organism.run, organism.id, organism.world)
     senses = np.concatenate([stretch.senses for stretch in life.again()])[-TICKS:]
-    found = {"who": who, "world": organism.world, "organism": organism.id, "age": organism.age}
-    return {**found, **measured(senses)}
+    row = {"who": name, "world": organism.world, "organism": organism.id, "age": organism.age}
+    return {**row, **measured(senses)}
 
 
 def measured(senses: np.ndarray) -> dict[str, float]:
-    """Of senses, float32 (T, 11) as arms have them: COLUMNS; NaN where fewer than two were reached."""
+    """Return COLUMNS of an arm's senses, float32 (T, 11); NaN if fewer than two targets were reached."""
     target, speed = senses[:, TARGET], senses[:, SPEED]
     tip = target + senses[:, WAY]
     new = 1 + np.flatnonzero((np.diff(target, axis=0) != 0).any(axis=1))
@@ -94,14 +94,14 @@ def measured(senses: np.ndarray) -> dict[str, float]:
 
 
 def summary(rows: list[dict[str, Any]]) -> str:
-    """Medians over worlds of each world's median, with the least and the most."""
+    """Return a table of medians over worlds of each world's median, with the least and the most."""
     lines = []
     for name in dict.fromkeys(row["who"] for row in rows):
-        mine = [row for row in rows if row["who"] == name]
-        worlds = sorted({row["world"] for row in mine})
-        here = [[row for row in mine if row["world"] == world] for world in worlds]
-        cells = [told_of([known(rows, column) for rows in here]) for column in COLUMNS]
-        lines.append([name, len(mine), *cells])
+        of_name = [row for row in rows if row["who"] == name]
+        worlds = sorted({row["world"] for row in of_name})
+        by_world = [[row for row in of_name if row["world"] == world] for world in worlds]
+        cells = [medians_of([known(rows, column) for rows in by_world]) for column in COLUMNS]
+        lines.append([name, len(of_name), *cells])
     note = (
         f"Medians over worlds (least to most) of the median in each world, of the last {TICKS:,} ticks of"
         f" the {EACH} oldest alive at the end, and of the first founder. Effort: squares of the joints'"
@@ -111,17 +111,18 @@ def summary(rows: list[dict[str, Any]]) -> str:
 
 
 def known(rows: list[dict[str, Any]], column: str) -> list[float]:
-    """Figures that there are."""
+    """Return the figures of a column that are finite."""
     return [row[column] for row in rows if np.isfinite(row[column])]
 
 
-def told_of(worlds: list[list[float]]) -> str:
-    """Spread of the medians of worlds that have one, and how many these are if not all."""
-    medians = [float(np.median(each)) for each in worlds if each]
+def medians_of(worlds: list[list[float]]) -> str:
+    """Return the spread of the worlds' medians, and how many worlds have one if not all do."""
+    medians = [float(np.median(figures)) for figures in worlds if figures]
     if not medians:
         return "-"
-    few = f", {len(medians)} worlds" * (len(medians) < len(worlds))
-    return f"{spread(medians)}{few}"
+    if len(medians) == len(worlds):
+        return spread(medians)
+    return f"{spread(medians)}, {len(medians)} worlds"
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""What came out of an experiment: a table for people, one row a world for programs, a figure."""
+"""Results of an experiment: a table for people, a row for each world for programs, and a figure."""
 
 import csv
 import datetime
@@ -21,7 +21,7 @@ NOTE = (
 
 
 def write(stem: Path, question: str, runs: list[Path]) -> None:
-    """STEM.md, STEM.csv and STEM.png; the first run is the reference."""
+    """Write STEM.md, STEM.csv and STEM.png; the first run is the reference."""
     stem.parent.mkdir(exist_ok=True)
     compared = primordia.compare(*runs)
     infos = [primordia.Run(run).info() for run in runs]
@@ -38,10 +38,10 @@ def write(stem: Path, question: str, runs: list[Path]) -> None:
 
 
 def summary(compared: Comparison, infos: list[dict[str, Any]]) -> str:
-    """A row an arm: medians over worlds, with quartiles."""
+    """Return a table with a row for each arm: medians over worlds, with quartiles."""
     names = list(compared.arms[0].settings)
-    told = compared.outcomes
-    head = ["", *names, "worlds", "saturated", "extinctions (median)", *told.values()]
+    outcomes = compared.outcomes
+    head = ["", *names, "worlds", "saturated", "extinctions (median)", *outcomes.values()]
     rows = [
         [
             arm.name,
@@ -50,19 +50,19 @@ def summary(compared: Comparison, infos: list[dict[str, Any]]) -> str:
             arm.saturated,
             f"{extinct(info):g}",
         ]
-        + [spread(arm, outcome) for outcome in told]
+        + [spread(arm, outcome) for outcome in outcomes]
         for arm, info in zip(compared.arms, infos, strict=True)
     ]
     return table(head, rows)
 
 
 def extinct(info: dict[str, Any]) -> float:
-    """How often the median world did."""
+    """Return the median number of extinctions of a world."""
     return statistics.median(world["extinctions"] for world in info["worlds"])
 
 
 def dying(compared: Comparison, ends: list[list[dict[str, float]]]) -> str:
-    """A row an arm: what the worlds' deaths came to, each world's figure."""
+    """Return a table with a row for each arm: the figures of late deaths, world by world."""
     names = [name for name in late.COLUMNS if name in ends[0][0]]
     rows = [
         [arm.name, *("; ".join(f"{world[name]:,.0f}" for world in worlds) for name in names)]
@@ -72,23 +72,24 @@ def dying(compared: Comparison, ends: list[list[dict[str, float]]]) -> str:
 
 
 def effects(compared: Comparison) -> str:
-    """A row an arm: Cliff's delta against the reference, and the ratio of the medians."""
+    """Return a table with a row for each arm: Cliff's delta and the ratio of medians to the reference."""
     reference, *others = compared.arms
     rows = []
     for arm in others:
-        found = [(compared.contrast(arm, outcome), outcome) for outcome in compared.outcomes]
-        rows.append([arm.name, *(f"{effect(*each)}; {ratio(each[0])}" for each in found)])
+        contrasts = {outcome: compared.contrast(arm, outcome) for outcome in compared.outcomes}
+        cells = [f"{effect(c, outcome)}; {ratio(c)}" for outcome, c in contrasts.items()]
+        rows.append([arm.name, *cells])
     return table([f"against {reference.name}", *compared.outcomes.values()], rows)
 
 
 def table(head: list[str], rows: list[list[Any]]) -> str:
-    """Markdown."""
+    """Return a table in Markdown."""
     lines = [head, ["---"] * len(head), *rows]
     return "\n".join(f"| {' | '.join(map(str, line))} |" for line in lines)
 
 
 def made(run: Path, info: dict[str, Any]) -> str:
-    """When, up to where and with what."""
+    """Say when the experiment was run, with which versions, and where it stopped."""
     begun = datetime.date.fromtimestamp((run / "versions.json").stat().st_mtime)
     what = ", ".join(f"{name} {version}" for name, version in info["versions"].items())
     limits = [f"{name} {value}" for name, value in info["limits"].items() if value is not None]
@@ -101,16 +102,16 @@ def write_worlds(
     infos: list[dict[str, Any]],
     ends: list[list[dict[str, float]]],
 ) -> None:
-    """A row for each world of each arm; empty where it never saturated."""
+    """Write a row for each world of each arm; the moment of saturation is empty if there was none."""
     with path.open("w", newline="", encoding="utf-8") as file:
         rows = csv.writer(file, lineterminator="\n")
         moments = ["saturated_births", "saturated_tick"]
         counted = ["seed", "ticks", "births", "extinctions", "alive"]
         rows.writerow(["arm", *counted, *moments, "mean_lifespan", *(ends[0][0] if ends else ())])
         for number, (arm, info) in enumerate(zip(compared.arms, infos, strict=True)):
-            for each, world in enumerate(info["worlds"]):
+            for w, world in enumerate(info["worlds"]):
                 at = world["saturation"] or {"births": "", "tick": ""}
-                mean = f"{arm.figures['lifespan'].value[each]:.1f}"
-                last = ends[number][each].values() if ends else ()
+                mean = f"{arm.figures['lifespan'].value[w]:.1f}"
+                last = ends[number][w].values() if ends else ()
                 counts = [world[name] for name in counted]
                 rows.writerow([arm.name, *counts, at["births"], at["tick"], mean, *last])

@@ -1,4 +1,4 @@
-"""Bounds that chance keeps: five standard deviations, or as unlikely. Seeds in tests are fixed."""
+"""Bounds for random counts: five standard deviations, or the same probability. Seeds are fixed."""
 
 import math
 
@@ -6,14 +6,14 @@ import numpy as np
 
 
 def binomial(count: int, n: int, p: float) -> bool:
-    """Whether `count` of n trials of probability p is within five standard deviations."""
+    """Return whether `count` of n trials of probability p is within five standard deviations."""
     return abs(count - n * p) <= 5 * math.sqrt(n * p * (1 - p))
 
 
 def even(counts: np.ndarray) -> bool:
-    """Whether these counts are of equally likely outcomes: chi-square below its 1 - 3e-7 quantile.
+    """Return whether these may be counts of equally likely outcomes.
 
-    The quantile is that of Wilson and Hilferty (1931).
+    Chi-square must be below its 1 - 3e-7 quantile, which is that of Wilson and Hilferty (1931).
     """
     expected, freedom = counts.mean(), len(counts) - 1
     square = ((counts - expected) ** 2 / expected).sum()

@@ -1,4 +1,4 @@
-"""The command line as a user meets it: in a process of its own, or faster, in this one."""
+"""The command line as a user meets it: in another process, or faster, in this process."""
 
 import io
 import os
@@ -16,7 +16,10 @@ COMMAND = [sys.executable, "-m", "primordia"]
 
 
 def environment(cache: Path | None = None) -> dict[str, str]:
-    """Finds this tree's package and the tests' own habitats; compiled code is kept between processes."""
+    """Return variables under which a process finds this tree's package and the habitats of the tests.
+
+    `cache` is the folder in which processes share compiled code.
+    """
     extra = {"PYTHONPATH": os.pathsep.join([str(HERE / "src"), str(HERE)])}
     if cache is not None:
         extra |= {
@@ -27,7 +30,7 @@ def environment(cache: Path | None = None) -> dict[str, str]:
 
 
 def begin(*words: object) -> subprocess.Popen[str]:
-    """Start a command and leave it running."""
+    """Start a command in another process and return while it runs."""
     pipes: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     return subprocess.Popen([*COMMAND, *map(str, words)], env=environment(CACHE), **pipes)
 
@@ -45,7 +48,7 @@ def here(*words: object) -> subprocess.CompletedProcess[str]:
 
 
 def complains(done: subprocess.CompletedProcess[str], status: int, *parts: str) -> None:
-    """One clear line on stderr, the exit status, no traceback."""
+    """Assert that a command failed with this status and one clear line on stderr, with these parts."""
     assert done.returncode == status, done.stderr + done.stdout
     assert len(done.stderr.strip().splitlines()) == 1, done.stderr
     assert done.stderr.startswith("primordia: ")

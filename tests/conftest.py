@@ -1,3 +1,5 @@
+"""Set-up of all tests: JAX, Hypothesis, and a shared cache of compiled code."""
+
 import os
 from pathlib import Path
 
@@ -9,21 +11,21 @@ from primordia import device
 from tests import commands
 
 # XLA compiles faster with its older emitters. Their code is slower and gives the same bits: the digests
-# that these tests know were made with the new ones.
+# in these tests were made with the new emitters.
 EMITTERS = "--xla_cpu_use_fusion_emitters"
 flags = os.environ.get("XLA_FLAGS", "")
 if EMITTERS not in flags:
     os.environ["XLA_FLAGS"] = f"{flags} {EMITTERS}=false".strip()
 device.prepare()
 
-# What is slow is not wrong: a machine may be busy, and Python collects garbage for a third of a second.
+# A slow test is not a wrong test: the machine may be busy, and garbage collection takes up to 0.3 s.
 settings.register_profile("patient", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("patient")
 
 
 @pytest.fixture(autouse=True, scope="session")
 def _compiled_code(tmp_path_factory: pytest.TempPathFactory) -> None:
-    """One cache of compiled code for all processes of the tests and all commands they run."""
+    """Share one cache of compiled code among all test processes and all commands that they run."""
     root = tmp_path_factory.getbasetemp()
     shared = root.parent if root.name.startswith("popen") else root
     commands.CACHE = Path(shared) / "compiled"

@@ -1,4 +1,4 @@
-"""A simulator for tests of the pool: each cell counts, and can be told to fail."""
+"""A simulator for tests of the pool: each cell counts, and fails on request."""
 
 import os
 import time
@@ -9,7 +9,7 @@ FIELDS = {"add": ("int64", ()), "total": ("int64", ()), "who": ("int64", ())}
 
 
 class Counters:
-    """`total` grows by `add`; adding -1 raises, -2 ends the process, -3 sleeps."""
+    """Counters whose `total` grows by `add`. Adding -1 raises, -2 ends the process, -3 sleeps."""
 
     def __init__(self, arrays: dict[str, np.ndarray], start: int) -> None:
         self._arrays, self._start = arrays, start
@@ -25,21 +25,21 @@ class Counters:
     def _step(self, cell: int) -> None:
         add = int(self._arrays["add"][cell])
         if add == -1:
-            raise ValueError("told to fail")
+            raise ValueError("failed on request")
         if add == -2:
             os._exit(7)
         if add == -3:
             time.sleep(100)
         self._total[cell] += add
-        self._show(cell)
+        self._publish(cell)
 
-    def _show(self, cell: int) -> None:
+    def _publish(self, cell: int) -> None:
         self._arrays["total"][cell] = self._total[cell]
         self._arrays["who"][cell] = os.getpid()
 
     def reset(self, cell: int) -> None:
         self._total[cell] = self._start
-        self._show(cell)
+        self._publish(cell)
 
     def save(self, cell: int) -> bytes:
         return str(self._total[cell]).encode() * (cell + 1)
@@ -47,4 +47,4 @@ class Counters:
     def load(self, cell: int, state: bytes) -> None:
         text = state.decode()
         self._total[cell] = int(text[: len(text) // (cell + 1)])
-        self._show(cell)
+        self._publish(cell)

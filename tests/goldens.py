@@ -1,7 +1,7 @@
-"""Golden digests: what lived in some small runs, as hashes that no change of the source may change.
+"""Golden digests: hashes of what lived in some small runs. No change of the source may change them.
 
-`python -m tests.goldens` lives all cases again and rewrites `goldens.json`. Only the Python interface of
-the package is used here, and the habitats of `tests.toys`, so that the internals are free to move.
+`python -m tests.goldens` lives all cases again and rewrites `goldens.json`. This file uses only the
+Python interface of the package and the habitats of `tests.toys`, so that the internals are free to move.
 """
 
 import hashlib
@@ -22,21 +22,21 @@ from primordia import Run
 FILE = Path(__file__).with_suffix(".json")
 PLAIN = ("world", "tick", "population", "births", "extinctions", "organism_ticks", "mean_age",
          "oldest_age", "mean_energy", "food")  # fmt: skip
-"""Columns of metrics that are no setting; so are those of deaths by cause and of tallies."""
+"""Columns of metrics that measure the world. Columns of deaths by cause and of tallies do too."""
 
 
 @dataclass(frozen=True)
 class Case:
-    """A run, what is done with it next, and what is asked of it."""
+    """A run, what is done with it next, and how it is evaluated."""
 
     task: str
     settings: dict[str, Any]
     needs: str | None = None
-    """package without which its habitat cannot be made"""
+    """the package that its habitat needs"""
     then: tuple[dict[str, Any], ...] = ()
-    """the arguments of each resume, or of each fork (they have `at`), one after another"""
+    """arguments of each resume or fork, in order; those of a fork have `at`"""
     ancestors: tuple[tuple[int, ...], ...] = ()
-    """a file each, of organisms of a run of pole balancers"""
+    """organisms of a run of pole balancers, for one file of ancestors each"""
     evaluate: dict[str, Any] = field(default_factory=dict)
 
 
@@ -59,12 +59,12 @@ def live(case: Case, folder: Path) -> Run:
 
 
 def entries(case: Case, run: Run) -> dict[str, Any]:
-    """Describe what lived, an entry for each thing that may differ by itself."""
+    """Describe what lived, with an entry for each thing that may differ alone."""
     births, deaths, metrics = (run.table(name) for name in ("births", "deaths", "metrics"))
     climate = [name for name in metrics.column_names if not is_plain(name)]
     worlds = run.info()["worlds"]
     ends = ("ticks", "extinctions", "saturation", "fixation")
-    found = {
+    described = {
         "counts": counts(births, deaths, metrics),
         "births": table_hash(births, "world", "id"),
         "deaths": table_hash(deaths, "world", "id"),
@@ -76,22 +76,22 @@ def entries(case: Case, run: Run) -> dict[str, Any]:
     }
     if case.evaluate:
         of_oldest = run.oldest().evaluate(**case.evaluate)
-        found["evaluation"] = of_oldest.to_dict()
-    return found
+        described["evaluation"] = of_oldest.to_dict()
+    return described
 
 
 def is_plain(name: str) -> bool:
-    """Tell columns of metrics that measure something from those of settings."""
+    """Return whether a column of metrics measures the world, rather than showing a setting."""
     return name in PLAIN or name.startswith("deaths_") or name.endswith(("_mean", "_best"))
 
 
 def counts(births: pa.Table, deaths: pa.Table, metrics: pa.Table) -> dict[str, int]:
-    """Count births and deaths by cause, for people."""
-    found = {"births": len(births), "deaths": len(deaths), "samples": len(metrics)}
+    """Count births and deaths by cause, for readers of `goldens.json`."""
+    numbers = {"births": len(births), "deaths": len(deaths), "samples": len(metrics)}
     for table, what in ((births, "born"), (deaths, "died")):
         words = pc.value_counts(pc.cast(table["cause"], pa.string())).to_pylist()
-        found |= {f"{what} {each['values']}": each["counts"] for each in words}
-    return dict(sorted(found.items()))
+        numbers |= {f"{what} {word['values']}": word["counts"] for word in words}
+    return dict(sorted(numbers.items()))
 
 
 def table_hash(table: pa.Table, *order: str) -> str:
@@ -126,17 +126,17 @@ def genomes_hash(run: Run, births: pa.Table) -> str:
     worlds, ids = births["world"].to_numpy(), births["id"].to_numpy()
     mutant = pc.equal(pc.cast(births["cause"], pa.string()), "mutant").to_numpy()
     for world in np.unique(worlds).tolist():
-        mine, mutants = (
+        own, mutants = (
             np.sort(ids[some]) for some in (worlds == world, mutant & (worlds == world))
         )
-        chosen = [run.oldest(world).id, mine[0], mine[len(mine) // 2], mine[-1], *mutants[-1:]]
+        chosen = [run.oldest(world).id, own[0], own[len(own) // 2], own[-1], *mutants[-1:]]
         for organism in chosen:
             digest.update(run.rebuild(int(organism), world).astype("<f4").tobytes())
     return digest.hexdigest()
 
 
 def ticks(number: int) -> dict[str, Any]:
-    """Stop after so many ticks, and not before."""
+    """Return limits that stop a run after `number` ticks and not before."""
     return {"ticks": number, "until": "none"}
 
 
@@ -154,33 +154,33 @@ MILL: dict[str, Any] = {
     "brain": {"hidden": 6}, "hazard": 0.002, "sample_every": 50, "stop": ticks(400),
 }  # fmt: skip
 HUNGRY = {"metabolism": {"store": 50.0}}
-"""Starved within the few ticks of a case."""
+"""A store so small that organisms starve within the few ticks of a case."""
 
 
 def scheduled(setting: str, at: int, value: float) -> dict[str, Any]:
-    """Give a season that sets something."""
+    """Return a season that sets a setting at a tick."""
     return {"kind": "schedule", "setting": setting, "at": at, "value": value}
 
 
 def ratchet(setting: str, when: str, above: float, factor: float, every: int) -> dict[str, Any]:
-    """Give a season that looks at the world."""
+    """Return a season that looks at the world and changes a setting."""
     return {"kind": "ratchet", "setting": setting, "when": when, "above": above,
             "factor": factor, "every": every}  # fmt: skip
 
 
 def poles(**more: Any) -> Case:
-    """A case of pole balancers; the fields of a case are taken out of the settings."""
+    """Return a case of pole balancers; `more` holds settings and fields of the case."""
     own = {name: more.pop(name) for name in ("then", "ancestors", "evaluate") if name in more}
     return Case("CartPole-survival", {**POLES, **more}, **own)
 
 
 def toy(base: dict[str, Any], **more: Any) -> Case:
-    """A case in a toy habitat."""
+    """Return a case in a toy habitat."""
     return Case("CartPole-survival", {**base, **more})
 
 
 def game(task: str, number: int = 220, **more: Any) -> Case:
-    """A case of a few Atari players."""
+    """Return a case of a few Atari players."""
     evaluate = more.pop("evaluate", {})
     habitat = {"frame_skip": 4, **more.pop("habitat", {})}
     settings = {**SMALL, "hazard": 0.015, "cells": 6, "habitat": habitat, "stop": ticks(number)}
@@ -188,12 +188,12 @@ def game(task: str, number: int = 220, **more: Any) -> Case:
 
 
 def robot(task: str, number: int = 200, **more: Any) -> Case:
-    """A case of a few robots."""
+    """Return a case of a few robots."""
     return Case(task, {**SMALL, "stop": ticks(number), **more}, needs="mujoco")
 
 
 def tasks() -> Iterator[tuple[str, Case]]:
-    """Every task that comes with the package, and variants that share their compiled code."""
+    """Yield every task that comes with the package, and variants that share their compiled code."""
     random, frames = {"sticky": 0.25, "noops": 30}, {"frame_skip": 1}
     yield "CartPole-survival", poles(evaluate={"games": 5, "ticks": 300})
     yield "resumed", poles(stop=ticks(170), then=({"ticks": 290}, {"ticks": 400}))
@@ -231,7 +231,7 @@ def tasks() -> Iterator[tuple[str, Case]]:
 
 
 def placements() -> Iterator[tuple[str, Case]]:
-    """Every rule of placement in every topology, some together with what else the law knows."""
+    """Yield every placement rule in every topology, some with other settings of the law."""
     of_rules = {"replacing": {"brain": {"kind": "feed-forward"}}}
     many = {"seeds": 7, "cells": 16, "stop": {"ticks": 2000, "births": 40, "until": "none"}}
     calm = {"stop": {"ticks": 5000}, "saturation_ticks": 40,
@@ -244,18 +244,18 @@ def placements() -> Iterator[tuple[str, Case]]:
         "replacing-torus4": {"placement": {"rows": 3}},
         "replacing-well-mixed": many,
     }
+    marks = {"founder": "inheritance", "worlds": "seeds", "saturated": "saturation_ticks"}
     for rule in ("blind", "empty-only", "replacing"):
         for topology in ("ring", "torus4", "torus8", "well-mixed"):
             name = f"{rule}-{topology}"
             settings = {**of_rules.get(rule, {}), **more.get(name, {})}
             where = {"rule": rule, "topology": topology, **settings.pop("placement", {})}
-            words = "-founder" * ("inheritance" in settings) + "-worlds" * ("seeds" in settings)
-            words += "-saturated" * ("saturation_ticks" in settings)
-            yield name + words, toy(FIELD, **settings, placement=where)
+            suffixes = [f"-{word}" for word, setting in marks.items() if setting in settings]
+            yield name + "".join(suffixes), toy(FIELD, **settings, placement=where)
 
 
 def others() -> Iterator[tuple[str, Case]]:
-    """Hosts, seasons, blocks and ancestors."""
+    """Yield cases of host habitats, seasons, blocks and ancestors."""
     cartpole = {"name": "tests.toys:Mirror"}
     yield "host-cartpole-mirror", poles(habitat=cartpole)
     yield "host-cartpole-clocked", poles(habitat={"name": "tests.toys:Clocked"})
@@ -280,15 +280,15 @@ CASES = dict([*tasks(), *placements(), *others()])
 
 
 def make() -> None:
-    """Live all cases and write what they come to."""
-    found = {}
+    """Live all cases and write their entries."""
+    cases = {}
     for name, case in CASES.items():
         with tempfile.TemporaryDirectory() as folder:
             run = live(case, Path(folder))
-            found[name] = entries(case, run)
+            cases[name] = entries(case, run)
             made_with = run.info()["versions"]["instruction_set"]
-        print(name, found[name]["counts"], flush=True)
-    whole = {"instruction_set": made_with, "cases": found}
+        print(name, cases[name]["counts"], flush=True)
+    whole = {"instruction_set": made_with, "cases": cases}
     FILE.write_text(json.dumps(whole, indent=1, sort_keys=True) + "\n", encoding="utf-8")
 
 

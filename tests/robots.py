@@ -1,4 +1,4 @@
-"""Robots for tests: opened, and born."""
+"""Robots for tests: habitats that are open, of any model or of a task, and births in them."""
 
 from typing import Any
 
@@ -9,17 +9,20 @@ from primordia.habitats.mujoco.habitat import MuJoCo
 
 
 def opened(bodies: int = 4, **changes: Any) -> MuJoCo:
+    """Return an open habitat of half-cheetahs, with some settings changed."""
     habitat = MuJoCo(**{"file": "gymnasium:half_cheetah.xml", "substeps": 5, **changes})
     habitat.open(bodies)
     return habitat
 
 
 def of_task(name: str, bodies: int = 4, **changes: Any) -> Any:
+    """Return the open habitat of a task, with some settings of the habitat changed."""
     habitat: Any = load(name, {"habitat": changes}).build_habitat()
     habitat.open(bodies)
     return habitat
 
 
 def born(habitat: Any, bodies: int = 4, seed: int = 0) -> np.ndarray:
+    """Give birth in all cells, with words drawn from a seed, and return the senses (N, S)."""
     words = np.random.default_rng(seed).integers(0, 2**32, (bodies, habitat.words), np.uint32)
     return habitat.reset(np.arange(bodies), words)

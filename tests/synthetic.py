@@ -1,4 +1,4 @@
-"""Lives made up for tests."""
+"""Tables of invented lives: of one world, or of several."""
 
 from dataclasses import fields
 
@@ -13,7 +13,7 @@ LIVED = st.lists(LIFE, min_size=1, max_size=20)
 
 
 def world_of(lived: list[tuple[int, int, bool]], until: int = 90) -> Lives:
-    """One world's lives from (born, lifespan, died), without descent; each in a cell of its own."""
+    """Return the lives of one world from (born, lifespan, died), without descent, one in each cell."""
     born, lifespan, died = map(np.array, zip(*sorted(lived), strict=True))
     number = np.arange(len(born))
     return Lives(
@@ -30,15 +30,16 @@ def world_of(lived: list[tuple[int, int, bool]], until: int = 90) -> Lives:
 
 
 def alive(world: Lives, row: int, tick: int) -> bool:
+    """Return whether the organism of a row is alive at the end of a tick."""
     return world.born[row] <= tick and not (world.died[row] and world.ended[row] <= tick)
 
 
 def worlds_of(*lived: list[tuple[int, int, bool]], until: int) -> Lives:
-    """Several worlds of such lives."""
-    each = [world_of(one, until) for one in lived]
+    """Return the lives of several worlds."""
+    worlds = [world_of(lives, until) for lives in lived]
     columns = {
-        field.name: np.concatenate([getattr(one, field.name) for one in each])
+        field.name: np.concatenate([getattr(world, field.name) for world in worlds])
         for field in fields(Lives)
     }
-    numbers = np.repeat(np.arange(len(each), dtype=np.int32), list(map(len, each)))
+    numbers = np.repeat(np.arange(len(worlds), dtype=np.int32), list(map(len, worlds)))
     return Lives(**{**columns, "world": numbers})

@@ -1,4 +1,4 @@
-"""The tested versions: every package that the project asks for has one, in the range it asks for."""
+"""Tested versions: every required package has one, within the required range."""
 
 import tomllib
 from itertools import chain

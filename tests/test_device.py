@@ -1,4 +1,4 @@
-"""What Primordia changes in a user's process: nothing when it is imported, little when a run starts."""
+"""Changes to a user's process: none when Primordia is imported, few when a run starts."""
 
 import platform
 import subprocess
@@ -53,7 +53,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def python(program: str, *words: object, flags: str = "") -> str:
-    """What a program prints in a process of its own."""
+    """Run a program in another process and return what it prints."""
     command = [sys.executable, "-c", program, *map(str, words)]
     flagged = environment() | {"XLA_FLAGS": flags}
     return subprocess.run(
@@ -70,17 +70,17 @@ def test_looking_at_a_run_changes_no_setting_of_the_process(run: Path) -> None:
     ("flags", "allowed"),
     [("", "AVX2"), ("--xla_cpu_use_fusion_emitters=false", "AVX2"), (f"{ISA_FLAG}=AVX", "AVX")],
 )
-def test_a_run_is_held_to_avx2_unless_the_user_chose(
+def test_a_run_is_limited_to_avx2_unless_the_user_chose_otherwise(
     run: Path, tmp_path: Path, flags: str, allowed: str
 ) -> None:
-    said = python(LIVE, run, tmp_path / "other", flags=flags)
+    printed = python(LIVE, run, tmp_path / "other", flags=flags)
     kept = flags if ISA_FLAG in flags else f"{flags} {ISA_FLAG}=AVX2".strip()
-    assert said.split(maxsplit=2)[1:] == [allowed, kept]
+    assert printed.split(maxsplit=2)[1:] == [allowed, kept]
 
 
 @on_x86
-def test_jax_that_the_user_started_stays_as_it_is_and_the_run_says_so(
+def test_jax_that_the_user_started_is_left_alone_and_the_run_says_so(
     run: Path, tmp_path: Path
 ) -> None:
-    said = python("import jax; jax.devices()\n" + LIVE, run, tmp_path / "other")
-    assert said.split(maxsplit=2)[1:] == ["native"]
+    printed = python("import jax; jax.devices()\n" + LIVE, run, tmp_path / "other")
+    assert printed.split(maxsplit=2)[1:] == ["native"]

@@ -1,4 +1,4 @@
-"""Every command and block of code in README and docs is run, in order, as a reader would."""
+"""README and docs: every command and block of code is run in order, as a reader would run it."""
 
 import os
 import re
@@ -16,7 +16,7 @@ HERE = Path(__file__).parent.parent
 PAGES = [HERE / "README.md", *sorted((HERE / "docs").glob("*.md"))]
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 FILE = re.compile(r"# ([\w-]+\.\w+)\n")
-"""A block that begins so is the file of that name."""
+"""The first line of a block that is a file, with its name."""
 
 
 def blocks(page: Path) -> list[tuple[str, str]]:
@@ -40,7 +40,7 @@ def run(words: list[str], where: Path) -> None:
 
 
 def try_out(kind: str, text: str, where: Path) -> None:
-    """Do what a reader does with a block."""
+    """Do with a block what a reader does."""
     if named := FILE.match(text):
         (where / named[1]).write_text(text)
     if kind == "sh":
@@ -61,10 +61,10 @@ def try_out(kind: str, text: str, where: Path) -> None:
 
 
 @pytest.mark.parametrize("page", with_blocks(), ids=lambda page: page.stem)
-def test_everything_a_page_says_to_do_works(
+def test_every_command_and_block_of_a_page_works(
     page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Commands in this process, for speed; the current folder is where a page's habitats are."""
+    """Commands run in this process, for speed. A page's habitats are in the current folder."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(str(tmp_path))
     for kind, text in blocks(page):
@@ -72,7 +72,7 @@ def test_everything_a_page_says_to_do_works(
         try_out(kind, text, tmp_path)
 
 
-def test_pages_link_to_what_is_there() -> None:
+def test_links_of_pages_lead_to_files_that_exist() -> None:
     for page in PAGES:
         text = page.read_text(encoding="utf-8")
         for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)|src=\"([^\":]+)\"", text):
@@ -80,6 +80,6 @@ def test_pages_link_to_what_is_there() -> None:
             assert path.exists(), f"{page.name} links to {path}"
 
 
-def test_the_pictures_of_the_readme_are_small() -> None:
+def test_pictures_of_the_readme_are_small() -> None:
     pictures = list((HERE / "docs" / "pictures").iterdir())
     assert sum(picture.stat().st_size for picture in pictures) < 1_000_000

@@ -1,4 +1,4 @@
-"""The experiments in the repository: their settings are good, and running one twice changes nothing."""
+"""Experiments in the repository: their settings are valid, and a second run changes nothing."""
 
 import csv
 import tomllib
@@ -22,14 +22,14 @@ TRIALS = sorted(EXPERIMENTS.glob("*/founders/*.toml"))
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
-def test_settings_of_every_arm_are_good_and_limits_are_shared(
+def test_settings_of_every_arm_are_valid_and_limits_are_shared(
     file: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.syspath_prepend(str(EXPERIMENTS))
-    told = tomllib.loads(file.read_text(encoding="utf-8"))
-    assert told["question"].endswith("?")
+    values = tomllib.loads(file.read_text(encoding="utf-8"))
+    assert values["question"].endswith("?")
     arms = import_module("files").arms(file)
-    assert len(arms) == len(told["arms"]) > 1, "names differ"
+    assert len(arms) == len(values["arms"]) > 1, "names differ"
     configs = [load(settings.pop("task"), settings) for settings in arms.values()]
     assert len({config.to_toml() for config in configs}) == len(configs)
     assert len({config.task for config in configs}) == 1
@@ -39,7 +39,7 @@ def test_settings_of_every_arm_are_good_and_limits_are_shared(
 
 
 @pytest.mark.parametrize("file", TRIALS, ids=lambda file: file.stem)
-def test_settings_of_trials_are_good(file: Path) -> None:
+def test_settings_of_trials_are_valid(file: Path) -> None:
     values = tomllib.loads(file.read_text(encoding="utf-8"))
     assert values.pop("question").endswith("?")
     for arm in values.pop("arms"):
@@ -47,8 +47,10 @@ def test_settings_of_trials_are_good(file: Path) -> None:
         load(values["task"], merged(values, arm))
 
 
-def test_trials_tell_what_mutants_inherit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Copies live as long as their parents where all lives begin alike; strangers do not."""
+def test_trials_measure_what_mutants_inherit(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where all lives start alike, copies live as long as their parents; strangers do not."""
     monkeypatch.syspath_prepend(str(EXPERIMENTS))
     script = import_module("founders")
     for name, value in {"FOUNDERS": 64, "PARENTS": 4, "MUTANTS": 8}.items():
@@ -62,9 +64,9 @@ def test_trials_tell_what_mutants_inherit(tmp_path: Path, monkeypatch: pytest.Mo
     file.parent.mkdir()
     file.write_text(tomli_w.dumps({"question": "What is inherited?", **shared, "arms": arms}))
     script.report(file)
-    told = (tmp_path / "results" / "poles-founders.md").read_text()
-    assert told.startswith("# What is inherited?")
-    rows = [line.strip("| ").split(" | ") for line in told.splitlines() if line.startswith("| ")]
+    text = (tmp_path / "results" / "poles-founders.md").read_text()
+    assert text.startswith("# What is inherited?")
+    rows = [line.strip("| ").split(" | ") for line in text.splitlines() if line.startswith("| ")]
     shares = {row[0]: float(row[-1]) for row in rows[2:]}
     assert shares["copies"] == 1
     assert shares["strangers"] < 0.5
@@ -108,10 +110,10 @@ def test_an_experiment_is_run_once(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         script.experiment(file)
 
 
-def test_an_experiment_may_go_on_from_another(
+def test_an_experiment_may_continue_another(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Its arms are forks of an arm of that, with the settings of that."""
+    """Its arms are forks of an arm of the other experiment, with the settings of that arm."""
     monkeypatch.syspath_prepend(str(EXPERIMENTS))
     monkeypatch.chdir(tmp_path)
     settings = {**MEADOW, "brain": {"hidden": 1}, "seeds": 2, "replication": 0.3}
@@ -134,8 +136,8 @@ def test_an_experiment_may_go_on_from_another(
     for name, column in here.items():
         np.testing.assert_array_equal(column, there[name][later])
     assert len(primordia.load(safe).arrays("deaths")["tick"]) == 0
-    told = (folder / "results" / "two.md").read_text()
-    assert "And then?" in told
+    text = (folder / "results" / "two.md").read_text()
+    assert "And then?" in text
     (folder / "two.toml").write_text(tomli_w.dumps({**then, "arms": others[::-1], "cells": 9}))
     with pytest.raises(SystemExit, match="other settings"):
         script.experiment(folder / "two.toml")
@@ -143,7 +145,7 @@ def test_an_experiment_may_go_on_from_another(
 
 @pytest.fixture
 def ponged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A small experiment with Pong that has been run."""
+    """Run a small experiment with Pong."""
     pytest.importorskip("ale_py")
     monkeypatch.syspath_prepend(str(EXPERIMENTS))
     monkeypatch.chdir(tmp_path)
@@ -158,21 +160,23 @@ def ponged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def champion(file: Path) -> int:
-    """Who is kept of the first run's one world; a world that begins with the genome kept has it."""
+    """Return the champion of the first run's only world, and check the genome that is kept of it."""
     import_module("champions").report(file)
     kept = file.parent / "genomes" / f"{file.stem}.safetensors"
     with safe_open(kept, "numpy") as opened:
-        told = opened.metadata()
-    named = primordia.load(import_module("files").runs(file)[0]).organism(int(told["organisms"]))
+        metadata = opened.metadata()
+    named = primordia.load(import_module("files").runs(file)[0]).organism(
+        int(metadata["organisms"])
+    )
     begun = Path(f"from-{named.id}")
     if not begun.exists():
-        primordia.run(told["task"], begun, ancestors=[str(kept)], stop={"ticks": 1})
+        primordia.run(metadata["task"], begun, ancestors=[str(kept)], stop={"ticks": 1})
     founder = primordia.load(begun).organism(0)
     np.testing.assert_array_equal(founder.genome(), named.genome())
     return named.id
 
 
-def test_what_is_told_of_organisms_in_other_games(
+def test_games_mutants_and_champions_are_reported(
     ponged: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     results = ponged.parent / "results"
@@ -206,7 +210,7 @@ def test_what_is_told_of_organisms_in_other_games(
     assert copies == [1.0]
 
 
-def test_founders_of_forks_are_those_of_the_run_they_go_back_to(
+def test_founders_of_a_fork_are_those_of_the_first_run(
     ponged: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     games, runs = import_module("games"), import_module("files").runs
@@ -228,8 +232,8 @@ def test_founders_of_forks_are_those_of_the_run_they_go_back_to(
     assert [row["organism"] for row in rows if row["who"] == "a founder"] == ["0"]
 
 
-def test_what_an_arm_does_for_a_target_is_measured(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A tip that goes to and fro between two places, first straight, then thrice as far as it must."""
+def test_the_way_of_an_arm_to_its_targets_is_measured(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A tip moves between two places: first straight, then three times as far as needed."""
     monkeypatch.syspath_prepend(str(EXPERIMENTS))
     reaching = import_module("reaching")
     straight, detour = np.linspace(0, 0.1, 11), np.tile([0.0, 0.1], 2)
@@ -238,17 +242,17 @@ def test_what_an_arm_does_for_a_target_is_measured(monkeypatch: pytest.MonkeyPat
     senses[:, 4] = np.concatenate([np.full(10, 0.1), np.zeros(10), np.full(3, 0.1), [0.0]])
     senses[:, 6:8] = [2.0, -1.0]
     senses[:, 8] = tip - senses[:, 4]
-    found = reaching.measured(senses)
-    assert found["reached"] == 3
-    assert found["seconds"] == pytest.approx(13 / 2 / 50)
-    assert found["turned"] == pytest.approx(3 * 13 / 2 / 50)
-    assert found["effort"] == pytest.approx(5 * 13 / 2)
-    assert found["detour"] == pytest.approx((0.1 + 0.3) / 0.2)
-    assert found["hurry"] == pytest.approx(3)
+    figures = reaching.measured(senses)
+    assert figures["reached"] == 3
+    assert figures["seconds"] == pytest.approx(13 / 2 / 50)
+    assert figures["turned"] == pytest.approx(3 * 13 / 2 / 50)
+    assert figures["effort"] == pytest.approx(5 * 13 / 2)
+    assert figures["detour"] == pytest.approx((0.1 + 0.3) / 0.2)
+    assert figures["hurry"] == pytest.approx(3)
     assert np.isnan(reaching.measured(senses[:15])["detour"])
 
 
-def test_what_is_told_of_robots_in_fresh_games(
+def test_robots_in_fresh_games_are_reported(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pytest.importorskip("mujoco")
@@ -275,59 +279,65 @@ def test_what_is_told_of_robots_in_fresh_games(
     assert (results / "reaching.md").read_text().count("| arms") == 2
 
 
-def test_deaths_of_the_last_quarter(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Up to where all runs have come, counted one by one."""
+def test_deaths_of_the_last_quarter_are_counted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Deaths are counted one by one, up to the tick that all runs have reached."""
     monkeypatch.syspath_prepend(str(EXPERIMENTS))
     settings = {**MEADOW, "brain": {"hidden": 1}, "seeds": 2, "hazard": 0.02, "replication": 0.2}
     for name, ticks in (("long", 480), ("short", 400)):
         loop.start(config({**settings, "stop": {"ticks": ticks}}), tmp_path / name)
     compared = primordia.compare(tmp_path / "long", tmp_path / "short")
-    told = import_module("late").last_deaths(tmp_path / "long", compared)
+    worlds = import_module("late").last_deaths(tmp_path / "long", compared)
     lives = primordia.load(tmp_path / "long").lives()
-    for world, found in enumerate(told):
+    for world, counted in enumerate(worlds):
         here = zip(lives.world, lives.born, lives.ended, lives.died, strict=True)
         spans = [e - b for w, b, e, died in here if w == world and died and 300 < e <= 400]
-        assert found == {"late_deaths": len(spans), "late_lifespan": float(np.median(spans))}
+        assert counted == {"late_deaths": len(spans), "late_lifespan": float(np.median(spans))}
         assert spans
 
 
-def test_jumps_are_found_where_there_are_any(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Steps are found where they are; in an order that means nothing there are none, as promised."""
+def test_jumps_are_found_where_they_are_and_nowhere_else(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Steps are found at their places; an order without meaning has none, as often as promised."""
     monkeypatch.syspath_prepend(str(EXPERIMENTS))
     jumps, noise = import_module("jumps"), np.random.default_rng(3)
     stairs = np.repeat([2.0, 4.0, 3.0, 6.0], [120, 200, 80, 100])
     steps = jumps.parted(stairs + 0.5 * noise.standard_normal(500))
     assert np.abs(np.array(steps.ends) - [120, 320, 400, 500]).max() <= 3
     np.testing.assert_allclose(np.log(steps.factors), [2, -1, 3], atol=0.3)
-    told = jumps.told_of(stairs)
-    assert (told["jumps"], told["falls"]) == (2, 1)
-    assert told["largest jump"] == pytest.approx(np.exp(3), rel=0.01)
+    steps_of_stairs = jumps.described(stairs)
+    assert (steps_of_stairs["jumps"], steps_of_stairs["falls"]) == (2, 1)
+    assert steps_of_stairs["largest jump"] == pytest.approx(np.exp(3), rel=0.01)
     flat = [len(jumps.parted(noise.standard_normal(200)).ends) > 1 for _ in range(60)]
-    assert sum(flat) <= 10  # a twentieth of 60 is 3; more than 10 come once in 3,000 tries
+    assert sum(flat) <= 10  # a twentieth of 60 is 3; more than 10 occur once in 3,000 tries
     assert len(jumps.parted(np.arange(19.0)).ends) == 1
 
 
-def test_jumps_of_a_run_by_world(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_jumps_of_a_run_are_found_in_each_world(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.syspath_prepend(str(EXPERIMENTS))
     settings = {**MEADOW, "brain": {"hidden": 1}, "seeds": 2, "hazard": 0.05, "replication": 0.3}
     safer = {"kind": "schedule", "setting": "hazard", "at": 500, "value": 0.005}
     loop.start(config({**settings, "seasons": [safer], "stop": {"ticks": 3000}}), tmp_path / "a")
     jumps = import_module("jumps")
     rows = jumps.steps_of(tmp_path / "a")
-    assert all(1 <= row["jumps"] <= 2 for row in rows), "who dies soon after had lived before"
+    assert all(1 <= row["jumps"] <= 2 for row in rows), (
+        "organisms that die soon after the change lived before it"
+    )
     assert [row["falls"] for row in rows] == [0, 0]
     assert all(5 < row["largest jump"] < 20 for row in rows)
     assert "| a | 2 | " in jumps.summary(rows)
 
 
 @pytest.mark.slow
-def test_champions_of_pong_live_until_its_clock_comes_round(tmp_path: Path) -> None:
-    """Frames are counted in 16 bits; then the game gives the opponent a point."""
+def test_champions_of_pong_live_until_the_clock_of_the_game_overflows(tmp_path: Path) -> None:
+    """The game counts frames in 16 bits. When the count overflows, the opponent gets a point."""
     pytest.importorskip("ale_py")
     champions = {"ancestors": [str(EXPERIMENTS / "atari" / "genomes" / "pong-long.safetensors")]}
     settings = {"cells": 5, "genesis": "fill", "stop": {"ticks": 1}}
     run = primordia.run("Pong-survival", tmp_path / "run", **champions, **settings)
-    found = run.evaluate([run.organism(each) for each in range(5)], ticks=70_000)
-    lived = [int(each.lived.ticks[0]) for each in found]
+    evaluations = run.evaluate([run.organism(each) for each in range(5)], ticks=70_000)
+    lived = [int(each.lived.ticks[0]) for each in evaluations]
     assert max(lived) == 65_210
     assert sorted(lived)[1] == 65_210, "four of five"

@@ -1,4 +1,4 @@
-"""Golden digests: small runs of everything live as they did when `goldens.json` was made."""
+"""Golden digests: small runs of all parts live as they did when `goldens.json` was made."""
 
 import json
 from pathlib import Path
@@ -16,7 +16,7 @@ def test_each_case_has_its_golden() -> None:
 
 
 @pytest.mark.parametrize("name", GOLDENS["cases"])
-def test_goldens_are_of_worlds_in_which_much_happens(name: str) -> None:
+def test_much_happens_in_the_worlds_of_each_golden(name: str) -> None:
     counts = GOLDENS["cases"][name]["counts"]
     assert counts["births"] >= 20
     assert counts["deaths"] >= 5
@@ -25,19 +25,21 @@ def test_goldens_are_of_worlds_in_which_much_happens(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_it_lives_as_it_did(name: str, tmp_path: Path) -> None:
+def test_each_case_lives_as_it_did(name: str, tmp_path: Path) -> None:
     case, golden = CASES[name], GOLDENS["cases"][name]
     if case.needs is not None:
         pytest.importorskip(case.needs)
     run = live(case, tmp_path)
     if run.info()["versions"]["instruction_set"] != GOLDENS["instruction_set"]:
         pytest.skip(f"the goldens are exact on {GOLDENS['instruction_set']} only")
-    found = entries(case, run)
-    differ = [each for each in golden | found if found.get(each) != golden.get(each)]
-    assert not differ, said(name, differ, golden, found)
+    actual = entries(case, run)
+    differ = [each for each in golden | actual if actual.get(each) != golden.get(each)]
+    assert not differ, description(name, differ, golden, actual)
 
 
-def said(name: str, differ: list[str], golden: dict[str, Any], found: dict[str, Any]) -> str:
-    """Say which entries of a case differ, and how."""
-    lines = [f"{each}: golden {golden.get(each)}, found {found.get(each)}" for each in differ]
+def description(
+    name: str, differ: list[str], golden: dict[str, Any], actual: dict[str, Any]
+) -> str:
+    """Describe which entries of a case differ, and how."""
+    lines = [f"{each}: golden {golden.get(each)}, found {actual.get(each)}" for each in differ]
     return "\n  ".join([f"{name} differs in {', '.join(differ)}", *lines])

@@ -1,4 +1,4 @@
-"""How the source is laid out: imports point one way, files stay short, nothing read is executed."""
+"""Layout of the source: imports point one way, files are short, and nothing read is executed."""
 
 import ast
 from collections.abc import Iterable
@@ -41,20 +41,20 @@ def tree(module: str) -> ast.Module:
 
 
 def imports(module: str) -> set[str]:
-    """Modules of the package that this one imports, wherever it does."""
+    """Return the modules of the package that this one imports, in any place."""
     return among(ast.walk(tree(module)), module)
 
 
 def among(nodes: Iterable[ast.AST], module: str) -> set[str]:
-    """Modules of the package that are imported by these parts of one."""
-    found = set()
+    """Return the modules of the package that these parts of a module import."""
+    imported = set()
     for node in nodes:
         if isinstance(node, ast.Import):
-            found |= {alias.name for alias in node.names}
+            imported |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{module} imports relatively"
-            found |= {f"{node.module}.{alias.name}" for alias in node.names}
-    ours = {name.removeprefix("primordia.") for name in found if name.startswith("primordia.")}
+            imported |= {f"{node.module}.{alias.name}" for alias in node.names}
+    ours = {name.removeprefix("primordia.") for name in imported if name.startswith("primordia.")}
     return {name if name in FILES else name.rpartition(".")[0] for name in ours}
 
 
@@ -66,16 +66,16 @@ def test_imports_point_one_way(module: str) -> None:
         assert LAYER[other] < LAYER[here], f"{module} imports {other}"
 
 
-def test_no_imports_go_in_a_circle() -> None:
+def test_imports_have_no_cycle() -> None:
     graph = {module: imports(module) - {""} for module in MODULES}
     assert len(list(TopologicalSorter(graph).static_order())) == len(graph)
 
 
-def test_the_package_itself_loads_nothing() -> None:
+def test_the_package_loads_nothing_when_it_is_imported() -> None:
     assert imports("__init__") == set()
 
 
-def test_every_folder_has_a_place_and_every_place_a_folder() -> None:
+def test_every_folder_has_a_row_in_the_order_of_imports() -> None:
     assert {module.partition(".")[0] for module in MODULES} == set(LAYER)
 
 
@@ -85,7 +85,7 @@ FORBIDDEN_ATTRIBUTES = {("np", "random"), ("numpy", "random"), ("jax", "random")
 
 
 @pytest.mark.parametrize("module", FILES)
-def test_no_pickle_no_eval_and_no_randomness_but_our_own(module: str) -> None:
+def test_no_module_uses_pickle_eval_or_other_randomness(module: str) -> None:
     for node in ast.walk(tree(module)):
         if isinstance(node, ast.Import):
             assert not {alias.name.partition(".")[0] for alias in node.names} & FORBIDDEN_MODULES
@@ -104,16 +104,16 @@ def test_no_pickle_no_eval_and_no_randomness_but_our_own(module: str) -> None:
 
 
 @pytest.mark.parametrize("module", FILES)
-def test_files_are_short_and_say_what_they_are(module: str) -> None:
+def test_files_are_short_and_begin_with_a_docstring(module: str) -> None:
     assert len(FILES[module].read_text(encoding="utf-8").splitlines()) < 350
     assert ast.get_docstring(tree(module))
 
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 LONGEST = 40
-"""Lines of a function, without its docstring."""
+"""The most lines of a function, without its docstring."""
 STILL_LONGER = {("law.turnover", "_inherit")}
-"""Functions to be cut."""
+"""Functions that are still longer."""
 
 
 @pytest.mark.parametrize("module", FILES)
@@ -124,7 +124,7 @@ def test_functions_are_short(module: str) -> None:
 
 
 def length(function: Function) -> int:
-    """Lines from `def` to the last, without the docstring's."""
+    """Return the number of lines from `def` to the last, without the docstring."""
     documented = ast.get_docstring(function) is not None
     parts = [function, *function.body[:documented]]
     whole, *docstring = [(each.end_lineno or 0) - each.lineno + 1 for each in parts]

@@ -1,4 +1,4 @@
-"""What users install: a wheel with everything in it, and nothing it needs from the repository."""
+"""The wheel that users install: it holds all that it needs and nothing else."""
 
 import os
 import subprocess
@@ -29,7 +29,7 @@ def python(*words: object, **options: Path | dict[str, str]) -> str:
     return str(done.stdout)
 
 
-def test_it_runs_without_the_repository(wheel: Path, tmp_path: Path) -> None:
+def test_the_wheel_runs_without_the_repository(wheel: Path, tmp_path: Path) -> None:
     installed, empty = tmp_path / "installed", tmp_path / "empty"
     empty.mkdir()
     python("-m", "pip", "install", "--quiet", "--no-deps", "--target", installed, wheel)
@@ -40,12 +40,12 @@ def test_it_runs_without_the_repository(wheel: Path, tmp_path: Path) -> None:
     assert [line.split()[0] for line in listed.splitlines()] == list(tasks())
     assert "CartPole-survival" in tasks()
     version = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
-    said = python("-m", "primordia", "--version", cwd=empty, env=environment)
-    assert said.split()[-1] == version
+    printed = python("-m", "primordia", "--version", cwd=empty, env=environment)
+    assert printed.split()[-1] == version
     assert list(empty.iterdir()) == []
 
 
-def test_it_holds_the_package_and_its_licence_and_nothing_else(wheel: Path) -> None:
+def test_the_wheel_holds_the_package_and_its_licence_and_nothing_else(wheel: Path) -> None:
     with zipfile.ZipFile(wheel) as archive:
         names = archive.namelist()
     source = ROOT / "src"

@@ -1,4 +1,4 @@
-"""Habitats and a brain for tests: simple enough to know what must happen."""
+"""Habitats and brains for tests, so simple that one can say what must happen."""
 
 from typing import Any
 
@@ -17,13 +17,13 @@ from primordia.settings.base import Settings
 
 
 class Meadow(JaxHabitat, Settings):
-    """Nothing moves. Bodies have a clock; food and effort are constant; death comes at an age."""
+    """A habitat in which nothing moves. Food and effort are constant; bodies die at a given age."""
 
     lifespan: int = 2**30
     food: float = 0.0
     effort: float = 0.0
     broken_at: int = 2**30
-    """the clock at which a body's simulation gives NaN"""
+    """the age at which a body becomes NaN"""
 
     senses_size: int = 2
     action: Any = Discrete(2)
@@ -44,7 +44,7 @@ class Meadow(JaxHabitat, Settings):
 
 
 class Mill(JaxHabitat, Settings):
-    """A wheel that a continuous action turns; food is how far, and it wears out at random."""
+    """A wheel that a continuous action turns. Food is the turn; the wheel breaks at some angles."""
 
     senses_size: int = 3
     action: Any = Continuous(2)
@@ -64,7 +64,7 @@ class Mill(JaxHabitat, Settings):
 
 
 class Slope(JaxHabitat, Settings):
-    """Bodies begin somewhere between two bounds, a sum of products, and stay there."""
+    """Bodies that start at a sum of products between two bounds, and stay there."""
 
     senses_size: int = 2
     action: Any = Discrete(2)
@@ -82,7 +82,7 @@ class Slope(JaxHabitat, Settings):
 
 
 class Echo(JaxHabitat, Settings):
-    """Food is the first number of the action, effort the second; at a given clock food is infinite."""
+    """Food and effort are the two numbers of the action; at a given age food is infinite."""
 
     rotten_at: int = 2**30
     senses_size: int = 1
@@ -102,7 +102,7 @@ class Echo(JaxHabitat, Settings):
 
 
 class Watch(JaxHabitat, Settings):
-    """It perceives the time, and food is the first number of its action."""
+    """Bodies that perceive their age. Food is the number of the action."""
 
     senses_size: int = 2
     action: Any = Continuous(1)
@@ -119,7 +119,7 @@ class Watch(JaxHabitat, Settings):
 
 
 class Mirror(OnHost):
-    """A habitat in JAX on the host. Its bodies are stored under a name that old digests know."""
+    """A JAX habitat on the host. Its bodies are stored under a name that enters old digests."""
 
     def __init__(self, inner: str = "cartpole", **options: Any) -> None:
         kinds = {"cartpole": CartPole, "mill": Mill, "meadow": Meadow}
@@ -133,7 +133,7 @@ class Mirror(OnHost):
 
 
 class Clocked(Mirror):
-    """It counts the ticks lived, up and down."""
+    """A habitat that tallies the ticks lived, up and down."""
 
     tallies = "ticks", "ticks_down"
 
@@ -161,7 +161,7 @@ class Clocked(Mirror):
 
 
 class HostCartPole(HostHabitat):
-    """CartPole in plain NumPy, float64, a loop over cells: a simulator as people write them."""
+    """CartPole in plain NumPy: float64, with a loop over cells, as users write simulators."""
 
     senses_size, action, words = 4, Discrete(2), len(COORDINATES)
 
@@ -174,11 +174,11 @@ class HostCartPole(HostHabitat):
 
     def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
         for cell in np.flatnonzero(alive):
-            self.state[cell] = self._one(10.0 if action[cell] else -10.0, *self.state[cell])
+            self.state[cell] = self._stepped(10.0 if action[cell] else -10.0, *self.state[cell])
         fatal = (np.abs(self.state[:, 0]) > 2.4) | (np.abs(self.state[:, 2]) > np.deg2rad(12))
         return self.state.astype(np.float32), Outcome(fatal)
 
-    def _one(self, push: float, x: float, x_dot: float, theta: float, theta_dot: float) -> list:
+    def _stepped(self, push: float, x: float, x_dot: float, theta: float, theta_dot: float) -> list:
         cos, sin = np.cos(theta), np.sin(theta)
         temp = (push + 0.05 * theta_dot**2 * sin) / 1.1
         theta_acc = (9.8 * sin - cos * temp) / (0.5 * (4.0 / 3.0 - 0.1 * cos**2 / 1.1))
@@ -197,7 +197,7 @@ HOST_CARTPOLE = {"name": "tests.toys:HostCartPole"}
 
 
 class Sliding(Brain):
-    """Kernels slide over what has changed since the last tick; blocks have any rank and name."""
+    """A brain whose kernels slide over the change of the senses; its blocks have any rank and name."""
 
     width: int = Field(2, ge=1)
     channels: int = Field(3, ge=1)
@@ -212,15 +212,15 @@ class Sliding(Brain):
 
     def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:
         places, change = senses.shape[1] - self.width + 1, senses - memory
-        seen = jnp.stack([change[:, i : i + self.width] for i in range(places)], axis=1)
-        found = jnp.tanh(_dot(genome["slide-2"], seen, (2,), (2,)))
-        return senses, _dot(genome["OUT_3d"], found, (2, 3), (1, 2)) + genome["0"]
+        windows = jnp.stack([change[:, i : i + self.width] for i in range(places)], axis=1)
+        features = jnp.tanh(_dot(genome["slide-2"], windows, (2,), (2,)))
+        return senses, _dot(genome["OUT_3d"], features, (2, 3), (1, 2)) + genome["0"]
 
 
 class Twin(Recurrent):
-    """A brain of another name whose genomes have the same blocks."""
+    """A brain of another name whose genomes have the blocks of Recurrent."""
 
 
 def _dot(a: Array, b: Array, of_a: tuple[int, ...], of_b: tuple[int, ...]) -> Array:
-    """Products of each organism's a and b, summed over axes of both."""
+    """Return the products of each organism's a and b, summed over axes of both."""
     return lax.dot_general(a, b, ((of_a, of_b), ((0,), (0,))), precision=lax.Precision.HIGHEST)

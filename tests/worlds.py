@@ -1,4 +1,4 @@
-"""Short ways to make and run worlds in tests."""
+"""Worlds for tests: settings of small tasks, and runs that stay in memory."""
 
 from typing import Any
 
@@ -39,60 +39,60 @@ CLOCKWORK: dict[str, Any] = {
     "metabolism": {"store": 30.5},
     "sample_every": 10,
 }
-"""Every cell is filled, all starve in their 31st tick, every cell is filled: no draw matters."""
+"""A task in which no random draw matters: all cells are filled, all starve in tick 31, and so on."""
 
 
 def config(base: str | dict[str, Any] = "CartPole-survival", **settings: Any) -> Config:
-    """A task by name or as values, with some settings changed."""
+    """Return the settings of a task, given by name or as values, with some of them changed."""
     if isinstance(base, str):
         return load(base, settings)
     return validated(merged(base, settings), source=base["task"])
 
 
 class Lived:
-    """A run in memory, driven for some ticks, with its records."""
+    """A run in memory, advanced to some tick, with its records."""
 
     def __init__(
         self,
         config: Config,
         ticks: int,
         chunk: int | None = None,
-        begun: tuple[int, int] = (0, 0),
+        start: tuple[int, int] = (0, 0),
         **stop: Any,
     ) -> None:
-        """`begun`: what the counts of ticks and births start at."""
+        """`start`: the counts of ticks and births that the run starts at."""
         self.config, self.engine = config, Engine(config)
-        if any(begun):
+        if any(start):
             seeds = [config.seed + world for world in range(config.seeds)]
-            self.engine.state = self.engine.chunks.begin(begin(self.engine.law, seeds, *begun))
+            self.engine.state = self.engine.chunks.begin(begin(self.engine.law, seeds, *start))
         self.recorder = recorder_for(self.engine, None)
         self.rows: dict[str, list[np.ndarray]] = {"births": [], "deaths": [], "metrics": []}
-        self.on(ticks, chunk, **stop)
+        self.advance_to(ticks, chunk, **stop)
 
-    def on(self, ticks: int, chunk: int | None = None, **stop: Any) -> None:
-        """Drive on to a tick."""
+    def advance_to(self, ticks: int, chunk: int | None = None, **stop: Any) -> None:
+        """Advance the run to a tick, or until a limit in `stop` is reached."""
         limits = self.engine.limits({"ticks": ticks, **stop})
         while self.engine.any_running(limits):
             if chunk is not None:
                 self.engine._ticks = chunk
-            happened = self.engine.advance(limits)
-            self.recorder.append(happened)
-            for name, list_ in zip(self.rows, happened, strict=True):
-                self.rows[name].append(np.asarray(list_.rows[: int(list_.filled)]))
+            events = self.engine.advance(limits)
+            self.recorder.append(events)
+            for name, table in zip(self.rows, events, strict=True):
+                self.rows[name].append(np.asarray(table.rows[: int(table.filled)]))
 
     def table(self, name: str) -> dict[str, np.ndarray]:
-        """Columns of a table as NumPy arrays."""
+        """Return the columns of a table as NumPy arrays."""
         arrow = self.recorder.schema.arrow(name, np.concatenate(self.rows[name]))
         return {
             column: arrow[column].to_numpy(zero_copy_only=False) for column in arrow.column_names
         }
 
     def genomes(self) -> np.ndarray:
-        """Of the living, float32 (n, P)."""
+        """Return the genomes of the living, float32 (n, P)."""
         organisms = self.engine.state.world.organisms
         blocks = {name: np.asarray(block) for name, block in organisms.genome.items()}
         return self.engine.law.layout.join(blocks)[np.asarray(organisms.alive)]
 
     def digests(self) -> list[str]:
-        """Of each world."""
+        """Return the digest of each world."""
         return digests(self.recorder.digests(), self.engine.arrays(), self.config.seeds)

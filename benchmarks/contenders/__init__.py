@@ -1,1 +1,1 @@
-"""Ways to play that Primordia is set against, each in a process of its own (`contender.py`)."""
+"""Ways of playing that Primordia is compared with, each in its own process (`contender.py`)."""

@@ -11,14 +11,14 @@ import numpy as np
 from contenders.loop import Brains, Lacking, Loop, described, envpool, scales
 
 BUTTONS_DRAWN = 10_007
-"""at random, beforehand; a prime, so that they do not fall into step with anything"""
+"""random buttons drawn in advance; a prime number, so that no other period divides it"""
 
 
 class Bare(Loop):
-    """One emulator with random buttons: what nothing that plays frame by frame can pass."""
+    """One emulator with random buttons: the upper bound for all ways that play frame by frame."""
 
     FRAMES = 100
-    """from one look at the clock to the next"""
+    """frames between two readings of the clock"""
 
     def __init__(self, game: str, cells: int) -> None:
         from primordia.habitats.atari.simulator import RAM, console
@@ -29,7 +29,7 @@ class Bare(Loop):
         self._buttons = random.Random(os.getpid()).choices(known, k=BUTTONS_DRAWN)
 
     def tick(self) -> int:
-        """Some frames, RAM read after each."""
+        """Play some frames and read RAM after each."""
         ale, ram, first = self._ale, self._ram, self._start
         for button in self._buttons[first : first + self.FRAMES]:
             ale.act(button)
@@ -42,8 +42,9 @@ class Bare(Loop):
 
 
 class InStep(Loop):
-    """Our worker processes with random buttons, no brains and no law: what any law that waits for all of
-    a tick's frames before the next tick can come to.
+    """Our worker processes with random buttons, no brains and no law.
+
+    It is the upper bound for every law that waits for all frames of a tick before the next tick.
     """
 
     about = "our workers, random buttons, no brains and no law"
@@ -57,7 +58,7 @@ class InStep(Loop):
         self._buttons = choices(habitat.action.size, size=(997, cells), dtype=np.int32)
 
     def tick(self) -> int:
-        """A frame of each; a new game when it is over."""
+        """Play a frame in each cell; start a new game when one is over."""
         pool = self._habitat._pool
         self._number = (self._number + 1) % len(self._buttons)
         pool.arrays["action"][:] = self._buttons[self._number]
@@ -72,7 +73,7 @@ class InStep(Loop):
 
 
 class Organism:
-    """A network of NumPy matrices that plays on a console of its own."""
+    """A network of NumPy matrices that plays on its own console."""
 
     def __init__(
         self, weights: list[np.ndarray], ale: Any, buttons: list[int], seen: list[int]
@@ -81,7 +82,7 @@ class Organism:
         self._ale, self._buttons, self._seen = ale, buttons, seen
 
     def live(self) -> None:
-        """One frame; a new game when it is over."""
+        """Play one frame; start a new game when one is over."""
         into, recurrent, out = self._weights
         senses = (self._ale.getRAM()[self._seen] - 128.0) / 128.0
         self._hidden = np.tanh(into @ senses + recurrent @ self._hidden)
@@ -92,7 +93,7 @@ class Organism:
 
 
 class Published(Loop):
-    """As one writes it first, and as the paper's code is organised: one object an organism."""
+    """A first version as it is often written, and as the paper's code is: one object per organism."""
 
     about = "one Python object an organism, NumPy, one process"
 
@@ -113,7 +114,7 @@ class Published(Loop):
         ]
 
     def tick(self) -> int:
-        """A frame of each."""
+        """Play a frame in each cell."""
         for organism in self._organisms:
             organism.live()
         return len(self._organisms)
@@ -145,13 +146,13 @@ class Gymnasium(Loop):
         self._brains, self._sensed = Brains(game, cells), _sight(game)
 
     def tick(self) -> int:
-        """A frame of each."""
+        """Play a frame in each cell."""
         self._ram = self._envs.step(self._brains(self._sensed(self._ram)))[0]
         return self._cells
 
 
 class Pool(Loop):
-    """EnvPool, which cannot leave out a picture a frame: it is made as small as is of use."""
+    """EnvPool. It always makes a picture of every frame, so pictures are as small as possible."""
 
     def __init__(self, game: str, cells: int) -> None:
         package = envpool()
@@ -170,21 +171,21 @@ class Pool(Loop):
             img_width=8,
             use_inter_area_resize=False,
         )
-        told = self._envs.reset()[1]
-        if "ram" not in told:
+        info = self._envs.reset()[1]
+        if "ram" not in info:
             raise Lacking(f"envpool {package.__version__} does not give the console's memory")
-        self.about = f"envpool {package.__version__}; makes a picture of every frame besides RAM"
-        self._cells, self._ram = cells, told["ram"]
+        self.about = f"envpool {package.__version__}; also makes a picture of every frame"
+        self._cells, self._ram = cells, info["ram"]
         self._brains, self._sensed = Brains(game, cells), _sight(game)
 
     def tick(self) -> int:
-        """A frame of each."""
+        """Play a frame in each cell."""
         self._ram = self._envs.step(self._brains(self._sensed(self._ram)))[-1]["ram"]
         return self._cells
 
 
 def _sight(game: str) -> Callable[[np.ndarray], np.ndarray]:
-    """RAM, uint8 (N, 128) -> what is perceived of it, float32 (N, S)."""
+    """Return the function from RAM, uint8 (N, 128), to senses, float32 (N, S)."""
     from primordia.habitats.atari.habitat import SCALED
 
     seen = _seen(described(game)[1])
@@ -192,10 +193,10 @@ def _sight(game: str) -> Callable[[np.ndarray], np.ndarray]:
 
 
 def _seen(habitat: Any) -> list[int]:
-    """Addresses perceived."""
+    """Return the addresses that are perceived."""
     return list(habitat.senses or range(128))
 
 
 def _pascal(game: str) -> str:
-    """How others write a game's name: BattleZone."""
+    """Return a game's name as other packages write it, such as BattleZone."""
     return game.title().replace("_", "")

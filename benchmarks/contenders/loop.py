@@ -1,4 +1,4 @@
-"""What all ways of playing share: the tasks, a loop, and brains."""
+"""Tasks, a loop and brains, shared by all ways of playing."""
 
 import time
 from importlib import import_module
@@ -13,7 +13,7 @@ TASKS = {
     "Walker2d-v5": "Walker-survival-forager",
     "Reacher-v5": "Reacher-forager",
 }
-"""the task that is measured in each game, or with each of Gymnasium's robots"""
+"""the task that is measured, by game or by Gymnasium's name of a robot"""
 ROBOTS = [game for game in TASKS if game.endswith("-v5")]
 NO_DEATH: dict[str, dict] = {
     game: {"metabolism": "none", "habitat": {"fatal": ""}}
@@ -21,25 +21,25 @@ NO_DEATH: dict[str, dict] = {
     else {"habitat": {"fatal": "game_over"}}
     for game in TASKS
 }
-"""settings under which nobody dies but by accident, or when the game is over"""
+"""settings under which organisms die only by accident, or when the game is over"""
 
 
 class Lacking(Exception):  # noqa: N818
-    """Why a way of playing is not available, in words."""
+    """A way of playing is not available; the message says why."""
 
 
 class Loop:
-    """Plays by repeating a tick."""
+    """A way of playing that repeats a tick."""
 
     about = ""
-    """what should be known of this way, in words"""
+    """remarks about this way, for readers"""
 
     def tick(self) -> int:
-        """One tick of all cells, or some frames of one -> frames."""
+        """Play one tick of all cells, or some frames of one cell, and return the frames."""
         raise NotImplementedError
 
     def play(self, seconds: float) -> dict[str, float]:
-        """Frames played in about so many seconds."""
+        """Play for about `seconds` and return frames and seconds."""
         frames, began = 0, time.perf_counter()
         now = began
         while now - began < seconds:
@@ -49,7 +49,7 @@ class Loop:
 
 
 def envpool() -> Any:
-    """The package.
+    """Import EnvPool and return it.
 
     Raises:
         Lacking: it cannot be imported.
@@ -62,7 +62,7 @@ def envpool() -> Any:
 
 
 def described(game: str) -> tuple:
-    """The task's settings, habitat and law."""
+    """Return the settings, habitat and law of a game's task."""
     from primordia.config import load
 
     config = load(TASKS[game])
@@ -71,12 +71,12 @@ def described(game: str) -> tuple:
 
 
 def scales(law: Any) -> list[float]:
-    """How far a founder's weights are spread in each block."""
+    """Return the standard deviation of a founder's weights in each block."""
     return law.mutation.per_block("founder_scale", law.layout)
 
 
 class Brains:
-    """Those of as many founders as there are cells, in one compiled call a tick."""
+    """Brains of one founder per cell, with one compiled call per tick."""
 
     def __init__(self, game: str, cells: int) -> None:
         import jax
@@ -100,6 +100,9 @@ class Brains:
         self._think = jax.jit(think)
 
     def __call__(self, senses: np.ndarray) -> np.ndarray:
-        """Float32 (N, S) -> actions, int32 (N,) or float32 (N, A). Memory is kept from game to game."""
+        """Return actions, int32 (N,) or float32 (N, A), for senses, float32 (N, S).
+
+        Memory is kept from game to game.
+        """
         self._memory, action = self._think(self._genome, self._memory, senses)
         return np.asarray(action)

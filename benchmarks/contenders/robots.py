@@ -1,4 +1,4 @@
-"""MuJoCo's robots: its own batch, Gymnasium's vector environments, EnvPool."""
+"""MuJoCo's robots: MuJoCo's batch, Gymnasium's vector environments, EnvPool."""
 
 import os
 from importlib.metadata import version
@@ -9,9 +9,10 @@ from contenders.loop import Brains, Lacking, Loop, described, envpool
 
 
 class Batch(Loop):
-    """MuJoCo's own batch on all cores with random controls: nothing that plays tick by tick can pass it.
+    """MuJoCo's batch on all cores with random controls: the upper bound for all ways that play tick by
+    tick.
 
-    A walker that falls goes on where it lies.
+    A walker that falls is not reset.
     """
 
     def __init__(self, game: str, cells: int) -> None:
@@ -24,7 +25,7 @@ class Batch(Loop):
         self._cells, self._number = cells, 0
 
     def tick(self) -> int:
-        """A tick of each."""
+        """Play a tick of each cell."""
         self._number = (self._number + 1) % len(self._controls)
         self._bodies.ctrl[:] = self._controls[self._number]
         self._bodies.step(nstep=self._substeps)
@@ -49,14 +50,14 @@ class Gymnasium(Loop):
         self._seen = self._envs.reset(seed=0)[0]
 
     def tick(self) -> int:
-        """A tick of each."""
+        """Play a tick of each cell."""
         actions = np.clip(self._brains(self._sight(self._seen)), -1, 1)
         self._seen = self._envs.step(actions)[0]
         return len(actions)
 
 
 class Pool(Loop):
-    """EnvPool's robots, which are those of Gymnasium's fourth version, with brains."""
+    """EnvPool's robots with brains; the robots are of version 4, as in Gymnasium."""
 
     def __init__(self, game: str, cells: int) -> None:
         package = envpool()
@@ -72,25 +73,25 @@ class Pool(Loop):
         self._seen = self._envs.reset()[0]
 
     def tick(self) -> int:
-        """A tick of each."""
+        """Play a tick of each cell."""
         actions = np.clip(self._brains(self._sight(self._seen)), -1, 1)
         self._seen = self._envs.step(actions.astype(np.float64))[0]
         return len(actions)
 
 
 class Sight:
-    """As many of the numbers that others give as brains take; their reacher gives one less."""
+    """The first S of the numbers that another package gives; its reacher gives one number less."""
 
     def __init__(self, size: int, cells: int) -> None:
         self._senses = np.zeros((cells, size), np.float32)
 
     def __call__(self, seen: np.ndarray) -> np.ndarray:
-        """(N, S') -> float32 (N, S)."""
+        """Return senses, float32 (N, S), of observations (N, S'); missing numbers are 0."""
         size = min(seen.shape[1], self._senses.shape[1])
         self._senses[:, :size] = seen[:, :size]
         return self._senses
 
 
 def _words(cells: int, each: int) -> np.ndarray:
-    """Random words for births."""
+    """Return random words for births."""
     return np.random.default_rng(0).integers(0, 2**32, (cells, each), np.uint32)

@@ -1,4 +1,4 @@
-"""The contract of brains, for every brain that comes with the package and for one that does not."""
+"""The contract of brains, for all brains of the package and for a brain of the tests."""
 
 import os
 import subprocess
@@ -14,7 +14,7 @@ import pytest
 from primordia.brains.contract import KNOWN, Brain, build, find
 from primordia.errors import InputError
 from primordia.runs import loop
-from tests.history.test_lineage import comes_back
+from tests.history.test_lineage import assert_rebuilt
 from tests.toys import Sliding
 from tests.worlds import CLOCKWORK, MILL, Lived, config
 
@@ -36,7 +36,7 @@ each_brain = pytest.mark.parametrize("brain", BRAINS.values(), ids=BRAINS)
 
 
 def minds(brain: Brain) -> tuple[dict[str, Any], Any, Any]:
-    """Genomes and memories of MOST organisms, and what they perceive in some ticks (T, N, S)."""
+    """Return genomes and memories of MOST organisms, and their senses in some ticks (T, N, S)."""
     rng = np.random.default_rng(1)
 
     def normal(*shape: int) -> np.ndarray:
@@ -49,12 +49,12 @@ def minds(brain: Brain) -> tuple[dict[str, Any], Any, Any]:
 
 
 def lived(brain: Brain, genome: Any, memory: Any, senses: Any) -> tuple:
-    """Some ticks in one compiled loop -> memory (N, M), outputs (T, N, A)."""
+    """Think for some ticks in one compiled loop; return memory (N, M) and outputs (T, N, A)."""
     return jax.lax.scan(lambda memory, seen: brain(genome, memory, seen), memory, senses)
 
 
 @each_brain
-def test_shapes_and_types(brain: Brain) -> None:
+def test_a_brain_gives_the_shapes_and_types_of_the_contract(brain: Brain) -> None:
     genome, memory, senses = minds(brain)
     after, output = brain(genome, memory, senses[0])
     assert (after.shape, after.dtype) == (memory.shape, memory.dtype)
@@ -79,7 +79,7 @@ def test_an_organism_thinks_the_same_among_any_number(brain: Brain) -> None:
 @each_brain
 @pytest.mark.parametrize("count", [1, 31, MOST])
 @pytest.mark.parametrize("compiled", [True, False])
-def test_it_thinks_the_same_inside_a_loop_and_outside(
+def test_a_brain_thinks_the_same_inside_a_loop_and_outside(
     brain: Brain, count: int, compiled: bool
 ) -> None:
     genome, memory, senses = minds(brain)
@@ -94,7 +94,7 @@ def test_it_thinks_the_same_inside_a_loop_and_outside(
 
 
 @each_brain
-def test_it_is_pure(brain: Brain) -> None:
+def test_a_brain_is_a_pure_function(brain: Brain) -> None:
     given = minds(brain)
     genome, memory, senses = given
     think = jax.jit(brain)
@@ -122,7 +122,7 @@ def test_an_organism_that_is_not_finite_changes_no_other(brain: Brain) -> None:
 
 
 @each_brain
-def test_memory_counts_where_there_is_one(brain: Brain) -> None:
+def test_memory_changes_what_a_brain_with_memory_thinks(brain: Brain) -> None:
     genome, memory, senses = minds(brain)
     _, output = brain(genome, memory, senses[0])
     _, other = brain(genome, -memory, senses[0])
@@ -131,7 +131,7 @@ def test_memory_counts_where_there_is_one(brain: Brain) -> None:
 
 
 @each_brain
-def test_every_block_counts(brain: Brain) -> None:
+def test_every_block_of_a_genome_changes_what_a_brain_thinks(brain: Brain) -> None:
     genome, memory, senses = minds(brain)
     _, output = brain(genome, memory, senses[0])
     for name, block in genome.items():
@@ -140,14 +140,14 @@ def test_every_block_counts(brain: Brain) -> None:
 
 
 def fingerprint() -> str:
-    """Hash of what all of them think; printed by the processes below."""
-    found = sha256()
+    """Return a hash of what all brains think; the processes below print it."""
+    digest = sha256()
     for brain in BRAINS.values():
         for each in jax.tree.leaves(
             jax.jit(lambda *given, b=brain: lived(b, *given))(*minds(brain))
         ):
-            found.update(np.asarray(each).tobytes())
-    return found.hexdigest()
+            digest.update(np.asarray(each).tobytes())
+    return digest.hexdigest()
 
 
 PROGRAM = """
@@ -158,7 +158,7 @@ print(fingerprint())
 """
 
 
-def test_threads_make_no_difference() -> None:
+def test_brains_think_the_same_on_any_number_of_threads() -> None:
     if not hasattr(os, "sched_setaffinity") or len(os.sched_getaffinity(0)) < 2:
         pytest.skip("needs Linux and two processors")
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(["src", "."])}
@@ -171,14 +171,16 @@ LIVING: dict[str, Any] = {"replication": 0.3, "hazard": 0.03, "metabolism": None
 
 
 @pytest.mark.parametrize("name", ["recurrent, biases", "gated, biases", "linear", "not ours"])
-def test_it_lives_and_evolves_and_is_rebuilt(name: str, tmp_path: Path) -> None:
+def test_organisms_with_the_brain_live_and_evolve_and_are_rebuilt(
+    name: str, tmp_path: Path
+) -> None:
     values = {**MILL, **LIVING, "brain": TABLES[name], "seeds": 2, "stop": {"ticks": 200}}
     loop.start(config(values), tmp_path / "run")
-    comes_back(tmp_path / "run")
+    assert_rebuilt(tmp_path / "run")
 
 
 @pytest.mark.parametrize("name", ["gated, biases", "not ours"])
-def test_it_lives_the_same_with_a_habitat_in_jax_and_on_the_host(name: str) -> None:
+def test_organisms_live_the_same_in_a_jax_habitat_and_on_the_host(name: str) -> None:
     values = {**MILL, **LIVING, "brain": TABLES[name], "seeds": 2}
     mirror = {**values, "habitat": {"name": "tests.toys:Mirror", "inner": "mill"}}
     one, other = Lived(config(values), 200), Lived(config(mirror), 200, chunk=77)
@@ -191,7 +193,7 @@ def test_it_lives_the_same_with_a_habitat_in_jax_and_on_the_host(name: str) -> N
 
 @pytest.mark.parametrize("name", ["gated, biases", "not ours"])
 def test_memory_is_zero_at_birth(name: str) -> None:
-    """In CLOCKWORK all starve in tick 31, and every cell is filled again."""
+    """In CLOCKWORK all organisms starve in tick 31, and then every cell is filled again."""
     lived = Lived(config({**CLOCKWORK, "brain": TABLES[name]}), 30)
 
     def memory() -> np.ndarray:
@@ -199,11 +201,11 @@ def test_memory_is_zero_at_birth(name: str) -> None:
 
     assert memory().shape == (32, lived.engine.law.memory)
     assert memory().all()
-    lived.on(31)
+    lived.advance_to(31)
     assert not memory().any()
 
 
-def test_brains_are_found() -> None:
+def test_brains_are_found_by_name_and_by_class() -> None:
     assert [find(name).__name__ for name in KNOWN] == [
         "Recurrent",
         "FeedForward",
@@ -241,7 +243,9 @@ def test_brains_are_found() -> None:
         ({"kind": "tests.toys:Sliding", "width": 0}, "brain.width: .*, not 0"),
     ],
 )
-def test_one_that_cannot_be_made(table: dict[str, Any], says: str) -> None:
+def test_a_brain_that_cannot_be_made_is_an_error_that_says_why(
+    table: dict[str, Any], says: str
+) -> None:
     with pytest.raises(InputError, match=says):
         build(table)
     with pytest.raises(InputError, match=f"^mill: .*{says}"):

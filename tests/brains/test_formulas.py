@@ -1,4 +1,4 @@
-"""Brains against their formulas in NumPy, in float64."""
+"""Brains compared with their formulas in NumPy, in float64."""
 
 from typing import Any
 
@@ -17,7 +17,7 @@ SENSES, HIDDEN, OUTPUTS, N = 5, 12, 3, 64
 
 
 def thought(brain: Brain, ticks: int = 4) -> tuple:
-    """Genomes, senses (T, N, S), memories (T, N, M) and outputs (T, N, A) of N organisms."""
+    """Return genomes, senses (T, N, S), memories (T, N, M) and outputs (T, N, A) of N organisms."""
     rng, shape = np.random.default_rng(1), (ticks, N, SENSES)
     layout = brain.layout(SENSES, OUTPUTS)
     genome: Any = layout.split(rng.normal(size=(N, layout.length)).astype(np.float32))
@@ -37,7 +37,7 @@ def blocks(brain: Brain) -> list[str]:
     return brain.layout(SENSES, OUTPUTS).names
 
 
-def test_blocks_of_the_papers_brain() -> None:
+def test_the_papers_brain_has_the_papers_blocks() -> None:
     assert blocks(Recurrent()) == ["input", "recurrent", "output"]
     assert blocks(FeedForward()) == ["input", "output"]
     assert Recurrent().layout(4, 2).length == 4 * 32 + 32 * 32 + 32 * 2
@@ -46,7 +46,7 @@ def test_blocks_of_the_papers_brain() -> None:
 
 
 @pytest.mark.parametrize("biases", [False, True])
-def test_recurrent(biases: bool) -> None:
+def test_the_recurrent_brain_follows_its_formula(biases: bool) -> None:
     g, senses, memories, outputs = thought(Recurrent(hidden=HIDDEN, biases=biases))
     h = np.zeros((N, HIDDEN))
     for x, memory, output in zip(senses, memories, outputs, strict=True):
@@ -57,7 +57,7 @@ def test_recurrent(biases: bool) -> None:
 
 
 @pytest.mark.parametrize("biases", [False, True])
-def test_feed_forward(biases: bool) -> None:
+def test_the_feed_forward_brain_follows_its_formula(biases: bool) -> None:
     g, senses, memories, outputs = thought(FeedForward(hidden=HIDDEN, biases=biases))
     assert memories.size == 0
     for x, output in zip(senses, outputs, strict=True):
@@ -67,7 +67,7 @@ def test_feed_forward(biases: bool) -> None:
 
 
 @pytest.mark.parametrize("biases", [False, True])
-def test_linear(biases: bool) -> None:
+def test_the_linear_brain_follows_its_formula(biases: bool) -> None:
     g, senses, memories, outputs = thought(Linear(biases=biases))
     assert memories.size == 0
     for x, output in zip(senses, outputs, strict=True):
@@ -75,7 +75,7 @@ def test_linear(biases: bool) -> None:
 
 
 @pytest.mark.parametrize("biases", [False, True])
-def test_gated(biases: bool) -> None:
+def test_the_gated_brain_follows_its_formula(biases: bool) -> None:
     g, senses, memories, outputs = thought(Gated(hidden=HIDDEN, biases=biases))
     assert len(g) == 7 + 4 * biases
     h = np.zeros((N, HIDDEN))
@@ -92,7 +92,7 @@ def test_gated(biases: bool) -> None:
         np.testing.assert_allclose(output, y, atol=5e-4)
 
 
-def test_a_closed_update_gate_keeps_a_memory_for_good() -> None:
+def test_a_closed_update_gate_keeps_a_memory_for_ever() -> None:
     brain = Gated(hidden=HIDDEN, biases=True)
     layout = brain.layout(SENSES, OUTPUTS)
     genome = layout.split(np.random.default_rng(0).normal(size=(N, layout.length)).astype("f4"))

@@ -28,7 +28,7 @@ def some(count: int, seed: int = 0) -> np.ndarray:
     return np.random.default_rng(seed).normal(size=(count, 60)).astype(np.float32)
 
 
-def test_what_is_written_is_read(tmp_path: Path) -> None:
+def test_genomes_that_are_written_are_read_back(tmp_path: Path) -> None:
     one, three = some(1), some(3, seed=1)
     for name, each in (("one", one), ("three", three)):
         genomes.write(tmp_path / name, LAYOUT, each, {"task": "meadow"})
@@ -44,29 +44,31 @@ def test_founders_take_ancestors_in_turn(seed: int, number: int, count: int) -> 
 
 
 @pytest.mark.parametrize("inheritance", ["parent", "founder"])
-def test_a_run_that_starts_from_ancestors(tmp_path: Path, inheritance: str) -> None:
-    """Founders have the ancestors' genomes, bit for bit, also those after an extinction."""
+def test_founders_of_a_run_have_the_genomes_of_its_ancestors(
+    tmp_path: Path, inheritance: str
+) -> None:
+    """Founders have the ancestors' genomes, bit for bit, also after an extinction."""
     given_, run = some(3), tmp_path / "run"
     genomes.write(tmp_path / "a.safetensors", LAYOUT, given_, {})
     values = merged(MEADOW, SMALL | {"ancestors": [str(tmp_path / "a.safetensors")], "seed": 2})
     values |= {"inheritance": inheritance, "hazard": 0.2, "seeds": 2}
     loop.start(config(values), run)
     (tmp_path / "a.safetensors").unlink()  # the run has its own copy
-    found = primordia.load(run)
-    assert found.info()["worlds"][0]["extinctions"] > 3
-    births = found.table("births").to_pylist()
+    opened = primordia.load(run)
+    assert opened.info()["worlds"][0]["extinctions"] > 3
+    births = opened.table("births").to_pylist()
     founders = [birth for birth in births if birth["cause"] == "founder"]
     for birth in founders[:20] + founders[-20:]:
         expected = given_[(2 + birth["world"] + birth["id"]) % 3]
-        np.testing.assert_array_equal(found.rebuild(birth["id"], birth["world"]), expected)
+        np.testing.assert_array_equal(opened.rebuild(birth["id"], birth["world"]), expected)
     assert verify(Archive(run)) == []
     again = primordia.run(str(run / "config.toml"), tmp_path / "again")
     assert [w["digest"] for w in again.info()["worlds"]] == [
-        w["digest"] for w in found.info()["worlds"]
+        w["digest"] for w in opened.info()["worlds"]
     ]
 
 
-def test_export_and_start_from_it(tmp_path: Path) -> None:
+def test_a_run_starts_from_an_exported_genome(tmp_path: Path) -> None:
     run = primordia.run("CartPole-survival", tmp_path / "run", stop={"ticks": 200})
     file = tmp_path / "two.safetensors"
     done = here("export", run.path, "--organism", 3, "--organism", 5, file)
@@ -100,7 +102,7 @@ def broken(path: Path, kind: str) -> None:
     elif kind == "torn":
         genomes.write(path, LAYOUT, some(2), {})
         save_file({**load_file(path), "output": np.zeros((1, 2, 6), np.float32)}, path)
-    elif kind == "nobody":
+    elif kind == "no organism":
         genomes.write(path, LAYOUT, some(0), {})
 
 
@@ -112,17 +114,19 @@ def broken(path: Path, kind: str) -> None:
         ("another brain", "holds genomes of another brain: .*5x5.*this task's is .*6x6"),
         ("no numbers", "no finite numbers"),
         ("torn", "holds no whole genome"),
-        ("nobody", "holds no whole genome"),
+        ("no organism", "holds no whole genome"),
     ],
 )
-def test_a_file_that_cannot_be_used(tmp_path: Path, kind: str, says: str) -> None:
+def test_a_file_that_cannot_be_used_is_an_error_that_says_why(
+    tmp_path: Path, kind: str, says: str
+) -> None:
     file = tmp_path / "x.safetensors"
     broken(file, kind)
     with pytest.raises(InputError, match=says):
         config(merged(MEADOW, SMALL | {"ancestors": [str(file)]}))
 
 
-def test_files_are_looked_for_beside_the_settings(tmp_path: Path) -> None:
+def test_ancestors_are_looked_for_beside_the_settings_file(tmp_path: Path) -> None:
     layout = config().build_layout(config().build_habitat())
     genomes.write(tmp_path / "x.safetensors", layout, np.zeros((1, 1216), np.float32), {})
     file = tmp_path / "task.toml"
@@ -130,7 +134,7 @@ def test_files_are_looked_for_beside_the_settings(tmp_path: Path) -> None:
     assert load(str(file)).ancestors == (str(tmp_path / "x.safetensors"),)
 
 
-def test_bad_input_on_the_command_line(tmp_path: Path) -> None:
+def test_wrong_input_to_export_is_an_error_that_says_why(tmp_path: Path) -> None:
     complains(here("run", "CartPole-survival", "--ancestor", tmp_path / "no"), 2, "no genome file")
     run = primordia.run("CartPole-survival", tmp_path / "run", stop={"ticks": 50})
     done = here("export", run.path, "--organism", 999, tmp_path / "x.safetensors")

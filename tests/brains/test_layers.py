@@ -1,4 +1,4 @@
-"""Layers against their formulas in NumPy."""
+"""Layers compared with their formulas in NumPy."""
 
 from typing import Any
 
@@ -13,7 +13,7 @@ def normal(*shape: int) -> np.ndarray:
 
 
 def times(weights: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """W x in float64; the longer side of W (K, *) is stored last, inputs first if they are equal."""
+    """Return W x in float64; W (K, *) stores its longer side last, and inputs first if both are equal."""
     inputs_first = weights.shape[1] == x.shape[1]
     return np.einsum("kio,ki->ko" if inputs_first else "koi,ki->ko", weights.astype(float), x)
 
@@ -39,7 +39,7 @@ def test_a_layer_stores_the_longer_axis_last(
 
 
 @pytest.mark.parametrize(("inputs", "outputs", "shape"), SIZES)
-def test_a_bias_is_a_block_of_its_own(inputs: int, outputs: int, shape: tuple[int, int]) -> None:
+def test_a_bias_is_a_separate_block(inputs: int, outputs: int, shape: tuple[int, int]) -> None:
     blocks = layer("w", inputs, outputs, bias=True)
     assert blocks == {"w": shape, "w_bias": (outputs,)}
     genome: dict[str, Any] = {name: normal(3, *each) for name, each in blocks.items()}

@@ -1,4 +1,4 @@
-"""Layouts: what a flat genome consists of."""
+"""Layouts: the blocks of a flat genome."""
 
 from math import prod
 
@@ -13,7 +13,7 @@ from primordia.errors import InputError
 LAYOUT = Layout((("input", (2, 3)), ("gate-2", (4,)), ("K_3", (2, 2, 3))))
 
 
-def test_names_sizes_and_length() -> None:
+def test_a_layout_has_names_sizes_and_a_length() -> None:
     assert LAYOUT.names == ["input", "gate-2", "K_3"]
     assert LAYOUT.sizes.tolist() == [6, 4, 12]
     assert LAYOUT.length == 22
@@ -34,7 +34,7 @@ def test_a_flat_genome_is_its_blocks_in_order(library) -> None:
         np.testing.assert_array_equal(block, on_host[name][5])
 
 
-def test_no_genomes_are_laid_flat_too() -> None:
+def test_an_empty_set_of_genomes_is_made_flat_too() -> None:
     empty = np.zeros((0, 22), np.float32)
     assert LAYOUT.join(LAYOUT.split(empty)).shape == (0, 22)
 
@@ -66,6 +66,6 @@ def test_equal_layouts_are_one_value() -> None:
         ((("w", 3),), "block 'w' has the shape 3"),
     ],
 )
-def test_blocks_that_cannot_be(blocks: tuple, says: str) -> None:
+def test_impossible_blocks_are_refused(blocks: tuple, says: str) -> None:
     with pytest.raises(InputError, match=f"^brain: .*{says}"):
         Layout(blocks)

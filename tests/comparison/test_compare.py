@@ -1,4 +1,4 @@
-"""Runs side by side: figures against brute force, the command, and what it refuses."""
+"""Comparison of runs: figures against brute force, the command, and what the command refuses."""
 
 import json
 import shutil
@@ -29,19 +29,22 @@ QUICK: dict[str, Any] = {
     "saturation_ticks": 12,
     "stop": {"ticks": 600, "until": "saturation"},
 }
-"""Some worlds saturate by the end, some do not."""
+"""An end by which some worlds are saturated and some are not."""
 
 
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
-    """Three of one task; in the last, worlds live until they saturate."""
+    """Make three runs of one task; in the last, worlds live until they saturate."""
     folder = tmp_path_factory.mktemp("runs")
     changes: dict[str, dict[str, Any]] = {
         "one": {},
         "another": {"seed": 100},
         "patient": {"seed": 200, "stop": {"until": "saturation"}},
     }
-    for name, change in changes.items():  # seeds and limits only, so all share compiled code
+    for (
+        name,
+        change,
+    ) in changes.items():  # only seeds and limits differ, so all runs share compiled code
         loop.start(config({**QUICK, **change}), folder / name)
     return [folder / name for name in changes]
 
@@ -51,7 +54,7 @@ def compared(runs: list[Path]) -> Comparison:
     return primordia.compare(*runs)
 
 
-def test_figures_of_worlds_are_what_brute_force_finds(
+def test_figures_of_worlds_equal_those_of_brute_force(
     runs: list[Path], compared: Comparison
 ) -> None:
     seen = 0
@@ -88,12 +91,12 @@ def test_figures_of_worlds_are_what_brute_force_finds(
     assert any(0 < arm.saturated < WORLDS for arm in compared.arms[:2])
 
 
-def test_info_tells_how_often_a_life_tries_to_copy_itself(runs: list[Path]) -> None:
-    """Ticks lived, from the records of births and deaths, times replication, by births."""
+def test_info_says_how_often_an_organism_tries_to_copy_itself(runs: list[Path]) -> None:
+    """The figure is ticks lived, from births and deaths, times replication, over births."""
     for path in runs:
-        everyone = primordia.load(path).lives()
+        lives = primordia.load(path).lives()
         for number, world in enumerate(primordia.Run(path).info()["worlds"]):
-            lived = everyone.of_world(number).lifespan
+            lived = lives.of_world(number).lifespan
             expected = QUICK["replication"] * lived.sum() / len(lived)
             assert world["tries_per_life"] == pytest.approx(expected)
 
@@ -116,9 +119,9 @@ def test_the_command_shows_tables_and_draws_a_figure(runs: list[Path], tmp_path:
 def test_json_is_one_object_and_is_the_same_each_time(runs: list[Path], tmp_path: Path) -> None:
     one, two = (here("compare", *runs[:2], "--json", "--out", tmp_path) for _ in range(2))
     assert one.stdout == two.stdout
-    found = json.loads(one.stdout)
-    assert [run["name"] for run in found["runs"]] == ["one", "another"]
-    assert found["runs"][1]["births"]["against"]["word"] in (
+    printed = json.loads(one.stdout)
+    assert [run["name"] for run in printed["runs"]] == ["one", "another"]
+    assert printed["runs"][1]["births"]["against"]["word"] in (
         "small",
         "medium",
         "large",
@@ -126,20 +129,22 @@ def test_json_is_one_object_and_is_the_same_each_time(runs: list[Path], tmp_path
     )
 
 
-def test_a_horizon_that_all_worlds_were_followed_to(runs: list[Path], tmp_path: Path) -> None:
-    found = primordia.compare(*runs, ticks=600)
-    for arm, whole in zip(found.arms, primordia.compare(*runs).arms, strict=True):
+def test_runs_are_compared_up_to_a_horizon_that_all_worlds_reached(
+    runs: list[Path], tmp_path: Path
+) -> None:
+    compared = primordia.compare(*runs, ticks=600)
+    for arm, whole in zip(compared.arms, primordia.compare(*runs).arms, strict=True):
         within = whole.figures["ticks"].known & (whole.figures["ticks"].value < 600)
         assert arm.saturated == within.sum()
     early = primordia.compare(*runs, ticks=100)
-    assert early.arms[0].saturated <= found.arms[0].saturated
+    assert early.arms[0].saturated <= compared.arms[0].saturated
     assert (
         "saturated within 100 ticks"
         in here("compare", *runs, "--ticks", 100, "--out", tmp_path).stdout
     )
 
 
-def test_what_cannot_be_compared(runs: list[Path], tmp_path: Path) -> None:
+def test_runs_that_cannot_be_compared_are_refused(runs: list[Path], tmp_path: Path) -> None:
     other = shutil.copytree(runs[0], tmp_path / "other")
     settings = (other / "config.toml").read_text().replace('task = "meadow"', 'task = "pasture"')
     (other / "config.toml").write_text(settings)
@@ -152,7 +157,7 @@ def test_what_cannot_be_compared(runs: list[Path], tmp_path: Path) -> None:
     complains(here("compare", *runs, "--births", 0), 2, "--births")
 
 
-def test_a_run_cut_off_before_anything_lived(runs: list[Path], tmp_path: Path) -> None:
+def test_a_run_without_a_checkpoint_cannot_be_compared(runs: list[Path], tmp_path: Path) -> None:
     empty = tmp_path / "empty"
     empty.mkdir()
     for name in ("config.toml", "versions.json"):
@@ -160,21 +165,21 @@ def test_a_run_cut_off_before_anything_lived(runs: list[Path], tmp_path: Path) -
     complains(here("compare", runs[0], empty), 2, "no checkpoint yet")
 
 
-@pytest.mark.parametrize(("saturated", "told"), [(0, True), (2, True), (3, False), (5, False)])
-def test_what_is_of_use_where_saturation_is_rare(
-    compared: Comparison, saturated: int, told: bool
+@pytest.mark.parametrize(("saturated", "with_pace"), [(0, True), (2, True), (3, False), (5, False)])
+def test_ticks_for_each_death_are_compared_where_saturation_is_rare(
+    compared: Comparison, saturated: int, with_pace: bool
 ) -> None:
-    """In fewer than half of the worlds of every run."""
+    """Saturation is rare if fewer than half of the worlds of every run saturate."""
     known = np.arange(WORLDS) < saturated
     moments = {name: Figures(np.ones(WORLDS), known) for name in ("births", "ticks")}
     arm = replace(compared.arms[0], figures={**compared.arms[0].figures, **moments})
     assert arm.saturated == saturated
     outcomes = replace(compared, arms=(arm,)).outcomes
-    assert ("pace" in outcomes, "longest" in outcomes) == (told, told)
+    assert ("pace" in outcomes, "longest" in outcomes) == (with_pace, with_pace)
 
 
-def test_where_few_worlds_saturate_all_are_looked_at_for_as_long(tmp_path: Path) -> None:
-    """A run that went on tells of the time that it has in common with one that did not."""
+def test_where_few_worlds_saturate_all_are_compared_over_the_same_time(tmp_path: Path) -> None:
+    """A longer run is compared over the time that it has in common with a shorter one."""
     never: dict[str, Any] = {**QUICK, "saturation_ticks": 10_000}
     for name, ticks in (("short", 600), ("long", 900)):
         loop.start(config({**never, "stop": {"ticks": ticks}}), tmp_path / name)
@@ -187,8 +192,8 @@ def test_where_few_worlds_saturate_all_are_looked_at_for_as_long(tmp_path: Path)
 
 
 @pytest.mark.parametrize("arms", [2, 5, 6, 9, 27])
-def test_runs_have_looks_of_their_own(compared: Comparison, arms: int) -> None:
-    """With how their worlds scatter where few are shown."""
+def test_each_run_has_its_own_look(compared: Comparison, arms: int) -> None:
+    """The scatter of worlds is drawn where few runs are shown."""
     assert len({tuple(look.items()) for look in looks(arms)}) == arms
     many = replace(compared, arms=compared.arms[:1] * arms)
     with style.look():
@@ -199,10 +204,10 @@ def test_runs_have_looks_of_their_own(compared: Comparison, arms: int) -> None:
 
 @pytest.mark.parametrize("saturated", [0, WORLDS])
 @pytest.mark.parametrize("fed", [False, True])
-def test_whatever_is_drawn_stays_on_the_page(
+def test_everything_that_is_drawn_is_within_the_page(
     compared: Comparison, saturated: int, fed: bool
 ) -> None:
-    """Two panels to four."""
+    """Figures have two to four panels."""
     known = np.arange(WORLDS) < saturated
     moments = {name: Figures(np.ones(WORLDS), known) for name in ("births", "ticks")}
     food = {"food": Figures(np.ones(WORLDS), np.full(WORLDS, fed))}

@@ -1,4 +1,4 @@
-"""One run's worlds against another's: pairs, bounds, intervals, whatever stopped the worlds."""
+"""Contrasts of two runs' worlds: pairs, bounds and intervals, for worlds stopped for any reason."""
 
 import numpy as np
 import pytest
@@ -21,7 +21,7 @@ def figures(worlds: list[tuple[int, bool]]) -> Figures:
 
 @given(SOME, SOME)
 def test_delta_counts_pairs_whose_order_is_known(run: list, reference: list) -> None:
-    found = contrast(figures(run), figures(reference))
+    effect = contrast(figures(run), figures(reference))
     balance = decided = 0
     for value, known in run:
         for other, other_known in reference:
@@ -29,12 +29,12 @@ def test_delta_counts_pairs_whose_order_is_known(run: list, reference: list) -> 
             balance += larger - smaller
             decided += larger or smaller or (known and other_known)
     pairs = len(run) * len(reference)
-    assert found.delta == pytest.approx(balance / pairs)
-    assert found.decided == pytest.approx(decided / pairs)
+    assert effect.delta == pytest.approx(balance / pairs)
+    assert effect.decided == pytest.approx(decided / pairs)
 
 
 @given(SOME, SOME)
-def test_delta_turns_round_with_the_runs(run: list, reference: list) -> None:
+def test_delta_changes_sign_when_the_runs_are_swapped(run: list, reference: list) -> None:
     one, other = figures(run), figures(reference)
     assert contrast(one, other).delta == -contrast(other, one).delta
     assert contrast(one, one).delta == 0
@@ -52,7 +52,7 @@ def test_delta_grows_with_the_figures(run: list, reference: list, by: int) -> No
 
 
 @given(SOME, st.lists(st.integers(0, 30), min_size=12, max_size=12))
-def test_bounds_hold_however_worlds_would_have_gone_on(run: list, on: list[int]) -> None:
+def test_bounds_hold_for_every_future_of_the_worlds(run: list, on: list[int]) -> None:
     later = [value + more * (not known) for (value, known), more in zip(run, on, strict=False)]
     for q in (0.25, 0.5, 0.75):
         low, high = figures(run).quantile(q)
@@ -65,7 +65,7 @@ def test_bounds_hold_however_worlds_would_have_gone_on(run: list, on: list[int])
 
 
 @given(SOME, st.integers(1, 25))
-def test_a_horizon_forgets_what_lies_beyond(run: list, horizon: int) -> None:
+def test_a_horizon_ignores_what_happens_later(run: list, horizon: int) -> None:
     whole = figures(run)
     if any(not known and value < horizon for value, known in run):
         with pytest.raises(InputError, match="nothing can be said"):
@@ -78,7 +78,7 @@ def test_a_horizon_forgets_what_lies_beyond(run: list, horizon: int) -> None:
     assert contrast(near, others.before(horizon)).delta == 0
 
 
-def test_intervals_hold_the_true_ratio() -> None:
+def test_intervals_contain_the_true_ratio() -> None:
     draws = np.random.default_rng(0)
     held = 0
     for _ in range(200):
@@ -100,17 +100,17 @@ def test_resamples_are_even_and_independent() -> None:
 @pytest.mark.parametrize(
     ("delta", "word"), [(0.1, "negligible"), (0.2, "small"), (-0.4, "medium"), (-0.9, "large")]
 )
-def test_words_for_sizes(delta: float, word: str) -> None:
+def test_effects_have_a_word_for_their_size(delta: float, word: str) -> None:
     share = round((1 + delta) / 2 * 100)
     run = figures([(3, True)] * share + [(1, True)] * (100 - share))
-    found = contrast(run, figures([(2, True)]))
-    assert found.delta == pytest.approx(delta, abs=0.02)
-    assert found.word == word
+    effect = contrast(run, figures([(2, True)]))
+    assert effect.delta == pytest.approx(delta, abs=0.02)
+    assert effect.word == word
 
 
 @pytest.mark.parametrize("values", [(3, -1), (-1, 3), (3, 0), (-2, -1)])
-def test_nothing_is_said_of_the_ratio_of_what_is_not_positive(values: tuple[int, int]) -> None:
+def test_figures_that_are_not_positive_have_no_ratio(values: tuple[int, int]) -> None:
     run, reference = (figures([(value, True)] * 4) for value in values)
-    found = contrast(run, reference)
-    assert found.ratio == found.interval == (0, np.inf)
-    assert found.delta == np.sign(values[0] - values[1])
+    effect = contrast(run, reference)
+    assert effect.ratio == effect.interval == (0, np.inf)
+    assert effect.delta == np.sign(values[0] - values[1])

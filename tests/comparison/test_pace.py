@@ -1,4 +1,4 @@
-"""Ticks lived for each death: against counting tick by tick, and in runs that never saturate."""
+"""Ticks lived for each death: compared with counting, and in runs that never saturate."""
 
 from pathlib import Path
 
@@ -15,7 +15,7 @@ from tests.synthetic import LIVED, alive, world_of
 from tests.worlds import MEADOW, config
 
 TICKS = 7
-"""of a window"""
+"""ticks of a window"""
 
 
 @given(LIVED, LIVED, st.integers(0, 20))
@@ -23,21 +23,21 @@ def test_every_tick_and_every_death_counts_once(
     one: list[tuple[int, int, bool]], other: list[tuple[int, int, bool]], since: int
 ) -> None:
     worlds = [world_of(lived, until=110) for lived in (one, other)]
-    found = pace([world.since(since) for world in worlds], since, since + WINDOWS * TICKS)
+    measured = pace([world.since(since) for world in worlds], since, since + WINDOWS * TICKS)
     for number, world in enumerate(worlds):
         for window in range(WINDOWS):
             ticks = range(since + window * TICKS, since + (window + 1) * TICKS)
             lived = sum(alive(world, row, tick) for row in range(len(world)) for tick in ticks)
             ended = world.ended[world.died] - 1
-            assert found.lived[number, window] == lived
-            assert found.deaths[number, window] == np.isin(ended, ticks).sum()
-    late = found.lived[:, -LATE:].sum(1), found.deaths[:, -LATE:].sum(1)
-    assert (found.late.known == (late[1] > 0)).all()
-    assert (found.late.value == late[0] / np.maximum(late[1], 1)).all()
+            assert measured.lived[number, window] == lived
+            assert measured.deaths[number, window] == np.isin(ended, ticks).sum()
+    late = measured.lived[:, -LATE:].sum(1), measured.deaths[:, -LATE:].sum(1)
+    assert (measured.late.known == (late[1] > 0)).all()
+    assert (measured.late.value == late[0] / np.maximum(late[1], 1)).all()
 
 
-def test_worlds_that_never_saturate_are_compared_by_it(tmp_path: Path) -> None:
-    """Half the hazard, twice the ticks for each death; saturation is not spoken of."""
+def test_worlds_that_never_saturate_are_compared_by_ticks_for_each_death(tmp_path: Path) -> None:
+    """Half the hazard doubles the ticks for each death; saturation is not mentioned."""
     runs = []
     for name, hazard, ticks in (("rough", 0.02, 600), ("mild", 0.01, 700)):
         settings = {**MEADOW, "brain": {"hidden": 1}, "seeds": 4, "hazard": hazard}
@@ -48,7 +48,7 @@ def test_worlds_that_never_saturate_are_compared_by_it(tmp_path: Path) -> None:
     assert np.median(rough.figures["pace"].value) == pytest.approx(50, rel=0.2)
     assert np.median(mild.figures["pace"].value) == pytest.approx(100, rel=0.2)
     assert (mild.figures["longest"].value > 100).all()
-    told = here("compare", *runs, "--out", tmp_path / "figures").stdout
-    assert "ticks lived for each death, late" in told
-    assert "births to" not in told
+    printed = here("compare", *runs, "--out", tmp_path / "figures").stdout
+    assert "ticks lived for each death, late" in printed
+    assert "births to" not in printed
     assert (tmp_path / "figures" / "compare.png").stat().st_size > 10_000

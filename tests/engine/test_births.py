@@ -1,4 +1,4 @@
-"""Bodies in JAX are made for those who are born, and for no others."""
+"""Bodies of JAX habitats are made for the newborn only."""
 
 from typing import ClassVar
 
@@ -13,7 +13,7 @@ from tests.worlds import MEADOW, Lived, config
 
 
 class Costly(Meadow):
-    """It notes for how many bodies at once it is asked."""
+    """A habitat that records how many bodies are made at once."""
 
     asked: ClassVar[set[int]] = set()
 
@@ -23,7 +23,7 @@ class Costly(Meadow):
 
 
 def test_bodies_are_never_made_for_all_cells() -> None:
-    """On a CPU one by one, elsewhere a batch at once; both are traced."""
+    """On a CPU bodies are made one by one, elsewhere in batches; both are traced."""
     cells = 1024
     costly = {"name": f"{__name__}:Costly"}
     lived = Lived(config(MEADOW, habitat=costly, cells=cells, genesis="fill"), 5)
@@ -32,8 +32,8 @@ def test_bodies_are_never_made_for_all_cells() -> None:
     assert batch(cells) < 10
 
 
-def test_bodies_do_not_depend_on_how_many_are_born_together() -> None:
-    """Even where a reset of many at once would be rounded otherwise."""
+def test_a_body_does_not_depend_on_the_number_of_births_in_its_tick() -> None:
+    """A reset of many bodies at once would be rounded in another way; births do not depend on it."""
     words = np.random.default_rng(3).integers(0, 2**32, (64, 2), np.uint32)
     born = jax.jit(lambda words: fresh(Slope(), words))
     together = np.asarray(born(words))

@@ -1,4 +1,4 @@
-"""What is compiled is shared where it is the same, and nowhere else."""
+"""Compiled code is shared by equal computations and by no others."""
 
 from functools import cache
 from pathlib import Path
@@ -19,9 +19,11 @@ MIRROR = {**MILL, "habitat": {"name": "tests.toys:Mirror", "inner": "mill"}}
 
 
 def compilations(caplog: pytest.LogCaptureFixture) -> list[str]:
-    """Of the engine's functions; single operations on arrays are of no weight."""
-    said = [each.message for each in caplog.records]
-    return [each for each in said if each.startswith("Finished XLA compilation of jit(_")]
+    """Return the compilations of the engine's functions; single operations on arrays do not matter."""
+    messages = [record.message for record in caplog.records]
+    return [
+        message for message in messages if message.startswith("Finished XLA compilation of jit(_")
+    ]
 
 
 @pytest.mark.parametrize("base", [MILL, MIRROR], ids=["in JAX", "on the host"])
@@ -44,14 +46,14 @@ def test_a_run_with_another_seed_and_end_compiles_nothing(
     assert compilations(caplog) == []
 
 
-def test_another_habitat_is_another_world() -> None:
-    """Though all else is the same."""
+def test_other_settings_of_a_habitat_give_another_world() -> None:
+    """Only the habitat's settings differ."""
     one, other = Lived(config(CLOCKWORK), 60), Lived(config(CLOCKWORK, habitat={"lifespan": 9}), 60)
     assert one.digests() != other.digests()
 
 
-def test_what_has_the_same_name_and_settings_may_be_something_else() -> None:
-    """A class that was written anew, as in a notebook."""
+def test_a_class_with_the_same_name_and_settings_shares_no_code() -> None:
+    """A class may be defined again under its name, as in a notebook."""
 
     def written(factor: int) -> Any:
         class Meadow(Settings):
@@ -66,12 +68,12 @@ def test_what_has_the_same_name_and_settings_may_be_something_else() -> None:
     assert [float(shared(_grown, each)(1.0)) for each in (first, again, first)] == [4, 6, 4]
 
 
-def test_what_cannot_be_hashed_shares_with_nothing() -> None:
+def test_arguments_that_cannot_be_hashed_share_no_code() -> None:
     double, triple = shared(_scaled, {"by": 2}), shared(_scaled, {"by": 3})
     assert [float(double(2.0)), float(triple(2.0))] == [4, 6]
 
 
-def test_what_is_equal_is_the_same_code() -> None:
+def test_equal_arguments_share_code() -> None:
     assert shared(_grown, Meadow()) is shared(_grown, Meadow())
     assert shared(_grown, Meadow()) is not shared(_grown, Meadow(lifespan=2))
     assert shared(_grown, Meadow()) is not shared(_scaled, Meadow())

@@ -1,4 +1,4 @@
-"""Promise 1: a life is a function of genome, seed and organism, however it is computed."""
+"""Promise 1: a life is a function of genome, seed and organism, in whatever way it is computed."""
 
 import os
 import subprocess
@@ -30,7 +30,9 @@ def test_chunks_of_any_length_make_the_same_run(reference: Lived, chunk: int) ->
 
 
 @pytest.mark.parametrize("chunk", [1, 13])
-def test_chunks_make_no_difference_with_metabolism_noise_and_seasons(chunk: int) -> None:
+def test_chunks_of_any_length_make_the_same_run_with_metabolism_noise_and_seasons(
+    chunk: int,
+) -> None:
     whole = Lived(config(MILL, seeds=2), 700)
     assert len(set(np.round(whole.table("metrics")["metabolism.gain"], 6))) > 2
     assert Lived(config(MILL, seeds=2), 700, chunk).digests() == whole.digests()
@@ -42,7 +44,7 @@ def test_a_world_is_the_same_alone_and_among_a_hundred(reference: Lived) -> None
     assert len(set(among.digests())) == 100
 
 
-def test_worlds_that_stop_early_change_nothing_for_the_others() -> None:
+def test_worlds_that_stop_early_do_not_change_the_others() -> None:
     together = Lived(config(MILL, seeds=4), 600, births=25)
     for world in range(4):
         alone = Lived(config(MILL, seed=world), 600, births=25)
@@ -51,10 +53,10 @@ def test_worlds_that_stop_early_change_nothing_for_the_others() -> None:
     assert len(set(ticks.tolist())) > 1
 
 
-def test_going_on_equals_going_through(reference: Lived) -> None:
+def test_a_run_in_two_parts_equals_a_run_in_one(reference: Lived) -> None:
     parts = Lived(config(**CARTPOLE), 1111)
-    parts.on(2000)
-    parts.on(3000, chunk=91)
+    parts.advance_to(2000)
+    parts.advance_to(3000, chunk=91)
     assert parts.digests() == reference.digests()
 
 
@@ -63,7 +65,7 @@ def test_different_seeds_differ() -> None:
 
 
 @pytest.mark.parametrize(("fused", "inner"), [("CartPole-survival", "cartpole"), (MILL, "mill")])
-def test_a_hosted_habitat_lives_under_the_same_law(fused: str | dict, inner: str) -> None:
+def test_a_habitat_on_the_host_lives_under_the_same_law(fused: str | dict, inner: str) -> None:
     changed = {"seeds": 2, "habitat": {"name": "tests.toys:Mirror", "inner": inner}}
     one, other = Lived(config(fused, seeds=2), 500), Lived(config(fused, **changed), 500, chunk=77)
     for name in ("births", "deaths", "metrics"):
@@ -88,7 +90,7 @@ def test_a_numpy_habitat_is_exact_in_chunks_of_any_length() -> None:
 
 @pytest.mark.parametrize("kind", KNOWN)
 @pytest.mark.parametrize("habitat", [CartPole(), Mill()])
-def test_brains_and_bodies_do_not_depend_on_how_many_there_are(kind: str, habitat) -> None:
+def test_brains_and_bodies_do_not_depend_on_their_number(kind: str, habitat) -> None:
     brain, sizes = build({"kind": kind}), (habitat.senses_size, habitat.action.size)
     rng, layout = np.random.default_rng(0), brain.layout(*sizes)
     genome = layout.split(rng.normal(size=(1024, layout.length)).astype(np.float32))
@@ -122,7 +124,7 @@ print(Lived(config(cells=64, seeds=8, seed=3), 600).digests())
 """
 
 
-def test_threads_make_no_difference() -> None:
+def test_a_run_is_the_same_on_any_number_of_threads() -> None:
     def run(*processors: int) -> str:
         environment = {**os.environ, "PYTHONPATH": os.pathsep.join(["src", "."])}
         command = [sys.executable, "-c", PROGRAM, *map(str, processors)]

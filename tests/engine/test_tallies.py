@@ -1,4 +1,4 @@
-"""What habitats count for people: noted at each death and in each sample, and no part of the law."""
+"""Tallies of habitats: recorded at each death and in each sample, and no part of the law."""
 
 from pathlib import Path
 from typing import Any
@@ -31,16 +31,16 @@ def clocked(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return run
 
 
-def test_the_dead_have_what_they_came_to(clocked: Path) -> None:
-    """Also those whose cell is taken again in the tick of their death."""
-    everyone, dead = Archive(clocked).lives, primordia.load(clocked).arrays("deaths")
-    rows = [everyone.row(*pair) for pair in zip(dead["id"], dead["world"], strict=True)]
+def test_deaths_record_the_tallies_at_death(clocked: Path) -> None:
+    """This holds also where a cell is occupied again in the tick of a death."""
+    lives, dead = Archive(clocked).lives, primordia.load(clocked).arrays("deaths")
+    rows = [lives.row(*pair) for pair in zip(dead["id"], dead["world"], strict=True)]
     assert len(rows) > 100
-    np.testing.assert_array_equal(dead["ticks"], everyone.lifespan[rows])
-    np.testing.assert_array_equal(dead["ticks_down"], -everyone.lifespan[rows])
+    np.testing.assert_array_equal(dead["ticks"], lives.lifespan[rows])
+    np.testing.assert_array_equal(dead["ticks_down"], -lives.lifespan[rows])
 
 
-def test_samples_have_mean_and_best_of_the_living(clocked: Path) -> None:
+def test_samples_record_mean_and_best_tallies_of_the_living(clocked: Path) -> None:
     samples = primordia.load(clocked).arrays("metrics")
     assert len(samples["tick"]) >= 3 * 8
     np.testing.assert_allclose(samples["ticks_mean"], samples["mean_age"], rtol=1e-6)
@@ -48,17 +48,17 @@ def test_samples_have_mean_and_best_of_the_living(clocked: Path) -> None:
     np.testing.assert_allclose(samples["ticks_down_mean"], -samples["mean_age"], rtol=1e-6)
 
 
-def test_info_tells_of_the_living(clocked: Path) -> None:
-    found = primordia.load(clocked).info()
-    world = found["worlds"][1]
+def test_info_shows_the_tallies_of_the_living(clocked: Path) -> None:
+    info = primordia.load(clocked).info()
+    world = info["worlds"][1]
     assert world["tallies"]["ticks"]["best"] == world["oldest_age"]
-    everyone = Archive(clocked).lives.of_world(1)
-    ages = everyone.lifespan[~everyone.died]
+    lives = Archive(clocked).lives.of_world(1)
+    ages = lives.lifespan[~lives.died]
     assert world["tallies"]["ticks"]["median"] == np.median(ages)
-    assert f"ticks {np.median(ages):,.0f} (best {ages.max():,})" in summary(found)
+    assert f"ticks {np.median(ages):,.0f} (best {ages.max():,})" in summary(info)
 
 
-def test_a_run_that_was_stopped_counts_on(clocked: Path, tmp_path: Path) -> None:
+def test_tallies_continue_after_a_resume(clocked: Path, tmp_path: Path) -> None:
     parts = tmp_path / "parts"
     loop.start(config({**WORLDS, "stop": {"ticks": 137}}), parts)
     loop.resume(parts, {"ticks": 400})
@@ -68,7 +68,7 @@ def test_a_run_that_was_stopped_counts_on(clocked: Path, tmp_path: Path) -> None
     assert again.info()["worlds"][2]["digest"] == whole.info()["worlds"][2]["digest"]
 
 
-def test_the_law_never_sees_them(clocked: Path, tmp_path: Path) -> None:
+def test_the_law_does_not_depend_on_tallies(clocked: Path, tmp_path: Path) -> None:
     blind = {**WORLDS["habitat"], "name": "tests.toys:Mirror"}
     loop.start(config({**WORLDS, "habitat": blind}), tmp_path / "run")
     same = primordia.load(tmp_path / "run").table("births")

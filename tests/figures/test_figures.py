@@ -1,4 +1,4 @@
-"""Figures show what the records say; whatever can be drawn of a run is drawn, always the same."""
+"""Figures show what the records say, and are the same each time."""
 
 import re
 import shutil
@@ -36,33 +36,35 @@ WHAT: dict[str, Any] = {
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Three worlds with births, copies and deaths of several causes."""
+    """Make a run of three worlds with births, copies and deaths of several causes."""
     where = tmp_path_factory.mktemp("figures") / "run"
     loop.start(config(WHAT, stop={"ticks": 900}), where)
     return where
 
 
-def test_population_and_mean_age_are_as_sampled_while_it_ran(run: Path) -> None:
-    metrics, everyone = primordia.Run(run).table("metrics"), Archive(run).lives
+def test_population_and_mean_age_are_those_of_the_samples(run: Path) -> None:
+    metrics, lives = primordia.Run(run).table("metrics"), Archive(run).lives
     columns = {
         name: metrics[name].to_numpy() for name in ("world", "tick", "population", "mean_age")
     }
     for number in range(3):
-        mine = columns["world"] == number
-        world, ticks = everyone.of_world(number), columns["tick"][mine]
-        np.testing.assert_array_equal(series.population(world, ticks), columns["population"][mine])
+        in_world = columns["world"] == number
+        world, ticks = lives.of_world(number), columns["tick"][in_world]
+        np.testing.assert_array_equal(
+            series.population(world, ticks), columns["population"][in_world]
+        )
         np.testing.assert_allclose(
-            series.mean_age(world, ticks), columns["mean_age"][mine], rtol=1e-5
+            series.mean_age(world, ticks), columns["mean_age"][in_world], rtol=1e-5
         )
 
 
 def test_cohorts_are_quarters_of_each_worlds_births(run: Path) -> None:
-    everyone = Archive(run).lives
-    cohorts = survival.quarters(everyone)
-    assert sum(map(len, cohorts)) == len(everyone)
+    lives = Archive(run).lives
+    cohorts = survival.quarters(lives)
+    assert sum(map(len, cohorts)) == len(lives)
     for world in range(3):
         parts = [cohort.of_world(world).id for cohort in cohorts]
-        assert np.concatenate(parts).tolist() == list(range(len(everyone.of_world(world))))
+        assert np.concatenate(parts).tolist() == list(range(len(lives.of_world(world))))
         assert max(map(len, parts)) - min(map(len, parts)) <= 1
 
 
@@ -75,37 +77,37 @@ def test_quartiles_are_of_stretches_with_equally_many_dead() -> None:
     assert (half < three).all()
 
 
-def test_space_time_finds_who_lived_where(run: Path) -> None:
+def test_space_time_shows_the_occupant_of_each_cell_and_tick(run: Path) -> None:
     world = Archive(run).lives.of_world(1)
     cells, ticks = np.arange(24), np.array([0, 1, 50, 333, 900])
-    found = spacetime.living(world, cells, ticks)
+    occupants = spacetime.living(world, cells, ticks)
     for place, tick in enumerate(ticks.tolist()):
         expected = np.full(24, spacetime.NOBODY)
         for row in range(len(world)):
             if alive(world, row, tick):
                 expected[world.cell[row]] = row
-        np.testing.assert_array_equal(found[place], expected)
+        np.testing.assert_array_equal(occupants[place], expected)
 
 
-def test_space_time_shows_lines_in_colours_that_say_what_became_of_them(run: Path) -> None:
+def test_space_time_shows_in_colours_what_became_of_each_line(run: Path) -> None:
     world = Archive(run).lives.of_world(0)
     cells, ticks = np.arange(24), np.arange(901)
     of = spacetime.told_apart(world)
-    found = spacetime.living(world, cells, ticks)
+    occupants = spacetime.living(world, cells, ticks)
     image = spacetime.picture(world, of, cells, ticks)
-    np.testing.assert_array_equal((image == 1).all(axis=-1), found == spacetime.NOBODY)
+    np.testing.assert_array_equal((image == 1).all(axis=-1), occupants == spacetime.NOBODY)
     young = colours_in(image[: of.anew[0]])
     assert {len(set(each)) for each in young} == {1}, "greys"
     assert to_rgb(spacetime.YOUNG) in young
-    at_the_end = found[-1] >= 0
+    at_the_end = occupants[-1] >= 0
     assert colours_in(image[-1]) <= colours_in(spacetime.STRONG)
-    lines = of.of(found[-1][at_the_end], ticks[-1:])
+    lines = of.of(occupants[-1][at_the_end], ticks[-1:])
     shown = set(zip(lines.tolist(), map(tuple, image[-1][at_the_end].tolist()), strict=True))
     assert len(shown) == len(set(lines.tolist())), "one colour each"
 
 
 def colours_in(image: np.ndarray) -> set[tuple[float, ...]]:
-    """But for white."""
+    """Return the colours in an image, without white."""
     return set(map(tuple, image.reshape(-1, 3).tolist())) - {(1.0, 1.0, 1.0)}
 
 
@@ -120,14 +122,16 @@ def test_space_time_never_has_more_columns_than_a_screen(cells: int, shown: int)
 
 @pytest.fixture(scope="module")
 def pictures(run: Path) -> list[Path]:
-    """Its figures, where they are put by default."""
+    """Draw the figures of the run in their default folder."""
     before = primordia.Run(run).info()
-    found = primordia.Run(run).plot()
+    paths = primordia.Run(run).plot()
     assert primordia.Run(run).info() == before
-    return found
+    return paths
 
 
-def test_plot_makes_every_figure_twice_in_the_runs_folder(run: Path, pictures: list[Path]) -> None:
+def test_plot_writes_every_figure_in_two_formats_to_the_runs_folder(
+    run: Path, pictures: list[Path]
+) -> None:
     names = [f"{name}.{kind}" for name in FIGURES for kind in ("png", "svg")]
     assert pictures == [run / "figures" / name for name in names]
     assert sorted(path.name for path in (run / "figures").iterdir()) == sorted(names)
@@ -141,9 +145,10 @@ def test_svg_keeps_text_as_text_and_dots_as_a_picture(pictures: list[Path]) -> N
             assert path.stat().st_size < 2**19
 
 
-def test_same_bytes_each_time_whatever_the_users_style_but_for_the_world_asked_for(
+def test_figures_have_the_same_bytes_under_any_style_of_the_user(
     run: Path, pictures: list[Path], tmp_path: Path
 ) -> None:
+    """Only the two pictures that show a single world depend on the world that is asked for."""
     with matplotlib.rc_context({"font.size": 30, "lines.linewidth": 9, "svg.fonttype": "path"}):
         done = here("plot", run, "--out", tmp_path / "some" / "where", "--world", 2)
         assert matplotlib.rcParams["font.size"] == 30
@@ -156,7 +161,7 @@ def test_same_bytes_each_time_whatever_the_users_style_but_for_the_world_asked_f
 
 
 @pytest.mark.parametrize(
-    "everyone",
+    "lives",
     [
         world_of([(0, 0, False)], until=0),
         world_of([(0, 0, False)], until=1),
@@ -167,15 +172,15 @@ def test_same_bytes_each_time_whatever_the_users_style_but_for_the_world_asked_f
     ],
     ids=["tick 0", "tick 1", "no deaths", "hardly any", "two worlds", "three worlds"],
 )
-def test_what_can_be_drawn_is_drawn(everyone: Lives) -> None:
-    settings = config(WHAT, cells=24, seeds=everyone.worlds)
+def test_every_figure_is_drawn_of_any_world(lives: Lives) -> None:
+    settings = config(WHAT, cells=24, seeds=lives.worlds)
     with style.look():
         for name, draw in FIGURES.items():
-            figure = draw(everyone, settings, 0)
+            figure = draw(lives, settings, 0)
             figure.draw_without_rendering()
-            said = {text.get_text() for text in figure.findobj(Text)}
-            remark = "no deaths yet" in said
-            assert remark == (name in {"ages", "survival"} and not everyone.died.any())
+            texts = {text.get_text() for text in figure.findobj(Text)}
+            remark = "no deaths yet" in texts
+            assert remark == (name in {"ages", "survival"} and not lives.died.any())
 
 
 @pytest.mark.parametrize(
@@ -194,7 +199,7 @@ def test_space_time_says_what_the_order_of_cells_means(
     assert says in figure.axes[0].get_xlabel()
 
 
-def test_every_cause_of_death_has_a_colour_of_its_own() -> None:
+def test_every_cause_of_death_has_its_own_colour() -> None:
     assert set(population.COLOURS) == set(Cause)
     assert len(set(population.COLOURS.values())) == len(Cause)
 
@@ -204,11 +209,11 @@ def test_every_cause_of_death_has_a_colour_of_its_own() -> None:
     [(0, "0"), (0.5, "0.5"), (0.01, "1/100"), (1e-4, "1/10k"), (999, "999"), (1500, "1.5k"),
      (1e6, "1M"), (2.5e9, "2.5G")],
 )  # fmt: skip
-def test_numbers_are_short(number: float, text: str) -> None:
+def test_numbers_are_written_in_short_form(number: float, text: str) -> None:
     assert style.short(number) == text
 
 
-def test_what_cannot_be_drawn_is_said_in_one_line(run: Path, tmp_path: Path) -> None:
+def test_a_run_that_cannot_be_drawn_gives_one_line_of_message(run: Path, tmp_path: Path) -> None:
     complains(here("plot", tmp_path / "nothing"), 2, "nothing")
     complains(here("plot", run, "--world", 3), 2, "no world 3", "0 to 2")
     complains(here("plot", run, "--world", -1), 2, "no world -1")

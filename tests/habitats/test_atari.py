@@ -1,4 +1,4 @@
-"""Atari games as habitats: exact states, what is sensed, what is fatal, what is food, and bad input."""
+"""Atari games as habitats: exact states, senses, fatal events, food, and bad input."""
 
 from pathlib import Path
 from typing import Any
@@ -26,8 +26,8 @@ OTHERS = [pytest.param(each, marks=pytest.mark.slow) for each in games() if each
 
 
 @pytest.mark.parametrize("game", [*PAPERS, *OTHERS])
-def test_a_clone_goes_on_as_the_original(game: str) -> None:
-    """Clone, serialise, restore elsewhere, go on: the same RAM and points for 2,000 frames."""
+def test_a_cloned_game_continues_as_the_original(game: str) -> None:
+    """A game that is cloned, saved and restored has the same RAM and points for 2,000 frames."""
     one, other = console(game), console(game)
     buttons = [action.value for action in one.getMinimalActionSet()]
     for frame in range(500):
@@ -42,7 +42,7 @@ def test_a_clone_goes_on_as_the_original(game: str) -> None:
 
 
 def arcade(cells: int = 2, **options: Any) -> tuple[Arcade, dict[str, np.ndarray]]:
-    """Emulators in this process."""
+    """Return emulators in this process."""
     arrays = {name: np.zeros((cells, *shape), dtype) for name, (dtype, shape) in FIELDS.items()}
     settings = {"game": "pong", "actions": [0, 2, 3], "mode": None, "difficulty": None,
                 "frame_skip": 1, "sticky": 0.0, "noops": 0} | options  # fmt: skip
@@ -53,7 +53,7 @@ def arcade(cells: int = 2, **options: Any) -> tuple[Arcade, dict[str, np.ndarray
 
 
 def played(made: Arcade, arrays: dict[str, np.ndarray], ticks: int, cell: int = 0) -> list[bytes]:
-    """RAM after each tick of some fixed play."""
+    """Play fixed buttons and return the RAM after each tick."""
     seen = []
     for tick in range(ticks):
         arrays["action"][cell] = tick // 9 % 3
@@ -63,7 +63,7 @@ def played(made: Arcade, arrays: dict[str, np.ndarray], ticks: int, cell: int = 
 
 
 def test_a_life_depends_on_its_words_alone() -> None:
-    """Whatever was played in the cell before, and in whichever cell."""
+    """The life does not depend on the cell, nor on what was played there before."""
     options = {"sticky": 0.25, "noops": 30, "frame_skip": 2}
     (one, a), (other, b) = arcade(**options), arcade(**options)
     played(other, b, 70, cell=1)
@@ -74,7 +74,7 @@ def test_a_life_depends_on_its_words_alone() -> None:
     assert played(one, a, 300, cell=0) == played(other, b, 300, cell=1)
 
 
-def test_saved_lives_go_on_elsewhere() -> None:
+def test_saved_lives_continue_in_another_pool() -> None:
     options = {"sticky": 0.25}
     (one, a), (other, b) = arcade(**options), arcade(**options)
     a["words"][0] = (1, 2)
@@ -85,7 +85,7 @@ def test_saved_lives_go_on_elsewhere() -> None:
     assert one.save(0) == other.save(1)
 
 
-def test_no_ops_are_drawn_from_none_to_all() -> None:
+def test_no_ops_are_drawn_from_0_to_the_maximum() -> None:
     made, arrays = arcade(noops=3)
     frames = set()
     for word in range(40):
@@ -95,16 +95,16 @@ def test_no_ops_are_drawn_from_none_to_all() -> None:
     assert len(frames) == 4
 
 
-def test_sticky_buttons_stay_down_as_often_as_asked() -> None:
+def test_sticky_buttons_stay_down_as_often_as_the_settings_say() -> None:
     made, _ = arcade(sticky=0.25)
     asked = np.random.default_rng(0).integers(0, 3, 20_000).tolist()
     changed = sum(made._button(0, action) == action for action in asked)
-    # A button is as asked when it is not stuck, or stuck at the same by chance (1 in 3).
+    # A button is as asked if it does not stick, or sticks at the same button by chance (1 in 3).
     assert changed / len(asked) == pytest.approx(0.75 + 0.25 / 3, abs=0.02)
 
 
 class Played:
-    """A habitat with two cells in a pool."""
+    """An Atari habitat with two cells in a pool."""
 
     def __init__(self, **settings: Any) -> None:
         self.habitat = Atari(**settings)
@@ -113,7 +113,7 @@ class Played:
         self.senses = self.habitat.reset(both, np.zeros((2, self.habitat.words), np.uint32))
 
     def until(self, name: str, most: int = 3000, button: int = 0) -> tuple[int, Any]:
-        """Step with the same button, the first if not said, until the first body has it."""
+        """Step with one button, by default the first, until the first body reports the event."""
         for tick in range(1, most):
             _, outcome = self.habitat.step(np.full(2, button, np.int32), np.ones(2, bool))
             if np.asarray(getattr(outcome, name))[0]:
@@ -122,8 +122,8 @@ class Played:
 
 
 @pytest.mark.parametrize("button", range(3))
-def test_nobody_can_put_off_breakout_by_never_serving(button: int) -> None:
-    """Whatever is pressed, the ball comes, and is lost to whoever keeps to one side."""
+def test_a_player_of_breakout_that_never_serves_still_gets_the_ball(button: int) -> None:
+    """With any button held the ball comes, and a player that stays on one side loses it."""
     settings = load("Breakout-survival-forager").habitat
     breakout = Played(**{name: value for name, value in settings.items() if name != "name"})
     assert breakout.habitat.action.size == 3
@@ -131,7 +131,7 @@ def test_nobody_can_put_off_breakout_by_never_serving(button: int) -> None:
     breakout.habitat.close()
 
 
-def test_senses_are_the_bytes_asked_for_scaled() -> None:
+def test_senses_are_the_selected_bytes_of_ram_scaled() -> None:
     some, all_, blind = (
         Played(game="pong", **each) for each in ({"senses": [51, 49]}, {}, {"blind": True})
     )
@@ -143,27 +143,27 @@ def test_senses_are_the_bytes_asked_for_scaled() -> None:
     assert blind.senses.shape == (2, 128)
 
 
-def test_a_point_against_is_fatal_if_it_is_said_to_be() -> None:
+def test_a_lost_point_is_fatal_if_the_settings_say_so() -> None:
     first, _ = Played(game="pong", fatal="points < 0").until("fatal")
     second, _ = Played(game="pong", fatal="ram[13] == 2").until("fatal")
-    assert first < second  # the opponent's score stands in RAM 13
+    assert first < second  # RAM 13 holds the opponent's score
 
 
-def test_food_is_what_is_said_to_be() -> None:
+def test_food_is_what_the_settings_say() -> None:
     tick, outcome = Played(game="pong", food="3 * max(-points, 0)").until("food")
     assert outcome.food[0] == 3.0
     assert tick > 10
     assert outcome.food.dtype == np.float32
 
 
-def test_a_life_lost_is_noticed() -> None:
+def test_a_lost_life_is_reported() -> None:
     played_ = Played(game="breakout", fatal="lives_lost > 0", actions="FIRE")
     tick, _ = played_.until("fatal")
     assert tick > 20
 
 
 def test_runs_are_exact(tmp_path: Path) -> None:
-    """In chunks, by other workers, over a resume, and lived again."""
+    """Runs are equal in chunks, with other workers, after a resume, and when lived again."""
     noisy = {"sticky": 0.1, "noops": 5}
     settings = {"cells": 4, "hazard": 0.005}
 
@@ -199,12 +199,16 @@ def test_runs_are_exact(tmp_path: Path) -> None:
         (["--habitat.workers", "9", "--cells", "8"], "9 workers are more than the 8 cells"),
     ],
 )
-def test_bad_input(flags: list[str], says: str, tmp_path: Path) -> None:
+def test_wrong_settings_are_errors_that_say_why(
+    flags: list[str], says: str, tmp_path: Path
+) -> None:
     complains(here("run", "Pong-survival", *flags, "--out", tmp_path / "run"), 2, says)
     assert not (tmp_path / "run").exists()
 
 
-def test_without_the_extra(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_without_the_extra_the_error_says_what_to_install(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     import sys
 
     for cached in (atari_games._ale, games, atari_games._facts, atari_games.legal_actions):
@@ -214,7 +218,7 @@ def test_without_the_extra(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> N
     complains(done, 2, "pip install 'primordia[atari]'")
 
 
-def test_games_are_many() -> None:
+def test_there_are_many_games() -> None:
     assert {"pong", "battle_zone", "space_invaders"} < set(games())
     assert len(games()) > 100
     assert board.size(FIELDS, 2) > 0

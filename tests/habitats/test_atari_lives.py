@@ -1,4 +1,4 @@
-"""Lives in Atari games lived again, bit for bit, and seen on video."""
+"""Lives in Atari games: lived again bit for bit, and shown on video."""
 
 from importlib.metadata import version
 from pathlib import Path
@@ -37,7 +37,7 @@ SETTINGS = {
 
 @pytest.fixture(scope="module")
 def pong(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Sticky actions, no-ops, hunger: in two worlds, of which each has lives of all kinds."""
+    """Make a run with sticky buttons, no-ops and hunger; both worlds have lives of all kinds."""
     run = tmp_path_factory.mktemp("pong") / "run"
     return primordia.run(
         "Pong-survival", run, **SETTINGS, stop={"ticks": 250, "until": "none"}
@@ -48,19 +48,19 @@ def test_the_emulators_version_is_recorded(pong: Path) -> None:
     assert primordia.load(pong).info()["versions"]["ale-py"] == version("ale-py")
 
 
-def some(everyone: Lives, which: np.ndarray, count: int) -> list[tuple[int, int]]:
-    """Numbers and worlds of some, spread over all of these."""
-    rows = np.flatnonzero(which & (everyone.lifespan > 1))
+def some(lives: Lives, which: np.ndarray, count: int) -> list[tuple[int, int]]:
+    """Return birth numbers and worlds of `count` organisms, spread over the rows in `which`."""
+    rows = np.flatnonzero(which & (lives.lifespan > 1))
     assert len(rows) >= count
     chosen = rows[np.linspace(0, len(rows) - 1, count).astype(int)]
-    return [(int(everyone.id[row]), int(everyone.world[row])) for row in chosen]
+    return [(int(lives.id[row]), int(lives.world[row])) for row in chosen]
 
 
-def comes_out(run: Archive, organism: int, world: int) -> None:
-    """What is recorded of its end comes out: energy, score, and of the living what they perceive."""
+def assert_ends_as_recorded(run: Archive, organism: int, world: int) -> None:
+    """Assert that a life lived again ends as recorded: energy and score, and the senses of the living."""
     life = Life.of(run, organism, world)
-    seen = list(life.again())
-    last, scores = seen[-1], [each.bodies["tally"][:, 0] for each in seen]
+    stretches = list(life.again())
+    last, scores = stretches[-1], [each.bodies["tally"][:, 0] for each in stretches]
     assert last.tick[-1] == life.ends
     assert last.cause[-1] == (life.cause if life.cause in BODILY else -1)
     if life.cause is None:
@@ -78,48 +78,48 @@ def comes_out(run: Archive, organism: int, world: int) -> None:
 
 
 @pytest.mark.parametrize("cause", [Cause.FATAL, Cause.STARVED, Cause.HAZARD, None])
-def test_a_life_comes_out_as_recorded(pong: Path, cause: Cause | None) -> None:
+def test_a_life_lived_again_ends_as_recorded(pong: Path, cause: Cause | None) -> None:
     run = Archive(pong)
-    everyone = run.lives
-    which = ~everyone.died if cause is None else everyone.cause == cause
-    for organism, world in some(everyone, which, 2):
-        comes_out(run, organism, world)
+    lives = run.lives
+    which = ~lives.died if cause is None else lives.cause == cause
+    for organism, world in some(lives, which, 2):
+        assert_ends_as_recorded(run, organism, world)
 
 
-def test_through_a_fork(pong: Path, tmp_path: Path) -> None:
-    """Another seed, and fate; the emulator, its dice and the score go on from where they stood."""
+def test_a_life_is_lived_again_through_a_fork(pong: Path, tmp_path: Path) -> None:
+    """The fork has another seed; the emulator, its random state and the score continue unchanged."""
     fork = Archive(primordia.load(pong).fork(200, tmp_path / "fork", seed=8).path)
-    everyone = fork.lives
-    older = everyone.born <= 200
-    for organism, world in [*some(everyone, older, 3), *some(everyone, ~older, 1)]:
-        comes_out(fork, organism, world)
+    lives = fork.lives
+    older = lives.born <= 200
+    for organism, world in [*some(lives, older, 3), *some(lives, ~older, 1)]:
+        assert_ends_as_recorded(fork, organism, world)
 
 
-def test_a_policy_acts_as_the_organism_did(pong: Path) -> None:
+def test_a_policy_acts_as_its_organism_did(pong: Path) -> None:
     organism = primordia.load(pong).oldest()
     policy = organism.policy()
     (seen,) = Life.of(organism.run, organism.id, organism.world).again()
     assert [policy(senses) for senses in seen.senses] == seen.action.tolist()
 
 
-def test_a_life_on_video(pong: Path, tmp_path: Path) -> None:
-    everyone = Archive(pong).lives
-    ((organism, world),) = some(everyone, everyone.cause == Cause.FATAL, 1)
+def test_a_video_shows_a_life(pong: Path, tmp_path: Path) -> None:
+    lives = Archive(pong).lives
+    ((organism, world),) = some(lives, lives.cause == Cause.FATAL, 1)
     path = tmp_path / "life.mp4"
     done = here("replay", pong, "--organism", organism, "--world", world, "--out", path)
     assert (done.returncode, done.stdout.strip()) == (0, str(path))
     with av.open(str(path)) as container:
         assert container.streams.video[0].average_rate == 20
         frames = [frame.to_ndarray(format="rgb24") for frame in container.decode(video=0)]
-    ticks = everyone.lifespan[everyone.row(organism, world)]
-    assert len(frames) == ticks + 20  # its last picture stands for a second
+    ticks = lives.lifespan[lives.row(organism, world)]
+    assert len(frames) == ticks + 20  # the last picture is shown for a second
     assert frames[0].shape == (420 + MARGIN, 640, 3)
     game, words = (slice(MARGIN + 4, None), slice(0, MARGIN - 4))
     for part in (game, words):
         assert (abs(frames[0][part].astype(int) - frames[ticks - 1][part]) > 40).any()
 
 
-def test_a_picture_has_pixels_twice_as_wide_as_high_below_the_words() -> None:
+def test_a_picture_has_pixels_twice_as_wide_as_high_below_its_caption() -> None:
     screen = np.zeros((210, 160, 3), np.uint8)
     screen[100, 30] = (10, 200, 30)
     picture = np.asarray(draw(screen))
@@ -132,7 +132,7 @@ def test_a_picture_has_pixels_twice_as_wide_as_high_below_the_words() -> None:
 
 
 def test_some_games_have_larger_screens() -> None:
-    """And time runs as on the console, however many frames make a tick."""
+    """Time runs as on the console, for any number of frames per tick."""
     habitat = Atari(game="pacman", frame_skip=4)
     habitat.open(2, watched=True)
     habitat.reset(np.array([0, 1]), np.zeros((2, habitat.words), np.uint32))
@@ -143,7 +143,7 @@ def test_some_games_have_larger_screens() -> None:
     assert habitat.rate == 15
 
 
-def test_the_button_is_called_by_its_name() -> None:
+def test_a_caption_names_the_button() -> None:
     habitat = Atari(game="pong", actions="NOOP UPFIRE")
     words = habitat.caption({"tally": np.array([-12, 0, 0])}, np.int32(1))
     assert words == "score -12   UPFIRE"

@@ -1,4 +1,4 @@
-"""CartPole is Gymnasium's, step for step."""
+"""CartPole equals Gymnasium's environment, step for step."""
 
 import os
 import subprocess
@@ -51,13 +51,13 @@ from primordia.habitats.cartpole.habitat import CartPole
 gym, step = gymnasium.make("CartPole-v1").unwrapped, jax.jit(CartPole().step)
 rng, free, forced, lengths = np.random.default_rng(1), 0.0, 0.0, []
 
-def apart(mine, theirs):
-    return np.abs((mine - theirs) / np.maximum(np.abs(theirs), 1e-3)).max()
+def apart(ours, theirs):
+    return np.abs((ours - theirs) / np.maximum(np.abs(theirs), 1e-3)).max()
 
 for episode in range(60):
     balance = episode % 2
     gym.reset(seed=episode)
-    mine, done, ticks = np.array(gym.state)[None], False, 0
+    ours, done, ticks = np.array(gym.state)[None], False, 0
     weights = rng.normal(size=4)
     while not done and ticks < 500:
         action = int(weights @ gym.state > 0) if balance else int(rng.integers(2))
@@ -67,20 +67,20 @@ for episode in range(60):
         assert one.dtype == np.float64 and bool(outcome.fatal[0]) == done
         forced = max(forced, apart(np.asarray(one)[0], gym.state))
         if not balance:
-            mine, outcome = step(mine, np.array([action]))
+            ours, outcome = step(ours, np.array([action]))
             assert bool(outcome.fatal[0]) == done
-            free = max(free, apart(np.asarray(mine)[0], gym.state))
+            free = max(free, apart(np.asarray(ours)[0], gym.state))
         ticks += 1
     lengths.append(ticks)
 print(free, forced, max(lengths[::2]), max(lengths))
 """
 
 
-def test_in_float64_whole_episodes_agree() -> None:
-    """Running freely in episodes of random pushes; from each state of Gymnasium's in long ones.
+def test_whole_episodes_agree_in_float64() -> None:
+    """Short episodes of random pushes agree as a whole; long episodes agree in each single step.
 
-    A balanced pole multiplies any difference by e every 13 ticks, so that after 500 ticks the last
-    bit of a float64 has grown to the size of the track: there only single steps can agree.
+    A balanced pole multiplies any difference by e every 13 ticks. After 500 ticks the last bit of a
+    float64 has grown to the size of the track, so whole long episodes cannot agree.
     """
     environment = {**os.environ, "JAX_ENABLE_X64": "1"}
     command = [sys.executable, "-c", EPISODES]

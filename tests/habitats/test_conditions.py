@@ -1,4 +1,4 @@
-"""The grammar of conditions: what it computes is what Python would, and nothing else is let in."""
+"""The grammar of conditions: it computes what Python does, and refuses everything else."""
 
 from typing import Any
 
@@ -53,7 +53,7 @@ condition: st.SearchStrategy[str] = st.deferred(
 
 
 def by_python(text: str, body: int) -> Any:
-    """What Python makes of it, for one body."""
+    """Return what Python computes for one body."""
     names: dict[str, Any] = {
         name: values[body].astype(float) if isinstance(values, np.ndarray) else values
         for name, values in VALUES.items()
@@ -66,16 +66,16 @@ def by_python(text: str, body: int) -> Any:
 @settings(max_examples=150)
 @given(condition)
 def test_conditions_mean_what_they_mean_in_python(text: str) -> None:
-    found = np.broadcast_to(parse(text, "condition", NAMES)(VALUES), 3)
-    assert found.dtype == bool
-    assert found.tolist() == [bool(by_python(text, body)) for body in range(3)]
+    values = np.broadcast_to(parse(text, "condition", NAMES)(VALUES), 3)
+    assert values.dtype == bool
+    assert values.tolist() == [bool(by_python(text, body)) for body in range(3)]
 
 
 @settings(max_examples=150)
 @given(number)
-def test_amounts_too(text: str) -> None:
-    found = np.broadcast_to(parse(text, "amount", NAMES)(VALUES), 3)
-    np.testing.assert_allclose(found, [by_python(text, body) for body in range(3)], rtol=1e-5)
+def test_amounts_mean_what_they_mean_in_python(text: str) -> None:
+    values = np.broadcast_to(parse(text, "amount", NAMES)(VALUES), 3)
+    np.testing.assert_allclose(values, [by_python(text, body) for body in range(3)], rtol=1e-5)
 
 
 def test_a_condition_is_an_amount_of_one_where_it_holds() -> None:
@@ -94,11 +94,11 @@ def test_a_condition_is_an_amount_of_one_where_it_holds() -> None:
         ("lives < 2", np.array([0.0, 1.0, 1.0])),
     ],
 )
-def test_lists_of_numbers(text: str, means: np.ndarray) -> None:
-    found = parse(text, "numbers", NAMES)
-    np.testing.assert_allclose(found(VALUES), means)
-    assert found.kind == (means.shape[1] if means.ndim == 2 else "amount")
-    assert found.names == {n for n in NAMES if n in text}
+def test_lists_of_numbers_are_read(text: str, means: np.ndarray) -> None:
+    numbers = parse(text, "numbers", NAMES)
+    np.testing.assert_allclose(numbers(VALUES), means)
+    assert numbers.kind == (means.shape[1] if means.ndim == 2 else "amount")
+    assert numbers.names == {n for n in NAMES if n in text}
 
 
 @pytest.mark.parametrize(
@@ -139,6 +139,6 @@ def test_lists_of_numbers(text: str, means: np.ndarray) -> None:
         ("(" * 500 + "1" + ")" * 500 + " < 2", "cannot be read"),
     ],
 )
-def test_what_is_not_in_the_grammar(text: str, says: str) -> None:
+def test_text_outside_the_grammar_is_refused_with_a_reason(text: str, says: str) -> None:
     with pytest.raises(ValueError, match=says):
         parse(text, "condition", NAMES)

@@ -1,4 +1,4 @@
-"""What a habitat must have, what it has by default, and what is said to one that lacks something."""
+"""The contract of habitats: what is required, the defaults, and the messages about what is missing."""
 
 import subprocess
 import sys
@@ -23,7 +23,7 @@ from tests.worlds import MEADOW, config
 
 
 class Still:
-    """A body that never changes."""
+    """A habitat whose bodies never change."""
 
     def reset(self, words: Array) -> Array:
         return jnp.zeros((len(words), 1), jnp.float32)
@@ -40,7 +40,7 @@ class Plain(Still, JaxHabitat):
 
 
 class Configured(Still, JaxHabitat, Settings):
-    """Its settings have the names of defaults."""
+    """A habitat whose settings have the names of defaults."""
 
     senses_size: int = 1
     action: Any = Discrete(2)
@@ -61,7 +61,7 @@ class SettingsFirst(Settings, Still, JaxHabitat):
 
 
 class Forgetful(HostHabitat):
-    """Bodies count their ticks, and cannot be saved."""
+    """A habitat whose bodies count their ticks and cannot be saved."""
 
     senses_size, action, words = 1, Discrete(2), 1
 
@@ -111,7 +111,7 @@ def built(name: str, **options: Any) -> Any:
     return validated({**MEADOW, "habitat": habitat}, source="here").build_habitat()
 
 
-def test_what_a_habitat_can_do_follows_from_its_methods() -> None:
+def test_the_abilities_of_a_habitat_follow_from_its_methods() -> None:
     able = {
         CartPole(): {Ability.PICTURE, Ability.SAVE},
         Meadow(): {Ability.SAVE},
@@ -124,7 +124,7 @@ def test_what_a_habitat_can_do_follows_from_its_methods() -> None:
         assert {each for each in Ability if habitat.can(each)} == abilities, habitat
 
 
-def test_one_method_of_two_is_not_enough(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_ability_needs_both_of_its_methods(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(HostCartPole, "picture", lambda *_: None)
     assert HostCartPole().lacks(Ability.PICTURE) == ["seen"]
     monkeypatch.delattr(HostCartPole, "load")
@@ -138,13 +138,15 @@ def test_lives_are_exact_where_bodies_can_be_saved() -> None:
     assert not Forgetful().exact
 
 
-def test_a_class_may_say_otherwise(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_class_may_override_what_follows_from_its_methods(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr(HostCartPole, "exact", False, raising=False)
     assert not HostCartPole().exact
     assert not built("Configured", episode=3).exact
 
 
-def test_defaults() -> None:
+def test_a_plain_habitat_has_the_defaults() -> None:
     meadow = Meadow()
     assert (meadow.kind, HostCartPole().kind) == ("jax", "host")
     assert (meadow.rate, meadow.episode, meadow.original()) == (None, None, None)
@@ -157,8 +159,8 @@ def test_defaults() -> None:
 @pytest.mark.parametrize(
     ("name", "options"), [("Plain", {}), ("Configured", {"episode": 500}), ("SettingsFirst", {})]
 )
-def test_classes_of_every_form_live(name: str, options: dict[str, Any]) -> None:
-    """Plain ones and settings; a setting may have the name of a default."""
+def test_organisms_live_in_habitats_of_every_form(name: str, options: dict[str, Any]) -> None:
+    """Habitats may be plain classes or settings, and a setting may have the name of a default."""
     habitat = built(name, **options)
     assert habitat.senses_size == 1
     assert habitat.rate == (None if name == "SettingsFirst" else 30.0)
@@ -177,7 +179,9 @@ def test_classes_of_every_form_live(name: str, options: dict[str, Any]) -> None:
         ("Configured", ["habitat.episode is missing"]),
     ],
 )
-def test_what_is_said_to_a_class_that_keeps_no_contract(name: str, parts: list[str]) -> None:
+def test_a_class_that_breaks_the_contract_is_an_error_that_says_why(
+    name: str, parts: list[str]
+) -> None:
     with pytest.raises(InputError) as error:
         built(name)
     assert len(str(error.value).splitlines()) == 1
@@ -185,8 +189,8 @@ def test_what_is_said_to_a_class_that_keeps_no_contract(name: str, parts: list[s
         assert part in str(error.value)
 
 
-def test_bodies_that_cannot_be_saved_begin_again(tmp_path: Path) -> None:
-    """A run goes on with them as they were at birth, and says that it is not exact."""
+def test_bodies_that_cannot_be_saved_start_again_after_a_resume(tmp_path: Path) -> None:
+    """A resumed run continues with bodies as they were at birth, and says that it is not exact."""
     habitat, run = {"name": f"{__name__}:Forgetful"}, tmp_path / "run"
     loop.start(config(MEADOW, habitat=habitat, hazard=0.01, stop={"ticks": 60}), run)
     assert primordia.load(run).info()["exact"] is False
@@ -196,8 +200,8 @@ def test_bodies_that_cannot_be_saved_begin_again(tmp_path: Path) -> None:
     assert info["deaths"] > 0
 
 
-def test_neither_contract_nor_simulator_load_jax() -> None:
-    """Worker processes load both."""
+def test_the_contract_and_simulators_do_not_load_jax() -> None:
+    """Worker processes load both modules."""
     modules = "primordia.habitats", "primordia.habitats.atari.simulator", "primordia.pool.worker"
     code = f"import sys, {', '.join(modules)}; print({{'jax', 'pydantic'}} & set(sys.modules))"
     done = subprocess.run(

@@ -1,4 +1,4 @@
-"""Robots: equal to Gymnasium's environments step for step, and what befalls their bodies."""
+"""Robots: equal to Gymnasium's environments step for step; births, targets, deaths and failures."""
 
 from pathlib import Path
 from typing import Any
@@ -18,7 +18,7 @@ FOUR = np.ones(4, bool)
 
 
 def started_alike(name: str, habitat: Any, body: int, **options: Any) -> Any:
-    """Gymnasium's environment in the state that a body was born in."""
+    """Return Gymnasium's environment in the state that a body was born in."""
     env = gymnasium.make(name, disable_env_checker=True, **options).unwrapped
     env.reset(seed=0)
     seen = habitat._views
@@ -36,9 +36,9 @@ ALIKE: list[tuple[str, str, dict, dict, slice]] = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("task", "name", "options", "changes", "told"), ALIKE)
+@pytest.mark.parametrize(("task", "name", "options", "changes", "common"), ALIKE)
 def test_senses_and_physics_are_gymnasiums_to_the_bit(
-    task: str, name: str, options: dict, changes: dict, told: slice
+    task: str, name: str, options: dict, changes: dict, common: slice
 ) -> None:
     habitat = of_task(task, **changes)
     senses = born(habitat)
@@ -50,12 +50,13 @@ def test_senses_and_physics_are_gymnasiums_to_the_bit(
         before = habitat._views["qpos"][:, 0].copy()
         senses, outcome = habitat.step(action, FOUR)
         for body, env in enumerate(envs):
-            if task == "Reacher-forager":  # its target stays where it is, ours moves when reached
+            # Gymnasium's target stays in place, ours moves when it is reached.
+            if task == "Reacher-forager":
                 env.data.qpos[2:] = habitat._views["qpos"][body, 2:]
             seen, _, terminated, _, _ = env.step(action[body])
             if not alive[body] or (outcome.food[body] and task == "Reacher-forager"):
                 continue
-            np.testing.assert_array_equal(senses[body, told], seen[told].astype(np.float32))
+            np.testing.assert_array_equal(senses[body, common], seen[common].astype(np.float32))
             compared += 1
             if task == "HalfCheetah-forager":
                 assert outcome.food[body] == np.float32(env.data.qpos[0] - before[body])
@@ -76,8 +77,10 @@ def test_senses_and_physics_are_gymnasiums_to_the_bit(
     ],
 )
 def test_scores_are_gymnasiums(task: str, name: str, tolerance: float) -> None:
-    """And games end as there. Three differences: its reacher is paid for where the fingertip was a
-    substep ago, its humanoid pays for contacts, and nobody is paid for health in the tick of a fall.
+    """Games also end as in Gymnasium. There are three differences.
+
+    Gymnasium rewards its reacher for the place of the fingertip one substep earlier. Its humanoid pays
+    for contacts. It gives no reward for health in the tick of a fall.
     """
     habitat = load(task).build_habitat().original()
     assert habitat.episode == gymnasium.spec(name).max_episode_steps
@@ -101,16 +104,16 @@ def test_scores_are_gymnasiums(task: str, name: str, tolerance: float) -> None:
 def test_evaluations_are_cut_where_gymnasium_cuts(tmp_path: Path) -> None:
     settings = {"cells": 4, "genesis": "fill", "stop": {"ticks": 30, "until": "none"}}
     run = primordia.run("HalfCheetah-forager", tmp_path / "run", **settings)
-    found = run.oldest().evaluate(games=3, ticks=1200)
-    assert found.whole is not None
-    assert found.whole.ticks.tolist() == [1000] * 3
-    assert (found.games, found.distinct) == (3, 3)
-    assert 0 < found.lived.ticks.max() <= 1200
-    assert found.lived.over.all()
+    evaluation = run.oldest().evaluate(games=3, ticks=1200)
+    assert evaluation.whole is not None
+    assert evaluation.whole.ticks.tolist() == [1000] * 3
+    assert (evaluation.games, evaluation.distinct) == (3, 3)
+    assert 0 < evaluation.lived.ticks.max() <= 1200
+    assert evaluation.lived.over.all()
 
 
-def test_a_lag_of_gymnasiums_is_not_ours() -> None:
-    """Its reacher sees where the fingertip was a substep ago, by `mj_step`; ours, where it is."""
+def test_our_reacher_has_no_lag() -> None:
+    """Gymnasium's reacher sees the fingertip as it was a substep ago (`mj_step`); ours sees it now."""
     habitat = of_task("Reacher-forager", target={"within": 1e-9})
     born(habitat)
     env = started_alike("Reacher-v5", habitat, 0)
@@ -123,7 +126,7 @@ def test_a_lag_of_gymnasiums_is_not_ours() -> None:
 
 
 def test_a_body_is_a_function_of_its_words_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Whatever number of others there is, wherever it is among them, and on however many threads."""
+    """The body does not depend on the number of bodies, its cell, or the number of threads."""
     one = of_task("Reacher-forager", 1)
     monkeypatch.setattr("os.sched_getaffinity", lambda _: {0, 1, 2})
     many = of_task("Reacher-forager", 37)
@@ -141,7 +144,7 @@ def test_a_body_is_a_function_of_its_words_alone(monkeypatch: pytest.MonkeyPatch
         assert (outcome.food[21], outcome.effort[21]) == (its.food[0], its.effort[0])
 
 
-def test_births_are_spread_as_said() -> None:
+def test_births_are_spread_as_the_settings_say() -> None:
     uniform = opened(2000, position_noise=0.25, velocity_noise=0.5)
     born(uniform, 2000)
     for name, most in (("qpos", 0.25), ("qvel", 0.5)):
@@ -154,13 +157,13 @@ def test_births_are_spread_as_said() -> None:
     assert np.abs(gaussian._views["qvel"]).max() > 6
 
 
-def test_a_target_that_is_reached_feeds_once_and_is_elsewhere() -> None:
+def test_a_reached_target_feeds_once_and_then_moves() -> None:
     habitat = of_task("Reacher-forager", 1000)
     born(habitat, 1000)
-    everyone, places = np.ones(1000, bool), []
+    all_alive, places = np.ones(1000, bool), []
     for _ in range(20):
         before = habitat._views["qpos"][:, 2:].copy()
-        senses, outcome = habitat.step(np.full((1000, 2), 0.05, np.float32), everyone)
+        senses, outcome = habitat.step(np.full((1000, 2), 0.05, np.float32), all_alive)
         fed, after = outcome.food == 1, habitat._views["qpos"][:, 2:]
         apart = np.hypot(*habitat._views["xpos"]["fingertip"][:, :2].T)
         assert ((outcome.food == 0) | fed).all()
@@ -175,7 +178,7 @@ def test_a_target_that_is_reached_feeds_once_and_is_elsewhere() -> None:
     assert np.median(radius) == pytest.approx(0.2 / np.sqrt(2), rel=0.15)
 
 
-def test_who_is_dead_is_not_stepped_and_a_failure_disturbs_nobody() -> None:
+def test_the_dead_are_not_stepped_and_a_failure_does_not_disturb_other_bodies() -> None:
     habitat, undisturbed = opened(), opened()
     for each in (habitat, undisturbed):
         born(each)
@@ -191,8 +194,8 @@ def test_who_is_dead_is_not_stepped_and_a_failure_disturbs_nobody() -> None:
         assert outcome.fault[1] or not np.isfinite(senses[1]).all()
 
 
-def test_named_amounts() -> None:
-    """Height and pitch of a hopper are those that its joints say; ways add up."""
+def test_named_amounts_are_those_of_the_model() -> None:
+    """Height and pitch of a hopper are those of its joints; distances add up."""
     habitat = of_task(
         "Hopper-survival", senses=["height", "pitch", "forward", "travelled"], fatal="pitch > 9"
     )
@@ -209,7 +212,7 @@ def test_named_amounts() -> None:
     np.testing.assert_allclose(gone, position[:, 0] - start, atol=1e-5)
 
 
-def test_controls_are_kept_within_their_ranges() -> None:
+def test_controls_are_clipped_to_their_ranges() -> None:
     habitat = opened(effort="sum(ctrl * ctrl)")
     born(habitat)
     _, outcome = habitat.step(np.full((4, 6), 50.0, np.float32), FOUR)

@@ -1,4 +1,4 @@
-"""Lives of robots: exact to resume, to fork and to live again, and on video."""
+"""Lives of robots: exact after a resume, in a fork and when lived again; shown on video."""
 
 from pathlib import Path
 from typing import Any
@@ -30,8 +30,8 @@ def reachers(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize("task", ["Reacher-forager-costly", "Humanoid-forager"])
-def test_a_run_that_was_stopped_goes_on_exactly(task: str, tmp_path: Path) -> None:
-    """Also where food is measured from where a body was before the stop."""
+def test_a_run_that_was_stopped_continues_exactly(task: str, tmp_path: Path) -> None:
+    """This holds also where food is measured from the body's place before the stop."""
     digests = []
     for name, first in (("whole", 160), ("parts", 67)):
         stop = {"ticks": first, "until": "none"}
@@ -41,30 +41,30 @@ def test_a_run_that_was_stopped_goes_on_exactly(task: str, tmp_path: Path) -> No
     assert digests[0] == digests[1]
 
 
-def test_lives_come_out_again_through_a_fork(reachers: Path, tmp_path: Path) -> None:
+def test_lives_are_lived_again_through_a_fork(reachers: Path, tmp_path: Path) -> None:
     fork = Archive(primordia.load(reachers).fork(200, tmp_path / "fork", seed=9).path)
-    everyone = fork.lives
-    older = np.flatnonzero(everyone.born <= 200)[:4]
+    lives = fork.lives
+    older = np.flatnonzero(lives.born <= 200)[:4]
     for row in older:
-        life = Life.of(fork, int(everyone.id[row]), int(everyone.world[row]))
+        life = Life.of(fork, int(lives.id[row]), int(lives.world[row]))
         assert list(life.again())[-1].tick[-1] == life.ends
 
 
-def test_lives_come_out_again_as_recorded(reachers: Path) -> None:
+def test_lives_are_lived_again_as_recorded(reachers: Path) -> None:
     run = Archive(reachers)
-    everyone = run.lives
+    lives = run.lives
     dead = primordia.load(reachers).arrays("deaths")
     energy = {(w, i): e for w, i, e in zip(dead["world"], dead["id"], dead["energy"], strict=True)}
-    rows = np.flatnonzero(everyone.died & (everyone.lifespan > 20))[:6]
+    rows = np.flatnonzero(lives.died & (lives.lifespan > 20))[:6]
     assert len(rows) == 6
     for row in rows:
-        who = int(everyone.world[row]), int(everyone.id[row])
+        who = int(lives.world[row]), int(lives.id[row])
         stretches = list(Life.of(run, who[1], who[0]).again())
         assert stretches[-1].energy[-1] / ONE == energy[who]
 
 
 def needs_gl() -> None:
-    """Something that draws without a screen; where there is nothing, there are no pictures to test."""
+    """Skip the test if the machine has no library that draws without a screen."""
     try:
         mujoco_picture._gl_context()
     except InputError as error:
@@ -72,8 +72,8 @@ def needs_gl() -> None:
 
 
 @pytest.mark.parametrize("task", ["HalfCheetah-forager", "Reacher-forager", "Humanoid-homeostasis"])
-def test_pictures_show_the_robot_where_it_is(task: str) -> None:
-    """Another pose, another picture; and one eye does not disturb another's."""
+def test_pictures_show_the_robot_in_its_place(task: str) -> None:
+    """Another pose gives another picture, and one renderer does not disturb another."""
     needs_gl()
     habitat, other = of_task(task), of_task("Hopper-survival")
     born(habitat)
@@ -90,7 +90,7 @@ def test_pictures_show_the_robot_where_it_is(task: str) -> None:
     assert (first[:56] == first[0, 0]).all()
 
 
-def test_a_life_on_video(reachers: Path, tmp_path: Path) -> None:
+def test_a_video_shows_a_life(reachers: Path, tmp_path: Path) -> None:
     needs_gl()
     path = tmp_path / "life.mp4"
     done = here("replay", reachers, "--to", 10, "--out", path)
@@ -102,7 +102,9 @@ def test_a_life_on_video(reachers: Path, tmp_path: Path) -> None:
     assert len(frames) >= 10
 
 
-def test_without_opengl(reachers: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_opengl_the_error_says_what_to_install(
+    reachers: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     mujoco_picture._gl_context.cache_clear()
     monkeypatch.setenv("MUJOCO_GL", "nothing")
     done = here("replay", reachers, "--to", 10, "--out", tmp_path / "life.mp4")

@@ -1,4 +1,4 @@
-"""Models of one's own, and what is refused."""
+"""Models that users bring, and what is refused."""
 
 from pathlib import Path
 
@@ -25,19 +25,19 @@ stop = { ticks = 20 }
 
 @pytest.fixture
 def box(tmp_path: Path) -> Path:
-    """A run with a model that lies beside the TOML file which names it."""
+    """Make a run of a model whose file lies beside the TOML file that names it."""
     (tmp_path / "box.xml").write_text(SLIDE.format(actuator=MOTOR))
     (tmp_path / "box.toml").write_text(BOX)
     return primordia.run(str(tmp_path / "box.toml"), tmp_path / "run").path
 
 
-def test_a_model_of_ones_own(box: Path) -> None:
+def test_a_users_model_lives(box: Path) -> None:
     info = primordia.load(box).info()
     assert info["worlds"][0]["ticks"] == 20
     assert info["versions"]["mujoco"] == mujoco.__version__
 
 
-def test_a_run_does_not_go_on_with_another_model(box: Path) -> None:
+def test_a_run_is_not_resumed_with_another_model(box: Path) -> None:
     model = box.parent / "box.xml"
     same = model.read_text()
     model.write_text(same.replace("0.1", "0.2"))
@@ -75,7 +75,7 @@ def test_a_model_named_by_a_flag_is_found_from_elsewhere(
         (["--habitat.substeps", "0"], "habitat.substeps"),
     ],
 )
-def test_bad_input(
+def test_wrong_settings_are_errors_that_say_why(
     flags: list[str], says: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -86,12 +86,14 @@ def test_bad_input(
     assert not Path("MUJOCO_LOG.TXT").exists()
 
 
-def test_a_target_of_nothing(tmp_path: Path) -> None:
+def test_a_target_that_an_unknown_body_must_reach_is_refused(tmp_path: Path) -> None:
     flags = ["--habitat.target.by", "nose", "--out", tmp_path / "run"]
     complains(here("run", "Reacher-forager", *flags), 2, "target: there is no body 'nose'; known")
 
 
-def test_without_the_extra(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_without_the_extra_the_error_says_what_to_install(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     import sys
 
     mujoco_model.package.cache_clear()

@@ -1,4 +1,4 @@
-"""A JAX habitat on the host: it keeps the contract of those on the host, and gives the same bits."""
+"""A JAX habitat on the host: it keeps the contract of host habitats and gives the same bits."""
 
 from typing import Any
 
@@ -22,7 +22,7 @@ def opened(inner: Any = None, cells: int = 8) -> OnHost:
     return habitat
 
 
-def test_it_steps_as_the_habitat_itself() -> None:
+def test_it_steps_as_the_jax_habitat_does() -> None:
     inner, habitat = CartPole(), opened()
     senses = habitat.reset(ALL, WORDS)
     bodies, step = shared(fresh, inner)(WORDS), jax.jit(inner.step)
@@ -36,7 +36,7 @@ def test_it_steps_as_the_habitat_itself() -> None:
 
 
 @pytest.mark.parametrize("count", [1, 3, 4])
-def test_some_are_born_and_the_others_stay(count: int) -> None:
+def test_births_do_not_change_other_bodies(count: int) -> None:
     habitat = opened()
     habitat.reset(ALL, WORDS)
     before, born = np.array(habitat.seen()), ALL[-count:]
@@ -56,19 +56,19 @@ def test_only_the_living_are_stepped() -> None:
     np.testing.assert_array_equal(senses, habitat.seen())
 
 
-def test_saved_bodies_go_on_elsewhere() -> None:
+def test_saved_bodies_continue_in_another_habitat() -> None:
     one, other = opened(Mill()), opened(Mill())
     one.reset(ALL, WORDS[:, :2])
     action, alive = np.full((8, 2), 0.3, np.float32), np.ones(8, bool)
     for _ in range(9):
         one.step(action, alive)
     other.load(one.save())
-    for mine, theirs in zip(one.step(action, alive), other.step(action, alive), strict=True):
-        jax.tree.map(np.testing.assert_array_equal, mine, theirs)
+    for first, second in zip(one.step(action, alive), other.step(action, alive), strict=True):
+        jax.tree.map(np.testing.assert_array_equal, first, second)
 
 
 def test_a_body_that_is_not_finite_has_failed() -> None:
-    """Though its senses and what it reports are."""
+    """Its senses and its outcome are finite."""
     habitat = opened(Meadow(broken_at=2))
     senses = habitat.reset(ALL[:5], WORDS[:5, :1])
     assert np.isfinite(senses).all()
@@ -87,7 +87,7 @@ def test_bodies_without_floating_point_numbers_never_fail() -> None:
     assert outcome.fault.shape == (8,)
 
 
-def test_it_is_drawn_as_the_habitat_itself() -> None:
+def test_it_is_drawn_as_the_jax_habitat_is() -> None:
     habitat = opened()
     habitat.reset(ALL, WORDS)
     body, action = habitat.seen()[3], np.int32(1)

@@ -1,4 +1,4 @@
-"""Lines of descent are what their rule says, walked through one organism and one tick at a time."""
+"""Lines of descent follow their rule, checked one organism and one tick at a time."""
 
 import numpy as np
 from hypothesis import example, given
@@ -8,11 +8,11 @@ from primordia.history.clades import Clades, clades
 
 FEW = st.lists(st.integers(0, 30), max_size=3)
 HISTORY = st.lists(st.tuples(FEW, FEW), max_size=30)
-"""For each tick: which of the living have a child, and which die."""
+"""For each tick: which of the living have a child, and which of them die."""
 
 
 class Walked:
-    """A small world's lives, and the living after each tick."""
+    """The lives of a small world, and the living after each tick."""
 
     def __init__(self, history: list[tuple[list[int], list[int]]]) -> None:
         self.parent, self.born, self.ended = [-1], [0], [-1]
@@ -33,7 +33,7 @@ class Walked:
         return len(self.born) - 1
 
     def line(self, row: int, since: int) -> int:
-        """Its ancestor after the tick `since`, or the founder born later."""
+        """Return the organism's ancestor after the tick `since`, or the founder born later."""
         while self.born[row] > since and self.parent[row] >= 0:
             row = self.parent[row]
         return row
@@ -46,46 +46,46 @@ class Walked:
 @given(history=HISTORY, crowd=st.integers(1, 4))
 @example(history=[], crowd=1)
 @example(history=[([0, 0], []), ([1], [0]), ([], [1, 2]), ([0], [])], crowd=3)
-def test_lines_are_those_alive_when_they_were_last_told_apart(
+def test_lines_begin_with_the_organisms_alive_when_lines_were_last_distinguished(
     history: list[tuple[list[int], list[int]]], crowd: int
 ) -> None:
     world = Walked(history)
-    found = world.lines(crowd)
-    anew = dict(zip(found.anew.tolist(), found.takeover.tolist(), strict=True))
+    lines = world.lines(crowd)
+    takeovers = dict(zip(lines.anew.tolist(), lines.takeover.tolist(), strict=True))
     since, young = -1, True
     for tick, living in world.living.items():
-        of_tick = found.of(np.array(living), np.array(tick))
+        of_tick = lines.of(np.array(living), np.array(tick))
         young |= any(world.born[row] == tick and world.parent[row] < 0 for row in living)
         left = {world.line(row, since) for row in living}
         eventful = tick in world.born or tick in world.ended
         if eventful and (len(living) >= crowd if young else len(left) == 1):
-            assert anew.pop(tick) is not young
+            assert takeovers.pop(tick) is not young
             since, young = tick, False
         assert of_tick.tolist() == [world.line(row, since) for row in living]
-    assert not anew, "lines were told apart at no other time"
+    assert not takeovers, "lines were distinguished at no other time"
 
 
-def test_the_last_line_left_has_taken_over_and_is_told_apart_anew() -> None:
+def test_the_last_line_takes_over_and_its_members_become_lines() -> None:
     first, second, grandchild, nephew = 1, 2, 3, 4
     world = Walked([([0, 0], []), ([1], [0]), ([1], [0, 2])])
     assert world.parent == [-1, 0, 0, first, second]
-    found = world.lines(crowd=3)
-    assert found.anew.tolist() == [1, 3]
-    assert found.takeover.tolist() == [False, True]
-    assert found.of(np.array([first, second, grandchild]), np.array(2)).tolist() == [1, 2, 1]
-    assert found.first[nephew] == second
-    assert found.of(np.array([second, nephew]), np.array(3)).tolist() == [second, nephew]
+    lines = world.lines(crowd=3)
+    assert lines.anew.tolist() == [1, 3]
+    assert lines.takeover.tolist() == [False, True]
+    assert lines.of(np.array([first, second, grandchild]), np.array(2)).tolist() == [1, 2, 1]
+    assert lines.first[nephew] == second
+    assert lines.of(np.array([second, nephew]), np.array(3)).tolist() == [second, nephew]
 
 
 def test_rows_and_ticks_broadcast() -> None:
     world = Walked([([0], [])] * 3)
-    found = world.lines(crowd=2)
+    lines = world.lines(crowd=2)
     rows, ticks = np.arange(2), np.array([[1], [3]])
-    assert found.of(rows, ticks).tolist() == [[0, 1], [0, 1]]
+    assert lines.of(rows, ticks).tolist() == [[0, 1], [0, 1]]
 
 
-def test_lines_of_a_world_that_never_was_crowded_are_its_founders() -> None:
+def test_lines_of_a_world_that_was_never_crowded_are_its_founders() -> None:
     world = Walked([([0], []), ([], [0, 1]), ([0], [])])
-    found = world.lines(crowd=5)
-    assert found.anew.tolist() == []
-    assert found.of(np.arange(4), np.array([0, 1, 2, 3])).tolist() == [0, 0, 2, 2]
+    lines = world.lines(crowd=5)
+    assert lines.anew.tolist() == []
+    assert lines.of(np.arange(4), np.array([0, 1, 2, 3])).tolist() == [0, 0, 2, 2]

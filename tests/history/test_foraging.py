@@ -1,4 +1,4 @@
-"""What organisms gather as time goes on: from the metrics, in figures, and from run to run."""
+"""Food gathered over time: from the metrics, in figures, and in comparisons of runs."""
 
 import shutil
 from pathlib import Path
@@ -34,7 +34,7 @@ FED: dict[str, Any] = {
 
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
-    """Worlds in which all find the same, from tick 200 on more than they need; less; and nothing."""
+    """Make runs with the same food for all: enough from tick 200 on, too little, and none."""
     folder = tmp_path_factory.mktemp("foraging")
     less = {**FED, "habitat": {**FED["habitat"], "food": FOOD / 2}}
     none = {name: value for name, value in FED.items() if name not in ("metabolism", "seasons")}
@@ -44,44 +44,46 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     return {name: folder / name for name in ("fed", "less", "none")}
 
 
-def test_all_find_what_there_is_and_seasons_move_the_break_even(runs: dict[str, Path]) -> None:
-    found = foraging(Archive(runs["fed"]))
-    assert found.food.shape == found.break_even.shape == (2, len(found.middle))
-    assert len(found.middle) >= 400 // FED["sample_every"]
-    np.testing.assert_allclose(found.food, FOOD)
-    expected = np.where(found.middle <= 200, 1 / 2, 1 / 8)
-    np.testing.assert_allclose(found.break_even, [expected] * 2)
+def test_all_gather_the_food_there_is_and_seasons_move_the_break_even(
+    runs: dict[str, Path],
+) -> None:
+    gathered = foraging(Archive(runs["fed"]))
+    assert gathered.food.shape == gathered.break_even.shape == (2, len(gathered.middle))
+    assert len(gathered.middle) >= 400 // FED["sample_every"]
+    np.testing.assert_allclose(gathered.food, FOOD)
+    expected = np.where(gathered.middle <= 200, 1 / 2, 1 / 8)
+    np.testing.assert_allclose(gathered.break_even, [expected] * 2)
 
 
 AMOUNTS = st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9)), min_size=1, max_size=30)
 
 
 @given(AMOUNTS, st.lists(st.integers(0, 30), min_size=2, max_size=6, unique=True))
-def test_between_samples_is_what_was_gathered_by_what_was_lived(
+def test_food_between_samples_is_the_food_gathered_over_the_ticks_lived(
     amounts: list[tuple[int, int]], edges: list[int]
 ) -> None:
-    """A sample a tick; after the last one nothing is known."""
+    """There is a sample for each tick; nothing is known after the last one."""
     food, lived = np.array(amounts, float).T
     totals = (np.append(0, np.cumsum(each)) for each in (food, lived))
     harvest = Harvest(np.arange(len(food) + 1), *totals)
-    for first, last, found in zip(
+    for first, last, rate in zip(
         sorted(edges), sorted(edges)[1:], harvest.between(np.sort(edges)), strict=False
     ):
         ticks = lived[first:last].sum()
         expected = food[first:last].sum() / ticks if ticks else np.nan
-        np.testing.assert_allclose(found, expected)
+        np.testing.assert_allclose(rate, expected)
 
 
-def test_the_figure_is_of_foragers_only(runs: dict[str, Path], tmp_path: Path) -> None:
+def test_only_runs_with_food_have_the_figure(runs: dict[str, Path], tmp_path: Path) -> None:
     for name, drawn in (("fed", True), ("none", False)):
         files = [path.name for path in primordia.Run(runs[name]).plot(tmp_path / name)]
         assert ("foraging.png" in files, "foraging.svg" in files) == (drawn, drawn)
-    said = (tmp_path / "fed" / "foraging.svg").read_text(encoding="utf-8")
+    svg = (tmp_path / "fed" / "foraging.svg").read_text(encoding="utf-8")
     for words in ("in a tick", "median and quartiles of 2 worlds", "break-even", "time (ticks)"):
-        assert words in said
+        assert words in svg
 
 
-def test_a_run_too_short_for_a_sample_has_a_figure_that_says_so(tmp_path: Path) -> None:
+def test_the_figure_of_a_run_without_a_sample_says_so(tmp_path: Path) -> None:
     loop.start(config(FED, stop={"ticks": 30}), tmp_path / "run")
     with style.look():
         drawn = figure.draw(Archive(tmp_path / "run"))
@@ -89,7 +91,7 @@ def test_a_run_too_short_for_a_sample_has_a_figure_that_says_so(tmp_path: Path) 
     assert "no samples yet" in {text.get_text() for text in drawn.axes[0].texts}
 
 
-def test_what_nobody_can_live_on_has_no_break_even(tmp_path: Path) -> None:
+def test_food_that_no_organism_can_live_on_has_no_break_even(tmp_path: Path) -> None:
     hungry = {"metabolism": {"store": 30.0, "gain": 0.0}, "seasons": []}
     loop.start(config(FED, **hungry), tmp_path / "run")
     assert np.isinf(foraging(Archive(tmp_path / "run")).break_even).all()
@@ -99,16 +101,18 @@ def test_what_nobody_can_live_on_has_no_break_even(tmp_path: Path) -> None:
     assert "break-even" not in {text.get_text() for text in drawn.axes[0].texts}
 
 
-def test_runs_are_compared_by_it_where_there_is_food(runs: dict[str, Path], tmp_path: Path) -> None:
-    found = primordia.compare(runs["fed"], runs["less"])
-    assert found.outcomes["food"] == "food a tick, late"
-    values = [arm.figures["food"].value.tolist() for arm in found.arms]
+def test_runs_with_food_are_compared_by_it(runs: dict[str, Path], tmp_path: Path) -> None:
+    compared = primordia.compare(runs["fed"], runs["less"])
+    assert compared.outcomes["food"] == "food a tick, late"
+    values = [arm.figures["food"].value.tolist() for arm in compared.arms]
     np.testing.assert_allclose(values, [[FOOD] * 2, [FOOD / 2] * 2])
-    against = found.contrast(found.arms[1], "food")
+    against = compared.contrast(compared.arms[1], "food")
     assert (against.delta, against.ratio) == (-1, (0.5, 0.5))
     again = Path(shutil.copytree(runs["none"], tmp_path / "again"))
     assert "food" not in primordia.compare(runs["none"], again).outcomes
-    np.testing.assert_allclose([arm.gathering.curve.mean() for arm in found.arms], [FOOD, FOOD / 2])
-    told = here("compare", runs["fed"], runs["less"], "--out", tmp_path)
-    assert "large less" in told.stdout
+    np.testing.assert_allclose(
+        [arm.gathering.curve.mean() for arm in compared.arms], [FOOD, FOOD / 2]
+    )
+    printed = here("compare", runs["fed"], runs["less"], "--out", tmp_path)
+    assert "large less" in printed.stdout
     assert "Food gathered in a tick" in (tmp_path / "compare.svg").read_text(encoding="utf-8")

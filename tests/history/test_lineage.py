@@ -1,4 +1,4 @@
-"""Promise 2: nothing that lived is lost. Genomes come back from birth records, bit for bit."""
+"""Promise 2: nothing that lived is lost. Genomes are rebuilt from birth records, bit for bit."""
 
 import signal
 from pathlib import Path
@@ -47,7 +47,7 @@ WORLDS: dict[str, tuple[dict[str, Any], int]] = {
 
 
 def living(run: Path) -> list[tuple[int, int, np.ndarray]]:
-    """World, birth number and genome of everybody in the newest checkpoint."""
+    """Return world, birth number and genome of all organisms in the newest checkpoint."""
     opened = Archive(run)
     layout, arrays = opened.law.layout, opened.state
     genomes = layout.join({n: arrays[f"world.organisms.genome.{n}"] for n in layout.names})
@@ -57,12 +57,12 @@ def living(run: Path) -> list[tuple[int, int, np.ndarray]]:
     return [(int(c) // opened.config.cells, int(number[c]), genomes[c]) for c in cells]
 
 
-def comes_back(run: Path) -> None:
-    everybody = living(run)
-    assert len(everybody) > 5
-    assert len({genome.tobytes() for *_, genome in everybody}) > 3
-    rebuilt = rebuild_all(Archive(run), [(organism, world) for world, organism, _ in everybody])
-    for (*_, genome), again in zip(everybody, rebuilt, strict=True):
+def assert_rebuilt(run: Path) -> None:
+    alive = living(run)
+    assert len(alive) > 5
+    assert len({genome.tobytes() for *_, genome in alive}) > 3
+    rebuilt = rebuild_all(Archive(run), [(organism, world) for world, organism, _ in alive])
+    for (*_, genome), again in zip(alive, rebuilt, strict=True):
         np.testing.assert_array_equal(bits(again), bits(genome))
 
 
@@ -77,7 +77,7 @@ def depth(run: Path, organism: int, world: int = 0) -> int:
 
 @pytest.fixture(scope="module")
 def deep(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """CartPole-survival with poles that may swing far: thousands of births, no saturation."""
+    """Make a run of poles that may swing far: thousands of births and no saturation."""
     run = tmp_path_factory.mktemp("deep") / "run"
     freely = {"angle_limit": 180.0, "track_limit": 1e9}
     primordia.run(
@@ -86,28 +86,30 @@ def deep(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return run
 
 
-def test_hundreds_of_generations_deep(deep: Path) -> None:
-    found = primordia.Run(deep).info()
-    assert found["births"] > 3_000
-    assert found["saturation"] is None
+def test_genomes_are_rebuilt_over_hundreds_of_generations(deep: Path) -> None:
+    info = primordia.Run(deep).info()
+    assert info["births"] > 3_000
+    assert info["saturation"] is None
     assert max(depth(deep, organism) for _, organism, _ in living(deep)) >= 200
-    comes_back(deep)
+    assert_rebuilt(deep)
 
 
 @pytest.mark.parametrize("name", WORLDS)
-def test_everybody_alive(name: str, tmp_path: Path) -> None:
+def test_the_genomes_of_all_the_living_are_rebuilt(name: str, tmp_path: Path) -> None:
     values, ticks = WORLDS[name]
     run = tmp_path / "run"
     loop.start(config(merged(values, {"stop": {"ticks": ticks}})), run)
-    comes_back(run)
+    assert_rebuilt(run)
     births = primordia.Run(run).table("births")
     causes = set(births["cause"].to_pylist())
     assert causes == ({"founder"} if values.get("inheritance") else {"founder", "copy", "mutant"})
     assert set(births["world"].to_pylist()) == set(range(values.get("seeds", 1)))
 
 
-def test_while_a_run_is_under_way(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Some rows are in segments, others in open tails."""
+def test_genomes_are_rebuilt_while_a_run_continues(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Some rows are in segments, other rows in open tails."""
     monkeypatch.setattr(record, "SEGMENT_ROWS", 100)
     values, _ = WORLDS["blocks that mutate apart"]
     run = tmp_path / "run"
@@ -122,7 +124,7 @@ def test_while_a_run_is_under_way(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     assert last is not None
     assert len(last.manifest["segments"]["births"]) >= 2
     assert len(last.arrays()["tail.births"]) > 0
-    comes_back(run)
+    assert_rebuilt(run)
 
 
 def test_a_copy_has_its_parents_genome_and_a_mutant_has_not(deep: Path) -> None:
@@ -136,13 +138,13 @@ def test_a_copy_has_its_parents_genome_and_a_mutant_has_not(deep: Path) -> None:
 
 
 @pytest.mark.parametrize(("organism", "world"), [(-1, 0), (10**9, 0), (0, 1), (0, -1)])
-def test_somebody_who_never_lived(deep: Path, organism: int, world: int) -> None:
+def test_an_organism_that_never_lived_is_an_error(deep: Path, organism: int, world: int) -> None:
     with pytest.raises(InputError, match=f"no organism {organism} was born in world {world}"):
         primordia.Run(deep).rebuild(organism, world)
 
 
-def test_genomes_that_came_to_infinity(tmp_path: Path) -> None:
-    """They cannot live, but they were born."""
+def test_genomes_with_infinite_weights_are_rebuilt(tmp_path: Path) -> None:
+    """Organisms with such genomes cannot live, but they were born."""
     run = tmp_path / "run"
     values = {**MEADOW, **LIVES, "mutation": {"scale": 3e38}, "stop": {"births": 200}}
     loop.start(config(values), run)

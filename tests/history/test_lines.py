@@ -1,4 +1,4 @@
-"""Lines of descent as the live view follows them are what their rule says."""
+"""Lines of descent, as the live view follows them, obey their rule."""
 
 import numpy as np
 from hypothesis import given
@@ -9,12 +9,12 @@ from primordia.history.lines import DIES, NOBODY, Lines, Turnover, turnovers
 from tests import worlds
 
 Event = tuple[int, int, int]
-"""tick, birth number, parent or DIES"""
+"""tick, birth number, and parent or DIES"""
 
 
 @st.composite
 def histories(draw: st.DrawFn) -> list[Event]:
-    """What may happen in a small world: it begins and begins again with one founder or several."""
+    """Draw the events of a small world, which starts and restarts with one or several founders."""
     events: list[Event] = []
     living: list[int] = []
     born = 0
@@ -33,7 +33,7 @@ def histories(draw: st.DrawFn) -> list[Event]:
 
 
 def followed(events: list[Event], lines: Lines) -> Lines:
-    """Through a turnover, as the view does."""
+    """Follow the lines through a turnover, as the view does."""
     births = [event for event in events if event[2] != DIES]
     deaths = [event for event in events if event[2] == DIES]
     ticks, born, parent = np.array(births, np.int64).reshape(-1, 3).T
@@ -43,7 +43,7 @@ def followed(events: list[Event], lines: Lines) -> Lines:
 
 
 def by_the_rule(events: list[Event], crowd: int) -> tuple[dict[int, int], int]:
-    """The line of each of the living, and takeovers: walk up from everybody after every tick."""
+    """Return the line of each living organism, and takeovers, from every ancestry after every tick."""
     parent = {number: of for _, number, of in events if of != DIES}
     living: set[int] = set()
     roots: set[int] = set()
@@ -69,7 +69,7 @@ def _root(number: int, parent: dict[int, int], roots: set[int]) -> int:
 
 
 @given(histories(), st.lists(st.integers(0, 40), max_size=4), st.integers(1, 4))
-def test_lines_follow_the_rule_however_a_history_is_cut(
+def test_lines_follow_the_rule_for_any_cut_of_a_history(
     events: list[Event], cuts: list[int], crowd: int
 ) -> None:
     lines, since = Lines([], crowd), -1
@@ -79,7 +79,7 @@ def test_lines_follow_the_rule_however_a_history_is_cut(
     assert (lines.of, len(lines.takeovers)) == by_the_rule(events, crowd)
 
 
-def test_each_of_those_met_alive_is_a_line() -> None:
+def test_each_organism_alive_at_the_start_is_a_line() -> None:
     lines = followed([(9, 7, 3), (9, 3, DIES), (12, 8, 7)], Lines([3, 5], crowd=2))
     assert lines.of == {5: 5, 7: 3, 8: 3}
     followed([(13, 5, DIES)], lines)
@@ -97,13 +97,13 @@ def test_a_founder_after_extinction_takes_nothing_over() -> None:
 
 
 def test_chunks_of_any_length_give_the_same_lines() -> None:
-    found, meadow = [], worlds.config(worlds.MEADOW, hazard=0.02, metabolism=None)
+    outcomes, meadow = [], worlds.config(worlds.MEADOW, hazard=0.02, metabolism=None)
     for ticks in (7, 2**20):
         made = Engine(meadow)
         lines, limits = Lines([], crowd=8), made.limits({"ticks": 5000})
         while made.any_running(limits):
             made._ticks = ticks
             lines.follow(turnovers(made.advance(limits), 16, 1)[0])
-        found.append((lines.of, lines.takeovers))
-    assert found[0] == found[1]
-    assert found[0][1]
+        outcomes.append((lines.of, lines.takeovers))
+    assert outcomes[0] == outcomes[1]
+    assert outcomes[0][1]

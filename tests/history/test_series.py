@@ -1,4 +1,4 @@
-"""Numbers in figures are those that counting tick by tick and life by life gives."""
+"""Numbers in figures equal those counted tick by tick and life by life."""
 
 from itertools import pairwise
 
@@ -19,9 +19,9 @@ def test_population_and_mean_age_are_those_of_every_tick(
     ticks = np.arange(90)
     counted, mean = series.population(world, ticks), series.mean_age(world, ticks)
     for tick in ticks.tolist():
-        found = [tick - world.born[row] for row in range(len(world)) if alive(world, row, tick)]
-        assert counted[tick] == len(found)
-        expected = np.mean(found) if found else np.nan
+        ages = [tick - world.born[row] for row in range(len(world)) if alive(world, row, tick)]
+        assert counted[tick] == len(ages)
+        expected = np.mean(ages) if ages else np.nan
         np.testing.assert_allclose(mean[tick], expected, rtol=1e-12)
 
 
@@ -46,7 +46,7 @@ def test_rates_are_deaths_over_ticks_lived(
 
 
 @given(last=st.integers(0, 10**7))
-def test_bins_begin_at_0_end_with_the_last_tick_and_rise(last: int) -> None:
+def test_bins_start_at_0_rise_and_end_with_the_last_tick(last: int) -> None:
     edges = series.bins(last)
     assert edges[0] == 0
     assert edges[-1] == max(last, 1)

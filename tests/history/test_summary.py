@@ -1,4 +1,4 @@
-"""What is said at the end of a run."""
+"""The summary that is printed at the end of a run."""
 
 from typing import Any
 
@@ -14,58 +14,58 @@ def world(**changed: Any) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def told(worlds: list[dict[str, Any]], **changed: Any) -> str:
+def summarised(worlds: list[dict[str, Any]], **changed: Any) -> str:
     base = {"task": "T", "cells": 8, "inheritance": "parent", "exact": True}
     return summary({**base, "worlds": worlds, **changed})
 
 
-def test_the_summary_of_one_world() -> None:
-    assert told([world(fixation={"tick": 70, "births": 9}, extinctions=2)]).splitlines() == [
+def test_the_summary_of_one_world_names_its_moments() -> None:
+    assert summarised([world(fixation={"tick": 70, "births": 9}, extinctions=2)]).splitlines() == [
         "T: 1 world of 8 cells",
         "  seed 0: 5,000 ticks, 900 births, deaths: 890 fatal, 2 hazard, extinct 2 times",
         "    8 alive, mean age 70, oldest 300",
         "    came to descend from one ancestor at tick 70 after 9 births",
         "    saturated at tick 4,000 after 800 births",
     ]
-    empty = told([world(alive=0, saturation=None, mean_age=None, oldest_age=None)])
+    empty = summarised([world(alive=0, saturation=None, mean_age=None, oldest_age=None)])
     assert empty.endswith("    0 alive\n    not saturated")
-    assert "no heredity" in told([world()], inheritance="founder")
-    assert "cannot be repeated" in told([world()], exact=False)
+    assert "no heredity" in summarised([world()], inheritance="founder")
+    assert "cannot be repeated" in summarised([world()], exact=False)
 
 
-def test_the_summary_says_what_food_keeps_one_alive() -> None:
+def test_the_summary_says_what_food_keeps_an_organism_alive() -> None:
     def fed(tick: float | None, second: float | None) -> dict[str, Any]:
         return world(break_even={"food_per_tick": tick, "food_per_second": second})
 
     def line(*worlds: dict[str, Any]) -> str:
-        return told(list(worlds)).splitlines()[1]
+        return summarised(list(worlds)).splitlines()[1]
 
     assert line(fed(0.025, 0.5)) == "  break-even: food of 0.025 a tick, or 0.5 a second"
     assert line(fed(0.5, None)) == "  break-even: food of 0.5 a tick"
     ratchets = line(fed(0.025, 0.5), fed(0.275, 5.5))
     assert ratchets == "  break-even: food of 0.025 to 0.275 a tick, or 0.5 to 5.5 a second"
-    assert "break-even" not in told([fed(None, None)])
-    assert "break-even" not in told([world()])
+    assert "break-even" not in summarised([fed(None, None)])
+    assert "break-even" not in summarised([world()])
 
 
 def test_the_summary_says_why_worlds_die_out() -> None:
     dying = world(births=300, extinctions=7, tries_per_life=0.2)
-    line = told([dying]).splitlines()[1]
+    line = summarised([dying]).splitlines()[1]
     assert line.startswith("  an organism tries to copy itself 0.2 times in its life; raise")
     thriving = world(births=100, extinctions=1, tries_per_life=1.8)
-    assert "copy itself 0.6 times" in told([dying, thriving])
+    assert "copy itself 0.6 times" in summarised([dying, thriving])
     for fine in (world(extinctions=7), world(tries_per_life=0.2), world(births=0, extinctions=1)):
-        assert "raise" not in told([fine])
+        assert "raise" not in summarised([fine])
 
 
 def test_the_summary_of_many_worlds_gives_quartiles() -> None:
     worlds = [world(seed=n, saturation={"tick": 9, "births": 100 * n}) for n in range(9)]
-    many = told(worlds)
+    many = summarised(worlds)
     assert "9 of 9 saturated, births until then: median 400 (quartiles 200, 600)" in many
     assert "8,100 births" in many
     assert len(many.splitlines()) <= 6
     half = [world(saturation=None) for _ in range(9)]
-    assert "9 of 18 saturated, births until then: median 800 (quartiles 400, later)" in told(
+    assert "9 of 18 saturated, births until then: median 800 (quartiles 400, later)" in summarised(
         worlds + half
     )
-    assert "0 of 9 saturated\n" in told(half) + "\n"
+    assert "0 of 9 saturated\n" in summarised(half) + "\n"

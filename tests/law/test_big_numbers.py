@@ -1,4 +1,4 @@
-"""Worlds whose counts of ticks and births do not fit in 32 bits live as those that begin at 0."""
+"""Worlds whose counts of ticks and births exceed 32 bits live as worlds that start at 0 do."""
 
 import numpy as np
 import pytest
@@ -15,51 +15,53 @@ def from_zero() -> Lived:
     return Lived(config(CLOCKWORK), 200)
 
 
-@pytest.mark.parametrize("begun", BEGINNINGS)
-def test_a_clockwork_begun_late_runs_the_same(from_zero: Lived, begun: tuple[int, int]) -> None:
-    tick, births = begun
-    late = Lived(config(CLOCKWORK), tick + 200, begun=begun)
+@pytest.mark.parametrize("start", BEGINNINGS)
+def test_a_clockwork_that_starts_late_runs_the_same(
+    from_zero: Lived, start: tuple[int, int]
+) -> None:
+    tick, births = start
+    late = Lived(config(CLOCKWORK), tick + 200, start=start)
     for name, ids in (("births", births), ("deaths", births)):
-        expected, found = from_zero.table(name), late.table(name)
+        expected, actual = from_zero.table(name), late.table(name)
         assert len(expected["id"]) > 100
         for column, values in expected.items():
             shift = {"id": ids, "tick": tick}.get(column, 0)
-            at = found[column].tolist() if shift else found[column]
+            at = actual[column].tolist() if shift else actual[column]
             np.testing.assert_array_equal(
                 at, [v + shift for v in values.tolist()] if shift else values
             )
 
 
-@pytest.mark.parametrize("begun", BEGINNINGS)
-def test_samples_come_at_the_same_multiples(begun: tuple[int, int]) -> None:
-    """Every tenth tick since 0, wherever a world began, with ages that know where."""
-    tick, births = begun
-    metrics = Lived(config(CLOCKWORK), tick + 200, begun=begun).table("metrics")
+@pytest.mark.parametrize("start", BEGINNINGS)
+def test_samples_are_at_the_same_multiples(start: tuple[int, int]) -> None:
+    """Samples are at every tenth tick since 0, wherever a world started, with ages counted from birth."""
+    tick, births = start
+    metrics = Lived(config(CLOCKWORK), tick + 200, start=start).table("metrics")
     for world in range(2):
-        mine = metrics["world"] == world
+        in_world = metrics["world"] == world
         at = [t for t in range(tick + 1, tick + 201) if t % 10 == 0]
-        assert metrics["tick"][mine].tolist() == at
+        assert metrics["tick"][in_world].tolist() == at
         lived = np.array([t - tick for t in at])
-        np.testing.assert_array_equal(metrics["population"][mine], 16)
-        np.testing.assert_array_equal(metrics["oldest_age"][mine], lived % 31)
-        np.testing.assert_array_equal(metrics["mean_age"][mine], lived % 31)
-        np.testing.assert_array_equal(metrics["mean_energy"][mine], 30.5 - lived % 31)
-        np.testing.assert_array_equal(metrics["organism_ticks"][mine], 16 * lived)
-        np.testing.assert_array_equal(metrics["deaths_starved"][mine], lived // 31 * 16)
+        np.testing.assert_array_equal(metrics["population"][in_world], 16)
+        np.testing.assert_array_equal(metrics["oldest_age"][in_world], lived % 31)
+        np.testing.assert_array_equal(metrics["mean_age"][in_world], lived % 31)
+        np.testing.assert_array_equal(metrics["mean_energy"][in_world], 30.5 - lived % 31)
+        np.testing.assert_array_equal(metrics["organism_ticks"][in_world], 16 * lived)
+        np.testing.assert_array_equal(metrics["deaths_starved"][in_world], lived // 31 * 16)
         born = [births + 16 * (1 + t // 31) for t in lived.tolist()]
-        assert metrics["births"][mine].tolist() == born
+        assert metrics["births"][in_world].tolist() == born
 
 
-@pytest.mark.parametrize("begun", BEGINNINGS[:2])
-def test_late_worlds_keep_the_rules_of_every_world(begun: tuple[int, int]) -> None:
-    """Random draws differ, as ticks do; rules do not."""
+@pytest.mark.parametrize("start", BEGINNINGS[:2])
+def test_late_worlds_keep_the_rules_of_every_world(start: tuple[int, int]) -> None:
+    """Random draws differ, since ticks do; the rules are the same."""
     values = {"cells": 12, "seeds": 3, "replication": 0.2, "hazard": 0.09}
-    run = Lived(config(MEADOW, **values), begun[0] + 500, begun=begun)
-    worlds = [History(run, world, begun) for world in range(3)]
+    run = Lived(config(MEADOW, **values), start[0] + 500, start=start)
+    worlds = [History(run, world, start) for world in range(3)]
     for history in worlds:
-        assert history.lives[0].born == begun[0]
-        assert history.now == begun[0] + 500
-        assert begun[1] + len(history.lives) > 2**32
+        assert history.lives[0].born == start[0]
+        assert history.now == start[0] + 500
+        assert start[1] + len(history.lives) > 2**32
         then, state = history.fixation(), run.engine.state.world.worlds.fixed
         fixed = int(state.hi[history.world]) << 32 | int(state.lo[history.world])
         assert fixed == (2**64 - 1 if then is None else then[0])
@@ -67,26 +69,28 @@ def test_late_worlds_keep_the_rules_of_every_world(begun: tuple[int, int]) -> No
 
 
 def test_ratchets_look_at_the_same_multiples_beyond_2_32() -> None:
-    begun = SHORTLY_BEFORE_2_32
-    run = Lived(config(MILL, seeds=2), begun[0] + 700, begun=begun)
+    start = SHORTLY_BEFORE_2_32
+    run = Lived(config(MILL, seeds=2), start[0] + 700, start=start)
     metrics = run.table("metrics")
     gains: set[float] = set()
     replications: set[float] = set()
     for world in range(2):
-        history = History(run, world, begun)
+        history = History(run, world, start)
         assert history.lives[-1].born > 2**32
-        mine = {column: values[metrics["world"] == world] for column, values in metrics.items()}
-        ticks = mine["tick"].tolist()
-        periodic = [t for t in range(begun[0], begun[0] + 701) if t % 100 == 0]
+        in_world = {column: values[metrics["world"] == world] for column, values in metrics.items()}
+        ticks = in_world["tick"].tolist()
+        periodic = [t for t in range(start[0], start[0] + 701) if t % 100 == 0]
         assert set(periodic) <= set(ticks)
         assert all(t % 100 == 0 or t % 70 == 0 or t % 50 == 0 for t in ticks)
         for column, every, seen in (
             ("metabolism.gain", 70, gains),
             ("replication", 50, replications),
         ):
-            start = {"metabolism.gain": 3.0, "replication": 0.05}[column]
-            before = np.concatenate([[np.float32(start)], mine[column][:-1]])
-            changed = [t for t, moved in zip(ticks, mine[column] != before, strict=True) if moved]
+            initial = {"metabolism.gain": 3.0, "replication": 0.05}[column]
+            before = np.concatenate([[np.float32(initial)], in_world[column][:-1]])
+            changed = [
+                t for t, moved in zip(ticks, in_world[column] != before, strict=True) if moved
+            ]
             assert all(t % every == 0 for t in changed)
             seen.update(changed)
     assert gains

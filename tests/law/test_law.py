@@ -1,4 +1,4 @@
-"""The law, as whole worlds of habitats simple enough to know what must happen."""
+"""The law in whole worlds, with habitats so simple that one can say what must happen."""
 
 import numpy as np
 import pytest
@@ -14,8 +14,8 @@ from tests.worlds import CLOCKWORK, MEADOW, Lived, config
 SMALL = {"brain": {"kind": "feed-forward", "hidden": 1}}
 
 
-def test_without_food_a_store_lasts_its_ticks() -> None:
-    """The first has 100 units; those born after tick 50 have half a unit more."""
+def test_without_food_an_organism_lives_as_long_as_its_store_lasts() -> None:
+    """The first organism has 100 units; organisms born after tick 50 have half a unit more."""
     more = {"kind": "schedule", "setting": "metabolism.store", "at": 50, "value": 100.5}
     values = {"replication": 0.0, "metabolism": {"store": 100.0}, "seasons": [more]}
     run = Lived(config(MEADOW, **SMALL, **values), 350)
@@ -27,7 +27,7 @@ def test_without_food_a_store_lasts_its_ticks() -> None:
 
 
 @pytest.mark.parametrize("where", ["genome", "memory"])
-def test_a_nan_kills_its_owner_and_touches_nobody_else(where: str) -> None:
+def test_a_nan_kills_its_owner_and_changes_no_other_organism(where: str) -> None:
     alone = config(MEADOW, seed=4, replication=0.0, genesis="fill", hazard=0.01)
     whole, poisoned, cell = Lived(alone, 60), Lived(alone, 10), 3
     world, bodies = poisoned.engine.state
@@ -39,15 +39,15 @@ def test_a_nan_kills_its_owner_and_touches_nobody_else(where: str) -> None:
     else:
         organisms = organisms._replace(memory=organisms.memory.at[cell, 5].set(np.nan))
     poisoned.engine.state = type(poisoned.engine.state)(world._replace(organisms=organisms), bodies)
-    poisoned.on(60)
-    expected, found = whole.table("deaths"), poisoned.table("deaths")
+    poisoned.advance_to(60)
+    expected, actual = whole.table("deaths"), poisoned.table("deaths")
     assert 2 < len(expected["id"]) < 15, "choose a seed under which some die and some live"
-    mine = found["cell"] == cell
-    assert found["tick"][mine].tolist() == [11]
-    assert found["cause"][mine].tolist() == ["fault"]
+    own = actual["cell"] == cell
+    assert actual["tick"][own].tolist() == [11]
+    assert actual["cause"][own].tolist() == ["fault"]
     for column, values in expected.items():
         others = expected["cell"] != cell
-        np.testing.assert_array_equal(found[column][~mine], values[others], err_msg=column)
+        np.testing.assert_array_equal(actual[column][~own], values[others], err_msg=column)
     np.testing.assert_array_equal(poisoned.rows["births"][0], whole.rows["births"][0])
     after, without = (run.engine.state.world.organisms for run in (poisoned, whole))
     alive = np.asarray(after.alive)
@@ -60,14 +60,14 @@ def test_a_nan_kills_its_owner_and_touches_nobody_else(where: str) -> None:
 
 @pytest.mark.parametrize(("rule", "speed"), [("blind", 0.1), ("empty-only", 0.2)])
 def test_a_front_moves_at_the_speed_of_its_rule(rule: str, speed: float) -> None:
-    """One founder on a large ring: p/2 cells a tick on each side if blind, p if not."""
+    """A founder on a large ring spreads p/2 cells a tick on each side if placement is blind, else p."""
     cells, worlds, ticks = 512, 4, 900
     values = {"cells": cells, "seeds": worlds, "replication": 0.2, "placement": {"rule": rule}}
     births = Lived(config(MEADOW, **SMALL, **values), ticks).table("births")
     advance = np.zeros((worlds, 2, 2), int)  # worlds, halves of the time, sides
     for world in range(worlds):
-        mine = births["world"] == world
-        cell, tick = births["cell"][mine].astype(int), births["tick"][mine]
+        in_world = births["world"] == world
+        cell, tick = births["cell"][in_world].astype(int), births["tick"][in_world]
         ahead = (cell - cell[0] + cells // 2) % cells - cells // 2
         for half, end in enumerate((ticks // 2, ticks)):
             reached = ahead[tick <= end]
@@ -80,8 +80,8 @@ def test_a_front_moves_at_the_speed_of_its_rule(rule: str, speed: float) -> None
             assert binomial(moved, worlds * ticks // 2, speed)
 
 
-def test_chance_in_worlds_that_go_extinct_all_the_time() -> None:
-    """Founders appear anywhere; death, and replication of those who live on, are independent."""
+def test_births_and_deaths_are_as_frequent_as_their_chances() -> None:
+    """Founders appear in any cell. Death and the replication of survivors are independent."""
     values = {"replication": 0.3, "hazard": 0.5}
     history = History(Lived(config(MEADOW, **SMALL, **values), 4000))
     assert binomial(len(history.dead), history.organism_ticks, 0.5)
@@ -103,7 +103,7 @@ def test_chance_in_worlds_that_go_extinct_all_the_time() -> None:
 
 
 def test_a_replaced_parent_passes_on_its_own_genome() -> None:
-    """Also where its cell is taken in the same tick, before its own child is written."""
+    """This holds also if its cell is taken in the same tick, before its own child is written."""
     values = {"genesis": "fill", "replication": 0.6, "mutation": {"probability": 0.0}, "cells": 64}
     rule = {"placement": {"topology": "well-mixed", "rule": "replacing"}}
     history = History(Lived(config(MEADOW, **SMALL, **values, **rule), 3))
@@ -120,7 +120,7 @@ def test_a_replaced_parent_passes_on_its_own_genome() -> None:
     assert 5 < len(set(roots)) < 50
     np.testing.assert_array_equal(history.lived.genomes(), founders[roots])
     both = [life for life in history.lives if life.parent and life.parent.died == life.born]
-    assert len(both) > 5, "nobody was replaced while it replicated"
+    assert len(both) > 5, "no organism was replaced while it replicated"
 
 
 def test_genesis_can_fill_every_cell() -> None:
@@ -129,15 +129,15 @@ def test_genesis_can_fill_every_cell() -> None:
     for world in range(2):
         history = History(run, world)
         assert history.extinctions == [31, 62, 93]
-        mine = births["world"] == world
-        assert births["tick"][mine].tolist() == np.repeat([0, 31, 62, 93], 16).tolist()
-        assert births["cell"][mine].tolist() == [*range(16)] * 4
-        assert births["id"][mine].tolist() == [*range(64)]
+        in_world = births["world"] == world
+        assert births["tick"][in_world].tolist() == np.repeat([0, 31, 62, 93], 16).tolist()
+        assert births["cell"][in_world].tolist() == [*range(16)] * 4
+        assert births["id"][in_world].tolist() == [*range(64)]
         assert {(life.cause, life.age) for life in history.dead} == {("starved", 31)}
     assert len(np.unique(run.genomes(), axis=0)) == 32
 
 
-def test_the_gaussian_motor_adds_noise_to_every_action_and_infinite_food_is_a_fault() -> None:
+def test_the_gaussian_motor_adds_noise_and_infinite_food_is_a_fault() -> None:
     values = {
         "habitat": {"name": "tests.toys:Echo", "rotten_at": 40},
         "replication": 0.0,
@@ -150,7 +150,7 @@ def test_the_gaussian_motor_adds_noise_to_every_action_and_infinite_food_is_a_fa
     run = Lived(config(MEADOW, **SMALL, **values), 1)
     eaten = []
     for tick in range(1, 32):
-        run.on(tick)
+        run.advance_to(tick)
         eaten.append(np.asarray(run.engine.state.world.organisms.eaten) / 1024)
     each = np.diff(eaten, axis=0)
     assert abs(each.mean()) < 5 * 0.5 / np.sqrt(each.size)
@@ -158,7 +158,7 @@ def test_the_gaussian_motor_adds_noise_to_every_action_and_infinite_food_is_a_fa
     for what, other in {"tick": np.roll(each, 1, 0), "cell": np.roll(each, 1, 1)}.items():
         assert abs((each * other).mean()) < 5 * 0.25 / np.sqrt(each.size), what
     assert abs((each[:, :64] * each[:, 64:]).mean()) < 5 * 0.25 / np.sqrt(each.size / 2)
-    run.on(41)
+    run.advance_to(41)
     deaths = run.table("deaths")
     assert deaths["tick"].tolist() == [40] * 128
     assert set(deaths["cause"]) == {"fault"}

@@ -1,4 +1,4 @@
-"""Energy in fixed point against exact arithmetic in Python."""
+"""Energy in fixed point, compared with exact arithmetic in Python."""
 
 import math
 from fractions import Fraction
@@ -18,7 +18,7 @@ RATES = ("store", "drain", "gain", "effort_cost", "cap")
 
 
 def exact(value: float) -> int:
-    """`fixed` of one float32."""
+    """Return the exact value of `fixed` for one float32."""
     if math.isinf(value):
         return MOST if value > 0 else -MOST
     return max(-MOST, min(MOST, round(Fraction(value) * ONE)))
@@ -42,13 +42,13 @@ numbers = st.lists(
 
 @settings(max_examples=150)
 @given(numbers)
-def test_to_the_nearest_step_halves_to_even_and_saturating(values: list[float]) -> None:
+def test_amounts_are_rounded_to_the_nearest_step_and_saturate(values: list[float]) -> None:
     steps = FIXED(jnp.array(values, jnp.float32))
     assert steps.dtype == jnp.int32
     assert steps.tolist() == [exact(float(np.float32(v))) for v in values]
 
 
-def test_steps_by_hand() -> None:
+def test_amounts_have_the_steps_computed_by_hand() -> None:
     halves = jnp.array([0.5, 1.5, 2.5, -0.5, -1.5], jnp.float32) / ONE
     assert to_fixed_point(halves).tolist() == [0, 2, 2, 0, -2]
     assert to_fixed_point(jnp.float32(100.5)) == 102_912
@@ -77,7 +77,7 @@ energies = st.lists(
 
 @settings(max_examples=150)
 @given(energies, numbers, numbers, rate, rate, rate, rate)
-def test_a_tick_of_energy(
+def test_a_tick_changes_energy_as_exact_arithmetic_does(
     energy: list[int],
     food: list[float],
     effort: list[float],
@@ -105,7 +105,7 @@ def test_a_tick_of_energy(
         assert abs(int(after[i])) <= MOST
 
 
-def test_what_a_habitat_does_not_have_costs_and_gives_nothing() -> None:
+def test_food_and_effort_that_a_habitat_lacks_change_no_energy() -> None:
     rates = Rates(*(jnp.full(2, value, jnp.float32) for value in (9, 1, 2, 4, 1e6)))
     energy = jnp.array([10 * ONE, 20 * ONE], jnp.int32)
     some = jnp.array([0.5, 0.25], jnp.float32)
@@ -114,7 +114,7 @@ def test_what_a_habitat_does_not_have_costs_and_gives_nothing() -> None:
     assert metabolise(energy, None, some, rates).tolist() == [7 * ONE, 18 * ONE]
 
 
-def test_a_store_that_float32_could_not_drain_is_drained() -> None:
+def test_a_store_is_drained_even_if_float32_could_not_show_it() -> None:
     rates = Rates(*(jnp.full(1, value, jnp.float32) for value in (1e6, 1 / 1024, 0, 0, 1e6)))
     energy = to_fixed_point(rates.store)
     before = int(energy[0])

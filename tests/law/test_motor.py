@@ -1,4 +1,4 @@
-"""From output to action. (The gaussian motor, which draws, is tested in the law.)"""
+"""Motors: from outputs to actions. The gaussian motor, which draws, is tested in `test_law.py`."""
 
 import jax
 import jax.numpy as jnp
@@ -12,7 +12,7 @@ SIZES = range(2, 19)
 
 
 @pytest.mark.parametrize("size", SIZES)
-def test_argmax_is_the_first_of_the_largest(size: int) -> None:
+def test_argmax_is_the_first_of_the_largest_outputs(size: int) -> None:
     rng = np.random.default_rng(size)
     few_values = np.array([-np.inf, -1, -0.0, 0.0, 1e-30, 1, np.inf], np.float32)
     tied = rng.choice(few_values, (500, size))
@@ -24,7 +24,7 @@ def test_argmax_is_the_first_of_the_largest(size: int) -> None:
 
 
 @pytest.mark.parametrize("size", [2, 3, 18])
-def test_no_nan_is_chosen_over_a_number_that_stands_first(size: int) -> None:
+def test_a_nan_is_not_chosen_over_a_number_in_the_first_place(size: int) -> None:
     """A NaN in the first place is chosen; its owner dies of a fault in the same tick."""
     rng = np.random.default_rng(size)
     output = rng.normal(size=(500, size)).astype(np.float32)

@@ -1,4 +1,4 @@
-"""Placement against a plain reference that acts one after another, and what chance must give."""
+"""Placement, compared with a plain reference that acts one by one, and with expected frequencies."""
 
 import math
 from collections.abc import Callable
@@ -25,7 +25,7 @@ W, N = 2, 12  # a torus of 3 x 4
 
 @cache
 def compiled(topology: str, rule: str) -> Callable:
-    """Parents (W, N) of words (rounds, 2, W, N), wants and occupied (W, N)."""
+    """Return the function from words (rounds, 2, W, N), wants and occupied (W, N) to parents (W, N)."""
     placement = Placement(topology=topology, rule=rule)
 
     def place(words: jax.Array, wants: jax.Array, occupied: jax.Array) -> jax.Array:
@@ -37,7 +37,7 @@ def compiled(topology: str, rule: str) -> Callable:
 def one_after_another(
     topology: str, rule: str, words: np.ndarray, wants: np.ndarray, occupied: np.ndarray
 ) -> np.ndarray:
-    """One world: words (rounds, 2, N); wants, occupied (N,) -> parents (N,)."""
+    """Return parents (N,) in one world from words (rounds, 2, N), wants (N,) and occupied (N,)."""
     cells = len(wants)
     parent, full = np.full(cells, -1), occupied.copy()
     waiting = list(np.flatnonzero(wants))
@@ -62,7 +62,7 @@ def one_after_another(
 
 
 def a_tick(seed: int, density: float, eager: float, coarse: bool) -> tuple[np.ndarray, ...]:
-    """Words, wants, occupied. `coarse`: priorities are often equal."""
+    """Return words, wants and occupied; with `coarse`, priorities are often equal."""
     rng = np.random.default_rng(seed)
     words = rng.integers(0, 2**32, (N + 1, 2, W, N), dtype=np.uint32)
     if coarse:
@@ -79,7 +79,7 @@ ticks = st.builds(
 @pytest.mark.parametrize(("topology", "rule"), ALL)
 @settings(max_examples=60)
 @given(ticks)
-def test_all_at_once_equals_one_after_another(
+def test_placing_all_at_once_equals_placing_one_by_one(
     topology: str, rule: str, tick: tuple[np.ndarray, ...]
 ) -> None:
     words, wants, occupied = tick
@@ -93,7 +93,9 @@ def test_all_at_once_equals_one_after_another(
 @pytest.mark.parametrize(("topology", "rule"), ALL)
 @settings(max_examples=60)
 @given(ticks)
-def test_births_keep_the_rules(topology: str, rule: str, tick: tuple[np.ndarray, ...]) -> None:
+def test_births_obey_the_rules_of_placement(
+    topology: str, rule: str, tick: tuple[np.ndarray, ...]
+) -> None:
     words, wants, occupied = tick
     parents = np.asarray(compiled(topology, rule)(*tick))
     for parent, want, full in zip(parents, wants, occupied, strict=True):
@@ -109,14 +111,14 @@ def test_births_keep_the_rules(topology: str, rule: str, tick: tuple[np.ndarray,
         if rule == "empty-only":
             after = full | (parent >= 0)
             for cell in set(np.flatnonzero(want)) - set(satisfied):
-                assert after[reach(topology, cell, N)].all(), "an empty cell was left to it"
+                assert after[reach(topology, cell, N)].all(), "it had an empty cell in reach"
     if rule != "empty-only":
         choice = words[0, 0].astype(object)
         for world, cell in zip(*np.nonzero(wants), strict=True):
             options = reach(topology, int(cell), N)
             picked = options[choice[world, cell] * len(options) >> 32]
             if rule == "replacing" or not occupied[world, picked]:
-                assert parents[world, picked] >= 0, "nobody was born where somebody wanted"
+                assert parents[world, picked] >= 0, "no birth in a cell that a parent chose"
 
 
 @pytest.mark.parametrize(("topology", "rule"), ALL)
@@ -134,15 +136,15 @@ def test_room_is_a_cell_in_reach_that_would_take_a_child(
 
 
 @pytest.mark.parametrize(("topology", "rule"), ALL)
-def test_nobody_is_born_to_nobody(topology: str, rule: str) -> None:
+def test_without_parents_there_are_no_births(topology: str, rule: str) -> None:
     words, _, occupied = a_tick(1, 0.5, 1.0, coarse=False)
     assert (compiled(topology, rule)(words, np.zeros((W, N), bool), occupied) == -1).all()
 
 
 def many(rule: str, topology: str, occupied: list[bool]) -> tuple[np.ndarray, np.ndarray]:
-    """Parents (worlds, cells) of many worlds like this, all of whose organisms want a child.
+    """Return parents (worlds, cells) of many equal worlds in which all organisms want a child.
 
-    Returns also where each would go if it could choose freely.
+    Also return the cell that each organism would take if it could choose freely.
     """
     worlds, cells = 30_000, len(occupied)
     words = np.random.default_rng(7).integers(0, 2**32, (6, 2, worlds, cells), dtype=np.uint32)
@@ -172,7 +174,7 @@ def test_three_contenders_win_equally_often(rule: str) -> None:
 
 
 def test_a_loser_tries_its_other_empty_neighbour() -> None:
-    """Cells 1 and 3 are empty, and 0 and 2 reach both: nobody can be left without a child."""
+    """Cells 1 and 3 are empty, and 0 and 2 reach both, so both organisms get a child."""
     parents, _ = many("empty-only", "ring", [True, False, True, False])
     assert (np.sort(parents[:, [1, 3]], axis=1) == [0, 2]).all()
     assert even(np.bincount(parents[:, 1], minlength=3)[[0, 2]])
@@ -180,7 +182,7 @@ def test_a_loser_tries_its_other_empty_neighbour() -> None:
 
 @pytest.mark.parametrize(("topology", "rule"), ALL)
 def test_every_direction_is_equally_likely(topology: str, rule: str) -> None:
-    """One organism in each of many worlds, with one of its neighbours occupied."""
+    """Each of many worlds has one organism, with one of its neighbours occupied."""
     worlds, home, other = 24_000, 5, 4
     words = np.random.default_rng(3).integers(0, 2**32, (2, 2, worlds, N), dtype=np.uint32)
     wants = np.zeros((worlds, N), bool)
@@ -216,7 +218,7 @@ def test_every_direction_is_equally_likely(topology: str, rule: str) -> None:
     ],
 )
 @pytest.mark.parametrize("topology", ["torus4", "torus8"])
-def test_shapes_of_tori(
+def test_a_torus_has_its_rows_or_is_nearly_square(
     topology: str, cells: int, rows: int | None, shape: tuple[int, int]
 ) -> None:
     assert Placement(topology=topology, rows=rows).shape(cells) == shape
@@ -240,7 +242,7 @@ def test_impossible_tori_are_refused(cells: int, rows: int | None) -> None:
 
 
 @pytest.mark.parametrize(("rows", "around"), [(6, [1, 2, 10]), (2, [1, 5, 6]), (3, [1, 3, 4, 8])])
-def test_rows_decide_who_is_whose_neighbour(rows: int, around: list[int]) -> None:
+def test_rows_decide_which_cells_are_neighbours(rows: int, around: list[int]) -> None:
     only_cell_0_is_empty = np.arange(12)[None] > 0
     room = Placement(topology="torus4", rows=rows).room(jnp.asarray(only_cell_0_is_empty))
     assert np.flatnonzero(room[0]).tolist() == around

@@ -1,4 +1,4 @@
-"""Worlds of many kinds, each held against the rules while its history is made."""
+"""Worlds of many kinds, each checked against the rules when its history is made."""
 
 from collections import Counter
 from typing import Any
@@ -62,7 +62,7 @@ TICKS = 400
 
 @pytest.fixture(scope="module")
 def histories() -> dict[str, list[History]]:
-    """All worlds, each held against the rules while its history is made."""
+    """Make the histories of all worlds, which checks them against the rules."""
     configs = {name: config(MEADOW, **values) for name, values in HISTORIES.items()}
     configs["mill"] = config(MILL, seeds=2)
     made = {name: Lived(each, TICKS) for name, each in configs.items()}
@@ -73,7 +73,7 @@ def histories() -> dict[str, list[History]]:
 
 
 @pytest.mark.parametrize("name", [*HISTORIES, "mill"])
-def test_records_keep_the_rules_of_the_world(
+def test_records_obey_the_rules_of_their_world(
     histories: dict[str, list[History]], name: str
 ) -> None:
     for history in histories[name]:
@@ -89,7 +89,7 @@ def test_extinction_brings_founders_in_the_same_tick(histories: dict[str, list[H
         assert len(founders) == 12 * (1 + len(history.extinctions))
 
 
-def test_fixation_is_as_the_pedigree_says(histories: dict[str, list[History]]) -> None:
+def test_fixation_is_that_of_the_pedigree(histories: dict[str, list[History]]) -> None:
     fixed = 0
     for history in (each for all_ in histories.values() for each in all_):
         worlds = history.lived.engine.state.world.worlds
@@ -106,7 +106,7 @@ def test_fixation_is_as_the_pedigree_says(histories: dict[str, list[History]]) -
 def test_hazard_strikes_its_share_of_organism_ticks(
     histories: dict[str, list[History]], name: str
 ) -> None:
-    """Who dies of something graver may have been struck in the same tick; nobody can tell."""
+    """An organism that dies of a graver cause may also be struck; records do not show that."""
     worlds = histories[name]
     died = Counter(life.cause for history in worlds for life in history.dead)
     at_risk = sum(history.organism_ticks for history in worlds) - died["starved"] - died["fatal"]
@@ -114,7 +114,7 @@ def test_hazard_strikes_its_share_of_organism_ticks(
     assert (died["replaced"] > 100) == (HISTORIES[name]["placement"]["rule"] == "replacing")
 
 
-def test_mutants_and_copies_are_told_apart(histories: dict[str, list[History]]) -> None:
+def test_mutants_and_copies_are_distinguished(histories: dict[str, list[History]]) -> None:
     def origins(name: str) -> list[str]:
         return [life.origin for each in histories[name] for life in each.lives if life.parent]
 
@@ -126,10 +126,10 @@ def test_mutants_and_copies_are_told_apart(histories: dict[str, list[History]]) 
     assert half.count("copy") + half.count("mutant") == len(half)
 
 
-def test_of_several_causes_in_one_tick_the_gravest_counts(
+def test_of_several_causes_of_death_in_one_tick_the_gravest_is_recorded(
     histories: dict[str, list[History]],
 ) -> None:
-    """A life that ends in its tick for two reasons, and one that ends for three."""
+    """One life ends for two reasons in the same tick, another for three."""
     for history in histories["control"]:
         at_the_end = [life.cause for life in history.dead if life.age == 20]
         assert len(at_the_end) > 5
@@ -140,7 +140,7 @@ def test_of_several_causes_in_one_tick_the_gravest_counts(
         assert all(history.now - life.born < 9 for life in history.lives if life.died is None)
 
 
-def test_without_heredity_nobody_is_like_anybody(histories: dict[str, list[History]]) -> None:
+def test_without_heredity_no_two_genomes_are_alike(histories: dict[str, list[History]]) -> None:
     flat = histories["control"][0].lived.genomes()
     weights = flat.shape[1]
     assert len(flat) > 10
@@ -149,8 +149,8 @@ def test_without_heredity_nobody_is_like_anybody(histories: dict[str, list[Histo
     assert abs(alike).max() < 5.5 / np.sqrt(weights)
 
 
-def test_newborns_begin_anew() -> None:
-    """Stopped in a tick of births; everybody has sensed as often as it has lived."""
+def test_newborns_begin_with_a_fresh_body_and_an_empty_memory() -> None:
+    """The run stops in a tick of births; each organism has sensed as often as it has lived."""
     run = Lived(config(MEADOW, **HISTORIES["ring"]), 10_000, births=200)
     (organisms, worlds), bodies = run.engine.state
     alive = np.asarray(organisms.alive)
@@ -164,7 +164,7 @@ def test_newborns_begin_anew() -> None:
 
 
 def test_energy_is_accounted_for_to_the_unit(histories: dict[str, list[History]]) -> None:
-    """Steps of 1/1024, rounded each tick: -1280 - 358 + 522 = -1116 a tick of 51,200."""
+    """Energy is in steps of 1/1024, rounded each tick: -1280 - 358 + 522 = -1116 a tick of 51,200."""
     for history in histories["torus8"]:
         assert {life.cause for life in history.dead} == {"starved", "hazard"}
         assert len({life.age for life in history.dead}) > 20
@@ -180,7 +180,7 @@ def test_energy_is_accounted_for_to_the_unit(histories: dict[str, list[History]]
         assert to_host(worlds.food)[history.world] == 307 * history.organism_ticks
 
 
-def test_nobody_holds_more_than_the_cap(histories: dict[str, list[History]]) -> None:
+def test_no_organism_holds_more_than_the_cap(histories: dict[str, list[History]]) -> None:
     dead = [life for history in histories["well-mixed"] for life in history.dead]
     ages = {life.age for life in dead}
     assert min(ages) == 1

@@ -1,4 +1,4 @@
-"""Seasons: changes come when they should, where they should, and by what they should."""
+"""Seasons: settings change in the right tick, in the right world, and by the right amount."""
 
 from pathlib import Path
 from typing import Any
@@ -35,14 +35,14 @@ def ratchet(setting: str, when: str, above: float, factor: float, every: int) ->
     }
 
 
-def test_a_schedule_is_felt_first_in_the_tick_after() -> None:
-    """One organism at a time until 80, with 1000 units; the last then fills the world."""
+def test_a_schedule_takes_effect_in_the_next_tick() -> None:
+    """One organism lives at a time until tick 80, with 1000 units; the last then fills the world."""
     seasons = [
-        schedule("metabolism.drain", 41, 5000.0),  # dies in 42, the next in 43
+        schedule("metabolism.drain", 41, 5000.0),  # it dies in tick 42, the next one in 43
         schedule("metabolism.drain", 43, 0.0),
-        schedule("hazard", 60, 1.0),  # dies in 61 and in 62
+        schedule("hazard", 60, 1.0),  # they die in ticks 61 and 62
         schedule("hazard", 62, 0.0),
-        schedule("replication", 80, 1.0),  # a child in 81
+        schedule("replication", 80, 1.0),  # a child is born in tick 81
     ]
     values = {"metabolism": {"store": 1000.0}, "replication": 0.0, "seasons": seasons}
     rule = {"placement": {"rule": "empty-only"}}
@@ -73,12 +73,12 @@ SETTINGS = {
     "mutation.scale": "mutation.input.scale",
     "mutation.blocks.output.scale": "mutation.output.scale",
 }
-"""A season's setting -> the column of the metrics that shows it."""
+"""The column of the metrics that shows the setting of a season."""
 
 
 @pytest.fixture(scope="module")
 def mills() -> Lived:
-    """MILL with RATCHETS; output has a scale of its own, which mutation.scale does not govern."""
+    """Live MILL with RATCHETS; `output` has its own scale, which mutation.scale leaves alone."""
     mutation = {**MILL["mutation"], "blocks": {"output": {"scale": 0.1}}}
     values = {"seeds": 3, "sample_every": 10, "replication": 0.1, "cells": 12}
     return Lived(config(MILL, **values, mutation=mutation, seasons=RATCHETS), 600)
@@ -90,7 +90,7 @@ def of_world(run: Lived, world: int) -> dict[str, np.ndarray]:
 
 
 def expected_climate(rows: dict[str, np.ndarray]) -> list[dict[str, np.float32]]:
-    """What the seasons make of the populations seen in the rows, which include every look."""
+    """Return what the seasons make of the populations in the rows, which include every look."""
     now = {
         "metabolism.gain": np.float32(3.0),
         "replication": np.float32(0.1),
@@ -127,15 +127,15 @@ def test_ratchets_turn_when_and_only_when_their_condition_holds(mills: Lived, wo
     assert rows["tick"].tolist() == sorted(ticks)
     expected = expected_climate(rows)
     for setting, column in SETTINGS.items():
-        found = rows[column].astype(np.float32)
-        np.testing.assert_array_equal(found, [row[setting] for row in expected], err_msg=column)
+        values = rows[column].astype(np.float32)
+        np.testing.assert_array_equal(values, [row[setting] for row in expected], err_msg=column)
     np.testing.assert_array_equal(rows["mutation.recurrent.scale"], rows["mutation.input.scale"])
     for column in ("hazard", "metabolism.store", "mutation.input.probability", "metabolism.cap"):
         assert len(set(rows[column].tolist())) == 1
 
 
-def test_ratchets_turned_for_each_world_by_itself(mills: Lived) -> None:
-    """That there was something to see in the test above."""
+def test_ratchets_turn_in_each_world_separately(mills: Lived) -> None:
+    """The test above has something to check: every ratchet turned sometimes, and not always."""
     for setting, column in SETTINGS.items():
         series = [tuple(of_world(mills, world)[column].tolist()) for world in range(3)]
         assert all(len(set(each)) > 1 for each in series), setting
@@ -149,7 +149,7 @@ def test_ratchets_turned_for_each_world_by_itself(mills: Lived) -> None:
 
 
 @pytest.mark.parametrize("world", range(3))
-def test_what_ratchets_look_at_is_what_the_records_say(mills: Lived, world: int) -> None:
+def test_ratchets_look_at_what_the_records_say(mills: Lived, world: int) -> None:
     rows, history = of_world(mills, world), History(mills, world)
     for i, tick in enumerate(rows["tick"]):
         living = [
@@ -167,13 +167,13 @@ def test_what_ratchets_look_at_is_what_the_records_say(mills: Lived, world: int)
         assert rows["organism_ticks"][i] == lived
     eaten = sum(life.food for life in history.dead)
     organisms = mills.engine.state.world.organisms
-    mine = np.asarray(organisms.alive) & (np.arange(36) // 12 == world)
-    eaten += np.asarray(organisms.eaten)[mine].sum() / 1024
+    own = np.asarray(organisms.alive) & (np.arange(36) // 12 == world)
+    eaten += np.asarray(organisms.eaten)[own].sum() / 1024
     assert rows["food"][-1] == eaten
 
 
-def test_a_blocks_own_scale_changes_that_block_only() -> None:
-    """Nobody dies and everybody mutates, so children can be compared with their parents."""
+def test_a_season_of_a_blocks_scale_changes_that_block_only() -> None:
+    """No organism dies and all children mutate, so children can be compared with their parents."""
     last = 40
     values = {"cells": 128, "replication": 0.3, "placement": {"topology": "well-mixed"}}
     mutation = {"probability": 1.0, "scale": 0.1, "blocks": {"output": {"scale": 0.2}}}
@@ -208,8 +208,8 @@ def law_of(seasons: list[dict[str, Any]]) -> tuple[Law, Habitat | HostHabitat]:
     return made.build_law(habitat), habitat
 
 
-def test_two_ratchets_that_are_alike_both_turn() -> None:
-    """With one look each; neither keeps the other from going on."""
+def test_two_equal_ratchets_both_turn() -> None:
+    """Each looks on its own; neither stops the other."""
     twin = ratchet("metabolism.gain", "saturation", 0.5, 0.5, 10)
     law, _ = law_of([twin, twin])
     world = begin(law, [1, 2])
@@ -254,7 +254,7 @@ def test_a_world_that_has_stopped_has_no_seasons() -> None:
         {"kind": "never"},
     ],
 )
-def test_seasons_that_make_no_sense_are_refused(change: dict[str, Any]) -> None:
+def test_impossible_seasons_are_refused(change: dict[str, Any]) -> None:
     good = ratchet("replication", "mean_age", 1.0, 0.5, 10)
     season = TypeAdapter(Season)
     assert isinstance(season.validate_python(good), Ratchet)
@@ -262,8 +262,8 @@ def test_seasons_that_make_no_sense_are_refused(change: dict[str, Any]) -> None:
         season.validate_python({**good, **change})
 
 
-def test_break_even_is_told_as_the_world_stands_now(tmp_path: Path) -> None:
-    """Food that keeps energy where it is: drain over gain, by the tick and by the second."""
+def test_break_even_follows_the_present_settings_of_the_world(tmp_path: Path) -> None:
+    """Break-even food keeps energy constant: drain over gain, per tick and per second."""
     season = {"kind": "schedule", "setting": "metabolism.gain", "at": 20, "value": 0.5}
     rates = {"store": 100.0, "drain": 2.0, "gain": 4.0}
     settings = {"metabolism": rates, "seasons": [season], "cells": 4}

@@ -1,4 +1,4 @@
-"""When a world is saturated, and when it stops."""
+"""Saturation of worlds, and the ticks in which they stop."""
 
 from typing import Any
 
@@ -25,13 +25,13 @@ def calm() -> list[History]:
     return [History(run, world) for world in range(4)]
 
 
-def test_saturation_is_noted_when_a_full_world_was_calm_for_long_enough(
+def test_a_full_world_that_was_calm_for_long_enough_is_saturated(
     calm: list[History],
 ) -> None:
     worlds = calm[0].lived.engine.state.world.worlds
-    found = [history.saturation() for history in calm]
-    expected = [moment for moment in found if moment is not None]
-    assert len(expected) == len(found)
+    saturations = [history.saturation() for history in calm]
+    expected = [moment for moment in saturations if moment is not None]
+    assert len(expected) == len(saturations)
     assert len(set(expected)) > 1
     assert any(len(history.dead) for history in calm)
     assert any(history.calm_but_not_full() for history in calm)
@@ -40,12 +40,14 @@ def test_saturation_is_noted_when_a_full_world_was_calm_for_long_enough(
 
 
 def prefix(table: dict[str, np.ndarray], world: int, last: int) -> dict[str, list]:
-    mine = (table["world"] == world) & (table["tick"] <= last)
-    return {column: values[mine].tolist() for column, values in table.items()}
+    rows = (table["world"] == world) & (table["tick"] <= last)
+    return {column: values[rows].tolist() for column, values in table.items()}
 
 
 @pytest.mark.parametrize("stop", [{"until": "saturation"}, {"births": 20}])
-def test_each_world_stops_in_its_own_tick(calm: list[History], stop: dict[str, Any]) -> None:
+def test_each_world_stops_in_the_tick_of_its_limit(
+    calm: list[History], stop: dict[str, Any]
+) -> None:
     run = Lived(config(MEADOW, **CALM), 3000, **stop)
     worlds = run.engine.state.world.worlds
     for world, history in enumerate(calm):
@@ -62,5 +64,5 @@ def test_each_world_stops_in_its_own_tick(calm: list[History], stop: dict[str, A
 def test_a_limit_of_ticks_is_exact() -> None:
     run = Lived(config(MEADOW, **CALM), 123)
     assert to_host(run.engine.state.world.worlds.tick).tolist() == [123] * 4
-    run.on(124)
+    run.advance_to(124)
     assert to_host(run.engine.state.world.worlds.tick).tolist() == [124] * 4

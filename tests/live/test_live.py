@@ -1,4 +1,4 @@
-"""The live view: what is drawn, in terminals of any size; plain lines elsewhere; Ctrl-C."""
+"""The live view: pictures in terminals of any size, plain lines in other places, and Ctrl-C."""
 
 import io
 import json
@@ -29,7 +29,7 @@ from tests import commands
 from tests.commands import COMMAND, environment, here
 from tests.worlds import MEADOW, config
 
-# What is drawn.
+# The picture.
 
 
 def text(rows: list[Row]) -> list[str]:
@@ -48,21 +48,21 @@ def test_bars_grow_with_age_and_empty_cells_are_dots() -> None:
     assert text([strip(some, letters=True)]) == ["ee·JJ"]
 
 
-def test_each_line_has_a_colour_of_its_own() -> None:
+def test_each_line_has_its_own_colour() -> None:
     first, second, third = strip(cells([0, 1, 0], [9, 9, 9]), letters=False)
     assert first.style == third.style != second.style
 
 
-def test_a_torus_is_a_picture_two_rows_to_a_line() -> None:
+def test_a_torus_is_drawn_with_two_rows_in_a_line() -> None:
     some = cells([1, 1, 2, 2, 3, EMPTY], [1000] * 6)
     rows = field(some, columns=2, scale=1, letters=False)
     assert text(rows) == ["▀▀", "▀▀"]
-    assert [len(row) for row in rows] == [1, 2], "a segment for each stretch of one style"
+    assert [len(row) for row in rows] == [1, 2], "there is a segment for each stretch of one style"
     assert len(field(some, columns=2, scale=4, letters=False)) == 6
     assert text(field(some, columns=2, scale=1, letters=True)) == ["BB", "CC", "D·"]
 
 
-def test_numbers_are_short() -> None:
+def test_numbers_are_written_in_short_form() -> None:
     assert [short(x) for x in (None, 0, 999, 1500, 1.234e6, 4.56e8)] == [
         "-", "0", "999", "1.5 k", "1.2 M", "456 M",
     ]  # fmt: skip
@@ -85,7 +85,7 @@ def meadow(name: str) -> Engine:
 
 @pytest.fixture(scope="module", params=WORLDS)
 def running(request: pytest.FixtureRequest) -> tuple[str, Engine]:
-    """A world of each shape, on its way; most only made to look so, which spares compiling."""
+    """Return a world of each shape; most are only posed as if they had lived, which saves compilation."""
     name, made = request.param, meadow(request.param)
     if name == "ring":
         made.advance(made.limits({}))
@@ -95,7 +95,7 @@ def running(request: pytest.FixtureRequest) -> tuple[str, Engine]:
 
 
 def look_alive(made: Engine) -> None:
-    """Pose four fifths of the cells as organisms of many ages, to whom nothing happens."""
+    """Pose four fifths of the cells as organisms of many ages, without events."""
     world, bodies = made.state
     cells = np.arange(len(world.organisms.alive), dtype=np.uint32)
     number, born = (Wide(jnp.zeros_like(cells), jnp.asarray(n)) for n in (cells, cells % 999))
@@ -107,7 +107,7 @@ def look_alive(made: Engine) -> None:
 
 
 def shown(made: Engine, chunks: int = 2, **options: Any) -> tuple[str, list[str]]:
-    """What is written in a terminal, and the lines of the last frame."""
+    """Return what is written to a terminal, and the lines of the last frame."""
     options = {"force_terminal": True, "color_system": "truecolor", **options}
     console = Console(file=io.StringIO(), **options)
     limits = made.limits({"ticks": 10**6})
@@ -123,14 +123,14 @@ def shown(made: Engine, chunks: int = 2, **options: Any) -> tuple[str, list[str]
 
 
 @pytest.mark.parametrize(("width", "height"), [(80, 24), (40, 24), (200, 60), (20, 8), (3, 2)])
-def test_it_fits_any_terminal(running: tuple[str, Engine], width: int, height: int) -> None:
+def test_the_view_fits_any_terminal(running: tuple[str, Engine], width: int, height: int) -> None:
     for letters in (False, True):
         _, frame = shown(running[1], width=width, height=height, no_color=letters)
         assert 0 < len(frame) <= height
         assert max(map(len, frame)) <= width
 
 
-def test_it_tells_what_is_going_on(running: tuple[str, Engine]) -> None:
+def test_the_view_shows_time_population_and_lines(running: tuple[str, Engine]) -> None:
     name, made = running
     written, frame = shown(made, width=80, height=24)
     text = "\n".join(frame)
@@ -146,7 +146,7 @@ def test_it_tells_what_is_going_on(running: tuple[str, Engine]) -> None:
     assert int(made.state.world.organisms.alive.sum()) == census.alive.sum()
 
 
-def test_a_terminal_may_change_its_size(running: tuple[str, Engine]) -> None:
+def test_the_view_follows_a_terminal_that_changes_its_size(running: tuple[str, Engine]) -> None:
     made = running[1]
     console = Console(file=io.StringIO(), force_terminal=True, width=80, height=10)
     with live.View(console) as view:
@@ -159,14 +159,14 @@ def test_a_terminal_may_change_its_size(running: tuple[str, Engine]) -> None:
             assert size[0] // 2 < max(map(len, rows))
 
 
-def test_without_colours_letters_tell_the_lines(running: tuple[str, Engine]) -> None:
+def test_without_colours_letters_distinguish_the_lines(running: tuple[str, Engine]) -> None:
     written, frame = shown(running[1], width=80, height=24, no_color=True)
     assert not re.search(r"\x1b\[[0-9;]*[34]8;", written)
     assert "letter: " in "\n".join(frame)
     assert any(re.search(r"[a-zA-Z·]{8}|([a-z·] ){8}", line) for line in frame[1:])
 
 
-def test_who_is_followed_is_who_lives(running: tuple[str, Engine]) -> None:
+def test_the_view_follows_the_living(running: tuple[str, Engine]) -> None:
     name, made = running
     view = live.View(Console(file=io.StringIO(), force_terminal=True, width=80, height=24))
     for _ in range(3):
@@ -181,7 +181,7 @@ def test_who_is_followed_is_who_lives(running: tuple[str, Engine]) -> None:
         assert set(lines.of) == set(number[alive].tolist())
 
 
-def test_time_left_is_that_of_the_world_which_stops_last() -> None:
+def test_time_left_is_that_of_the_world_that_stops_last() -> None:
     def census(tick: list[int], births: list[int]) -> Census:
         each = np.zeros(2, np.int64)
         return Census(
@@ -201,11 +201,11 @@ def test_time_left_is_that_of_the_world_which_stops_last() -> None:
     pace.see(12.0, census([100, 200], [20, 10]))
     assert pace.organism_ticks() == 1500
     assert left(500, never) == pytest.approx(8.0)
-    assert left(500, 40) == pytest.approx(4.0), "the second world comes to its 500 ticks in 3"
+    assert left(500, 40) == pytest.approx(4.0), "the second world reaches its 500 ticks in 3"
     assert left(never, 40) is None, "the second world has no births"
 
 
-# Elsewhere than in a terminal.
+# Without a terminal.
 
 SMALL = ("CartPole-survival", "--cells", "8", "--hazard", "0.002", "--sample_every", "500")
 
@@ -229,7 +229,7 @@ def test_plain_lines_where_there_is_no_terminal(
 
 @pytest.fixture
 def terminal() -> Iterator[tuple[int, int]]:
-    """A pseudo-terminal of 80 x 24: our end, and the program's."""
+    """Open a pseudo-terminal of 80 x 24: our end, and the program's end."""
     ours, theirs = pty.openpty()
     yield ours, theirs
     for end in (ours, theirs):
@@ -237,7 +237,7 @@ def terminal() -> Iterator[tuple[int, int]]:
 
 
 def read_until(end: int, *parts: str, seconds: float = 60.0) -> str:
-    """What is written until all parts are in it."""
+    """Return what is written until all parts are in it."""
     read = ""
     while not all(part in read for part in parts):
         assert select.select([end], [], [], seconds)[0], f"nothing more after {read[-500:]!r}"
@@ -256,11 +256,11 @@ def test_a_terminal_shows_the_strip_and_control_c_saves(
     process = subprocess.Popen(
         ["sh", "-c", 'exec <"$0" >"$0" 2>&1 "$@"', os.ttyname(theirs), *COMMAND, "run", *words],
         env=variables,
-        start_new_session=True,  # so that the terminal it opens is the one that Ctrl-C comes from
+        start_new_session=True,  # so that the terminal it opens is the one that sends Ctrl-C
     )
     read_until(ours, "\x1b[?25l", "█", "line of descent", "takeovers", "\x1b[38;2")
     os.write(ours, b"\x03")
     read_until(ours, "\x1b[?25h", "Stopped and saved. Go on with: primordia resume")
     assert process.wait(timeout=60) == 130
-    found = json.loads(here("info", tmp_path / "run", "--json").stdout)
-    assert found["births"] > 0
+    info = json.loads(here("info", tmp_path / "run", "--json").stdout)
+    assert info["births"] > 0

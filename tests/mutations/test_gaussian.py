@@ -1,4 +1,4 @@
-"""Gaussian mutation: the noise's distribution, the share of mutants, children as NumPy makes them."""
+"""Gaussian mutation: its noise, the share of mutants, and children equal to those made by NumPy."""
 
 from statistics import NormalDist
 
@@ -39,7 +39,7 @@ def noise(which: Wide, cells: np.ndarray | None = None, length: int = P) -> np.n
     return quantiles()[np.asarray(noise_index(which, jnp.asarray(cells), length))]
 
 
-def test_the_table_is_the_standard_gaussian() -> None:
+def test_the_table_of_noise_is_the_standard_gaussian() -> None:
     table = quantiles()
     assert table.dtype == np.float32
     assert table.shape == (65536,)
@@ -81,7 +81,7 @@ def test_noise_of_different_organisms_is_unrelated() -> None:
 
 
 @pytest.mark.parametrize("length", [1, 2, 3, 4, 6, 9])
-def test_where_in_the_table_each_weights_noise_stands(length: int) -> None:
+def test_each_weight_takes_its_noise_from_its_place_in_the_table(length: int) -> None:
     cells = np.array([0, 5, 31])
     which = stream(name(8, 3), Purpose.NOISE, name(4, 3))
     m = -(-length // 4)
@@ -94,20 +94,20 @@ def test_where_in_the_table_each_weights_noise_stands(length: int) -> None:
     np.testing.assert_array_equal(noise_index(which, jnp.asarray(cells), length), expected)
 
 
-def test_noise_does_not_depend_on_who_else_is_born() -> None:
+def test_noise_does_not_depend_on_other_births() -> None:
     all_of_them = noise(drawn()[Purpose.NOISE])
     some = np.array([63, 2, 40])
     np.testing.assert_array_equal(noise(drawn(count=3)[Purpose.NOISE], some), all_of_them[some])
 
 
 def rates(layout: Layout, probability: object, scale: object, count: int) -> dict[str, jax.Array]:
-    """Of K births alike: a value for all blocks, or one each."""
-    found = {}
+    """Return the rates of K equal births, from one value for all blocks or one for each."""
+    table = {}
     for field, values in (("probability", probability), ("scale", scale)):
         each = np.broadcast_to(np.array(values, np.float32), len(layout.names))
         for block, value in zip(layout.names, each, strict=True):
-            found[f"blocks.{block}.{field}"] = jnp.full(count, value, jnp.float32)
-    return found
+            table[f"blocks.{block}.{field}"] = jnp.full(count, value, jnp.float32)
+    return table
 
 
 def children(
@@ -123,17 +123,17 @@ def children(
 
 
 @pytest.mark.parametrize("probability", [0.0, 0.1, 0.5, 0.999, 1.0])
-def test_the_share_of_mutants(probability: float) -> None:
+def test_the_share_of_mutants_is_their_probability(probability: float) -> None:
     count = 100_000
-    found, mutated = children(TINY, np.zeros((count, 4), np.float32), probability)
+    genomes, mutated = children(TINY, np.zeros((count, 4), np.float32), probability)
     assert binomial(int(mutated.sum()), count, probability)
-    np.testing.assert_array_equal(found != 0, np.tile(mutated[:, None], 4))
+    np.testing.assert_array_equal(genomes != 0, np.tile(mutated[:, None], 4))
 
 
 def test_one_draw_decides_for_all_blocks() -> None:
     count = 100_000
-    found, mutated = children(TINY, np.zeros((count, 4), np.float32), [0.0, 0.2, 0.7, 1.0])
-    taken = found != 0
+    genomes, mutated = children(TINY, np.zeros((count, 4), np.float32), [0.0, 0.2, 0.7, 1.0])
+    taken = genomes != 0
     assert mutated.all()
     assert not taken[:, 0].any()
     assert taken[:, 3].all()
@@ -142,7 +142,7 @@ def test_one_draw_decides_for_all_blocks() -> None:
     assert taken[taken[:, 1], 2].all(), "a block with the lower probability mutates alone"
 
 
-def test_blocks_have_their_own_settings_where_given() -> None:
+def test_a_block_has_its_own_settings_where_they_are_given() -> None:
     blocks = {"input": Block(probability=0.0), "output": Block(scale=0.5, founder_scale=1.0)}
     mutation = Gaussian(probability=0.3, scale=0.02, blocks=blocks)
     assert mutation.rates(LAYOUT) == {
@@ -189,8 +189,8 @@ def test_children_are_those_of_numpy_bit_for_bit(
     change = noise(drawn()[Purpose.NOISE]) * np.repeat(scales, LAYOUT.sizes)
     with np.errstate(invalid="ignore"):
         expected = np.where(np.repeat(takes, LAYOUT.sizes, axis=1), parents + change, parents)
-    found, mutated = children(LAYOUT, parents, probability, scales)
-    same_bits(found, expected)
+    genomes, mutated = children(LAYOUT, parents, probability, scales)
+    same_bits(genomes, expected)
     np.testing.assert_array_equal(mutated, takes.any(axis=1))
 
 
@@ -205,15 +205,15 @@ def test_children_made_in_a_compiled_function_have_the_same_bits() -> None:
 def test_founders_are_noise_of_their_blocks_scales() -> None:
     mutation = Gaussian(founder_scale=0.3, blocks={"recurrent": Block(founder_scale=0.02)})
     scales = np.repeat(np.array([0.3, 0.02, 0.3], np.float32), LAYOUT.sizes)
-    found = mutation.founders(LAYOUT, Draws(drawn(), jnp.arange(K)))
-    same_bits(np.asarray(found), noise(drawn()[Purpose.FOUNDER]) * scales)
+    genomes = mutation.founders(LAYOUT, Draws(drawn(), jnp.arange(K)))
+    same_bits(np.asarray(genomes), noise(drawn()[Purpose.FOUNDER]) * scales)
 
 
 def test_a_copy_is_its_parent_to_the_last_bit() -> None:
     rng = np.random.default_rng(0)
     parents = rng.integers(0, 2**32, (K, P), dtype=np.uint64).astype(np.uint32).view(np.float32)
-    found, mutated = children(LAYOUT, parents, 0.0, 0.5)
-    same_bits(found, parents)
+    genomes, mutated = children(LAYOUT, parents, 0.0, 0.5)
+    same_bits(genomes, parents)
     assert not mutated.any()
 
 
@@ -223,7 +223,7 @@ FOUNDER_SCALES = [1.0, 0.1, 1.0]
 
 @pytest.fixture(scope="module")
 def family() -> Lived:
-    """A world in which nobody dies, so that every parent is there to be compared with."""
+    """Live a world without deaths, so that every child can be compared with its parent."""
     blocks = {
         name: {"scale": scale, "probability": probability}
         for name, scale, probability in zip(NAMES, SCALES, PROBABILITIES, strict=True)
@@ -237,12 +237,12 @@ def family() -> Lived:
 
 
 def weights(family: Lived) -> dict[str, np.ndarray]:
-    """Blocks of weights in order, a row an organism in order of birth."""
+    """Return the blocks of weights, with a row for each organism in order of birth."""
     cells, genome = family.table("births")["cell"], family.engine.state.world.organisms.genome
     return {block: np.asarray(genome[block]).reshape(256, -1)[cells] for block in NAMES}
 
 
-def test_children_in_a_world_differ_from_their_parents_as_their_blocks_say(family: Lived) -> None:
+def test_children_differ_from_their_parents_as_the_settings_of_blocks_say(family: Lived) -> None:
     births, genome = family.table("births"), weights(family)
     parents = births["parent"][1:].astype(int)
     change = {name: block[1:] - block[parents] for name, block in genome.items()}

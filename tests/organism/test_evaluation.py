@@ -1,4 +1,4 @@
-"""An organism plays by itself: its lifespan, whole games, without seeing, and what the command says."""
+"""Evaluation: lifespans, whole games, games without sight, and the output of the command."""
 
 import json
 from pathlib import Path
@@ -34,42 +34,42 @@ def poles(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return primordia.run("CartPole-survival", run, stop={"ticks": 3000, "until": "none"}).path
 
 
-def test_where_nothing_is_random_a_life_is_lived_again(pong: Path) -> None:
-    """To the tick, and one game is enough to know."""
+def test_where_nothing_is_random_an_organism_lives_its_life_again(pong: Path) -> None:
+    """The life has the same length, and one game is enough to show it."""
     run = Archive(pong)
-    everyone = run.lives
-    died = np.flatnonzero(everyone.died)[:4]
+    lives = run.lives
+    died = np.flatnonzero(lives.died)[:4]
     assert len(died) == 4
     played = primordia.load(pong).evaluate(Organism(run, row) for row in died)
-    for row, found in zip(died, played, strict=True):
-        assert (found.games, found.distinct) == (1, 1)
-        assert found.lived.ticks[0] == everyone.lifespan[row]
-        assert found.whole is not None
-        assert found.whole.ticks[0] > everyone.lifespan[row]
-        assert found.whole.food[0] <= -20
+    for row, evaluation in zip(died, played, strict=True):
+        assert (evaluation.games, evaluation.distinct) == (1, 1)
+        assert evaluation.lived.ticks[0] == lives.lifespan[row]
+        assert evaluation.whole is not None
+        assert evaluation.whole.ticks[0] > lives.lifespan[row]
+        assert evaluation.whole.food[0] <= -20
 
 
 @pytest.mark.parametrize("senses", ["live", "frozen", "ignored"])
-def test_side_by_side_each_plays_as_by_itself(
+def test_organisms_play_side_by_side_as_they_play_alone(
     poles: Path, monkeypatch: pytest.MonkeyPatch, senses: Any
 ) -> None:
-    """However many there are, and however few find room at once."""
+    """This holds for any number of organisms, and for any number that play at once."""
     some = [(0, 0), (7, 0), (3, 0), (11, 0), (7, 0)]
     monkeypatch.setattr(games, "AT_ONCE", 6)
     run = Archive(poles)
     together = evaluate(run, some, games=3, ticks=300, senses=senses)
-    for each, found in zip(some, together, strict=True):
+    for each, evaluation in zip(some, together, strict=True):
         (alone,) = evaluate(run, [each], games=3, ticks=300, senses=senses)
-        assert found.lived.ticks.tolist() == alone.lived.ticks.tolist()
-        assert found.lived.course.tolist() == alone.lived.course.tolist()
-        assert np.array_equal(found.lived.actions[0], alone.lived.actions[0])
-        assert found.to_dict() == alone.to_dict()
-    assert len({found.lived.course[0] for found in together}) == 4
+        assert evaluation.lived.ticks.tolist() == alone.lived.ticks.tolist()
+        assert evaluation.lived.course.tolist() == alone.lived.course.tolist()
+        assert np.array_equal(evaluation.lived.actions[0], alone.lived.actions[0])
+        assert evaluation.to_dict() == alone.to_dict()
+    assert len({evaluation.lived.course[0] for evaluation in together}) == 4
     assert evaluate(run, []) == []
 
 
-def test_doing_it_again_blindly_comes_to_the_same(pong: Path) -> None:
-    """In the same game, for as long as it lives; with buttons that stick it does not."""
+def test_repeating_its_actions_blindly_gives_the_same_life(pong: Path) -> None:
+    """Its actions, repeated in the same game, give the same life; with sticky buttons they do not."""
     oldest = primordia.load(pong).oldest()
     live, ignored = oldest.evaluate(), oldest.evaluate(senses="ignored")
     assert live.lived.ticks == ignored.lived.ticks == oldest.age
@@ -80,8 +80,8 @@ def test_doing_it_again_blindly_comes_to_the_same(pong: Path) -> None:
     assert sticky.distinct == 3
 
 
-def test_frozen_senses_are_those_of_the_start(tmp_path: Path) -> None:
-    """One without memory who sees the clock stand still does the same thing over and over."""
+def test_frozen_senses_stay_as_they_are_at_the_start(tmp_path: Path) -> None:
+    """An organism without memory that sees a frozen clock repeats one action."""
     habitat, brain = {"name": "tests.toys:Watch"}, {"kind": "feed-forward"}
     settings = {**MEADOW, "stop": {"ticks": 5}, "habitat": habitat, "brain": brain}
     loop.start(config(settings), tmp_path / "run")
@@ -93,61 +93,61 @@ def test_frozen_senses_are_those_of_the_start(tmp_path: Path) -> None:
     assert frozen.lived.food[0] == pytest.approx(20 * always, rel=1e-5)
 
 
-def test_games_begin_at_random_where_lives_do(poles: Path) -> None:
-    found = primordia.load(poles).oldest().evaluate(games=12, ticks=2000)
-    assert (found.games, found.distinct) == (12, 12)
-    assert found.whole is None
-    assert (found.lived.over | (found.lived.ticks == 2000)).all()
+def test_games_start_at_random_where_lives_do(poles: Path) -> None:
+    evaluation = primordia.load(poles).oldest().evaluate(games=12, ticks=2000)
+    assert (evaluation.games, evaluation.distinct) == (12, 12)
+    assert evaluation.whole is None
+    assert (evaluation.lived.over | (evaluation.lived.ticks == 2000)).all()
     again = primordia.load(poles).oldest().evaluate(games=12, ticks=2000)
-    np.testing.assert_array_equal(found.lived.ticks, again.lived.ticks)
+    np.testing.assert_array_equal(evaluation.lived.ticks, again.lived.ticks)
 
 
-def test_it_starves_by_its_tasks_metabolism(tmp_path: Path) -> None:
+def test_an_organism_starves_by_the_metabolism_of_its_task(tmp_path: Path) -> None:
     hungry = {"metabolism": {"store": 30.0, "gain": 0.5}, "stop": {"ticks": 10}}
     loop.start(
         config({**MEADOW, **hungry, "habitat": {**MEADOW["habitat"], "food": 1.0}}),
         tmp_path / "run",
     )
     run = Archive(tmp_path / "run")
-    (found,) = evaluate(run, [(0, 0)], games=2)
-    assert found.lived.ticks.tolist() == [60, 60]
+    (evaluation,) = evaluate(run, [(0, 0)], games=2)
+    assert evaluation.lived.ticks.tolist() == [60, 60]
     (cut,) = evaluate(run, [(0, 0)], games=2, ticks=59)
     assert not cut.lived.over.any()
     assert cut.to_dict()["alive_when_cut"] == 2
 
 
-def test_what_the_command_says(pong: Path) -> None:
+def test_the_command_prints_figures_and_json(pong: Path) -> None:
     one = here("evaluate", pong).stdout
     assert "1 distinct game; nothing is drawn at random" in one
     many = here("evaluate", pong, "--episodes", "3", "--sticky", "0.25", "--ticks", "300").stdout
     assert "3 games, sticky 0.25" in many
     assert "3 still going on when cut" in many
-    told = json.loads(here("evaluate", pong, "--freeze-senses", "--json").stdout)
-    assert (told["games"], told["senses"]) == (1, "frozen")
-    assert set(told["score"]) == {"q1", "median", "q3", "maximum"}
+    printed = json.loads(here("evaluate", pong, "--freeze-senses", "--json").stdout)
+    assert (printed["games"], printed["senses"]) == (1, "frozen")
+    assert set(printed["score"]) == {"q1", "median", "q3", "maximum"}
 
 
 def test_any_setting_of_the_habitat_is_a_flag(poles: Path) -> None:
-    """Also one that has the name of an argument of `evaluate` in Python."""
+    """This holds also for a setting with the name of an argument of `evaluate` in Python."""
     wide = here("evaluate", poles, "--ticks", "50", "--angle_limit", "180", "--track_limit", "1e9")
     assert "30 games, angle_limit 180, track_limit 1000000000.0" in wide.stdout
     assert "30 still alive when cut" in wide.stdout
     same = '["x", "x_dot", "theta", "theta_dot"]'
-    told = here("evaluate", poles, "--episodes", "2", "--senses", same, "--json")
+    done = here("evaluate", poles, "--episodes", "2", "--senses", same, "--json")
     plain = here("evaluate", poles, "--episodes", "2", "--json")
-    assert json.loads(told.stdout)["lifespan"] == json.loads(plain.stdout)["lifespan"]
+    assert json.loads(done.stdout)["lifespan"] == json.loads(plain.stdout)["lifespan"]
 
 
 def test_help_on_a_run_lists_the_settings_of_its_habitat(pong: Path, poles: Path) -> None:
-    told = here("evaluate", pong, "--help").stdout
-    assert "--sticky" in told
-    assert "probability that a frame repeats the last button [0.0]" in " ".join(told.split())
+    printed = here("evaluate", pong, "--help").stdout
+    assert "--sticky" in printed
+    assert "probability that a frame repeats the last button [0.0]" in " ".join(printed.split())
     assert "--angle_limit" in here("evaluate", poles, "--help").stdout
     assert "--sticky" not in here("evaluate", poles, "--help").stdout.partition("Options")[2]
     assert "Settings of the habitat" not in here("evaluate", "--help").stdout
 
 
-def test_bad_input(pong: Path, poles: Path) -> None:
+def test_wrong_input_is_an_error_that_says_why(pong: Path, poles: Path) -> None:
     for words, part in (
         ((poles, "--sticky", "0.1"), "this run's habitat has no setting 'sticky'"),
         ((poles, "--angle_limt", "9"), "did you mean 'angle_limit'?"),
@@ -161,6 +161,6 @@ def test_bad_input(pong: Path, poles: Path) -> None:
         complains(here("evaluate", *words), 2, part)
 
 
-def test_the_brain_must_fit(pong: Path) -> None:
+def test_settings_that_do_not_fit_the_brain_are_refused(pong: Path) -> None:
     with pytest.raises(InputError, match=r"3 senses and 2 actions; .* made for 3 and 6"):
         primordia.load(pong).oldest().evaluate(actions="NOOP UP")

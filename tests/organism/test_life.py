@@ -1,4 +1,4 @@
-"""Lives lived again, seen on video, and what an organism is asked: all from its records."""
+"""Lives lived again, videos, and the properties of an organism, all from its records."""
 
 from pathlib import Path
 from typing import Any
@@ -29,7 +29,7 @@ from tests.worlds import MEADOW, MILL, config
 
 @pytest.fixture(scope="module")
 def mill(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Seasons that change the metabolism, a noisy motor, three worlds."""
+    """Make a run of three worlds with a noisy motor and seasons that change the metabolism."""
     run = tmp_path_factory.mktemp("mill") / "run"
     loop.start(config({**MILL, "seeds": 3, "seed": 5, "stop": {"ticks": 700}}), run)
     return run
@@ -37,7 +37,7 @@ def mill(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def mirror(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The same on the host."""
+    """Make the same run with the habitat on the host."""
     run = tmp_path_factory.mktemp("mirror") / "run"
     habitat = {"name": "tests.toys:Mirror", "inner": "mill"}
     changed = {"habitat": habitat, "seeds": 2, "seed": 5, "stop": {"ticks": 700}}
@@ -52,13 +52,13 @@ def poles(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def at_the_end(life: Life) -> dict[str, np.ndarray]:
-    """What the checkpoint holds of an organism that is alive."""
+    """Return the body and energy that the checkpoint holds of a living organism."""
     cell = life.world * life.config.cells + int(life.record.cell[0])
     return {name: array[cell] for name, array in life.run.state.items() if len(array) > cell}
 
 
-def comes_out(life: Life) -> list[Stretch]:
-    """It lives again as recorded: to its death, or to the checkpoint's body and energy."""
+def assert_ends_as_recorded(life: Life) -> list[Stretch]:
+    """Assert that it lives again as recorded: to its death, or to the checkpoint's body and energy."""
     seen = list(life.again())
     last, hungry = seen[-1], life.law.metabolism is not None
     assert last.tick[-1] == life.ends
@@ -77,84 +77,87 @@ def comes_out(life: Life) -> list[Stretch]:
 
 
 @pytest.mark.parametrize("which", ["mill", "poles", "mirror"])
-def test_the_living_come_to_where_they_are(
+def test_the_living_reach_their_recorded_state_when_lived_again(
     which: str, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Alone, and long after, to the last bit: bodies, energy, with noisy motors and seasons."""
+    """Alone, and later, bodies and energy are the same bits, with noisy motors and seasons."""
     monkeypatch.setattr(LifeInJax, "TICKS", 512)
     monkeypatch.setattr(LifeOnHost, "TICKS", 20)
     run = Archive(request.getfixturevalue(which))
-    everyone = run.lives
-    alive = np.flatnonzero(~everyone.died & (everyone.lifespan > 0))
+    lives = run.lives
+    alive = np.flatnonzero(~lives.died & (lives.lifespan > 0))
     for row in alive[:: max(1, len(alive) // 6)]:
-        comes_out(Life.of(run, everyone.id[row], everyone.world[row]))
+        assert_ends_as_recorded(Life.of(run, lives.id[row], lives.world[row]))
 
 
 @pytest.mark.parametrize("cells", [32, 1024])
-def test_a_body_begins_as_it_was_born(cells: int, tmp_path: Path) -> None:
-    """Also where compiled code rounds a product and a sum once, and each operation by itself would;
-    and where several are born together, as vectors."""
+def test_a_body_starts_as_it_was_born(cells: int, tmp_path: Path) -> None:
+    """Compiled code may round a product and a sum once, and several bodies may be born as vectors."""
     full = {"genesis": "fill", "replication": 0.0, "cells": cells, "stop": {"ticks": 2}}
     loop.start(config(MEADOW, habitat={"name": "tests.toys:Slope"}, **full), tmp_path / "run")
     run = Archive(tmp_path / "run")
     for row in range(0, cells, cells // 16):
-        comes_out(Life.of(run, row))
+        assert_ends_as_recorded(Life.of(run, row))
 
 
 @pytest.mark.parametrize("which", ["mill", "mirror"])
-def test_the_dead_die_when_they_died(which: str, request: pytest.FixtureRequest) -> None:
-    """Of starvation in the tick in which energy runs out, of their bodies when those fail."""
+def test_the_dead_die_in_their_recorded_tick_when_lived_again(
+    which: str, request: pytest.FixtureRequest
+) -> None:
+    """They starve in the tick in which energy runs out, or die when their bodies fail."""
     run = Archive(request.getfixturevalue(which))
-    everyone = run.lives
+    lives = run.lives
     for cause in (Cause.STARVED, Cause.FATAL):
-        rows = np.flatnonzero(everyone.cause == cause)[-5:]
+        rows = np.flatnonzero(lives.cause == cause)[-5:]
         assert len(rows)
         for row in rows:
-            comes_out(Life.of(run, everyone.id[row], everyone.world[row]))
+            assert_ends_as_recorded(Life.of(run, lives.id[row], lives.world[row]))
 
 
 @pytest.mark.parametrize("which", ["mill", "mirror"])
-def test_in_a_fork_an_older_life_goes_on_from_there(
+def test_a_life_older_than_a_fork_continues_from_the_fork(
     which: str, request: pytest.FixtureRequest, tmp_path: Path
 ) -> None:
-    """Also that of somebody born in the very tick, whose body still owes its shape to the old seed."""
+    """This holds also for an organism born in the tick of the fork, whose body is from the old seed."""
     run = request.getfixturevalue(which)
     before = Archive(run).lives
     at = int(before.born[(before.born > 300) & (before.lifespan > 12)][0])
     fork = Archive(primordia.load(run).fork(at, tmp_path / "fork", seed=9).path)
-    everyone = fork.lives
-    older = (everyone.born <= at) & (everyone.ended > at + 3)
-    newest = older & (everyone.born == at)
+    lives = fork.lives
+    older = (lives.born <= at) & (lives.ended > at + 3)
+    newest = older & (lives.born == at)
     assert newest.any()
     for row in [*np.flatnonzero(newest)[:1], *np.flatnonzero(older & ~newest)[:4]]:
-        life = Life.of(fork, everyone.id[row], everyone.world[row])
-        assert comes_out(life)[0].tick[0] == at + 1
+        life = Life.of(fork, lives.id[row], lives.world[row])
+        assert assert_ends_as_recorded(life)[0].tick[0] == at + 1
 
 
-def test_bodies_that_cannot_be_saved_are_not_found_in_a_fork(
+def test_a_life_older_than_a_fork_is_refused_if_bodies_cannot_be_saved(
     mirror: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     fork = Archive(primordia.load(mirror).fork(300, tmp_path / "fork").path)
-    everyone = fork.lives
+    lives = fork.lives
     monkeypatch.setattr(Mirror, "exact", False, raising=False)
     with pytest.raises(InputError, match="is older than the fork"):
-        Life.of(fork, everyone.id[0], everyone.world[0])
+        Life.of(fork, lives.id[0], lives.world[0])
 
 
 @pytest.mark.parametrize("kind", ["Meadow", "Mirror"])
-def test_a_simulation_that_failed_may_have_called_it_death(kind: str, tmp_path: Path) -> None:
+def test_a_failed_simulation_is_a_fault_even_if_it_reports_death(kind: str, tmp_path: Path) -> None:
     inner = {"inner": "meadow"} if kind == "Mirror" else {}
     broken = {"name": f"tests.toys:{kind}", **inner, "lifespan": 9, "broken_at": 9}
     loop.start(config(MEADOW, habitat=broken, stop={"ticks": 30}), tmp_path / "run")
     run = Archive(tmp_path / "run")
-    everyone = run.lives
-    row = np.flatnonzero(everyone.cause == Cause.FAULT)[0]
-    (seen,) = Life.of(run, everyone.id[row]).again()
+    lives = run.lives
+    row = np.flatnonzero(lives.cause == Cause.FAULT)[0]
+    (seen,) = Life.of(run, lives.id[row]).again()
     assert len(seen.tick) == 9
 
 
-def test_a_habitat_on_the_host_is_closed(mirror: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Lived to the end or not; each life has a habitat to itself."""
+def test_a_habitat_on_the_host_is_closed_after_a_life(
+    mirror: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is closed after a whole life or a part of it; each life has its own habitat."""
     closed: list[Mirror] = []
     monkeypatch.setattr(Mirror, "close", lambda self: closed.append(self), raising=False)
     monkeypatch.setattr(LifeOnHost, "TICKS", 5)
@@ -170,7 +173,7 @@ def test_a_habitat_on_the_host_is_closed(mirror: Path, monkeypatch: pytest.Monke
     assert len(set(map(id, closed))) == 2
 
 
-def test_a_record_that_does_not_fit_is_noticed(
+def test_a_record_that_differs_from_the_life_is_noticed(
     poles: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     run = Archive(poles)
@@ -181,7 +184,7 @@ def test_a_record_that_does_not_fit_is_noticed(
         list(life.again())
 
 
-def test_a_policy_acts_as_the_organism_did(poles: Path) -> None:
+def test_a_policy_acts_as_its_organism_did(poles: Path) -> None:
     organism = primordia.load(poles).oldest()
     seen = next(Life.of(organism.run, organism.id).again())
     policy = organism.policy()
@@ -190,14 +193,14 @@ def test_a_policy_acts_as_the_organism_did(poles: Path) -> None:
     assert policy(seen.senses[0]) == seen.action[0]
 
 
-def test_a_policy_of_continuous_actions(mill: Path) -> None:
+def test_a_policy_gives_continuous_actions(mill: Path) -> None:
     policy = primordia.load(mill).policy()
     action = policy(np.zeros(3))
     assert isinstance(action, np.ndarray)
     assert (action.shape, action.dtype) == ((2,), np.float32)
 
 
-def test_an_organism_tells_what_is_recorded(poles: Path) -> None:
+def test_an_organism_has_the_properties_that_are_recorded(poles: Path) -> None:
     run = primordia.load(poles)
     births = run.table("births").to_pylist()
     deaths = {row["id"]: row for row in run.table("deaths").to_pylist()}
@@ -218,7 +221,7 @@ def test_an_organism_tells_what_is_recorded(poles: Path) -> None:
     assert run.organism(organism.id).descent() == organism.descent()
 
 
-def test_tables_as_arrow_pandas_and_numpy(poles: Path) -> None:
+def test_tables_are_given_as_arrow_pandas_and_numpy(poles: Path) -> None:
     run = primordia.load(poles)
     arrow, arrays = run.table("births"), run.arrays("births")
     assert arrow.to_pandas()["tick"].tolist() == arrays["tick"].tolist()
@@ -230,20 +233,22 @@ def frames(path: Path) -> list[Image.Image]:
         return [frame.to_image() for frame in container.decode(video=0)]
 
 
-def test_a_short_life_on_video(poles: Path, tmp_path: Path) -> None:
-    everyone = Archive(poles).lives
-    row = int(np.flatnonzero(everyone.died & (everyone.lifespan < 60))[0])
+def test_a_video_shows_the_whole_of_a_short_life(poles: Path, tmp_path: Path) -> None:
+    lives = Archive(poles).lives
+    row = int(np.flatnonzero(lives.died & (lives.lifespan < 60))[0])
     path = tmp_path / "life.mp4"
-    done = here("replay", poles, "--organism", everyone.id[row], "--out", path)
+    done = here("replay", poles, "--organism", lives.id[row], "--out", path)
     assert (done.returncode, done.stdout.strip()) == (0, str(path))
     seen = frames(path)
-    assert len(seen) == everyone.lifespan[row] + 50  # its last picture stands for a second
+    assert len(seen) == lives.lifespan[row] + 50  # the last picture is shown for a second
     assert seen[0].size == (640, 360)
     assert seen[0].tobytes() != seen[-1].tobytes()
 
 
-def test_the_beginning_and_end_of_the_longest(poles: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Half a minute each; here less, for the tests' sake."""
+def test_a_video_shows_the_beginning_and_the_end_of_a_long_life(
+    poles: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """They are half a minute each; here they are shorter, to save time."""
     assert replay.PART == 30
     monkeypatch.setattr(replay, "PART", 4.0)
     done = here("replay", poles)
@@ -254,7 +259,7 @@ def test_the_beginning_and_end_of_the_longest(poles: Path, monkeypatch: pytest.M
     assert len(frames(Path(done.stdout.strip()))) == 200 + 50 + 200 + 50
 
 
-def test_a_part_as_a_gif(poles: Path, tmp_path: Path) -> None:
+def test_a_part_of_a_life_is_written_as_a_gif(poles: Path, tmp_path: Path) -> None:
     path = tmp_path / "life.gif"
     done = here("replay", poles, "--from", 10, "--to", 49, "--out", path)
     assert done.returncode == 0, done.stderr
@@ -283,13 +288,13 @@ def test_a_picture_shows_where_the_cart_is_and_the_push() -> None:
 
 
 def arrow_at(habitat: CartPole, action: int) -> float:
-    """Where the push is drawn: at the side it comes from."""
+    """Return where the push is drawn: on the side that it comes from."""
     picture = np.asarray(habitat.picture(np.zeros(4, np.float32), np.int32(action)))
     push = (picture == np.array([224, 160, 48])).all(axis=2)
     return float(np.flatnonzero(push.any(axis=0)).mean())
 
 
-def test_bad_input(poles: Path, mill: Path, tmp_path: Path) -> None:
+def test_wrong_input_is_an_error_that_says_why(poles: Path, mill: Path, tmp_path: Path) -> None:
     complains(here("replay", poles, "--organism", 10**6), 2, "no organism 1000000")
     complains(here("replay", poles, "--world", 2), 2, "no world 2")
     complains(here("replay", poles, "--from", 10**7), 2, "can be seen from age 1 to")
@@ -298,7 +303,7 @@ def test_bad_input(poles: Path, mill: Path, tmp_path: Path) -> None:
     complains(here("replay", tmp_path), 2, "is not a run")
 
 
-def test_a_habitat_on_the_host_that_cannot_be_seen(
+def test_a_habitat_without_pictures_gives_no_video(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     values = {"task": "host", "habitat": HOST_CARTPOLE, "cells": 4, "stop": {"ticks": 20}}

@@ -1,4 +1,4 @@
-"""Simulators in worker processes: what they do, and what happens when they do not."""
+"""Simulators in worker processes: what they do, and what happens when they fail."""
 
 import os
 import signal
@@ -32,7 +32,7 @@ def counters(cells: int = 7, workers: int = 3) -> Iterator[Pool]:
 
 
 def gone(process: int) -> bool:
-    """Whether it has ended, or is a zombie that nobody waits for."""
+    """Return whether a process has ended, or is a zombie without a parent that waits."""
     try:
         state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
     except FileNotFoundError:
@@ -43,7 +43,7 @@ def gone(process: int) -> bool:
 def wait_until_gone(process: int) -> None:
     deadline = time.monotonic() + 30
     while not gone(process):
-        assert time.monotonic() < deadline, "it lives on"
+        assert time.monotonic() < deadline, "the process is still alive"
         time.sleep(0.01)
 
 
@@ -77,7 +77,7 @@ def test_saved_states_go_on_with_any_number_of_workers() -> None:
         assert pool.arrays["total"].tolist() == [100 + 1000 * cell for cell in range(7)]
 
 
-def test_no_more_workers_than_cells() -> None:
+def test_there_are_no_more_workers_than_cells() -> None:
     with counters(cells=2, workers=5) as pool:
         pool.reset(np.ones(2, bool))
         assert len(set(pool.arrays["who"].tolist())) == 2
@@ -92,7 +92,7 @@ def test_a_worker_that_fails_is_noticed_at_once(
         pool.arrays["add"][4] = add
         with pytest.raises(Trouble, match=f"ended with status {status}.*resume the run"):
             pool.step(ALL)
-    assert ("told to fail" in capfd.readouterr().err) == (add == -1)
+    assert ("failed on request" in capfd.readouterr().err) == (add == -1)
 
 
 def test_a_worker_that_is_killed_is_noticed() -> None:
@@ -103,7 +103,7 @@ def test_a_worker_that_is_killed_is_noticed() -> None:
             pool.step(ALL)
 
 
-def test_a_worker_that_hangs_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_worker_that_hangs_is_noticed_after_a_time_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     with counters() as pool:
         pool.reset(ALL)
         monkeypatch.setattr(pools, "PATIENCE", 0.2)
@@ -112,14 +112,16 @@ def test_a_worker_that_hangs_is_given_up(monkeypatch: pytest.MonkeyPatch) -> Non
             pool.step(ALL)
 
 
-def test_a_worker_that_cannot_start(capfd: pytest.CaptureFixture[str]) -> None:
+def test_a_worker_that_cannot_start_is_an_error_that_says_why(
+    capfd: pytest.CaptureFixture[str],
+) -> None:
     with pytest.raises(Trouble, match="ended with status 1"):
-        Pool("tests.counters:Nobody", {"start": 0}, FIELDS, 2, 1)
-    assert "Nobody" in capfd.readouterr().err
+        Pool("tests.counters:Missing", {"start": 0}, FIELDS, 2, 1)
+    assert "Missing" in capfd.readouterr().err
 
 
-def test_a_worker_whose_run_is_gone_says_nothing(capfd: pytest.CaptureFixture[str]) -> None:
-    """Whoever kills a run in the midst of a tick reads no tracebacks of its workers."""
+def test_a_worker_whose_run_was_killed_prints_nothing(capfd: pytest.CaptureFixture[str]) -> None:
+    """A user who kills a run in the middle of a tick sees no tracebacks of workers."""
     with counters(cells=1, workers=1) as pool:
         worker = pool._workers[0]
         assert worker.stdin is not None
@@ -138,7 +140,7 @@ def test_a_closed_pool_leaves_no_process() -> None:
         wait_until_gone(worker)
 
 
-def test_a_pool_that_is_forgotten_is_closed() -> None:
+def test_a_pool_without_references_is_closed() -> None:
     pool = Pool("tests.counters:Counters", {"start": 0}, FIELDS, 2, 2)
     pool.reset(np.ones(2, bool))
     workers = pool.arrays["who"].tolist()
@@ -149,7 +151,7 @@ def test_a_pool_that_is_forgotten_is_closed() -> None:
 
 @pytest.mark.parametrize("kill", [signal.SIGKILL, signal.SIGTERM])
 def test_workers_end_with_their_run_however_it_ends(kill: int) -> None:
-    """And shared memory with them: its file never had a name."""
+    """Shared memory ends with them: its file never had a name."""
     script = textwrap.dedent(
         """
         import sys, time

@@ -1,4 +1,4 @@
-"""Randomness: the published cipher, and draws that depend on nothing but what they are for."""
+"""Randomness: the published cipher, and draws that depend on their names only."""
 
 from fractions import Fraction
 from itertools import product
@@ -34,7 +34,9 @@ def draws(
         (0x13198A2E03707344, 0x243F6A8885A308D3, 0xC4923A9C483DF7A0),
     ],
 )
-def test_known_answers_of_random123(key: int, counter: int, expected: int) -> None:
+def test_the_cipher_gives_the_known_answers_of_random123(
+    key: int, counter: int, expected: int
+) -> None:
     assert int(to_host(threefry(wide(key), wide(counter)))) == expected
 
 
@@ -43,8 +45,8 @@ def test_known_answers_of_random123(key: int, counter: int, expected: int) -> No
 def test_the_cipher_is_that_of_jax(k0: int, k1: int, counters: list[int]) -> None:
     a, b = np.array(counters, np.uint32).reshape(2, 8)
     expected = threefry_2x32(jnp.array([k0, k1], jnp.uint32), jnp.concatenate([a, b]))
-    mine = threefry(Wide(jnp.uint32(k0), jnp.uint32(k1)), Wide(jnp.asarray(a), jnp.asarray(b)))
-    np.testing.assert_array_equal(jnp.concatenate(mine), expected)
+    ours = threefry(Wide(jnp.uint32(k0), jnp.uint32(k1)), Wide(jnp.asarray(a), jnp.asarray(b)))
+    np.testing.assert_array_equal(jnp.concatenate(ours), expected)
 
 
 def test_every_part_of_a_draws_name_matters() -> None:
@@ -73,7 +75,7 @@ def noise(seed: Wide, tick: Wide, cells: jax.Array, index: jax.Array) -> Wide:
 
 @FEW
 @given(st.permutations(range(12)), st.integers(0, 2**64 - 1), st.integers(0, 2**64 - 1))
-def test_a_draw_does_not_depend_on_others_drawn_with_it(
+def test_a_draw_does_not_depend_on_draws_made_with_it(
     order: list[int], seed: int, tick: int
 ) -> None:
     numbers = [(seed + i // 2) % 2**64 for i in range(12)]
@@ -88,7 +90,7 @@ def test_a_draw_does_not_depend_on_others_drawn_with_it(
     assert int(to_host(bits(key, cells[one], index[one]))) == together[one]
 
 
-def test_bits_if_are_bits_or_nothing() -> None:
+def test_bits_if_gives_bits_or_zeros() -> None:
     key = stream(
         wide(np.full((3, 1), 9, np.uint64)), Purpose.PLACE, wide(np.full((3, 1), 2, np.uint64))
     )
@@ -107,7 +109,7 @@ def test_chance_compares_integers(probability: float, any_word: int) -> None:
     assert happens.tolist() == [int(each) < threshold for each in words]
 
 
-def test_chance_at_its_ends() -> None:
+def test_chance_is_never_at_0_and_always_at_1() -> None:
     words = jnp.array([0, 1, 2**31, 2**32 - 1], jnp.uint32)
     assert not chance(words, 0.0).any()
     assert chance(words, 1.0).all()
@@ -117,7 +119,7 @@ def test_chance_at_its_ends() -> None:
 
 @pytest.mark.parametrize("probability", [0.001, 0.05, 0.5, 0.9])
 @pytest.mark.parametrize("half", [0, 1])
-def test_chance_happens_as_often_as_it_should(probability: float, half: int) -> None:
+def test_chance_is_true_as_often_as_its_probability_says(probability: float, half: int) -> None:
     words = draws()[half]
     assert binomial(int(chance(words, probability).sum()), words.size, probability)
 
@@ -133,7 +135,7 @@ def test_below_is_the_high_word_of_the_product(words: list[int], n: int) -> None
 
 
 @pytest.mark.parametrize("n", [2, 3, 8, 31])
-def test_below_is_even(n: int) -> None:
+def test_below_gives_all_numbers_equally_often(n: int) -> None:
     assert even(np.bincount(np.asarray(below(draws().hi, n)), minlength=n))
 
 

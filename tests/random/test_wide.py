@@ -1,4 +1,4 @@
-"""Wide counts against Python's integers, modulo 2^64."""
+"""Wide counts compared with Python's integers, modulo 2^64."""
 
 import jax
 import jax.numpy as jnp
@@ -29,7 +29,7 @@ TIMES, TO_FLOAT = jax.jit(times), jax.jit(to_float)
 
 
 def eight(most: int) -> st.SearchStrategy[list[int]]:
-    """Eight numbers below `most`, often at the edges of words."""
+    """Return eight numbers below `most`, often at the edges of words."""
     edges = [
         n + d for n in (0, 2**16, 2**31, 2**32, 2**48, 2**63, 2**64) for d in (-2, -1, 0, 1, 2)
     ]
@@ -56,7 +56,7 @@ def uint32(values: list[int]) -> jax.Array:
 
 @FEW
 @given(counts)
-def test_the_host_gets_back_what_it_gave(a: list[int]) -> None:
+def test_numbers_come_back_to_the_host_unchanged(a: list[int]) -> None:
     value = whole(a)
     assert ints(value) == a
     assert np.asarray(value.hi).tolist() == [n >> 32 for n in a]
@@ -79,14 +79,14 @@ def test_a_list_of_ints_keeps_every_bit() -> None:
 
 @FEW
 @given(counts, counts)
-def test_sums_and_differences(a: list[int], b: list[int]) -> None:
+def test_sums_and_differences_are_those_of_integers(a: list[int], b: list[int]) -> None:
     assert ints(whole(a) + whole(b)) == [(x + y) % ALL for x, y in zip(a, b, strict=True)]
     assert ints(whole(a) - whole(b)) == [(x - y) % ALL for x, y in zip(a, b, strict=True)]
 
 
 @FEW
 @given(counts, words, st.lists(st.booleans(), min_size=8, max_size=8))
-def test_adding_an_ordinary_array(a: list[int], b: list[int], c: list[bool]) -> None:
+def test_an_ordinary_array_can_be_added(a: list[int], b: list[int], c: list[bool]) -> None:
     assert ints(whole(a).plus(uint32(b))) == [(x + y) % ALL for x, y in zip(a, b, strict=True)]
     assert ints(whole(a).plus(jnp.array(c))) == [(x + y) % ALL for x, y in zip(a, c, strict=True)]
     small = [n >> 1 for n in b]
@@ -96,7 +96,7 @@ def test_adding_an_ordinary_array(a: list[int], b: list[int], c: list[bool]) -> 
 
 @FEW
 @given(counts, counts, st.integers(0, 7))
-def test_comparisons(a: list[int], b: list[int], same: int) -> None:
+def test_comparisons_are_those_of_integers(a: list[int], b: list[int], same: int) -> None:
     b[same] = a[same]
     b[same - 1] = a[same - 1] ^ (1 << 32)
     pairs = list(zip(a, b, strict=True))
@@ -108,7 +108,9 @@ def test_comparisons(a: list[int], b: list[int], same: int) -> None:
 
 @FEW
 @given(counts, words, counts)
-def test_ticks_until_a_later_one(a: list[int], gaps: list[int], far: list[int]) -> None:
+def test_ticks_until_a_later_tick_are_counted(
+    a: list[int], gaps: list[int], far: list[int]
+) -> None:
     def expected(now: int, then: int) -> int:
         return min(then - now, 2**31 - 1) if then > now else 2**31 - 1
 
@@ -120,7 +122,7 @@ def test_ticks_until_a_later_one(a: list[int], gaps: list[int], far: list[int]) 
 
 @FEW
 @given(words, words)
-def test_products_are_whole(a: list[int], b: list[int]) -> None:
+def test_products_keep_every_bit(a: list[int], b: list[int]) -> None:
     expected = [x * y for x, y in zip(a, b, strict=True)]
     assert ints(times(uint32(a), uint32(b))) == expected
     assert ints(TIMES(uint32(a), uint32(b))) == expected
@@ -128,7 +130,7 @@ def test_products_are_whole(a: list[int], b: list[int]) -> None:
 
 @FEW
 @given(counts)
-def test_totals_and_the_largest_along_either_axis(a: list[int]) -> None:
+def test_totals_and_largest_numbers_are_taken_along_either_axis(a: list[int]) -> None:
     grid = [a[:4], a[4:]]
     value = Wide(*(word.reshape(2, 4) for word in whole(a)))
     assert ints(TOTAL(value, 1)) == [sum(row) % ALL for row in grid]
@@ -137,19 +139,19 @@ def test_totals_and_the_largest_along_either_axis(a: list[int]) -> None:
     assert ints(largest(value, axis=0)) == [max(column) for column in zip(*grid, strict=True)]
 
 
-def test_the_largest_is_of_whole_numbers_not_of_words() -> None:
+def test_the_largest_number_is_not_the_one_with_the_largest_word() -> None:
     assert to_host(largest(whole([2**32, 2**32 - 1, 5]), axis=0)) == 2**32
 
 
 @FEW
 @given(st.lists(st.integers(-(2**31), 2**31 - 1), min_size=8, max_size=8))
-def test_sign_extension(a: list[int]) -> None:
+def test_negative_words_keep_their_sign(a: list[int]) -> None:
     assert ints(signed(jnp.asarray(np.array(a, np.int32)))) == [n % ALL for n in a]
 
 
 @FEW
 @given(st.lists(st.integers(0, 2**63 - 1), min_size=8, max_size=8), st.integers(0, 62))
-def test_to_float_of_a_count(a: list[int], bits: int) -> None:
+def test_a_count_becomes_a_float_of_full_precision(a: list[int], bits: int) -> None:
     a = [n >> bits for n in a]
     for compute in (to_float, TO_FLOAT):
         value = compute(whole(a))
@@ -158,7 +160,7 @@ def test_to_float_of_a_count(a: list[int], bits: int) -> None:
 
 
 @pytest.mark.parametrize("value", [-1, -5, -1000, -(2**24), -(2**32) - 1, -(10**12), -(2**63)])
-def test_to_float_of_a_negative_number(value: int) -> None:
+def test_a_negative_number_becomes_a_float_within_two_last_bits(value: int) -> None:
     approximate = float(to_float(wide(value)))
     assert approximate == pytest.approx(value, rel=2.0**-22)
 

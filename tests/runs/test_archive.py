@@ -1,4 +1,4 @@
-"""A run is opened once: each part of it is read, checked and built when it is first asked for."""
+"""A run is opened once: each part of it is read, checked and built when it is first used."""
 
 import shutil
 from collections import Counter
@@ -26,7 +26,7 @@ SETTINGS = {**MILL, "brain": {"hidden": 4}, "seeds": 2, "seed": 3, "stop": {"tic
 
 @pytest.fixture(scope="module")
 def mill(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Seasons, a metabolism, two worlds."""
+    """Make a run of two worlds with seasons and a metabolism."""
     run = tmp_path_factory.mktemp("mill") / "run"
     loop.start(config(SETTINGS), run)
     return run
@@ -39,7 +39,7 @@ def fork(mill: Path, tmp_path: Path) -> Path:
 
 @pytest.fixture
 def checked(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
-    """How often each file's checksum is computed."""
+    """Count how often each file's checksum is computed."""
     counted, seal = Counter[str](), files.seal
 
     def counting(path: Path) -> dict[str, object]:
@@ -51,7 +51,7 @@ def checked(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
 
 
 def test_no_file_is_checked_twice(fork: Path, checked: Counter[str]) -> None:
-    """Whatever is asked of it: settings and genomes, checkpoints, segments and a fork's origin."""
+    """This holds for settings, genomes, checkpoints, segments and the origin of a fork."""
     run = Archive(fork)
     assert info(run)["worlds"]
     assert foraging(run).since == 250
@@ -73,7 +73,7 @@ def test_a_command_opens_its_run_once(
     assert {*checked.values()} == {1}
 
 
-def test_from_python_too(tmp_path: Path, checked: Counter[str]) -> None:
+def test_a_call_from_python_opens_its_run_once(tmp_path: Path, checked: Counter[str]) -> None:
     made = primordia.run("CartPole-survival", tmp_path / "run", cells=8, stop={"ticks": 100})
     checked.clear()
     oldest = made.oldest()
@@ -81,7 +81,7 @@ def test_from_python_too(tmp_path: Path, checked: Counter[str]) -> None:
     oldest.policy()
     assert {*checked.values()} == {1}
     made.info()
-    assert {*checked.values()} == {2}, "each call of a run opens it as it stands then"
+    assert {*checked.values()} == {2}, "each call of a run opens the run as it is then"
 
 
 def test_the_law_is_built_once(mill: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -117,7 +117,7 @@ def test_records_are_read_without_the_habitats_code(
 
 
 def test_an_opened_run_does_not_see_it_grow(tmp_path: Path) -> None:
-    """Although the checkpoint that it was opened at has been removed since."""
+    """The checkpoint at which it was opened has been removed since."""
     path = tmp_path / "run"
     loop.start(config(SETTINGS), path)
     run = Archive(path)
@@ -133,7 +133,7 @@ def test_an_opened_run_does_not_see_it_grow(tmp_path: Path) -> None:
     assert Archive(path).table("births").slice(0, len(run.table("births"))) == run.table("births")
 
 
-def test_some_columns_of_closed_and_open_segments(
+def test_some_columns_are_read_from_closed_and_open_segments(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(record, "SEGMENT_ROWS", 9)
@@ -147,7 +147,7 @@ def test_some_columns_of_closed_and_open_segments(
     assert len(run.lives) == len(run.table("births"))
 
 
-def test_what_a_fork_began_with(mill: Path, fork: Path) -> None:
+def test_a_fork_has_the_state_that_it_began_with(mill: Path, fork: Path) -> None:
     assert Archive(mill).origin is None
     origin, run = Archive(fork).origin, Archive(fork)
     assert origin is not None
@@ -160,14 +160,14 @@ def test_what_a_fork_began_with(mill: Path, fork: Path) -> None:
 
 
 @pytest.mark.parametrize("table", TABLES)
-def test_damage_is_noticed_whatever_is_read(mill: Path, tmp_path: Path, table: str) -> None:
+def test_damage_to_any_table_is_noticed(mill: Path, tmp_path: Path, table: str) -> None:
     run = Archive(shutil.copytree(mill, tmp_path / "run"))
     flip(run.path / table / "000000.parquet")
     with pytest.raises(Trouble, match=rf"{table}/000000\.parquet was changed or damaged"):
         info(run)
 
 
-def test_a_fork_whose_records_are_damaged_is_seen_as_it_began(fork: Path) -> None:
+def test_a_fork_with_damaged_records_is_read_as_it_began(fork: Path) -> None:
     flip(fork / "births" / "000000.parquet")
     run = Archive(fork)
     _, faults = run.newest
@@ -176,6 +176,6 @@ def test_a_fork_whose_records_are_damaged_is_seen_as_it_began(fork: Path) -> Non
     assert (run.lives.born <= 250).all()
 
 
-def test_what_is_no_run(tmp_path: Path) -> None:
+def test_a_folder_that_is_no_run_is_an_error_that_says_why(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="is not a run of primordia"):
         Archive(tmp_path)

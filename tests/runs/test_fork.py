@@ -1,4 +1,4 @@
-"""Forks: the tape replayed from a tick, the same or another way."""
+"""Forks: a run continued from a tick of its past, unchanged or with other settings."""
 
 from dataclasses import fields
 from pathlib import Path
@@ -16,7 +16,7 @@ from primordia.runs import loop
 from primordia.runs.archive import Archive
 from primordia.runs.verify import verify
 from tests.commands import complains, here
-from tests.history.test_lineage import comes_back
+from tests.history.test_lineage import assert_rebuilt
 from tests.worlds import MILL, config, merged
 
 SHIFTING = {**MILL, "brain": {"hidden": 6}, "seeds": 2, "seed": 11, "stop": {"ticks": 1500}}
@@ -24,7 +24,7 @@ SHIFTING = {**MILL, "brain": {"hidden": 6}, "seeds": 2, "seed": 11, "stop": {"ti
 
 @pytest.fixture(scope="module")
 def mill(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Seasons, metabolism, a noisy motor, two worlds."""
+    """Make a run of two worlds with seasons, a metabolism and a noisy motor."""
     run = tmp_path_factory.mktemp("mill") / "run"
     loop.start(config(SHIFTING), run)
     return run
@@ -47,8 +47,8 @@ def same(a: Path, b: Path) -> bool:
 
 
 @pytest.mark.parametrize("at", [1, 333, 334, 1499, 1500])
-def test_with_nothing_changed_it_lives_the_same(mill: Path, tmp_path: Path, at: int) -> None:
-    """Seasons that are due, food counted since the last look, motors: all of it goes on."""
+def test_a_fork_without_changes_lives_the_same(mill: Path, tmp_path: Path, at: int) -> None:
+    """Seasons that are due, food counted since the last look, and motors all continue."""
     fork = primordia.load(mill).fork(at, tmp_path / "fork").path
     assert same(mill, fork)
     after = after_the_fork(mill, at)
@@ -57,15 +57,17 @@ def test_with_nothing_changed_it_lives_the_same(mill: Path, tmp_path: Path, at: 
 
 
 def after_the_fork(run: Path, at: int) -> list[tuple[int, ...]]:
-    """Everybody who died or was born later."""
-    found = Archive(run).lives
-    found = found.take(np.flatnonzero((found.ended > at) | (found.born > at)))
-    columns = (found.world, found.id, found.parent, found.cell, found.born, found.ended)
+    """Return the lives that ended or began after the fork."""
+    lives = Archive(run).lives
+    lives = lives.take(np.flatnonzero((lives.ended > at) | (lives.born > at)))
+    columns = (lives.world, lives.id, lives.parent, lives.cell, lives.born, lives.ended)
     return list(zip(*(column.tolist() for column in columns), strict=True))
 
 
-def test_from_a_checkpoint_or_lived_again(mill: Path, tmp_path: Path) -> None:
-    """Only the newest checkpoints are kept; both ways lead to the same."""
+def test_a_fork_starts_from_a_checkpoint_or_lives_the_past_again(
+    mill: Path, tmp_path: Path
+) -> None:
+    """Only the newest checkpoints are kept; older ticks are lived again, with the same result."""
     again, kept = primordia.load(mill).fork(700, tmp_path / "again"), tmp_path / "kept"
     loop.start(config(merged(SHIFTING, {"stop": {"ticks": 700}})), tmp_path / "short")
     primordia.load(tmp_path / "short").fork(700, kept, stop={"ticks": 1500})
@@ -74,8 +76,8 @@ def test_from_a_checkpoint_or_lived_again(mill: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("at", [300, 1400])
-def test_what_is_told_of_a_fork_begins_with_it(mill: Path, tmp_path: Path, at: int) -> None:
-    """As of the run it is a fork of, from then on: who died when, at which ages, what was eaten."""
+def test_figures_of_a_fork_begin_at_the_fork(mill: Path, tmp_path: Path, at: int) -> None:
+    """Deaths, ages and food since the fork are those of the run that it is a fork of."""
     forked = primordia.load(mill).fork(at, tmp_path / "fork")
     fork, source = Archive(forked.path), Archive(mill)
     whole, part = primordia.compare(mill, fork.path).arms
@@ -87,24 +89,24 @@ def test_what_is_told_of_a_fork_begins_with_it(mill: Path, tmp_path: Path, at: i
     np.testing.assert_array_equal(whole.figures["first"].value, part.figures["first"].value)
     later = [fork.lives.of_world(world).born > at for world in range(2)]
     assert (part.figures["first"].value <= [1 + born.sum() for born in later]).all()
-    found, before = harvests(fork, 2), harvests(source, 2)
+    after, before = harvests(fork, 2), harvests(source, 2)
     for world in range(2):
         sampled = before[world].tick >= at
-        for one, other in zip(found[world], before[world], strict=True):
+        for one, other in zip(after[world], before[world], strict=True):
             np.testing.assert_array_equal(one, other[sampled])
     assert foraging(fork).since == at
-    anew, alive = fork.lives.since_fork(), fork.lives.born <= at
-    assert (anew.seen >= 0).all()
-    assert ((anew.seen == 0) == alive).all()
-    assert (anew.lifespan == fork.lives.lifespan).all()
+    since, alive = fork.lives.since_fork(), fork.lives.born <= at
+    assert (since.seen >= 0).all()
+    assert ((since.seen == 0) == alive).all()
+    assert (since.lifespan == fork.lives.lifespan).all()
     forked.plot(tmp_path)
     for name in ("ages", "survival", "population"):
         assert "since the fork" in (tmp_path / f"{name}.svg").read_text(encoding="utf-8")
     assert (tmp_path / "foraging.svg").exists()
 
 
-def test_a_season_does_what_a_fork_does(tmp_path: Path) -> None:
-    """To the last bit, so what a fork has shown can be shipped as a season."""
+def test_a_season_changes_lives_as_a_fork_does(tmp_path: Path) -> None:
+    """They give the same bits, so a change that a fork has shown can be shipped as a season."""
     settings = {**MILL, "seasons": [], "seeds": 2, "brain": {"hidden": 6}, "stop": {"ticks": 500}}
     change = {"mutation": {"probability": 0.1}, "hazard": 0.03}
     then = [
@@ -119,7 +121,9 @@ def test_a_season_does_what_a_fork_does(tmp_path: Path) -> None:
     assert forked != after_the_fork(tmp_path / "plain", 250)
 
 
-def test_what_is_lived_again_for_a_fork_is_told_too(mill: Path, tmp_path: Path) -> None:
+def test_progress_is_reported_while_the_past_of_a_fork_is_lived_again(
+    mill: Path, tmp_path: Path
+) -> None:
     ticks: list[int] = []
 
     def listen(status: loop.Status) -> None:
@@ -131,16 +135,16 @@ def test_what_is_lived_again_for_a_fork_is_told_too(mill: Path, tmp_path: Path) 
     assert ticks[-1] == 1500
 
 
-def test_ctrl_c_before_a_fork_is_begun(
+def test_ctrl_c_before_a_fork_has_begun_leaves_an_empty_folder(
     mill: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """While its past is lived again there is nothing to resume."""
+    """While the past is lived again there is nothing to resume."""
 
     def interrupt(_: object, __: loop.Status) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr("primordia.live.view.Plain.__call__", interrupt)
-    done = here("fork", mill, "--at", 700, "--out", tmp_path)  # empty, and may be used
+    done = here("fork", mill, "--at", 700, "--out", tmp_path)  # the folder is empty and may be used
     assert (done.returncode, list(tmp_path.iterdir())) == (130, [])
     assert done.stderr.strip() == f"Stopped before {tmp_path} was begun"
 
@@ -162,25 +166,25 @@ def test_another_seed_is_another_future_of_the_same_past(poles: Path, tmp_path: 
 
 
 def living(run: Path, at: int) -> set[tuple[int, ...]]:
-    found = Archive(run).lives
-    mine = (found.born <= at) & ((found.ended > at) | ~found.died)
-    columns = (found.id, found.parent, found.cell, found.born, found.birth_cause)
-    return set(zip(*(column[mine].tolist() for column in columns), strict=True))
+    lives = Archive(run).lives
+    living_then = (lives.born <= at) & ((lives.ended > at) | ~lives.died)
+    columns = (lives.id, lives.parent, lives.cell, lives.born, lives.birth_cause)
+    return set(zip(*(column[living_then].tolist() for column in columns), strict=True))
 
 
 def test_forks_of_forks_keep_the_promises(poles: Path, tmp_path: Path) -> None:
-    """They can be verified, resumed, and everybody's genome comes back."""
+    """They can be verified and resumed, and the genomes of all organisms can be rebuilt."""
     one = primordia.load(poles).fork(500, tmp_path / "one", seed=3, mutation={"scale": 0.02})
     two = one.fork(1200, tmp_path / "two", seed=4, stop={"ticks": 1500})
     two.resume(ticks=3000)
     for run in (one, two):
         assert verify(Archive(run.path)) == []
-        comes_back(run.path)
+        assert_rebuilt(run.path)
     straight = one.fork(1200, tmp_path / "straight", seed=4)
     assert same(straight.path, two.path)
 
 
-def test_a_fork_whose_checkpoints_are_lost_begins_again(poles: Path, tmp_path: Path) -> None:
+def test_a_fork_whose_checkpoints_are_lost_starts_again(poles: Path, tmp_path: Path) -> None:
     fork = primordia.load(poles).fork(500, tmp_path / "fork", seed=3)
     before = arrays(fork.path)
     for path in (tmp_path / "fork" / "checkpoints").glob("*/state.npz"):
@@ -211,25 +215,25 @@ def test_changed_settings_hold_and_others_stay_as_seasons_left_them(
     scales = [name for name in a if name.endswith(".scale")]
     assert [a[name] for name in scales] == pytest.approx(
         [0.05] * 3
-    )  # the season's, not the settings'
+    )  # the value of the season, not of the settings
     assert [b[name] for name in scales] == [a[name] for name in scales]
     assert (b["metabolism.gain"], b["replication"]) == (2.0, pytest.approx(0.01))
     assert a["metabolism.gain"] < 3.0 * 0.9 + 1e-6
     assert a["replication"] != pytest.approx(0.01)
 
 
-def test_hunger_brought_to_a_world_that_knew_none(poles: Path, tmp_path: Path) -> None:
-    """Everybody starts with a full store, so those alive starve together."""
+def test_hunger_can_be_added_to_a_world_without_metabolism(poles: Path, tmp_path: Path) -> None:
+    """All organisms start with a full store, so those that are alive starve together."""
     fork = primordia.load(poles).fork(
         2000, tmp_path / "fork", metabolism={"store": 50.0}, stop={"ticks": 2050}
     )
-    found = Archive(fork.path).lives
-    starved = found.cause == 1
+    lives = Archive(fork.path).lives
+    starved = lives.cause == 1
     assert starved.sum() > 10
-    assert (found.ended[starved & (found.born <= 2000)] == 2050).all()
+    assert (lives.ended[starved & (lives.born <= 2000)] == 2050).all()
 
 
-def test_a_harder_world_is_saturated_anew(tmp_path: Path) -> None:
+def test_a_harder_world_is_saturated_a_second_time(tmp_path: Path) -> None:
     easy = {"saturation_ticks": 50, "habitat": {"track_limit": 1e9, "angle_limit": 180.0}}
     run = primordia.run("CartPole-survival", tmp_path / "run", **easy)
     moment = run.info()["saturation"]
@@ -240,7 +244,7 @@ def test_a_harder_world_is_saturated_anew(tmp_path: Path) -> None:
     assert other.info()["saturation"]["tick"] >= moment["tick"] + 50
 
 
-def test_a_habitat_on_the_host(tmp_path: Path) -> None:
+def test_a_run_with_a_habitat_on_the_host_can_be_forked(tmp_path: Path) -> None:
     values = {"task": "m", "habitat": {"name": "tests.toys:Mirror"}, "cells": 8,
               "brain": {"hidden": 4}, "stop": {"ticks": 200}}  # fmt: skip
     loop.start(config(values), tmp_path / "run")
@@ -249,18 +253,20 @@ def test_a_habitat_on_the_host(tmp_path: Path) -> None:
     assert verify(Archive(fork.path)) == []
 
 
-def test_figures_of_a_fork_leave_nobody_out(poles: Path, tmp_path: Path) -> None:
-    """Its birth numbers do not begin at 0, nor are they without gaps."""
+def test_figures_of_a_fork_include_every_organism(poles: Path, tmp_path: Path) -> None:
+    """Birth numbers of a fork do not start at 0, and have gaps."""
     fork = primordia.load(poles).fork(1500, tmp_path / "fork", seed=2)
-    found = Archive(fork.path).lives
-    assert found.id[-1] > len(found)
-    assert sum(map(len, quarters(found))) == len(found)
-    assert found.rank.tolist() == list(range(len(found)))
+    lives = Archive(fork.path).lives
+    assert lives.id[-1] > len(lives)
+    assert sum(map(len, quarters(lives))) == len(lives)
+    assert lives.rank.tolist() == list(range(len(lives)))
     assert len(fork.plot()) == 8
 
 
 @pytest.mark.parametrize("at", [0, -1, 3001])
-def test_before_the_first_tick_or_after_the_last(poles: Path, tmp_path: Path, at: int) -> None:
+def test_a_fork_before_the_first_tick_or_after_the_last_is_refused(
+    poles: Path, tmp_path: Path, at: int
+) -> None:
     done = here("fork", poles, "--at", at, "--out", tmp_path / "fork")
     complains(done, 2, f"--at {at}", "from 1 to 3000")
     assert not (tmp_path / "fork").exists()
@@ -276,13 +282,15 @@ def test_before_the_first_tick_or_after_the_last(poles: Path, tmp_path: Path, at
         ("--habitat.senses", '["x"]'),
     ],
 )
-def test_what_a_living_world_cannot_change(poles: Path, tmp_path: Path, change: tuple) -> None:
+def test_settings_that_a_living_world_cannot_change_are_refused(
+    poles: Path, tmp_path: Path, change: tuple
+) -> None:
     done = here("fork", poles, "--at", 100, *change, "--out", tmp_path / "fork")
     complains(done, 2, "a fork cannot change")
     assert not (tmp_path / "fork").exists()
 
 
-def test_bad_input(poles: Path, tmp_path: Path) -> None:
+def test_wrong_input_is_an_error_that_says_why(poles: Path, tmp_path: Path) -> None:
     complains(here("fork", poles), 2, "--at")
     complains(here("fork", poles, "--at", 5, "--colour", 3), 2, "there is no setting 'colour'")
     complains(here("fork", poles, "--at", 5, "--out", poles), 2, "exists already")
@@ -292,8 +300,10 @@ def test_bad_input(poles: Path, tmp_path: Path) -> None:
     complains(done, 2, "these are the settings of a fork")
 
 
-def test_a_fork_cut_off_before_it_began(poles: Path, tmp_path: Path) -> None:
-    """Killed between its settings and its origin."""
+def test_a_fork_cut_off_before_it_began_is_an_error_that_says_why(
+    poles: Path, tmp_path: Path
+) -> None:
+    """The run was killed after its settings and before its origin was written."""
     fork = primordia.load(poles).fork(5, tmp_path / "fork", stop={"ticks": 6})
     for folder in ("origin", "checkpoints"):
         (fork.path / folder).rename(tmp_path / folder)

@@ -1,4 +1,4 @@
-"""Births and deaths joined, and who is whose parent, against the plainest way to find out."""
+"""Births joined with deaths, and parents found, compared with the plainest method."""
 
 import numpy as np
 import pyarrow as pa
@@ -9,7 +9,7 @@ from primordia.law.world import BirthCause, Cause
 from primordia.runs.lives import ALIVE, Lives, joined
 
 WORLDS = st.lists(st.lists(st.booleans(), max_size=30), min_size=1, max_size=4)
-"""Of each world, which of its birth numbers are on record: all, but where a fork began."""
+"""Which birth numbers are on record in each world: all of them, except in a fork."""
 
 
 def dictionary(codes: np.ndarray, names: type[BirthCause] | type[Cause]) -> pa.Array:
@@ -17,7 +17,7 @@ def dictionary(codes: np.ndarray, names: type[BirthCause] | type[Cause]) -> pa.A
 
 
 def tables(worlds: list[list[bool]], cuts: int) -> tuple[list[pa.Table], list[pa.Table]]:
-    """Births and deaths of worlds in the order of events, in several segments."""
+    """Return births and deaths of worlds in the order of events, in several segments."""
     rows = [
         (n, w) for w, there in enumerate(worlds) for n, on_record in enumerate(there) if on_record
     ]
@@ -40,14 +40,14 @@ def tables(worlds: list[list[bool]], cuts: int) -> tuple[list[pa.Table], list[pa
     return tuple([each.slice(at * size, size) for at in range(cuts)] for each in (births, deaths))  # type: ignore[return-value]
 
 
-def found(worlds: list[list[bool]], cuts: int) -> Lives:
+def lives_of(worlds: list[list[bool]], cuts: int) -> Lives:
     births, deaths = tables(worlds, cuts)
     return joined(births, deaths, np.array([1000 + w for w in range(len(worlds))]), 40)
 
 
 @given(WORLDS, st.integers(1, 3))
 def test_every_birth_with_its_death(worlds: list[list[bool]], cuts: int) -> None:
-    lives = found(worlds, cuts)
+    lives = lives_of(worlds, cuts)
     expected = [(w, n) for w, there in enumerate(worlds) for n, here in enumerate(there) if here]
     assert list(zip(lives.world.tolist(), lives.id.tolist(), strict=True)) == expected
     for row, (world, number) in enumerate(expected):
@@ -62,7 +62,7 @@ def test_every_birth_with_its_death(worlds: list[list[bool]], cuts: int) -> None
 
 @given(WORLDS, st.integers(0, 2**30))
 def test_parents_are_found_wherever_numbers_have_gaps(worlds: list[list[bool]], mask: int) -> None:
-    lives = found(worlds, 1)
+    lives = lives_of(worlds, 1)
     some = lives.take(np.array([bool(mask >> row % 30 & 1) for row in range(len(lives))], bool))
     where = {(w, n): row for row, (w, n) in enumerate(zip(some.world, some.id, strict=True))}
     expected = [where.get(each, -1) for each in zip(some.world, some.parent, strict=True)]
@@ -71,7 +71,7 @@ def test_parents_are_found_wherever_numbers_have_gaps(worlds: list[list[bool]], 
 
 @given(WORLDS)
 def test_the_oldest_of_one_world_or_of_all(worlds: list[list[bool]]) -> None:
-    lives = found(worlds, 1)
+    lives = lives_of(worlds, 1)
     for world in {None, *lives.world.tolist()}:
         here = np.arange(len(lives)) if world is None else np.flatnonzero(lives.world == world)
         if len(here):

@@ -1,4 +1,4 @@
-"""Records: every event is in exactly one segment or tail, in tables that any reader understands."""
+"""Records: every event is in exactly one segment or tail, in tables that any reader can open."""
 
 import signal
 from pathlib import Path
@@ -25,12 +25,12 @@ WORDS = st.integers(0, 2**32 - 1)
 
 @pytest.fixture(scope="module")
 def lived() -> Lived:
-    """The same worlds in memory, with the events as the law gave them."""
+    """Live the same worlds in memory, with the events as the law gave them."""
     return Lived(config(WHAT), TICKS)
 
 
 def recorded(run: Path, interrupted_after: int | None = None) -> primordia.Run:
-    """A run to the same tick; on the way it may be interrupted, and is then resumed."""
+    """Live a run to the same tick; interrupt and resume it if asked."""
 
     def press(status: loop.Status) -> None:
         ticks = int(status.engine.state.world.worlds.tick.lo[0])
@@ -46,17 +46,17 @@ def recorded(run: Path, interrupted_after: int | None = None) -> primordia.Run:
     return primordia.Run(run)
 
 
-def has_all_rows(run: primordia.Run, lived: Lived) -> None:
+def assert_all_rows(run: primordia.Run, lived: Lived) -> None:
     for name in TABLES:
-        expected, found = lived.table(name), run.table(name)
-        assert found.num_rows > 0
+        expected, actual = lived.table(name), run.table(name)
+        assert actual.num_rows > 0
         for column, values in expected.items():
-            got = found[column].to_numpy(zero_copy_only=False)
+            got = actual[column].to_numpy(zero_copy_only=False)
             np.testing.assert_array_equal(got, values, err_msg=f"{name}.{column}")
 
 
 def segments(run: Path, name: str) -> list[int]:
-    """Rows of each segment on disk, in order."""
+    """Return the number of rows of each segment on disk, in order."""
     return [pq.read_metadata(path).num_rows for path in sorted((run / name).iterdir())]
 
 
@@ -66,7 +66,7 @@ def test_segments_of_any_size_hold_the_same_rows(
 ) -> None:
     monkeypatch.setattr(record, "SEGMENT_ROWS", size)
     run = recorded(tmp_path / "run")
-    has_all_rows(run, lived)
+    assert_all_rows(run, lived)
     assert [world["digest"] for world in run.info()["worlds"]] == lived.digests()
     for name in TABLES:
         *full, last = segments(run.path, name)
@@ -92,7 +92,7 @@ def test_tails_and_segments_together_hold_every_row(
     assert len(arrays["tail.births"]) > 0
     some = run.table("births")
     assert run.resume() == []
-    has_all_rows(run, lived)
+    assert_all_rows(run, lived)
     assert run.table("births").slice(0, some.num_rows).equals(some)
     assert [world["digest"] for world in run.info()["worlds"]] == lived.digests()
 
@@ -135,11 +135,11 @@ def test_files_are_plain_parquet(lived: Lived, tmp_path: Path) -> None:
     deaths = pq.read_table(run.path / "deaths").to_pylist()
     assert {birth["cause"] for birth in births} == {"founder", "copy", "mutant"}
     assert {death["cause"] for death in deaths} <= {"fatal", "starved", "hazard"}
-    consistent(births, deaths, run.info()["worlds"])
+    assert_consistent(births, deaths, run.info()["worlds"])
 
 
-def consistent(births: list[dict], deaths: list[dict], worlds: list[dict]) -> None:
-    """What the tables say of lives fits together, and fits the counts."""
+def assert_consistent(births: list[dict], deaths: list[dict], worlds: list[dict]) -> None:
+    """Assert that births and deaths agree with each other and with the counts."""
     for number, world in enumerate(worlds):
         born = {birth["id"]: birth for birth in births if birth["world"] == number}
         died = {death["id"]: death for death in deaths if death["world"] == number}
@@ -160,13 +160,13 @@ def consistent(births: list[dict], deaths: list[dict], worlds: list[dict]) -> No
 def test_metrics_are_sampled_on_time_and_agree_with_the_events(lived: Lived) -> None:
     metrics, births = lived.table("metrics"), lived.table("births")
     for world in range(3):
-        mine = metrics["world"] == world
-        ticks = metrics["tick"][mine]
+        in_world = metrics["world"] == world
+        ticks = metrics["tick"][in_world]
         assert (np.diff(ticks) > 0).all()
         assert set(range(100, TICKS + 1, 100)) <= set(ticks.tolist())
         born = births["tick"][births["world"] == world]
         counted = np.searchsorted(born, ticks, side="right")
-        np.testing.assert_array_equal(metrics["births"][mine], counted)
+        np.testing.assert_array_equal(metrics["births"][in_world], counted)
 
 
 @given(
@@ -190,7 +190,7 @@ def test_any_changed_word_changes_its_rows_hash_and_no_other(
     assert differs.sum() == 2
 
 
-def test_swapped_words_and_rows_are_told_apart() -> None:
+def test_swapped_words_and_rows_have_other_hashes() -> None:
     row = np.array([[1, 2, 3]], np.uint32)
     assert (row_hashes(row) != row_hashes(row[:, ::-1])).all()
     assert (row_hashes(row) != row_hashes(row[:, :2])).all()

@@ -18,7 +18,7 @@ SLOWLY = ("--checkpoint-every", "0.05")
 
 @pytest.fixture(scope="module")
 def through(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
-    """Digests of the run that was never disturbed."""
+    """Return the digests of an undisturbed run."""
     run = tmp_path_factory.mktemp("through") / "run"
     assert here("run", *WHAT, "--ticks", TICKS, "--out", run).returncode == 0
     return digests(run)
@@ -34,7 +34,7 @@ def test_checkpoint_intervals_make_no_difference(through: list[str], tmp_path: P
     assert digests(run) == through
 
 
-def test_more_ticks_later_equal_all_at_once(through: list[str], tmp_path: Path) -> None:
+def test_ticks_added_later_equal_ticks_lived_at_once(through: list[str], tmp_path: Path) -> None:
     run = tmp_path / "run"
     assert here("run", *WHAT, "--ticks", 7_001, "--out", run).returncode == 0
     assert here("resume", run, "--ticks", 9_999).returncode == 0
@@ -43,7 +43,7 @@ def test_more_ticks_later_equal_all_at_once(through: list[str], tmp_path: Path) 
 
 
 def interrupted(run: Path, how: signal.Signals, rng: random.Random) -> int:
-    """Start or resume, and disturb at a random instant -> exit status."""
+    """Start or resume a run, disturb it at a random instant, and return its exit status."""
     words = ("resume", run) if run.exists() else ("run", *WHAT, "--ticks", TICKS, "--out", run)
     process = begin(*words, *SLOWLY, "--quiet")
     deadline = time.monotonic() + 60
@@ -74,11 +74,11 @@ def test_kill_9_then_resume_equals_never_killed(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(100, 150))
-def test_kill_9_fifty_times(through: list[str], tmp_path: Path, seed: int) -> None:
+def test_fifty_kills_leave_the_run_unchanged(through: list[str], tmp_path: Path, seed: int) -> None:
     assert killed_and_resumed(tmp_path / "run", seed) == through
 
 
-def test_ctrl_c_saves_and_says_how_to_go_on(through: list[str], tmp_path: Path) -> None:
+def test_ctrl_c_saves_and_says_how_to_resume(through: list[str], tmp_path: Path) -> None:
     run = tmp_path / "run"
     process = begin("run", *WHAT, "--ticks", TICKS, "--out", run, *SLOWLY)
     while not list(run.glob("checkpoints/0*/manifest.json")):
@@ -95,7 +95,7 @@ def test_ctrl_c_saves_and_says_how_to_go_on(through: list[str], tmp_path: Path) 
 @pytest.mark.parametrize(
     "junk", ["checkpoints/.writing-000007/state.npz", "births/.writing-000003.parquet"]
 )
-def test_half_written_files_do_not_exist(through: list[str], tmp_path: Path, junk: str) -> None:
+def test_half_written_files_are_ignored(through: list[str], tmp_path: Path, junk: str) -> None:
     run = tmp_path / "run"
     assert here("run", *WHAT, "--ticks", 5_000, "--out", run).returncode == 0
     (run / junk).parent.mkdir(exist_ok=True)
@@ -107,7 +107,7 @@ def test_half_written_files_do_not_exist(through: list[str], tmp_path: Path, jun
     assert not (run / "deaths" / "000099.parquet").exists()
 
 
-def test_a_damaged_newest_checkpoint_is_passed_over(through: list[str], tmp_path: Path) -> None:
+def test_a_damaged_newest_checkpoint_is_skipped(through: list[str], tmp_path: Path) -> None:
     run = tmp_path / "run"
     assert here("run", *WHAT, "--ticks", 11_000, "--out", run, *SLOWLY).returncode == 0
     newest = sorted(run.glob("checkpoints/0*"))[-1]
@@ -122,7 +122,7 @@ def test_a_damaged_newest_checkpoint_is_passed_over(through: list[str], tmp_path
     assert digests(run) == through
 
 
-def test_one_writer_at_a_time(tmp_path: Path) -> None:
+def test_a_run_has_one_writer_at_a_time(tmp_path: Path) -> None:
     run = tmp_path / "run"
     process = begin("run", *WHAT, "--ticks", 10**9, "--out", run)
     while not (run / "versions.json").exists():
@@ -134,7 +134,7 @@ def test_one_writer_at_a_time(tmp_path: Path) -> None:
         process.communicate()
 
 
-def test_verify_holds(tmp_path: Path) -> None:
+def test_verify_finds_no_difference_in_a_good_run(tmp_path: Path) -> None:
     run = tmp_path / "run"
     assert here("run", *WHAT, "--ticks", 5_000, "--out", run).returncode == 0
     done = here("verify", run)

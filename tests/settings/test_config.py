@@ -55,15 +55,15 @@ MANY: list[dict[str, Any]] = [
 
 
 @pytest.mark.parametrize("values", MANY, ids=range(len(MANY)))
-def test_toml_keeps_everything(values: dict[str, Any], tmp_path: Path) -> None:
+def test_toml_keeps_every_setting(values: dict[str, Any], tmp_path: Path) -> None:
     before = validated(values, source="test")
     file = tmp_path / "config.toml"
     file.write_text(before.to_toml(), encoding="utf-8")
     assert validated(from_toml(file), source=str(file)) == before
-    assert load(str(file)) == before, "also where the file names a built-in task"
+    assert load(str(file)) == before, "this holds also where the file names a built-in task"
 
 
-def test_what_is_none_stays_none_over_a_built_in_task(tmp_path: Path) -> None:
+def test_a_setting_that_is_none_stays_none_over_a_built_in_task(tmp_path: Path) -> None:
     file = tmp_path / "config.toml"
     file.write_text(load(TASK, {"stop": {"until": None}}).to_toml())
     assert load(str(file)).stop.until is None
@@ -83,7 +83,7 @@ def test_what_is_none_stays_none_over_a_built_in_task(tmp_path: Path) -> None:
         ),
     )
 )
-def test_numbers_come_back_exactly(settings: dict[str, Any]) -> None:
+def test_numbers_are_read_back_exactly(settings: dict[str, Any]) -> None:
     before = load(TASK, settings)
     assert validated(tomllib.loads(before.to_toml()), source="test") == before
 
@@ -91,19 +91,19 @@ def test_numbers_come_back_exactly(settings: dict[str, Any]) -> None:
 def test_a_file_that_names_a_task_changes_only_what_it_says(tmp_path: Path) -> None:
     file = tmp_path / "mine.toml"
     file.write_text(f'task = "{TASK}"\nhazard = 0.25\n[mutation]\nscale = 0.5\n')
-    mine, theirs = load(str(file)), load(TASK)
-    assert (mine.hazard, mine.mutation["scale"]) == (0.25, 0.5)
-    mutation = {**theirs.mutation, "scale": 0.5}
-    assert mine == theirs.model_copy(update={"hazard": 0.25, "mutation": mutation})
+    changed, built_in = load(str(file)), load(TASK)
+    assert (changed.hazard, changed.mutation["scale"]) == (0.25, 0.5)
+    mutation = {**built_in.mutation, "scale": 0.5}
+    assert changed == built_in.model_copy(update={"hazard": 0.25, "mutation": mutation})
 
 
-def test_a_file_may_be_a_task_of_its_own(tmp_path: Path) -> None:
+def test_a_file_may_be_a_whole_task(tmp_path: Path) -> None:
     file = tmp_path / "mine.toml"
     file.write_text('task = "mine"\n[habitat]\nname = "cartpole"\n')
     assert load(str(file)) == Config(task="mine", habitat={"name": "cartpole"})
 
 
-def test_flags_override_the_file_and_the_file_the_task(tmp_path: Path) -> None:
+def test_flags_override_the_file_and_the_file_overrides_the_task(tmp_path: Path) -> None:
     file, run = tmp_path / "mine.toml", tmp_path / "run"
     values = {
         "task": TASK,
@@ -131,17 +131,17 @@ def test_flags_override_the_file_and_the_file_the_task(tmp_path: Path) -> None:
     assert json.loads(here("info", run, "--json").stdout)["ticks"] == 2
 
 
-def test_merging_leaves_its_arguments_alone() -> None:
+def test_merging_does_not_change_its_arguments() -> None:
     base, change = {"a": {"b": 1, "c": 2}, "d": 3}, {"a": {"b": 4}, "d": {"e": 5}}
     assert merged(base, change) == {"a": {"b": 4, "c": 2}, "d": {"e": 5}}
     assert base == {"a": {"b": 1, "c": 2}, "d": 3}
 
 
 def models(model: type[BaseModel]) -> list[type[BaseModel]]:
-    """A model, and those of its fields."""
+    """Return a model and the models of its fields."""
     inner = [field.annotation for field in model.model_fields.values()]
-    found = [each for each in inner if isinstance(each, type) and issubclass(each, BaseModel)]
-    return [model, *(one for each in found for one in models(each))]
+    nested = [each for each in inner if isinstance(each, type) and issubclass(each, BaseModel)]
+    return [model, *(one for each in nested for one in models(each))]
 
 
 BRAINS = [brains.find(name) for name in brains.KNOWN]
@@ -187,7 +187,7 @@ def test_help_lists_every_setting_with_its_value_and_meaning(tmp_path: Path) -> 
     assert "[none]" in squeezed
 
 
-def test_help_tells_the_values_of_a_file_and_defaults_without_a_task(tmp_path: Path) -> None:
+def test_help_shows_the_values_of_a_file_or_else_the_defaults(tmp_path: Path) -> None:
     file = tmp_path / "mine.toml"
     file.write_text(f'task = "{TASK}"\nhazard = 0.25\n')
     assert "for all organisms [0.25]" in " ".join(help_text(file).split())
@@ -197,7 +197,7 @@ def test_help_tells_the_values_of_a_file_and_defaults_without_a_task(tmp_path: P
     assert "--cells" in help_text(file)
 
 
-def test_tests_that_change_a_task_get_what_they_ask_for() -> None:
+def test_the_helper_config_changes_the_settings_of_a_task() -> None:
     assert config(TASK, cells=5, mutation={"scale": 0.5}) == load(
         TASK, {"cells": 5, "mutation": {"scale": 0.5}}
     )

@@ -1,4 +1,4 @@
-"""Replaceable parts in settings: a table that says which part, and that part's own settings."""
+"""Replaceable parts in settings: a table names the part and holds its settings."""
 
 import tomllib
 from pathlib import Path
@@ -17,7 +17,7 @@ from tests.worlds import MEADOW, MILL, config
 TASK = "CartPole-survival"
 
 
-def test_settings_of_a_brain_are_its_own_and_complete() -> None:
+def test_a_brain_has_its_own_settings_with_defaults_filled_in() -> None:
     assert config(MEADOW).brain == {"kind": "recurrent", "hidden": 32, "biases": False}
     assert config(MEADOW, brain={"kind": "linear"}).brain == {"kind": "linear", "biases": False}
     other = config(MEADOW, brain={"kind": "tests.toys:Sliding", "width": 1})
@@ -26,7 +26,7 @@ def test_settings_of_a_brain_are_its_own_and_complete() -> None:
 
 
 def test_settings_of_an_older_version_are_read() -> None:
-    """It knew a kind and a number of neurons."""
+    """The older version had a kind and a number of neurons."""
     for kind in ("recurrent", "feed-forward"):
         old = {**MEADOW, "brain": {"kind": kind, "hidden": 5}}
         assert validated(old, source="test").brain == {**old["brain"], "biases": False}
@@ -37,7 +37,7 @@ def test_settings_are_read_without_the_code_of_the_brain() -> None:
     assert parsed({**MEADOW, "brain": table}, source="test").brain == table
 
 
-def test_another_part_takes_none_of_the_settings_of_the_one_before() -> None:
+def test_a_part_does_not_take_settings_of_the_part_that_it_replaces() -> None:
     assert load(TASK, {"brain": {"kind": "linear"}}).brain == {"kind": "linear", "biases": False}
     base = {"brain": {"kind": "gated", "hidden": 4}, "motor": {"kind": "direct", "sd": 0.5}}
     assert merged(base, {"brain": {"kind": "gated", "biases": True}})["brain"] == {
@@ -89,7 +89,7 @@ def test_blocks_of_any_name_are_settings(tmp_path: Path) -> None:
         (["--mutation.blocks.input_bias.scale", "1"], "this brain has no block 'input_bias'"),
     ],
 )
-def test_what_is_wrong_is_said(words: list[str], says: str) -> None:
+def test_wrong_settings_of_a_part_are_errors_that_say_why(words: list[str], says: str) -> None:
     complains(here("run", TASK, *words), 2, f"{TASK}: ", says)
 
 
@@ -127,7 +127,7 @@ def test_help_without_a_task_shows_the_settings_of_all_brains() -> None:
     assert ', or module:Class ["recurrent"]' in text
 
 
-def test_a_part_that_is_no_table_has_no_settings_to_show(tmp_path: Path) -> None:
+def test_a_part_that_is_no_table_leaves_help_as_it_is(tmp_path: Path) -> None:
     file = tmp_path / "mine.toml"
     file.write_text('task = "own"\nhabitat = "pond"\nbrain = 5\n')
     assert "--brain.hidden " in helped(file)

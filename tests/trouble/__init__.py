@@ -1,4 +1,7 @@
-"""What goes wrong is told in one line, damages nothing, and a run can go on afterwards."""
+"""Failures: each gives one line of message and damages nothing, and the run can be resumed.
+
+This file offers runs that were interrupted, damage to files, and the check that a run can be resumed.
+"""
 
 import json
 import signal
@@ -17,7 +20,7 @@ SMALL = (TASK, "--cells", "8", "--hazard", "0.002", "--sample_every", "500", "--
 
 
 def interrupt_after(run: Path, ticks: int) -> None:
-    """Go on to TICKS, but press Ctrl-C once so many are reached."""
+    """Resume a run to TICKS, but press Ctrl-C after `ticks`."""
 
     def press(status: loop.Status) -> None:
         if int(status.engine.state.world.worlds.tick.lo[0]) > ticks:
@@ -28,22 +31,23 @@ def interrupt_after(run: Path, ticks: int) -> None:
 
 
 def digest(run: Path) -> str:
+    """Return the digest that `info` prints."""
     done = here("info", run, "--json")
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)["digest"]
 
 
 def goes_on(run: Path, through: str, *words: str) -> None:
-    """It can be resumed, and ends as if nothing had happened."""
+    """Assert that a run can be resumed and ends with the digest of an undisturbed run."""
     done = here("resume", run, "--ticks", TICKS, "--quiet", *words)
     assert done.returncode == 0, done.stderr
     assert digest(run) == through
 
 
 def contents(folder: Path) -> dict[str, bytes]:
-    """Every file, but for the lock."""
-    found = (path for path in folder.rglob("*") if path.is_file() and path.name != "lock")
-    return {str(path): path.read_bytes() for path in found}
+    """Return the content of every file except the lock."""
+    files = (path for path in folder.rglob("*") if path.is_file() and path.name != "lock")
+    return {str(path): path.read_bytes() for path in files}
 
 
 def flip(path: Path, at: float = 0.5) -> None:
@@ -54,9 +58,11 @@ def flip(path: Path, at: float = 0.5) -> None:
 
 
 def newest(run: Path) -> Path:
+    """Return the newest checkpoint."""
     return checkpoint.numbered(run)[-1]
 
 
 def started(run: Path, listen: Callable[[loop.Status], None] | None = None) -> None:
+    """Live a run to TICKS, with a checkpoint after every chunk."""
     settings = {"cells": 8, "hazard": 0.002, "sample_every": 500, "stop": {"ticks": TICKS}}
     loop.start(config.load(TASK, settings), run, checkpoint_every=0.0, listen=listen)

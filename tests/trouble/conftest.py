@@ -1,3 +1,5 @@
+"""Runs that tests interrupt and damage."""
+
 import shutil
 from pathlib import Path
 
@@ -10,7 +12,7 @@ from tests.trouble import HALF, SMALL, TICKS, digest, interrupt_after
 
 @pytest.fixture(scope="module")
 def through(tmp_path_factory: pytest.TempPathFactory) -> str:
-    """Digest of the run that never met with trouble."""
+    """Return the digest of the undisturbed run."""
     run = tmp_path_factory.mktemp("through") / "run"
     assert here("run", *SMALL, "--ticks", TICKS, "--out", run).returncode == 0
     return digest(run)
@@ -18,7 +20,7 @@ def through(tmp_path_factory: pytest.TempPathFactory) -> str:
 
 @pytest.fixture(scope="module")
 def half(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A run that was interrupted half-way: two checkpoints, a closed segment and open tails."""
+    """Make a run that was interrupted half-way: two checkpoints, a closed segment and open tails."""
     run = tmp_path_factory.mktemp("half") / "run"
     assert here("run", *SMALL, "--ticks", HALF, "--out", run).returncode == 0
     interrupt_after(run, HALF)
@@ -29,5 +31,5 @@ def half(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def run(half: Path, tmp_path: Path) -> Path:
-    """A copy of it, to be damaged."""
+    """Copy the interrupted run, so that a test may damage it."""
     return Path(shutil.copytree(half, tmp_path / "run"))

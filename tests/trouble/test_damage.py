@@ -1,4 +1,4 @@
-"""Files of a run are damaged."""
+"""Damage to the files of a run."""
 
 import json
 import shutil
@@ -26,14 +26,14 @@ def garble(path: Path) -> None:
 
 
 def miscount(path: Path) -> None:
-    """A change that leaves valid JSON."""
+    """Change a number and leave valid JSON."""
     content = json.loads(path.read_text())
     content["progress"]["wall_s"] += 1
     path.write_text(json.dumps(content))
 
 
 @pytest.mark.parametrize("damage", [flip, truncate, garble, empty, Path.unlink])
-def test_a_damaged_state_is_passed_over(
+def test_a_checkpoint_with_a_damaged_state_is_skipped(
     run: Path, through: str, damage: Callable[[Path], None]
 ) -> None:
     state = newest(run) / "state.npz"
@@ -46,7 +46,7 @@ def test_a_damaged_state_is_passed_over(
 
 
 @pytest.mark.parametrize("damage", [flip, miscount, garble, empty, Path.unlink])
-def test_a_damaged_manifest_is_passed_over(
+def test_a_checkpoint_with_a_damaged_manifest_is_skipped(
     run: Path, through: str, damage: Callable[[Path], None]
 ) -> None:
     manifest = newest(run) / "manifest.json"
@@ -58,7 +58,7 @@ def test_a_damaged_manifest_is_passed_over(
 
 @pytest.mark.parametrize("where", ["births/000000.parquet", "deaths/000000.parquet", "config.toml"])
 @pytest.mark.parametrize("damage", [flip, truncate, Path.unlink])
-def test_damage_to_what_all_checkpoints_need(
+def test_damage_to_a_file_that_all_checkpoints_need_is_an_error(
     run: Path, where: str, damage: Callable[[Path], None]
 ) -> None:
     damage(run / where)
@@ -70,7 +70,7 @@ def test_damage_to_what_all_checkpoints_need(
     assert contents(run) == before
 
 
-def test_the_only_checkpoint_is_damaged(run: Path, through: str, tmp_path: Path) -> None:
+def test_damage_to_the_only_checkpoint_is_noticed(run: Path, through: str, tmp_path: Path) -> None:
     shutil.rmtree(checkpoint.numbered(run)[0])
     flip(newest(run) / "state.npz")
     before = contents(run)
@@ -83,7 +83,7 @@ def test_the_only_checkpoint_is_damaged(run: Path, through: str, tmp_path: Path)
     assert digest(tmp_path / "again") == through
 
 
-def test_a_changed_configuration_is_no_longer_that_run(run: Path) -> None:
+def test_a_run_with_a_changed_configuration_is_refused(run: Path) -> None:
     config = run / "config.toml"
     config.write_text(config.read_text().replace("seed = 0", "seed = 1"))
     for command in ("info", "resume", "verify"):
@@ -91,7 +91,7 @@ def test_a_changed_configuration_is_no_longer_that_run(run: Path) -> None:
 
 
 @pytest.mark.parametrize("text", ["", "cells = 'x'", "\x00", "task = 5"])
-def test_garbage_in_place_of_the_configuration(run: Path, text: str) -> None:
+def test_a_garbled_configuration_is_an_error(run: Path, text: str) -> None:
     (run / "config.toml").write_text(text)
     for command in ("info", "resume", "verify"):
         complains(here(command, run), 2, str(run / "config.toml"))

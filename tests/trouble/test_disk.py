@@ -1,4 +1,4 @@
-"""Nothing can be written."""
+"""Disks on which a run cannot be written."""
 
 import errno
 import os
@@ -21,7 +21,7 @@ from tests.commands import complains, here
 from tests.trouble import SMALL, TICKS, contents, digest, goes_on, started
 
 
-def test_places_where_no_run_can_be_made(tmp_path: Path) -> None:
+def test_a_place_where_no_run_can_be_made_is_an_error(tmp_path: Path) -> None:
     file = tmp_path / "file"
     file.write_text("mine")
     below = here("run", *SMALL, "--ticks", "10", "--out", file / "run")
@@ -31,7 +31,7 @@ def test_places_where_no_run_can_be_made(tmp_path: Path) -> None:
     assert file.read_text() == "mine"
 
 
-def test_a_run_that_may_not_be_written(
+def test_a_run_without_write_permission_is_an_error(
     run: Path, through: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     before = contents(run)
@@ -44,7 +44,7 @@ def test_a_run_that_may_not_be_written(
 
 
 def refusing(real_open: Callable[..., int], below: Path) -> Callable[..., int]:
-    """`os.open` that lets nobody write below a path."""
+    """Return an `os.open` that refuses to write below a path."""
 
     def refuse(path: str, flags: int, *rest: Any, **named: Any) -> int:
         if flags & (os.O_WRONLY | os.O_RDWR) and str(path).startswith(str(below)):
@@ -55,7 +55,7 @@ def refusing(real_open: Callable[..., int], below: Path) -> Callable[..., int]:
 
 
 class Disk:
-    """A disk that is full from the n-th write on, under everything that writes."""
+    """A disk that is full from the n-th write on, for every function that writes."""
 
     def __init__(self, patch: pytest.MonkeyPatch, writes: int) -> None:
         self.left, self.writes = writes, 0
@@ -77,7 +77,7 @@ class Disk:
         return write
 
 
-def test_a_disk_that_fills_up_at_any_write(
+def test_after_a_full_disk_at_any_write_a_run_can_be_resumed(
     half: Path, through: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def tried(writes: int, run: Path) -> int:
@@ -100,7 +100,7 @@ def test_a_disk_that_fills_up_at_any_write(
         shutil.rmtree(run)
 
 
-def test_a_disk_that_is_full_from_the_beginning(
+def test_a_disk_that_is_full_from_the_beginning_is_an_error(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for writes in range(12):
@@ -112,7 +112,7 @@ def test_a_disk_that_is_full_from_the_beginning(
 
 @contextmanager
 def files_at_most(size: int) -> Iterator[None]:
-    """Files of this process cannot grow beyond a size."""
+    """Limit the size of files that this process writes."""
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
     try:
@@ -121,7 +121,7 @@ def files_at_most(size: int) -> Iterator[None]:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
 
-def test_a_file_that_cannot_grow(run: Path, through: str) -> None:
+def test_a_file_that_cannot_grow_stops_the_run(run: Path, through: str) -> None:
     with files_at_most(20_000):
         done = here("resume", run, "--quiet")
     complains(done, 1, str(run / "checkpoints"), "cannot be written", "File too large")
@@ -130,7 +130,7 @@ def test_a_file_that_cannot_grow(run: Path, through: str) -> None:
 
 @pytest.fixture
 def small_disk(tmp_path: Path) -> Iterator[Path]:
-    """A file system with room for one checkpoint and a half."""
+    """Mount a file system with room for one checkpoint and a half."""
     folder = tmp_path / "disk"
     folder.mkdir()
     mount = ["mount", "-t", "tmpfs", "-o", "size=128k", "tmpfs", str(folder)]
@@ -142,11 +142,11 @@ def small_disk(tmp_path: Path) -> Iterator[Path]:
     subprocess.run(["umount", str(folder)], check=True)
 
 
-def test_a_disk_that_is_really_full(small_disk: Path, through: str) -> None:
+def test_after_a_real_full_disk_a_run_can_be_resumed(small_disk: Path, through: str) -> None:
     run, often = small_disk / "run", ("--checkpoint-every", "0")
     done = here("run", *SMALL, "--ticks", TICKS, "--out", run, *often)
     complains(done, 1, str(run), "cannot be written", "No space left on device")
-    assert checkpoint.numbered(run), "it was full before there was a checkpoint"
+    assert checkpoint.numbered(run), "the disk was full before there was a checkpoint"
     assert here("info", run).returncode == 0
     complains(here("resume", run, "--quiet", *often), 1, "No space left on device")
     subprocess.run(["mount", "-o", "remount,size=20m", str(small_disk)], check=True)

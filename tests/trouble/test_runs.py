@@ -1,4 +1,4 @@
-"""What is given as a run is none, or none for this version; or there is nothing to do with it."""
+"""Folders that are no run, runs of other versions, and runs with nothing left to do."""
 
 import json
 import shutil
@@ -12,7 +12,7 @@ from tests.commands import begin, complains, here
 from tests.trouble import HALF, SMALL, TASK, TICKS, contents, digest, goes_on, newest, started
 
 
-def test_a_directory_that_is_taken(run: Path, tmp_path: Path) -> None:
+def test_a_directory_that_is_taken_is_refused(run: Path, tmp_path: Path) -> None:
     before = contents(run)
     taken = here("run", *SMALL, "--ticks", "10", "--out", run)
     complains(taken, 2, str(run), "exists already", "--out", f"primordia resume {run}")
@@ -24,7 +24,7 @@ def test_a_directory_that_is_taken(run: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("command", ["info", "resume", "verify"])
-def test_a_directory_that_is_no_run(command: str, tmp_path: Path) -> None:
+def test_a_directory_that_is_no_run_is_an_error(command: str, tmp_path: Path) -> None:
     (tmp_path / "mine.txt").write_text("mine")
     before = contents(tmp_path)
     for path in (tmp_path, tmp_path / "nothing", tmp_path / "mine.txt"):
@@ -33,10 +33,10 @@ def test_a_directory_that_is_no_run(command: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("file", ["config.toml", "versions.json"])
-def test_a_directory_that_is_half_made(
+def test_a_half_made_directory_is_no_run(
     file: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Whatever is written last, nobody takes it for a run before that."""
+    """A folder is no run before its last file is written, whichever file that is."""
     write = directory._write_text
 
     def stop(path: Path, text: str) -> None:
@@ -52,7 +52,7 @@ def test_a_directory_that_is_half_made(
 
 
 @pytest.mark.parametrize("command", ["info", "resume", "verify"])
-def test_a_run_made_by_a_newer_version(command: str, run: Path) -> None:
+def test_a_run_of_a_newer_version_is_an_error(command: str, run: Path) -> None:
     change_versions(run, format=directory.FORMAT + 1)
     before = contents(run)
     complains(here(command, run), 2, str(run), "newer primordia", "upgrade")
@@ -60,7 +60,7 @@ def test_a_run_made_by_a_newer_version(command: str, run: Path) -> None:
 
 
 @pytest.mark.parametrize("text", ["", "{", "[1]", "5", '{"jax": "1"}', '{"format": "x"}', "\udcff"])
-def test_garbage_in_place_of_versions(run: Path, text: str) -> None:
+def test_garbled_versions_are_an_error(run: Path, text: str) -> None:
     (run / "versions.json").write_bytes(text.encode(errors="surrogateescape"))
     before = contents(run)
     for command in ("info", "resume", "verify"):
@@ -68,7 +68,7 @@ def test_garbage_in_place_of_versions(run: Path, text: str) -> None:
     assert contents(run) == before
 
 
-def test_a_run_without_a_checkpoint_starts_anew(run: Path, through: str) -> None:
+def test_a_run_without_a_checkpoint_starts_again(run: Path, through: str) -> None:
     shutil.rmtree(run / "checkpoints")
     complains(here("info", run), 2, str(run), "no checkpoint yet", f"primordia resume {run}")
     complains(here("verify", run), 2, str(run), "no checkpoint yet")
@@ -83,14 +83,16 @@ def change_versions(run: Path, **change: object) -> None:
 @pytest.mark.parametrize(
     "change", [{"jax": "0.0.1"}, {"instruction_set": "x86_64 SSE4_2"}, {"device": "NVIDIA H200"}]
 )
-def test_a_run_of_other_versions(run: Path, through: str, change: dict[str, str]) -> None:
+def test_a_run_of_other_versions_is_resumed_on_request_only(
+    run: Path, through: str, change: dict[str, str]
+) -> None:
     ((name, value),) = change.items()
     change_versions(run, **change)
     before = contents(run)
     complains(here("resume", run), 2, str(run), f"{name} {value} then", "now", "--inexact")
     assert contents(run) == before
     done = here("verify", run)
-    assert (done.returncode, done.stderr) == (0, ""), "it came out the same all the same"
+    assert (done.returncode, done.stderr) == (0, ""), "the result was the same in spite of that"
     goes_on(run, through, "--inexact")
     assert json.loads(here("info", run, "--json").stdout)["exact"] is False
     assert "not exact" in here("info", run).stdout
@@ -98,7 +100,7 @@ def test_a_run_of_other_versions(run: Path, through: str, change: dict[str, str]
     complains(here("verify", run), 2, str(run), "not exact")
 
 
-def test_verify_says_what_differs_and_why_it_might(run: Path) -> None:
+def test_verify_says_what_differs_and_a_possible_reason(run: Path) -> None:
     change_versions(run, jax="0.0.1")
     manifest = checkpoint.numbered(run)[-1] / "manifest.json"
     content = json.loads(manifest.read_text())
@@ -109,7 +111,7 @@ def test_verify_says_what_differs_and_why_it_might(run: Path) -> None:
     complains(here("verify", run), 1, *parts)
 
 
-def test_nothing_to_do_says_how_to_go_on(run: Path, through: str) -> None:
+def test_a_run_with_nothing_left_to_do_says_how_to_continue(run: Path, through: str) -> None:
     goes_on(run, through)
     for words in ((), ("--ticks", HALF), ("--ticks", TICKS)):
         done = here("resume", run, "--quiet", *words)
@@ -118,18 +120,18 @@ def test_nothing_to_do_says_how_to_go_on(run: Path, through: str) -> None:
         assert digest(run) == through
     more = here("resume", run, "--ticks", TICKS + 1, "--until", "none", "--quiet")
     assert (more.returncode, more.stderr) == (0, "")
-    found = json.loads(here("info", run, "--json").stdout)
-    assert found["ticks"] == TICKS + 1
-    assert found["limits"] == {"ticks": TICKS + 1, "births": None, "until": None}
+    info = json.loads(here("info", run, "--json").stdout)
+    assert info["ticks"] == TICKS + 1
+    assert info["limits"] == {"ticks": TICKS + 1, "births": None, "until": None}
 
 
-def test_saturated_worlds_go_on_without_that_limit(tmp_path: Path) -> None:
+def test_saturated_worlds_continue_without_the_limit_of_saturation(tmp_path: Path) -> None:
     run = tmp_path / "run"
     words = (TASK, "--cells", "8", "--habitat.angle_limit", "180", "--habitat.track_limit", "1e9")
     done = here("run", *words, "--saturation_ticks", "50", "--out", run, "--quiet")
     assert (done.returncode, done.stderr) == (0, "")
-    found = json.loads(here("info", run, "--json").stdout)
-    assert found["saturation"] == {"tick": found["ticks"], "births": found["births"]}
+    info = json.loads(here("info", run, "--json").stdout)
+    assert info["saturation"] == {"tick": info["ticks"], "births": info["births"]}
     complains(here("resume", run, "--ticks", 10_000, "--quiet"), 0, "nothing to do", "--until none")
     more = here("resume", run, "--ticks", 10_000, "--until", "none", "--quiet")
     assert (more.returncode, more.stderr) == (0, "")
@@ -147,7 +149,7 @@ def test_weights_that_are_no_numbers_are_a_fault(run: Path) -> None:
     struck: list[int] = []
 
     def strike(status: loop.Status) -> None:
-        """Let one weight of everybody be NaN, once."""
+        """Set one weight of every organism to NaN, once."""
         if struck:
             return
         world, bodies = status.engine.state
@@ -158,14 +160,16 @@ def test_weights_that_are_no_numbers_are_a_fault(run: Path) -> None:
         status.engine.state = State(world, bodies)
 
     loop.resume(run, {"ticks": TICKS}, listen=strike)
-    found = json.loads(here("info", run, "--json").stdout)
-    assert found["deaths_by_cause"]["fault"] == struck[0] > 0
-    assert found["extinctions"] > 0
+    info = json.loads(here("info", run, "--json").stdout)
+    assert info["deaths_by_cause"]["fault"] == struck[0] > 0
+    assert info["extinctions"] > 0
     assert f"{struck[0]} fault" in here("info", run).stdout
 
 
-def test_nobody_reads_what_is_printed(half: Path, through: str, tmp_path: Path) -> None:
-    """As with `| head -1`."""
+def test_a_closed_standard_output_ends_a_command_quietly(
+    half: Path, through: str, tmp_path: Path
+) -> None:
+    """The reader ends early, as `| head -1` does."""
     loud = [word for word in SMALL if word != "--quiet"]
     out = tmp_path / "run"
     processes = [begin("info", half), begin("run", *loud, "--ticks", TICKS, "--out", out)]

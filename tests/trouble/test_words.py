@@ -1,4 +1,4 @@
-"""What the user asked for makes no sense: status 2, and no run directory is made."""
+"""Wrong requests of a user: the exit status is 2, and no run directory is made."""
 
 import json
 from pathlib import Path
@@ -68,7 +68,9 @@ WRONG = {
 
 
 @pytest.mark.parametrize("words", WRONG, ids=" ".join)
-def test_a_wrong_word_on_the_command_line(words: tuple[str, ...], tmp_path: Path) -> None:
+def test_a_wrong_word_on_the_command_line_is_an_error(
+    words: tuple[str, ...], tmp_path: Path
+) -> None:
     if "gpu" in words and any(each.platform == "gpu" for each in device_list()):
         pytest.skip("there is a GPU here")
     out = tmp_path / "run"
@@ -98,14 +100,14 @@ FILES = {
 
 
 @pytest.mark.parametrize("text", FILES)
-def test_a_wrong_word_in_a_file(text: str, tmp_path: Path) -> None:
+def test_a_wrong_word_in_a_file_is_an_error(text: str, tmp_path: Path) -> None:
     file, out = tmp_path / "mine.toml", tmp_path / "run"
     file.write_text(text)
     complains(here("run", file, "--out", out), 2, str(file), FILES[text])
     assert not out.exists()
 
 
-def test_files_that_are_no_text(tmp_path: Path) -> None:
+def test_files_that_are_no_text_are_errors(tmp_path: Path) -> None:
     file, folder = tmp_path / "mine.toml", tmp_path / "folder.toml"
     file.write_bytes(b"\xff\x00\xfe")
     folder.mkdir()
@@ -131,11 +133,11 @@ def test_files_that_are_no_text(tmp_path: Path) -> None:
         (["tasks", "more"], ["unexpected extra argument (more)"]),
     ],
 )
-def test_wrong_words_to_other_commands(words: list[str], parts: list[str]) -> None:
+def test_wrong_words_to_other_commands_are_errors(words: list[str], parts: list[str]) -> None:
     complains(here(*words), 2, *parts)
 
 
-def test_no_word_at_all_gives_help() -> None:
+def test_a_command_without_words_prints_help() -> None:
     done = here()
     assert done.returncode == 2
     assert "primordia run CartPole-survival" in done.stderr
@@ -150,7 +152,7 @@ def test_flags_may_stand_before_the_task(tmp_path: Path) -> None:
     assert json.loads(here("info", run, "--json").stdout)["cells"] == 8
 
 
-def test_the_python_interface_raises(run: Path, tmp_path: Path) -> None:
+def test_the_python_interface_raises_input_errors(run: Path, tmp_path: Path) -> None:
     import primordia
 
     with pytest.raises(InputError, match="did you mean 'cells'"):
