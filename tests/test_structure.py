@@ -22,7 +22,7 @@ LAYERS = [
     {"organism"},
     {"comparison"},
     {"figures", "live"},
-    {"api"},
+    {"api", "testing"},
     {"cli"},
     {"__main__"},
 ]

@@ -8,7 +8,7 @@ run.resume(ticks=200_000, until="none")
 policy = run.oldest().policy()
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import chain, count
 from pathlib import Path
@@ -91,11 +91,13 @@ class Run:
         """An organism's genome, float32 (P,), from the birth records alone."""
         return rebuild(self.opened(), organism, world)
 
-    def plot(self, out: str | Path | None = None, world: int = 0) -> list[Path]:
+    def plot(
+        self, out: str | Path | None = None, world: int = 0, figures: Sequence[str] = ()
+    ) -> list[Path]:
         """Draw its figures into a folder, by default its own -> the files; see `figures.plot`."""
-        from primordia.figures import plot as figures  # Matplotlib takes a second to load
+        from primordia.figures.plot import plot  # Matplotlib takes a second to load
 
-        return figures.plot(self.opened(), Path(out) if out is not None else None, world)
+        return plot(self.opened(), Path(out) if out is not None else None, world, figures)
 
     def fork(
         self,

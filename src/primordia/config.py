@@ -211,6 +211,8 @@ def parsed(values: dict[str, Any], source: str) -> Config:
         return Config.model_validate(replaced(values, NONE, None))
     except ValidationError as error:
         raise InputError(f"{source}: {first_fault(error, Config)}") from None
+    except InputError as error:  # of a replaceable part
+        raise InputError(f"{source}: {error}") from None
 
 
 def checked(config: Config, source: str) -> Config:

@@ -86,7 +86,7 @@ def test_only_runs_with_food_have_the_figure(runs: dict[str, Path], tmp_path: Pa
 def test_the_figure_of_a_run_without_a_sample_says_so(tmp_path: Path) -> None:
     loop.start(config(FED, stop={"ticks": 30}), tmp_path / "run")
     with style.look():
-        drawn = figure.draw(Archive(tmp_path / "run"))
+        drawn = figure.draw(Archive(tmp_path / "run"), 0)
         drawn.draw_without_rendering()
     assert "no samples yet" in {text.get_text() for text in drawn.axes[0].texts}
 
@@ -96,7 +96,7 @@ def test_food_that_no_organism_can_live_on_has_no_break_even(tmp_path: Path) -> 
     loop.start(config(FED, **hungry), tmp_path / "run")
     assert np.isinf(foraging(Archive(tmp_path / "run")).break_even).all()
     with style.look():
-        drawn = figure.draw(Archive(tmp_path / "run"))
+        drawn = figure.draw(Archive(tmp_path / "run"), 0)
         drawn.draw_without_rendering()
     assert "break-even" not in {text.get_text() for text in drawn.axes[0].texts}
 

@@ -63,12 +63,14 @@ class SettingsCommand(click.Command):
 
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Append every setting with its value, and what it means."""
-        title, rows = self.settings(ctx.meta["words"])
+        title, rows = self.settings(ctx.meta["words"], ctx.obj)
         if rows:
             with formatter.section(title):
                 formatter.write_dl(rows)
 
-    def settings(self, words: tuple[str, ...]) -> tuple[str, list[tuple[str, str]]]:
+    def settings(
+        self, words: tuple[str, ...], given: dict[str, Any]
+    ) -> tuple[str, list[tuple[str, str]]]:
         """Return a title and rows for --help: all settings of a run, with values of the task named."""
         from primordia.cli.help import setting_rows
         from primordia.settings.tables import tasks
@@ -76,13 +78,15 @@ class SettingsCommand(click.Command):
         known = tasks()
         task = next((word for word in words if word in known or word.endswith(".toml")), None)
         values = f"values of {task}" if task else "defaults"
-        return f"Settings, as in TOML ({values})", setting_rows(task)
+        return f"Settings, as in TOML ({values})", setting_rows(task, given)
 
 
 class HabitatCommand(SettingsCommand):
     """A command on a RUN that takes any setting of its habitat as a flag."""
 
-    def settings(self, words: tuple[str, ...]) -> tuple[str, list[tuple[str, str]]]:
+    def settings(
+        self, words: tuple[str, ...], given: dict[str, Any]
+    ) -> tuple[str, list[tuple[str, str]]]:
         """Return a title and rows for --help: the settings of the habitat of the run named."""
         from primordia.cli.help import habitat_rows
 

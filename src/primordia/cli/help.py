@@ -14,7 +14,7 @@ from primordia.habitats import contract as habitats
 from primordia.mutations import contract as mutations
 from primordia.runs.archive import Archive
 from primordia.settings.fields import setting_fields
-from primordia.settings.tables import NONE, PARTS, values_of
+from primordia.settings.tables import NONE, PARTS, merged, values_of
 
 CONTRACTS: dict[str, tuple[Any, str | None]] = {
     "habitat": (habitats, None),
@@ -24,9 +24,14 @@ CONTRACTS: dict[str, tuple[Any, str | None]] = {
 """Where each replaceable part is found, and its name if a task gives none."""
 
 
-def setting_rows(task: str | None) -> list[tuple[str, str]]:
-    """Return each setting with its value in a task (or by default), and what it means."""
-    values = values_of(task) if task else {}
+def setting_rows(task: str | None, given: dict[str, Any]) -> list[tuple[str, str]]:
+    """Return each setting with its value in a task (or by default), and what it means.
+
+    Args:
+        task: name of a task or a file; None for none.
+        given: settings by flags, such as another brain, whose own settings are then shown.
+    """
+    values = merged(values_of(task) if task else {}, given)
     fields: dict[str, Any] = {}
     for path, field in setting_fields(Config).items():
         fields |= _of_part(path, values) if path in PARTS else {path: field}

@@ -29,11 +29,18 @@ def info(run: Path, as_json: bool) -> None:
 @run_argument
 @click.option("--out", type=click.Path(path_type=Path), help="Folder for them [RUN/figures].")
 @click.option("--world", default=0, help="Whose lines of descent are drawn [0].")
-def plot(run: Path, out: Path | None, world: int) -> None:
+@click.option(
+    "--figure",
+    "figures",
+    multiple=True,
+    metavar="NAME|module:function",
+    help="Draw this one alone; may be repeated [all of ours].",
+)
+def plot(run: Path, out: Path | None, world: int, figures: tuple[str, ...]) -> None:
     """Draw figures: ages, survival, population, and lines of descent in space and time."""
     from primordia.api import Run
 
-    for path in Run(run).plot(out, world):
+    for path in Run(run).plot(out, world, figures):
         click.echo(path)
 
 

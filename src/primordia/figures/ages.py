@@ -6,6 +6,7 @@ from matplotlib.figure import Figure
 
 from primordia.figures import style
 from primordia.history import series
+from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
 
 DOTS = 3000
@@ -14,8 +15,9 @@ BINS, ENOUGH = 40, 30
 """Most stretches of birth order that have quartiles of their own; about how many dead each needs."""
 
 
-def draw(lives: Lives) -> Figure:
-    """Mean age over time and over organisms, and lifespans of the dead by birth order."""
+def draw(run: Archive, world: int) -> Figure:
+    """Draw mean age over time and over organisms, and lifespans of the dead by birth order."""
+    lives = run.lives.since_fork()
     figure = Figure(figsize=(style.PAGE, 2.4))
     over_time, over_births, dead = figure.subplots(1, 3, sharey=True)
     worlds = [lives.of_world(world) for world in range(lives.worlds)]

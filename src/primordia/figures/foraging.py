@@ -10,8 +10,14 @@ from primordia.runs.archive import Archive
 BREAK_EVEN = style.ORANGE
 
 
-def draw(run: Archive) -> Figure:
-    """Food an organism gathers, a second where the habitat knows of seconds, and the break-even."""
+def draw(run: Archive, world: int) -> Figure | None:
+    """Draw the food an organism gathers, a second where the habitat knows of seconds, and the break-even.
+
+    Returns:
+        None for a run without a metabolism.
+    """
+    if run.config.metabolism is None:
+        return None
     figure = Figure(figsize=(style.COLUMN, 2.4))
     axes, found = figure.subplots(), foraging(run)
     rate = run.habitat.rate

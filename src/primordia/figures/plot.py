@@ -1,50 +1,79 @@
-"""Figures of a run: what its records show, as PNG and SVG."""
+"""Figures of a run: what its records show, as PNG and SVG.
 
-from collections.abc import Callable
+A figure is a function `draw(run, world) -> Figure | None`; None if the run has nothing of the kind. It is
+one of those listed here, or `module:function` of your own.
+"""
+
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import TypeAlias
 
 from matplotlib.figure import Figure
 
-from primordia.config import Config
 from primordia.errors import InputError, Trouble
-from primordia.figures import ages, foraging, population, spacetime, style, survival
+from primordia.figures import style
 from primordia.runs.archive import Archive
-from primordia.runs.lives import Lives
+from primordia.settings import parts
 
-FIGURES: dict[str, Callable[[Lives, Config, int], Figure]] = {
-    "ages": lambda lives, config, world: ages.draw(lives.since_fork()),
-    "survival": lambda lives, config, world: survival.draw(lives.since_fork()),
-    "population": lambda lives, config, world: population.draw(lives.since_fork(), config.cells),
-    "space-time": spacetime.draw,
+KNOWN = {
+    "ages": "primordia.figures.ages:draw",
+    "survival": "primordia.figures.survival:draw",
+    "population": "primordia.figures.population:draw",
+    "space-time": "primordia.figures.spacetime:draw",
+    "foraging": "primordia.figures.foraging:draw",
 }
+Draw: TypeAlias = Callable[[Archive, int], Figure | None]
 
 
-def plot(run: Archive, out: Path | None = None, world: int = 0) -> list[Path]:
-    """Draw every figure of a run, up to its newest checkpoint -> the files made.
+def plot(
+    run: Archive, out: Path | None = None, world: int = 0, figures: Sequence[str] = ()
+) -> list[Path]:
+    """Draw figures of a run, up to its newest checkpoint -> the files made.
 
     Args:
         run: opened for reading.
         out: folder for the figures; by default `figures` in the run.
         world: whose lines of descent are drawn; all other figures show all worlds.
+        figures: those to draw, names of KNOWN or `module:function`; by default all of KNOWN.
 
     Raises:
-        InputError: this is no run, nothing has lived in it yet, or it has no such world.
+        InputError: this is no run, nothing has lived in it yet, or it has no such world; there is no
+            such figure.
         Trouble: a figure cannot be written.
     """
-    config, found = run.config, run.lives
-    if not 0 <= world < config.seeds:
+    if not 0 <= world < run.config.seeds:
         raise InputError(
-            f"{run.path} has no world {world}; they count from 0 to {config.seeds - 1}"
+            f"{run.path} has no world {world}; they count from 0 to {run.config.seeds - 1}"
         )
+    drawing = {_file(name): find(name) for name in figures or KNOWN}
+    assert len(run.lives)
     folder = out if out is not None else run.path / "figures"
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise Trouble(f"{folder} cannot be made: {error.strerror or error}") from None
     with style.look():
-        drawn = {name: draw(found, config, world) for name, draw in FIGURES.items()}
-        if config.metabolism is not None:
-            drawn["foraging"] = foraging.draw(run)
+        drawn = {name: draw(run, world) for name, draw in drawing.items()}
         return [
-            path for name, figure in drawn.items() for path in style.save(figure, folder / name)
+            path
+            for name, figure in drawn.items()
+            if figure is not None
+            for path in style.save(figure, folder / name)
         ]
+
+
+def find(name: str) -> Draw:
+    """Return the function that draws a figure.
+
+    Raises:
+        InputError: there is no such figure; the message says why.
+    """
+    try:
+        return parts.load("figure", name, KNOWN)
+    except LookupError as error:
+        raise InputError(str(error)) from None
+
+
+def _file(name: str) -> str:
+    """Return the name of a figure's files, without what follows the dot: a function's own name."""
+    return name.rpartition(":")[2]

@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 from primordia.figures import style
 from primordia.history import series
 from primordia.law.world import Cause
+from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
 
 COLOURS = {
@@ -21,8 +22,9 @@ COLOURS = {
 LIVING = style.BLUE
 
 
-def draw(lives: Lives, cells: int) -> Figure:
-    """Population; what became of all who were born; births and deaths per tick."""
+def draw(run: Archive, world: int) -> Figure:
+    """Draw the population; what became of all who were born; births and deaths per tick."""
+    lives, cells = run.lives.since_fork(), run.config.cells
     figure = Figure(figsize=(style.PAGE, 2.4))
     living, fates, rates = figure.subplots(1, 3)
     causes = [cause for cause in Cause if (lives.cause == cause).any()]

@@ -11,6 +11,7 @@ from primordia.figures import style
 from primordia.history import series
 from primordia.history.clades import Clades, clades
 from primordia.history.lines import CROWD
+from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
 
 ROWS, COLUMNS = 800, 512
@@ -27,11 +28,11 @@ NAMED = 8
 """Most takeovers that are pointed out."""
 
 
-def draw(lives: Lives, config: Config, world: int) -> Figure:
-    """One world. Time runs in births, since a world that lives long is calm for most of its ticks."""
+def draw(run: Archive, world: int) -> Figure:
+    """Draw one world. Time runs in births: a world that lives long is calm for most of its ticks."""
     figure = Figure(figsize=(style.COLUMN, 4.8))
     axes = figure.subplots()
-    here = lives.of_world(world)
+    here, config = run.lives.of_world(world), run.config
     births = np.unique(np.linspace(0, len(here) - 1, ROWS).astype(np.int64))
     cells = np.arange(0, config.cells, -(-config.cells // COLUMNS))
     of = told_apart(here)

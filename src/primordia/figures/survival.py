@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from primordia.comparison.survival import survival
 from primordia.figures import style
 from primordia.history import series
+from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
 
 COHORTS = {
@@ -20,8 +21,9 @@ COHORTS = {
 """Of a world's births, in order; from light to dark."""
 
 
-def draw(lives: Lives) -> Figure:
-    """Survival over a table of numbers at risk, and risks of death. All worlds together."""
+def draw(run: Archive, world: int) -> Figure:
+    """Draw survival over a table of numbers at risk, and risks of death. All worlds together."""
+    lives = run.lives.since_fork()
     figure = Figure(figsize=(style.PAGE, 2.8))
     alive, by_age, over_time = figure.subplots(1, 3)
     _alive(alive, lives)

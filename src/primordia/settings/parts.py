@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from importlib import import_module
+from typing import Any
 
 
 def find(what: str, name: object, known: Mapping[str, str]) -> type:
@@ -15,14 +16,19 @@ def find(what: str, name: object, known: Mapping[str, str]) -> type:
     Raises:
         LookupError: there is no such name, module or class; the message says which.
     """
+    found = load(what, name, known)
+    if not isinstance(found, type):
+        raise LookupError(f"{what} {name!r} is not a class")
+    return found
+
+
+def load(what: str, name: object, known: Mapping[str, str]) -> Any:
+    """Return a part that is a class or a function; see `find`."""
     path = known.get(name, name) if isinstance(name, str) else ""
     module, _, attribute = path.partition(":")
     if not module or not attribute:
         raise LookupError(f"no {what} named {name!r}; known: {', '.join(known)}, or module:Class")
     try:
-        part = getattr(import_module(module), attribute)
+        return getattr(import_module(module), attribute)
     except Exception as error:  # the module is the user's, and may raise anything
         raise LookupError(f"{what} {name!r} cannot be loaded: {error}") from error
-    if not isinstance(part, type):
-        raise LookupError(f"{what} {name!r} is not a class; name one as module:Class")
-    return part

@@ -1,0 +1,109 @@
+"""The check of brains."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array, lax
+
+from primordia.brains.contract import Brain, Genome
+from primordia.errors import InputError
+from primordia.testing.report import ROUNDED, ContractError, advise, need, same, typed
+from primordia.testing.trial import ALL, COUNTS, last, normal
+
+TICKS = 6
+
+
+def check_brain(brain: Brain, senses: int = 33, outputs: int = 5) -> None:
+    """Check types, purity, and the same bits for every number of organisms, compiled or not.
+
+    Args:
+        brain: with the settings to be checked.
+        senses: S, numbers that an organism perceives.
+        outputs: A, numbers that its motor takes.
+
+    Raises:
+        ContractError: the brain does not keep the contract of `brains.contract`.
+    """
+    genome, memory, seen = _minds(brain, senses, outputs)
+    _types(brain, genome, memory, seen[0], outputs)
+    think = jax.jit(lambda *given: brain(*given))
+    whole = think(genome, memory, seen[0])
+    _depends_on_its_own_only(brain, whole, genome, memory, seen[0])
+    for count in COUNTS:
+        few = think(*last((genome, memory, seen[0]), count))
+        says = (
+            f"when {count} instead of {ALL} think together; sum with brains.layers.matvec instead of"
+            " (w * x).sum(-1)"
+        )
+        same(brain, last(whole, count), few, says, ALL - count)
+    same(brain, whole, brain(genome, memory, seen[0]), f"when compiled{ROUNDED}")
+    remembered, outputs_ = jax.jit(lambda *given: _thoughts(brain, *given))(genome, memory, seen)
+    for tick in range(TICKS):
+        memory, output = think(genome, memory, seen[tick])
+        same(brain, output, outputs_[tick], f"in a compiled loop{ROUNDED}")
+    same(brain, memory, remembered, f"in a compiled loop{ROUNDED}")
+    advise(brain)
+
+
+def _minds(brain: Brain, senses: int, outputs: int) -> tuple[Genome, Array, Array]:
+    """Return genomes and memories of ALL organisms, and what they perceive (TICKS, ALL, S)."""
+    try:
+        layout = brain.layout(senses, outputs)
+    except InputError as error:
+        raise ContractError(f"{type(brain).__name__}: {error}") from None
+    need(
+        layout == brain.layout(senses, outputs),
+        brain,
+        "has other blocks of weights at each call; blocks depend on settings, senses and outputs only",
+    )
+    length = brain.memory(senses, outputs)
+    need(
+        type(length) is int and length >= 0,
+        brain,
+        f"has a memory of length {length!r}; return a whole number, 0 for none",
+    )
+    genome = {
+        name: jnp.asarray(normal(place, ALL, *shape))
+        for place, (name, shape) in enumerate(layout.blocks)
+    }
+    memory = jnp.tanh(normal(len(genome), ALL, length))
+    return genome, memory, jnp.asarray(normal(len(genome) + 1, TICKS, ALL, senses))
+
+
+def _types(brain: Brain, genome: Genome, memory: Array, seen: Array, outputs: int) -> None:
+    given = dict(genome)
+    thought = jax.eval_shape(lambda *mind: brain(*mind), given, memory, seen)
+    need(
+        isinstance(thought, tuple) and len(thought) == 2,
+        brain,
+        "does not return a pair; return memory and output",
+    )
+    typed(brain, "its memory", thought[0], memory.shape, np.float32)
+    typed(brain, "its output", thought[1], (ALL, outputs), np.float32)
+    brain(given, memory, seen)
+    need(
+        list(given) == list(genome) and all(given[name] is genome[name] for name in given),
+        brain,
+        "changes the genome that it is given; put new arrays into variables of their own",
+    )
+
+
+def _depends_on_its_own_only(
+    brain: Brain, whole: tuple, genome: Genome, memory: Array, seen: Array
+) -> None:
+    """Compare with a second trace, and with what others think beside an organism that is broken."""
+    again = jax.jit(lambda *given: brain(*given))(genome, memory, seen)
+    says = (
+        "when it is traced again, so it depends on more than genome, memory and senses; keep no"
+        " counters and no generators"
+    )
+    same(brain, whole, again, says)
+    broken = {name: block.at[0].set(jnp.nan) for name, block in genome.items()}
+    beside = jax.jit(lambda *given: brain(*given))(broken, memory, seen)
+    says = "when organism 0 has another genome; sum nothing over the first axis, that of organisms"
+    same(brain, last(whole, ALL - 1), last(beside, ALL - 1), says, 1)
+
+
+def _thoughts(brain: Brain, genome: Genome, memory: Array, seen: Array) -> tuple[Array, Array]:
+    """Think for TICKS ticks in one loop -> memory (N, M), outputs (TICKS, N, A)."""
+    return lax.scan(lambda memory, senses: brain(genome, memory, senses), memory, seen)

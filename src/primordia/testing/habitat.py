@@ -1,0 +1,182 @@
+"""The check of habitats."""
+
+from typing import Any
+
+import jax
+import numpy as np
+from jax import Array, lax
+
+from primordia.habitats.bodies import fresh
+from primordia.habitats.contract import (
+    Ability,
+    AnyHabitat,
+    Bodies,
+    Continuous,
+    Discrete,
+    JaxHabitat,
+    Outcome,
+    complete,
+)
+from primordia.law.events import DEATHS
+from primordia.testing.lives import TICKS, Lives, Past, judged
+from primordia.testing.report import ROUNDED, ContractError, advise, need, typed
+from primordia.testing.trial import ALL, COUNTS
+
+
+def check_habitat(habitat: AnyHabitat) -> None:
+    """Check types, purity, lives that depend on nothing but words and actions, saving and pictures.
+
+    Args:
+        habitat: with the settings to be checked; one on the host must not have been opened. It is
+            not changed: copies of it are opened.
+
+    Raises:
+        ContractError: the habitat does not keep the contract of `habitats.contract`.
+    """
+    _stated(habitat)
+    if isinstance(habitat, JaxHabitat):
+        _types(habitat)
+        advise(habitat)
+    lives = Lives(habitat)
+    expected = lives.whole()
+    if isinstance(habitat, JaxHabitat):
+        _in_a_loop(habitat, lives, expected)
+    lives.compare(
+        expected,
+        lives.whole(),
+        "when it begins again, so it depends on more than words and actions; draw from `words` alone,"
+        " and let `open` begin from nothing",
+    )
+    for count in COUNTS:
+        says = f"among {count} bodies than among {ALL}; compute each body by itself, elementwise"
+        lives.compare(expected, lives.among(count), says)
+    says = "after a rest; leave bodies alone whose cells are not alive"
+    lives.compare(expected, lives.interrupted(), says)
+    says = (
+        "when others are born beside it, or where another lived before; `reset` makes whole bodies, in"
+        " the cells given and in no others"
+    )
+    lives.compare(expected, lives.born_late(), says)
+    if habitat.can(Ability.SAVE):
+        for rows in (slice(None), slice(2, 3)):
+            says = "after `save` and `load`; save all that a body's future depends on"
+            lives.compare(expected, lives.restored(rows), says)
+    if habitat.can(Ability.PICTURE):
+        lives.drawn()
+
+
+def _stated(habitat: AnyHabitat) -> None:
+    """Check what it says of itself."""
+    try:
+        complete(habitat)
+    except TypeError as error:
+        raise ContractError(
+            f"{error}; state it as an attribute or a property of the class"
+        ) from None
+    for name, least in (("senses_size", 1), ("words", 0)):
+        value = getattr(habitat, name)
+        need(
+            type(value) is int and value >= least,
+            habitat,
+            f"has {name} = {value!r}; it must be a whole number of at least {least}",
+        )
+    action = habitat.action
+    need(
+        isinstance(action, Discrete | Continuous) and action.size > isinstance(action, Discrete),
+        habitat,
+        f"has action = {action!r}; it must be Discrete(2) or more, or Continuous(1) or more",
+    )
+    _abilities(habitat)
+
+
+def _abilities(habitat: AnyHabitat) -> None:
+    """Check what may be left out."""
+    need(
+        habitat.rate is None or habitat.rate > 0,
+        habitat,
+        f"has rate = {habitat.rate!r}; state ticks per second, or None",
+    )
+    need(
+        all(isinstance(each, str) for pair in habitat.versions.items() for each in pair),
+        habitat,
+        f"has versions = {habitat.versions!r}; names and versions must be strings",
+    )
+    taken = sorted({"world", *DEATHS.names} & set(habitat.tallies))
+    need(not taken, habitat, f"counts {taken}, which deaths have already; give tallies other names")
+    for ability, methods in habitat.abilities.items():
+        lacking = habitat.lacks(ability)
+        need(
+            not 0 < len(lacking) < len(methods),
+            habitat,
+            f"defines {', '.join(sorted(set(methods) - set(lacking)))} without"
+            f" {', '.join(lacking)}; define both, or neither",
+        )
+
+
+def _types(habitat: JaxHabitat) -> None:
+    """Check shapes and dtypes without computing anything."""
+    words = jax.ShapeDtypeStruct((ALL, habitat.words), np.uint32)
+    action = habitat.action
+    shape, dtype = (
+        ((ALL,), np.int32) if isinstance(action, Discrete) else ((ALL, action.size), np.float32)
+    )
+    bodies = jax.eval_shape(habitat.reset, words)
+    for leaf in jax.tree.leaves(bodies):
+        need(
+            leaf.shape[:1] == (ALL,),
+            habitat,
+            f"makes bodies with an array {leaf.dtype} {leaf.shape}; its first axis must be bodies",
+        )
+    senses = jax.eval_shape(habitat.sense, bodies)
+    typed(habitat, "senses", senses, (ALL, habitat.senses_size), np.float32)
+    stepped: Any = jax.eval_shape(habitat.step, bodies, jax.ShapeDtypeStruct(shape, dtype))
+    need(
+        isinstance(stepped, tuple) and len(stepped) == 2,
+        habitat,
+        "does not return a pair from step; return bodies and an Outcome",
+    )
+    need(
+        len({jax.tree.structure(each) for each in (stepped[0], bodies)}) == 1,
+        habitat,
+        "makes bodies of another form in step than in reset; return the same tree of arrays",
+    )
+    for after, before in zip(jax.tree.leaves(stepped[0]), jax.tree.leaves(bodies), strict=True):
+        typed(habitat, "bodies after a step", after, before.shape, before.dtype)
+    judged(habitat, stepped[1], ALL)
+
+
+def _in_a_loop(habitat: JaxHabitat, lives: Lives, expected: list[Past]) -> None:
+    """Compare lives in two loops, traced apart, and lives that were stepped tick by tick."""
+    one, other = (
+        jax.jit(lambda words, actions: _looped(habitat, words, actions))(lives.words, lives.actions)
+        for _ in range(2)
+    )
+    says = "when it is traced again, so it draws from more than `words`; keep no generator in it"
+    lives.compare(_pasts(one), _pasts(other), says)
+    says = f"inside a compiled loop than stepped tick by tick{ROUNDED}"
+    lives.compare(expected, _pasts(one), says)
+
+
+def _looped(habitat: JaxHabitat, words: Array, actions: Array) -> tuple[Array, Array, Outcome]:
+    """Live TICKS ticks -> senses at birth (N, S), senses (TICKS, N, S) and outcomes afterwards."""
+
+    def tick(bodies: Bodies, action: Array) -> tuple[Bodies, tuple[Array, Outcome]]:
+        bodies, outcome = habitat.step(bodies, action)
+        return bodies, (habitat.sense(bodies), outcome)
+
+    born = fresh(habitat, words)
+    senses, outcomes = lax.scan(tick, born, actions)[1]
+    return habitat.sense(born), senses, outcomes
+
+
+def _pasts(looped: tuple[Array, Array, Outcome]) -> list[Past]:
+    first, senses, outcomes = jax.tree.map(np.asarray, looped)
+    pasts = []
+    for body in range(ALL):
+        past: Past = [(first[body],)]
+        for tick in range(TICKS):
+            reported = outcomes[:3]  # without faults, which the law finds in a loop
+            outcome = [None if each is None else each[tick, body] for each in reported]
+            past.append((senses[tick, body], *outcome))
+        pasts.append(past)
+    return pasts

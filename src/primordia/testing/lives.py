@@ -1,0 +1,201 @@
+"""Lives to compare: the same words and actions, beside other bodies, with pauses, in other cells."""
+
+import copy
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any, TypeAlias
+
+import jax
+import numpy as np
+from PIL.Image import Image
+
+from primordia.habitats.contract import (
+    Ability,
+    AnyHabitat,
+    Discrete,
+    HostHabitat,
+    JaxHabitat,
+    Outcome,
+)
+from primordia.habitats.on_host import OnHost
+from primordia.testing.report import ContractError, need, typed
+from primordia.testing.trial import ALL, normal, words
+
+TICKS = 12
+HALF = TICKS // 2
+
+Past: TypeAlias = list[tuple[Any, ...]]
+"""At each age from birth on: senses, then the outcome and the tally; None for what is not reported."""
+
+
+def judged(habitat: object, outcome: Any, count: int) -> None:
+    """Raise ContractError if what a step reports is no Outcome of `count` bodies."""
+    need(isinstance(outcome, Outcome), habitat, f"reports {outcome!r}; return an Outcome from step")
+    for name, each in outcome._asdict().items():
+        if each is not None or name == "fatal":
+            dtype = np.bool_ if name in ("fatal", "fault") else np.float32
+            typed(habitat, f"outcome.{name}", each, (count,), dtype)
+
+
+class Lives:
+    """The lives of ALL bodies of a habitat; in whatever way they are played, they must be the same."""
+
+    def __init__(self, habitat: AnyHabitat) -> None:
+        self.habitat = habitat
+        self.words = words(0, ALL, habitat.words)
+        if isinstance(habitat.action, Discrete):
+            drawn = words(1, TICKS, ALL) % np.uint32(habitat.action.size)
+            self.actions = drawn.astype(np.int32)
+        else:
+            self.actions = normal(1, TICKS, ALL, habitat.action.size)
+
+    @contextmanager
+    def opened(self, who: np.ndarray, cells: int, watched: bool = False) -> Iterator["Stage"]:
+        """Open a copy of the habitat, in which bodies `who` take the first cells, in order."""
+        inner = self.habitat
+        own = OnHost(inner) if isinstance(inner, JaxHabitat) else copy.deepcopy(inner)
+        try:
+            own.open(cells, watched)
+            yield Stage(self, own, who, cells)
+        finally:
+            own.close()
+
+    def whole(self) -> list[Past]:
+        """Play all lives side by side."""
+        return self._played(np.arange(ALL))
+
+    def among(self, count: int) -> list[Past]:
+        """Play the last lives by themselves, in reversed order."""
+        return self._played(np.arange(ALL)[::-1][:count])
+
+    def interrupted(self) -> list[Past]:
+        """Play with a rest of three ticks for every other body."""
+        with self.opened(np.arange(ALL), ALL) as stage:
+            stage.bear()
+            for tick in range(TICKS + 3):
+                rests = (np.arange(ALL) % 2 == 0) & (3 <= tick < 6)
+                stage.tick(~rests)
+            return stage.pasts
+
+    def born_late(self) -> list[Past]:
+        """Play with every third body born a second time, where it has lived for a while."""
+        with self.opened(np.arange(ALL), ALL) as stage:
+            stage.bear()
+            for tick in range(TICKS):
+                if tick == HALF:
+                    stage.bear(np.arange(ALL) % 3 == 0)
+                stage.tick()
+            return stage.pasts
+
+    def restored(self, rows: slice) -> list[Past]:
+        """Play half, and the rest of some of the lives in a habitat that takes what was saved."""
+        with self.opened(np.arange(ALL), ALL) as stage:
+            stage.play(HALF)
+            saved = stage.saved()
+        who = np.arange(ALL)[rows]
+        with self.opened(who, len(who)) as stage2:
+            stage2.take_over(stage, {name: array[rows].copy() for name, array in saved.items()})
+            for _ in range(TICKS - HALF):
+                stage2.tick()
+            return stage2.pasts
+
+    def drawn(self) -> None:
+        """Check pictures of one body, and what is said of it."""
+        with self.opened(np.arange(2), 2, watched=True) as stage:
+            stage.play(1)
+            body = jax.tree.map(lambda leaf: np.array(leaf)[1], stage.habitat.seen())
+            action = self.actions[0, 1]
+            picture = stage.habitat.picture(body, action)
+            need(
+                isinstance(picture, Image),
+                self.habitat,
+                f"draws {type(picture).__name__}; return a PIL.Image.Image from picture",
+            )
+            said = stage.habitat.caption(body, action)
+            need(
+                isinstance(said, str), self.habitat, f"says {said!r}; return a string from caption"
+            )
+
+    def compare(self, expected: list[Past], found: list[Past], says: str) -> None:
+        """Raise ContractError where a life is not what is expected, up to the shorter end."""
+        for body, (one, other) in enumerate(zip(expected, found, strict=True)):
+            for age, (a, b) in enumerate(zip(one, other, strict=False)):
+                pairs = zip(a, b, strict=False)
+                if any(np.asarray(x).tobytes() != np.asarray(y).tobytes() for x, y in pairs):
+                    name = type(self.habitat).__name__
+                    raise ContractError(f"{name}: body {body} has another life at age {age} {says}")
+
+    def _played(self, who: np.ndarray) -> list[Past]:
+        with self.opened(who, len(who)) as stage:
+            stage.play(TICKS)
+            return stage.pasts
+
+
+class Stage:
+    """Some of the lives in an opened habitat."""
+
+    def __init__(self, lives: Lives, habitat: HostHabitat, who: np.ndarray, cells: int) -> None:
+        self.lives, self.habitat, self.who, self.cells = lives, habitat, who, cells
+        self.age, self.alive = np.zeros(cells, int), np.zeros(cells, bool)
+        self.pasts: list[Past] = [[] for _ in range(ALL)]
+
+    def bear(self, chosen: np.ndarray | None = None) -> None:
+        """Give bodies in cells, bool (N,), their births."""
+        cells = np.flatnonzero(np.ones(self.cells, bool) if chosen is None else chosen)
+        part, own = self.lives.habitat, self.who[cells]
+        given = self.lives.words[own]
+        senses = self.habitat.reset(cells, given.copy())
+        typed(part, "senses from reset", senses, (len(cells), part.senses_size), np.float32)
+        for body, row in zip(own, np.array(senses), strict=True):
+            self.pasts[body] = [(row,)]
+        self.age[cells], self.alive[cells] = 0, True
+
+    def tick(self, chosen: np.ndarray | None = None) -> None:
+        """Step the living in cells, bool (N,), that have not come to the last tick."""
+        part = self.lives.habitat
+        active = self.alive & (self.age < TICKS)
+        active &= True if chosen is None else chosen
+        action = np.zeros((self.cells, *self.lives.actions.shape[2:]), self.lives.actions.dtype)
+        action[active] = self.lives.actions[self.age[active], self.who[active]]
+        senses, outcome = self.habitat.step(action.copy(), active.copy())
+        typed(part, "senses from step", senses, (self.cells, part.senses_size), np.float32)
+        judged(part, outcome, self.cells)
+        told = [None if each is None else np.array(each) for each in (senses, *outcome)]
+        told += [self._tally()] if part.can(Ability.TALLY) else []
+        for cell in np.flatnonzero(active):
+            row = tuple(None if each is None else each[cell] for each in told)
+            self.pasts[self.who[cell]].append(row)
+        self.age[active] += 1
+        self.alive &= ~np.asarray(outcome.fatal)
+        if outcome.fault is not None:
+            self.alive &= ~np.asarray(outcome.fault)
+
+    def play(self, ticks: int) -> None:
+        """Give all bodies their births, and live some ticks."""
+        self.bear()
+        for _ in range(ticks):
+            self.tick()
+
+    def saved(self) -> dict[str, np.ndarray]:
+        """Return what the habitat saves, checked."""
+        part, arrays = self.lives.habitat, self.habitat.save()
+        for name, array in arrays.items():
+            need(
+                isinstance(array, np.ndarray) and array.shape[:1] == (self.cells,),
+                part,
+                f"saves {name!r} as {np.shape(array)}; save NumPy arrays with cells as first axis",
+            )
+        if part.can(Ability.TALLY):
+            need("tally" in arrays, part, "does not save its counts; save them as 'tally'")
+        return {name: array.copy() for name, array in arrays.items()}
+
+    def take_over(self, other: "Stage", arrays: dict[str, np.ndarray]) -> None:
+        """Go on with what another stage saved."""
+        self.habitat.load(arrays)
+        self.age[:], self.alive[:] = other.age[self.who], other.alive[self.who]
+        self.pasts = [[*past] if body in self.who else [] for body, past in enumerate(other.pasts)]
+
+    def _tally(self) -> np.ndarray:
+        tally, part = self.habitat.tally(), self.lives.habitat
+        typed(part, "its tally", tally, (self.cells, len(part.tallies)), np.int32)
+        return tally.copy()

@@ -1,0 +1,207 @@
+"""The check of mutations."""
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any, NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array, lax
+
+from primordia.brains.layout import Layout
+from primordia.law.events import BIRTHS
+from primordia.mutations.contract import PURPOSES, Draws, Mutation
+from primordia.random.keys import streams
+from primordia.random.wide import wide
+from primordia.settings.fields import rates_of
+from primordia.testing.report import ROUNDED, ContractError, advise, need, same, typed
+from primordia.testing.trial import ALL, COUNTS, last, normal, words
+
+LAYOUT = Layout((("input", (3, 7)), ("recurrent", (7, 7)), ("output", (2, 7))))
+"""What mutations are checked with unless another layout is given: the blocks of the default brain."""
+GENERATIONS = 8
+TAKEN = {"world", *BIRTHS.names}
+"""Columns that every births table has."""
+
+
+class Family(NamedTuple):
+    """What the births of K children depend on."""
+
+    parents: Array
+    """float32 (K, P)"""
+    notes: Array
+    """of the parents, int32 (K, n)"""
+    rates: Mapping[str, Array]
+    draws: Draws
+
+    def take(self, rows: Any) -> "Family":
+        """Return those in some rows."""
+        rates = {name: values[rows] for name, values in self.rates.items()}
+        draws = Draws(self.draws.streams.take(rows), self.draws.cell[rows])
+        return Family(self.parents[rows], self.notes[rows], rates, draws)
+
+
+class Made(NamedTuple):
+    """Children and founders of K births."""
+
+    notes: Array
+    genome: Array
+    mutated: Array
+    founders: Array
+
+
+def check_mutation(mutation: Mutation, layout: Layout | None = None) -> None:
+    """Check types, births that do not depend on each other, and the same bits when they are replayed.
+
+    Args:
+        mutation: with the settings to be checked.
+        layout: of genomes; by default blocks named input, recurrent and output.
+
+    Raises:
+        ContractError: the mutation does not keep the contract of `mutations.contract`.
+    """
+    layout = layout or LAYOUT
+    _stated(mutation, layout)
+    family = _family(mutation, layout)
+    _types(mutation, layout, family)
+    births: Callable[[Family], Made] = partial(_births, mutation, layout)
+    made = jax.jit(births)(family)
+    says = (
+        "when it is traced again, so a birth depends on more than parents, notes, rates and draws;"
+        " draw from `draws` only"
+    )
+    same(mutation, made, jax.jit(lambda each: births(each))(family), says)
+    for count in COUNTS:
+        few = jax.jit(births)(family.take(np.s_[ALL - count :]))
+        says = f"when {count} instead of {ALL} are born together; compute each birth by itself"
+        same(mutation, last(made, count), few, says, ALL - count)
+    same(mutation, made, births(family), f"when compiled{ROUNDED}")
+    same(mutation, made, jax.jit(partial(_one_by_one, births))(family), f"when rebuilt{ROUNDED}")
+    _copies(mutation, layout, made, family)
+    _obeys_rates(mutation, layout, family)
+    advise(mutation)
+
+
+def _stated(mutation: Mutation, layout: Layout) -> None:
+    """Check what it says of itself: its notes, and the settings that seasons may change."""
+    try:
+        mutation.check(layout)
+    except ValueError as error:
+        raise ContractError(
+            f"{type(mutation).__name__} does not fit the layout: {error}; give check_mutation a layout"
+        ) from None
+    for name in mutation.notes:
+        need(
+            isinstance(name, str) and name.isidentifier() and name not in TAKEN,
+            mutation,
+            f"notes {name!r}, which cannot be a column of births; take a word other than"
+            f" {', '.join(sorted(TAKEN))}",
+        )
+    rates = mutation.rates(layout)
+    for name, value in rates.items():
+        need(
+            isinstance(value, float) and np.isfinite(value),
+            mutation,
+            f"gives the rate {name} as {value!r}; rates are finite floats",
+        )
+        need(
+            name in mutation.governed(name, layout),
+            mutation,
+            f"has a rate {name} that no season of {name} changes; `governed` must name it",
+        )
+    for setting in {*rates_of(mutation), *rates, "no-such-setting"}:
+        unknown = set(mutation.governed(setting, layout)) - set(rates)
+        need(
+            not unknown,
+            mutation,
+            f"says that a season of {setting} changes {', '.join(sorted(unknown))}, which `rates` lacks",
+        )
+    need(
+        not mutation.governed("no-such-setting", layout),
+        mutation,
+        "takes a season of a setting that it does not have; return [] from `governed`",
+    )
+
+
+def _family(mutation: Mutation, layout: Layout) -> Family:
+    """Return births in several ticks of several worlds; parents' notes have a history of some births."""
+    number = np.arange(ALL, dtype=np.uint64)
+    draws = Draws(streams(wide(number % 3), wide(number // 3), *PURPOSES), jnp.arange(ALL))
+    share = jnp.linspace(0.5, 1, ALL, dtype=jnp.float32)
+    rates = {name: value * share for name, value in mutation.rates(layout).items()}
+    parents = jnp.asarray(normal(0, ALL, layout.length))
+    notes = jnp.asarray(mutation.founders_notes(ALL))
+    for birth in range(GENERATIONS):
+        elsewhere = draws._replace(cell=draws.cell + ALL * (birth + 1))
+        typed(mutation, "notes", notes, (ALL, len(mutation.notes)), np.int32)
+        notes = mutation.note(layout, parents, notes, rates, elsewhere)
+    return Family(parents, notes, rates, draws)
+
+
+def _births(mutation: Mutation, layout: Layout, family: Family) -> Made:
+    parents, notes, rates, draws = family
+    notes = mutation.note(layout, parents, notes, rates, draws)
+    genome, mutated = mutation.inherit(layout, parents, notes, rates, draws)
+    return Made(notes, genome, mutated, mutation.found(layout, draws))
+
+
+def _one_by_one(births: Callable[[Family], Made], family: Family) -> Made:
+    """Make the same births in a loop, as a line of descent is replayed."""
+
+    def birth(_: None, row: Array) -> tuple[None, Made]:
+        return None, jax.tree.map(lambda leaf: leaf[0], births(family.take(row[None])))
+
+    return lax.scan(birth, None, jnp.arange(ALL))[1]
+
+
+def _types(mutation: Mutation, layout: Layout, family: Family) -> None:
+    count = len(mutation.notes)
+    one, all_ = (mutation.founders_notes(each) for each in (1, ALL))
+    typed(mutation, "founders' notes", all_, (ALL, count), np.int32)
+    need(
+        (np.asarray(all_) == np.asarray(one)).all(),
+        mutation,
+        "gives founders different notes; those of all founders must be the same",
+    )
+    notes = jax.eval_shape(partial(mutation.note, layout), *family)
+    typed(mutation, "notes", notes, (ALL, count), np.int32)
+    pair: Any = jax.eval_shape(partial(mutation.inherit, layout), *family)
+    need(
+        isinstance(pair, tuple) and len(pair) == 2,
+        mutation,
+        "does not return a pair from inherit; return genomes, and which are mutants",
+    )
+    shape = (ALL, layout.length)
+    typed(mutation, "genomes of children", pair[0], shape, np.float32)
+    typed(mutation, "which children are mutants", pair[1], (ALL,), np.bool_)
+    founders = jax.eval_shape(partial(mutation.found, layout), family.draws)
+    typed(mutation, "genomes of founders", founders, shape, np.float32)
+
+
+def _copies(mutation: Mutation, layout: Layout, made: Made, family: Family) -> None:
+    """Compare children that are no mutants with parents whose weights have any bits."""
+    parents = jnp.asarray(words(1, ALL, layout.length).view(np.float32))
+    odd = jax.jit(partial(_births, mutation, layout))(family._replace(parents=parents))
+    for children, of in ((made, family.parents), (odd, parents)):
+        copy = ~np.asarray(children.mutated)[:, None]
+        says = (
+            "though it is said to be a copy; give parents' weights as they are, or call it a mutant"
+        )
+        same(mutation, of, np.where(copy, children.genome, of), says)
+
+
+def _obeys_rates(mutation: Mutation, layout: Layout, family: Family) -> None:
+    """Compare births under rates of 0 with those under rates of 1."""
+    none, full = (
+        jax.jit(partial(_births, mutation, layout))(
+            family._replace(rates={name: jnp.full(ALL, value) for name in family.rates})
+        )
+        for value in (np.float32(0), np.float32(1))
+    )
+    need(
+        not family.rates or not np.array_equal(none.genome, full.genome, equal_nan=True),
+        mutation,
+        "makes the same children whatever its rates; read them from `rates`, not from the settings, or"
+        " seasons have no effect",
+    )

@@ -1,0 +1,60 @@
+"""What checks have in common: comparisons bit for bit, and what is said of a part that fails."""
+
+import warnings
+from typing import Any
+
+import jax
+import numpy as np
+
+ROUNDED = (
+    "; compilers round a product and a sum together, or not, and sum in other orders: take"
+    " rounding.rounded_product for a product that is added to something, and brains.layers for brains"
+)
+
+
+class ContractError(AssertionError):
+    """A part does not keep its contract."""
+
+
+def need(holds: object, part: object, says: str) -> None:
+    """Raise ContractError unless something holds."""
+    if not holds:
+        raise ContractError(f"{type(part).__name__} {says}")
+
+
+def typed(part: object, what: str, array: Any, shape: tuple[int, ...], dtype: Any) -> None:
+    """Raise ContractError if an array, or the shape of one, is not of a shape and dtype."""
+    wanted = f"{np.dtype(dtype)} {shape}"
+    is_array = isinstance(array, np.ndarray | jax.Array | jax.ShapeDtypeStruct)
+    found = f"{array.dtype} {tuple(array.shape)}" if is_array else f"{array!r}"
+    need(found == wanted, part, f"gives {what} as {found}; the contract says {wanted}")
+
+
+def same(part: object, one: Any, other: Any, says: str, first: int = 0) -> None:
+    """Raise ContractError if two trees of arrays (N, ...) differ in a bit; row 0 is organism `first`."""
+    pairs = zip(jax.tree.leaves(one), jax.tree.leaves(other), strict=True)
+    differ = [
+        row
+        for a, b in pairs
+        for row, (x, y) in enumerate(zip(np.asarray(a), np.asarray(b), strict=True))
+        if x.tobytes() != y.tobytes()
+    ]
+    if differ:
+        raise ContractError(
+            f"{type(part).__name__} gives other bits for organism {first + min(differ)} {says}"
+        )
+
+
+def advise(part: object) -> None:
+    """Warn if a part shares its compiled code with no equal part."""
+    try:
+        hash(part)
+        shares = type(part).__eq__ is not object.__eq__
+    except TypeError:
+        shares = False
+    if not shares:
+        warnings.warn(
+            f"{type(part).__name__} is not hashed by its values, so each run compiles it again;"
+            " subclass Settings, without dictionaries or lists among the settings, or define __hash__",
+            stacklevel=3,
+        )
