@@ -378,7 +378,7 @@ HOST_FAULTS: list[tuple[Any, str]] = [
     (Heir(), "where another lived before; `reset` makes whole bodies"),
     (Intruder(), "when others are born beside it"),
     (Gambler(), "at age 0 when it begins again, .*; draw from `words` alone"),
-    (Placed(), "at age 0 among 2 bodies than among 32"),
+    (Placed(), "at age 0 among 1 bodies than among 32"),
     (Doubled(), r"gives senses from step as float64 \(32, 1\); the contract says float32"),
     (Stored(), "defines save without load; define both, or neither"),
     (Scored(), "does not save its counts; save them as 'tally'"),

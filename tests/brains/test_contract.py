@@ -14,6 +14,7 @@ import pytest
 from primordia.brains.contract import KNOWN, Brain, build, find
 from primordia.errors import InputError
 from primordia.runs import loop
+from primordia.testing import check_brain
 from tests.history.test_lineage import assert_rebuilt
 from tests.toys import Sliding
 from tests.worlds import CLOCKWORK, MILL, Lived, config
@@ -54,13 +55,8 @@ def lived(brain: Brain, genome: Any, memory: Any, senses: Any) -> tuple:
 
 
 @each_brain
-def test_a_brain_gives_the_shapes_and_types_of_the_contract(brain: Brain) -> None:
-    genome, memory, senses = minds(brain)
-    after, output = brain(genome, memory, senses[0])
-    assert (after.shape, after.dtype) == (memory.shape, memory.dtype)
-    assert (output.shape, output.dtype) == ((MOST, OUTPUTS), memory.dtype)
-    assert np.isfinite(output).all()
-    assert len(np.unique(output)) > MOST
+def test_a_brain_keeps_the_contract(brain: Brain) -> None:
+    check_brain(brain, SENSES, OUTPUTS)
 
 
 @each_brain
@@ -91,18 +87,6 @@ def test_a_brain_thinks_the_same_inside_a_loop_and_outside(
         memory, output = think(genome, memory, senses[tick])
         np.testing.assert_array_equal(output, outputs[tick])
     np.testing.assert_array_equal(memory, last)
-
-
-@each_brain
-def test_a_brain_is_a_pure_function(brain: Brain) -> None:
-    given = minds(brain)
-    genome, memory, senses = given
-    think = jax.jit(brain)
-    one = jax.tree.map(np.asarray, think(genome, memory, senses[0]))
-    think(genome, memory + 1, senses[1])
-    brain(genome, memory, senses[2])
-    jax.tree.map(np.testing.assert_array_equal, one, think(genome, memory, senses[0]))
-    jax.tree.map(np.testing.assert_array_equal, given, minds(brain))
 
 
 @each_brain

@@ -47,6 +47,14 @@ def test_a_part_does_not_take_settings_of_the_part_that_it_replaces() -> None:
     }
     assert merged(base, {"brain": {"kind": "linear"}})["brain"] == {"kind": "linear"}
     assert merged(base, {"motor": {"kind": "gaussian"}})["motor"] == {"kind": "gaussian", "sd": 0.5}
+    mutation = {"scale": 0.5}  # of the Gaussian, which a table describes that names no kind
+    assert merged({"mutation": mutation}, {"mutation": {"kind": "my:Own"}})["mutation"] == {
+        "kind": "my:Own"
+    }
+    assert merged({"mutation": mutation}, {"mutation": {"kind": "gaussian"}})["mutation"] == {
+        "kind": "gaussian",
+        "scale": 0.5,
+    }
     hidden = load("CartPole-survival-hidden", {"habitat": {"name": "tests.toys:Meadow"}})
     assert hidden.habitat == {"name": "tests.toys:Meadow"}
 

@@ -18,6 +18,7 @@ from primordia.brains.layout import Layout, Shape
 from primordia.settings import parts
 from primordia.settings.base import Settings
 from primordia.settings.making import make
+from primordia.settings.tables import DEFAULTS
 
 Genome: TypeAlias = dict[str, Array]
 
@@ -27,8 +28,7 @@ KNOWN = {
     "gated": "primordia.brains.gated:Gated",
     "linear": "primordia.brains.linear:Linear",
 }
-DEFAULT = "recurrent"
-"""The paper's brain, the default of every task."""
+DEFAULT = DEFAULTS["brain"]
 
 
 class Brain(Settings, ABC):

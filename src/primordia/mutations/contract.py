@@ -22,9 +22,10 @@ from primordia.settings import parts
 from primordia.settings.base import Settings
 from primordia.settings.fields import rates_of
 from primordia.settings.making import make
+from primordia.settings.tables import DEFAULTS
 
 KNOWN = {"gaussian": "primordia.mutations.gaussian:Gaussian"}
-DEFAULT = "gaussian"
+DEFAULT = DEFAULTS["mutation"]
 
 PURPOSES = Purpose.MUTATE, Purpose.NOISE, Purpose.FOUNDER
 """The purposes for which a mutation may draw random bits."""

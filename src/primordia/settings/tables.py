@@ -13,6 +13,8 @@ NONE = "none"
 
 PARTS = {"habitat": "name", "brain": "kind", "mutation": "kind"}
 """Tables of replaceable parts, and the setting of each that names the part."""
+DEFAULTS = {"brain": "recurrent", "mutation": "gaussian"}
+"""Parts of tables that name none: those of the paper."""
 
 
 def tasks() -> dict[str, dict[str, Any]]:
@@ -71,7 +73,7 @@ def merged(base: dict[str, Any], change: dict[str, Any]) -> dict[str, Any]:
     for name, value in change.items():
         old, key = result.get(name), PARTS.get(name)
         if isinstance(value, dict) and isinstance(old, dict):
-            exchanged = key in old and key in value and old[key] != value[key]
+            exchanged = key in value and old.get(key, DEFAULTS.get(name)) != value[key]
             value = value if exchanged else merged(old, value)
         result[name] = value
     return result

@@ -1,0 +1,153 @@
+"""Parts as users write them, each one file: they keep their contracts, live, and are lived again."""
+
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from examples.brain import Leaky
+from examples.habitat import Pasture
+from examples.mutation import CEILING, FACTORS, FLOOR, SelfAdaptive
+
+import primordia
+from primordia.organism.life.life import Life
+from primordia.runs.archive import Archive
+from primordia.testing import check_brain, check_habitat, check_mutation
+from tests.commands import here
+from tests.history.test_lineage import comes_back, living
+
+TASK = "CartPole-survival"
+LIVELY: dict[str, Any] = {"replication": 0.3, "hazard": 0.03, "cells": 16}
+
+
+def test_they_keep_their_contracts() -> None:
+    check_brain(Leaky(neurons=5))
+    check_habitat(Pasture())
+    check_mutation(SelfAdaptive())
+
+
+def flags(settings: dict[str, Any]) -> list[str]:
+    return [word for name, value in settings.items() for word in (f"--{name}", str(value))]
+
+
+def test_a_brain_lives_and_a_life_is_lived_again(tmp_path: Path) -> None:
+    own = {"brain.kind": "examples.brain:Leaky", "brain.neurons": 6}
+    done = here(
+        "run", TASK, *flags({**own, **LIVELY}), "--ticks", 300, "--quiet", "--out", tmp_path / "run"
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    run = Archive(tmp_path / "run")
+    assert run.config.brain == {"kind": "examples.brain:Leaky", "neurons": 6}
+    assert run.law.layout.names == ["input", "recurrent", "keep", "output"]
+    comes_back(run.path)
+    lived_again(run)
+
+
+def lived_again(run: Archive) -> None:
+    """The longest life; it raises Trouble if it ends otherwise than recorded."""
+    row = run.lives.oldest()
+    life = Life.of(run, int(run.lives.id[row]), int(run.lives.world[row]))
+    ticks = sum(len(stretch.tick) for stretch in life.again())
+    assert ticks == run.lives.lifespan[row] > 10
+
+
+def test_a_habitat_feeds_and_is_drawn(tmp_path: Path) -> None:
+    habitat = {"habitat.name": "examples.habitat:Pasture", "habitat.reach": 0.2}
+    fed = {"metabolism.store": 100.0, "metabolism.gain": 50.0, "mutation.founder_scale": 0.5}
+    words = flags({**habitat, **fed, **LIVELY, "replication": 0.05})
+    done = here("run", TASK, *words, "--ticks", 2000, "--quiet", "--out", tmp_path / "run")
+    assert (done.returncode, done.stderr) == (0, "")
+    run = Archive(tmp_path / "run")
+    deaths = run.table("deaths")
+    assert {"fatal", "starved"} <= set(deaths["cause"].to_pylist())
+    assert max(deaths["food"].to_pylist()) >= 1
+    lived_again(run)
+    seen = here("replay", run.path, "--to", 5, "--out", tmp_path / "life.gif")
+    assert (seen.returncode, seen.stderr) == (0, "")
+    assert (tmp_path / "life.gif").stat().st_size > 1000
+
+
+@pytest.fixture(scope="module")
+def adaptive(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run whose organisms inherit how much they mutate."""
+    out = tmp_path_factory.mktemp("adaptive") / "run"
+    season = {"kind": "schedule", "setting": "mutation.scale", "at": 150, "value": 0.02}
+    primordia.run(
+        TASK,
+        out,
+        mutation={"kind": "examples.mutation:SelfAdaptive", "stride": 3},
+        seasons=[season],
+        seeds=2,
+        stop={"ticks": 400},
+        **LIVELY,
+    )
+    return out
+
+
+def test_what_is_inherited_is_on_record(adaptive: Path) -> None:
+    """Copies have their parent's exponent; mutants are up to a stride away; founders have none."""
+    births = primordia.load(adaptive).table("births").to_pylist()
+    exponent = {(each["world"], each["id"]): each["octaves8"] for each in births}
+    assert {cause for each in births if (cause := each["cause"])} == {"founder", "copy", "mutant"}
+    for each in births:
+        own = each["octaves8"]
+        if each["cause"] == "founder":
+            assert own == 0
+            continue
+        step = abs(own - exponent[each["world"], each["parent"]])
+        assert step <= (3 if each["cause"] == "mutant" else 0)
+    assert min(exponent.values()) < -5
+    assert max(exponent.values()) > 5
+
+
+def test_genomes_come_back_from_records(adaptive: Path) -> None:
+    comes_back(adaptive)
+
+
+def test_genomes_come_back_across_a_fork_and_it_is_verified(adaptive: Path, tmp_path: Path) -> None:
+    run = primordia.load(adaptive)
+    assert run.verify() == []
+    fork = run.fork(200, tmp_path / "fork", seed=9, stop={"ticks": 500})
+    assert fork.verify() == []
+    comes_back(fork.path)
+    inherited = Archive(fork.path)
+    assert inherited.origin is not None
+    births = fork.table("births").to_pylist()
+    at_fork = {(b["world"], b["id"]): b["octaves8"] for b in births if b["tick"] <= 200}
+    original = {
+        (b["world"], b["id"]): b["octaves8"]
+        for b in run.table("births").to_pylist()
+        if b["tick"] <= 200
+    }
+    assert at_fork.items() <= original.items()
+    assert set(at_fork.values()) != {0}
+    now = {(world, number) for world, number, _ in living(fork.path)}
+    assert len(now) > 5
+
+
+def test_the_table_of_factors_is_of_eighths_of_octaves() -> None:
+    assert len(FACTORS) == CEILING - FLOOR + 1
+    np.testing.assert_allclose(FACTORS, 2.0 ** (np.arange(FLOOR, CEILING + 1) / 8), rtol=1e-7)
+    for one, other in pairwise(FACTORS[::8]):
+        assert other == 2 * one
+
+
+@pytest.mark.parametrize(
+    ("words", "shown"),
+    [
+        (
+            ["--brain.kind", "examples.brain:Leaky"],
+            "--brain.neurons neurons in the hidden layer [16]",
+        ),
+        (["--mutation.kind", "examples.mutation:SelfAdaptive"], "--mutation.stride most eighths"),
+        (
+            ["--habitat.name", "examples.habitat:Pasture"],
+            "--habitat.reach distance at which a tuft",
+        ),
+    ],
+)
+def test_help_shows_the_settings_of_a_part_that_is_named(words: list[str], shown: str) -> None:
+    done = here("run", TASK, *words, "--help")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert shown in " ".join(done.stdout.split())
