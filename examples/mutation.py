@@ -75,7 +75,7 @@ class SelfAdaptive(Mutation):
         mutants = parents + rounded_product(noise, scale[:, None])
         return jnp.where(mutates[:, None], mutants, parents), mutates
 
-    def found(self, layout: Layout, draws: Draws) -> Array:
+    def founders(self, layout: Layout, draws: Draws) -> Array:
         """Make founders' genomes: Gaussian weights around zero."""
         noise = standard_noise(draws.streams[Purpose.FOUNDER], draws.cell, layout.length)
         return noise * np.float32(self.founder_scale)

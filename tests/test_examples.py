@@ -15,7 +15,7 @@ from primordia.organism.life.life import Life
 from primordia.runs.archive import Archive
 from primordia.testing import check_brain, check_habitat, check_mutation
 from tests.commands import here
-from tests.history.test_lineage import comes_back, living
+from tests.history.test_lineage import assert_rebuilt, living
 
 TASK = "CartPole-survival"
 LIVELY: dict[str, Any] = {"replication": 0.3, "hazard": 0.03, "cells": 16}
@@ -40,7 +40,7 @@ def test_a_brain_lives_and_a_life_is_lived_again(tmp_path: Path) -> None:
     run = Archive(tmp_path / "run")
     assert run.config.brain == {"kind": "examples.brain:Leaky", "neurons": 6}
     assert run.law.layout.names == ["input", "recurrent", "keep", "output"]
-    comes_back(run.path)
+    assert_rebuilt(run.path)
     lived_again(run)
 
 
@@ -102,7 +102,7 @@ def test_what_is_inherited_is_on_record(adaptive: Path) -> None:
 
 
 def test_genomes_come_back_from_records(adaptive: Path) -> None:
-    comes_back(adaptive)
+    assert_rebuilt(adaptive)
 
 
 def test_genomes_come_back_across_a_fork_and_it_is_verified(adaptive: Path, tmp_path: Path) -> None:
@@ -110,7 +110,7 @@ def test_genomes_come_back_across_a_fork_and_it_is_verified(adaptive: Path, tmp_
     assert run.verify() == []
     fork = run.fork(200, tmp_path / "fork", seed=9, stop={"ticks": 500})
     assert fork.verify() == []
-    comes_back(fork.path)
+    assert_rebuilt(fork.path)
     inherited = Archive(fork.path)
     assert inherited.origin is not None
     births = fork.table("births").to_pylist()

@@ -429,7 +429,7 @@ class Steady(Mutation):
     def added(self, parents: Array, change: Array) -> Array:
         return parents + change
 
-    def found(self, layout: Layout, draws: Draws) -> Array:
+    def founders(self, layout: Layout, draws: Draws) -> Array:
         return standard_noise(draws.streams[Purpose.FOUNDER], draws.cell, layout.length)
 
 
@@ -523,8 +523,8 @@ class Elsewhere(Steady):
 
 
 class Few(Steady):
-    def found(self, layout: Layout, draws: Draws) -> Array:
-        return super().found(layout, draws)[:, 1:]
+    def founders(self, layout: Layout, draws: Draws) -> Array:
+        return super().founders(layout, draws)[:, 1:]
 
 
 @pytest.mark.parametrize("mutation", [Steady(), Counted()])

@@ -143,7 +143,7 @@ def _births(mutation: Mutation, layout: Layout, family: Family) -> Made:
     parents, notes, rates, draws = family
     notes = mutation.note(layout, parents, notes, rates, draws)
     genome, mutated = mutation.inherit(layout, parents, notes, rates, draws)
-    return Made(notes, genome, mutated, mutation.found(layout, draws))
+    return Made(notes, genome, mutated, mutation.founders(layout, draws))
 
 
 def _one_by_one(births: Callable[[Family], Made], family: Family) -> Made:
