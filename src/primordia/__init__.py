@@ -15,7 +15,7 @@ __all__ = list(_HOMES)
 
 
 def __getattr__(name: str) -> Any:
-    """Load what is public when first asked for: JAX takes a second."""
+    """Load a public name at its first use, since JAX takes a second to load."""
     if name not in _HOMES:
         raise AttributeError(f"module 'primordia' has no attribute {name!r}")
     return getattr(import_module(f"primordia.{_HOMES[name]}"), name)

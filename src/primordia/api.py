@@ -1,4 +1,4 @@
-"""The Python interface, which the command line is made of.
+"""The Python interface, on which the command line is built.
 
 import primordia
 
@@ -37,7 +37,7 @@ from primordia.runs.verify import verify
 
 @dataclass(frozen=True)
 class Run:
-    """A run directory. Each call opens it as it stands then; an `Organism` keeps what it came from."""
+    """A run directory. Each call opens it as it then is; an `Organism` keeps the archive it came from."""
 
     path: Path
 
@@ -45,42 +45,42 @@ class Run:
         object.__setattr__(self, "path", Path(self.path))
 
     def opened(self) -> Archive:
-        """The run as it stands now, to be read."""
+        """Open the run for reading, as it is now."""
         return Archive(self.path)
 
     def info(self) -> dict[str, Any]:
-        """The run in one object; see `info.info`."""
+        """Return the run in numbers; see `info.info`."""
         return info(self.opened())
 
     def table(self, name: str) -> pa.Table:
-        """`births`, `deaths` or `metrics`, as an Arrow table."""
+        """Return `births`, `deaths` or `metrics` as an Arrow table."""
         return self.opened().table(name)
 
     def arrays(self, name: str) -> dict[str, np.ndarray]:
-        """The same as NumPy arrays, by column."""
-        columns = self.table(name)
-        return {each: columns[each].to_numpy(zero_copy_only=False) for each in columns.column_names}
+        """Return the columns of a table by name, as NumPy arrays."""
+        table = self.table(name)
+        return {each: table[each].to_numpy(zero_copy_only=False) for each in table.column_names}
 
     def lives(self) -> Lives:
-        """Births and deaths joined: everyone who ever lived."""
+        """Return births and deaths joined: one row for each organism of the run."""
         return self.opened().lives
 
     def organism(self, organism: int, world: int = 0) -> Organism:
-        """An organism, by birth number."""
+        """Return an organism by its birth number."""
         run = self.opened()
         return Organism(run, run.lives.row(organism, world))
 
     def oldest(self, world: int | None = None) -> Organism:
-        """The organism that lived longest, in one world or in all."""
+        """Return the organism that lived longest, in one world or in all."""
         run = self.opened()
         return Organism(run, run.lives.oldest(world))
 
     def evaluate(self, organisms: Iterable[Organism], **options: Any) -> list[Evaluation]:
-        """How they do in whole games, which they play side by side; see `evaluation.evaluate`."""
+        """Let organisms play games side by side; see `evaluation.evaluate`."""
         return evaluate(self.opened(), [(each.id, each.world) for each in organisms], **options)
 
     def policy(self) -> Policy:
-        """The brain of the longest-lived, as `policy(senses) -> action`."""
+        """Return the brain of the organism that lived longest, as `policy(senses) -> action`."""
         return self.oldest().policy()
 
     def export(self, out: str | Path, *organisms: int, world: int = 0) -> tuple[int, ...]:
@@ -88,13 +88,13 @@ class Run:
         return export(self.opened(), Path(out), organisms, world)
 
     def rebuild(self, organism: int, world: int = 0) -> np.ndarray:
-        """An organism's genome, float32 (P,), from the birth records alone."""
+        """Return an organism's genome, float32 (P,), rebuilt from the birth records alone."""
         return rebuild(self.opened(), organism, world)
 
     def plot(
         self, out: str | Path | None = None, world: int = 0, figures: Sequence[str] = ()
     ) -> list[Path]:
-        """Draw its figures into a folder, by default its own -> the files; see `figures.plot`."""
+        """Draw the figures into a folder, by default the run's own -> the files; see `plot.plot`."""
         from primordia.figures.plot import plot  # Matplotlib takes a second to load
 
         return plot(self.opened(), Path(out) if out is not None else None, world, figures)
@@ -109,7 +109,7 @@ class Run:
         listen: Listener | None = None,
         **settings: Any,
     ) -> "Run":
-        """A new run that goes on from the end of tick `at`, with some settings changed; see `fork`."""
+        """Make a run that goes on from the end of tick `at`, with changed settings; see `runs.fork`."""
         devices.select(device)
         path = Path(out) if out is not None else fresh_directory(f"{self.path.name}-at{at}")
         fork(self.opened(), at, path, settings, listen)
@@ -125,14 +125,14 @@ class Run:
         listen: Listener | None = None,
         **limits: Any,
     ) -> list[str]:
-        """Go on, with new `ticks`, `births` or `until` if given; see `loop.resume`."""
+        """Go on with the run, with new `ticks`, `births` or `until` if given; see `loop.resume`."""
         devices.select(device)
         return loop.resume(
             self.path, limits, inexact=inexact, checkpoint_every=checkpoint_every, listen=listen
         )
 
     def verify(self, device: str = "cpu", listen: Listener | None = None) -> list[str]:
-        """Do it again and compare -> what differs."""
+        """Repeat the run and compare -> what differs; see `verify.verify`."""
         devices.select(device)
         return verify(self.opened(), listen)
 
@@ -152,13 +152,13 @@ def run(
         task: name of a built-in task, or a TOML file.
         out: directory to make; by default a new one under `runs/`.
         checkpoint_every: seconds from one checkpoint to the next.
-        device: what JAX computes on, `cpu` or `gpu`.
+        device: the device that JAX computes on, `cpu` or `gpu`.
         listen: called after each chunk.
         settings: changed settings, tables as dicts: `cells=64, mutation={"scale": 0.02}`.
 
     Raises:
         InputError: a name or setting is wrong, or `out` is taken.
-        Trouble: something cannot be written; what was checkpointed stays good.
+        Trouble: a file cannot be written; earlier checkpoints stay good.
         KeyboardInterrupt: on Ctrl-C, after a checkpoint.
     """
     devices.select(device)
@@ -173,28 +173,28 @@ def compare(
 ) -> comparison.Comparison:
     """Put runs of one task side by side, the first as the reference; see `comparison.compare`.
 
-    `figures.comparison.save` draws what comes back.
+    `figures.comparison.save` draws the result.
     """
     opened = [Archive(each.path if isinstance(each, Run) else each) for each in runs]
     return comparison.compare(opened, births, ticks)
 
 
 def load(run: str | Path) -> Run:
-    """A run that exists.
+    """Return the run in a directory.
 
     Raises:
-        InputError: there is none.
+        InputError: the directory holds no run.
     """
     read_config(Path(run))
     return Run(Path(run))
 
 
 def default_name(chosen: config.Config) -> str:
-    """Of a run's directory, after task and seed."""
+    """Return the name of a run's directory, made of task and seed."""
     return f"{chosen.task.replace('/', '-')}-seed{chosen.seed}"
 
 
 def fresh_directory(name: str) -> Path:
-    """A path under `runs/` that is not taken."""
+    """Return a path under `runs/` that does not exist yet."""
     others = (Path("runs", f"{name}-{i}") for i in count(2))
     return next(path for path in chain([Path("runs", name)], others) if not path.exists())

@@ -23,7 +23,9 @@ def test_every_tick_and_every_death_counts_once(
     one: list[tuple[int, int, bool]], other: list[tuple[int, int, bool]], since: int
 ) -> None:
     worlds = [world_of(lived, until=110) for lived in (one, other)]
-    measured = pace([world.since(since) for world in worlds], since, since + WINDOWS * TICKS)
+    measured = pace(
+        [world.recorded_since(since) for world in worlds], since, since + WINDOWS * TICKS
+    )
     for number, world in enumerate(worlds):
         for window in range(WINDOWS):
             ticks = range(since + window * TICKS, since + (window + 1) * TICKS)

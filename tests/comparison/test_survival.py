@@ -55,7 +55,7 @@ def test_survival_is_the_estimate_of_kaplan_and_meier(
 def test_organisms_alive_at_a_fork_count_from_their_age_at_the_fork(
     worlds: list[list[tuple[int, bool]]], begun: int, limit: int
 ) -> None:
-    lives = made(worlds).since(begun)
+    lives = made(worlds).recorded_since(begun)
     assert (lives.lifespan[lives.died] > begun).all()
     assert (lives.entered == begun).all()
     estimate = survival(lives, len(worlds), limit)

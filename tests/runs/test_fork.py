@@ -85,7 +85,7 @@ def test_figures_of_a_fork_begin_at_the_fork(mill: Path, tmp_path: Path, at: int
     for one, other in ((whole.pace, part.pace), (whole.survival, part.survival)):
         for field in fields(one):
             np.testing.assert_array_equal(getattr(one, field.name), getattr(other, field.name))
-    np.testing.assert_array_equal(source.lives.since(at).seen, fork.lives.seen)
+    np.testing.assert_array_equal(source.lives.recorded_since(at).seen, fork.lives.seen)
     np.testing.assert_array_equal(whole.figures["first"].value, part.figures["first"].value)
     later = [fork.lives.of_world(world).born > at for world in range(2)]
     assert (part.figures["first"].value <= [1 + born.sum() for born in later]).all()
@@ -190,7 +190,7 @@ def test_a_fork_whose_checkpoints_are_lost_starts_again(poles: Path, tmp_path: P
     for path in (tmp_path / "fork" / "checkpoints").glob("*/state.npz"):
         path.write_bytes(b"damaged")
     notes = fork.resume()
-    assert "passed over a bad checkpoint" in notes[0]
+    assert "a damaged checkpoint was not used" in notes[0]
     assert all(np.array_equal(before[name], array) for name, array in arrays(fork.path).items())
     for path in fork.path.rglob("state.npz"):
         path.write_bytes(b"damaged")

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from primordia.law.world import BirthCause, Cause
-from primordia.runs.lives import ALIVE, Lives, joined
+from primordia.runs.lives import ALIVE, Lives, join
 
 WORLDS = st.lists(st.lists(st.booleans(), max_size=30), min_size=1, max_size=4)
 """Which birth numbers are on record in each world: all of them, except in a fork."""
@@ -42,7 +42,7 @@ def tables(worlds: list[list[bool]], cuts: int) -> tuple[list[pa.Table], list[pa
 
 def lives_of(worlds: list[list[bool]], cuts: int) -> Lives:
     births, deaths = tables(worlds, cuts)
-    return joined(births, deaths, np.array([1000 + w for w in range(len(worlds))]), 40)
+    return join(births, deaths, np.array([1000 + w for w in range(len(worlds))]), 40)
 
 
 @given(WORLDS, st.integers(1, 3))

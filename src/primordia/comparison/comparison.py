@@ -22,7 +22,7 @@ from primordia.comparison.survival import Survival, survival
 from primordia.config import Config
 from primordia.errors import InputError
 from primordia.runs.archive import Archive
-from primordia.runs.checkpoint import NEVER, count
+from primordia.runs.checkpoint import NEVER, read_count
 from primordia.runs.lives import Lives
 
 OUTCOMES = {
@@ -141,10 +141,10 @@ def compare(
     names = [run.path.resolve().name for run in runs]
     everyone = [run.lives for run in runs]
     since, until = _common(runs, configs, everyone)
-    everyone = [each.since(since) for each in everyone]
+    everyone = [each.recorded_since(since) for each in everyone]
     moments = [_saturation(run, births, ticks) for run in runs]
     if not any(map(saturates, moments)):
-        everyone = [each.until(until) for each in everyone]
+        everyone = [each.recorded_until(until) for each in everyone]
     arms, rate = [], runs[0].habitat.rate
     each_run = zip(runs, everyone, moments, names, differing(configs), strict=True)
     for run, lived, saturation, name, own in each_run:
@@ -240,7 +240,7 @@ def _saturation(run: Archive, births: int | None, ticks: int | None) -> dict[str
     """Births and ticks to saturation, of each world of a run."""
 
     def of_worlds(name: str) -> np.ndarray:
-        return count(run.state, f"world.worlds.{name}")
+        return read_count(run.state, f"world.worlds.{name}")
 
     known = of_worlds("saturated") != NEVER
     now_and_then = {"births": ("births", "saturated_births"), "ticks": ("tick", "saturated")}

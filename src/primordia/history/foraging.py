@@ -7,7 +7,7 @@ import numpy as np
 from primordia.history.climate import climate_at
 from primordia.law.metabolism import ONE, break_even
 from primordia.runs.archive import Archive
-from primordia.runs.checkpoint import count
+from primordia.runs.checkpoint import read_count
 
 STRETCHES = 60
 """Most parts that a world's time is cut into."""
@@ -62,7 +62,7 @@ def _beginning(run: Archive, worlds: int) -> list[np.ndarray]:
         return [np.zeros(worlds, np.int64)] * 3
     names = "tick", "food", "organism_ticks"
     tick, food, lived = (
-        count(run.origin, f"world.worlds.{name}").astype(np.int64) for name in names
+        read_count(run.origin, f"world.worlds.{name}").astype(np.int64) for name in names
     )
     return [tick, food / ONE, lived]
 

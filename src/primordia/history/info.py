@@ -8,7 +8,7 @@ import numpy as np
 from primordia.law.metabolism import break_even
 from primordia.law.world import Cause
 from primordia.runs.archive import Archive
-from primordia.runs.checkpoint import NEVER, count
+from primordia.runs.checkpoint import NEVER, read_count
 from primordia.runs.digest import digests
 
 TALLY = "bodies.tally"
@@ -44,12 +44,12 @@ def _world(run: Archive, world: int, digest: str) -> dict[str, Any]:
     config, arrays = run.config, run.state
 
     def counted(name: str) -> Any:
-        return count(arrays, f"world.worlds.{name}")[world].tolist()
+        return read_count(arrays, f"world.worlds.{name}")[world].tolist()
 
     here = slice(world * config.cells, (world + 1) * config.cells)
     alive = arrays["world.organisms.alive"][here]
     tick = counted("tick")
-    ages = tick - count(arrays, "world.organisms.born")[here][alive].astype(np.int64)
+    ages = tick - read_count(arrays, "world.organisms.born")[here][alive].astype(np.int64)
     deaths = counted("deaths")
     found = {
         "seed": config.seed + world,

@@ -21,7 +21,7 @@ from primordia.mutations.contract import PURPOSES, Draws
 from primordia.random.keys import streams
 from primordia.random.wide import wide
 from primordia.runs.archive import Archive
-from primordia.runs.checkpoint import count
+from primordia.runs.checkpoint import read_count
 from primordia.runs.lives import Lives
 
 STEPS_AT_A_TIME = 64
@@ -78,7 +78,7 @@ def genome_in(state: Mapping[str, np.ndarray], law: Law, organism: int, world: i
 
 def place_in(state: Mapping[str, np.ndarray], law: Law, organism: int, world: int) -> int:
     """The cell, on the axis of all worlds, of an organism that is alive in a state."""
-    number = count(state, "world.organisms.number")
+    number = read_count(state, "world.organisms.number")
     here = np.arange(len(number)) // law.cells == world
     (cell,) = np.flatnonzero(here & state["world.organisms.alive"] & (number == organism))
     return int(cell)

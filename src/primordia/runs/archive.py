@@ -1,4 +1,4 @@
-"""An opened run: everything that looks at a run directory reads it through one of these."""
+"""An opened run, through which all other code reads a run directory."""
 
 from collections.abc import Iterator, Sequence
 from functools import cache, cached_property
@@ -16,32 +16,32 @@ from primordia.habitats.contract import AnyHabitat
 from primordia.law.law import Law
 from primordia.runs import checkpoint, directory
 from primordia.runs.checkpoint import Arrays, Checkpoint
-from primordia.runs.lives import Lives, joined
+from primordia.runs.lives import Lives, join
 from primordia.runs.schema import TABLES, Schema
 
 
 class Archive:
-    """A run directory opened for reading; each part is read, checked or built once, when first used.
+    """A run directory opened for reading; each part is read, checked or built once, at its first use.
 
-    Only the settings are read at once. It shows the run as its newest checkpoint had it when that was
-    first used; a run that has gone on since is opened again. Every file of that checkpoint, segments of
-    the tables included, is held against its checksum before anything is read from it.
+    Only the settings are read at once. The archive shows the run as of the checkpoint that was newest at
+    the first use; open a run again if it has gone on since. All files of that checkpoint, segments of the
+    tables included, are checked against their checksums before anything is read from it.
     """
 
     def __init__(self, path: str | Path) -> None:
         """Open a run by its directory.
 
         Raises:
-            InputError: this is no run, or one that this version cannot read.
+            InputError: the directory holds no run, or one that this version cannot read.
         """
         self.path = Path(path)
         self.config: Config = directory.read_config(self.path)
         self.fault_in = cache(files.fault_in)
-        """`files.fault_in`, which reads no file twice"""
+        """`files.fault_in`, with a memory: no file is read twice"""
 
     @cached_property
     def habitat(self) -> AnyHabitat:
-        """The habitat, to be asked for its properties; where bodies are needed, build another."""
+        """The habitat, for reading its properties; build another one to make bodies in."""
         return self.config.build_habitat()
 
     @cached_property
@@ -51,12 +51,12 @@ class Archive:
 
     @cached_property
     def versions(self) -> dict[str, Any]:
-        """What the run was begun with: format, versions of packages, device."""
+        """The format, package versions and device that the run was begun with."""
         return directory.recorded_versions(self.path)
 
     @cached_property
     def other_versions(self) -> list[str]:
-        """Versions that are not here what the run was begun with; if none, it goes on bit for bit."""
+        """Versions that have changed since the run began; if there are none, it goes on bit for bit."""
         return [
             f"{name} {self.versions.get(name)} then, {now} now"
             for name, now in directory.versions_here(self.habitat).items()
@@ -65,7 +65,7 @@ class Archive:
 
     @cached_property
     def newest(self) -> tuple[Checkpoint | None, list[str]]:
-        """The newest whole checkpoint, if there is one, and what is wrong with newer ones."""
+        """The newest whole checkpoint or None, and what is wrong with each newer one."""
         return checkpoint.newest(self.path, self.fault_in)
 
     @property
@@ -78,7 +78,7 @@ class Archive:
         """
         last, faults = self.newest
         if last is None and faults:
-            raise checkpoint.none_whole(self.path, faults)
+            raise checkpoint.no_whole_checkpoint(self.path, faults)
         if last is None:
             raise InputError(
                 f"{self.path} has no checkpoint yet; `primordia resume {self.path}` goes on with it"
@@ -87,7 +87,7 @@ class Archive:
 
     @cached_property
     def state(self) -> Arrays:
-        """The arrays of that checkpoint."""
+        """The arrays of the newest whole checkpoint."""
         return self.last.arrays()
 
     @cached_property
@@ -97,8 +97,8 @@ class Archive:
         Raises:
             Trouble: they are damaged.
         """
-        found = checkpoint.origin(self.path, self.fault_in)
-        return None if found is None else found.arrays()
+        stored = checkpoint.origin(self.path, self.fault_in)
+        return None if stored is None else stored.arrays()
 
     @cached_property
     def ends(self) -> np.ndarray:
@@ -106,7 +106,7 @@ class Archive:
         return checkpoint.world_ticks(self.state).astype(np.int64)
 
     def table(self, name: str, columns: Sequence[str] | None = None) -> pa.Table:
-        """Read `births`, `deaths` or `metrics`, or some columns: rows in the order of events."""
+        """Read `births`, `deaths` or `metrics`, all columns or some, in the order of events."""
         return pa.concat_tables(self.segments(name, columns))
 
     def segments(self, name: str, columns: Sequence[str] | None = None) -> Iterator[pa.Table]:
@@ -123,26 +123,26 @@ class Archive:
 
     @cached_property
     def metrics(self) -> pa.Table:
-        """All samples."""
+        """The table `metrics`."""
         return self.table("metrics")
 
     @cached_property
     def lives(self) -> Lives:
-        """All lives, one row each.
+        """All lives of the run, one row each.
 
         Raises:
             InputError: nothing has lived in the run yet.
         """
         births = self.segments("births")
         deaths = self.segments("deaths", ("world", "id", "tick", "cause"))
-        found = joined(births, deaths, self.ends, self.config.begins)
-        if not len(found):
+        lives = join(births, deaths, self.ends, self.config.begins)
+        if not len(lives):
             raise InputError(f"{self.path} is empty: nothing has lived in it yet")
-        return found
+        return lives
 
     @cached_property
     def schema(self) -> Schema:
-        """What the rows of its tables mean."""
+        """The columns of the run's tables."""
         return Schema.of(self.law, self.habitat.tallies)
 
     def notes_of(self, lives: Lives) -> np.ndarray:

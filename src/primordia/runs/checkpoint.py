@@ -1,9 +1,9 @@
-"""Checkpoints: all that is needed to go on, written so that a crash at any instant leaves a good one.
+"""Checkpoints: all that a run needs to go on. A crash at any instant leaves a good one.
 
 RUN/checkpoints/000012/state.npz        the state's arrays, and `tail.*`: rows in no segment yet
                        manifest.json    written last: checksums, the segments that count, progress
 
-A fork begins at a checkpoint of its own, RUN/origin, which stays.
+A fork begins at its own checkpoint, RUN/origin, which is never deleted.
 """
 
 import hashlib
@@ -23,35 +23,35 @@ from primordia.runs.record import Recorder
 from primordia.runs.schema import TABLES
 
 KEPT = 2
-"""Checkpoints kept; should the newest be damaged, the one before serves."""
+"""Number of checkpoints kept; if the newest is damaged, the one before it is used."""
 ORIGIN = "origin"
 INPUTS = ("config.toml", FOUNDERS)
-"""What a run cannot go on without, beside its checkpoints."""
+"""Files that a run needs to go on, beside its checkpoints."""
 
 
 @dataclass
 class Progress:
-    """What a manifest says of the run as a whole."""
+    """The part of a manifest that concerns the run as a whole."""
 
     limits: dict[str, Any]
-    """ticks, births, until: as last asked for"""
+    """ticks, births, until: as last requested"""
     wall_s: float
     """seconds spent so far"""
     exact: bool
-    """whether all of it can be repeated bit for bit"""
+    """whether the whole run can be repeated bit for bit"""
 
 
 NEVER = 2**64 - 1
-"""A count of a state for what has not happened."""
+"""The tick or count of an event that has not happened."""
 
 FaultIn = Callable[[Path, int, str], str | None]
-"""Like `files.fault_in`, which it is unless the caller remembers what was checked before."""
+"""`files.fault_in`, or a version of it that remembers the files it has checked."""
 
 
 class Arrays(Mapping[str, np.ndarray]):
-    """State and open tails of a checkpoint by name, each read when it is first asked for.
+    """State and open tails of a checkpoint by name, each read at its first use.
 
-    The file stays open, so the arrays can be read even if the run has gone on and removed it.
+    The file stays open, so the arrays can be read even after the run has gone on and removed the file.
     """
 
     def __init__(self, file: Path) -> None:
@@ -70,15 +70,15 @@ class Arrays(Mapping[str, np.ndarray]):
         return len(self._stored.files)
 
 
-def count(arrays: Mapping[str, np.ndarray], name: str) -> np.ndarray:
-    """Return a state's 64-bit numbers of one name, uint64, which it holds in two words."""
+def read_count(arrays: Mapping[str, np.ndarray], name: str) -> np.ndarray:
+    """Return 64-bit numbers, which a state holds in two words, as uint64."""
     hi, lo = arrays[f"{name}.hi"].astype(np.uint64), arrays[f"{name}.lo"]
     return (hi << np.uint64(32)) | lo
 
 
 def world_ticks(arrays: Mapping[str, np.ndarray]) -> np.ndarray:
     """Return the ticks that each world of a state has lived through, uint64 (W,)."""
-    return count(arrays, "world.worlds.tick")
+    return read_count(arrays, "world.worlds.tick")
 
 
 @dataclass(frozen=True)
@@ -89,25 +89,26 @@ class Checkpoint:
     manifest: dict[str, Any]
 
     def arrays(self) -> Arrays:
-        """Open its state and tails."""
+        """Open the state and the tails."""
         return Arrays(self.path / "state.npz")
 
     @property
     def progress(self) -> Progress:
-        """As it was then."""
+        """The run's progress at this checkpoint."""
         return Progress(**self.manifest["progress"])
 
     @property
     def digests(self) -> dict[str, np.ndarray]:
-        """Of each table the sums of row hashes, uint64 (W, 2)."""
-        return {name: np.array(v, np.uint64) for name, v in self.manifest["digests"].items()}
+        """The sums of row hashes of each table, uint64 (W, 2)."""
+        sums = self.manifest["digests"]
+        return {table: np.array(each, np.uint64) for table, each in sums.items()}
 
 
 def save(run: Path, arrays: dict[str, np.ndarray], recorder: Recorder, progress: Progress) -> None:
-    """Write a checkpoint and drop those no longer needed.
+    """Write a checkpoint and remove old ones.
 
     Raises:
-        Trouble: it cannot be written; those before it stay good.
+        Trouble: it cannot be written; earlier checkpoints stay good.
     """
     number = 1 + max((int(path.name) for path in numbered(run)), default=-1)
     final = run / "checkpoints" / f"{number:06d}"
@@ -122,7 +123,7 @@ def save(run: Path, arrays: dict[str, np.ndarray], recorder: Recorder, progress:
 def save_origin(
     run: Path, arrays: dict[str, np.ndarray], recorder: Recorder, progress: Progress
 ) -> None:
-    """Write what a fork begins with; see `save`."""
+    """Write the state that a fork begins with; see `save`."""
     _write(run, run / ORIGIN, arrays, recorder, progress)
 
 
@@ -167,13 +168,13 @@ def _fill(
 
 
 def _checksum(manifest: dict[str, Any]) -> str:
-    """Of a manifest's other entries."""
+    """Return the SHA-256 of a manifest's other entries."""
     content = {name: value for name, value in manifest.items() if name != "sha256"}
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
-def none_whole(run: Path, faults: list[str]) -> Trouble:
-    """The error of a run none of whose checkpoints is whole."""
+def no_whole_checkpoint(run: Path, faults: list[str]) -> Trouble:
+    """Return the error for a run without a whole checkpoint."""
     again = f"`primordia run {run / 'config.toml'}` lives it again from its beginning"
     if (run / ORIGIN).exists():
         again = "fork it again"
@@ -181,38 +182,41 @@ def none_whole(run: Path, faults: list[str]) -> Trouble:
 
 
 def numbered(run: Path) -> list[Path]:
-    """The run's checkpoints, oldest first."""
-    found = (path for path in (run / "checkpoints").glob("[0-9]*") if path.name.isdigit())
-    return sorted(found, key=lambda path: int(path.name))
+    """Return the folders of the run's checkpoints, oldest first."""
+    folders = (path for path in (run / "checkpoints").glob("[0-9]*") if path.name.isdigit())
+    return sorted(folders, key=lambda path: int(path.name))
 
 
 def newest(run: Path, fault_in: FaultIn = files.fault_in) -> tuple[Checkpoint | None, list[str]]:
-    """The newest checkpoint that is whole, segments included; and what is wrong with newer ones."""
+    """Return the newest whole checkpoint or None, and what is wrong with each newer one.
+
+    A checkpoint is whole if its files and the segments it names are unchanged.
+    """
     faults: list[str] = []
-    for found in _newest_first(run, fault_in):
-        if isinstance(found, Checkpoint):
-            return found, faults
-        faults.append(found)
+    for result in _newest_first(run, fault_in):
+        if isinstance(result, Checkpoint):
+            return result, faults
+        faults.append(result)
     return None, faults
 
 
-def whole(run: Path, fault_in: FaultIn = files.fault_in) -> Iterator[Checkpoint]:
-    """All that are whole, newest first, a fork's origin last."""
-    return (found for found in _newest_first(run, fault_in) if isinstance(found, Checkpoint))
+def whole_checkpoints(run: Path, fault_in: FaultIn = files.fault_in) -> Iterator[Checkpoint]:
+    """Yield the whole checkpoints, newest first, a fork's origin last."""
+    return (result for result in _newest_first(run, fault_in) if isinstance(result, Checkpoint))
 
 
 def origin(run: Path, fault_in: FaultIn = files.fault_in) -> Checkpoint | None:
-    """What a fork began with; None if the run is no fork.
+    """Return the checkpoint that a fork began with; None if the run is no fork.
 
     Raises:
         Trouble: it is damaged.
     """
     if not (run / ORIGIN).exists():
         return None
-    found = _read(run, run / ORIGIN, fault_in)
-    if isinstance(found, str):
-        raise Trouble(found)
-    return found
+    result = _read(run, run / ORIGIN, fault_in)
+    if isinstance(result, str):
+        raise Trouble(result)
+    return result
 
 
 def _newest_first(run: Path, fault_in: FaultIn) -> Iterator[Checkpoint | str]:
@@ -223,7 +227,11 @@ def _newest_first(run: Path, fault_in: FaultIn) -> Iterator[Checkpoint | str]:
 
 
 def _read(run: Path, path: Path, fault_in: FaultIn) -> Checkpoint | str:
-    """It, or what is wrong with it; raises Trouble if an input of all is no longer what it was."""
+    """Return a checkpoint, or what is wrong with it.
+
+    Raises:
+        Trouble: one of INPUTS has changed, so that no checkpoint is of use.
+    """
     try:
         manifest = json.loads((path / "manifest.json").read_text())
         if manifest["sha256"] != _checksum(manifest):
@@ -243,8 +251,8 @@ def _read(run: Path, path: Path, fault_in: FaultIn) -> Checkpoint | str:
     return Checkpoint(path, manifest)
 
 
-def remove_what_does_not_count(run: Path, last: Checkpoint | None) -> None:
-    """Delete whatever the given checkpoint does not name: what was being written in a crash."""
+def remove_leftovers(run: Path, last: Checkpoint | None) -> None:
+    """Delete all files that the given checkpoint does not name, such as those half written in a crash."""
     before = numbered(run)
     kept = before[: before.index(last.path) + 1] if last and last.path in before else []
     for path in (run / "checkpoints").iterdir():

@@ -1,7 +1,7 @@
-"""Digests: two runs that lived the same have the same digest, however they were computed and stored.
+"""Digests: equal runs have equal digests, however they were computed and stored.
 
-Records enter as a sum of row hashes, so that a digest grows with its run and does not depend on the order
-of rows, chunks or segments. The state enters as it stands, empty cells left out.
+Records enter as a sum of row hashes. So a digest can be updated as its run goes on, and does not depend
+on the order of rows, chunks or segments. The state enters as it is, without its empty cells.
 """
 
 import hashlib
@@ -14,20 +14,20 @@ BLOCK = 65536
 
 
 def row_hashes(rows: np.ndarray) -> np.ndarray:
-    """128 bits for each row uint32 (n, fields), as uint64 (n, 2).
+    """Return a hash of 128 bits for each row uint32 (n, fields), as uint64 (n, 2).
 
-    Each word is stirred in by the finaliser of MurmurHash3 (Appleby 2011).
+    Each word is mixed in by the finaliser of MurmurHash3 (Appleby 2011).
     """
     hashes = np.empty((len(rows), len(LANES)), np.uint64)
     for lane, start in enumerate(LANES):
         h = np.full(len(rows), start, np.uint64)
         for column in rows.T:
-            h = _stir(h ^ column.astype(np.uint64)) * np.uint64(start)
-        hashes[:, lane] = _stir(h)
+            h = _mix(h ^ column.astype(np.uint64)) * np.uint64(start)
+        hashes[:, lane] = _mix(h)
     return hashes
 
 
-def _stir(h: np.ndarray) -> np.ndarray:
+def _mix(h: np.ndarray) -> np.ndarray:
     h = (h ^ (h >> np.uint64(33))) * np.uint64(0xFF51AFD7ED558CCD)
     h = (h ^ (h >> np.uint64(33))) * np.uint64(0xC4CEB9FE1A85EC53)
     return h ^ (h >> np.uint64(33))
@@ -36,12 +36,12 @@ def _stir(h: np.ndarray) -> np.ndarray:
 def digests(
     records: dict[str, np.ndarray], arrays: Mapping[str, np.ndarray], worlds: int
 ) -> list[str]:
-    """Digest of each world, hexadecimal.
+    """Return the digest of each world, hexadecimal.
 
     Args:
-        records: of each table the sums of row hashes, uint64 (W, 2).
+        records: the sums of row hashes of each table, uint64 (W, 2).
         arrays: the state by name, first axis worlds or cells; open tails are not part of it.
-        worlds: how many there are.
+        worlds: number of worlds W.
     """
     state = {name: arrays[name] for name in arrays if not name.startswith("tail.")}
     return [_world_digest(records, state, world, worlds) for world in range(worlds)]

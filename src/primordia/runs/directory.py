@@ -21,14 +21,14 @@ FORMAT = 2
 
 
 @contextmanager
-def new(run: Path, config: Config) -> Iterator[None]:
-    """Write what a run begins with into its directory, new or empty, and hold the lock.
+def create(run: Path, config: Config) -> Iterator[None]:
+    """Write settings, founders and versions into a new or empty directory, and hold its lock.
 
-    Its versions come last: a directory that has them is a run.
+    The versions come last: a directory that has them is a run.
 
     Raises:
-        InputError: it is taken.
-        Trouble: it cannot be written.
+        InputError: the directory is taken.
+        Trouble: a file cannot be written.
     """
     refuse_if_taken(run)
     make_folders(run)
@@ -45,13 +45,13 @@ def new(run: Path, config: Config) -> Iterator[None]:
 
 
 def refuse_if_taken(run: Path) -> None:
-    """Raise InputError unless a run can be made there."""
+    """Raise InputError unless the path is free or an empty directory."""
     if run.exists() and (not run.is_dir() or any(run.iterdir())):
         raise InputError(f"{run} exists already; choose another --out, or `primordia resume {run}`")
 
 
 def make_folders(run: Path) -> None:
-    """The folders of a run, where they are missing."""
+    """Make the missing folders of a run."""
     try:
         for name in (*TABLES, "checkpoints"):
             (run / name).mkdir(parents=True, exist_ok=True)
@@ -60,10 +60,10 @@ def make_folders(run: Path) -> None:
 
 
 def read_config(run: Path) -> Config:
-    """Return the configuration of a run directory; it was checked as a whole when the run began.
+    """Return the configuration of a run directory, which was checked as a whole when the run began.
 
     Raises:
-        InputError: this is no run directory, or one this version cannot read.
+        InputError: this is no run directory, or one that this version cannot read.
     """
     try:
         made_by = int(recorded_versions(run)["format"])
@@ -89,14 +89,14 @@ def versions_here(habitat: AnyHabitat) -> dict[str, str]:
 
 
 def recorded_versions(run: Path) -> dict[str, Any]:
-    """Return what `versions.json` says: the format, and all that `versions_here` gave."""
+    """Return the content of `versions.json`: the format, and what `versions_here` gave then."""
     recorded: dict[str, Any] = json.loads((run / "versions.json").read_text())
     return recorded
 
 
 @contextmanager
 def locked(run: Path) -> Iterator[None]:
-    """Hold the run's lock: one writer at a time; it is released even by kill -9.
+    """Hold the run's lock, which admits one writer at a time and is released even by kill -9.
 
     Raises:
         InputError: another process holds it.

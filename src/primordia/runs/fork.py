@@ -1,7 +1,7 @@
 """Forks: the tape of a run replayed from one of its ticks, with another seed or other settings.
 
-A fork is a run of its own. Its `origin` holds everything as it stood, in the form of a checkpoint; its
-records begin with the births of those then alive.
+A fork is a run with its own directory. Its `origin` holds the whole state at that tick, in the form of a
+checkpoint. Its records begin with the births of the organisms then alive.
 """
 
 import time
@@ -27,7 +27,7 @@ from primordia.runs.lives import Lives
 from primordia.runs.loop import Listener, Status, recorder_for
 from primordia.settings.tables import from_toml, merged
 
-INNOCENT = {"stop", "fork", "about", "sample_every"}
+HARMLESS = {"stop", "fork", "about", "sample_every"}
 """Settings that do not change what happens in a world."""
 
 
@@ -38,46 +38,47 @@ def fork(
     settings: dict[str, Any],
     listen: Listener | None = None,
 ) -> None:
-    """Make a run that begins where another stood at the end of tick `at`; it is not yet driven on.
+    """Make a run that begins with the state of another at the end of tick `at`, without advancing it.
 
     Args:
         source: the run to fork.
         at: tick, lived through by all worlds.
         out: directory to make.
         settings: changed settings, as nested tables; a changed `seed` draws another future.
-        listen: called after each chunk of what has to be lived again up to the tick.
+        listen: called after each chunk that is lived again to reach the tick.
 
     Raises:
         InputError: no such tick, a setting that cannot change in a living world, or `out` is taken.
-        Trouble: something cannot be written, or the source does not come out as recorded.
+        Trouble: a file cannot be written, or the source does not repeat as recorded.
     """
     ticks = int(source.ends.min())
-    changed = _changed(source.path, settings, at)
+    changed = _fork_config(source.path, settings, at)
     directory.refuse_if_taken(out)
     if not 1 <= at <= ticks:
         raise InputError(f"--at {at}: {source.path} can be forked at any tick from 1 to {ticks}")
-    before = _stood_at(source, at, listen)
+    before = _engine_at(source, at, listen)
     living = _living(source.lives, before, source.config, at)
-    after = _transplanted(before, source.config, changed, at)
+    after = _transplant(before, source.config, changed, at)
     recorder = recorder_for(after, out)
     recorder.add("births", _birth_rows(living, after))
     progress = Progress(changed.stop.model_dump(), 0.0, after.chunks.exact)
-    with directory.new(out, changed):
+    with directory.create(out, changed):
         checkpoint.save_origin(out, after.arrays(), recorder, progress)
 
 
-def _changed(source: Path, settings: dict[str, Any], at: int) -> Config:
-    """The fork's configuration."""
+def _fork_config(source: Path, settings: dict[str, Any], at: int) -> Config:
+    """Return the configuration of the fork."""
     values = merged(from_toml(source / "config.toml"), settings)
     values["fork"] = ForkedFrom(run=str(source), tick=at).model_dump()
     return validated(values, source=str(source))
 
 
-def _stood_at(source: Archive, at: int, listen: Listener | None) -> Engine:
-    """The source at the end of a tick: from the newest checkpoint before it, or lived again."""
+def _engine_at(source: Archive, at: int, listen: Listener | None) -> Engine:
+    """Return an engine at the end of a tick, advanced from the newest checkpoint before it."""
     engine = Engine(source.config)
     limits = engine.limits({"ticks": at})
-    stored = (each.arrays() for each in checkpoint.whole(source.path, source.fault_in))
+    checkpoints = checkpoint.whole_checkpoints(source.path, source.fault_in)
+    stored = (each.arrays() for each in checkpoints)
     if before := next((each for each in stored if (world_ticks(each) <= at).all()), None):
         engine.load(dict(before))
     if not engine.any_running(limits):
@@ -95,10 +96,10 @@ def _stood_at(source: Archive, at: int, listen: Listener | None) -> Engine:
     return engine
 
 
-def _living(everyone: Lives, engine: Engine, config: Config, at: int) -> Lives:
-    """The lives under way at the end of a tick, held against the world as it was lived again."""
-    alive = (everyone.born <= at) & ((everyone.ended > at) | ~everyone.died)
-    living = everyone.take(np.flatnonzero(alive))
+def _living(lives: Lives, engine: Engine, config: Config, at: int) -> Lives:
+    """Return the lives under way at the end of a tick, after comparing them with the engine's world."""
+    alive = (lives.born <= at) & ((lives.ended > at) | ~lives.died)
+    living = lives.take(np.flatnonzero(alive))
     organisms = engine.state.world.organisms
     cells = np.flatnonzero(organisms.alive)
     number = np.asarray(organisms.number.lo)[cells]
@@ -107,7 +108,7 @@ def _living(everyone: Lives, engine: Engine, config: Config, at: int) -> Lives:
     if not np.array_equal(recorded, cells) or not np.array_equal(
         living.id[order].astype(np.uint32), number
     ):
-        raise Trouble(f"tick {at} did not come out as recorded; `primordia verify` tells more")
+        raise Trouble(f"tick {at} did not repeat as recorded; `primordia verify` tells more")
     return living
 
 
@@ -126,8 +127,8 @@ def _birth_rows(living: Lives, engine: Engine) -> np.ndarray:
     )
 
 
-def _transplanted(before: Engine, old: Config, new: Config, at: int) -> Engine:
-    """An engine of the new configuration with the organisms and bodies of another."""
+def _transplant(before: Engine, old: Config, new: Config, at: int) -> Engine:
+    """Return an engine of the new configuration with the organisms and bodies of another engine."""
     after = Engine(new)
     arrays, own = before.arrays(), after.arrays()
     for name, array in own.items():
@@ -139,14 +140,12 @@ def _transplanted(before: Engine, old: Config, new: Config, at: int) -> Engine:
             )
     after.load({**own, **arrays})
     world, bodies = after.state
-    after.state = State(_adapted(world, before, after, old, new, at), bodies)
+    after.state = State(_adapt(world, before, after, old, new, at), bodies)
     return after
 
 
-def _adapted(
-    world: World, before: Engine, after: Engine, old: Config, new: Config, at: int
-) -> World:
-    """A world under new settings; what is not changed stays, as seasons have left it."""
+def _adapt(world: World, before: Engine, after: Engine, old: Config, new: Config, at: int) -> World:
+    """Return a world under new settings; unchanged settings keep the value that seasons gave them."""
     organisms, worlds = world
     worlds = worlds._replace(
         seed=wide(np.array([new.seed + w for w in range(new.seeds)], np.uint64)),
@@ -157,8 +156,8 @@ def _adapted(
     if new.metabolism is not None and old.metabolism is None:
         store = after.law.per_cell(to_fixed_point(worlds.climate["metabolism.store"]))
         organisms = organisms._replace(energy=store)
-    if new.model_dump(exclude=INNOCENT) != old.model_dump(exclude=INNOCENT):
-        worlds = worlds._replace(  # saturation is looked for anew
+    if new.model_dump(exclude=HARMLESS) != old.model_dump(exclude=HARMLESS):
+        worlds = worlds._replace(  # the fork has to saturate again
             calm=jnp.zeros_like(worlds.calm),
             saturated=never(worlds.calm.shape),
             saturated_births=never(worlds.calm.shape),
@@ -167,7 +166,7 @@ def _adapted(
 
 
 def _looks(worlds: Worlds, after: Engine, at: int) -> Looks:
-    """New ratchets look back as far as the fork."""
+    """Return the counts of new ratchets, which look back as far as the fork."""
     fresh = initial_looks(after.law, len(worlds.calm), at)
 
     def now(count: Wide) -> Wide:
@@ -177,7 +176,7 @@ def _looks(worlds: Worlds, after: Engine, at: int) -> Looks:
 
 
 def _climate(now: Climate, before: Engine, after: Engine) -> Climate:
-    """Return the new settings where they differ from the old, elsewhere what is now in force."""
+    """Return the new settings where they differ from the old, elsewhere the values now in force."""
     old = dict(before.law.beginning)
     return {
         name: now[name] if old.get(name) == value else jnp.full_like(now[name], value)

@@ -1,4 +1,4 @@
-"""Everyone who ever lived in a run, one row each: births and deaths joined."""
+"""Births and deaths of a run joined: one row for each organism that ever lived in it."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, fields, replace
@@ -11,29 +11,29 @@ from primordia.errors import InputError
 from primordia.law.world import BirthCause, Cause, Named
 
 ALIVE = -1
-"""In place of a cause of death."""
+"""The cause of death of an organism that is alive."""
 
 
 @dataclass(frozen=True)
 class Lives:
-    """Arrays (L,), in order of (world, birth number). The living are censored at their world's end."""
+    """Arrays (L,), sorted by world and birth number. The living are censored at their world's end."""
 
     world: np.ndarray
     """int32"""
     id: np.ndarray
     """int64, birth number within the world"""
     parent: np.ndarray
-    """int64, or -1: from nothing"""
+    """int64, birth number of the parent; -1 for a founder"""
     cell: np.ndarray
     """int32"""
     birth_cause: np.ndarray
-    """int8, an `BirthCause`"""
+    """int8, a `BirthCause`"""
     born: np.ndarray
     """int64, tick"""
     seen: np.ndarray
-    """int64, tick from which on it is on record: its birth, or the fork at which it was alive"""
+    """int64, tick from which the life is on record: birth, or the fork at which the organism was alive"""
     ended: np.ndarray
-    """int64, tick of death, or the world's last so far"""
+    """int64, tick of death, or the world's last tick so far"""
     cause: np.ndarray
     """int8, a `Cause` of death, or ALIVE"""
 
@@ -42,47 +42,47 @@ class Lives:
 
     @property
     def lifespan(self) -> np.ndarray:
-        """Ticks lived, so far or in all, int64 (L,)."""
+        """Ticks lived so far, int64 (L,)."""
         return self.ended - self.born
 
     @property
     def entered(self) -> np.ndarray:
-        """Age from which on it is on record, int64 (L,): 0, but for those alive at a fork.
+        """Age from which the life is on record, int64 (L,): above 0 for organisms alive at a fork.
 
-        Of their generation only those who lived so long are on record, so they tell nothing of younger
-        ages.
+        Organisms of their generation that died before the fork are not on record. So these lives tell
+        nothing about younger ages.
         """
         return self.seen - self.born
 
     @property
     def rank(self) -> np.ndarray:
-        """Place in its world's order of birth, from 0, int64 (L,).
+        """Place in the world's order of birth, from 0, int64 (L,).
 
-        That is the birth number, but not in a fork, whose records leave out who had died before it.
+        It is the birth number, except in a fork, whose records leave out the deaths before it.
         """
         return np.arange(len(self)) - np.searchsorted(self.world, self.world)
 
     @property
     def died(self) -> np.ndarray:
-        """Who is not alive, bool (L,)."""
+        """Whether the organism is dead, bool (L,)."""
         return self.cause != ALIVE
 
     @property
     def worlds(self) -> int:
-        """How many worlds have lives in them."""
+        """Number of worlds."""
         return int(self.world[-1]) + 1 if len(self) else 0
 
     def of_world(self, world: int) -> "Lives":
-        """Those of one world."""
+        """Return the lives of one world."""
         return self.take(self._rows_of_world(world))
 
-    def since(self, tick: int) -> "Lives":
-        """As they would be on record had that begun at the end of a tick."""
+    def recorded_since(self, tick: int) -> "Lives":
+        """Return the lives that a record begun at the end of a tick would hold."""
         later = self.take(np.flatnonzero(~self.died | (self.ended > tick)))
         return replace(later, seen=np.maximum(later.seen, tick))
 
-    def until(self, tick: int) -> "Lives":
-        """As they would be on record had that stopped at the end of a tick."""
+    def recorded_until(self, tick: int) -> "Lives":
+        """Return the lives that a record stopped at the end of a tick would hold."""
         before = self.take(np.flatnonzero(self.born <= tick))
         late = before.ended > tick
         return replace(
@@ -92,13 +92,13 @@ class Lives:
         )
 
     def since_fork(self) -> "Lives":
-        """With time counted from where a fork began; those alive at it were born before."""
+        """Return the lives with time counted from the fork; organisms alive at it are born before 0."""
         inherited = self.entered > 0
         then = int(self.seen[inherited].min()) if inherited.any() else 0
         return replace(self, born=self.born - then, seen=self.seen - then, ended=self.ended - then)
 
     def oldest(self, world: int | None = None) -> int:
-        """Row of the longest life, in one world or in all, of equals the first.
+        """Return the row of the longest life, in one world or in all; of equals the first.
 
         Raises:
             InputError: nothing has lived there.
@@ -109,7 +109,7 @@ class Lives:
         return here.start + int(np.argmax(self.ended[here] - self.born[here]))
 
     def row(self, organism: int, world: int = 0) -> int:
-        """Where an organism stands.
+        """Return the row of an organism.
 
         Raises:
             InputError: no such organism was born.
@@ -121,12 +121,12 @@ class Lives:
         return row
 
     def take(self, rows: slice | np.ndarray) -> "Lives":
-        """Those in the given rows."""
+        """Return the lives in the given rows."""
         return Lives(**{each.name: getattr(self, each.name)[rows] for each in fields(self)})
 
     @cached_property
     def parent_row(self) -> np.ndarray:
-        """Row of each one's parent, int64 (L,), or -1 where it is not among these."""
+        """Row of each organism's parent, int64 (L,); -1 where the parent is not among these lives."""
         return _rows(self.world, self.id, self.world, self.parent)
 
     def rows_in(self, worlds: np.ndarray, numbers: np.ndarray) -> np.ndarray:
@@ -138,15 +138,15 @@ class Lives:
         return slice(int(first), int(last))
 
 
-def joined(
+def join(
     births: Iterable[pa.Table], deaths: Iterable[pa.Table], ends: np.ndarray, begins: int
 ) -> Lives:
-    """Return the lives that a run's tables tell of; segments are let go of one by one.
+    """Join the births and deaths of a run; each segment is released once it is read.
 
     Args:
         births: one or more segments, in the order of events: within a world by birth number.
         deaths: segments; their world, id, tick and cause are enough.
-        ends: tick at which each world stands, int64 (W,).
+        ends: last tick of each world so far, int64 (W,).
         begins: tick at the end of which the records begin.
     """
     born = _concatenated([_columns(segment, BirthCause) for segment in births])
@@ -173,17 +173,17 @@ def joined(
 def _rows(
     worlds: np.ndarray, numbers: np.ndarray, world: np.ndarray, number: np.ndarray
 ) -> np.ndarray:
-    """Return the row of each organism among others, int64 (n,), or -1 where it is not one of them.
+    """Return the row of each wanted organism among those given, int64 (n,); -1 where it is missing.
 
     Args:
-        worlds: of the others, (L,), not falling.
-        numbers: birth numbers of the others, (L,), rising within a world.
-        world: of those looked for, (n,).
-        number: birth numbers of those looked for, (n,).
+        worlds: worlds of the given organisms, (L,), not falling.
+        numbers: birth numbers of the given organisms, (L,), rising within a world.
+        world: worlds of the wanted organisms, (n,).
+        number: birth numbers of the wanted organisms, (n,).
     """
     if not len(numbers):
         return np.full(len(number), -1)
-    # Birth numbers mostly have no gaps up to the last of a world, so they are distances from its row.
+    # Birth numbers mostly have no gaps up to the last of a world, so subtraction gives the row.
     last = np.searchsorted(worlds, np.arange(2**16), side="right") - 1
     row = (last - numbers[last])[world] + number
     there = (row >= 0) & (row < len(numbers))
@@ -191,20 +191,20 @@ def _rows(
     there &= (numbers[row] == number) & (worlds[row] == world)
     row[~there] = -1
     rest = np.flatnonzero(~there & (number >= 0))
-    if len(rest):  # those alive at a fork, and where lives were left out
+    if len(rest):  # organisms alive at a fork, and lives that were left out
         keys, wanted = _key(worlds, numbers), _key(world[rest], number[rest])
-        found = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
-        row[rest] = np.where(keys[found] == wanted, found, -1)
+        nearest = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
+        row[rest] = np.where(keys[nearest] == wanted, nearest, -1)
     return row
 
 
 def _key(world: np.ndarray, number: np.ndarray) -> np.ndarray:
-    """One number for a world (below 2^16) and a birth number (below 2^47), in their order."""
+    """Return one sortable number for a world (below 2^16) and a birth number (below 2^47)."""
     return world.astype(np.int64) << 47 | number
 
 
 def _columns(segment: pa.Table, kind: type[Named]) -> dict[str, np.ndarray]:
-    """Columns of births or deaths as arrays; nobody is -1, and causes are numbers of a kind."""
+    """Return the columns of births or deaths as arrays; no parent is -1, causes are numbers of `kind`."""
     arrays = {
         name: segment[name].fill_null(-1).to_numpy()
         for name in segment.column_names
@@ -212,10 +212,10 @@ def _columns(segment: pa.Table, kind: type[Named]) -> dict[str, np.ndarray]:
     }
     causes = segment["cause"].combine_chunks()
     codes = {each.label: each for each in kind}
-    of_word = np.array([codes[word] for word in causes.dictionary.to_pylist()], np.int8)
-    return {**arrays, "cause": of_word[causes.indices.to_numpy()]}
+    code_of_word = np.array([codes[word] for word in causes.dictionary.to_pylist()], np.int8)
+    return {**arrays, "cause": code_of_word[causes.indices.to_numpy()]}
 
 
 def _concatenated(parts: list[dict[str, np.ndarray]]) -> dict[str, np.ndarray]:
-    """Return the columns of all parts, which are emptied on the way."""
+    """Return the columns of all parts together; the parts are emptied, to save memory."""
     return {name: np.concatenate([part.pop(name) for part in parts]) for name in list(parts[0])}

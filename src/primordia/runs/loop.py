@@ -1,4 +1,4 @@
-"""The loop: advance, record, checkpoint; and how a run begins, goes on, and is done again.
+"""The loop: advance, record, checkpoint; and how a run begins and goes on.
 
 A run is a directory. Everything in it is a function of `config.toml`; see `record` and `checkpoint`.
 """
@@ -25,13 +25,13 @@ from primordia.runs.schema import Schema
 
 @dataclass
 class Status:
-    """What a listener is told after each chunk."""
+    """The argument of a listener, which is called after each chunk."""
 
     engine: Engine
     wall_s: float
-    """of this session"""
+    """seconds since this process started or resumed the run"""
     limits: Limits | None = None
-    """when each world stops, where that is known"""
+    """when each world stops; None if unknown"""
 
 
 Listener = Callable[[Status], None]
@@ -43,19 +43,19 @@ def start(
     """Begin a run in a new directory and drive it until it stops or is interrupted.
 
     Args:
-        config: what to run.
-        run: its directory, which must not exist, or be empty.
+        config: all settings.
+        run: the run's directory; it must be missing or empty.
         checkpoint_every: seconds from one checkpoint to the next.
         listen: called after each chunk.
 
     Raises:
         InputError: the directory is taken.
-        Trouble: something cannot be written.
+        Trouble: a file cannot be written.
     """
     _check_interval(checkpoint_every)
     if config.fork is not None:
-        raise InputError(f"these are the settings of a fork, of {config.fork.run}; fork that again")
-    with directory.new(run, config):
+        raise InputError(f"these are the settings of a fork of {config.fork.run}; fork that again")
+    with directory.create(run, config):
         engine = Engine(config)
         recorder = recorder_for(engine, run)
         progress = Progress(config.stop.model_dump(), 0.0, engine.chunks.exact)
@@ -73,19 +73,18 @@ def resume(
     """Go on where a run stopped, was interrupted, or was killed.
 
     Args:
-        run: its directory.
+        run: the run's directory.
         limits: new values of `ticks`, `births` or `until`.
-        inexact: go on although versions differ from those recorded; marks the run.
+        inexact: go on although versions differ from those recorded; the run is then marked inexact.
         checkpoint_every: seconds from one checkpoint to the next.
         listen: called after each chunk.
 
     Returns:
-        what the user should be told: checkpoints that had to be passed over, or that there was
-        nothing to do.
+        Notes for the user: damaged checkpoints that were not used, or that there was nothing to do.
 
     Raises:
         InputError: this is no run, one in use, or one of other versions; a limit makes no sense.
-        Trouble: something cannot be written, or no checkpoint is whole.
+        Trouble: a file cannot be written, or no checkpoint is whole.
     """
     _check_interval(checkpoint_every)
     given, archive = valid_limits(limits or {}), Archive(run)
@@ -95,24 +94,24 @@ def resume(
             f"{run} cannot go on bit for bit: {'; '.join(differ)}. Restore that, or add --inexact"
         )
     with directory.locked(run):
-        last, faults = archive.newest  # what does change is not read before the lock is held
+        last, faults = archive.newest  # read under the lock, since another writer could change it
         if last is None and faults:
-            raise checkpoint.none_whole(run, faults)
+            raise checkpoint.no_whole_checkpoint(run, faults)
         if last is None and config.fork is not None:
             raise InputError(
-                f"{run} is a fork that was cut off before it began; remove it, fork again"
+                f"{run} is a fork that was cut off before it began; remove it and fork again"
             )
         directory.make_folders(run)
-        checkpoint.remove_what_does_not_count(run, last)
+        checkpoint.remove_leftovers(run, last)
         engine = Engine(config)
         recorder = recorder_for(engine, run)
         progress = Progress(config.stop.model_dump(), 0.0, engine.chunks.exact)
         if last is not None:
-            stand_at(engine, recorder, last)
+            restore(engine, recorder, last)
             progress = last.progress
         progress.limits |= given
         progress.exact &= not differ and engine.chunks.exact
-        notes = [f"passed over a bad checkpoint: {fault}" for fault in faults]
+        notes = [f"a damaged checkpoint was not used: {fault}" for fault in faults]
         if not engine.any_running(engine.limits(progress.limits)):
             notes.append(_nothing_to_do(run, progress))
         drive(engine, recorder, run, progress, checkpoint_every, listen)
@@ -120,22 +119,22 @@ def resume(
 
 
 def recorder_for(engine: Engine, run: Path | None) -> Recorder:
-    """What takes down an engine's events in a run's directory; without one, digests only."""
+    """Return a recorder for an engine's events; without a directory it keeps digests only."""
     config = engine.config
     return Recorder(run, config.seeds, Schema.of(engine.law, engine.tallies))
 
 
-def stand_at(engine: Engine, recorder: Recorder, last: Checkpoint) -> None:
-    """Put an engine and a recorder where a checkpoint stands."""
-    arrays = dict(last.arrays())
-    recorder.resume(last.manifest["segments"], last.digests, arrays)
+def restore(engine: Engine, recorder: Recorder, stored: Checkpoint) -> None:
+    """Load a checkpoint into an engine and a recorder."""
+    arrays = dict(stored.arrays())
+    recorder.resume(stored.manifest["segments"], stored.digests, arrays)
     engine.load(arrays)
 
 
 def _nothing_to_do(run: Path, progress: Progress) -> str:
     limits = ", ".join(f"{name} {value}" for name, value in progress.limits.items() if value)
     return (
-        f"nothing to do: every world of {run} has come to a limit ({limits}); to go on, give it"
+        f"nothing to do: every world of {run} has reached a limit ({limits}); to go on, set"
         " another with --ticks, --births or --until, such as --ticks 1000000 --until none"
     )
 
@@ -182,20 +181,20 @@ def _check_interval(checkpoint_every: float) -> None:
 
 @contextmanager
 def interruptible() -> Iterator[list[int]]:
-    """A list that stays empty until Ctrl-C or SIGTERM."""
-    heard: list[int] = []
+    """Yield a list that stays empty until Ctrl-C or SIGTERM."""
+    received: list[int] = []
 
-    def hear(number: int, _: object) -> None:
-        heard.append(number)
+    def receive(number: int, _: object) -> None:
+        received.append(number)
 
     signals = (signal.SIGINT, signal.SIGTERM)
     try:
-        before = [signal.signal(each, hear) for each in signals]
-    except ValueError:  # not in the main thread, where signals go anyway
-        yield heard
+        before = [signal.signal(each, receive) for each in signals]
+    except ValueError:  # this is not the main thread, which alone receives signals
+        yield received
         return
     try:
-        yield heard
+        yield received
     finally:
         for each, handler in zip(signals, before, strict=True):
             signal.signal(each, handler)

@@ -1,7 +1,7 @@
 """Records: births, deaths and metrics as Parquet tables in closed, immutable segments.
 
-A segment is closed when it has 2^20 rows, or when a run comes to its end. Rows that are in none yet (the
-open tail) are part of each checkpoint.
+A segment is closed when it has 2^20 rows, or when a run ends. Rows that are in no segment yet (the open
+tail) are part of each checkpoint.
 """
 
 from dataclasses import dataclass, field
@@ -31,22 +31,22 @@ class Table:
 
 
 class Recorder:
-    """Takes events, closes segments."""
+    """The writer of a run's tables: takes events, closes segments."""
 
     def __init__(self, run: Path | None, worlds: int, schema: Schema) -> None:
-        """`run` is the run's directory; None keeps digests only."""
+        """Begin empty tables in a run's directory; without one, keep digests only."""
         self._run, self.schema = run, schema
         self.tables = [Table(name, np.zeros((worlds, 2), np.uint64)) for name in TABLES]
 
     def append(self, events: Events) -> None:
-        """Take the events of a chunk; closes segments as they fill.
+        """Take the events of a chunk, and close segments that are full.
 
         Raises:
             Trouble: a segment cannot be written.
         """
         for table, rows in zip(self.tables, events, strict=True):
             count = int(rows.filled)
-            if count:  # cut on the host: JAX would compile a slice anew for every count
+            if count:  # cut on the host: JAX would compile a slice for every new count
                 self._add(table, np.asarray(rows.rows)[:count].copy())
 
     def add(self, name: str, rows: np.ndarray) -> None:
@@ -80,7 +80,7 @@ class Recorder:
         table.segments.append({"name": path.name, "rows": len(rows), **files.seal(path)})
 
     def tail(self, table: Table) -> np.ndarray:
-        """The open tail, uint32 (n, fields)."""
+        """Return the open tail, uint32 (n, fields)."""
         empty = np.zeros((0, self.schema.columns(table.name).width), np.uint32)
         return np.concatenate([empty, *table.tail])
 
@@ -89,11 +89,11 @@ class Recorder:
         table.tail, table.tail_rows = [rows], len(rows)
 
     def tails(self) -> dict[str, np.ndarray]:
-        """All open tails by the names they have in a checkpoint."""
+        """Return all open tails by their names in a checkpoint."""
         return {f"tail.{table.name}": self.tail(table) for table in self.tables}
 
     def digests(self) -> dict[str, np.ndarray]:
-        """Of each table the sums of row hashes, uint64 (W, 2)."""
+        """Return the sums of row hashes of each table, uint64 (W, 2)."""
         return {table.name: table.digest for table in self.tables}
 
     def resume(
@@ -102,7 +102,7 @@ class Recorder:
         digests: dict[str, np.ndarray],
         tails: dict[str, np.ndarray],
     ) -> None:
-        """Go on from what a checkpoint says."""
+        """Go on from the segments, digests and tails of a checkpoint."""
         for table in self.tables:
             table.segments = list(segments[table.name])
             table.digest = digests[table.name]

@@ -1,4 +1,4 @@
-"""What the rows of a run's tables mean: from the words that the law writes to Arrow columns."""
+"""The columns of a run's tables, from the words that the law writes to Arrow columns."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -21,13 +21,13 @@ class Schema:
     """The columns of a run's tables."""
 
     cells: int
-    """of one world"""
+    """cells of one world"""
     notes: tuple[str, ...]
-    """what the mutation notes at births"""
+    """names of the mutation's notes at births"""
     rates: tuple[str, ...]
     """settings that seasons may change"""
     tallies: tuple[str, ...]
-    """what the habitat counts"""
+    """names of the habitat's counts"""
 
     @classmethod
     def of(cls, law: Law, tallies: tuple[str, ...]) -> "Schema":
@@ -47,64 +47,64 @@ class Schema:
         return rows[:, 0] if table == "metrics" else rows[:, 0] // np.uint32(self.cells)
 
     def within_world(self, table: str, rows: np.ndarray) -> np.ndarray:
-        """Return the rows as they would be if their world were the only one."""
+        """Return the rows with their world numbered 0."""
         own = rows.copy()
         own[:, 0] = 0 if table == "metrics" else rows[:, 0] % np.uint32(self.cells)
         return own
 
     def arrow(self, table: str, rows: np.ndarray) -> pa.Table:
-        """Return rows uint32 (n, words) as people and programs read them."""
-        found = self.columns(table).unpacked(rows)
+        """Return rows uint32 (n, words) as an Arrow table with names, units and types."""
+        words = self.columns(table).unpacked(rows)
         world = pa.array(self.world_of(table, rows).astype(np.int32))
         if table == "metrics":
-            return pa.table({"world": world, **self._samples(found)})
-        cell = (found["cell"] % np.uint32(self.cells)).astype(np.int32)
+            return pa.table({"world": world, **self._samples(words)})
+        cell = (words["cell"] % np.uint32(self.cells)).astype(np.int32)
         if table == "births":
-            return pa.table({"world": world, **self._births(found, cell)})
-        return pa.table({"world": world, **self._deaths(found, cell)})
+            return pa.table({"world": world, **self._births(words, cell)})
+        return pa.table({"world": world, **self._deaths(words, cell)})
 
-    def _births(self, found: dict[str, np.ndarray], cell: np.ndarray) -> dict[str, Any]:
-        parent = found["parent"]
+    def _births(self, words: dict[str, np.ndarray], cell: np.ndarray) -> dict[str, Any]:
+        parent = words["parent"]
         return {
-            "id": found["id"],
+            "id": words["id"],
             "parent": pa.array(parent, mask=parent == -1),
-            "tick": found["tick"],
+            "tick": words["tick"],
             "cell": cell,
-            "cause": _named(found["cause"], BirthCause),
-            **{name: found[name].view(np.int32) for name in self.notes},
+            "cause": _named(words["cause"], BirthCause),
+            **{name: words[name].view(np.int32) for name in self.notes},
         }
 
-    def _deaths(self, found: dict[str, np.ndarray], cell: np.ndarray) -> dict[str, Any]:
+    def _deaths(self, words: dict[str, np.ndarray], cell: np.ndarray) -> dict[str, Any]:
         return {
-            "id": found["id"],
-            "tick": found["tick"],
+            "id": words["id"],
+            "tick": words["tick"],
             "cell": cell,
-            "cause": _named(found["cause"], Cause),
-            "energy": found["energy"].view(np.int32) / ONE,
-            "food": found["food"].view(np.int32) / ONE,
-            **{name: found[name].view(np.int32) for name in self.tallies},
+            "cause": _named(words["cause"], Cause),
+            "energy": words["energy"].view(np.int32) / ONE,
+            "food": words["food"].view(np.int32) / ONE,
+            **{name: words[name].view(np.int32) for name in self.tallies},
         }
 
-    def _samples(self, found: dict[str, np.ndarray]) -> dict[str, Any]:
-        population = found["population"].astype(np.int32)
+    def _samples(self, words: dict[str, np.ndarray]) -> dict[str, Any]:
+        population = words["population"].astype(np.int32)
         living = np.maximum(population, 1)
-        deaths = [name for name in found if name.startswith("deaths_")]
+        deaths = [name for name in words if name.startswith("deaths_")]
         counts = ["births", *deaths, "extinctions", "organism_ticks", "oldest_age"]
         return {
-            "tick": found["tick"],
+            "tick": words["tick"],
             "population": population,
-            **{name: found[name] for name in counts},
-            "mean_age": found["age_total"] / living,
-            "mean_energy": found["energy_total"] / ONE / living,
-            "food": found["food_total"] / ONE,
-            **{name: found[name].view(np.float32) for name in self.rates},
+            **{name: words[name] for name in counts},
+            "mean_age": words["age_total"] / living,
+            "mean_energy": words["energy_total"] / ONE / living,
+            "food": words["food_total"] / ONE,
+            **{name: words[name].view(np.float32) for name in self.rates},
             **{
-                name: found[name].view(np.float32 if name.endswith("_mean") else np.int32)
+                name: words[name].view(np.float32 if name.endswith("_mean") else np.int32)
                 for name in tally_columns(self.tallies)
             },
         }
 
 
 def _named(codes: np.ndarray, names: type[BirthCause] | type[Cause]) -> pa.Array:
-    words = pa.array([each.label for each in names])
-    return pa.DictionaryArray.from_arrays(pa.array(codes.astype(np.int8)), words)
+    labels = pa.array([each.label for each in names])
+    return pa.DictionaryArray.from_arrays(pa.array(codes.astype(np.int8)), labels)

@@ -1,4 +1,4 @@
-"""Verification: a run is lived again from its beginning, and must come out the same."""
+"""Verification: a run is repeated from its beginning and compared with its record."""
 
 import time
 
@@ -8,14 +8,14 @@ from primordia.runs import checkpoint
 from primordia.runs.archive import Archive
 from primordia.runs.checkpoint import world_ticks
 from primordia.runs.digest import digests
-from primordia.runs.loop import Listener, Status, recorder_for, stand_at
+from primordia.runs.loop import Listener, Status, recorder_for, restore
 
 
 def verify(run: Archive, listen: Listener | None = None) -> list[str]:
-    """Do a run again from its beginning, without writing, and compare -> what differs (empty: nothing).
+    """Repeat a run from its beginning, without writing, and compare -> what differs, if anything.
 
     Raises:
-        InputError: this is no run, or there is nothing in it that must come out the same.
+        InputError: the run has no checkpoint yet, or is not exact, so that it need not repeat.
     """
     config = run.config
     last, faults = run.newest
@@ -27,20 +27,20 @@ def verify(run: Archive, listen: Listener | None = None) -> list[str]:
         raise InputError(f"{run.path} is not exact (see `primordia info`): nothing can be verified")
     engine = Engine(config)
     limits = engine.limits({}, world_ticks(run.state))
-    again = recorder_for(engine, None)
-    if (beginning := checkpoint.origin(run.path, run.fault_in)) is not None:
-        stand_at(engine, again, beginning)
+    recorder = recorder_for(engine, None)
+    if (origin := checkpoint.origin(run.path, run.fault_in)) is not None:
+        restore(engine, recorder, origin)
     began = time.perf_counter()
     while engine.any_running(limits):
-        again.append(engine.advance(limits))
+        recorder.append(engine.advance(limits))
         if listen is not None:
             listen(Status(engine, time.perf_counter() - began))
-    old = digests(last.digests, run.state, config.seeds)
-    new = digests(again.digests(), engine.arrays(), config.seeds)
-    other = "".join(f"; {each}" for each in run.other_versions)
+    recorded = digests(last.digests, run.state, config.seeds)
+    now = digests(recorder.digests(), engine.arrays(), config.seeds)
+    other_versions = "".join(f"; {each}" for each in run.other_versions)
     return [
-        f"world {world} (seed {config.seed + world}) differs: {a[:16]}... recorded, {b[:16]}... now"
-        + other
-        for world, (a, b) in enumerate(zip(old, new, strict=True))
-        if a != b
+        f"world {world} (seed {config.seed + world}) differs: {old[:16]}... recorded,"
+        f" {new[:16]}... now{other_versions}"
+        for world, (old, new) in enumerate(zip(recorded, now, strict=True))
+        if old != new
     ]

@@ -175,7 +175,7 @@ def _types(mutation: Mutation, layout: Layout, family: Family) -> None:
     shape = (ALL, layout.length)
     typed(mutation, "genomes of children", pair[0], shape, np.float32)
     typed(mutation, "which children are mutants", pair[1], (ALL,), np.bool_)
-    founders = jax.eval_shape(partial(mutation.found, layout), family.draws)
+    founders = jax.eval_shape(partial(mutation.founders, layout), family.draws)
     typed(mutation, "genomes of founders", founders, shape, np.float32)
 
 
