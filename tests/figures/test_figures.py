@@ -103,12 +103,12 @@ def test_space_time_shows_in_colours_what_became_of_each_line(run: Path) -> None
     occupants = spacetime.living(world, cells, ticks)
     image = spacetime.picture(world, of, cells, ticks)
     np.testing.assert_array_equal((image == 1).all(axis=-1), occupants == spacetime.NOBODY)
-    young = colours_in(image[: of.anew[0]])
+    young = colours_in(image[: of.renewals[0]])
     assert {len(set(each)) for each in young} == {1}, "greys"
     assert to_rgb(spacetime.YOUNG) in young
     at_the_end = occupants[-1] >= 0
     assert colours_in(image[-1]) <= colours_in(spacetime.STRONG)
-    lines = of.of(occupants[-1][at_the_end], ticks[-1:])
+    lines = of.lines_at(occupants[-1][at_the_end], ticks[-1:])
     shown = set(zip(lines.tolist(), map(tuple, image[-1][at_the_end].tolist()), strict=True))
     assert len(shown) == len(set(lines.tolist())), "one colour each"
 

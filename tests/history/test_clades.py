@@ -51,10 +51,10 @@ def test_lines_begin_with_the_organisms_alive_when_lines_were_last_distinguished
 ) -> None:
     world = Walked(history)
     lines = world.lines(crowd)
-    takeovers = dict(zip(lines.anew.tolist(), lines.takeover.tolist(), strict=True))
+    takeovers = dict(zip(lines.renewals.tolist(), lines.by_takeover.tolist(), strict=True))
     since, young = -1, True
     for tick, living in world.living.items():
-        of_tick = lines.of(np.array(living), np.array(tick))
+        of_tick = lines.lines_at(np.array(living), np.array(tick))
         young |= any(world.born[row] == tick and world.parent[row] < 0 for row in living)
         left = {world.line(row, since) for row in living}
         eventful = tick in world.born or tick in world.ended
@@ -70,22 +70,22 @@ def test_the_last_line_takes_over_and_its_members_become_lines() -> None:
     world = Walked([([0, 0], []), ([1], [0]), ([1], [0, 2])])
     assert world.parent == [-1, 0, 0, first, second]
     lines = world.lines(crowd=3)
-    assert lines.anew.tolist() == [1, 3]
-    assert lines.takeover.tolist() == [False, True]
-    assert lines.of(np.array([first, second, grandchild]), np.array(2)).tolist() == [1, 2, 1]
-    assert lines.first[nephew] == second
-    assert lines.of(np.array([second, nephew]), np.array(3)).tolist() == [second, nephew]
+    assert lines.renewals.tolist() == [1, 3]
+    assert lines.by_takeover.tolist() == [False, True]
+    assert lines.lines_at(np.array([first, second, grandchild]), np.array(2)).tolist() == [1, 2, 1]
+    assert lines.birth_line[nephew] == second
+    assert lines.lines_at(np.array([second, nephew]), np.array(3)).tolist() == [second, nephew]
 
 
 def test_rows_and_ticks_broadcast() -> None:
     world = Walked([([0], [])] * 3)
     lines = world.lines(crowd=2)
     rows, ticks = np.arange(2), np.array([[1], [3]])
-    assert lines.of(rows, ticks).tolist() == [[0, 1], [0, 1]]
+    assert lines.lines_at(rows, ticks).tolist() == [[0, 1], [0, 1]]
 
 
 def test_lines_of_a_world_that_was_never_crowded_are_its_founders() -> None:
     world = Walked([([0], []), ([], [0, 1]), ([0], [])])
     lines = world.lines(crowd=5)
-    assert lines.anew.tolist() == []
-    assert lines.of(np.arange(4), np.array([0, 1, 2, 3])).tolist() == [0, 0, 2, 2]
+    assert lines.renewals.tolist() == []
+    assert lines.lines_at(np.arange(4), np.array([0, 1, 2, 3])).tolist() == [0, 0, 2, 2]

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from primordia.engine.engine import Engine
-from primordia.history.lines import DIES, NOBODY, Lines, Turnover, turnovers
+from primordia.history.lines import DIES, NO_PARENT, Lines, Turnover, turnovers
 from tests import worlds
 
 Event = tuple[int, int, int]
@@ -23,7 +23,7 @@ def histories(draw: st.DrawFn) -> list[Event]:
         dying = draw(st.lists(st.sampled_from(living), unique=True)) if living else []
         left = [each for each in living if each not in dying]
         founders = 0 if left or parents else draw(st.integers(1, 3))
-        for parent in [*parents, *[NOBODY] * founders]:
+        for parent in [*parents, *[NO_PARENT] * founders]:
             events.append((tick, born, parent))
             left.append(born)
             born += 1
@@ -50,7 +50,7 @@ def by_the_rule(events: list[Event], crowd: int) -> tuple[dict[int, int], int]:
     takeovers, young = 0, True
     for tick in sorted({tick for tick, _, _ in events}):
         now = [event for event in events if event[0] == tick]
-        founders = {number for _, number, of in now if of == NOBODY}
+        founders = {number for _, number, of in now if of == NO_PARENT}
         living |= {number for _, number, of in now if of != DIES}
         living -= {number for _, number, of in now if of == DIES}
         roots |= founders
@@ -76,23 +76,30 @@ def test_lines_follow_the_rule_for_any_cut_of_a_history(
     for cut in [*sorted(cuts), 40]:
         followed([event for event in events if since < event[0] <= cut], lines)
         since = cut
-    assert (lines.of, len(lines.takeovers)) == by_the_rule(events, crowd)
+    assert (lines.line_of, len(lines.takeovers)) == by_the_rule(events, crowd)
 
 
 def test_each_organism_alive_at_the_start_is_a_line() -> None:
     lines = followed([(9, 7, 3), (9, 3, DIES), (12, 8, 7)], Lines([3, 5], crowd=2))
-    assert lines.of == {5: 5, 7: 3, 8: 3}
+    assert lines.line_of == {5: 5, 7: 3, 8: 3}
     followed([(13, 5, DIES)], lines)
-    assert lines.of == {7: 7, 8: 8}
+    assert lines.line_of == {7: 7, 8: 8}
     assert lines.takeovers == [13]
 
 
 def test_a_founder_after_extinction_takes_nothing_over() -> None:
-    events = [(0, 0, NOBODY), (3, 1, 0), (5, 2, NOBODY), (5, 0, DIES), (5, 1, DIES), (6, 3, 2)]
-    assert followed(events[:2], Lines([], crowd=2)).of == {0: 0, 1: 1}
-    assert followed(events[:2], Lines([], crowd=3)).of == {0: 0, 1: 0}
+    events = [
+        (0, 0, NO_PARENT),
+        (3, 1, 0),
+        (5, 2, NO_PARENT),
+        (5, 0, DIES),
+        (5, 1, DIES),
+        (6, 3, 2),
+    ]
+    assert followed(events[:2], Lines([], crowd=2)).line_of == {0: 0, 1: 1}
+    assert followed(events[:2], Lines([], crowd=3)).line_of == {0: 0, 1: 0}
     lines = followed(events, Lines([], crowd=3))
-    assert lines.of == {2: 2, 3: 2}
+    assert lines.line_of == {2: 2, 3: 2}
     assert lines.takeovers == []
 
 
@@ -104,6 +111,6 @@ def test_chunks_of_any_length_give_the_same_lines() -> None:
         while made.any_running(limits):
             made._ticks = ticks
             lines.follow(turnovers(made.advance(limits), 16, 1)[0])
-        outcomes.append((lines.of, lines.takeovers))
+        outcomes.append((lines.line_of, lines.takeovers))
     assert outcomes[0] == outcomes[1]
     assert outcomes[0][1]

@@ -42,7 +42,11 @@ def test_rates_are_deaths_over_ticks_lived(
         )
         died = sum(world.died[row] and world.ended[row] in ticks for row in range(len(world)))
         assert exposed[number] == expected
-        assert (risk[number] == died / expected) if died >= series.FEW else np.isnan(risk[number])
+        assert (
+            (risk[number] == died / expected)
+            if died >= series.MIN_EVENTS
+            else np.isnan(risk[number])
+        )
 
 
 @given(last=st.integers(0, 10**7))

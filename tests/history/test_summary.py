@@ -24,8 +24,8 @@ def test_the_summary_of_one_world_names_its_moments() -> None:
         "T: 1 world of 8 cells",
         "  seed 0: 5,000 ticks, 900 births, deaths: 890 fatal, 2 hazard, extinct 2 times",
         "    8 alive, mean age 70, oldest 300",
-        "    came to descend from one ancestor at tick 70 after 9 births",
-        "    saturated at tick 4,000 after 800 births",
+        "    one common ancestor since tick 70 (birth 9)",
+        "    saturated at tick 4,000 (birth 800)",
     ]
     empty = summarised([world(alive=0, saturation=None, mean_age=None, oldest_age=None)])
     assert empty.endswith("    0 alive\n    not saturated")

@@ -178,7 +178,7 @@ def test_the_view_follows_the_living(running: tuple[str, Engine]) -> None:
     for world, lines in enumerate(view._lines):
         here = slice(world * cells, (world + 1) * cells)
         alive, number = np.asarray(organisms.alive)[here], np.asarray(organisms.number.lo)[here]
-        assert set(lines.of) == set(number[alive].tolist())
+        assert set(lines.line_of) == set(number[alive].tolist())
 
 
 def test_time_left_is_that_of_the_world_that_stops_last() -> None:

@@ -54,7 +54,7 @@ def test_no_file_is_checked_twice(fork: Path, checked: Counter[str]) -> None:
     """This holds for settings, genomes, checkpoints, segments and the origin of a fork."""
     run = Archive(fork)
     assert info(run)["worlds"]
-    assert foraging(run).since == 250
+    assert foraging(run).first_tick == 250
     rebuild_all(run, [(int(run.lives.id[row]), int(run.lives.world[row])) for row in (0, -1)])
     assert {*checked.values()} == {1}
     names = {str(Path(path).relative_to(fork)) for path in checked}

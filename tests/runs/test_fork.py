@@ -94,7 +94,7 @@ def test_figures_of_a_fork_begin_at_the_fork(mill: Path, tmp_path: Path, at: int
         sampled = before[world].tick >= at
         for one, other in zip(after[world], before[world], strict=True):
             np.testing.assert_array_equal(one, other[sampled])
-    assert foraging(fork).since == at
+    assert foraging(fork).first_tick == at
     since, alive = fork.lives.since_fork(), fork.lives.born <= at
     assert (since.seen >= 0).all()
     assert ((since.seen == 0) == alive).all()

@@ -39,5 +39,7 @@ def pace(worlds: list[Lives], since: int, until: int) -> Pace:
     """Of the lives of each world, between two ticks at which all worlds are on record."""
     edges = np.linspace(since, until, WINDOWS + 1)
     lived = [series.exposure(world.seen, world.ended, edges) for world in worlds]
-    deaths = [np.diff(series.until(np.sort(world.ended[world.died]), edges)) for world in worlds]
+    deaths = [
+        np.diff(series.count_until(np.sort(world.ended[world.died]), edges)) for world in worlds
+    ]
     return Pace(edges, np.array(lived), np.array(deaths))

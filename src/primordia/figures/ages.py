@@ -31,7 +31,7 @@ def draw(run: Archive, world: int) -> Figure:
 
 def _over_time(axes: Axes, worlds: list[Lives], time: str) -> None:
     ticks = series.moments(max(int(world.ended.max()) for world in worlds))
-    style.curves(axes, ticks, _positive(series.of_worlds(series.mean_age, worlds, ticks)))
+    style.curves(axes, ticks, _positive(series.curve_by_world(series.mean_age, worlds, ticks)))
     style.time_axis(axes, int(ticks[-1]), time)
     style.title(axes, "Mean age of the living over time", style.of_worlds(len(worlds)))
     axes.set_ylabel("age (ticks)")

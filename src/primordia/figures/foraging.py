@@ -35,6 +35,8 @@ def draw(run: Archive, world: int) -> Figure | None:
     style.title(axes, f"Food an organism gathers in a {'second' if rate else 'tick'}", key)
     style.counted(axes.xaxis)
     axes.set(
-        xlabel="time (ticks)", xlim=(found.since, None), ylim=(min(0, axes.get_ylim()[0]), None)
+        xlabel="time (ticks)",
+        xlim=(found.first_tick, None),
+        ylim=(min(0, axes.get_ylim()[0]), None),
     )
     return figure

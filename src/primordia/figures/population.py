@@ -44,7 +44,7 @@ def _living(axes: Axes, lives: Lives, cells: int) -> None:
         f"all {cells:,} cells", (0.02, cells), (0, 2), color=style.SOFT,
         xycoords=axes.get_yaxis_transform(), textcoords="offset points",
     )  # fmt: skip
-    style.curves(axes, ticks, series.of_worlds(series.population, worlds, ticks), LIVING)
+    style.curves(axes, ticks, series.curve_by_world(series.population, worlds, ticks), LIVING)
     style.counted(axes.yaxis)
     style.title(axes, "The living", style.of_worlds(lives.worlds))
     axes.set(ylabel="organisms", ylim=(0, 1.12 * cells))
@@ -53,8 +53,10 @@ def _living(axes: Axes, lives: Lives, cells: int) -> None:
 def _fates(axes: Axes, lives: Lives, causes: list[Cause]) -> None:
     """All worlds together; those that have stopped stay as they are."""
     ticks = series.moments(int(lives.ended.max()))
-    born = series.until(np.sort(lives.born), ticks)
-    dead = [series.until(np.sort(lives.ended[lives.cause == cause]), ticks) for cause in causes]
+    born = series.count_until(np.sort(lives.born), ticks)
+    dead = [
+        series.count_until(np.sort(lives.ended[lives.cause == cause]), ticks) for cause in causes
+    ]
     alive = born - np.sum(dead, axis=0, dtype=np.int64)
     colours = [*(COLOURS[cause] for cause in causes), LIVING]
     axes.stackplot(ticks, *dead, alive, colors=colours, linewidth=0)

@@ -92,22 +92,22 @@ def shades(lives: Lives, of: Clades, named: np.ndarray, size: np.ndarray) -> np.
     """
     era, line = np.divmod(named, len(lives))
     last = int(lives.ended.max())
-    ends = np.append(of.anew, last + 1)
+    ends = np.append(of.renewals, last + 1)
     final = living(lives, np.unique(lives.cell), np.minimum(ends, last))
     lasted = np.isin(named, _name(lives, of, final, ends - 1)[final != NOBODY])
     order = np.lexsort((-size, ~lasted, era))
     turn = np.empty(len(named), np.int64)
     turn[order] = np.arange(len(named)) - np.searchsorted(era[order], era[order])
     colour = STRONG[(turn + era - 1) % len(STRONG)]  # from takeover to takeover, another begins
-    young = lives.born[line] > np.append(-1, of.anew)[era]
+    young = lives.born[line] > np.append(-1, of.renewals)[era]
     colour[young] = to_rgb(YOUNG)
     return np.where(lasted[:, None], colour, 1 - (1 - colour) * (1 - PALE))
 
 
 def _name(lives: Lives, of: Clades, rows: np.ndarray, ticks: np.ndarray) -> np.ndarray:
     """Of lines (T, N), each time they are told apart anew: era x number of lives + line."""
-    era = np.searchsorted(of.anew, ticks, side="right")[:, None]
-    return era * len(lives) + of.of(rows, ticks[:, None])
+    era = np.searchsorted(of.renewals, ticks, side="right")[:, None]
+    return era * len(lives) + of.lines_at(rows, ticks[:, None])
 
 
 def _label(axes: Axes, config: Config, world: int, shown: int) -> None:
@@ -141,8 +141,8 @@ def _time(axes: Axes, lives: Lives) -> None:
 
 def _point_out(axes: Axes, lives: Lives, of: Clades) -> None:
     """Where lines were told apart anew, and why."""
-    for number, (tick, takeover) in enumerate(zip(of.anew, of.takeover, strict=True)):
-        if number and (not takeover or of.takeover[:number].sum() >= NAMED):
+    for number, (tick, takeover) in enumerate(zip(of.renewals, of.by_takeover, strict=True)):
+        if number and (not takeover or of.by_takeover[:number].sum() >= NAMED):
             continue
         place = int(np.searchsorted(lives.born, tick, side="right")) + 0.5
         at_top = place < len(lives) / 20

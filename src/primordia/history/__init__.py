@@ -1,1 +1,1 @@
-"""The history of runs, read from what is on disk: lives, lines of descent, figures' series, forks."""
+"""The history of a run, read from its records: numbers, lines of descent, curves over time."""

@@ -1,4 +1,4 @@
-"""Lines of descent throughout the recorded past of a world; the rule is that of `lines`."""
+"""Lines of descent at every tick of a world's records, by the rule of `lines`."""
 
 from dataclasses import dataclass
 
@@ -9,36 +9,41 @@ from primordia.history.lines import Lines, Turnover
 
 @dataclass(frozen=True)
 class Clades:
-    """Who was of which line. A line is named by the row of the one that began it."""
+    """The lines of L organisms. The number of a line is the row of the organism that began it."""
 
     born: np.ndarray
-    """tick of each one's birth, int64 (L,)"""
-    first: np.ndarray
-    """line each one was born into, int64 (L,)"""
-    anew: np.ndarray
-    """ticks that left each of the living with a line of its own, int64 (K,), rising"""
-    takeover: np.ndarray
-    """which of these were because one line had taken over, bool (K,)"""
+    """tick of each organism's birth, int64 (L,)"""
+    birth_line: np.ndarray
+    """line that each organism was born into, int64 (L,)"""
+    renewals: np.ndarray
+    """ticks after which each of the living began a line, int64 (K,), rising"""
+    by_takeover: np.ndarray
+    """whether each of them came about because one line had taken over, bool (K,)"""
 
-    def of(self, rows: np.ndarray, ticks: np.ndarray) -> np.ndarray:
-        """Line of each of `rows` after its tick, int64. The two broadcast; it must be alive then."""
-        latest = np.append(self.anew, -1)[np.searchsorted(self.anew, ticks, side="right") - 1]
-        return np.where(self.born[rows] <= latest, rows, self.first[rows])
+    def lines_at(self, rows: np.ndarray, ticks: np.ndarray) -> np.ndarray:
+        """Return the line of each organism in `rows` after its tick, at which it must be alive, int64.
+
+        `rows` and `ticks` broadcast.
+        """
+        passed = np.searchsorted(self.renewals, ticks, side="right")
+        latest = np.append(self.renewals, -1)[passed - 1]
+        return np.where(self.born[rows] <= latest, rows, self.birth_line[rows])
 
 
 def clades(
     parent_row: np.ndarray, born: np.ndarray, ended: np.ndarray, died: np.ndarray, crowd: int
 ) -> Clades:
-    """Lines of descent in one world, from its beginning.
+    """Follow the lines of descent in one world from its beginning.
 
     Args:
-        parent_row: row of each one's parent, or -1; int64 (L,), a parent before its children.
+        parent_row: row of each organism's parent, or -1; int64 (L,), parents before their children.
         born: tick of birth, int64 (L,), not falling.
-        ended: tick of death, int64 (L,); of those that did not die it means nothing.
-        died: who did, bool (L,).
-        crowd: how many make a world worth telling lines apart in, at least 1.
+        ended: tick of death, int64 (L,); not used where the organism has not died.
+        died: whether the organism has died, bool (L,).
+        crowd: number of living at which lines begin, at least 1.
     """
     lines, dead = Lines([], crowd), np.flatnonzero(died)
-    first = lines.follow(Turnover(np.arange(len(born)), parent_row, born, dead, ended[dead]))
-    anew = np.array(lines.anew, np.int64)
-    return Clades(born, np.array(first, np.int64), anew, np.isin(anew, lines.takeovers))
+    birth_line = lines.follow(Turnover(np.arange(len(born)), parent_row, born, dead, ended[dead]))
+    renewals = np.array(lines.renewals, np.int64)
+    by_takeover = np.isin(renewals, lines.takeovers)
+    return Clades(born, np.array(birth_line, np.int64), renewals, by_takeover)

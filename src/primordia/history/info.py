@@ -1,4 +1,4 @@
-"""A run in numbers: how far its worlds have come, who lives in them, and their digests."""
+"""A run in numbers: ticks, births, deaths and the living of its worlds, and their digests."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -15,17 +15,18 @@ TALLY = "bodies.tally"
 
 
 def info(run: Archive) -> dict[str, Any]:
-    """A run in one object.
+    """Return a run in numbers, as one dictionary that JSON can hold.
 
-    `saturation` and `fixation` are None, or the tick and the births (founders counted) at which they
-    came. Ages are those of the living, in ticks; so is what the habitat counts (`tallies`).
-    `break_even` is the food, a tick and a second, that keeps energy where it is, and `tries_per_life`
-    how often an organism tries to copy itself in a life of mean length, as the world stands now. Below
-    one a lineage cannot last. With one world its fields also stand at the top.
+    `saturation` and `fixation` are None, or their tick and number of births (founders included).
+    Ages, in ticks, and the habitat's counts (`tallies`) are those of the living.
+    `break_even` is the food in a tick, and in a second, that keeps energy constant under the present
+    climate. `tries_per_life` is how often an organism tries to copy itself in a life of mean length, at
+    the present replication; below one a lineage dies out.
+    The fields of a single world also appear at the top level.
     """
     config, last = run.config, run.last
-    each = digests(last.digests, run.state, config.seeds)
-    worlds = [_world(run, world, digest) for world, digest in enumerate(each)]
+    world_digests = digests(last.digests, run.state, config.seeds)
+    worlds = [_world(run, world, digest) for world, digest in enumerate(world_digests)]
     whole = {
         "task": config.task,
         "inheritance": config.inheritance,
@@ -51,7 +52,7 @@ def _world(run: Archive, world: int, digest: str) -> dict[str, Any]:
     tick = counted("tick")
     ages = tick - read_count(arrays, "world.organisms.born")[here][alive].astype(np.int64)
     deaths = counted("deaths")
-    found = {
+    numbers = {
         "seed": config.seed + world,
         "ticks": tick,
         "alive": int(alive.sum()),
@@ -69,15 +70,16 @@ def _world(run: Archive, world: int, digest: str) -> dict[str, Any]:
         "digest": digest,
     }
     if (tally := arrays.get(TALLY)) is not None and alive.any():
-        found["tallies"] = _of_the_living(run.habitat.tallies, tally[here][alive])
+        numbers["tallies"] = _tallies(run.habitat.tallies, tally[here][alive])
     if config.metabolism is not None:
-        found["break_even"] = _break_even(arrays, world, run.habitat.rate)
+        numbers["break_even"] = _break_even(arrays, world, run.habitat.rate)
     if config.seasons:
-        found["climate"] = _climate(arrays, world)
-    return found
+        numbers["climate"] = _climate(arrays, world)
+    return numbers
 
 
 def _tries(replication: float, counted: Callable[[str], int]) -> float | None:
+    """Return the tries to replicate in a life of mean length; None if there were no births."""
     births = counted("births")
     return replication * counted("organism_ticks") / births if births else None
 
@@ -86,8 +88,8 @@ def _moment(tick: int, births: int) -> dict[str, int] | None:
     return None if tick == NEVER else {"tick": tick, "births": births}
 
 
-def _of_the_living(names: tuple[str, ...], tally: np.ndarray) -> dict[str, dict[str, float]]:
-    """Median and best of what the habitat counts."""
+def _tallies(names: tuple[str, ...], tally: np.ndarray) -> dict[str, dict[str, float]]:
+    """Return median and maximum of each of the habitat's counts (n, tallies)."""
     return {
         name: {"median": float(np.median(column)), "best": int(column.max())}
         for name, column in zip(names, tally.T, strict=True)
@@ -97,11 +99,11 @@ def _of_the_living(names: tuple[str, ...], tally: np.ndarray) -> dict[str, dict[
 def _break_even(
     arrays: Mapping[str, np.ndarray], world: int, rate: float | None
 ) -> dict[str, float | None]:
-    """Food that keeps energy where it is; None where none does, or without seconds."""
+    """Return the food that keeps energy constant; None where no food does, or `rate` is unknown."""
     climate = _climate(arrays, world)
-    each = break_even(climate["metabolism.drain"], climate["metabolism.gain"])
-    second = each * rate if each is not None and rate is not None else None
-    return {"food_per_tick": each, "food_per_second": second}
+    tick = break_even(climate["metabolism.drain"], climate["metabolism.gain"])
+    second = tick * rate if tick is not None and rate is not None else None
+    return {"food_per_tick": tick, "food_per_second": second}
 
 
 def _climate(arrays: Mapping[str, np.ndarray], world: int) -> dict[str, float]:

@@ -1,7 +1,7 @@
-"""Lines of descent: any organism's genome rebuilt from birth records alone, to the last bit.
+"""Lineages: the genome of any organism rebuilt from birth records alone, to the last bit.
 
-A genome is its founder's and the mutations along the line of descent, replayed in order by the rule that
-made them (`law.heredity`). A mutation gives the same bits on every device and version.
+The founder's genome is made first. Then the mutations along the line of descent are replayed in order, by
+the rule that made them (`law.heredity`). A mutation gives the same bits on every device and version.
 """
 
 from collections.abc import Mapping, Sequence
@@ -25,16 +25,16 @@ from primordia.runs.checkpoint import read_count
 from primordia.runs.lives import Lives
 
 STEPS_AT_A_TIME = 64
-"""Births replayed together; always as many, since JAX compiles anew for every shape."""
+"""Births replayed in one call; the number is fixed, since JAX compiles for every new shape."""
 
 
 def rebuild(run: Archive, organism: int, world: int = 0) -> np.ndarray:
-    """The genome of an organism, float32 (P,), blocks of weights in the brain's order.
+    """Return the genome of an organism, float32 (P,), blocks of weights in the brain's order.
 
     Args:
-        run: where it lived.
-        organism: its birth number, `id` in the records.
-        world: its world.
+        run: the organism's run.
+        organism: birth number, `id` in the records.
+        world: the organism's world.
 
     Raises:
         InputError: no such organism was born.
@@ -43,104 +43,105 @@ def rebuild(run: Archive, organism: int, world: int = 0) -> np.ndarray:
 
 
 def rebuild_all(run: Archive, organisms: Sequence[tuple[int, int]]) -> np.ndarray:
-    """The genomes of some, by birth number and world, float32 (K, P); see `rebuild`."""
+    """Return the genomes of K organisms, by birth number and world, float32 (K, P); see `rebuild`."""
     device.prepare()
-    lines = [run.lives.take(descent(run.lives, *each)) for each in organisms]
+    lineages = [run.lives.take(descent(run.lives, *each)) for each in organisms]
     climates = {world: climate_at(run, world) for world in {world for _, world in organisms}}
-    found = []
-    for (_, world), line in zip(organisms, lines, strict=True):
-        genome, children = _begun(run, line, world)
-        found.append(_replay(run, children, climates[world](children.born), genome))
-    return np.stack(found)
+    genomes = []
+    for (_, world), lineage in zip(organisms, lineages, strict=True):
+        genome, births = _starting_point(run, lineage, world)
+        genomes.append(_replay(run, births, climates[world](births.born), genome))
+    return np.stack(genomes)
 
 
-def descent(everyone: Lives, organism: int, world: int) -> np.ndarray:
-    """Rows of an organism's line of descent, oldest first, down to itself, int64 (D,).
+def descent(lives: Lives, organism: int, world: int) -> np.ndarray:
+    """Return the rows of an organism's ancestors, oldest first, then of itself, int64 (D,).
 
     Raises:
         InputError: no such organism was born.
     """
-    rows = [everyone.row(organism, world)]
-    while everyone.birth_cause[rows[-1]] != BirthCause.FOUNDER:
-        parent = int(everyone.parent_row[rows[-1]])
-        if parent < 0:  # it died before a fork, whose records begin with those then alive
+    rows = [lives.row(organism, world)]
+    while lives.birth_cause[rows[-1]] != BirthCause.FOUNDER:
+        parent = int(lives.parent_row[rows[-1]])
+        if parent < 0:  # the parent died before the fork that this run began with
             break
         rows.append(parent)
     return np.array(rows[::-1])
 
 
 def genome_in(state: Mapping[str, np.ndarray], law: Law, organism: int, world: int) -> np.ndarray:
-    """The genome of an organism that is alive in a state, float32 (P,)."""
+    """Return the genome of an organism that is alive in a state, float32 (P,)."""
     cell = place_in(state, law, organism, world)
     blocks = {name: state[f"world.organisms.genome.{name}"][[cell]] for name in law.layout.names}
     return law.layout.join(blocks)[0]
 
 
 def place_in(state: Mapping[str, np.ndarray], law: Law, organism: int, world: int) -> int:
-    """The cell, on the axis of all worlds, of an organism that is alive in a state."""
+    """Return the cell, on the axis of all worlds, of an organism that is alive in a state."""
     number = read_count(state, "world.organisms.number")
     here = np.arange(len(number)) // law.cells == world
     (cell,) = np.flatnonzero(here & state["world.organisms.alive"] & (number == organism))
     return int(cell)
 
 
-def _begun(run: Archive, line: Lives, world: int) -> tuple[np.ndarray, Lives]:
-    """Return the oldest genome (P,) known of a line, and the births by which it goes on from there.
+def _starting_point(run: Archive, lineage: Lives, world: int) -> tuple[np.ndarray, Lives]:
+    """Return the genome (P,) to start a lineage from, and the births to replay from there.
 
-    In a fork it is that of the youngest of the line when the fork began; else there is none yet.
+    In a fork this is the genome of the lineage's youngest organism at the fork, if there is one.
+    Elsewhere it is all zeros, and the founder's birth is the first to be replayed.
     """
     fork = run.config.fork
-    older = int((line.born <= fork.tick).sum()) if fork is not None else 0
+    older = int((lineage.born <= fork.tick).sum()) if fork is not None else 0
     if older and run.origin is not None:
-        genome = genome_in(run.origin, run.law, int(line.id[older - 1]), world)
-        return genome, line.take(slice(older, None))
-    return np.zeros(run.law.layout.length, np.float32), line
+        genome = genome_in(run.origin, run.law, int(lineage.id[older - 1]), world)
+        return genome, lineage.take(slice(older, None))
+    return np.zeros(run.law.layout.length, np.float32), lineage
 
 
 def _replay(
-    run: Archive, line: Lives, climate: Mapping[str, np.ndarray], genome: np.ndarray
+    run: Archive, lineage: Lives, climate: Mapping[str, np.ndarray], genome: np.ndarray
 ) -> np.ndarray:
-    """Replay the births of one line (D,) in order, from a genome (P,) -> the last one's."""
-    notes = run.notes_of(line)
-    replayed = shared(_replayed, run.law)
-    for first in range(0, len(line), STEPS_AT_A_TIME):
+    """Replay the births of a lineage (D,) in order, from a genome (P,) -> the last genome."""
+    notes = run.notes_of(lineage)
+    replay = shared(_replay_births, run.law)
+    for first in range(0, len(lineage), STEPS_AT_A_TIME):
         rows = np.arange(first, first + STEPS_AT_A_TIME)
-        births, meant = line.take(rows % len(line)), rows < len(line)
-        values = {name: each[rows % len(line)] for name, each in climate.items()}
+        births, real = lineage.take(rows % len(lineage)), rows < len(lineage)
+        values = {name: each[rows % len(lineage)] for name, each in climate.items()}
         seed = wide(np.uint64(run.config.seed) + births.world.astype(np.uint64))
         genome = np.asarray(
-            replayed(
+            replay(
                 genome,
                 (seed, wide(births.id), wide(births.born)),
-                (births.cell, births.birth_cause == BirthCause.FOUNDER, meant),
+                (births.cell, births.birth_cause == BirthCause.FOUNDER, real),
                 values,
-                notes[rows % len(line)],
+                notes[rows % len(lineage)],
             )
         )
     return genome
 
 
-def _replayed(
+def _replay_births(
     law: Law, genome: Array, counts: tuple, marks: tuple, climate: Climate, notes: Array
 ) -> Array:
-    """Replay births (S,), those that are meant, one after another -> genome (P,).
+    """Replay births (S,) one after another, without those that only fill the shape -> genome (P,).
 
     Args:
-        law: the law.
-        genome: of the parent of the first, (P,).
+        law: the law of the run.
+        genome: genome of the first parent, (P,).
         counts: seed of the world, birth number and tick of each birth, Wide.
-        marks: cell within the world, whether it is a founder, and whether it is meant at all.
-        climate: as it was at each birth.
-        notes: of each newborn, int32 (S, n).
+        marks: cell within the world; whether it is a founder; whether it is real, no filling.
+        climate: values of the settings at each birth.
+        notes: the mutation's notes at each birth, int32 (S, n).
     """
 
-    def birth(genome: Array, given: tuple) -> tuple[Array, None]:
-        (seed, number, tick), (cell, founder, meant), climate, notes = jax.tree.map(
+    def step(genome: Array, given: tuple) -> tuple[Array, None]:
+        (seed, number, tick), (cell, founder, real), climate, notes = jax.tree.map(
             jnp.atleast_1d, given
         )
         draws = Draws(streams(seed, tick, *PURPOSES), cell)
-        of = Birth(seed, number, draws, founder, mutation_rates(law, climate))
-        child = rebuild_genomes(law, of, genome[None], notes.reshape(1, -1))[0]
-        return jnp.where(meant, child, genome), None
+        birth = Birth(seed, number, draws, founder, mutation_rates(law, climate))
+        child = rebuild_genomes(law, birth, genome[None], notes.reshape(1, -1))[0]
+        return jnp.where(real, child, genome), None
 
-    return lax.scan(birth, jnp.asarray(genome), (counts, marks, climate, notes))[0]
+    return lax.scan(step, jnp.asarray(genome), (counts, marks, climate, notes))[0]

@@ -1,9 +1,9 @@
-"""Lines of descent, followed event by event: in a living world, or through the records of one.
+"""Lines of descent, followed event by event: in a running world, or through the records of one.
 
-A founder begins a line; children are of their parent's. When a tick leaves a crowd alive for the first
-time since a founder, each of the living begins a line; later, when a tick leaves all the living in
-one line, it has taken over, and each of them begins a line. So the lines are what is left of one
-moment's population, and how long chunks are does not matter.
+A founder begins a line, and a child belongs to its parent's line. When a tick leaves a crowd alive for
+the first time since a founder, each of the living begins a line. Later, when a tick leaves all the living
+in one line, that line has taken over, and each of the living begins a line. So the lines descend from the
+population at one moment, and do not depend on the length of chunks.
 """
 
 from collections.abc import Iterator
@@ -14,10 +14,10 @@ import numpy as np
 from primordia.law.columns import Columns
 from primordia.law.events import BIRTHS, DEATHS, Events, Rows
 
-NOBODY, DIES = -1, -2
-"""In place of a parent's number."""
+NO_PARENT, DIES = -1, -2
+"""Marks of a founder and of a death, in place of a parent's number."""
 CROWD = 16
-"""The living that make a world worth telling lines apart in, or half its cells if that is less."""
+"""Number of living at which lines begin; half the cells if that is less."""
 
 
 class Turnover(NamedTuple):
@@ -26,70 +26,70 @@ class Turnover(NamedTuple):
     born: np.ndarray
     """birth numbers, (B,)"""
     parent: np.ndarray
-    """of each one born: its parent's number, or NOBODY for a founder"""
+    """birth number of the parent, or NO_PARENT for a founder, (B,)"""
     born_at: np.ndarray
-    """tick"""
+    """tick of each birth, (B,)"""
     dead: np.ndarray
     """birth numbers, (D,)"""
     dead_at: np.ndarray
-    """tick"""
+    """tick of each death, (D,)"""
 
 
 class Lines:
-    """Lines of the living of one world; a line bears the birth number of the one it began with."""
+    """Lines of the living of one world; a line's number is the birth number of its first organism."""
 
     def __init__(self, living: list[int], crowd: int) -> None:
-        """Each of the `living`, by birth number, begins a line. Before genesis that is nobody."""
-        self.of = {number: number for number in living}
-        """line of everyone alive"""
+        """Begin a line with each of the `living`, by birth number; before genesis there are none."""
+        self.line_of = {number: number for number in living}
+        """birth number -> line, of each organism alive"""
         self.takeovers: list[int] = []
         """ticks after which one line was all that was left"""
-        self.anew: list[int] = []
-        """ticks after which each of the living began a line, takeovers among them"""
+        self.renewals: list[int] = []
+        """ticks after which each of the living began a line, takeovers included"""
         self._size = dict.fromkeys(living, 1)
         self._crowd, self._young = crowd, len(living) < crowd
 
     def follow(self, turnover: Turnover) -> list[int]:
-        """Live through what happened -> line that each one born was born into.
+        """Follow births and deaths -> the line that each newborn was born into.
 
-        In a tick births come first: parents may die in it.
+        In a tick births come first, since a parent may die in it.
         """
-        now, first = -1, []
+        now, birth_lines = -1, []
         for tick, number, parent in _in_order(turnover):
             if tick != now and now >= 0:
                 self._end_of_tick(now)
             now = tick
             if parent == DIES:
-                line = self.of.pop(number)
+                line = self.line_of.pop(number)
                 if self._size[line] == 1:
                     del self._size[line]
                 else:
                     self._size[line] -= 1
-            elif parent == NOBODY:
+            elif parent == NO_PARENT:
                 self._young = True
-                self.of[number] = number
+                self.line_of[number] = number
                 self._size[number] = 1
-                first.append(number)
+                birth_lines.append(number)
             else:
-                line = self.of[number] = self.of[parent]
+                line = self.line_of[number] = self.line_of[parent]
                 self._size[line] += 1
-                first.append(line)
+                birth_lines.append(line)
         if now >= 0:
             self._end_of_tick(now)
-        return first
+        return birth_lines
 
     def _end_of_tick(self, tick: int) -> None:
-        if len(self.of) >= self._crowd if self._young else len(self._size) == 1:
-            self.anew.append(tick)
+        if len(self.line_of) >= self._crowd if self._young else len(self._size) == 1:
+            self.renewals.append(tick)
             if not self._young:
                 self.takeovers.append(tick)
-            self.of = {number: number for number in self.of}
-            self._size = dict.fromkeys(self.of, 1)
+            self.line_of = {number: number for number in self.line_of}
+            self._size = dict.fromkeys(self.line_of, 1)
             self._young = False
 
 
 def _in_order(turnover: Turnover) -> Iterator[tuple[int, int, int]]:
-    """Tick, birth number, and parent or DIES."""
+    """Yield tick, birth number, and parent or DIES of each birth and death, by tick, births first."""
     born, parent, born_at, dead, dead_at = turnover
     ticks = np.concatenate([born_at, dead_at])
     order = np.argsort(ticks, kind="stable")
@@ -100,16 +100,16 @@ def _in_order(turnover: Turnover) -> Iterator[tuple[int, int, int]]:
 
 
 def turnovers(events: Events, cells: int, worlds: int) -> list[Turnover]:
-    """Return what a chunk's events say of each of the first `worlds` worlds, of `cells` cells each."""
-    births = _by_world(events.births, BIRTHS, ("id", "parent", "tick"), cells, worlds)
-    deaths = _by_world(events.deaths, DEATHS, ("id", "tick"), cells, worlds)
+    """Return a chunk's births and deaths in each of the first `worlds` worlds, of `cells` cells each."""
+    births = _split_by_world(events.births, BIRTHS, ("id", "parent", "tick"), cells, worlds)
+    deaths = _split_by_world(events.deaths, DEATHS, ("id", "tick"), cells, worlds)
     return [Turnover(*born, *dead) for born, dead in zip(births, deaths, strict=True)]
 
 
-def _by_world(
-    list_: Rows, columns: Columns, names: tuple[str, ...], cells: int, worlds: int
+def _split_by_world(
+    events: Rows, columns: Columns, names: tuple[str, ...], cells: int, worlds: int
 ) -> list[list[np.ndarray]]:
-    """Return the named columns of each world; all ones are NOBODY."""
-    found = columns.unpacked(np.asarray(list_.rows)[: int(list_.filled)])
-    world = found["cell"] // cells
-    return [[found[name][world == each] for name in names] for each in range(worlds)]
+    """Return the named columns of each world; a parent with all bits set is NO_PARENT."""
+    values = columns.unpacked(np.asarray(events.rows)[: int(events.filled)])
+    world_of = values["cell"] // cells
+    return [[values[name][world_of == world] for name in names] for world in range(worlds)]

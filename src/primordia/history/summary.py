@@ -1,38 +1,35 @@
-"""What happened in a run, in a few lines."""
+"""The summary of a run in a few lines."""
 
 from collections import Counter
 from typing import Any
 
 import numpy as np
 
-FEW = 4
-"""so many worlds have lines of their own"""
+MAX_LISTED = 4
+"""Largest number of worlds that are described one by one."""
 
 
 def summary(info: dict[str, Any]) -> str:
-    """Of `info.info`."""
-    worlds, heredity = info["worlds"], info["inheritance"] == "parent"
+    """Return the summary of a run in numbers (`info.info`)."""
+    worlds = info["worlds"]
     count = "1 world" if len(worlds) == 1 else f"{len(worlds):,} worlds"
-    lines = [
-        f"{info['task']}: {count} of {info['cells']:,} cells{', no heredity' * (not heredity)}"
-    ]
+    control = "" if info["inheritance"] == "parent" else ", no heredity"
+    lines = [f"{info['task']}: {count} of {info['cells']:,} cells{control}"]
     lines += _break_even(worlds) + _too_few_copies(worlds)
-    if len(worlds) <= FEW:
+    if len(worlds) <= MAX_LISTED:
         for world in worlds:
-            lines += _one(world)
+            lines += _one_world(world)
     else:
-        lines += _many(worlds)
+        lines += _all_worlds(worlds)
     if not info["exact"]:
         lines.append("  not exact: parts of this run cannot be repeated bit for bit")
     return "\n".join(lines)
 
 
-def _one(world: dict[str, Any]) -> list[str]:
-    times = world["extinctions"]
-    extinct = f", extinct {times:,} time{'s' * (times > 1)}" * bool(times)
+def _one_world(world: dict[str, Any]) -> list[str]:
     lines = [
         f"  seed {world['seed']}: {world['ticks']:,} ticks, {world['births']:,} births, "
-        f"deaths: {_causes([world])}{extinct}",
+        f"deaths: {_causes([world])}{_extinct(world['extinctions'])}",
         f"    {world['alive']:,} alive",
     ]
     if world["alive"]:
@@ -40,25 +37,31 @@ def _one(world: dict[str, Any]) -> list[str]:
     if "tallies" in world:
         lines.append(f"    of the living: {_tallies(world['tallies'])}")
     if world["fixation"]:
-        lines.append(f"    came to descend from one ancestor {_when(world['fixation'])}")
+        lines.append(f"    one common ancestor since {_when(world['fixation'])}")
     if world["saturation"]:
-        return [*lines, f"    saturated {_when(world['saturation'])}"]
+        return [*lines, f"    saturated at {_when(world['saturation'])}"]
     return [*lines, "    not saturated"]
 
 
+def _extinct(times: int) -> str:
+    if not times:
+        return ""
+    return ", extinct once" if times == 1 else f", extinct {times:,} times"
+
+
 def _break_even(worlds: list[dict[str, Any]]) -> list[str]:
-    """What food keeps one alive, from the world where it is least to where it is most."""
-    told = []
+    """Return a line with the food that keeps an organism alive, from the least world to the most."""
+    amounts = []
     for unit in ("tick", "second"):
-        each = [world.get("break_even", {}).get(f"food_per_{unit}") for world in worlds]
-        if None not in each:
-            low, high = f"{min(each):.3g}", f"{max(each):.3g}"
-            told.append(f"{low if low == high else f'{low} to {high}'} a {unit}")
-    return [f"  break-even: food of {', or '.join(told)}"] if told else []
+        food = [world.get("break_even", {}).get(f"food_per_{unit}") for world in worlds]
+        if None not in food:
+            low, high = f"{min(food):.3g}", f"{max(food):.3g}"
+            amounts.append(f"{low if low == high else f'{low} to {high}'} a {unit}")
+    return [f"  break-even: food of {', or '.join(amounts)}"] if amounts else []
 
 
 def _too_few_copies(worlds: list[dict[str, Any]]) -> list[str]:
-    """Why worlds die out, where lineages cannot last."""
+    """Return a line that says why worlds die out, if organisms replicate less than once in a life."""
     births = sum(world["births"] for world in worlds)
     if not births or not any(world["extinctions"] for world in worlds):
         return []
@@ -68,15 +71,18 @@ def _too_few_copies(worlds: list[dict[str, Any]]) -> list[str]:
 
 
 def _tallies(tallies: dict[str, dict[str, float]]) -> str:
-    each = (f"{name} {of['median']:,.0f} (best {of['best']:,})" for name, of in tallies.items())
-    return f"median {', '.join(each)}"
+    parts = [
+        f"{name} {values['median']:,.0f} (best {values['best']:,})"
+        for name, values in tallies.items()
+    ]
+    return f"median {', '.join(parts)}"
 
 
 def _when(moment: dict[str, int]) -> str:
-    return f"at tick {moment['tick']:,} after {moment['births']:,} births"
+    return f"tick {moment['tick']:,} (birth {moment['births']:,})"
 
 
-def _many(worlds: list[dict[str, Any]]) -> list[str]:
+def _all_worlds(worlds: list[dict[str, Any]]) -> list[str]:
     def total(name: str) -> int:
         return sum(world[name] for world in worlds)
 
@@ -85,7 +91,7 @@ def _many(worlds: list[dict[str, Any]]) -> list[str]:
         f"  seeds {worlds[0]['seed']} to {worlds[-1]['seed']}: {total('ticks'):,} ticks, "
         f"{total('births'):,} births, deaths: {_causes(worlds)}",
         f"    {total('alive'):,} alive, oldest {oldest:,}; extinctions: {total('extinctions'):,}",
-        f"    {_share(worlds, 'fixation', 'of one ancestor')}",
+        f"    {_share(worlds, 'fixation', 'with one common ancestor')}",
         f"    {_share(worlds, 'saturation', 'saturated')}",
     ]
 
@@ -96,11 +102,11 @@ def _causes(worlds: list[dict[str, Any]]) -> str:
 
 
 def _share(worlds: list[dict[str, Any]], name: str, what: str) -> str:
-    """How many worlds came to a moment, and after how many births; the others count as later."""
+    """Return how many worlds passed a moment, and after how many births; the others count as later."""
     births = [world[name]["births"] if world[name] else np.inf for world in worlds]
-    came = f"{np.isfinite(births).sum():,} of {len(worlds):,} {what}"
-    low, middle, high = np.percentile(births, [25, 50, 75], method="lower")
-    if not np.isfinite(low):
-        return came
-    half, most = (f"{b:,.0f}" if np.isfinite(b) else "later" for b in (middle, high))
-    return f"{came}, births until then: median {half} (quartiles {low:,.0f}, {most})"
+    share = f"{np.isfinite(births).sum():,} of {len(worlds):,} {what}"
+    q1, median, q3 = np.percentile(births, [25, 50, 75], method="lower")
+    if not np.isfinite(q1):
+        return share
+    middle, high = (f"{b:,.0f}" if np.isfinite(b) else "later" for b in (median, q3))
+    return f"{share}, births until then: median {middle} (quartiles {q1:,.0f}, {high})"

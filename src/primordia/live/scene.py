@@ -112,7 +112,9 @@ def _cells(law: Law, world: World, lines: list[Lines], index: np.ndarray) -> Cel
 
     line = np.full(len(index), EMPTY)
     if lines:
-        line[alive] = [lines[of].of[number] for number in count(organisms.number)[alive].tolist()]
+        line[alive] = [
+            lines[of].line_of[number] for number in count(organisms.number)[alive].tolist()
+        ]
     else:
         line[alive] = count(organisms.branch)[alive]
     tick = int(to_host(world.worlds.tick)[of])
