@@ -18,8 +18,8 @@ import numpy as np
 from games import founders, spread, write_rows
 
 import primordia
-from primordia.organism.life.life import Life
 from primordia.organism.organism import Organism
+from primordia.organism.reliving.relived import RelivedLife
 from results import table
 
 EACH = 8
@@ -64,8 +64,8 @@ def some_alive(run: Path) -> list[Organism]:
 
 def watched(name: str, organism: Organism) -> dict[str, Any]:
     """Live the end of an organism's life again and return a row of what it does for a target."""
-    life = Life.of(organism.run, organism.id, organism.world)
-    senses = np.concatenate([stretch.senses for stretch in life.again()])[-TICKS:]
+    life = RelivedLife.of(organism.run, organism.id, organism.world)
+    senses = np.concatenate([stretch.senses for stretch in life.stretches()])[-TICKS:]
     row = {"who": name, "world": organism.world, "organism": organism.id, "age": organism.age}
     return {**row, **measured(senses)}
 

@@ -11,7 +11,7 @@ from examples.habitat import Pasture
 from examples.mutation import CEILING, FACTORS, FLOOR, SelfAdaptive
 
 import primordia
-from primordia.organism.life.life import Life
+from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs.archive import Archive
 from primordia.testing import check_brain, check_habitat, check_mutation
 from tests.commands import here
@@ -47,8 +47,8 @@ def test_a_brain_lives_and_a_life_is_lived_again(tmp_path: Path) -> None:
 def lived_again(run: Archive) -> None:
     """The longest life; it raises Trouble if it ends otherwise than recorded."""
     row = run.lives.oldest()
-    life = Life.of(run, int(run.lives.id[row]), int(run.lives.world[row]))
-    ticks = sum(len(stretch.tick) for stretch in life.again())
+    life = RelivedLife.of(run, int(run.lives.id[row]), int(run.lives.world[row]))
+    ticks = sum(len(stretch.tick) for stretch in life.stretches())
     assert ticks == run.lives.lifespan[row] > 10
 
 

@@ -15,7 +15,7 @@ from primordia.habitats.framed import MARGIN
 from primordia.law.life import BODILY
 from primordia.law.metabolism import ONE
 from primordia.law.world import Cause
-from primordia.organism.life.life import Life
+from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
 from tests.commands import here
@@ -58,8 +58,8 @@ def some(lives: Lives, which: np.ndarray, count: int) -> list[tuple[int, int]]:
 
 def assert_ends_as_recorded(run: Archive, organism: int, world: int) -> None:
     """Assert that a life lived again ends as recorded: energy and score, and the senses of the living."""
-    life = Life.of(run, organism, world)
-    stretches = list(life.again())
+    life = RelivedLife.of(run, organism, world)
+    stretches = list(life.stretches())
     last, scores = stretches[-1], [each.bodies["tally"][:, 0] for each in stretches]
     assert last.tick[-1] == life.ends
     assert last.cause[-1] == (life.cause if life.cause in BODILY else -1)
@@ -98,7 +98,7 @@ def test_a_life_is_lived_again_through_a_fork(pong: Path, tmp_path: Path) -> Non
 def test_a_policy_acts_as_its_organism_did(pong: Path) -> None:
     organism = primordia.load(pong).oldest()
     policy = organism.policy()
-    (seen,) = Life.of(organism.run, organism.id, organism.world).again()
+    (seen,) = RelivedLife.of(organism.run, organism.id, organism.world).stretches()
     assert [policy(senses) for senses in seen.senses] == seen.action.tolist()
 
 

@@ -11,7 +11,7 @@ import primordia
 from primordia.errors import InputError
 from primordia.habitats.mujoco import picture as mujoco_picture
 from primordia.law.metabolism import ONE
-from primordia.organism.life.life import Life
+from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs.archive import Archive
 from tests.commands import complains, here
 from tests.robots import born, of_task
@@ -46,8 +46,8 @@ def test_lives_are_lived_again_through_a_fork(reachers: Path, tmp_path: Path) ->
     lives = fork.lives
     older = np.flatnonzero(lives.born <= 200)[:4]
     for row in older:
-        life = Life.of(fork, int(lives.id[row]), int(lives.world[row]))
-        assert list(life.again())[-1].tick[-1] == life.ends
+        life = RelivedLife.of(fork, int(lives.id[row]), int(lives.world[row]))
+        assert list(life.stretches())[-1].tick[-1] == life.ends
 
 
 def test_lives_are_lived_again_as_recorded(reachers: Path) -> None:
@@ -59,7 +59,7 @@ def test_lives_are_lived_again_as_recorded(reachers: Path) -> None:
     assert len(rows) == 6
     for row in rows:
         who = int(lives.world[row]), int(lives.id[row])
-        stretches = list(Life.of(run, who[1], who[0]).again())
+        stretches = list(RelivedLife.of(run, who[1], who[0]).stretches())
         assert stretches[-1].energy[-1] / ONE == energy[who]
 
 

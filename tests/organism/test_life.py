@@ -15,11 +15,11 @@ from primordia.habitats.cartpole.habitat import CartPole
 from primordia.law.life import BODILY
 from primordia.law.world import Cause
 from primordia.organism import replay
-from primordia.organism.life.in_jax import LifeInJax
-from primordia.organism.life.instant import Stretch
-from primordia.organism.life.life import Life
-from primordia.organism.life.on_host import LifeOnHost
 from primordia.organism.organism import Organism
+from primordia.organism.reliving.in_jax import LifeInJax
+from primordia.organism.reliving.instant import Stretch
+from primordia.organism.reliving.on_host import LifeOnHost
+from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests.commands import complains, here
@@ -51,15 +51,15 @@ def poles(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return primordia.run("CartPole-survival", run, stop={"ticks": 6000, "until": "none"}).path
 
 
-def at_the_end(life: Life) -> dict[str, np.ndarray]:
+def at_the_end(life: RelivedLife) -> dict[str, np.ndarray]:
     """Return the body and energy that the checkpoint holds of a living organism."""
     cell = life.world * life.config.cells + int(life.record.cell[0])
     return {name: array[cell] for name, array in life.run.state.items() if len(array) > cell}
 
 
-def assert_ends_as_recorded(life: Life) -> list[Stretch]:
+def assert_ends_as_recorded(life: RelivedLife) -> list[Stretch]:
     """Assert that it lives again as recorded: to its death, or to the checkpoint's body and energy."""
-    seen = list(life.again())
+    seen = list(life.stretches())
     last, hungry = seen[-1], life.law.metabolism is not None
     assert last.tick[-1] == life.ends
     assert sum(len(each.tick) for each in seen) == life.ends - life.begins
@@ -87,7 +87,7 @@ def test_the_living_reach_their_recorded_state_when_lived_again(
     lives = run.lives
     alive = np.flatnonzero(~lives.died & (lives.lifespan > 0))
     for row in alive[:: max(1, len(alive) // 6)]:
-        assert_ends_as_recorded(Life.of(run, lives.id[row], lives.world[row]))
+        assert_ends_as_recorded(RelivedLife.of(run, lives.id[row], lives.world[row]))
 
 
 @pytest.mark.parametrize("cells", [32, 1024])
@@ -97,7 +97,7 @@ def test_a_body_starts_as_it_was_born(cells: int, tmp_path: Path) -> None:
     loop.start(config(MEADOW, habitat={"name": "tests.toys:Slope"}, **full), tmp_path / "run")
     run = Archive(tmp_path / "run")
     for row in range(0, cells, cells // 16):
-        assert_ends_as_recorded(Life.of(run, row))
+        assert_ends_as_recorded(RelivedLife.of(run, row))
 
 
 @pytest.mark.parametrize("which", ["mill", "mirror"])
@@ -111,7 +111,7 @@ def test_the_dead_die_in_their_recorded_tick_when_lived_again(
         rows = np.flatnonzero(lives.cause == cause)[-5:]
         assert len(rows)
         for row in rows:
-            assert_ends_as_recorded(Life.of(run, lives.id[row], lives.world[row]))
+            assert_ends_as_recorded(RelivedLife.of(run, lives.id[row], lives.world[row]))
 
 
 @pytest.mark.parametrize("which", ["mill", "mirror"])
@@ -128,7 +128,7 @@ def test_a_life_older_than_a_fork_continues_from_the_fork(
     newest = older & (lives.born == at)
     assert newest.any()
     for row in [*np.flatnonzero(newest)[:1], *np.flatnonzero(older & ~newest)[:4]]:
-        life = Life.of(fork, lives.id[row], lives.world[row])
+        life = RelivedLife.of(fork, lives.id[row], lives.world[row])
         assert assert_ends_as_recorded(life)[0].tick[0] == at + 1
 
 
@@ -139,7 +139,7 @@ def test_a_life_older_than_a_fork_is_refused_if_bodies_cannot_be_saved(
     lives = fork.lives
     monkeypatch.setattr(Mirror, "exact", False, raising=False)
     with pytest.raises(InputError, match="is older than the fork"):
-        Life.of(fork, lives.id[0], lives.world[0])
+        RelivedLife.of(fork, lives.id[0], lives.world[0])
 
 
 @pytest.mark.parametrize("kind", ["Meadow", "Mirror"])
@@ -150,7 +150,7 @@ def test_a_failed_simulation_is_a_fault_even_if_it_reports_death(kind: str, tmp_
     run = Archive(tmp_path / "run")
     lives = run.lives
     row = np.flatnonzero(lives.cause == Cause.FAULT)[0]
-    (seen,) = Life.of(run, lives.id[row]).again()
+    (seen,) = RelivedLife.of(run, lives.id[row]).stretches()
     assert len(seen.tick) == 9
 
 
@@ -162,9 +162,9 @@ def test_a_habitat_on_the_host_is_closed_after_a_life(
     monkeypatch.setattr(Mirror, "close", lambda self: closed.append(self), raising=False)
     monkeypatch.setattr(LifeOnHost, "TICKS", 5)
     oldest = primordia.load(mirror).oldest()
-    life = Life.of(oldest.run, oldest.id)
-    one: Any = life.again()
-    other = life.again()
+    life = RelivedLife.of(oldest.run, oldest.id)
+    one: Any = life.stretches()
+    other = life.stretches()
     first = next(other)
     assert next(one).action.tobytes() == first.action.tobytes()
     one.close()
@@ -178,15 +178,15 @@ def test_a_record_that_differs_from_the_life_is_noticed(
 ) -> None:
     run = Archive(poles)
     row = int(np.flatnonzero(run.lives.died)[40])
-    life = Life.of(run, int(run.lives.id[row]))
+    life = RelivedLife.of(run, int(run.lives.id[row]))
     life.record.ended[0] += 1
-    with pytest.raises(Trouble, match="did not live again as recorded"):
-        list(life.again())
+    with pytest.raises(Trouble, match="did not repeat as recorded"):
+        list(life.stretches())
 
 
 def test_a_policy_acts_as_its_organism_did(poles: Path) -> None:
     organism = primordia.load(poles).oldest()
-    seen = next(Life.of(organism.run, organism.id).again())
+    seen = next(RelivedLife.of(organism.run, organism.id).stretches())
     policy = organism.policy()
     assert [policy(each) for each in seen.senses[:200]] == seen.action[:200].tolist()
     policy.reset()
@@ -312,5 +312,5 @@ def test_a_habitat_without_pictures_gives_no_video(
     complains(here("replay", tmp_path / "run"), 2, no_pictures, "`picture` and no `seen`")
     monkeypatch.setattr(HostCartPole, "picture", None, raising=False)
     complains(here("replay", tmp_path / "run"), 2, "draws no pictures (it has no `seen`)")
-    (seen,) = Life.of(Archive(tmp_path / "run"), 0).again()
+    (seen,) = RelivedLife.of(Archive(tmp_path / "run"), 0).stretches()
     assert seen.bodies is None

@@ -1,1 +1,1 @@
-"""One organism of a run: its genome, its life lived again, its games."""
+"""One organism of a run: genome, life lived again, policy, games, video."""

@@ -1,7 +1,7 @@
-"""Evaluation: organisms play whole games, under fresh keys, from other starts, or without seeing.
+"""Evaluation: organisms play whole games with fresh keys, from other starts, or without senses.
 
-They were selected for their lives in their own worlds. How they do in the game as others score it, and
-whether they look at the game at all, is asked here.
+Organisms are selected for long life in their own world. Evaluation measures how they score in the game
+itself, and whether they react to it at all.
 """
 
 from collections.abc import Mapping, Sequence
@@ -40,35 +40,35 @@ class Spread(NamedTuple):
 
     @classmethod
     def of(cls, values: np.ndarray) -> "Spread":
-        """Of some games."""
+        """Return the spread of one value over games, (E,)."""
         return cls(*np.percentile(values, [25, 50, 75, 100]).tolist())
 
 
 @dataclass(frozen=True)
 class Evaluation:
-    """What became of an organism in some games."""
+    """The results of an organism in a number of games."""
 
     organism: int
     world: int
     senses: Senses
     lived: Games
-    """by the law of its task: a game is over when it dies"""
+    """games by the law of the task: a game is over when the organism dies"""
     whole: Games | None
-    """whole games, in which food is the score; None where the habitat knows of none"""
+    """whole games, in which food is the score; None if the habitat has no original task"""
 
     @property
     def games(self) -> int:
-        """How many were played."""
+        """Number of games played."""
         return len(self.lived.ticks)
 
     @property
     def distinct(self) -> int:
-        """Games that differ in something perceived or gathered."""
+        """Number of games that differ in a sense or in food."""
         return len(np.unique((self.whole or self.lived).course))
 
     def to_dict(self) -> dict[str, Any]:
-        """For JSON."""
-        found = {
+        """Return plain values for JSON."""
+        result = {
             "organism": self.organism,
             "world": self.world,
             "games": self.games,
@@ -78,10 +78,10 @@ class Evaluation:
             "alive_when_cut": int((~self.lived.over).sum()),
         }
         if self.whole is None:
-            return found
+            return result
         score, length = Spread.of(self.whole.food), Spread.of(self.whole.ticks)
         cut = int((~self.whole.over).sum())
-        return {**found, "score": score._asdict(), "length": length._asdict(), "cut": cut}
+        return {**result, "score": score._asdict(), "length": length._asdict(), "cut": cut}
 
 
 def evaluate(
@@ -94,24 +94,24 @@ def evaluate(
     habitat: Mapping[str, Any] | None = None,
     **changes: Any,
 ) -> list[Evaluation]:
-    """Let organisms play, side by side; how many there are changes nothing for any of them.
+    """Let organisms play games side by side; the result of each does not depend on the others.
 
     Args:
-        run: where they lived.
+        run: the organisms' run.
         organisms: birth number and world of each.
-        games: how many each; one is played where all would be the same.
-        ticks: a game that still goes on then is cut; whole games also where others cut them.
-        senses: `live`; `frozen`, they stay as they are when a game begins; `ignored`, each does what it
-            did in a game with its task's own settings, over and over, whatever happens.
-        habitat: settings of the habitat to be changed, such as `{"senses": [49, 50]}`.
+        games: number of games of each organism; a single one where all would be the same.
+        ticks: length at which a game is cut; whole games are also cut at the habitat's `episode`.
+        senses: `live`; `frozen`: they stay as they are when a game begins; `ignored`: each organism
+            repeats the actions of one game with its task's own settings, whatever happens.
+        habitat: changed settings of the habitat, such as `{"senses": [49, 50]}`.
         changes: more of them, such as `sticky=0.25, noops=30`.
 
     Raises:
-        InputError: no such organism, a setting that the habitat does not have, or one with which the
-            brain no longer fits.
+        InputError: no such organism was born, the habitat has no such setting, or the brain does not fit
+            the changed habitat.
     """
     if games < 1 or ticks < 1:
-        raise InputError("evaluate: play one game or more, of one tick or more")
+        raise InputError("evaluate needs at least one game of at least one tick")
     if not organisms:
         return []
     own = players_of(run, organisms)
@@ -119,19 +119,19 @@ def evaluate(
     players = own._replace(habitat=_changed(run.config, own.habitat, wanted))
     script = play(own, 1, ticks) if senses == "ignored" else None
     count = 1 if players.deterministic else games
-    played = partial(play, games=count, frozen=senses == "frozen", script=script)
-    lived, original = played(players, ticks=ticks), _in_the_original(players)
+    play_all = partial(play, games=count, frozen=senses == "frozen", script=script)
+    lived, original = play_all(players, ticks=ticks), _in_the_original(players)
     if original is not None:
         episode = original.habitat.episode or ticks
-        whole = played(original, ticks=min(ticks, episode))
+        whole = play_all(original, ticks=min(ticks, episode))
     return [
-        Evaluation(organism, world, senses, lived.of(k), original and whole.of(k))
+        Evaluation(organism, world, senses, lived.of_player(k), original and whole.of_player(k))
         for k, (organism, world) in enumerate(organisms)
     ]
 
 
 def players_of(run: Archive, organisms: Sequence[tuple[int, int]]) -> Players:
-    """Organisms by birth number and world, with all that games in their own task are a function of.
+    """Return organisms, by birth number and world, as players in the habitat of their own task.
 
     Raises:
         InputError: no such organism was born.
@@ -139,8 +139,11 @@ def players_of(run: Archive, organisms: Sequence[tuple[int, int]]) -> Players:
     genomes = rebuild_all(run, organisms)
     births, worlds = np.array(organisms, np.int64).T
     climates = {w: climate_at(run, w)(run.ends[[w]]) for w in set(worlds.tolist())}
-    each = (np.concatenate([climates[w][f"metabolism.{n}"] for w in worlds]) for n in Rates._fields)
-    rates = Rates(*map(jnp.asarray, each))
+    columns = (
+        np.concatenate([climates[w][f"metabolism.{name}"] for w in worlds])
+        for name in Rates._fields
+    )
+    rates = Rates(*map(jnp.asarray, columns))
     keys = stream(wide(run.config.seed + worlds), Purpose.EVALUATION, wide(births))
     return Players(run.law, run.config.build_habitat(), genomes, keys, rates)
 
@@ -150,21 +153,21 @@ def _changed(config: Config, before: AnyHabitat, changes: dict[str, Any]) -> Any
     known = list(setting_fields(type(before)))
     for name in changes:
         if known and name not in {each.partition(".")[0] for each in known}:
-            meant = did_you_mean(name, known)
-            raise InputError(f"evaluate: this run's habitat has no setting {name!r}{meant}")
+            hint = did_you_mean(name, known)
+            raise InputError(f"evaluate: this run's habitat has no setting {name!r}{hint}")
     values = replaced(merged(config.habitat, changes), NONE, None)
     habitat = config.model_copy(update={"habitat": values}).build_habitat()
     if (habitat.senses_size, habitat.action) != (before.senses_size, before.action):
         raise InputError(
-            f"evaluate: with other {', '.join(changes)} the habitat has {habitat.senses_size} senses"
-            f" and {habitat.action.size} actions; the brain is made for {before.senses_size} and"
-            f" {before.action.size}"
+            f"evaluate: with changed {', '.join(changes)} the habitat has {habitat.senses_size} senses"
+            f" and {habitat.action.size} actions; the brain is made for {before.senses_size} senses and"
+            f" {before.action.size} actions"
         )
     return habitat
 
 
 def _in_the_original(players: Players) -> Players | None:
-    """The same in the original game, where there is one; nobody starves in it."""
+    """Return the players in the habitat's original task, without metabolism; None if it has none."""
     original = players.habitat.original()
     if original is None:
         return None

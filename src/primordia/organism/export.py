@@ -1,4 +1,4 @@
-"""Export: genomes of organisms, rebuilt from the records, in a file that founders can be made from."""
+"""Export: genomes of organisms, rebuilt from the records, in a file that a run can start from."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -14,10 +14,10 @@ def export(
     """Write genomes of organisms to a safetensors file -> their birth numbers; see `genomes`.
 
     Args:
-        run: where they lived.
-        out: the file.
-        organisms: birth numbers; without any, the organism that lived longest.
-        world: their world.
+        run: the organisms' run.
+        out: path of the file.
+        organisms: birth numbers; by default that of the longest life.
+        world: the organisms' world.
 
     Raises:
         InputError: no such organism was born.

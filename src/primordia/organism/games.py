@@ -1,4 +1,4 @@
-"""Games: organisms play many times over, side by side, with no neighbours and no children."""
+"""Games: organisms play side by side, each many times, without neighbours or children."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -16,60 +16,60 @@ from primordia.law.genesis import body_words
 from primordia.law.law import Law
 from primordia.law.life import Vitals, judge
 from primordia.law.metabolism import Rates, to_fixed_point
-from primordia.organism.life.instant import Mind, think
+from primordia.organism.mind import Mind, think
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import Wide, wide
 
 AT_ONCE = 128
-"""games side by side; a player's own are never parted"""
+"""Games played side by side; the games of one player are never separated."""
 MIX = np.uint64(0x9E3779B97F4A7C15)
-"""an odd number, for courses"""
+"""An odd number, which mixes the bits of courses."""
 
 
 class Players(NamedTuple):
-    """Who play, K of them, and what their games are a function of."""
+    """K organisms, and all else that their games are a function of."""
 
     law: Law
     habitat: AnyHabitat
     genomes: np.ndarray
     """float32 (K, P)"""
     keys: Wide
-    """(K,), of everything random in each one's games"""
+    """(K,), key of everything random in a player's games"""
     rates: Rates
-    """of each one's metabolism, float32 (K,) each"""
+    """metabolism of each player, float32 (K,) each"""
 
     @property
     def deterministic(self) -> bool:
-        """Whether all games of one are the same."""
+        """Whether all games of a player are the same."""
         return self.habitat.words == 0 and self.law.motor.kind == "direct"
 
-    def take(self, which: slice | np.ndarray) -> "Players":
-        """Those at an index."""
-        rates = Rates(*(rate[which] for rate in self.rates))
-        return self._replace(genomes=self.genomes[which], keys=self.keys.take(which), rates=rates)
+    def take(self, index: slice | np.ndarray) -> "Players":
+        """Return the players at an index."""
+        rates = Rates(*(rate[index] for rate in self.rates))
+        return self._replace(genomes=self.genomes[index], keys=self.keys.take(index), rates=rates)
 
 
 class Games(NamedTuple):
-    """What became of E games of each of K players, (K, E) each; or of one player, (E,)."""
+    """Results of E games of each of K players, (K, E) each; or of one player, (E,)."""
 
     ticks: np.ndarray
-    """int64: until it was over, or cut"""
+    """int64: length until the game was over or cut"""
     over: np.ndarray
-    """bool: it was not cut"""
+    """bool: False if the game was cut"""
     food: np.ndarray
-    """float64: gathered"""
+    """float64: food gathered"""
     course: np.ndarray
-    """uint64: differs where what was perceived or gathered in some tick did"""
+    """uint64: a hash of all senses and food; games that differ in either have different courses"""
     actions: list[np.ndarray]
-    """each one's in its first game, int32 (T,) or float32 (T, A)"""
+    """actions of each player in its first game, int32 (T,) or float32 (T, A)"""
 
-    def of(self, player: int) -> "Games":
-        """One player's."""
-        *each, actions = self
-        return Games._make([*(found[player] for found in each), [actions[player]]])
+    def of_player(self, player: int) -> "Games":
+        """Return the games of one player."""
+        *arrays, actions = self
+        return Games._make([*(array[player] for array in arrays), [actions[player]]])
 
-    def done(self, tick: int) -> np.ndarray:
-        """What each did in this tick of its first game, over and over: (K,) or (K, A)."""
+    def actions_at(self, tick: int) -> np.ndarray:
+        """Return the action of each player at a tick of its first game, repeated: (K,) or (K, A)."""
         return np.stack([each[(tick - 1) % len(each)] for each in self.actions])
 
 
@@ -81,77 +81,77 @@ def play(
     frozen: bool = False,
     script: Games | None = None,
 ) -> Games:
-    """Let each play so many games, until all are over or for so many ticks.
+    """Let each player play a number of games, until all games are over or cut.
 
     Args:
-        players: who.
-        games: how many each.
-        ticks: when a game is cut.
-        frozen: senses stay as they are at the start.
-        script: games of the same players, whose actions they take, over and over, whatever is perceived.
+        players: the organisms.
+        games: number of games of each player.
+        ticks: length at which a game is cut.
+        frozen: whether senses stay as they are at the start.
+        script: earlier games of the same players; their actions are repeated, whatever is perceived.
     """
     size, parts = max(AT_ONCE // games, 1), []
     for first in range(0, len(players.genomes), size):
         some = slice(first, first + size)
-        done = script and script._replace(actions=script.actions[some])
-        parts.append(_side_by_side(players.take(some), games, ticks, frozen, done))
-    *each, actions = zip(*parts, strict=True)
-    return Games._make([*map(np.concatenate, each), list(chain.from_iterable(actions))])
+        part_of_script = script and script._replace(actions=script.actions[some])
+        parts.append(_play_at_once(players.take(some), games, ticks, frozen, part_of_script))
+    *arrays, actions = zip(*parts, strict=True)
+    return Games._make([*map(np.concatenate, arrays), list(chain.from_iterable(actions))])
 
 
-def _side_by_side(
+def _play_at_once(
     players: Players, games: int, ticks: int, frozen: bool, script: Games | None
 ) -> Games:
-    """All at once; a player's games are next to each other."""
-    tries, count = _Tries(players, games), len(players.genomes) * games
+    """Play all games at once; the games of one player are adjacent."""
+    boards, count = _Boards(players, games), len(players.genomes) * games
     playing, course = np.ones(count, bool), np.zeros(count, np.uint64)
     length, food, actions = np.zeros(count, np.int64), np.zeros(count), []
     with _opened(players.habitat, count) as table:
-        senses = first = np.array(table.reset(np.arange(count), tries.words()))
+        senses = first = np.array(table.reset(np.arange(count), boards.words()))
         for tick in range(1, ticks + 1):
             if script is None:
-                action = tries.think(first if frozen else senses, tick)
+                action = boards.think(first if frozen else senses, tick)
             else:
-                action = np.repeat(script.done(tick), games, axis=0)
+                action = np.repeat(script.actions_at(tick), games, axis=0)
             actions.append(action[::games].copy())
             senses, outcome = table.step(action, playing)
-            dies = tries.judge(outcome, senses)
+            dies = boards.judge(outcome, senses)
             length += playing
             if outcome.food is not None:
                 food += np.where(playing, outcome.food, 0)
-            course = np.where(playing, _stirred(course, senses, food), course)
+            course = np.where(playing, _next_course(course, senses, food), course)
             playing = playing & ~dies
             if not playing.any():
                 break
-    each = [found.reshape(-1, games) for found in (length, ~playing, food, course)]
+    results = [array.reshape(-1, games) for array in (length, ~playing, food, course)]
     taken = zip(np.stack(actions, axis=1), length[::games], strict=True)
-    return Games._make([*each, [own[:ticks] for own, ticks in taken]])
+    return Games._make([*results, [each[:ticks] for each, ticks in taken]])
 
 
-def _stirred(course: np.ndarray, senses: np.ndarray, food: np.ndarray) -> np.ndarray:
-    """What tells the course of a game from others, one tick on."""
+def _next_course(course: np.ndarray, senses: np.ndarray, food: np.ndarray) -> np.ndarray:
+    """Return the hash of each game's course after one more tick."""
     place = np.arange(1, senses.shape[1] + 1, dtype=np.uint64) * MIX
     words = np.ascontiguousarray(senses, np.float32).view(np.uint32).astype(np.uint64)
     return (course * MIX ^ food.view(np.uint64)) * MIX + words @ place
 
 
-class _Tries:
-    """Brains and stores, one for each game."""
+class _Boards:
+    """Brains and energy stores, one of each for each game."""
 
     def __init__(self, players: Players, games: int) -> None:
         law, self._words = players.law, players.habitat.words
-        each = partial(jnp.repeat, repeats=games, axis=0)
+        per_game = partial(jnp.repeat, repeats=games, axis=0)
         cells = jnp.asarray(np.tile(np.arange(games), len(players.genomes)), jnp.int32)
-        genome = law.layout.split(each(jnp.asarray(players.genomes)))
-        self._mind = Mind(genome, players.keys.map(each), cells)
+        genome = law.layout.split(per_game(jnp.asarray(players.genomes)))
+        self._mind = Mind(genome, players.keys.map(per_game), cells)
         self._memory = jnp.zeros((len(cells), law.memory), jnp.float32)
-        self._rates = Rates(*map(each, players.rates))
+        self._rates = Rates(*map(per_game, players.rates))
         self._vitals = Vitals(to_fixed_point(self._rates.store), jnp.zeros(len(cells), jnp.int32))
         self._faulty = jnp.zeros(len(cells), bool)
         self._think, self._judge = shared(think, law), shared(judge, law)
 
     def words(self) -> np.ndarray:
-        """Return what the games are begun with, uint32 (K E, words)."""
+        """Return the random words that bodies begin with, uint32 (K E, words)."""
         key = stream(self._mind.key, Purpose.BODY, wide([0]))
         return np.asarray(body_words(key, self._mind.cell, self._words))
 
@@ -169,7 +169,7 @@ class _Tries:
 
 @contextmanager
 def _opened(habitat: AnyHabitat, games: int) -> Iterator[HostHabitat]:
-    """A habitat to be stepped on the host, with room for that many bodies."""
+    """Yield a habitat that is stepped on the host, opened with a body for each game."""
     table = habitat if habitat.kind == "host" else OnHost(habitat)
     table.open(games)
     try:

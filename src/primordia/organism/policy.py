@@ -1,4 +1,4 @@
-"""A brain by itself: `policy(senses) -> action`, to be used anywhere."""
+"""A brain without its world: `policy(senses) -> action`, for use in any other program."""
 
 import jax.numpy as jnp
 import numpy as np
@@ -10,30 +10,30 @@ from primordia.law.motor import argmax
 
 
 class Policy:
-    """What an organism would do. It remembers from call to call, as far as its brain has memory."""
+    """The brain of an organism as a function. A brain with memory remembers from call to call."""
 
     def __init__(self, law: Law, genome: np.ndarray) -> None:
-        """`genome` is float32 (P,)."""
+        """Take a genome, float32 (P,)."""
         self._law = law
         self._genome = law.layout.split(jnp.asarray(genome, jnp.float32)[None])
         self._think = shared(type(law.brain).__call__, law.brain)
         self.reset()
 
     def reset(self) -> None:
-        """Forget, as at birth."""
+        """Clear the memory, as at birth."""
         self._memory = jnp.zeros((1, self._law.memory), jnp.float32)
 
     def __call__(self, senses: np.ndarray) -> int | np.ndarray:
-        """One tick.
+        """Return the action for one tick.
 
         Args:
-            senses: as the habitat gives them, (S,).
+            senses: senses as the habitat gives them, (S,).
 
         Returns:
-            the choice, if actions are discrete; else float32 (A,), without the motor's noise.
+            The chosen number if actions are discrete; else float32 (A,), without the motor's noise.
         """
-        seen = jnp.asarray(senses, jnp.float32).reshape(1, -1)
-        self._memory, output = self._think(self._genome, self._memory, seen)
+        row = jnp.asarray(senses, jnp.float32).reshape(1, -1)
+        self._memory, output = self._think(self._genome, self._memory, row)
         if isinstance(self._law.action, Discrete):
             return int(argmax(output)[0])
         return np.asarray(output[0])

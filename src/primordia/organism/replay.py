@@ -1,4 +1,4 @@
-"""Replay: a life lived again, on video."""
+"""Videos of lives that are lived again."""
 
 from collections.abc import Iterator
 from functools import cache
@@ -15,14 +15,14 @@ from primordia.habitats.contract import Ability
 from primordia.habitats.framed import PAPER
 from primordia.law.metabolism import ONE
 from primordia.organism import video
-from primordia.organism.life.instant import Stretch
-from primordia.organism.life.life import Life
+from primordia.organism.reliving.instant import Stretch
+from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs.archive import Archive
 
 PART = 30.0
-"""Seconds shown of each end of a life that is longer than two such parts."""
+"""Seconds shown at each end of a life that is longer than two such parts."""
 STILL = 1.0
-"""Seconds that a card, and the last picture, are shown."""
+"""Seconds for which a card, and the last picture, are shown."""
 SIZE, INK = 16, "#333333"
 
 
@@ -33,41 +33,41 @@ def replay(
     out: Path | None = None,
     ages: tuple[int | None, int | None] = (None, None),
 ) -> Path:
-    """Make a video of a life -> its path.
+    """Make a video of a life -> the path of the file.
 
     Args:
-        run: where it lived.
+        run: the organism's run.
         organism: birth number.
-        world: its world.
+        world: the organism's world.
         out: an .mp4 or .gif; by default under the run's `videos`.
-        ages: first and last age shown, in ticks. Without them all of it, or of a life longer than a
-            minute its first and last 30 seconds.
+        ages: first and last age shown, in ticks. By default the whole life is shown, or the first and
+            last 30 seconds of a life longer than a minute.
 
     Raises:
-        InputError: no such organism was born, its habitat draws no pictures, or nothing is to be shown.
-        Trouble: the video cannot be written, or the life does not come out as recorded.
+        InputError: no such organism was born, its habitat draws no pictures, or no age is left to show.
+        Trouble: the video cannot be written, or the life does not repeat as recorded.
     """
     path = out or run.path / "videos" / f"world{world}-organism{organism}.mp4"
     video.check_name(path)
-    life = Life.of(run, organism, world)
-    rate = _drawn(life)
+    life = RelivedLife.of(run, organism, world)
+    rate = _picture_rate(life)
     step = ceil(rate / video.FASTEST[path.suffix])
     parts = _parts(life, rate, ages)
     video.write(path, _pictures(life, parts, step, rate / step), rate / step)
     return path
 
 
-def _drawn(life: Life) -> float:
-    """Return the ticks per second of a life that can be drawn."""
+def _picture_rate(life: RelivedLife) -> float:
+    """Return the ticks in a second of a life; raise InputError if its habitat draws no pictures."""
     lacking, rate = life.habitat.lacks(Ability.PICTURE), life.habitat.rate
     if lacking or not rate:
         lacks = " and no ".join(f"`{name}`" for name in lacking or ["rate"])
-        raise InputError(f"{life.run}: this habitat draws no pictures (it has no {lacks})")
+        raise InputError(f"{life.run.path}: its habitat draws no pictures (it has no {lacks})")
     return rate
 
 
-def _parts(life: Life, rate: float, ages: tuple[int | None, int | None]) -> list[range]:
-    """Ages to be shown, in ticks."""
+def _parts(life: RelivedLife, rate: float, ages: tuple[int | None, int | None]) -> list[range]:
+    """Return the ages to be shown, in ticks."""
     born = int(life.record.born[0])
     first, last = life.begins + 1 - born, life.ends - born
     if ages == (None, None) and last - first > 2 * PART * rate:
@@ -83,22 +83,29 @@ def _parts(life: Life, rate: float, ages: tuple[int | None, int | None]) -> list
     return [shown]
 
 
-def _pictures(life: Life, parts: list[range], step: int, rate: float) -> Iterator[Image.Image]:
-    """Every step-th instant of some parts, with what lies between them on a card."""
-    still, number, picture = max(1, round(STILL * rate)), 0, None
-    for number_now, stretch, i in _instants(life, parts, step):
-        if number_now > number and picture is not None:
-            left_out = parts[number_now].start - parts[number].stop
+def _pictures(
+    life: RelivedLife, parts: list[range], step: int, rate: float
+) -> Iterator[Image.Image]:
+    """Yield a picture of every `step`-th tick of the parts; the last one is repeated.
+
+    Between two parts comes a card with the time left out.
+    """
+    still, part, picture = max(1, round(STILL * rate)), 0, None
+    for part_now, stretch, i in _moments(life, parts, step):
+        if part_now > part and picture is not None:
+            left_out = parts[part_now].start - parts[part].stop
             yield from repeat(_card(picture.size, f"{left_out:,} ticks later"), still)
-        number, picture = number_now, _picture(life, stretch, i)
+        part, picture = part_now, _picture(life, stretch, i)
         yield picture
     assert picture is not None
     yield from repeat(picture, still)
 
 
-def _instants(life: Life, parts: list[range], step: int) -> Iterator[tuple[int, Stretch, int]]:
-    """Number of the part, stretch and place in it of each instant that is shown."""
-    for stretch in life.again(watched=True):
+def _moments(
+    life: RelivedLife, parts: list[range], step: int
+) -> Iterator[tuple[int, Stretch, int]]:
+    """Yield the number of the part, the stretch and the place in it of each tick that is shown."""
+    for stretch in life.stretches(watched=True):
         ages = stretch.tick - life.record.born[0]
         for number, part in enumerate(parts):
             shown = (ages >= part.start) & (ages < part.stop)
@@ -107,7 +114,7 @@ def _instants(life: Life, parts: list[range], step: int) -> Iterator[tuple[int, 
                 yield number, stretch, int(i)
 
 
-def _picture(life: Life, stretch: Stretch, i: int) -> Image.Image:
+def _picture(life: RelivedLife, stretch: Stretch, i: int) -> Image.Image:
     tick = int(stretch.tick[i])
     body = jax.tree.map(lambda leaf: leaf[i], stretch.bodies)
     picture = life.habitat.picture(body, stretch.action[i])
@@ -121,7 +128,7 @@ def _picture(life: Life, stretch: Stretch, i: int) -> Image.Image:
 
 
 def _captioned(picture: Image.Image, left: str, right: str, below: str) -> Image.Image:
-    """A picture with words in its upper corners, and below those on the left."""
+    """Write words into a picture: in its upper corners, and below those on the left."""
     pen, font = ImageDraw.Draw(picture), _font(SIZE)
     pen.text((14, 12), left, INK, font)
     pen.text((14, 32), below, INK, font)
@@ -135,7 +142,7 @@ def _font(size: int) -> ImageFont.ImageFont | ImageFont.FreeTypeFont:
 
 
 def _card(size: tuple[int, int], words: str) -> Image.Image:
-    """Words by themselves."""
+    """Draw words on an empty picture."""
     card = Image.new("RGB", size, PAPER)
     middle = (size[0] / 2, size[1] / 2)
     ImageDraw.Draw(card).text(middle, words, INK, _font(2 * SIZE), anchor="mm")

@@ -1,4 +1,4 @@
-"""Pictures in a row as an MP4 or GIF file; the encoders come with PyAV's and Pillow's wheels."""
+"""MP4 and GIF files made of pictures; the encoders come with PyAV's and Pillow's wheels."""
 
 from collections.abc import Iterator
 from fractions import Fraction
@@ -12,20 +12,20 @@ from primordia import files
 from primordia.errors import InputError
 
 FASTEST = {".mp4": 60, ".gif": 25}
-"""Pictures a second at most, by file name; a GIF counts time in hundredths of a second."""
+"""Highest number of pictures in a second, by suffix; a GIF counts time in hundredths of a second."""
 
 
 def check_name(path: Path) -> None:
-    """Raise InputError for a file name that says neither MP4 nor GIF."""
+    """Raise InputError unless the file name ends in .mp4 or .gif."""
     if path.suffix not in FASTEST:
         raise InputError(f"--out {path}: a video is an .mp4 or a .gif")
 
 
 def write(path: Path, pictures: Iterator[Image.Image], rate: float) -> None:
-    """Write pictures of one size, so many a second, to a .mp4 or .gif.
+    """Write pictures of one size, `rate` in a second, to an .mp4 or .gif.
 
     Raises:
-        Trouble: it cannot be written.
+        Trouble: the file cannot be written.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     encode = _gif if path.suffix == ".gif" else _mp4
@@ -33,7 +33,7 @@ def write(path: Path, pictures: Iterator[Image.Image], rate: float) -> None:
 
 
 def _mp4(path: Path, pictures: Iterator[Image.Image], rate: float) -> None:
-    """H.264 in yuv420p, which browsers and slides play."""
+    """Write H.264 in yuv420p, which browsers and slides play."""
     first = next(pictures)
     with av.open(str(path), "w") as container:
         stream = container.add_stream("libx264", rate=Fraction(rate).limit_denominator(1000))
@@ -50,7 +50,7 @@ def _frame(picture: Image.Image) -> av.VideoFrame:
 
 
 def _gif(path: Path, pictures: Iterator[Image.Image], rate: float) -> None:
-    """At half the size, with the first picture's colours."""
+    """Write a GIF of half the size, with the colours of the first picture."""
     first = next(pictures)
     palette = first.quantize(colors=64, dither=Image.Dither.NONE)
     small = (

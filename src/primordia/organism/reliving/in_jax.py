@@ -12,15 +12,16 @@ from primordia.habitats.contract import Bodies, JaxHabitat
 from primordia.law.law import Law
 from primordia.law.life import judge
 from primordia.law.metabolism import Rates
-from primordia.organism.life.instant import Instant, Mind, Stretch, think
+from primordia.organism.mind import Mind, think
+from primordia.organism.reliving.instant import Instant, Stretch
 from primordia.random.wide import Wide, wide
 
 
 class LifeInJax:
-    """One organism in a habitat in JAX."""
+    """One organism alone in a habitat in JAX."""
 
     TICKS = 4096
-    """Lived in one compiled call."""
+    """Ticks of one compiled call."""
 
     def __init__(self, law: Law, mind: Mind, habitat: JaxHabitat) -> None:
         self._mind, self._habitat = mind, habitat
@@ -31,7 +32,7 @@ class LifeInJax:
         return shared(fresh, self._habitat)(words)
 
     def restore(self, stored: dict[str, np.ndarray]) -> Bodies:
-        """Return the body, (1, ...) each, that a checkpoint holds under names with `bodies` before."""
+        """Return the body, (1, ...) each, from a checkpoint's arrays whose names begin with `bodies`."""
         like = self._habitat.reset(jnp.zeros((1, self._habitat.words), jnp.uint32))
         leaves = [jnp.asarray(stored[name]) for name, _ in named_leaves({"bodies": like})]
         return jax.tree.unflatten(jax.tree.structure(like), leaves)
@@ -45,13 +46,13 @@ class LifeInJax:
         return now, Stretch(ticks[:count], *columns)
 
     def close(self) -> None:
-        """Do nothing: there is nothing to let go of."""
+        """Do nothing: there are no resources to release."""
 
 
 def _lived(
     law: Law, habitat: JaxHabitat, mind: Mind, now: Instant, ticks: Wide, rates: Rates
 ) -> tuple[Instant, tuple]:
-    """Live ticks (n,) -> where the life then stands; the columns of a Stretch, (n, 1, ...) each."""
+    """Live ticks (n,) -> the life's state after them; the columns of a Stretch, (n, 1, ...) each."""
 
     def step(now: Instant, given: tuple[Wide, Rates]) -> tuple[Instant, tuple]:
         tick, rates = given

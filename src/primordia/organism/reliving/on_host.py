@@ -1,4 +1,4 @@
-"""A life in a habitat on the host: brain and simulator take turns, in a habitat with one cell."""
+"""A life in a habitat on the host, which has one cell; brain and simulator take turns."""
 
 from typing import Any
 
@@ -11,18 +11,19 @@ from primordia.habitats.contract import HostHabitat
 from primordia.law.law import Law
 from primordia.law.life import Vitals, judge
 from primordia.law.metabolism import Rates
-from primordia.organism.life.instant import Instant, Mind, Stretch, think
+from primordia.organism.mind import Mind, think
+from primordia.organism.reliving.instant import Instant, Stretch
 from primordia.random.wide import wide
 
 ONLY = np.array([0])
-"""The one cell."""
+"""The number of the only cell."""
 
 
 class LifeOnHost:
-    """One organism in a habitat on the host, which is opened for it."""
+    """One organism alone in a habitat on the host."""
 
     TICKS = 256
-    """Kept at a time; a tick may have a picture of 120 kB."""
+    """Ticks of one stretch; a tick may have a picture of 120 kB."""
 
     def __init__(self, law: Law, mind: Mind, habitat: HostHabitat, watched: bool) -> None:
         habitat.open(1, watched)
@@ -30,11 +31,11 @@ class LifeOnHost:
         self._think, self._judged = shared(think, law), shared(_judged, law)
 
     def embody(self, words: Array) -> np.ndarray:
-        """Make a fresh body from random words uint32 (1, words) -> its senses (1, S)."""
+        """Make a fresh body from random words uint32 (1, words) -> senses (1, S)."""
         return self._habitat.reset(ONLY, np.asarray(words))
 
     def restore(self, stored: dict[str, np.ndarray]) -> np.ndarray:
-        """Take the body that a checkpoint holds under names that begin with `bodies.` -> its senses."""
+        """Load the body from a checkpoint's arrays whose names begin with `bodies.` -> senses (1, S)."""
         bodies = {name.removeprefix("bodies."): array for name, array in stored.items()}
         senses = bodies.pop("senses")
         self._habitat.load(bodies)
@@ -44,7 +45,7 @@ class LifeOnHost:
         self, now: Instant, ticks: np.ndarray, rates: Rates, count: int
     ) -> tuple[Instant, Stretch]:
         """Live the first `count` of TICKS ticks, with their rates (TICKS,)."""
-        # NumPy's slices: those of JAX's arrays take longer than a frame
+        # NumPy arrays, since slicing a JAX array takes longer than a frame
         tick = jax.tree.map(np.asarray, wide(ticks))
         memory, senses, lived = now.memory, now.bodies, []
         for i in range(count):
@@ -52,7 +53,7 @@ class LifeOnHost:
             memory, before, action = thought.memory, np.array(senses), np.asarray(thought.action)
             senses, outcome = self._habitat.step(action, np.ones(1, bool))
             judged = thought.faulty, senses, outcome
-            lived.append(_kept((before, action, self._habitat.seen(), judged)))
+            lived.append(_copied((before, action, self._habitat.seen(), judged)))
         perceived, actions, seen, judged = jax.tree.map(lambda *each: np.stack(each), *lived)
         vitals, cause = self._judged(now.vitals, _padded(judged, self.TICKS), rates)
         after = jax.tree.map(lambda each: np.asarray(each)[:count], (*vitals, cause))
@@ -61,17 +62,17 @@ class LifeOnHost:
         return Instant(memory, Vitals(energy, eaten), senses), stretch
 
     def close(self) -> None:
-        """Let go of what the habitat took."""
+        """Release the habitat's resources."""
         self._habitat.close()
 
 
-def _kept(seen: Any) -> Any:
-    """Copy the one body's part of everything, which the habitat may write over in the next tick."""
-    return jax.tree.map(lambda leaf: np.array(leaf)[0], seen)
+def _copied(values: Any) -> Any:
+    """Copy the only body's part of arrays that the habitat may overwrite in the next tick."""
+    return jax.tree.map(lambda leaf: np.array(leaf)[0], values)
 
 
 def _padded(lived: Any, count: int) -> Any:
-    """Arrays (n, ...) -> (count, 1, ...), with zeros: JAX compiles a new function for every shape."""
+    """Pad arrays (n, ...) with zeros to (count, 1, ...), since JAX compiles for every new shape."""
 
     def leaf(array: np.ndarray) -> np.ndarray:
         grown = np.zeros((count, 1, *array.shape[1:]), array.dtype)
@@ -82,9 +83,9 @@ def _padded(lived: Any, count: int) -> Any:
 
 
 def _judged(law: Law, vitals: Vitals, lived: tuple, rates: Rates) -> tuple[Vitals, Array]:
-    """Judge ticks one after another -> vitals and cause after each, int32 (n, 1).
+    """Judge successive ticks -> vitals and cause after each, int32 (n, 1).
 
-    `lived`: faulty (n, 1), senses (n, 1, S) after the tick, outcome (n, 1) each.
+    `lived` holds faulty (n, 1), senses after the tick (n, 1, S), and the outcome, (n, 1) each.
     """
 
     def tick(vitals: Vitals, given: tuple) -> tuple[Vitals, tuple[Vitals, Array]]:

@@ -1,0 +1,28 @@
+"""A mind: all that an organism's actions depend on, beside the law and its senses."""
+
+from typing import NamedTuple
+
+from jax import Array
+
+from primordia.brains.contract import Genome
+from primordia.law import life
+from primordia.law.law import Law
+from primordia.law.life import Thought
+from primordia.random.keys import Purpose, stream
+from primordia.random.wide import Wide
+
+
+class Mind(NamedTuple):
+    """Genomes, keys and cells of N organisms."""
+
+    genome: Genome
+    key: Wide
+    """(N,), key of everything random in a life, such as the seed of its world"""
+    cell: Array
+    """int32 (N,), within the world"""
+
+
+def think(law: Law, mind: Mind, memory: Array, senses: Array, tick: Wide) -> Thought:
+    """Think one tick, Wide (1,), with memory (N, M) and senses (N, S)."""
+    key = stream(mind.key, Purpose.MOTOR, tick)
+    return life.think(law, mind.genome, memory, senses, key, mind.cell)

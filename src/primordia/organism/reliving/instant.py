@@ -1,0 +1,37 @@
+"""The state of a single life at one instant, and the record of a stretch of its ticks."""
+
+from typing import NamedTuple
+
+import numpy as np
+from jax import Array
+
+from primordia.habitats.contract import Bodies
+from primordia.law.life import Vitals
+
+
+class Instant(NamedTuple):
+    """The state of one life at the end of a tick; the first axis of every array is 1."""
+
+    memory: Array
+    vitals: Vitals
+    bodies: Bodies
+    """the body; in a habitat on the host, which holds the body itself, its senses"""
+
+
+class Stretch(NamedTuple):
+    """n successive ticks of a life, first axis n."""
+
+    tick: np.ndarray
+    """int64: the world's tick"""
+    senses: np.ndarray
+    """float32 (n, S): senses on which the organism acted"""
+    action: np.ndarray
+    """int32 (n,) or float32 (n, A)"""
+    bodies: Bodies
+    """after the tick; in a habitat on the host, what `seen` returns, None if it shows nothing"""
+    energy: np.ndarray
+    """int32 after the tick, fixed point; without a metabolism it has no meaning"""
+    eaten: np.ndarray
+    """int32, fixed point: food since birth"""
+    cause: np.ndarray
+    """int32: cause of a death by brain, body or store in the tick, or -1"""
