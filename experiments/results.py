@@ -32,7 +32,7 @@ def write(stem: Path, question: str, runs: list[Path]) -> None:
     text = "\n\n".join([*parts, made(runs[0], infos[0])])
     stem.with_suffix(".md").write_text(text + "\n", encoding="utf-8")
     write_worlds(stem.with_suffix(".csv"), compared, infos, ends)
-    with style.look():
+    with style.applied():
         draw(compared).savefig(stem.with_suffix(".png"), dpi=200)
     print(f"{stem}: .md .csv .png")
 
@@ -111,7 +111,7 @@ def write_worlds(
         for number, (arm, info) in enumerate(zip(compared.arms, infos, strict=True)):
             for w, world in enumerate(info["worlds"]):
                 at = world["saturation"] or {"births": "", "tick": ""}
-                mean = f"{arm.figures['lifespan'].value[w]:.1f}"
+                mean = f"{arm.measured['lifespan'].value[w]:.1f}"
                 last = ends[number][w].values() if ends else ()
                 counts = [world[name] for name in counted]
                 rows.writerow([arm.name, *counts, at["births"], at["tick"], mean, *last])

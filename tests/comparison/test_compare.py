@@ -11,9 +11,9 @@ import pytest
 
 import primordia
 from primordia.comparison.comparison import Comparison
-from primordia.comparison.contrast import Figures
+from primordia.comparison.contrast import Measured
 from primordia.figures import style
-from primordia.figures.comparison import FEW, draw, looks
+from primordia.figures.comparison import FEW_ARMS, draw
 from primordia.runs import loop
 from tests.commands import complains, here
 from tests.comparison.test_survival import restricted_mean
@@ -65,8 +65,8 @@ def test_figures_of_worlds_equal_those_of_brute_force(
         for number, world in enumerate(worlds):
             moment = world["saturation"]
             for unit, key in (("births", "births"), ("ticks", "tick")):
-                value = arm.figures[unit].value[number]
-                assert arm.figures[unit].known[number] == (moment is not None)
+                value = arm.measured[unit].value[number]
+                assert arm.measured[unit].known[number] == (moment is not None)
                 assert value == (moment[key] if moment else world[unit])
             ends = {row["id"]: row["tick"] for row in died if row["world"] == number}
             lives = [
@@ -77,12 +77,12 @@ def test_figures_of_worlds_equal_those_of_brute_force(
             age = QUICK["saturation_ticks"]
             long = [lived >= age for lived, _ in lives]
             undecided = [lived < age and not dead for lived, dead in lives]
-            first = arm.figures["first"]
+            first = arm.measured["first"]
             before = int(first.value[number]) - 1
             assert not any(long[:before] + undecided[:before])
             assert long[before] if first.known[number] else [*undecided, True][before]
             mean = restricted_mean(lives, age)
-            assert arm.figures["lifespan"].value[number] == pytest.approx(mean)
+            assert arm.measured["lifespan"].value[number] == pytest.approx(mean)
             seen += len(lives)
         assert arm.saturated == sum(world["saturation"] is not None for world in worlds)
     assert seen > 500
@@ -134,7 +134,7 @@ def test_runs_are_compared_up_to_a_horizon_that_all_worlds_reached(
 ) -> None:
     compared = primordia.compare(*runs, ticks=600)
     for arm, whole in zip(compared.arms, primordia.compare(*runs).arms, strict=True):
-        within = whole.figures["ticks"].known & (whole.figures["ticks"].value < 600)
+        within = whole.measured["ticks"].known & (whole.measured["ticks"].value < 600)
         assert arm.saturated == within.sum()
     early = primordia.compare(*runs, ticks=100)
     assert early.arms[0].saturated <= compared.arms[0].saturated
@@ -171,8 +171,8 @@ def test_ticks_for_each_death_are_compared_where_saturation_is_rare(
 ) -> None:
     """Saturation is rare if fewer than half of the worlds of every run saturate."""
     known = np.arange(WORLDS) < saturated
-    moments = {name: Figures(np.ones(WORLDS), known) for name in ("births", "ticks")}
-    arm = replace(compared.arms[0], figures={**compared.arms[0].figures, **moments})
+    moments = {name: Measured(np.ones(WORLDS), known) for name in ("births", "ticks")}
+    arm = replace(compared.arms[0], measured={**compared.arms[0].measured, **moments})
     assert arm.saturated == saturated
     outcomes = replace(compared, arms=(arm,)).outcomes
     assert ("pace" in outcomes, "longest" in outcomes) == (with_pace, with_pace)
@@ -185,7 +185,7 @@ def test_where_few_worlds_saturate_all_are_compared_over_the_same_time(tmp_path:
         loop.start(config({**never, "stop": {"ticks": ticks}}), tmp_path / name)
     short, long = primordia.compare(tmp_path / "short", tmp_path / "long").arms
     for outcome in ("first", "lifespan", "longest", "pace", "food"):
-        one, other = short.figures[outcome], long.figures[outcome]
+        one, other = short.measured[outcome], long.measured[outcome]
         np.testing.assert_array_equal(one.value, other.value, err_msg=outcome)
         np.testing.assert_array_equal(one.known, other.known, err_msg=outcome)
     np.testing.assert_array_equal(short.survival.curve, long.survival.curve)
@@ -194,12 +194,12 @@ def test_where_few_worlds_saturate_all_are_compared_over_the_same_time(tmp_path:
 @pytest.mark.parametrize("arms", [2, 5, 6, 9, 27])
 def test_each_run_has_its_own_look(compared: Comparison, arms: int) -> None:
     """The scatter of worlds is drawn where few runs are shown."""
-    assert len({tuple(look.items()) for look in looks(arms)}) == arms
+    assert len({tuple(look.items()) for look in line_styles(arms)}) == arms
     many = replace(compared, arms=compared.arms[:1] * arms)
-    with style.look():
+    with style.applied():
         drawn = draw(many)
     assert len(drawn.axes[0].get_lines()) == arms
-    assert len(drawn.axes[0].collections) == (arms if arms <= FEW else 0)
+    assert len(drawn.axes[0].collections) == (arms if arms <= FEW_ARMS else 0)
 
 
 @pytest.mark.parametrize("saturated", [0, WORLDS])
@@ -209,10 +209,10 @@ def test_everything_that_is_drawn_is_within_the_page(
 ) -> None:
     """Figures have two to four panels."""
     known = np.arange(WORLDS) < saturated
-    moments = {name: Figures(np.ones(WORLDS), known) for name in ("births", "ticks")}
-    food = {"food": Figures(np.ones(WORLDS), np.full(WORLDS, fed))}
-    arm = replace(compared.arms[0], figures={**compared.arms[0].figures, **moments, **food})
-    with style.look():
+    moments = {name: Measured(np.ones(WORLDS), known) for name in ("births", "ticks")}
+    food = {"food": Measured(np.ones(WORLDS), np.full(WORLDS, fed))}
+    arm = replace(compared.arms[0], measured={**compared.arms[0].measured, **moments, **food})
+    with style.applied():
         drawn = draw(replace(compared, arms=(arm,)))
         drawn.draw_without_rendering()
     assert len(drawn.axes) == 2 + fed + bool(saturated)

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from primordia.comparison.contrast import Figures, contrast
+from primordia.comparison.contrast import Measured, contrast
 from primordia.comparison.resample import resamples
 from primordia.errors import InputError
 
@@ -14,9 +14,9 @@ WORLD = st.tuples(st.integers(1, 20), st.booleans())
 SOME = st.lists(WORLD, min_size=1, max_size=12)
 
 
-def figures(worlds: list[tuple[int, bool]]) -> Figures:
+def figures(worlds: list[tuple[int, bool]]) -> Measured:
     value, known = (np.array(column) for column in zip(*worlds, strict=True))
-    return Figures(value.astype(float), known)
+    return Measured(value.astype(float), known)
 
 
 @given(SOME, SOME)
@@ -57,7 +57,7 @@ def test_bounds_hold_for_every_future_of_the_worlds(run: list, on: list[int]) ->
     for q in (0.25, 0.5, 0.75):
         low, high = figures(run).quantile(q)
         assert low <= np.quantile(later, q, method="inverted_cdf") <= high
-    known = Figures(np.array(later, float), np.ones(len(later), bool))
+    known = Measured(np.array(later, float), np.ones(len(later), bool))
     base = figures([(5, True), (9, True), (12, True)])
     sure, unsure = contrast(known, base), contrast(figures(run), base)
     assert unsure.ratio[0] <= sure.ratio[0] == sure.ratio[1] <= unsure.ratio[1]
@@ -82,7 +82,9 @@ def test_intervals_contain_the_true_ratio() -> None:
     draws = np.random.default_rng(0)
     held = 0
     for _ in range(200):
-        one, other = (Figures(draws.lognormal(mean, 0.5, 40), np.ones(40, bool)) for mean in (1, 0))
+        one, other = (
+            Measured(draws.lognormal(mean, 0.5, 40), np.ones(40, bool)) for mean in (1, 0)
+        )
         low, high = contrast(one, other).interval
         held += low <= np.e <= high
     assert 180 <= held <= 200  # of 190 expected

@@ -47,9 +47,9 @@ def test_worlds_that_never_saturate_are_compared_by_ticks_for_each_death(tmp_pat
         loop.start(config({**settings, "replication": 0.2, "stop": {"ticks": ticks}}), runs[-1])
     rough, mild = primordia.compare(*runs).arms
     assert rough.pace.edges[-1] == mild.pace.edges[-1] == 600
-    assert np.median(rough.figures["pace"].value) == pytest.approx(50, rel=0.2)
-    assert np.median(mild.figures["pace"].value) == pytest.approx(100, rel=0.2)
-    assert (mild.figures["longest"].value > 100).all()
+    assert np.median(rough.measured["pace"].value) == pytest.approx(50, rel=0.2)
+    assert np.median(mild.measured["pace"].value) == pytest.approx(100, rel=0.2)
+    assert (mild.measured["longest"].value > 100).all()
     printed = here("compare", *runs, "--out", tmp_path / "figures").stdout
     assert "ticks lived for each death, late" in printed
     assert "births to" not in printed

@@ -45,7 +45,7 @@ def test_survival_is_the_estimate_of_kaplan_and_meier(
     np.testing.assert_allclose(estimate.curve, expected, atol=1e-12)
     np.testing.assert_array_equal(estimate.steps, [0, *estimate.ages, limit])
     np.testing.assert_array_equal(
-        estimate.whole(estimate.curve), [1, *estimate.curve, (1, *estimate.curve)[-1]]
+        estimate.with_ends(estimate.curve), [1, *estimate.curve, (1, *estimate.curve)[-1]]
     )
     for lived, mean in zip(worlds, estimate.restricted_mean, strict=True):
         assert mean == pytest.approx(restricted_mean(lived, limit))

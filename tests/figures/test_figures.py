@@ -87,9 +87,9 @@ def test_quartiles_are_of_stretches_with_equally_many_dead() -> None:
 def test_space_time_shows_the_occupant_of_each_cell_and_tick(run: Path) -> None:
     world = Archive(run).lives.of_world(1)
     cells, ticks = np.arange(24), np.array([0, 1, 50, 333, 900])
-    occupants = spacetime.living(world, cells, ticks)
+    occupants = spacetime.occupants(world, cells, ticks)
     for place, tick in enumerate(ticks.tolist()):
-        expected = np.full(24, spacetime.NOBODY)
+        expected = np.full(24, spacetime.EMPTY)
         for row in range(len(world)):
             if alive(world, row, tick):
                 expected[world.cell[row]] = row
@@ -99,10 +99,10 @@ def test_space_time_shows_the_occupant_of_each_cell_and_tick(run: Path) -> None:
 def test_space_time_shows_in_colours_what_became_of_each_line(run: Path) -> None:
     world = Archive(run).lives.of_world(0)
     cells, ticks = np.arange(24), np.arange(901)
-    of = spacetime.told_apart(world)
-    occupants = spacetime.living(world, cells, ticks)
+    of = spacetime.clades_of(world)
+    occupants = spacetime.occupants(world, cells, ticks)
     image = spacetime.picture(world, of, cells, ticks)
-    np.testing.assert_array_equal((image == 1).all(axis=-1), occupants == spacetime.NOBODY)
+    np.testing.assert_array_equal((image == 1).all(axis=-1), occupants == spacetime.EMPTY)
     young = colours_in(image[: of.renewals[0]])
     assert {len(set(each)) for each in young} == {1}, "greys"
     assert to_rgb(spacetime.YOUNG) in young
@@ -121,7 +121,7 @@ def colours_in(image: np.ndarray) -> set[tuple[float, ...]]:
 @pytest.mark.parametrize(("cells", "shown"), [(24, 24), (512, 512), (513, 257), (1_000_000, 512)])
 def test_space_time_never_has_more_columns_than_a_screen(cells: int, shown: int) -> None:
     world = world_of([(0, 10, True), (11, 0, False)])
-    with style.look():
+    with style.applied():
         figure = spacetime.draw(seen(world, cells=cells), 0)
     assert figure.axes[0].images[0].get_array().shape[1] == shown
     assert ("shown" in figure.axes[0].get_xlabel()) == (shown < cells)
@@ -181,7 +181,7 @@ def test_figures_have_the_same_bytes_under_any_style_of_the_user(
 )
 def test_every_figure_is_drawn_of_any_world(lives: Lives) -> None:
     run = seen(lives, cells=24, seeds=lives.worlds)
-    with style.look():
+    with style.applied():
         for name in KNOWN:
             figure = find(name)(run, 0)
             if name == "foraging":
@@ -204,7 +204,7 @@ def test_every_figure_is_drawn_of_any_world(lives: Lives) -> None:
 def test_space_time_says_what_the_order_of_cells_means(
     placement: dict[str, Any], says: str
 ) -> None:
-    with style.look():
+    with style.applied():
         figure = spacetime.draw(seen(world_of([(0, 0, False)]), placement=placement), 0)
     assert says in figure.axes[0].get_xlabel()
 

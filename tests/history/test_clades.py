@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from primordia.history.clades import Clades, clades
+from primordia.history.clades import Clades, find_clades
 
 FEW = st.lists(st.integers(0, 30), max_size=3)
 HISTORY = st.lists(st.tuples(FEW, FEW), max_size=30)
@@ -40,7 +40,7 @@ class Walked:
 
     def lines(self, crowd: int) -> Clades:
         parent, born, ended = map(np.array, (self.parent, self.born, self.ended))
-        return clades(parent, born, ended, ended >= 0, crowd)
+        return find_clades(parent, born, ended, ended >= 0, crowd)
 
 
 @given(history=HISTORY, crowd=st.integers(1, 4))

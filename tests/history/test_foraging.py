@@ -85,7 +85,7 @@ def test_only_runs_with_food_have_the_figure(runs: dict[str, Path], tmp_path: Pa
 
 def test_the_figure_of_a_run_without_a_sample_says_so(tmp_path: Path) -> None:
     loop.start(config(FED, stop={"ticks": 30}), tmp_path / "run")
-    with style.look():
+    with style.applied():
         drawn = figure.draw(Archive(tmp_path / "run"), 0)
         drawn.draw_without_rendering()
     assert "no samples yet" in {text.get_text() for text in drawn.axes[0].texts}
@@ -95,7 +95,7 @@ def test_food_that_no_organism_can_live_on_has_no_break_even(tmp_path: Path) -> 
     hungry = {"metabolism": {"store": 30.0, "gain": 0.0}, "seasons": []}
     loop.start(config(FED, **hungry), tmp_path / "run")
     assert np.isinf(foraging(Archive(tmp_path / "run")).break_even).all()
-    with style.look():
+    with style.applied():
         drawn = figure.draw(Archive(tmp_path / "run"), 0)
         drawn.draw_without_rendering()
     assert "break-even" not in {text.get_text() for text in drawn.axes[0].texts}
@@ -104,7 +104,7 @@ def test_food_that_no_organism_can_live_on_has_no_break_even(tmp_path: Path) -> 
 def test_runs_with_food_are_compared_by_it(runs: dict[str, Path], tmp_path: Path) -> None:
     compared = primordia.compare(runs["fed"], runs["less"])
     assert compared.outcomes["food"] == "food a tick, late"
-    values = [arm.figures["food"].value.tolist() for arm in compared.arms]
+    values = [arm.measured["food"].value.tolist() for arm in compared.arms]
     np.testing.assert_allclose(values, [[FOOD] * 2, [FOOD / 2] * 2])
     against = compared.contrast(compared.arms[1], "food")
     assert (against.delta, against.ratio) == (-1, (0.5, 0.5))

@@ -39,7 +39,7 @@ def side_by_side(compared: Comparison) -> str:
 
 def spread(arm: Arm, outcome: str) -> str:
     """Median, and quartiles in brackets if they differ."""
-    low, middle, high = (shown(arm.figures[outcome].quantile(q)) for q in (0.25, 0.5, 0.75))
+    low, middle, high = (shown(arm.measured[outcome].quantile(q)) for q in (0.25, 0.5, 0.75))
     return f"{middle} ({low} to {high})" if low != high else middle
 
 

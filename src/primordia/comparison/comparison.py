@@ -1,11 +1,10 @@
 """Runs side by side: how soon their worlds saturate, and how long organisms live in them.
 
-Worlds are the units, taken to be independent. (Those of the same seed in two runs share random
-words, which makes them alike if anything; intervals are then too wide rather than too narrow.) The
-first run is the reference that each other is held against. Worlds that stopped unsaturated count for
-what is known of them, and no more; see `contrast`. Where some are forks, lives are looked at from the
-tick on at which the last of them was forked, in all runs; where few worlds saturate, which ends them,
-up to the tick that all worlds have lived through.
+The units are worlds, which are taken to be independent. (Worlds of the same seed in two runs share random
+words. If that makes them alike, intervals are too wide rather than too narrow.) The first run is the
+reference of all others. A world that stopped before it saturated is treated as censored; see `contrast`.
+In forks, lives count from the tick of the latest fork on, in all runs. Where few worlds saturate, lives
+count up to the last tick that all worlds have lived through.
 """
 
 from collections.abc import Sequence
@@ -15,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from primordia.comparison.contrast import Bounds, Contrast, Figures, contrast
+from primordia.comparison.contrast import Bounds, Contrast, Measured, contrast
 from primordia.comparison.gathering import Gathering, gathering
 from primordia.comparison.pace import Pace, pace
 from primordia.comparison.survival import Survival, survival
@@ -35,91 +34,95 @@ OUTCOMES = {
     "food": "food a {span}, late",
 }
 UNSATURATED = ("longest", "pace")
-"""Those that are of use only where saturation is rare."""
+"""Outcomes that are compared only where saturation is rare."""
 
 
 @dataclass(frozen=True)
 class Arm:
-    """A run, as far as it is compared."""
+    """One run of a comparison."""
 
     name: str
     settings: dict[str, Any]
-    """dotted name -> value, of those settings in which the runs differ"""
-    figures: dict[str, Figures]
-    """of each of OUTCOMES: which birth the first was that lived to the comparison's age; births and
-    ticks to saturation, founders counted; mean lifespan in a world, in ticks, up to that age; ticks of
-    the longest life, so far or in all; ticks lived for each death, and food that an organism gathered in
-    a span, in the last quarter of the time that all worlds have lived through"""
+    """dotted name -> value, of the settings in which the runs differ"""
+    measured: dict[str, Measured]
+    """name in OUTCOMES -> its value in each world.
+
+    `first`: number of the first birth whose life reached the comparison's age. `births`, `ticks`: births
+    (founders included) and ticks to saturation. `lifespan`: mean lifespan up to that age, in ticks.
+    `longest`: ticks of the longest life so far. `pace`: ticks lived for each death. `food`: mean food of
+    an organism in a span. The last two are of the last quarter of the time that all worlds have lived
+    through.
+    """
     survival: Survival
     pace: Pace
     gathering: Gathering
 
     @property
     def worlds(self) -> int:
-        """How many."""
-        return len(self.figures["births"].value)
+        """Number of worlds."""
+        return len(self.measured["births"].value)
 
     @property
     def saturated(self) -> int:
-        """How many worlds are known to be, within the horizons."""
-        return int((self.figures["births"].known & self.figures["ticks"].known).sum())
+        """Number of worlds known to saturate within the horizons."""
+        return int((self.measured["births"].known & self.measured["ticks"].known).sum())
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """Some runs of one task."""
+    """Runs of one task side by side."""
 
     task: str
     arms: tuple[Arm, ...]
     """the first is the reference"""
     age: int
-    """ticks of age up to which lives count"""
+    """age, in ticks, up to which lives count"""
     births: int | None
-    """horizon, or None: as far as each world went"""
+    """horizon in births; None if there is none"""
     ticks: int | None
-    """horizon, or None: as far as each world went"""
+    """horizon in ticks; None if there is none"""
     span: str
-    """of time in which food is counted: a second, or a tick where the habitat knows of no seconds"""
+    """unit of time in which food is counted: second, or tick if the habitat has no rate"""
 
     @property
     def outcomes(self) -> dict[str, str]:
-        """Those of OUTCOMES that tell something: known of some world, and of use."""
-        untold = UNSATURATED if any(saturates(arm.figures) for arm in self.arms) else ()
+        """The outcomes worth showing, name -> title: known in some world, and of use."""
+        useless = UNSATURATED if any(often_saturated(arm.measured) for arm in self.arms) else ()
         return {
-            name: words.format(span=self.span)
-            for name, words in OUTCOMES.items()
-            if name not in untold and any(arm.figures[name].known.any() for arm in self.arms)
+            name: title.format(span=self.span)
+            for name, title in OUTCOMES.items()
+            if name not in useless and any(arm.measured[name].known.any() for arm in self.arms)
         }
 
     def contrast(self, arm: Arm, outcome: str) -> Contrast:
-        """A run against the reference in one of OUTCOMES."""
-        return contrast(arm.figures[outcome], self.arms[0].figures[outcome])
+        """Return the contrast of a run with the reference in one of OUTCOMES."""
+        return contrast(arm.measured[outcome], self.arms[0].measured[outcome])
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain values for JSON; a bound that is not known is None."""
+        """Return plain values for JSON; an unknown bound is None."""
         whole = {"task": self.task, "age": self.age, "births": self.births, "ticks": self.ticks}
         return {**whole, "runs": [self._arm(arm) for arm in self.arms]}
 
     def _arm(self, arm: Arm) -> dict[str, Any]:
-        found: dict[str, Any] = {
+        values: dict[str, Any] = {
             "name": arm.name,
             "settings": arm.settings,
             "worlds": arm.worlds,
             "saturated": arm.saturated,
         }
-        for outcome, figures in arm.figures.items():
-            quartiles = [_plain(figures.quantile(q)) for q in (0.25, 0.5, 0.75)]
-            found[outcome] = dict(zip(("q1", "median", "q3"), quartiles, strict=True))
+        for outcome, measured in arm.measured.items():
+            quartiles = [_plain(measured.quantile(q)) for q in (0.25, 0.5, 0.75)]
+            values[outcome] = dict(zip(("q1", "median", "q3"), quartiles, strict=True))
             if arm is not self.arms[0]:
                 against = self.contrast(arm, outcome)
-                found[outcome]["against"] = {
+                values[outcome]["against"] = {
                     "delta": against.delta,
                     "word": against.word,
                     "decided": against.decided,
                     "ratio": _plain(against.ratio),
                     "interval": _plain(against.interval),
                 }
-        return found
+        return values
 
 
 def compare(
@@ -129,48 +132,43 @@ def compare(
 
     Args:
         runs: the first is the reference.
-        births: horizon: only worlds that saturate before they have so many births count as saturated.
-        ticks: the same in ticks.
+        births: horizon: a world counts as saturated only if it saturates before that many births.
+        ticks: horizon in ticks, likewise.
 
     Raises:
         InputError: fewer than two runs, one given twice, different tasks, a run in which nothing has
-            lived, or a world that stopped, unsaturated, before a horizon.
+            lived, or a world that stopped before a horizon and before it saturated.
     """
     configs = _configs(runs)
     age = min(config.saturation_ticks for config in configs)
-    names = [run.path.resolve().name for run in runs]
-    everyone = [run.lives for run in runs]
-    since, until = _common(runs, configs, everyone)
-    everyone = [each.recorded_since(since) for each in everyone]
-    moments = [_saturation(run, births, ticks) for run in runs]
-    if not any(map(saturates, moments)):
-        everyone = [each.recorded_until(until) for each in everyone]
-    arms, rate = [], runs[0].habitat.rate
-    each_run = zip(runs, everyone, moments, names, differing(configs), strict=True)
-    for run, lived, saturation, name, own in each_run:
+    begin, end = _common_ticks(runs, configs)
+    lives = [run.lives.recorded_since(begin) for run in runs]
+    saturation = [_saturation(run, births, ticks) for run in runs]
+    if not any(map(often_saturated, saturation)):
+        lives = [each.recorded_until(end) for each in lives]
+    names, settings, rate = _names(runs), differing(configs), runs[0].habitat.rate
+    arms = []
+    for number, (run, lived) in enumerate(zip(runs, lives, strict=True)):
         worlds = _worlds(lived)
-        survived, dying = survival(lived, len(worlds), age), pace(worlds, since, until)
-        gathered = gathering(run, len(worlds), since, until, rate or 1)
-        figures = {
+        survived, dying = survival(lived, len(worlds), age), pace(worlds, begin, end)
+        gathered = gathering(run, len(worlds), begin, end, rate or 1)
+        measured = {
             "first": first_long(worlds, age),
-            **saturation,
-            "lifespan": _all_known(survived.restricted_mean),
-            "longest": _all_known([world.lifespan.max() for world in worlds]),
+            **saturation[number],
+            "lifespan": _known_everywhere(survived.restricted_mean),
+            "longest": _known_everywhere([world.lifespan.max() for world in worlds]),
             "pace": dying.late,
             "food": gathered.late,
         }
-        label = name if names.count(name) == 1 else str(run.path)
-        arms.append(Arm(label, own, figures, survived, dying, gathered))
+        arms.append(Arm(names[number], settings[number], measured, survived, dying, gathered))
     span = "second" if rate else "tick"
     return Comparison(configs[0].task, tuple(arms), age, births, ticks, span)
 
 
-def _common(
-    runs: Sequence[Archive], configs: Sequence[Config], everyone: Sequence[Lives]
-) -> tuple[int, int]:
-    """The ticks between which all worlds of all runs are on record: since the last fork."""
+def _common_ticks(runs: Sequence[Archive], configs: Sequence[Config]) -> tuple[int, int]:
+    """Return the first and last tick between which all worlds of all runs are on record."""
     begun = [config.begins for config in configs]
-    ended = [min(int(world.ended.max(initial=0)) for world in _worlds(each)) for each in everyone]
+    ended = [min(int(world.ended.max(initial=0)) for world in _worlds(run.lives)) for run in runs]
     if 0 < max(begun) >= min(ended):
         late, early = runs[begun.index(max(begun))], runs[ended.index(min(ended))]
         raise InputError(
@@ -180,19 +178,28 @@ def _common(
     return max(begun), min(ended)
 
 
-def _all_known(values: ArrayLike) -> Figures:
-    """A figure that every world has."""
+def _names(runs: Sequence[Archive]) -> list[str]:
+    """Return the names of the runs' directories; the whole path where two have one name."""
+    names = [run.path.resolve().name for run in runs]
+    return [
+        name if names.count(name) == 1 else str(run.path)
+        for run, name in zip(runs, names, strict=True)
+    ]
+
+
+def _known_everywhere(values: ArrayLike) -> Measured:
+    """Return values that are known in every world."""
     value = np.asarray(values, float)
-    return Figures(value, np.ones(value.shape, bool))
+    return Measured(value, np.ones(value.shape, bool))
 
 
-def _worlds(lived: Lives) -> list[Lives]:
-    """Of a run, one by one."""
-    return [lived.of_world(world) for world in range(lived.worlds)]
+def _worlds(lives: Lives) -> list[Lives]:
+    """Return the lives of each world."""
+    return [lives.of_world(world) for world in range(lives.worlds)]
 
 
 def _configs(runs: Sequence[Archive]) -> list[Config]:
-    """Settings of runs that can be compared."""
+    """Return the settings of runs; raise InputError if the runs cannot be compared."""
     if len(runs) < 2:
         raise InputError("compare needs two runs or more; the first is the reference of the others")
     if len({run.path.resolve() for run in runs}) < len(runs):
@@ -208,70 +215,69 @@ def _configs(runs: Sequence[Archive]) -> list[Config]:
 
 
 def differing(configs: Sequence[Config]) -> list[dict[str, Any]]:
-    """Of each configuration, the settings in which it is not as all the others."""
-    untold: Any = {"about": True, "origin": {"run"}}  # words, and the name of a folder
-    flat = [_flat(config.model_dump(mode="json", exclude=untold)) for config in configs]
-    names = [name for each in flat for name in each]
-    several = [
-        name
-        for name in dict.fromkeys(names)
-        if any(each.get(name) != flat[0].get(name) for each in flat)
+    """Return, for each configuration, the settings in which the configurations differ."""
+    ignored: Any = {"about": True, "fork": {"run"}}  # words, and the name of a folder
+    flat = [_flat(config.model_dump(mode="json", exclude=ignored)) for config in configs]
+    names = dict.fromkeys(name for settings in flat for name in settings)
+    different = [
+        name for name in names if any(settings.get(name) != flat[0].get(name) for settings in flat)
     ]
-    return [{name: each.get(name) for name in several} for each in flat]
+    return [{name: settings.get(name) for name in different} for settings in flat]
 
 
-def first_long(worlds: Sequence[Lives], age: int) -> Figures:
-    """Which birth of each world, since the fork if there was one, was the first to live so long.
+def first_long(worlds: Sequence[Lives], age: int) -> Measured:
+    """Return the number of the first birth in each world, after its fork, whose life reached an age.
 
-    Known if all who were born before are dead; otherwise it is at least the first one's still alive.
+    It is known if all organisms born before are dead. Otherwise it is at least the number of the first
+    one that is still alive.
     """
     value, known = [], []
     for lived in (world.take(np.flatnonzero(world.entered == 0)) for world in worlds):
         long = lived.lifespan >= age
-        first, open_ = (
+        first, undecided = (
             int(each.argmax()) if each.any() else len(lived) for each in (long, ~long & ~lived.died)
         )
-        value.append(min(first, open_) + 1)
-        known.append(first < open_)
-    return Figures(np.array(value, float), np.array(known))
+        value.append(min(first, undecided) + 1)
+        known.append(first < undecided)
+    return Measured(np.array(value, float), np.array(known))
 
 
-def _saturation(run: Archive, births: int | None, ticks: int | None) -> dict[str, Figures]:
-    """Births and ticks to saturation, of each world of a run."""
+def _saturation(run: Archive, births: int | None, ticks: int | None) -> dict[str, Measured]:
+    """Return the births and ticks to saturation of each world of a run."""
 
-    def of_worlds(name: str) -> np.ndarray:
+    def by_world(name: str) -> np.ndarray:
         return read_count(run.state, f"world.worlds.{name}")
 
-    known = of_worlds("saturated") != NEVER
-    now_and_then = {"births": ("births", "saturated_births"), "ticks": ("tick", "saturated")}
-    found = {
-        unit: Figures(np.where(known, of_worlds(then), of_worlds(now)).astype(float), known)
-        for unit, (now, then) in now_and_then.items()
+    known = by_world("saturated") != NEVER
+    columns = {"births": ("births", "saturated_births"), "ticks": ("tick", "saturated")}
+    measured = {
+        unit: Measured(np.where(known, by_world(then), by_world(now)).astype(float), known)
+        for unit, (now, then) in columns.items()
     }
     for unit, horizon in (("births", births), ("ticks", ticks)):
         if horizon is not None:
             try:
-                found[unit] = found[unit].before(horizon)
+                measured[unit] = measured[unit].before(horizon)
             except InputError as error:
                 raise InputError(f"--{unit} {horizon}: in {run.path}, {error}") from None
-    return found
+    return measured
 
 
-def saturates(figures: dict[str, Figures]) -> bool:
-    """Whether at least half of a run's worlds do, within the horizons."""
-    known = figures["births"].known & figures["ticks"].known
+def often_saturated(measured: dict[str, Measured]) -> bool:
+    """Return whether at least half of a run's worlds saturate within the horizons."""
+    known = measured["births"].known & measured["ticks"].known
     return 2 * int(known.sum()) >= len(known)
 
 
 def _flat(values: dict[str, Any], prefix: str = "") -> dict[str, Any]:
-    """Nested tables as one, with dotted names."""
-    found: dict[str, Any] = {}
+    """Return nested tables as one, with dotted names."""
+    flat: dict[str, Any] = {}
     for name, value in values.items():
         inner = isinstance(value, dict)
-        found |= _flat(value, f"{prefix}{name}.") if inner else {prefix + name: value}
-    return found
+        flat |= _flat(value, f"{prefix}{name}.") if inner else {prefix + name: value}
+    return flat
 
 
 def _plain(bounds: Bounds) -> list[float | None]:
-    """For JSON, which has no infinity."""
+    """Return bounds for JSON, which has no infinity."""
     return [each if np.isfinite(each) else None for each in bounds]

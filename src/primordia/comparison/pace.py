@@ -1,20 +1,20 @@
-"""How fast organisms die as time goes on: ticks lived for each death, in windows of a world's time."""
+"""The pace of dying over time: ticks lived for each death, in windows of a world's time."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from primordia.comparison.contrast import Figures
+from primordia.comparison.contrast import Measured
 from primordia.history import series
 from primordia.runs.lives import Lives
 
 WINDOWS, LATE = 12, 3
-"""Windows that time is cut into, and how many of the last are called late."""
+"""Number of windows that time is cut into, and the number of last ones that are called late."""
 
 
 @dataclass(frozen=True)
 class Pace:
-    """Ticks lived and deaths, world by world, in windows of equal length."""
+    """Ticks lived and deaths of each of W worlds, in windows of equal length."""
 
     edges: np.ndarray
     """ticks of the world, float64 (WINDOWS + 1,)"""
@@ -25,19 +25,19 @@ class Pace:
 
     @property
     def curve(self) -> np.ndarray:
-        """Ticks lived for each death, float64 (W, WINDOWS); where nobody died, at least so many."""
+        """Ticks lived for each death, float64 (W, WINDOWS); a lower bound in windows without deaths."""
         return self.lived / np.maximum(self.deaths, 1)
 
     @property
-    def late(self) -> Figures:
-        """The same for the last quarter of the time."""
+    def late(self) -> Measured:
+        """Ticks lived for each death in the last quarter of the time."""
         lived, deaths = (each[:, -LATE:].sum(axis=1) for each in (self.lived, self.deaths))
-        return Figures(lived / np.maximum(deaths, 1), deaths > 0)
+        return Measured(lived / np.maximum(deaths, 1), deaths > 0)
 
 
-def pace(worlds: list[Lives], since: int, until: int) -> Pace:
-    """Of the lives of each world, between two ticks at which all worlds are on record."""
-    edges = np.linspace(since, until, WINDOWS + 1)
+def pace(worlds: list[Lives], begin: int, end: int) -> Pace:
+    """Return the pace of the lives of each world, all on record between the ticks `begin` and `end`."""
+    edges = np.linspace(begin, end, WINDOWS + 1)
     lived = [series.exposure(world.seen, world.ended, edges) for world in worlds]
     deaths = [
         np.diff(series.count_until(np.sort(world.ended[world.died]), edges)) for world in worlds

@@ -1,4 +1,4 @@
-"""Worlds drawn again with replacement, for intervals: the same draws every time, from our own keys."""
+"""Worlds drawn with replacement, for intervals; the draws come from our keys and are always the same."""
 
 import numpy as np
 
@@ -7,13 +7,13 @@ from primordia.random.wide import Wide
 
 RESAMPLES = 1000
 COVERED = 0.95
-"""of resamples lie within an interval"""
+"""Share of resamples that lie within an interval."""
 
 
 def resamples(worlds: int, stream: int = 0) -> np.ndarray:
-    """Numbers of the worlds in each resample, int64 (RESAMPLES, worlds).
+    """Return the numbers of the worlds in each resample, int64 (RESAMPLES, worlds).
 
-    Resamples of two runs that are compared come from different streams, so they are independent.
+    Two runs that are compared use different streams, so their resamples are independent.
     """
     which, draw = np.indices((RESAMPLES, worlds), np.uint32)
     key = Wide(np.full(1, stream, np.uint32), np.full(1, worlds, np.uint32))  # type: ignore[arg-type]
@@ -22,7 +22,7 @@ def resamples(worlds: int, stream: int = 0) -> np.ndarray:
 
 
 def interval(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Percentile interval of figures of resamples, on their first axis (Efron 1979)."""
+    """Return the percentile interval of values of resamples, along the first axis (Efron 1979)."""
     ordered = np.sort(values, axis=0)
     outside = round(len(values) * (1 - COVERED) / 2)
     return ordered[outside], ordered[len(values) - 1 - outside]

@@ -1,7 +1,7 @@
-"""How many are still alive at an age: Kaplan-Meier (1958) over lives, with worlds as the units.
+"""Survival: the share alive at each age, by Kaplan-Meier (1958) over lives, with worlds as the units.
 
-Those who were alive at a fork count from the age that they had then (delayed entry: Kalbfleisch and
-Prentice 2002, section 1.3), since the shorter lives of their time are not on its record.
+Organisms alive at a fork count from their age at the fork on (delayed entry: Kalbfleisch and Prentice
+2002, section 1.3), since the shorter lives of their generation are not on its record.
 """
 
 from dataclasses import dataclass
@@ -15,33 +15,33 @@ from primordia.runs.lives import Lives
 
 @dataclass(frozen=True)
 class Survival:
-    """Deaths and those at risk, world by world, at each age at which somebody died.
+    """Deaths and organisms at risk in each of W worlds, at each of A ages with a death.
 
-    Lives count up to a limit of age; who lived longer survived to it. The living are censored at
-    the age they have. After the last age that anybody was seen at, a curve stays as it is.
+    Lives count up to a limit of age; longer lives survive to the limit. The living are censored at
+    their present age. After the last observed age a curve is constant.
     """
 
     limit: int
-    """ticks of age up to which lives count"""
+    """age, in ticks, up to which lives count"""
     ages: np.ndarray
-    """int64 (A,), rising, up to the limit: somebody died at each"""
+    """int64 (A,), rising, up to the limit: ages with at least one death"""
     deaths: np.ndarray
     """int64 (W, A)"""
     at_risk: np.ndarray
-    """int64 (W, A): who reached this age on record, and was not censored before"""
+    """int64 (W, A): organisms on record at this age, alive and not censored before"""
 
     @cached_property
     def curve(self) -> np.ndarray:
-        """Share alive after each age, all worlds' lives pooled, float64 (A,)."""
+        """Share alive after each age, with the lives of all worlds pooled, float64 (A,)."""
         return _alive(self.deaths.sum(0), self.at_risk.sum(0))
 
     @property
     def steps(self) -> np.ndarray:
-        """Ages at which curves have their steps, with both ends: from 0 to the limit, (A + 2,)."""
+        """Ages at which curves have their steps, with both ends, 0 and the limit, (A + 2,)."""
         return np.concatenate([[0], self.ages, [self.limit]])
 
-    def whole(self, curve: np.ndarray) -> np.ndarray:
-        """A curve (A,) with both ends, (A + 2,): all are alive at 0; after the last step it stays."""
+    def with_ends(self, curve: np.ndarray) -> np.ndarray:
+        """Return a curve (A,) with values at both ends, (A + 2,): 1 at age 0, the last at the limit."""
         alive = np.insert(curve, 0, 1.0)
         return np.append(alive, alive[-1])
 
@@ -51,25 +51,25 @@ class Survival:
         worlds = len(self.deaths)
         curves = np.empty((len(drawn := resamples(worlds)), len(self.ages)), np.float32)
         deaths, at_risk = self.deaths.astype(float), self.at_risk.astype(float)
-        for row, each in enumerate(drawn):
-            times = np.bincount(each, minlength=worlds).astype(float)
+        for row, resample in enumerate(drawn):
+            times = np.bincount(resample, minlength=worlds).astype(float)
             curves[row] = _alive(times @ deaths, times @ at_risk)
         return interval(curves)
 
     @cached_property
     def restricted_mean(self) -> np.ndarray:
-        """Mean lifespan up to the limit in each world, ticks, float64 (W,): area under its curve."""
+        """Mean lifespan up to the limit in each world, ticks, float64 (W,): the area under its curve."""
         alive = np.insert(_alive(self.deaths, self.at_risk), 0, 1.0, axis=-1)
         return alive @ np.diff(self.ages, prepend=0, append=self.limit).astype(float)
 
 
 def survival(lives: Lives, worlds: int, limit: int) -> Survival:
-    """Of the lives of so many worlds, up to a limit of age in ticks."""
+    """Return the survival of lives in a number of worlds, up to a limit of age in ticks."""
     died = lives.died & (lives.lifespan <= limit)
     ages = np.unique(lives.lifespan[died])
     deaths = np.zeros((worlds, len(ages)), np.int64)
     np.add.at(deaths, (lives.world[died], np.searchsorted(ages, lives.lifespan[died])), 1)
-    # At risk at an age: whose last tick is not before it, less those who come on record at it or later.
+    # At risk at an age: lives that end no earlier, less those that come on record no earlier.
     reached, later = (
         _reaching(lives.world, each, worlds, ages) for each in (lives.lifespan, lives.entered)
     )
@@ -77,12 +77,12 @@ def survival(lives: Lives, worlds: int, limit: int) -> Survival:
 
 
 def _reaching(world: np.ndarray, age: np.ndarray, worlds: int, ages: np.ndarray) -> np.ndarray:
-    """How many are no younger than each of `ages`, int64 (W, A)."""
+    """Return the number of lives in each world that are no younger than each of `ages`, int64 (W, A)."""
     last = np.zeros((worlds, len(ages) + 1), np.int64)
     np.add.at(last, (world, np.searchsorted(ages, age, side="right")), 1)
     return np.cumsum(last[:, ::-1], axis=1)[:, ::-1][:, 1:]
 
 
 def _alive(deaths: np.ndarray, at_risk: np.ndarray) -> np.ndarray:
-    """Product over ages of the share that gets past each; where nobody is at risk, all do."""
+    """Return the product over ages of the share that survives each, 1 where no organism is at risk."""
     return np.cumprod(1 - deaths / np.maximum(at_risk, 1), axis=-1)

@@ -1,4 +1,4 @@
-"""Do they live longer? The paper's figure both ways: ages of the living, lifespans of the dead."""
+"""The paper's figure of longer and longer lives: ages of the living, and lifespans of the dead."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,9 +10,9 @@ from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
 
 DOTS = 3000
-"""Most lives drawn as dots, of the dead and of the living."""
+"""Largest number of dots, for the dead and for the living."""
 BINS, ENOUGH = 40, 30
-"""Most stretches of birth order that have quartiles of their own; about how many dead each needs."""
+"""Largest number of stretches of birth order with quartiles; about how many dead each of them needs."""
 
 
 def draw(run: Archive, world: int) -> Figure:
@@ -23,7 +23,7 @@ def draw(run: Archive, world: int) -> Figure:
     worlds = [lives.of_world(world) for world in range(lives.worlds)]
     _over_time(over_time, worlds, style.time_label(lives))
     _over_births(over_births, worlds)
-    _of_the_dead(dead, lives)
+    _lifespans(dead, lives)
     style.logarithmic(dead.yaxis)
     dead.set_ylim(1, None)
     return figure
@@ -33,7 +33,7 @@ def _over_time(axes: Axes, worlds: list[Lives], time: str) -> None:
     ticks = series.moments(max(int(world.ended.max()) for world in worlds))
     style.curves(axes, ticks, _positive(series.curve_by_world(series.mean_age, worlds, ticks)))
     style.time_axis(axes, int(ticks[-1]), time)
-    style.title(axes, "Mean age of the living over time", style.of_worlds(len(worlds)))
+    style.title(axes, "Mean age of the living over time", style.worlds_key(len(worlds)))
     axes.set_ylabel("age (ticks)")
 
 
@@ -45,33 +45,33 @@ def _over_births(axes: Axes, worlds: list[Lives]) -> None:
         here = number[number <= len(world)]
         row[: len(here)] = series.mean_age(world, world.seen[here - 1])
     style.curves(axes, number, _positive(ages))
-    style.counted(axes.xaxis)
-    style.title(axes, "... and as organisms were born", style.of_worlds(len(worlds)))
+    style.linear(axes.xaxis)
+    style.title(axes, "Mean age of the living over births", style.worlds_key(len(worlds)))
     axes.set(xlabel="organisms born so far", xlim=(0, longest + 1))
 
 
-def _of_the_dead(axes: Axes, lives: Lives) -> None:
+def _lifespans(axes: Axes, lives: Lives) -> None:
     number, lifespan, died = lives.rank + 1, lives.lifespan, lives.died
-    for who, colour in ((died, style.SKY), (~died, style.ORANGE)):
-        some = np.flatnonzero(who)[:: int(who.sum()) // DOTS + 1]
+    for group, colour in ((died, style.SKY), (~died, style.ORANGE)):
+        some = np.flatnonzero(group)[:: int(group.sum()) // DOTS + 1]
         axes.plot(
             number[some], np.maximum(lifespan[some], 1), ".", color=colour, markersize=2.5,
             markeredgewidth=0, alpha=0.6, rasterized=True,
         )  # fmt: skip
-    style.counted(axes.xaxis)
+    style.linear(axes.xaxis)
     axes.set(xlabel="organism, in order of birth", xlim=(0, number.max() + 1))
     key = {"dead": style.SKY, "median and quartiles": style.BLUE, "still alive": style.ORANGE}
-    style.title(axes, "Lifespan of each", key)
+    style.title(axes, "Lifespan of each organism", key)
     if not died.any():
-        style.say(axes, "no deaths yet")
+        style.remark(axes, "no deaths yet")
         return
-    middle, quarter, half, three = quartiles(number[died], lifespan[died])
-    axes.fill_between(middle, quarter, three, color=style.BLUE, alpha=0.25, linewidth=0)
-    axes.plot(middle, half, color=style.BLUE)
+    middle, q1, median, q3 = quartiles(number[died], lifespan[died])
+    axes.fill_between(middle, q1, q3, color=style.BLUE, alpha=0.25, linewidth=0)
+    axes.plot(middle, median, color=style.BLUE)
 
 
 def quartiles(number: np.ndarray, lifespan: np.ndarray) -> np.ndarray:
-    """Of lifespans in stretches of birth order with equally many dead.
+    """Return quartiles of lifespans in stretches of birth order with equal numbers of dead.
 
     Returns:
         Middle of each stretch, and its three quartiles, float64 (4, stretches).
@@ -84,5 +84,5 @@ def quartiles(number: np.ndarray, lifespan: np.ndarray) -> np.ndarray:
 
 
 def _positive(values: np.ndarray) -> np.ndarray:
-    """What a logarithmic axis can show."""
+    """Return the values with NaN where a logarithmic axis cannot show them."""
     return np.where(values > 0, values, np.nan)

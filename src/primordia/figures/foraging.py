@@ -1,4 +1,4 @@
-"""Do they gather more? What organisms find to eat as time goes on, and what would keep them alive."""
+"""The food that organisms gather over time, and the food that keeps one alive."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -19,24 +19,20 @@ def draw(run: Archive, world: int) -> Figure | None:
     if run.config.metabolism is None:
         return None
     figure = Figure(figsize=(style.COLUMN, 2.4))
-    axes, found = figure.subplots(), foraging(run)
-    rate = run.habitat.rate
-    food, enough = (each * (rate or 1) for each in (found.food, found.break_even))
-    worlds = len(food)
-    if len(found.middle):
-        style.curves(axes, found.middle, food)
+    axes, measured = figure.subplots(), foraging(run)
+    rate, middle = run.habitat.rate, measured.middle
+    food, enough = (each * (rate or 1) for each in (measured.food, measured.break_even))
+    if len(middle):
+        style.curves(axes, middle, food)
     else:
         axes.set_yticks([])
-        style.say(axes, "no samples yet")
-    key = style.of_worlds(worlds)
+        style.remark(axes, "no samples yet")
+    key = style.worlds_key(len(food))
     if np.isfinite(enough).any():
-        style.curves(axes, found.middle, np.where(np.isfinite(enough), enough, np.nan), BREAK_EVEN)
+        style.curves(axes, middle, np.where(np.isfinite(enough), enough, np.nan), BREAK_EVEN)
         key |= {"break-even": BREAK_EVEN}
     style.title(axes, f"Food an organism gathers in a {'second' if rate else 'tick'}", key)
-    style.counted(axes.xaxis)
-    axes.set(
-        xlabel="time (ticks)",
-        xlim=(found.first_tick, None),
-        ylim=(min(0, axes.get_ylim()[0]), None),
-    )
+    style.linear(axes.xaxis)
+    axes.set(xlabel="time (ticks)", xlim=(measured.first_tick, None))
+    axes.set_ylim(min(0, axes.get_ylim()[0]), None)
     return figure

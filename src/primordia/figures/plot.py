@@ -1,4 +1,4 @@
-"""Figures of a run: what its records show, as PNG and SVG.
+"""Measured of a run: what its records show, as PNG and SVG.
 
 A figure is a function `draw(run, world) -> Figure | None`; None if the run has nothing of the kind. It is
 one of those listed here, or `module:function` of your own.
@@ -31,7 +31,7 @@ def plot(
     """Draw figures of a run, up to its newest checkpoint -> the files made.
 
     Args:
-        run: opened for reading.
+        run: the run, opened for reading.
         out: folder for the figures; by default `figures` in the run.
         world: whose lines of descent are drawn; all other figures show all worlds.
         figures: those to draw, names of KNOWN or `module:function`; by default all of KNOWN.
@@ -52,7 +52,7 @@ def plot(
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise Trouble(f"{folder} cannot be made: {error.strerror or error}") from None
-    with style.look():
+    with style.applied():
         drawn = {name: draw(run, world) for name, draw in drawing.items()}
         return [
             path

@@ -1,4 +1,4 @@
-"""How many live, are born and die, and of what?"""
+"""Population, births and deaths over time, and the causes of death."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -45,13 +45,13 @@ def _living(axes: Axes, lives: Lives, cells: int) -> None:
         xycoords=axes.get_yaxis_transform(), textcoords="offset points",
     )  # fmt: skip
     style.curves(axes, ticks, series.curve_by_world(series.population, worlds, ticks), LIVING)
-    style.counted(axes.yaxis)
-    style.title(axes, "The living", style.of_worlds(lives.worlds))
+    style.linear(axes.yaxis)
+    style.title(axes, "Population", style.worlds_key(lives.worlds))
     axes.set(ylabel="organisms", ylim=(0, 1.12 * cells))
 
 
 def _fates(axes: Axes, lives: Lives, causes: list[Cause]) -> None:
-    """All worlds together; those that have stopped stay as they are."""
+    """Draw the fates in all worlds together; the counts of a stopped world stay constant."""
     ticks = series.moments(int(lives.ended.max()))
     born = series.count_until(np.sort(lives.born), ticks)
     dead = [
@@ -60,14 +60,14 @@ def _fates(axes: Axes, lives: Lives, causes: list[Cause]) -> None:
     alive = born - np.sum(dead, axis=0, dtype=np.int64)
     colours = [*(COLOURS[cause] for cause in causes), LIVING]
     axes.stackplot(ticks, *dead, alive, colors=colours, linewidth=0)
-    key = {"alive": LIVING} | _key("dead", causes) | style.together(lives.worlds)
-    style.title(axes, "All who were born, and their fate", key)
-    style.counted(axes.yaxis)
+    key = {"alive": LIVING} | _cause_key("dead", causes) | style.pooled_key(lives.worlds)
+    style.title(axes, "Fate of all organisms born", key)
+    style.linear(axes.yaxis)
     axes.set_ylim(0, None)
 
 
 def _rates(axes: Axes, lives: Lives, causes: list[Cause]) -> None:
-    """Per tick of one world: over all worlds' ticks in each bin."""
+    """Draw births and deaths divided by the ticks of all worlds, in bins."""
     edges = series.bins(int(lives.ended.max()))
     ends = np.array([lives.of_world(world).ended.max() for world in range(lives.worlds)])
     ticks = series.exposure(np.zeros_like(ends), ends, edges)
@@ -75,15 +75,14 @@ def _rates(axes: Axes, lives: Lives, causes: list[Cause]) -> None:
     for at, colour in [(lives.born, style.INK), *deaths]:
         rate = series.per_tick(at, ticks, edges)
         axes.plot(series.middle(edges), rate, ".-", color=colour, markersize=3)
-    style.title(axes, "Births and deaths", {"births": style.INK} | _key("deaths", causes))
+    style.title(axes, "Births and deaths", {"births": style.INK} | _cause_key("deaths", causes))
     style.logarithmic(axes.yaxis)
     axes.set_ylabel("per tick of a world" if lives.worlds > 1 else "per tick")
 
 
-def _key(of: str, causes: list[Cause]) -> dict[str, str]:
-    """Causes of death in their colours; the first says what they are causes of."""
-    starts = [f"{of}: ", *[""] * len(causes)]
+def _cause_key(heading: str, causes: list[Cause]) -> dict[str, str]:
+    """Return causes of death and their colours; the heading stands before the first cause."""
     return {
-        f"{start}{cause.label}": COLOURS[cause]
-        for start, cause in zip(starts, causes, strict=False)
+        cause.label if number else f"{heading}: {cause.label}": COLOURS[cause]
+        for number, cause in enumerate(causes)
     }

@@ -1,4 +1,4 @@
-"""Who lived where, of which line of descent: cells across, births downwards."""
+"""The lines of descent of one world in space and time: cells across, births downwards."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -9,14 +9,15 @@ from matplotlib.ticker import FixedLocator, FuncFormatter
 from primordia.config import Config
 from primordia.figures import style
 from primordia.history import series
-from primordia.history.clades import Clades, clades
+from primordia.history.clades import Clades, find_clades
 from primordia.history.lines import CROWD
 from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
 
 ROWS, COLUMNS = 800, 512
-"""Most moments, and cells, that are drawn; of more, each second or third is."""
-NOBODY = -1
+"""Largest number of moments, and of cells, that are drawn; of more, every second or third is drawn."""
+EMPTY = -1
+"""Mark of an empty cell, in place of the row of an organism."""
 HUES = (
     style.BLUE, style.ORANGE, style.GREEN, style.PURPLE, style.SKY, style.VERMILION, style.YELLOW,
 )  # fmt: skip
@@ -24,8 +25,8 @@ STRONG = np.concatenate([share * np.array([to_rgb(hue) for hue in HUES]) for sha
 YOUNG = "#a0a0a0"
 PALE = 0.7
 """Share of white in the colour of a line that died out."""
-NAMED = 8
-"""Most takeovers that are pointed out."""
+MAX_TAKEOVERS = 8
+"""Largest number of takeovers that are marked."""
 
 
 def draw(run: Archive, world: int) -> Figure:
@@ -35,32 +36,32 @@ def draw(run: Archive, world: int) -> Figure:
     here, config = run.lives.of_world(world), run.config
     births = np.unique(np.linspace(0, len(here) - 1, ROWS).astype(np.int64))
     cells = np.arange(0, config.cells, -(-config.cells // COLUMNS))
-    of = told_apart(here)
+    clades = clades_of(here)
     axes.imshow(
-        picture(here, of, cells, here.born[births]),
+        picture(here, clades, cells, here.born[births]),
         aspect="auto",
         interpolation="nearest",
         extent=(-0.5, config.cells - 0.5, len(here) + 0.5, 0.5),
     )
     _label(axes, config, world, len(cells))
-    _time(axes, here)
-    _point_out(axes, here, of)
+    _time_axis(axes, here)
+    _mark_renewals(axes, here, clades)
     return figure
 
 
-def told_apart(lives: Lives) -> Clades:
-    """Lines of one world."""
-    return clades(lives.parent_row, lives.born, lives.ended, lives.died, crowd(lives))
+def clades_of(lives: Lives) -> Clades:
+    """Return the lines of descent of one world."""
+    return find_clades(lives.parent_row, lives.born, lives.ended, lives.died, crowd_size(lives))
 
 
-def crowd(lives: Lives) -> int:
-    """How many must live in a world for lines to be told apart; it did hold twice as many."""
+def crowd_size(lives: Lives) -> int:
+    """Return the number of living at which lines begin: CROWD, or half the largest population."""
     most = int(series.population(lives, lives.born).max())
     return min(CROWD, max(most // 2, 1))
 
 
-def living(lives: Lives, cells: np.ndarray, ticks: np.ndarray) -> np.ndarray:
-    """Row of who lives in each cell after each tick of one world, int64 (T, N), or NOBODY."""
+def occupants(lives: Lives, cells: np.ndarray, ticks: np.ndarray) -> np.ndarray:
+    """Return the row of the organism in each cell after each tick, int64 (T, N), or EMPTY; one world."""
     order = np.lexsort((lives.born, lives.cell))
     span = int(lives.ended.max()) + 1
     begun = lives.cell[order].astype(np.int64) * span + lives.born[order]
@@ -68,64 +69,66 @@ def living(lives: Lives, cells: np.ndarray, ticks: np.ndarray) -> np.ndarray:
     row = order[np.maximum(at, 0)]
     there = (at >= 0) & (lives.cell[row] == cells)
     there &= ~lives.died[row] | (lives.ended[row] > ticks[:, None])
-    return np.where(there, row, NOBODY)
+    return np.where(there, row, EMPTY)
 
 
-def picture(lives: Lives, of: Clades, cells: np.ndarray, ticks: np.ndarray) -> np.ndarray:
-    """Colour of each cell after each tick, float64 (T, N, 3); white where nobody lives."""
-    found = living(lives, cells, ticks)
-    lived = found != NOBODY
-    named, place, size = np.unique(
-        _name(lives, of, found, ticks)[lived], return_inverse=True, return_counts=True
+def picture(lives: Lives, clades: Clades, cells: np.ndarray, ticks: np.ndarray) -> np.ndarray:
+    """Return the colour of each cell after each tick, float64 (T, N, 3); empty cells are white."""
+    rows = occupants(lives, cells, ticks)
+    occupied = rows != EMPTY
+    codes, place, size = np.unique(
+        _line_codes(lives, clades, rows, ticks)[occupied], return_inverse=True, return_counts=True
     )
-    image = np.ones((*found.shape, 3))
-    image[lived] = shades(lives, of, named, size)[place]
+    image = np.ones((*rows.shape, 3))
+    image[occupied] = line_colours(lives, clades, codes, size)[place]
     return image
 
 
-def shades(lives: Lives, of: Clades, named: np.ndarray, size: np.ndarray) -> np.ndarray:
-    """Colours of lines, float64 (K, 3), by their names from `_name` and sizes in the picture.
+def line_colours(lives: Lives, clades: Clades, codes: np.ndarray, size: np.ndarray) -> np.ndarray:
+    """Return the colours of lines, float64 (K, 3), by their `_line_codes` and sizes in the picture.
 
-    Lines that were told apart together take the colours in turn, the largest first. Those that
-    lasted until lines were told apart anew, or to the end, are strong, others pale. What lived
-    before lines were first told apart is grey.
+    Lines of one era take the colours in turn, the largest first. A line that lasts to the end of its era
+    has a strong colour, any other a pale one. Organisms of the time before the first era are grey.
     """
-    era, line = np.divmod(named, len(lives))
+    era, line = np.divmod(codes, len(lives))
     last = int(lives.ended.max())
-    ends = np.append(of.renewals, last + 1)
-    final = living(lives, np.unique(lives.cell), np.minimum(ends, last))
-    lasted = np.isin(named, _name(lives, of, final, ends - 1)[final != NOBODY])
+    ends = np.append(clades.renewals, last + 1)
+    final = occupants(lives, np.unique(lives.cell), np.minimum(ends, last))
+    lasted = np.isin(codes, _line_codes(lives, clades, final, ends - 1)[final != EMPTY])
     order = np.lexsort((-size, ~lasted, era))
-    turn = np.empty(len(named), np.int64)
-    turn[order] = np.arange(len(named)) - np.searchsorted(era[order], era[order])
-    colour = STRONG[(turn + era - 1) % len(STRONG)]  # from takeover to takeover, another begins
-    young = lives.born[line] > np.append(-1, of.renewals)[era]
+    turn = np.empty(len(codes), np.int64)
+    turn[order] = np.arange(len(codes)) - np.searchsorted(era[order], era[order])
+    colour = STRONG[(turn + era - 1) % len(STRONG)]  # each era begins with another colour
+    young = lives.born[line] > np.append(-1, clades.renewals)[era]
     colour[young] = to_rgb(YOUNG)
     return np.where(lasted[:, None], colour, 1 - (1 - colour) * (1 - PALE))
 
 
-def _name(lives: Lives, of: Clades, rows: np.ndarray, ticks: np.ndarray) -> np.ndarray:
-    """Of lines (T, N), each time they are told apart anew: era x number of lives + line."""
-    era = np.searchsorted(of.renewals, ticks, side="right")[:, None]
-    return era * len(lives) + of.lines_at(rows, ticks[:, None])
+def _line_codes(lives: Lives, clades: Clades, rows: np.ndarray, ticks: np.ndarray) -> np.ndarray:
+    """Return one number for era and line of each organism (T, N): era x number of lives + line.
+
+    An era is the time from one renewal of lines to the next.
+    """
+    era = np.searchsorted(clades.renewals, ticks, side="right")[:, None]
+    return era * len(lives) + clades.lines_at(rows, ticks[:, None])
 
 
 def _label(axes: Axes, config: Config, world: int, shown: int) -> None:
-    of_many = f", world {world} (of {config.seeds})" if config.seeds > 1 else ""
+    which = f", world {world} (of {config.seeds})" if config.seeds > 1 else ""
     key = {"strong: lines that lasted;  pale: died out;  white: empty": style.SOFT}
-    style.title(axes, f"Lines of descent{of_many}", key)
+    style.title(axes, f"Lines of descent{which}", key)
     order = {"ring": " of the ring", "well-mixed": " (all are neighbours)"}
     cell = f"cell{order.get(config.placement.topology, ' of the torus, row after row')}"
     step = -(-config.cells // COLUMNS)
     axes.set_xlabel(cell if step == 1 else f"{cell}; {shown} of {config.cells:,} shown")
     axes.set_ylabel("organisms born so far")
-    style.counted(axes.yaxis)
+    style.linear(axes.yaxis)
     for spine in axes.spines.values():
         spine.set_visible(False)
 
 
-def _time(axes: Axes, lives: Lives) -> None:
-    """On the right, at how many births each round number of ticks came."""
+def _time_axis(axes: Axes, lives: Lives) -> None:
+    """Draw an axis on the right with round numbers of ticks, at the births by then."""
     right = axes.secondary_yaxis("right")
     powers = 10 ** np.arange(1, len(str(lives.born[-1])))
     places: dict[float, int] = {}
@@ -139,16 +142,19 @@ def _time(axes: Axes, lives: Lives) -> None:
     right.spines["right"].set_visible(False)
 
 
-def _point_out(axes: Axes, lives: Lives, of: Clades) -> None:
-    """Where lines were told apart anew, and why."""
-    for number, (tick, takeover) in enumerate(zip(of.renewals, of.by_takeover, strict=True)):
-        if number and (not takeover or of.by_takeover[:number].sum() >= NAMED):
+def _mark_renewals(axes: Axes, lives: Lives, clades: Clades) -> None:
+    """Mark the first renewal of lines and the first takeovers, and say why lines began."""
+    takeovers = clades.by_takeover
+    for number, (tick, takeover) in enumerate(zip(clades.renewals, takeovers, strict=True)):
+        if number and (not takeover or takeovers[:number].sum() >= MAX_TAKEOVERS):
             continue
         place = int(np.searchsorted(lives.born, tick, side="right")) + 0.5
         at_top = place < len(lives) / 20
         axes.axhline(place, color=style.INK, linewidth=0.6)
         axes.annotate(
-            "one line has taken over" if takeover else f"{crowd(lives)} alive: each begins a line",
+            "one line has taken over"
+            if takeover
+            else f"{crowd_size(lives)} alive: each begins a line",
             (1, place),
             (-2, -2.5 if at_top else 2.5),
             xycoords=axes.get_yaxis_transform(),

@@ -1,4 +1,4 @@
-"""How figures look: sizes of a paper's columns, colours that the colour-blind tell apart, saving."""
+"""The style of figures: sizes of a paper's columns, colours for the colour-blind, saving."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -21,9 +21,9 @@ INK, SOFT, FAINT = "#222222", "#6b6b6b", "#d4d4d4"
 ORANGE, SKY, GREEN, YELLOW = "#e69f00", "#56b4e9", "#009e73", "#f0e442"
 BLUE, VERMILION, PURPLE = "#0072b2", "#d55e00", "#cc79a7"
 PALETTE = BLUE, ORANGE, GREEN, VERMILION, PURPLE, SKY, YELLOW
-"""Of Okabe and Ito."""
+"""The palette of Okabe and Ito (2008)."""
 
-LOOK: Any = {
+PARAMETERS: Any = {
     "font.family": "DejaVu Sans",
     "font.size": 7,
     "axes.titlesize": 8,
@@ -53,45 +53,45 @@ LOOK: Any = {
 
 
 @contextmanager
-def look() -> Iterator[None]:
-    """Within it, figures are drawn and saved in this style, whatever the user's own is."""
+def applied() -> Iterator[None]:
+    """Draw and save the figures of a `with` block in this style, independent of the user's settings."""
     with matplotlib.rc_context():
         matplotlib.rcdefaults()
-        matplotlib.rcParams.update(LOOK)
+        matplotlib.rcParams.update(PARAMETERS)
         yield
 
 
 def save(figure: Figure, stem: Path) -> list[Path]:
-    """Write a figure as PNG and SVG, the same bytes each time -> their paths.
+    """Write a figure as PNG and SVG, the same bytes each time -> the two paths.
 
     Raises:
         Trouble: it cannot be written.
     """
     paths = [stem.with_suffix(".png"), stem.with_suffix(".svg")]
     for path in paths:
-        files.write(path, _filling(figure, path.suffix))
+        files.write(path, _writer(figure, path.suffix))
     return paths
 
 
-def _filling(figure: Figure, suffix: str) -> Callable[[Path], None]:
+def _writer(figure: Figure, suffix: str) -> Callable[[Path], None]:
     metadata = {"Date": None} if suffix == ".svg" else {}
     return lambda path: figure.savefig(path, format=suffix[1:], metadata=metadata)
 
 
 def time_label(lives: Lives) -> str:
-    """Of an axis on which the time is counted that these lives are told in; see `Lives.since_fork`."""
+    """Return the label of the time axis of lives from `Lives.since_fork`."""
     return "time since the fork (ticks)" if (lives.entered > 0).any() else "time (ticks)"
 
 
-def time_axis(axes: Axes, until: int, label: str) -> None:
-    """A logarithmic axis of ticks from 1: most of what happens, happens early."""
+def time_axis(axes: Axes, last: int, label: str) -> None:
+    """Make the x axis logarithmic, from tick 1 to `last`, since most events come early."""
     logarithmic(axes.xaxis)
-    axes.set_xlim(1, max(until, 10))
+    axes.set_xlim(1, max(last, 10))
     axes.set_xlabel(label)
 
 
 def logarithmic(axis: Any) -> None:
-    """Whole powers of ten around what was plotted, written 1, 10, 100, 1k, ..."""
+    """Make an axis logarithmic, in whole powers of ten around the data, written 1, 10, 100, 1k, ..."""
     low, high = axis.get_data_interval()
     if not 0 < low <= high < np.inf:
         low, high = 1, 1  # nothing to show
@@ -104,13 +104,13 @@ def logarithmic(axis: Any) -> None:
     axis.set_major_formatter(FuncFormatter(lambda value, _: short(value)))
 
 
-def counted(axis: Any) -> None:
-    """Plain numbers, written 500, 1k, 1.5k, ..."""
+def linear(axis: Any) -> None:
+    """Write the numbers of a linear axis as 500, 1k, 1.5k, ..."""
     axis.set_major_formatter(FuncFormatter(lambda value, _: short(value)))
 
 
 def short(value: float) -> str:
-    """A number in little room: 500, 1.5k, 2M; 0.5, and smaller yet, 1/100."""
+    """Write a number in few characters: 500, 1.5k, 2M, 0.5; below 0.1 as 1/100."""
     if 0 < value < 0.1:
         return f"1/{short(round(1 / value))}"
     for size, unit in ((1e9, "G"), (1e6, "M"), (1e3, "k")):
@@ -120,10 +120,10 @@ def short(value: float) -> str:
 
 
 def curves(axes: Axes, x: np.ndarray, ys: np.ndarray, colour: str = BLUE) -> None:
-    """A curve for each world (W, X), NaN where it has none.
+    """Draw a curve for each world, (W, X), without its NaN.
 
-    Several worlds are faint, behind their median and quartiles, which end where fewer than half of
-    the worlds still have a value.
+    Several worlds are faint, behind their median and quartiles. These end where fewer than half of the
+    worlds have a value.
     """
     if len(ys) == 1:
         axes.plot(x, ys[0], color=colour)
@@ -138,7 +138,7 @@ def curves(axes: Axes, x: np.ndarray, ys: np.ndarray, colour: str = BLUE) -> Non
 
 
 def title(axes: Axes, text: str, key: dict[str, str] | None = None) -> None:
-    """What a panel shows, and below, words in the colours of what they name."""
+    """Write the title of a panel, and below it a key: words in the colours of the things they name."""
     axes.set_title(text, pad=13)
     place: dict[str, Any] = {"xy": (0, 1), "xytext": (0, 4), "xycoords": axes.transAxes}
     for word, colour in (key or {}).items():
@@ -146,16 +146,16 @@ def title(axes: Axes, text: str, key: dict[str, str] | None = None) -> None:
         place = {"xy": (1, 0), "xytext": (6, 0), "xycoords": put, "va": "bottom"}
 
 
-def of_worlds(count: int) -> dict[str, str]:
-    """What to say of `curves`, if there is more than one."""
+def worlds_key(count: int) -> dict[str, str]:
+    """Return the key of `curves` of several worlds; it is empty for one world."""
     return {f"median and quartiles of {count} worlds": BLUE} if count > 1 else {}
 
 
-def together(count: int) -> dict[str, str]:
-    """What to say of a panel that does not tell worlds apart, if there is more than one."""
+def pooled_key(count: int) -> dict[str, str]:
+    """Return the key of a panel that shows several worlds together; it is empty for one world."""
     return {f"{count} worlds together": SOFT} if count > 1 else {}
 
 
-def say(axes: Axes, text: str) -> None:
-    """A remark in the middle of a panel that has nothing else to show."""
+def remark(axes: Axes, text: str) -> None:
+    """Write a remark in the middle of an empty panel."""
     axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", color=SOFT)

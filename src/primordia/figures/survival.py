@@ -1,4 +1,4 @@
-"""How long do they live? Survival by cohort of birth, and the risk of death by age and over time."""
+"""Survival by cohort of birth, and the risk of death by age and over time."""
 
 from dataclasses import replace
 
@@ -18,7 +18,7 @@ COHORTS = {
     "third quarter": "#8f2d75",
     "last quarter": "#2a2f86",
 }
-"""Of a world's births, in order; from light to dark."""
+"""Quarters of a world's births in order, with colours from light to dark."""
 
 
 def draw(run: Archive, world: int) -> Figure:
@@ -34,19 +34,19 @@ def draw(run: Archive, world: int) -> Figure:
         axes.set_ylabel("deaths per tick lived")
         if not lives.died.any():
             axes.set_yticks([])
-            style.say(axes, "no deaths yet")
+            style.remark(axes, "no deaths yet")
     return figure
 
 
 def quarters(lives: Lives) -> list[Lives]:
-    """Those born in each quarter of their own world's births so far."""
+    """Return the lives of each quarter of their own world's births so far."""
     births = np.bincount(lives.world)[lives.world]
     quarter = lives.rank * len(COHORTS) // births
     return [lives.take(quarter == number) for number in range(len(COHORTS))]
 
 
 def hazard(start: np.ndarray, stop: np.ndarray, died: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    """Deaths per tick lived in each bin of age or time, float64; NaN where too few died."""
+    """Return deaths per tick lived in each bin of age or time, float64; NaN where deaths are too few."""
     return series.per_tick(stop[died], series.exposure(start, stop, edges), edges)
 
 
@@ -55,30 +55,32 @@ def _alive(axes: Axes, lives: Lives) -> None:
     cohorts = quarters(lives)
     for cohort, colour in zip(cohorts, COHORTS.values(), strict=True):
         if len(cohort):
-            found = survival(replace(cohort, world=np.zeros_like(cohort.world)), 1, longest)
-            axes.step(found.steps, found.whole(found.curve), where="post", color=colour)
+            pooled = replace(cohort, world=np.zeros_like(cohort.world))
+            survived = survival(pooled, 1, longest)
+            alive = survived.with_ends(survived.curve)
+            axes.step(survived.steps, alive, where="post", color=colour)
     style.time_axis(axes, longest, "age (ticks)")
-    style.title(axes, "Alive at each age", style.together(lives.worlds))
+    style.title(axes, "Alive at each age", style.pooled_key(lives.worlds))
     axes.set(ylabel="fraction alive", ylim=(0, 1.02))
     _at_risk(axes, cohorts)
 
 
 def _at_risk(axes: Axes, cohorts: list[Lives]) -> None:
-    """Below the axis: cohorts, and how many of each were still seen alive at each labelled age."""
+    """Write, below the axis, how many of each cohort are at risk at each labelled age."""
 
-    def put(x: float, line: int, text: str, colour: str, align: str) -> None:
+    def write(x: float, line: int, text: str, colour: str, align: str) -> None:
         axes.annotate(
             text, (x, 0), (0, -26 - 8 * line), xycoords=axes.get_xaxis_transform(),
             textcoords="offset points", fontsize=6, ha=align, va="top", color=colour,
         )  # fmt: skip
 
     powers = int(np.log10(axes.get_xlim()[1])) + 1
-    put(0.3, 0, "at risk, of births in the", style.SOFT, "right")
+    write(0.3, 0, "at risk, born in the", style.SOFT, "right")
     for line, (cohort, (name, colour)) in enumerate(zip(cohorts, COHORTS.items(), strict=True), 1):
-        put(0.3, line, name, colour, "right")
+        write(0.3, line, name, colour, "right")
         for age in (10**power for power in range(powers)):
             at_risk = int(((cohort.lifespan >= age) & (cohort.entered < age)).sum())
-            put(age, line, style.short(at_risk), colour, "center")
+            write(age, line, style.short(at_risk), colour, "center")
 
 
 def _by_age(axes: Axes, lives: Lives) -> None:
@@ -88,7 +90,7 @@ def _by_age(axes: Axes, lives: Lives) -> None:
         risk = hazard(cohort.entered, cohort.lifespan, cohort.died, edges)
         axes.plot(series.middle(edges), risk, ".-", color=colour, markersize=3)
     style.time_axis(axes, longest, "age (ticks)")
-    style.title(axes, "Risk of death by age", style.together(lives.worlds))
+    style.title(axes, "Risk of death by age", style.pooled_key(lives.worlds))
 
 
 def _over_time(axes: Axes, lives: Lives) -> None:
@@ -97,4 +99,4 @@ def _over_time(axes: Axes, lives: Lives) -> None:
     risk = hazard(lives.seen, lives.ended, lives.died, edges)
     axes.plot(series.middle(edges), risk, ".-", color=style.INK, markersize=3)
     style.time_axis(axes, last, style.time_label(lives))
-    style.title(axes, "Risk of death over time", style.together(lives.worlds))
+    style.title(axes, "Risk of death over time", style.pooled_key(lives.worlds))

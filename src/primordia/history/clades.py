@@ -30,7 +30,7 @@ class Clades:
         return np.where(self.born[rows] <= latest, rows, self.birth_line[rows])
 
 
-def clades(
+def find_clades(
     parent_row: np.ndarray, born: np.ndarray, ended: np.ndarray, died: np.ndarray, crowd: int
 ) -> Clades:
     """Follow the lines of descent in one world from its beginning.

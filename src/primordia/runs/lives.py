@@ -105,7 +105,7 @@ class Lives:
         """
         here = self._rows_of_world(world) if world is not None else slice(0, len(self))
         if here.start == here.stop:
-            raise InputError(f"there is no world {world}; they count from 0 to {self.worlds - 1}")
+            raise InputError(f"there is no world {world}; the worlds are 0 to {self.worlds - 1}")
         return here.start + int(np.argmax(self.ended[here] - self.born[here]))
 
     def row(self, organism: int, world: int = 0) -> int:
