@@ -13,7 +13,7 @@ import primordia
 from primordia.comparison.comparison import Comparison
 from primordia.comparison.contrast import Measured
 from primordia.figures import style
-from primordia.figures.comparison import FEW_ARMS, draw
+from primordia.figures.comparison import FEW_ARMS, draw, line_styles
 from primordia.runs import loop
 from tests.commands import complains, here
 from tests.comparison.test_survival import restricted_mean

@@ -20,9 +20,9 @@ from primordia.engine.engine import Engine
 from primordia.engine.state import Limits, State
 from primordia.law.world import World
 from primordia.live import view as live
-from primordia.live.census import Census, Pace
+from primordia.live.census import Census, Speed
 from primordia.live.paint import EMPTY, Cells, Row, field, skyline, strip
-from primordia.live.panel import duration, short
+from primordia.live.panel import duration, with_prefix
 from primordia.random.wide import Wide, wide
 from primordia.runs import loop
 from tests import commands
@@ -63,7 +63,7 @@ def test_a_torus_is_drawn_with_two_rows_in_a_line() -> None:
 
 
 def test_numbers_are_written_in_short_form() -> None:
-    assert [short(x) for x in (None, 0, 999, 1500, 1.234e6, 4.56e8)] == [
+    assert [with_prefix(x) for x in (None, 0, 999, 1500, 1.234e6, 4.56e8)] == [
         "-", "0", "999", "1.5 k", "1.2 M", "456 M",
     ]  # fmt: skip
     assert [duration(x) for x in (0.4, 75, 3725)] == ["0 s", "1 min 15 s", "1 h 2 min"]
@@ -137,7 +137,13 @@ def test_the_view_shows_time_population_and_lines(running: tuple[str, Engine]) -
     assert "\x1b[38;2" in written
     assert written.endswith("\x1b[?25h"), "the cursor is back"
     census = Census.of(made.state.world)
-    for what in (f"{census.births.sum():,}", "died of", "oldest", "organism-ticks/s", "saturated"):
+    for what in (
+        f"{census.births.sum():,}",
+        "deaths by",
+        "oldest",
+        "organism-ticks/s",
+        "saturated",
+    ):
         assert what in text
     assert ("shown: the first" in text) == (name in ("worlds", "big"))
     assert ("takeovers" in text) == (name in ("ring", "torus")), "only if all are followed"
@@ -154,7 +160,7 @@ def test_the_view_follows_a_terminal_that_changes_its_size(running: tuple[str, E
             console.size = ConsoleDimensions(*size)
             made.advance(made.limits({}))
             view(loop.Status(made, 1.0))
-            rows = text(view._frame(loop.Status(made, 1.0)))
+            rows = text(view._rows(loop.Status(made, 1.0)))
             assert len(rows) < size[1]
             assert size[0] // 2 < max(map(len, rows))
 
@@ -192,14 +198,14 @@ def test_time_left_is_that_of_the_world_that_stops_last() -> None:
 
     def left(ticks: int, births: int) -> float | None:
         saturation = jnp.bool_(False)
-        return pace.seconds_left(Limits(wide([ticks] * 2), wide([births] * 2), saturation))
+        return speed.seconds_left(Limits(wide([ticks] * 2), wide([births] * 2), saturation))
 
-    pace, never = Pace(), 2**64 - 1
-    pace.see(10.0, census([0, 0], [10, 10]))
-    assert pace.organism_ticks() is None
+    speed, never = Speed(), 2**64 - 1
+    speed.add(10.0, census([0, 0], [10, 10]))
+    assert speed.organism_ticks_per_s() is None
     assert left(500, never) is None
-    pace.see(12.0, census([100, 200], [20, 10]))
-    assert pace.organism_ticks() == 1500
+    speed.add(12.0, census([100, 200], [20, 10]))
+    assert speed.organism_ticks_per_s() == 1500
     assert left(500, never) == pytest.approx(8.0)
     assert left(500, 40) == pytest.approx(4.0), "the second world reaches its 500 ticks in 3"
     assert left(never, 40) is None, "the second world has no births"

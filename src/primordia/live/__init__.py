@@ -1,1 +1,1 @@
-"""The view of a run while it runs."""
+"""The view of a run while it advances."""

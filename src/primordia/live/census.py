@@ -1,4 +1,4 @@
-"""How things stand in a run at the end of a chunk, in numbers for people."""
+"""Counts of a run at the end of a chunk, and the speed of the run."""
 
 from collections import deque
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from primordia.random.wide import Wide, to_host
 
 @dataclass(frozen=True)
 class Census:
-    """Counts of W worlds; int64, of each world where not said otherwise."""
+    """Counts of W worlds, int64 (W,) unless another shape is given."""
 
     tick: np.ndarray
     alive: np.ndarray
@@ -24,14 +24,15 @@ class Census:
     calm: np.ndarray
     """ticks since the last birth or death"""
     saturated: np.ndarray
-    """tick at which the world first was, or -1"""
+    """tick at which the world first was saturated, or -1"""
     mean_age: float
-    """of all the living of all worlds, in ticks; 0 if nobody lives"""
+    """mean age of the living of all worlds, in ticks; 0 if none live"""
     oldest: int
+    """age of the oldest organism of all worlds, in ticks; 0 if none live"""
 
     @classmethod
     def of(cls, world: World) -> "Census":
-        """Count: reads every cell once."""
+        """Count the organisms of all worlds; every cell is read once."""
         organisms, worlds = world
         alive = np.asarray(organisms.alive)
         cells, tick = np.flatnonzero(alive), _count(worlds.tick)
@@ -51,51 +52,58 @@ class Census:
         )
 
 
-class Pace:
-    """How fast a run goes, over about the last seconds."""
+class Speed:
+    """The speed of a run over the last seconds, measured between two censuses."""
 
     WINDOW = 2.0
-    """seconds"""
+    """seconds between the two censuses, at least"""
 
     def __init__(self) -> None:
-        self._seen: deque[tuple[float, Census]] = deque()
+        self._censuses: deque[tuple[float, Census]] = deque()
 
-    def see(self, now: float, census: Census) -> None:
-        """Take note of how things stand at a time in seconds."""
-        self._seen.append((now, census))
-        while len(self._seen) > 2 and now - self._seen[1][0] >= self.WINDOW:
-            self._seen.popleft()
+    def add(self, now: float, census: Census) -> None:
+        """Add the census taken at a time in seconds."""
+        self._censuses.append((now, census))
+        while len(self._censuses) > 2 and now - self._censuses[1][0] >= self.WINDOW:
+            self._censuses.popleft()
 
-    def organism_ticks(self) -> float | None:
-        """Lived a second by all; None before the second look."""
-        if len(self._seen) < 2:
+    def organism_ticks_per_s(self) -> float | None:
+        """Return the organism-ticks of all worlds in a second; None before the second census."""
+        if len(self._censuses) < 2:
             return None
-        (then, before), (now, after) = self._seen[0], self._seen[-1]
+        (then, before), (now, after) = self._censuses[0], self._censuses[-1]
         return float((after.organism_ticks - before.organism_ticks).sum()) / (now - then)
 
     def seconds_left(self, limits: Limits) -> float | None:
-        """Until every world has come to a limit on ticks or births, at this pace; None if unknown.
+        """Return the seconds until the last world reaches a limit on ticks or births; None if unknown.
 
-        The last one to stop counts. A world that will be stopped by saturation may stop sooner.
+        A world that stops at saturation may stop sooner.
         """
-        if len(self._seen) < 2:
+        if len(self._censuses) < 2:
             return None
-        (then, before), (now, after) = self._seen[0], self._seen[-1]
-        soonest = np.full(len(after.tick), np.inf)
-        for name in ("tick", "births"):
-            limit = to_host(limits.ticks if name == "tick" else limits.births)
-            have, had = getattr(after, name), getattr(before, name)
-            to_go = np.maximum(limit.astype(float) - have, 0.0)
-            with np.errstate(divide="ignore", invalid="ignore"):
-                needed = np.where(to_go == 0, 0.0, to_go * (now - then) / (have - had))
-            unlimited = limit == np.uint64(2**64 - 1)
-            soonest = np.minimum(soonest, np.where(unlimited, np.inf, needed))
+        (then, before), (now, after) = self._censuses[0], self._censuses[-1]
+        seconds = now - then
+        by_ticks = _needed(before.tick, after.tick, limits.ticks, seconds)
+        by_births = _needed(before.births, after.births, limits.births, seconds)
+        soonest = np.minimum(by_ticks, by_births)
         if bool(limits.saturation):
             soonest[after.saturated >= 0] = 0.0
         last = float(soonest.max())
         return last if np.isfinite(last) else None
 
 
+def _needed(before: np.ndarray, after: np.ndarray, limit: Wide, seconds: float) -> np.ndarray:
+    """Return the seconds that each world needs to reach a limit, if it went on as fast, float64 (W,).
+
+    Counts went from `before` to `after` in the given seconds. Without a limit it is infinite.
+    """
+    ends = to_host(limit)
+    to_go = np.maximum(ends.astype(float) - after, 0.0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        needed = np.where(to_go == 0, 0.0, to_go * seconds / (after - before))
+    return np.where(ends == np.uint64(2**64 - 1), np.inf, needed)
+
+
 def _count(value: Wide) -> np.ndarray:
-    """A Wide as int64; what is `wide.never` becomes -1."""
+    """Return a Wide as int64, with -1 in place of `wide.never`."""
     return to_host(value).astype(np.int64)

@@ -1,4 +1,4 @@
-"""Cells as characters: colour or letter tells the line of descent, height or light the age."""
+"""Cells as characters: colour or letter shows the line of descent, height or light the age."""
 
 import colorsys
 from collections.abc import Iterable
@@ -13,44 +13,44 @@ from rich.segment import Segment
 from rich.style import Style
 
 Row = list[Segment]
-"""A line of the terminal."""
+"""One row of characters in the terminal."""
 EMPTY = -1
-"""In place of the line of an empty cell."""
+"""Mark of an empty cell, in place of the number of a line of descent."""
 HUES = 64
 EIGHTHS = " ▁▂▃▄▅▆▇█"
 FAINT = Style(color="grey50")
 GROUND = (45, 45, 45)
-"""of empty cells on a torus, red, green and blue"""
+"""Colour of empty cells on a torus: red, green and blue."""
 LETTERS = "abcdefghijklmnopqrstuvwxyz"
 
 
 @dataclass(frozen=True)
 class Cells:
-    """What is drawn, (n,)."""
+    """Line of descent and age of n cells, (n,) each."""
 
     line: np.ndarray
     """int64, or EMPTY"""
     age: np.ndarray
-    """float64, 0 at birth to 1, on a logarithmic scale"""
+    """float64 on a logarithmic scale, from 0 at birth to 1"""
 
     @classmethod
     def of(cls, line: np.ndarray, ticks: np.ndarray, full: int) -> "Cells":
-        """`ticks`: ages, int64; `full`: the age that is drawn as 1, as are higher ones."""
+        """Return cells with ages in ticks, int64; the age `full` and higher ones are drawn as 1."""
         return cls(line, np.minimum(np.log1p(np.maximum(ticks, 0)) / log1p(full), 1.0))
 
     def take(self, index: slice | np.ndarray) -> "Cells":
-        """Some of them."""
+        """Return the cells at an index."""
         return Cells(self.line[index], self.age[index])
 
 
 def skyline(cells: Cells, wide: int, tall: int, letters: bool) -> list[Row]:
-    """Bars side by side, as high as their organisms are old: `tall` rows, `wide` columns a cell.
+    """Draw a bar for each cell, higher with age, in `tall` rows and `wide` columns for a cell.
 
-    With `letters` a row beneath names the lines, since nothing else then tells them apart.
+    With `letters` a row below the bars names the lines, which have no colours then.
     """
-    bar, gap = max(wide - 1, 1), " " * (wide > 1)
+    bar, gap = max(wide - 1, 1), " " if wide > 1 else ""
     living = cells.line != EMPTY
-    most = 8 * tall - (tall == 1)  # single rows do not touch the row above
+    most = 8 * tall if tall > 1 else 7  # a single row does not touch the row above
     eighths = np.where(living, 1 + np.rint(cells.age * (most - 1)), 0).astype(int)
     styles = [_hue(line) for line in cells.line.tolist()]
     rows = []
@@ -69,7 +69,7 @@ def skyline(cells: Cells, wide: int, tall: int, letters: bool) -> list[Row]:
 
 
 def strip(cells: Cells, letters: bool) -> Row:
-    """One character a cell; with `letters`, those of the older half of ages are capitals."""
+    """Draw one character for each cell; with `letters`, ages in the upper half are capitals."""
     if not letters:
         return skyline(cells, 1, 1, letters=False)[0]
     old = (cells.age >= 0.5).tolist()
@@ -78,9 +78,9 @@ def strip(cells: Cells, letters: bool) -> Row:
 
 
 def field(cells: Cells, columns: int, scale: int, letters: bool) -> list[Row]:
-    """Rows of so many cells as a picture, two rows to a line and lighter with age; or as `letters`.
+    """Draw rows of `columns` cells, two rows in a row of characters, lighter with age; or `letters`.
 
-    A cell is `scale` characters wide, and half as many lines high.
+    A cell is `scale` characters wide, and half as many rows of characters high.
     """
     rows = [slice(at, at + columns) for at in range(0, len(cells.line), columns)]
     if letters:
@@ -96,7 +96,7 @@ def field(cells: Cells, columns: int, scale: int, letters: bool) -> list[Row]:
 
 
 def _joined(glyphs: list[str], styles: Iterable[Style]) -> Row:
-    """One segment for each stretch of one style: terminals and rich are slow otherwise."""
+    """Join characters of one style into one segment, since rich and terminals are slow with many."""
     runs = groupby(zip(glyphs, styles, strict=True), key=lambda pair: id(pair[1]))
     parts = (list(run) for _, run in runs)
     return [Segment("".join(glyph for glyph, _ in part), part[0][1]) for part in parts]
@@ -110,7 +110,7 @@ def _letter(line: int, capital: bool = False) -> str:
 
 @cache
 def _colour(hue: int) -> tuple[int, int, int]:
-    """Steps of the golden ratio around the colour circle: neighbours in number look different."""
+    """Return a colour at steps of the golden ratio, so that successive hues differ."""
     light = 0.6 if hue % 2 else 0.7
     red, green, blue = colorsys.hls_to_rgb(hue * 0.61803398875 % 1.0, light, 0.66)
     return round(255 * red), round(255 * green), round(255 * blue)
@@ -127,7 +127,7 @@ def _hue(line: int) -> Style:
 
 @cache
 def _pixels(upper: int, lower: int) -> Style:
-    """Two cells above each other, each 4 x hue + shade, EMPTY, or outside if lower still."""
+    """Return the style of two cells above each other: 4 x hue + shade, EMPTY, or less if outside."""
     below = None if lower < EMPTY else Color.from_rgb(*_shade(lower))
     return Style(color=Color.from_rgb(*_shade(upper)), bgcolor=below)
 

@@ -14,76 +14,78 @@ from primordia.live.paint import FAINT, Row
 STRONG = Style(bold=True)
 FILLED = Style(color="green")
 CELL = 26
-"""columns of one number with its name, at least"""
+"""Smallest number of columns for one number with its name."""
 SHORTEST, LONGEST = 8, 24
-"""columns of a bar; a shorter one says nothing"""
+"""Columns of a bar; a shorter one is left out."""
 TOPOLOGIES = {"ring": "on a ring", "torus4": "on a torus", "torus8": "on a torus"}
 
 
-class Tempo(NamedTuple):
-    """How fast it goes, where known."""
+class Outlook(NamedTuple):
+    """Speed and remaining time, where known."""
 
     organism_ticks_per_s: float | None
     seconds_left: float | None
 
 
 def heading(config: Config, seconds: float, width: int) -> Row:
-    """What runs, and for how long."""
+    """Return task, size and seeds of a run, and the seconds since its start."""
     last = config.seed + config.seeds - 1
     one = f"  seed {config.seed}, {config.cells:,} cells"
     many = f"  {config.seeds:,} worlds, seeds {config.seed} to {last}, {config.cells:,} cells each"
-    what = one if config.seeds == 1 else many
-    place = TOPOLOGIES.get(config.placement.topology, "well-mixed")
+    size = one if config.seeds == 1 else many
+    topology = TOPOLOGIES.get(config.placement.topology, "well-mixed")
     task, clock = config.task, duration(seconds)
     spare = width - len(task) - len(clock) - 2
-    about = next((each for each in (f"{what} {place}", what) if len(each) <= spare), "")
+    about = next((text for text in (f"{size} {topology}", size) if len(text) <= spare), "")
     gap = max(width - len(task) - len(about) - len(clock), 1)
     return [Segment(task, STRONG), Segment(about, FAINT), Segment(" " * gap + clock, FAINT)]
 
 
 def numbers(
-    census: Census, cells: int, tempo: Tempo, takeovers: int | None, width: int
+    census: Census, cells: int, outlook: Outlook, takeovers: int | None, width: int
 ) -> list[Row]:
-    """Counts in columns, what they died of, and how far saturation is.
+    """Return counts in columns, and causes of death.
 
     Args:
         census: the counts.
-        cells: of one world.
-        tempo: how fast it goes.
-        takeovers: of the worlds whose lines of descent are followed; None if none is.
-        width: of the terminal.
+        cells: number of cells of one world.
+        outlook: speed and remaining time.
+        takeovers: number of takeovers in all worlds; None if lines of descent are not followed.
+        width: columns of the terminal.
     """
     worlds = len(census.tick)
-    found = {
+    values = {
         "tick": f"{census.tick.max():,}",
-        "alive": _of(int(census.alive.sum()), worlds * cells),
+        "alive": _share(int(census.alive.sum()), worlds * cells),
         "mean age": f"{census.mean_age:,.0f}",
         "births": f"{census.births.sum():,}",
         "deaths": f"{census.deaths.sum():,}",
         "oldest": f"{census.oldest:,}",
         "extinctions": f"{census.extinctions.sum():,}",
         "takeovers": "" if takeovers is None else f"{takeovers:,}",
-        "organism-ticks/s": short(tempo.organism_ticks_per_s),
-        "time left": duration(tempo.seconds_left) if tempo.seconds_left else "",
+        "organism-ticks/s": with_prefix(outlook.organism_ticks_per_s),
+        "time left": duration(outlook.seconds_left) if outlook.seconds_left else "",
     }
-    rows = _columns({name: value for name, value in found.items() if value}, width)
+    rows = _columns({name: value for name, value in values.items() if value}, width)
     return [*rows, _causes(census, width)]
 
 
-def _of(some: int, most: int) -> str:
-    return f"{some:,} of {most:,}" if most < 10**6 else f"{short(some)} of {short(most)}"
+def _share(part: int, whole: int) -> str:
+    if whole < 10**6:
+        return f"{part:,} of {whole:,}"
+    return f"{with_prefix(part)} of {with_prefix(whole)}"
 
 
-def _columns(found: dict[str, str], width: int) -> list[Row]:
-    """Names and values side by side, as many as fit."""
+def _columns(values: dict[str, str], width: int) -> list[Row]:
+    """Return names and values side by side, as many in a row as fit."""
     across = min(max(width // CELL, 1), 3)
-    each, gap = min(width // across, CELL + 6), 3 if across > 1 else 0
-    pairs = list(found.items())
+    column, gap = min(width // across, CELL + 6), 3 if across > 1 else 0
+    pairs = list(values.items())
     rows = []
     for at in range(0, len(pairs), across):
         row: Row = []
         for name, value in pairs[at : at + across]:
-            room = max(each - gap - len(name), len(value) + 1)
+            room = max(column - gap - len(name), len(value) + 1)
             row += [Segment(name, FAINT), Segment(f"{value:>{room}}", STRONG), Segment(" " * gap)]
         rows.append(row)
     return rows
@@ -96,7 +98,7 @@ def _causes(census: Census, width: int) -> Row:
 
 
 def saturation(census: Census, cells: int, calm_needed: int, width: int) -> Row:
-    """How far one world is, or how many of several are."""
+    """Return a bar: how close one world is to saturation, or how many of several are saturated."""
     worlds, done = len(census.tick), int((census.saturated >= 0).sum())
     if worlds > 1:
         return _bar(done / worlds, f"{done:,} of {worlds:,} worlds saturated", width)
@@ -112,24 +114,26 @@ def _bar(share: float, text: str, width: int) -> Row:
     length = min(width - len(text) - 2, LONGEST)
     length = length if length >= SHORTEST else 0
     filled = int(share * length)
+    label = f"  {text}" if length else text
     return [
         Segment("━" * filled, FILLED),
         Segment("╌" * (length - filled), FAINT),
-        Segment(("  " * (length > 0) + text)[: width - length]),
+        Segment(label[: width - length]),
     ]
 
 
-def short(rate: float | None) -> str:
-    """A number a second: 12.3 M; a dash while it is not known."""
-    if rate is None:
+def with_prefix(value: float | None) -> str:
+    """Write a number with an SI prefix, such as 12.3 M; a dash if it is unknown."""
+    if value is None:
         return "-"
-    power = int(np.clip(np.log10(max(rate, 1)) // 3, 0, 3))
-    number = rate / 1000**power
-    return f"{number:.{1 if power and number < 100 else 0}f} {['', 'k', 'M', 'G'][power]}".strip()
+    power = int(np.clip(np.log10(max(value, 1)) // 3, 0, 3))
+    number = value / 1000**power
+    digits = 1 if power and number < 100 else 0
+    return f"{number:.{digits}f} {['', 'k', 'M', 'G'][power]}".strip()
 
 
 def duration(seconds: float) -> str:
-    """12 s, 3 min 20 s, 2 h 5 min."""
+    """Write a duration as 12 s, 3 min 20 s, or 2 h 5 min."""
     whole = round(seconds)
     if whole < 60:
         return f"{whole} s"
