@@ -23,7 +23,7 @@ import files
 import numpy as np
 
 import primordia
-from primordia.cli.side_by_side import number
+from primordia.cli.comparison_tables import number_text
 from primordia.organism.organism import Organism
 from primordia.runs.directory import read_config
 from results import table
@@ -155,7 +155,7 @@ def summary(rows: list[dict[str, Any]]) -> str:
 
 def spread(values: list[float]) -> str:
     """Return the median, the least and the most as text."""
-    middle, least, most = (number(float(of(values))) for of in (np.median, min, max))
+    middle, least, most = (number_text(float(of(values))) for of in (np.median, min, max))
     return f"{middle} ({least} to {most})"
 
 

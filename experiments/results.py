@@ -9,7 +9,12 @@ from typing import Any
 import late
 
 import primordia
-from primordia.cli.side_by_side import effect, ratio, setting, spread
+from primordia.cli.comparison_tables import (
+    effect_text,
+    quartiles_text,
+    ratio_text,
+    setting_text,
+)
 from primordia.comparison.comparison import Comparison
 from primordia.figures import style
 from primordia.figures.comparison import draw
@@ -45,12 +50,12 @@ def summary(compared: Comparison, infos: list[dict[str, Any]]) -> str:
     rows = [
         [
             arm.name,
-            *map(setting, arm.settings.values()),
+            *map(setting_text, arm.settings.values()),
             arm.worlds,
             arm.saturated,
             f"{extinct(info):g}",
         ]
-        + [spread(arm, outcome) for outcome in outcomes]
+        + [quartiles_text(arm, outcome) for outcome in outcomes]
         for arm, info in zip(compared.arms, infos, strict=True)
     ]
     return table(head, rows)
@@ -77,7 +82,7 @@ def effects(compared: Comparison) -> str:
     rows = []
     for arm in others:
         contrasts = {outcome: compared.contrast(arm, outcome) for outcome in compared.outcomes}
-        cells = [f"{effect(c, outcome)}; {ratio(c)}" for outcome, c in contrasts.items()]
+        cells = [f"{effect_text(c, outcome)}; {ratio_text(c)}" for outcome, c in contrasts.items()]
         rows.append([arm.name, *cells])
     return table([f"against {reference.name}", *compared.outcomes.values()], rows)
 

@@ -154,7 +154,7 @@ def test_wrong_input_is_an_error_that_says_why(pong: Path, poles: Path) -> None:
         ((poles, "--angle_limit"), "--angle_limit needs a value"),
         ((poles, "--angle_limit", "-1"), "habitat.angle_limit"),
         ((pong, "--sticky", "1.5"), "sticky"),
-        ((pong, "--open-loop", "--freeze-senses"), "one or the other"),
+        ((pong, "--open-loop", "--freeze-senses"), "exclude each other"),
         ((pong, "--episodes", "0"), "one game or more"),
         ((pong, "--organism", "9999"), "no organism 9999"),
     ):

@@ -146,7 +146,7 @@ def test_ctrl_c_before_a_fork_has_begun_leaves_an_empty_folder(
     monkeypatch.setattr("primordia.live.view.Plain.__call__", interrupt)
     done = here("fork", mill, "--at", 700, "--out", tmp_path)  # the folder is empty and may be used
     assert (done.returncode, list(tmp_path.iterdir())) == (130, [])
-    assert done.stderr.strip() == f"Stopped before {tmp_path} was begun"
+    assert done.stderr.strip() == f"Stopped before {tmp_path} had begun"
 
 
 def test_forks_are_compared_where_they_have_time_in_common(mill: Path, tmp_path: Path) -> None:

@@ -1,19 +1,19 @@
-"""The command line. An error a user can cause is one line on stderr; exit status 2, or 1 for trouble."""
+"""The command line. A user's error is one line on stderr with exit status 2; trouble has status 1."""
 
 import sys
 
 import click
 
-from primordia.cli import evaluate, evolve, look
-from primordia.cli.say import say
+from primordia.cli import evaluate, evolve, inspect
+from primordia.cli.stderr import report
 from primordia.errors import InputError, Trouble
 
 
 class Commands(click.Group):
-    """Lists its commands in the order in which one needs them."""
+    """A group that lists its commands in the order of a user's work."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """As they were added."""
+        """Return the names of the commands in the order in which they were added."""
         return list(self.commands)
 
 
@@ -30,13 +30,13 @@ def commands() -> None:
     """
 
 
-for each in (*evolve.COMMANDS, *look.COMMANDS, *evaluate.COMMANDS):
-    commands.add_command(each)
+for command in (*evolve.COMMANDS, *inspect.COMMANDS, *evaluate.COMMANDS):
+    commands.add_command(command)
 
 
 def main() -> None:
-    """Entry point."""
-    sys.path.insert(0, "")  # habitats of the user's own, where the command is run
+    """Run a command and exit."""
+    sys.path.insert(0, "")  # a user's habitats are found in the current folder
     try:
         commands(standalone_mode=False)
     except click.exceptions.Exit as done:
@@ -47,11 +47,11 @@ def main() -> None:
         error.show()
         sys.exit(2)
     except click.ClickException as error:
-        say(error.format_message())
+        report(error.format_message())
         sys.exit(2)
     except InputError as error:
-        say(error)
+        report(error)
         sys.exit(2)
     except (Trouble, OSError) as error:
-        say(error)
+        report(error)
         sys.exit(1)

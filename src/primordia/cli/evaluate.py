@@ -1,4 +1,4 @@
-"""`primordia evaluate`: an organism plays whole games."""
+"""The command `primordia evaluate`, which lets an organism play whole games."""
 
 import json
 from pathlib import Path
@@ -15,21 +15,21 @@ if TYPE_CHECKING:
 SENSES = {
     "live": "",
     "frozen": ", senses frozen",
-    "ignored": ", blindly doing what it did in a game of its task",
+    "ignored": ", blindly repeating its actions in a game of its task",
 }
 
 
-@click.command(cls=HabitatCommand, short_help="How an organism does in whole games.")
+@click.command(cls=HabitatCommand, short_help="Measure an organism in whole games.")
 @run_argument
-@click.option("--organism", type=int, help="Birth number [who lived longest].")
-@click.option("--world", type=int, help="Where it lived [0, or where somebody lived longest].")
-@click.option("--episodes", default=30, show_default=True, help="Games.")
-@click.option("--ticks", default=100_000, show_default=True, help="Cut games that go on then.")
-@click.option("--freeze-senses", is_flag=True, help="Senses stay as they are at the start.")
+@click.option("--organism", type=int, help="Birth number [that of the longest life].")
+@click.option("--world", type=int, help="The organism's world [0, or that of the longest life].")
+@click.option("--episodes", default=30, show_default=True, help="Number of games.")
+@click.option("--ticks", default=100_000, show_default=True, help="Cut games at this length.")
+@click.option("--freeze-senses", is_flag=True, help="Keep senses as they are at the start.")
 @click.option(
-    "--open-loop", is_flag=True, help="It does what it did in a game of its task, whatever happens."
+    "--open-loop", is_flag=True, help="Repeat the actions of a game of its task, whatever happens."
 )
-@click.option("--json", "as_json", is_flag=True, help="One JSON object.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 @click.pass_obj
 def evaluate(
     habitat: dict[str, Any],
@@ -43,48 +43,54 @@ def evaluate(
     open_loop: bool,
     as_json: bool,
 ) -> None:
-    """Let an organism play the game its task is made of, from fresh starts, and say how it does.
+    """Let an organism play the game that its task is made of, from fresh starts, and print its results.
 
-    A lifespan is what its task makes of a game; score and length are those of the whole game. Any
+    The lifespan is counted by the rules of its task; score and length are those of the whole game. Any
     setting of the habitat can be changed by a flag, such as --sticky 0.25; `primordia evaluate RUN
     --help` lists them.
     """
-    from primordia.cli.look import who
+    from primordia.cli.inspect import chosen_organism
 
     if freeze_senses and open_loop:
-        raise InputError("--freeze-senses and --open-loop: one or the other")
+        raise InputError("--freeze-senses and --open-loop exclude each other; give one of them")
     senses: Any = "frozen" if freeze_senses else "ignored" if open_loop else "live"
-    chosen = who(run, organism, world)
-    found = chosen.evaluate(games=episodes, ticks=ticks, senses=senses, habitat=habitat)
-    click.echo(json.dumps(found.to_dict()) if as_json else sheet(found, habitat))
+    chosen = chosen_organism(run, organism, world)
+    result = chosen.evaluate(games=episodes, ticks=ticks, senses=senses, habitat=habitat)
+    click.echo(json.dumps(result.to_dict()) if as_json else evaluation_text(result, habitat))
 
 
-def sheet(found: "Evaluation", changes: dict[str, Any]) -> str:
-    """What came out, in a few lines."""
-    told = found.to_dict()
-    games = "1 game" if found.games == 1 else f"{found.games:,} games"
-    with_ = "".join(f", {name} {value}" for name, value in changes.items())
-    same = f"{found.distinct:,} distinct game{'s' * (found.distinct != 1)}"
+def evaluation_text(result: "Evaluation", changes: dict[str, Any]) -> str:
+    """Return the results in a few lines."""
+    values = result.to_dict()
+    changed = "".join(f", {name} {value}" for name, value in changes.items())
+    distinct = f"{_games(result.distinct, 'distinct ')}"
+    if result.games == 1:
+        distinct += "; nothing is drawn at random, so all are the same"
     lines = [
-        f"organism {found.organism} of world {found.world}: {games}{with_}{SENSES[found.senses]}",
-        f"  {same}{'; nothing is drawn at random, so all are the same' * (found.games == 1)}",
-        f"  lifespan  {_spread(told['lifespan'])}{_cut(told['alive_when_cut'], 'alive')}",
+        f"organism {result.organism} of world {result.world}: {_games(result.games)}{changed}"
+        f"{SENSES[result.senses]}",
+        f"  {distinct}",
+        f"  lifespan  {_quartiles(values['lifespan'])}{_cut(values['alive_when_cut'], 'alive')}",
     ]
-    if "score" in told:
-        lines.append(f"  score     {_spread(told['score'])}")
-        lines.append(f"  length    {_spread(told['length'])}{_cut(told['cut'], 'going on')}")
+    if "score" in values:
+        lines.append(f"  score     {_quartiles(values['score'])}")
+        lines.append(f"  length    {_quartiles(values['length'])}{_cut(values['cut'], 'going on')}")
     return "\n".join(lines)
 
 
-def _spread(of: dict[str, float]) -> str:
-    if of["q1"] == of["maximum"]:
-        return f"{of['median']:,.0f}"
-    quartiles = f"quartiles {of['q1']:,.0f}, {of['q3']:,.0f}"
-    return f"median {of['median']:,.0f} ({quartiles}), maximum {of['maximum']:,.0f}"
+def _games(count: int, kind: str = "") -> str:
+    return f"1 {kind}game" if count == 1 else f"{count:,} {kind}games"
 
 
-def _cut(count: int, what: str) -> str:
-    return f"; {count:,} still {what} when cut" if count else ""
+def _quartiles(spread: dict[str, float]) -> str:
+    if spread["q1"] == spread["maximum"]:
+        return f"{spread['median']:,.0f}"
+    quartiles = f"quartiles {spread['q1']:,.0f}, {spread['q3']:,.0f}"
+    return f"median {spread['median']:,.0f} ({quartiles}), maximum {spread['maximum']:,.0f}"
+
+
+def _cut(count: int, state: str) -> str:
+    return f"; {count:,} still {state} when cut" if count else ""
 
 
 COMMANDS = (evaluate,)

@@ -1,4 +1,4 @@
-"""Commands that let organisms live: they write a run directory."""
+"""Commands that write a run directory: run, resume, fork."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -11,13 +11,13 @@ from primordia.cli.flags import (
     checkpoint_option,
     device_option,
     limit_options,
-    limits_in,
     out_option,
-    put,
     quiet_option,
     run_argument,
+    set_value,
+    take_limits,
 )
-from primordia.cli.say import say
+from primordia.cli.stderr import report
 
 
 @click.command(cls=SettingsCommand)
@@ -45,15 +45,15 @@ def run(
 ) -> None:
     """Evolve in a new run directory.
 
-    TASK is one of `primordia tasks`; a FILE.toml names its `task` and changes what it likes. Any
+    TASK is one of `primordia tasks`; a FILE.toml names a `task` and the settings that differ from it. Any
     setting below can be given as a flag, such as --seed 3, --cells 64 or --mutation.scale 0.02.
     """
     from primordia import api, config
 
-    for name, value in limits_in(options).items():
-        put(settings, f"stop.{name}", value)
+    for name, value in take_limits(options).items():
+        set_value(settings, f"stop.{name}", value)
     if ancestor:
-        put(settings, "ancestors", [str(file) for file in ancestor])
+        set_value(settings, "ancestors", [str(file) for file in ancestor])
     path = out or api.fresh_directory(api.default_name(config.load(task, settings)))
     _drive(path, quiet, lambda listen: api.run(task, path, listen=listen, **options, **settings))
 
@@ -63,24 +63,24 @@ def run(
 @limit_options
 @checkpoint_option
 @device_option
-@click.option("--inexact", is_flag=True, help="Go on although versions or machine differ.")
+@click.option("--inexact", is_flag=True, help="Go on even if versions or machine differ.")
 @quiet_option
 def resume(run: Path, quiet: bool, **options: Any) -> None:
     """Go on with a run that stopped, was interrupted, or was killed."""
     from primordia.api import Run
 
-    limits = limits_in(options)
+    limits = take_limits(options)
 
     def drive(listen: Any) -> None:
         for note in Run(run).resume(listen=listen, **options, **limits):
-            say(note)
+            report(note)
 
     _drive(run, quiet, drive)
 
 
 @click.command(cls=SettingsCommand, short_help="Replay the tape of a run from a tick.")
 @run_argument
-@click.option("--at", type=int, required=True, metavar="TICK", help="At the end of which tick.")
+@click.option("--at", type=int, required=True, metavar="TICK", help="Tick at whose end to fork.")
 @out_option
 @limit_options
 @checkpoint_option
@@ -98,13 +98,13 @@ def fork(
 ) -> None:
     """Replay the tape from a tick of a RUN: a new run, with another --seed or other settings.
 
-    Without either it lives what the RUN lived. Any setting that leaves brains, senses and cells as
-    they are can be changed.
+    Without either it repeats the RUN. Any setting can be changed that leaves brains, senses and cells
+    unchanged.
     """
     from primordia.api import Run, fresh_directory
 
-    for name, value in limits_in(options).items():
-        put(settings, f"stop.{name}", value)
+    for name, value in take_limits(options).items():
+        set_value(settings, f"stop.{name}", value)
     path = out or fresh_directory(f"{run.name}-at{at}")
     _drive(
         path, quiet, lambda listen: Run(run).fork(at, path, listen=listen, **options, **settings)
@@ -122,7 +122,7 @@ def _drive(path: Path, quiet: bool, go: Callable[[Any], object]) -> None:
     except KeyboardInterrupt:
         begun = (path / "versions.json").exists()
         saved = f"Stopped and saved. Go on with: primordia resume {path}"
-        click.echo(saved if begun else f"Stopped before {path} was begun", err=True)
+        click.echo(saved if begun else f"Stopped before {path} had begun", err=True)
         raise SystemExit(130) from None
     if not quiet:
         click.echo(summary(Run(path).info()))

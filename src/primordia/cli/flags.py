@@ -1,4 +1,4 @@
-"""Flags: any setting of a task by its dotted name, beside a command's own options."""
+"""Flags: a command's options, and any setting of a task by its dotted name."""
 
 import tomllib
 from pathlib import Path
@@ -13,7 +13,7 @@ out_option = click.option(
     "--out", type=click.Path(path_type=Path), help="Directory to make [under runs/]."
 )
 device_option = click.option(
-    "--device", default="cpu", show_default=True, help="What JAX computes on: cpu or gpu."
+    "--device", default="cpu", show_default=True, help="Device that JAX computes on: cpu or gpu."
 )
 checkpoint_option = click.option(
     "--checkpoint-every", type=float, default=60.0, show_default=True, metavar="SECONDS"
@@ -21,8 +21,8 @@ checkpoint_option = click.option(
 quiet_option = click.option("--quiet", is_flag=True, help="Print nothing while running.")
 
 LIMITS = {
-    "ticks": "Stop each world after so many ticks, or none.",
-    "births": "Stop each world after so many births, or none.",
+    "ticks": "Stop each world after this number of ticks, or none.",
+    "births": "Stop each world after this number of births, or none.",
     "until": "saturation: stop each world once saturated; or none.",
 }
 
@@ -34,17 +34,17 @@ def limit_options(command: Any) -> Any:
     return command
 
 
-def limits_in(options: dict[str, Any]) -> dict[str, Any]:
-    """Take those given out of a command's options -> their values."""
+def take_limits(options: dict[str, Any]) -> dict[str, Any]:
+    """Remove the limits from a command's options -> the values of those that were given."""
     given = {name: options.pop(name) for name in LIMITS}
     return {name: _value(text) for name, text in given.items() if text is not None}
 
 
 class SettingsCommand(click.Command):
-    """A command that takes any setting as a flag, and lists them under --help."""
+    """A command that takes any setting as a flag, and lists the settings under --help."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Set aside the flags that are settings, as nested tables in `ctx.obj`."""
+        """Move the flags that are settings into `ctx.obj`, as nested tables."""
         options = {name for option in self.get_params(ctx) for name in option.opts}
         ctx.obj, own, rest = {}, [], list(args)
         while rest:
@@ -57,7 +57,7 @@ class SettingsCommand(click.Command):
                 if not rest or rest[0].startswith("--"):
                     raise InputError(f"{name} needs a value")
                 text = rest.pop(0)
-            put(ctx.obj, name.removeprefix("--"), _value(text))
+            set_value(ctx.obj, name.removeprefix("--"), _value(text))
         ctx.meta["words"] = tuple(own)
         return super().parse_args(ctx, own)
 
@@ -94,18 +94,18 @@ class HabitatCommand(SettingsCommand):
         return f"Settings of the habitat (values of {run})", habitat_rows(run) if run else []
 
 
-def put(settings: dict[str, Any], path: str, value: Any) -> None:
-    """Set what a dotted path names in nested tables."""
+def set_value(settings: dict[str, Any], path: str, value: Any) -> None:
+    """Set the value at a dotted path in nested tables."""
     *groups, name = path.split(".")
     for group in groups:
         settings = settings.setdefault(group, {})
         if not isinstance(settings, dict):
-            raise InputError(f"--{path}: --{group} was given a value of its own already")
+            raise InputError(f"--{path}: --{group} already has a single value; give one of the two")
     settings[name] = value
 
 
 def _value(text: str) -> Any:
-    """A flag's value, read as TOML; what is no TOML is a string."""
+    """Return a flag's value, read as TOML; a text that is no TOML stays a string."""
     try:
         return tomllib.loads(f"value = {text}")["value"]
     except tomllib.TOMLDecodeError:

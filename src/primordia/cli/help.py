@@ -1,4 +1,4 @@
-"""Settings explained, as the command line shows them."""
+"""Settings with their values and meanings, for --help."""
 
 import json
 from contextlib import suppress
@@ -21,7 +21,7 @@ CONTRACTS: dict[str, tuple[Any, str | None]] = {
     "brain": (brains, brains.DEFAULT),
     "mutation": (mutations, mutations.DEFAULT),
 }
-"""Where each replaceable part is found, and its name if a task gives none."""
+"""Module of each replaceable part's contract, and the part's name if a task gives none."""
 
 
 def setting_rows(task: str | None, given: dict[str, Any]) -> list[tuple[str, str]]:
@@ -40,32 +40,32 @@ def setting_rows(task: str | None, given: dict[str, Any]) -> list[tuple[str, str
 
 
 def habitat_rows(run: Path) -> list[tuple[str, str]]:
-    """Return each setting of a run's habitat with its value there, and what it means."""
+    """Return each setting of a run's habitat, with its meaning and its value in the run."""
     archive = Archive(run)
     return _rows(setting_fields(type(archive.habitat)), archive.config.habitat)
 
 
 def _rows(fields: dict[str, Any], values: dict[str, Any]) -> list[tuple[str, str]]:
     return [
-        (f"--{path}", f"{field.description or ''} [{_shown(values, path, field)}]")
+        (f"--{path}", f"{field.description or ''} [{_value_text(values, path, field)}]")
         for path, field in fields.items()
     ]
 
 
 def _of_part(part: str, values: dict[str, Any]) -> dict[str, Any]:
-    """Settings of the habitat or brain of a task, or else of all known ones: path -> field."""
+    """Return the settings of a part of a task, or else of all known parts: path -> field."""
     contract, default = CONTRACTS[part]
     key, table = PARTS[part], values.get(part, {})
     named = table.get(key, default) if values and isinstance(table, dict) else None
     described = f"{', '.join(contract.KNOWN)}, or module:Class"
     fields: dict[str, Any] = {f"{part}.{key}": Field(default, description=described)}
     for name in contract.KNOWN if named is None else [named]:
-        with suppress(LookupError):  # `run` says what is wrong with a name
+        with suppress(LookupError):  # `run` reports a wrong name
             fields |= setting_fields(contract.find(name), f"{part}.")
     return fields
 
 
-def _shown(values: dict[str, Any], path: str, field: Any) -> str:
+def _value_text(values: dict[str, Any], path: str, field: Any) -> str:
     value: Any = values
     for part in path.split("."):
         value = value.get(part, PydanticUndefined) if isinstance(value, dict) else PydanticUndefined

@@ -1,0 +1,127 @@
+"""A comparison as text: tables, and notes that explain them."""
+
+import math
+from typing import Any
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+from primordia.comparison.comparison import Arm, Comparison
+from primordia.comparison.contrast import Bounds, Contrast
+
+DIRECTIONS = {
+    "first": ("earlier", "later"),
+    "births": ("earlier", "later"),
+    "ticks": ("earlier", "later"),
+    "lifespan": ("shorter", "longer"),
+    "longest": ("shorter", "longer"),
+    "pace": ("fewer", "more"),
+    "food": ("less", "more"),
+}
+"""Words for a smaller and a larger value of each outcome."""
+
+WIDE = 1000
+"""Columns of text, enough that no line is broken."""
+
+
+def comparison_tables(compared: Comparison) -> str:
+    """Return all tables of a comparison, with a row for each run, and the notes."""
+    console = Console(width=WIDE, color_system=None)
+    with console.capture() as captured:
+        console.print(_runs(compared))
+        for outcome in compared.outcomes:
+            console.print(_against(compared, outcome))
+    lines = [line.rstrip() for line in captured.get().splitlines()]
+    text = "\n".join([*lines, *_notes(compared)])
+    return text.replace("\n\n\n", "\n\n").strip()
+
+
+def quartiles_text(arm: Arm, outcome: str) -> str:
+    """Write the median, and the quartiles in brackets if they differ."""
+    quartiles = (bounds_text(arm.measured[outcome].quantile(q)) for q in (0.25, 0.5, 0.75))
+    q1, median, q3 = quartiles
+    return f"{median} ({q1} to {q3})" if q1 != q3 else median
+
+
+def effect_text(against: Contrast, outcome: str) -> str:
+    """Write delta with its word and direction."""
+    smaller, larger = DIRECTIONS[outcome]
+    direction = f" {larger if against.delta > 0 else smaller}" if against.delta else ""
+    known = f"; order known of {int(100 * against.decided)} %" if against.decided < 1 else ""
+    return f"{against.delta:+.2f} {against.word}{direction}{known}"
+
+
+def ratio_text(against: Contrast) -> str:
+    """Write the ratio of medians with its interval."""
+    low, high = map(number_text, against.interval)
+    return f"{bounds_text(against.ratio)} ({low} to {high})"
+
+
+def bounds_text(bounds: Bounds) -> str:
+    """Write a value, or the bounds that are known of it."""
+    low, high = bounds
+    if low == high:
+        return number_text(low)
+    if math.isinf(high):
+        return f">= {number_text(low)}" if low else "unknown"
+    return f"{number_text(low)}..{number_text(high)}"
+
+
+def setting_text(value: Any) -> str:
+    """Write a setting as TOML and flags do."""
+    return "none" if value is None else str(value)
+
+
+def number_text(value: float) -> str:
+    """Write a number with at least three digits, and commas between thousands."""
+    if math.isinf(value):
+        return "inf"
+    return f"{value:,.0f}" if abs(value) >= 100 or value == round(value) else f"{value:.3g}"
+
+
+def _runs(compared: Comparison) -> Table:
+    """Return a table of the settings in which runs differ, and of the worlds that saturated."""
+    units = {"births": compared.births, "ticks": compared.ticks}
+    horizons = [f"{horizon:,} {unit}" for unit, horizon in units.items() if horizon is not None]
+    settings = compared.arms[0].settings
+    saturated = f"saturated within {' and '.join(horizons)}" if horizons else "saturated"
+    table = _table(compared.task, *settings, "worlds", saturated)
+    for arm in compared.arms:
+        own = [setting_text(value) for value in arm.settings.values()]
+        table.add_row(arm.name, *own, str(arm.worlds), str(arm.saturated))
+    return table
+
+
+def _against(compared: Comparison, outcome: str) -> Table:
+    """Return a table of one outcome of each run, and of each run against the first."""
+    reference, *others = compared.arms
+    table = _table(
+        compared.outcomes[outcome], "median (quartiles)", "delta", "ratio of medians (95 %)"
+    )
+    table.add_row(reference.name, quartiles_text(reference, outcome), "reference", "")
+    for arm in others:
+        against = compared.contrast(arm, outcome)
+        effect, ratio = effect_text(against, outcome), ratio_text(against)
+        table.add_row(arm.name, quartiles_text(arm, outcome), effect, ratio)
+    return table
+
+
+def _table(*columns: str) -> Table:
+    return Table(*columns, box=box.SIMPLE_HEAD, pad_edge=False)
+
+
+def _notes(compared: Comparison) -> list[str]:
+    notes = [
+        "Medians and intervals are over worlds. A world that stopped unsaturated is treated as censored."
+    ]
+    if {"pace", "food"} & set(compared.outcomes):
+        notes.append("Late: the last quarter of the time that all worlds have lived through.")
+    return [
+        *notes,
+        f"A long life: {compared.age:,} ticks. Mean lifespan: ticks in each world, up to that age"
+        " (Kaplan-Meier).",
+        "Delta: Cliff's delta, the share of pairs of worlds in which the run's value is larger than the"
+        " reference's,",
+        "less the share in which it is smaller.",
+    ]
