@@ -137,13 +137,7 @@ def test_the_view_shows_time_population_and_lines(running: tuple[str, Engine]) -
     assert "\x1b[38;2" in written
     assert written.endswith("\x1b[?25h"), "the cursor is back"
     census = Census.of(made.state.world)
-    for what in (
-        f"{census.births.sum():,}",
-        "deaths by",
-        "oldest",
-        "organism-ticks/s",
-        "saturated",
-    ):
+    for what in (f"{census.births.sum():,}", "died of", "oldest", "organism-ticks/s", "saturated"):
         assert what in text
     assert ("shown: the first" in text) == (name in ("worlds", "big"))
     assert ("takeovers" in text) == (name in ("ring", "torus")), "only if all are followed"
