@@ -1,5 +1,6 @@
 """Settings of a run: one validated, frozen object, made from a task's TOML, a file and flags."""
 
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, Literal
 
@@ -21,10 +22,12 @@ from primordia.law.seasons import Season
 from primordia.mutations import contract as mutations
 from primordia.mutations.contract import Mutation
 from primordia.settings.base import Rate, Settings
-from primordia.settings.fields import first_fault, rates_of
+from primordia.settings.fields import first_fault, rates_of, setting_fields
 from primordia.settings.making import make
 from primordia.settings.tables import (
+    DEFAULTS,
     NONE,
+    PARTS,
     did_you_mean,
     merged,
     replaced,
@@ -210,9 +213,21 @@ def parsed(values: dict[str, Any], source: str) -> Config:
     try:
         return Config.model_validate(replaced(values, NONE, None))
     except ValidationError as error:
-        raise InputError(f"{source}: {first_fault(error, Config)}") from None
+        fault = first_fault(error, Config, others=_settings_of_parts(values))
+        raise InputError(f"{source}: {fault}") from None
     except InputError as error:  # of a replaceable part
         raise InputError(f"{source}: {error}") from None
+
+
+def _settings_of_parts(values: dict[str, Any]) -> list[str]:
+    """Return the dotted names of the settings of the parts that a task names, if they are found."""
+    names: list[str] = []
+    contracts: dict[str, Any] = {"habitat": habitats, "brain": brains, "mutation": mutations}
+    for part, contract in contracts.items():
+        table = {PARTS[part]: DEFAULTS.get(part), **dict(values.get(part, {}))}
+        with suppress(LookupError):
+            names += setting_fields(contract.find(table[PARTS[part]]), f"{part}.")
+    return names
 
 
 def checked(config: Config, source: str) -> Config:

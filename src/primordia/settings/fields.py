@@ -1,5 +1,6 @@
 """Single settings by dotted path: the settings of a model, and the first faulty one of a table."""
 
+from collections.abc import Iterable
 from types import UnionType
 from typing import Any, Union, get_args, get_origin
 
@@ -39,20 +40,23 @@ def _model_in(annotation: Any) -> type[BaseModel] | None:
     return models[0] if models else None
 
 
-def first_fault(error: ValidationError, model: type, group: str = "") -> str:
+def first_fault(
+    error: ValidationError, model: type, group: str = "", others: Iterable[str] = ()
+) -> str:
     """Return the first fault of a validation error, in one line.
 
     Args:
         error: pydantic's error.
         model: the model of the settings; its names are suggested for a misspelt one.
         group: dotted path of the validated table; "" for the whole.
+        others: dotted names of further settings, such as those of a task's brain.
     """
     faults, prefix = error.errors(include_url=False), f"{group}." if group else ""
     fault = faults[0]
     path = (prefix + ".".join(str(part) for part in fault["loc"])).removesuffix(".")
     more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
     if fault["type"] == "extra_forbidden":
-        known = list(setting_fields(model, prefix))
+        known = [*setting_fields(model, prefix), *others]
         known += sorted({name.rpartition(".")[0] for name in known} - {""})
         return f"there is no setting {path!r}{did_you_mean(path, known)}{more}"
     if fault["type"] == "missing":
