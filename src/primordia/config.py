@@ -224,9 +224,10 @@ def _settings_of_parts(values: dict[str, Any]) -> list[str]:
     names: list[str] = []
     contracts: dict[str, Any] = {"habitat": habitats, "brain": brains, "mutation": mutations}
     for part, contract in contracts.items():
-        table = {PARTS[part]: DEFAULTS.get(part), **dict(values.get(part, {}))}
+        table = values.get(part, {})
+        name = table.get(PARTS[part], DEFAULTS.get(part)) if isinstance(table, dict) else None
         with suppress(LookupError):
-            names += setting_fields(contract.find(table[PARTS[part]]), f"{part}.")
+            names += setting_fields(contract.find(name), f"{part}.")
     return names
 
 

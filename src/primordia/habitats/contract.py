@@ -240,7 +240,10 @@ AnyHabitat: TypeAlias = JaxHabitat | HostHabitat
 
 
 def _missing(habitat: Habitat, name: str) -> TypeError:
-    return TypeError(f"{type(habitat).__name__} is no habitat yet: it has no {name!r}; state it")
+    return TypeError(
+        f"{type(habitat).__name__} is no habitat yet: it has no {name!r}; state it as an"
+        " attribute or a property of the class"
+    )
 
 
 def find(name: object) -> type[AnyHabitat]:

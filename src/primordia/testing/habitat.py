@@ -70,9 +70,7 @@ def _stated(habitat: AnyHabitat) -> None:
     try:
         complete(habitat)
     except TypeError as error:
-        raise ContractError(
-            f"{error}; state it as an attribute or a property of the class"
-        ) from None
+        raise ContractError(str(error)) from None
     for name, least in (("senses_size", 1), ("words", 0)):
         value = getattr(habitat, name)
         need(
