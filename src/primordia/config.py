@@ -57,7 +57,7 @@ class ForkedFrom(Settings):
 
 
 class Config(Settings):
-    """All settings of a run. Besides them, it depends on package versions and the device only."""
+    """All settings of a run. It depends on nothing else but package versions and the device."""
 
     task: str = Field(min_length=1, description="name of the task")
     about: str = Field("", description="the task, in one line")
