@@ -20,7 +20,7 @@ import numpy as np
 
 from primordia import config
 from primordia.config import Config
-from primordia.law.genesis import climate
+from primordia.law.genesis import initial_climate
 from primordia.law.law import Law
 from primordia.law.metabolism import Rates
 from primordia.organism.games import Players, play
@@ -83,7 +83,7 @@ def lifespans(chosen: Config, genomes: np.ndarray, first: int = 0) -> np.ndarray
     habitat, numbers = chosen.build_habitat(), first + np.arange(len(genomes))
     law = chosen.build_law(habitat)
     keys = stream(wide([chosen.seed]), Purpose.EVALUATION, wide(numbers))
-    rates = Rates.of(climate(law, len(genomes)))
+    rates = Rates.of(initial_climate(law, len(genomes)))
     players = Players(law, habitat, genomes.astype(np.float32), keys, rates)
     return play(players, 1, TICKS).ticks[:, 0]
 

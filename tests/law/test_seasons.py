@@ -9,6 +9,7 @@ import pytest
 from pydantic import TypeAdapter, ValidationError
 
 import primordia
+from primordia.errors import InputError
 from primordia.habitats.contract import Habitat, HostHabitat
 from primordia.law.genesis import begin
 from primordia.law.law import Law
@@ -70,8 +71,8 @@ RATCHETS = [
 SETTINGS = {
     "metabolism.gain": "metabolism.gain",
     "replication": "replication",
-    "mutation.scale": "mutation.input.scale",
-    "mutation.blocks.output.scale": "mutation.output.scale",
+    "mutation.scale": "mutation.blocks.input.scale",
+    "mutation.blocks.output.scale": "mutation.blocks.output.scale",
 }
 """The column of the metrics that shows the setting of a season."""
 
@@ -129,8 +130,15 @@ def test_ratchets_turn_when_and_only_when_their_condition_holds(mills: Lived, wo
     for setting, column in SETTINGS.items():
         values = rows[column].astype(np.float32)
         np.testing.assert_array_equal(values, [row[setting] for row in expected], err_msg=column)
-    np.testing.assert_array_equal(rows["mutation.recurrent.scale"], rows["mutation.input.scale"])
-    for column in ("hazard", "metabolism.store", "mutation.input.probability", "metabolism.cap"):
+    np.testing.assert_array_equal(
+        rows["mutation.blocks.recurrent.scale"], rows["mutation.blocks.input.scale"]
+    )
+    for column in (
+        "hazard",
+        "metabolism.store",
+        "mutation.blocks.input.probability",
+        "metabolism.cap",
+    ):
         assert len(set(rows[column].tolist())) == 1
 
 
@@ -244,9 +252,7 @@ def test_a_world_that_has_stopped_has_no_seasons() -> None:
 @pytest.mark.parametrize(
     "change",
     [
-        {"setting": "metabolism.speed"},
-        {"setting": "cells"},
-        {"setting": "mutation.founder_scale"},
+        {"setting": ""},
         {"when": "energy"},
         {"every": 0},
         {"factor": 0.0},
@@ -260,6 +266,23 @@ def test_impossible_seasons_are_refused(change: dict[str, Any]) -> None:
     assert isinstance(season.validate_python(good), Ratchet)
     with pytest.raises(ValidationError):
         season.validate_python({**good, **change})
+
+
+@pytest.mark.parametrize(
+    ("setting", "nearest"),
+    [
+        ("metabolism.speed", ""),
+        ("cells", ""),
+        ("mutation.founder_scale", ""),
+        ("mutation.blocks.hidden.scale", "mutation.scale"),
+        ("metabolism.gian", "metabolism.gain"),
+    ],
+)
+def test_a_season_of_what_seasons_cannot_change_is_refused(setting: str, nearest: str) -> None:
+    season = ratchet(setting, "mean_age", 1.0, 0.5, 10)
+    with pytest.raises(InputError, match="no setting that seasons can change") as error:
+        config(MILL, seasons=[season])
+    assert nearest in str(error.value)
 
 
 def test_break_even_follows_the_present_settings_of_the_world(tmp_path: Path) -> None:

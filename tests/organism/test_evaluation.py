@@ -155,12 +155,12 @@ def test_wrong_input_is_an_error_that_says_why(pong: Path, poles: Path) -> None:
         ((poles, "--angle_limit", "-1"), "habitat.angle_limit"),
         ((pong, "--sticky", "1.5"), "sticky"),
         ((pong, "--open-loop", "--freeze-senses"), "exclude each other"),
-        ((pong, "--episodes", "0"), "one game or more"),
+        ((pong, "--episodes", "0"), "at least one game"),
         ((pong, "--organism", "9999"), "no organism 9999"),
     ):
         complains(here("evaluate", *words), 2, part)
 
 
 def test_settings_that_do_not_fit_the_brain_are_refused(pong: Path) -> None:
-    with pytest.raises(InputError, match=r"3 senses and 2 actions; .* made for 3 and 6"):
+    with pytest.raises(InputError, match=r"3 senses and 2 actions; .* 3 senses and 6 actions"):
         primordia.load(pong).oldest().evaluate(actions="NOOP UP")
