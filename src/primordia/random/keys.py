@@ -66,6 +66,11 @@ class Streams:
         """Return the key of a purpose, (...)."""
         return self.keys.take(self.purposes.index(purpose))
 
+    def replaced(self, key: Wide, *purposes: Purpose) -> "Streams":
+        """Return the streams with one key (...) for some purposes."""
+        keys = [key if each in purposes else self[each] for each in self.purposes]
+        return Streams(Wide(*map(jnp.stack, zip(*keys, strict=True))), self.purposes)
+
     def take(self, index: Any) -> "Streams":
         """Return the streams at an index of the arrays."""
         return Streams(self.keys.map(lambda words: words[:, index]), self.purposes)
