@@ -274,7 +274,7 @@ def test_impossible_seasons_are_refused(change: dict[str, Any]) -> None:
         ("metabolism.speed", ""),
         ("cells", ""),
         ("mutation.founder_scale", ""),
-        ("mutation.blocks.hidden.scale", "mutation.scale"),
+        ("mutation.blocks.hidden.scale", "mutation.blocks.input.scale"),
         ("metabolism.gian", "metabolism.gain"),
     ],
 )
