@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 import jax.numpy as jnp
-from jax import Array
+from jax import Array, lax
 
 from primordia.law.law import Law
 from primordia.mutations.contract import Draws
@@ -66,10 +66,17 @@ def rebuild_genomes(law: Law, birth: Birth, parents: Array, notes: Array) -> Arr
 def _genomes(law: Law, birth: Birth, parents: Array, notes: Array) -> tuple[Array, Array]:
     if law.inheritance == "founder":
         return _founders(law, birth), jnp.zeros_like(birth.founder)
-    draws = _one_noise(birth)
-    children, mutated = law.mutation.inherit(law.layout, parents, notes, birth.rates, draws)
-    founders = _founders(law, birth._replace(draws=draws))
-    genome = jnp.where(birth.founder[:, None], founders, children)
+    birth = birth._replace(draws=_one_noise(birth))
+    children, mutated = law.mutation.inherit(law.layout, parents, notes, birth.rates, birth.draws)
+
+    def with_founders() -> Array:
+        return jnp.where(birth.founder[:, None], _founders(law, birth), children)
+
+    if law.worlds == 1:
+        return with_founders(), mutated & ~birth.founder
+    # What leaves a branch is stored. In 16 worlds of 32 cells that halves the time of a tick; in one
+    # world it would add a tenth.
+    genome = lax.cond(birth.founder.any(), with_founders, lambda: children)
     return genome, mutated & ~birth.founder
 
 
