@@ -151,7 +151,7 @@ class Stage:
         self.age[cells], self.alive[cells] = 0, True
 
     def tick(self, chosen: np.ndarray | None = None) -> None:
-        """Step the living in cells, bool (N,), that have not come to the last tick."""
+        """Step the bodies in cells, bool (N,), whose last tick is still ahead."""
         part = self.lives.habitat
         active = self.alive & (self.age < TICKS)
         active &= True if chosen is None else chosen
