@@ -4,6 +4,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, Literal
 
+import numpy as np
 import tomli_w
 from pydantic import Field, ValidationError, ValidationInfo, field_validator
 
@@ -172,6 +173,11 @@ class Config(Settings):
             **{f"mutation.{name}": value for name, value in own},
             **rates_of(self.metabolism or Metabolism(), "metabolism."),
         }
+
+    @property
+    def world_seeds(self) -> np.ndarray:
+        """Return the seed of each world, uint64 (W,)."""
+        return np.uint64(self.seed) + np.arange(self.seeds, dtype=np.uint64)
 
     @property
     def begins(self) -> int:

@@ -13,7 +13,7 @@ from jax import Array, lax
 
 from primordia import device
 from primordia.compiled import shared
-from primordia.history.climate import climate_at
+from primordia.history.climate import PastClimate
 from primordia.law.heredity import Birth, mutation_rates, rebuild_genomes
 from primordia.law.law import Law
 from primordia.law.world import BirthCause, Climate
@@ -46,11 +46,10 @@ def rebuild_all(run: Archive, organisms: Sequence[tuple[int, int]]) -> np.ndarra
     """Return the genomes of K organisms, by birth number and world, float32 (K, P); see `rebuild`."""
     device.prepare()
     lineages = [run.lives.take(descent(run.lives, *each)) for each in organisms]
-    climates = {world: climate_at(run, world) for world in {world for _, world in organisms}}
-    genomes = []
-    for (_, world), lineage in zip(organisms, lineages, strict=True):
-        genome, births = _starting_point(run, lineage, world)
-        genomes.append(_replay(run, births, climates[world](births.born), genome))
+    past, genomes = PastClimate(run), []
+    for lineage in lineages:
+        genome, births = _starting_point(run, lineage)
+        genomes.append(_replay(run, births, past.of_lives(births, births.born), genome))
     return np.stack(genomes)
 
 
@@ -84,7 +83,7 @@ def place_in(state: Mapping[str, np.ndarray], law: Law, organism: int, world: in
     return int(cell)
 
 
-def _starting_point(run: Archive, lineage: Lives, world: int) -> tuple[np.ndarray, Lives]:
+def _starting_point(run: Archive, lineage: Lives) -> tuple[np.ndarray, Lives]:
     """Return the genome (P,) to start a lineage from, and the births to replay from there.
 
     In a fork this is the genome of the lineage's youngest organism at the fork, if there is one.
@@ -93,7 +92,8 @@ def _starting_point(run: Archive, lineage: Lives, world: int) -> tuple[np.ndarra
     fork = run.config.fork
     older = int((lineage.born <= fork.tick).sum()) if fork is not None else 0
     if older and run.origin is not None:
-        genome = genome_in(run.origin, run.law, int(lineage.id[older - 1]), world)
+        youngest = int(lineage.id[older - 1]), int(lineage.world[0])
+        genome = genome_in(run.origin, run.law, *youngest)
         return genome, lineage.take(slice(older, None))
     return np.zeros(run.law.layout.length, np.float32), lineage
 
@@ -108,7 +108,7 @@ def _replay(
         rows = np.arange(first, first + STEPS_AT_A_TIME)
         births, real = lineage.take(rows % len(lineage)), rows < len(lineage)
         values = {name: each[rows % len(lineage)] for name, each in climate.items()}
-        seed = wide(np.uint64(run.config.seed) + births.world.astype(np.uint64))
+        seed = wide(run.config.world_seeds[births.world])
         genome = np.asarray(
             replay(
                 genome,

@@ -1,5 +1,6 @@
 """The law: everything that is fixed for the worlds of a run."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
@@ -54,6 +55,14 @@ class Law:
     def per_cell(self, per_world: Array) -> Array:
         """Repeat the entry of each world for its cells: (W,) -> (C,)."""
         return jnp.broadcast_to(per_world[:, None], (self.worlds, self.cells)).ravel()
+
+    def in_cells(
+        self, climate: Mapping[str, Array], cells: Array | None = None
+    ) -> dict[str, Array]:
+        """Return the settings in force in all cells (C,), or in some (K,), from those of worlds (W,)."""
+        if cells is None:
+            return {name: self.per_cell(values) for name, values in climate.items()}
+        return {name: values[cells // self.cells] for name, values in climate.items()}
 
     @cached_property
     def rates(self) -> tuple[str, ...]:

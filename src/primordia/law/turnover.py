@@ -159,7 +159,7 @@ def _birth(law: Law, worlds: Worlds, births: Births, keys: Streams, cells: Array
         number=births.number.take(cells),
         draws=Draws(keys.take(world), cells % law.cells),
         founder=births.founded[cells] | (law.inheritance == "founder"),
-        rates=mutation_rates(law, {name: worlds.climate[name][world] for name in law.rates}),
+        rates=mutation_rates(law, law.in_cells(worlds.climate, cells)),
     )
 
 
@@ -188,7 +188,7 @@ def _begin_lives(
     founders_child = (parent_branch.hi | parent_branch.lo) == 0
     branch = select(founders_child, births.number.plus(jnp.ones_like(newborn)), parent_branch)
     branch = select(births.founded, zero(newborn.shape), branch)
-    store = law.per_cell(to_fixed_point(worlds.climate["metabolism.store"]))
+    store = to_fixed_point(law.in_cells(worlds.climate)["metabolism.store"])
     return organisms._replace(
         alive=alive,
         memory=jnp.where(newborn[:, None], 0, organisms.memory),
