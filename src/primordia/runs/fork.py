@@ -52,6 +52,7 @@ def fork(
         Trouble: a file cannot be written, or the source does not repeat as recorded.
     """
     ticks = int(source.ends.min())
+    source.admit()
     changed = _fork_config(source.path, settings, at)
     directory.refuse_if_taken(out)
     if not 1 <= at <= ticks:
@@ -116,7 +117,7 @@ def _birth_rows(living: Lives, engine: Engine) -> np.ndarray:
     """Return the births of the living as the law lists them, uint32 (n, words), in order of events."""
     living = living.take(np.lexsort((living.cell, living.world, living.born)))
     cell = living.world.astype(np.int64) * engine.law.cells + living.cell
-    names, notes = engine.law.mutation.notes, engine.state.world.organisms.notes
+    names, notes = engine.law.heredity.mutation.notes, engine.state.world.organisms.notes
     return BIRTHS.plus(*names).rows(
         cell=cell,
         id=living.id,
