@@ -34,6 +34,7 @@ from primordia.settings.tables import (
     values_of,
     with_full_paths,
 )
+from primordia.settings.values import check_values
 
 
 class Stop(Settings):
@@ -211,11 +212,12 @@ def parsed(values: dict[str, Any], source: str) -> Config:
         InputError: a value is wrong; the message names it and the source, in one line.
     """
     try:
+        check_values(values)
         return Config.model_validate(replaced(values, NONE, None))
     except ValidationError as error:
         fault = first_fault(error, Config, others=_settings_of_parts(values))
         raise InputError(f"{source}: {fault}") from None
-    except InputError as error:  # of a replaceable part
+    except InputError as error:  # of a value, or of a replaceable part
         raise InputError(f"{source}: {error}") from None
 
 

@@ -55,7 +55,7 @@ def run(
     if ancestor:
         set_value(settings, "ancestors", [str(file) for file in ancestor])
     path = out or api.fresh_directory(api.default_name(config.load(task, settings)))
-    _drive(path, quiet, lambda listen: api.run(task, path, listen=listen, **options, **settings))
+    _drive(path, quiet, lambda listen: api.run(task, path, settings, listen=listen, **options))
 
 
 @click.command()
@@ -106,9 +106,7 @@ def fork(
     for name, value in take_limits(options).items():
         set_value(settings, f"stop.{name}", value)
     path = out or fresh_directory(f"{run.name}-at{at}")
-    _drive(
-        path, quiet, lambda listen: Run(run).fork(at, path, listen=listen, **options, **settings)
-    )
+    _drive(path, quiet, lambda listen: Run(run).fork(at, path, settings, listen=listen, **options))
 
 
 def _drive(path: Path, quiet: bool, go: Callable[[Any], object]) -> None:

@@ -8,6 +8,7 @@ from pydantic import BaseModel, ValidationError
 
 from primordia.settings.base import SEASONAL, Settings
 from primordia.settings.tables import did_you_mean
+from primordia.settings.values import shown
 
 
 def setting_fields(model: type, prefix: str = "") -> dict[str, Any]:
@@ -58,10 +59,10 @@ def first_fault(
     if fault["type"] == "extra_forbidden":
         known = [*setting_fields(model, prefix), *others]
         known += sorted({name.rpartition(".")[0] for name in known} - {""})
-        return f"there is no setting {path!r}{did_you_mean(path, known)}{more}"
+        return f"there is no setting {shown(path)}{did_you_mean(path, known)}{more}"
     if fault["type"] == "missing":
         return f"{path} is missing{more}"
     if fault["type"] == "value_error":  # raised by our own validators, so its message is complete
         return f"{path}: {fault['ctx']['error']}{more}"
     message = fault["msg"][0].lower() + fault["msg"][1:]
-    return f"{path}: {message}, not {fault['input']!r}{more}"
+    return f"{path}: {message}, not {shown(fault['input'])}{more}"
