@@ -113,6 +113,7 @@ def _drive(path: Path, quiet: bool, go: Callable[[Any], object]) -> None:
     from primordia.api import Run
     from primordia.history.summary import summary
     from primordia.live.view import watching
+    from primordia.organism.replay import lacking
 
     try:
         with watching(quiet) as listen:
@@ -125,7 +126,8 @@ def _drive(path: Path, quiet: bool, go: Callable[[Any], object]) -> None:
     if not quiet:
         click.echo(summary(Run(path).info()))
         click.echo(f"Figures: primordia plot {path}")
-        click.echo(f"Video of the longest life: primordia replay {path}")
+        if not lacking(Run(path).opened().habitat):
+            click.echo(f"Video of the longest life: primordia replay {path}")
 
 
 COMMANDS = (run, resume, fork)

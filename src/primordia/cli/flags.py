@@ -88,33 +88,35 @@ class SettingsCommand(click.Command):
 
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Append every setting with its value, and what it means."""
-        title, rows = self.settings(ctx.meta["words"], ctx.obj)
+        title, rows = self.settings(ctx)
         if rows:
             with formatter.section(title):
                 formatter.write_dl(rows)
 
-    def settings(
-        self, words: tuple[str, ...], given: dict[str, Any]
-    ) -> tuple[str, list[tuple[str, str]]]:
-        """Return a title and rows for --help: all settings of a run, with values of the task named."""
+    def settings(self, ctx: click.Context) -> tuple[str, list[tuple[str, str]]]:
+        """Return a title and rows for --help: all settings of the task, file or run that is named."""
         from primordia.cli.help import setting_rows
         from primordia.settings.tables import tasks
 
         known = tasks()
-        task = next((word for word in words if word in known or word.endswith(".toml")), None)
-        values = f"values of {task}" if task else "defaults"
-        return f"Settings, as in TOML ({values})", setting_rows(task, given)
+        for word in ctx.meta["words"]:
+            config = Path(word, "config.toml")
+            source = str(config) if config.exists() else word
+            if source in known or source.endswith(".toml"):
+                return f"Settings, as in TOML (values of {word})", setting_rows(source, ctx.obj)
+        argument = " ".join(self.collect_usage_pieces(ctx)[1:])
+        more = f"`{ctx.command_path} {argument} --help` shows those of its habitat too"
+        return f"Settings, as in TOML (defaults; {more})", setting_rows(None, ctx.obj)
 
 
 class HabitatCommand(SettingsCommand):
     """A command on a RUN that takes any setting of its habitat as a flag."""
 
-    def settings(
-        self, words: tuple[str, ...], given: dict[str, Any]
-    ) -> tuple[str, list[tuple[str, str]]]:
+    def settings(self, ctx: click.Context) -> tuple[str, list[tuple[str, str]]]:
         """Return a title and rows for --help: the settings of the habitat of the run named."""
         from primordia.cli.help import habitat_rows
 
+        words = ctx.meta["words"]
         run = next((Path(word) for word in words if Path(word, "config.toml").exists()), None)
         return f"Settings of the habitat (values of {run})", habitat_rows(run) if run else []
 

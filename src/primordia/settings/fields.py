@@ -1,8 +1,8 @@
 """Single settings by dotted path: the settings of a model, and the first faulty one of a table."""
 
 from collections.abc import Iterable
-from types import UnionType
-from typing import Any, Union, get_args, get_origin
+from types import NoneType, UnionType
+from typing import Any, Literal, Union, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
@@ -31,6 +31,16 @@ def rates_of(group: Settings, prefix: str = "") -> dict[str, float]:
     return {
         prefix + name: getattr(group, name) for name, field in fields if SEASONAL in field.metadata
     }
+
+
+def choices(annotation: Any) -> tuple[Any, ...]:
+    """Return the values of a setting that is a choice, or a list of choices; () if it is neither."""
+    if annotation is bool:
+        return False, True
+    if get_origin(annotation) is Literal:
+        return get_args(annotation)
+    values = tuple(value for each in get_args(annotation) for value in choices(each))
+    return (*values, None) if values and NoneType in get_args(annotation) else values
 
 
 def _model_in(annotation: Any) -> type[BaseModel] | None:
