@@ -8,7 +8,7 @@ run.resume(ticks=200_000, until="none")
 policy = run.oldest().policy()
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain, count
 from pathlib import Path
@@ -102,16 +102,17 @@ class Run:
         self,
         at: int,
         out: str | Path | None = None,
+        settings: Mapping[str, Any] | None = None,
         *,
         checkpoint_every: float = 60.0,
         device: str = "cpu",
         listen: Listener | None = None,
-        **settings: Any,
+        **more: Any,
     ) -> "Run":
         """Make a run that goes on from the end of tick `at`, with changed settings; see `runs.fork`."""
         devices.select(device)
         path = Path(out) if out is not None else fresh_directory(f"{self.path.name}-at{at}")
-        fork(self.opened(), at, path, settings, listen)
+        fork(self.opened(), at, path, {**(settings or {}), **more}, listen)
         loop.resume(path, checkpoint_every=checkpoint_every, listen=listen)
         return Run(path)
 
@@ -139,11 +140,12 @@ class Run:
 def run(
     task: str,
     out: str | Path | None = None,
+    settings: Mapping[str, Any] | None = None,
     *,
     checkpoint_every: float = 60.0,
     device: str = "cpu",
     listen: Listener | None = None,
-    **settings: Any,
+    **more: Any,
 ) -> Run:
     """Run a task until its worlds stop.
 
@@ -153,7 +155,8 @@ def run(
         checkpoint_every: seconds from one checkpoint to the next.
         device: the device that JAX computes on, `cpu` or `gpu`.
         listen: called after each chunk.
-        settings: changed settings, tables as dicts: `cells=64, mutation={"scale": 0.02}`.
+        settings: changed settings, tables as dicts: `{"cells": 64, "mutation": {"scale": 0.02}}`.
+        more: further ones: `cells=64, mutation={"scale": 0.02}`.
 
     Raises:
         InputError: a name or setting is wrong, or `out` is taken.
@@ -161,7 +164,7 @@ def run(
         KeyboardInterrupt: on Ctrl-C, after a checkpoint.
     """
     devices.select(device)
-    chosen = config.load(task, settings)
+    chosen = config.load(task, {**(settings or {}), **more})
     path = Path(out) if out is not None else fresh_directory(default_name(chosen))
     loop.start(chosen, path, checkpoint_every=checkpoint_every, listen=listen)
     return Run(path)

@@ -37,6 +37,7 @@ from primordia.settings.tables import (
     values_of,
     with_full_paths,
 )
+from primordia.settings.values import check_values
 
 
 class Stop(Settings):
@@ -220,9 +221,12 @@ def parsed(values: dict[str, Any], source: str) -> Config:
 def _parsed(values: dict[str, Any], source: str, others: Callable[[], list[str]]) -> Config:
     """Return a Config; `others` names the settings of parts, among which a wrong name may be meant."""
     try:
+        check_values(values)
         return Config.model_validate(replaced(values, NONE, None))
     except ValidationError as error:
         raise InputError(f"{source}: {first_fault(error, Config, others=others())}") from None
+    except InputError as error:  # of a value
+        raise InputError(f"{source}: {error}") from None
 
 
 def _completed(config: Config, source: str) -> Config:

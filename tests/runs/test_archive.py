@@ -62,7 +62,7 @@ def test_no_file_is_checked_twice(fork: Path, checked: Counter[str]) -> None:
     assert {"config.toml", "origin/state.npz", "births/000000.parquet"} < names
 
 
-@pytest.mark.parametrize("words", [("replay", "--to", 20), ("evaluate", "--episodes", 2), "export"])
+@pytest.mark.parametrize("words", [("replay", "--to", 20), ("evaluate", "--games", 2), "export"])
 def test_a_command_opens_its_run_once(
     words: str | tuple[object, ...], tmp_path: Path, checked: Counter[str]
 ) -> None:

@@ -57,7 +57,7 @@ LIVING = [
     ["resume", "{run}", "--ticks", "70", "--quiet"],
     ["verify", "{run}"],
     ["fork", "{run}", "--at", "30", "--out", "{new}", "--quiet"],
-    ["evaluate", "{run}", "--ticks", "30", "--episodes", "2"],
+    ["evaluate", "{run}", "--ticks", "30", "--games", "2"],
 ]
 
 

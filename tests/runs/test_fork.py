@@ -86,7 +86,8 @@ def test_figures_of_a_fork_begin_at_the_fork(mill: Path, tmp_path: Path, at: int
         for field in fields(one):
             np.testing.assert_array_equal(getattr(one, field.name), getattr(other, field.name))
     np.testing.assert_array_equal(source.lives.recorded_since(at).seen, fork.lives.seen)
-    np.testing.assert_array_equal(whole.measured["first"].value, part.measured["first"].value)
+    for name in ("first", "births", "ticks"):
+        np.testing.assert_array_equal(whole.measured[name].value, part.measured[name].value)
     later = [fork.lives.of_world(world).born > at for world in range(2)]
     assert (part.measured["first"].value <= [1 + born.sum() for born in later]).all()
     after, before = harvests(fork, 2), harvests(source, 2)

@@ -23,7 +23,7 @@ SENSES = {
 @run_argument
 @click.option("--organism", type=int, help="Birth number [that of the longest life].")
 @click.option("--world", type=int, help="The organism's world [0, or that of the longest life].")
-@click.option("--episodes", default=30, show_default=True, help="Number of games.")
+@click.option("--games", default=30, show_default=True, help="Number of games.")
 @click.option("--ticks", default=100_000, show_default=True, help="Cut games at this length.")
 @click.option("--freeze-senses", is_flag=True, help="Keep senses as they are at the start.")
 @click.option(
@@ -38,7 +38,7 @@ def evaluate(
     run: Path,
     organism: int | None,
     world: int | None,
-    episodes: int,
+    games: int,
     ticks: int,
     freeze_senses: bool,
     open_loop: bool,
@@ -57,7 +57,7 @@ def evaluate(
         raise InputError("--freeze-senses and --open-loop exclude each other; give one of them")
     senses: Any = "frozen" if freeze_senses else "ignored" if open_loop else "live"
     chosen = chosen_organism(run, organism, world, trust)
-    result = chosen.evaluate(games=episodes, ticks=ticks, senses=senses, habitat=habitat)
+    result = chosen.evaluate(games=games, ticks=ticks, senses=senses, habitat=habitat)
     click.echo(json.dumps(result.to_dict()) if as_json else evaluation_text(result, habitat))
 
 

@@ -56,7 +56,7 @@ def run(
     if ancestor:
         set_value(settings, "ancestors", [str(file) for file in ancestor])
     path = out or api.fresh_directory(api.default_name(config.load(task, settings)))
-    _drive(path, quiet, lambda listen: api.run(task, path, listen=listen, **options, **settings))
+    _drive(path, quiet, lambda listen: api.run(task, path, settings, listen=listen, **options))
 
 
 @click.command()
@@ -113,7 +113,7 @@ def fork(
     _drive(
         path,
         quiet,
-        lambda listen: load(run, trust).fork(at, path, listen=listen, **options, **settings),
+        lambda listen: load(run, trust).fork(at, path, settings, listen=listen, **options),
     )
 
 
@@ -121,6 +121,7 @@ def _drive(path: Path, quiet: bool, go: Callable[[Any], object]) -> None:
     from primordia.api import Run
     from primordia.history.summary import summary
     from primordia.live.view import watching
+    from primordia.organism.replay import lacking
 
     try:
         with watching(quiet) as listen:
@@ -133,7 +134,8 @@ def _drive(path: Path, quiet: bool, go: Callable[[Any], object]) -> None:
     if not quiet:
         click.echo(summary(Run(path).info()))
         click.echo(f"Figures: primordia plot {path}")
-        click.echo(f"Video of the longest life: primordia replay {path}")
+        if not lacking(Run(path).opened().habitat):
+            click.echo(f"Video of the longest life: primordia replay {path}")
 
 
 COMMANDS = (run, resume, fork)
