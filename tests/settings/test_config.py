@@ -187,12 +187,46 @@ def test_help_lists_every_setting_with_its_value_and_meaning(tmp_path: Path) -> 
     assert "[none]" in squeezed
 
 
+def test_help_names_the_values_of_every_choice() -> None:
+    squeezed = " ".join(help_text(TASK).split())
+    for listed in (
+        "(ring, torus4, torus8, well- mixed)",
+        "(blind, empty-only, replacing)",
+        "(direct, gaussian)",
+        "(parent, founder)",
+        "(one, fill)",
+        "(saturation, none)",
+        "(false, true)",
+        "(x, x_dot, theta, theta_dot)",
+    ):
+        assert listed in squeezed
+    with_pool = " ".join(help_text("Pong-survival").split())
+    assert "senses are constant (a control) (false, true) [false]" in with_pool
+
+
+def test_help_without_a_task_shows_what_all_tasks_have() -> None:
+    """The settings of simulators differ; help on a task shows those of its own."""
+    for command, named in (("run", "TASK|FILE.toml"), ("fork", "RUN")):
+        done = here(command, "--help")
+        assert (done.returncode, done.stderr) == (0, "")
+        habitat = [word for word in done.stdout.split() if word.startswith("--habitat.")]
+        assert habitat == ["--habitat.name"]
+        assert "--brain.hidden " in done.stdout
+        squeezed = " ".join(done.stdout.split())
+        assert f"primordia {command} {named} --help` shows those of its habitat too" in squeezed
+
+
 def test_help_shows_the_values_of_a_file_or_else_the_defaults(tmp_path: Path) -> None:
     file = tmp_path / "mine.toml"
     file.write_text(f'task = "{TASK}"\nhazard = 0.25\n')
     assert "for all organisms [0.25]" in " ".join(help_text(file).split())
     assert "for all organisms [0.0]" in " ".join(help_text().split())
     assert "values of" not in help_text("--out", tmp_path)
+    (tmp_path / "config.toml").write_text(f'task = "{TASK}"\nhazard = 0.5\n')
+    done = here("fork", tmp_path, "--help")
+    assert f"values of {tmp_path}" in " ".join(done.stdout.split())
+    assert "for all organisms [0.5]" in " ".join(done.stdout.split())
+    assert "--habitat.angle_limit" in done.stdout
     file.write_text('task = "own"\n[habitat]\nname = "no.such:Habitat"\n')
     assert "--cells" in help_text(file)
 
