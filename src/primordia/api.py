@@ -26,9 +26,8 @@ from primordia.organism.evaluation import Evaluation, evaluate
 from primordia.organism.export import export
 from primordia.organism.organism import Organism
 from primordia.organism.policy import Policy
-from primordia.runs import loop
+from primordia.runs import code, loop
 from primordia.runs.archive import Archive
-from primordia.runs.directory import read_config
 from primordia.runs.fork import fork
 from primordia.runs.lives import Lives
 from primordia.runs.loop import Listener
@@ -182,13 +181,21 @@ def compare(
     return comparison.compare(opened, births, ticks)
 
 
-def load(run: str | Path) -> Run:
+def load(run: str | Path, trust: bool = False) -> Run:
     """Return the run in a directory.
+
+    Args:
+        run: the directory.
+        trust: allow the run's own code to be executed, from now on and on this machine. Without that,
+            code that the user did not begin a run with stops what executes it: `resume`, `replay` and
+            the like. Reading records executes nothing.
 
     Raises:
         InputError: the directory holds no run.
     """
-    read_config(Path(run))
+    opened = Archive(run)
+    if trust:
+        code.trust(opened.code())
     return Run(Path(run))
 
 

@@ -36,7 +36,6 @@ for command in (*evolve.COMMANDS, *inspect.COMMANDS, *evaluate.COMMANDS):
 
 def main() -> None:
     """Run a command and exit."""
-    sys.path.insert(0, "")  # a user's habitats are found in the current folder
     try:
         commands(standalone_mode=False)
     except click.exceptions.Exit as done:

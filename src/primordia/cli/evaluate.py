@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from primordia.cli.flags import HabitatCommand, run_argument
+from primordia.cli.flags import HabitatCommand, run_argument, trust_option
 from primordia.errors import InputError
 
 if TYPE_CHECKING:
@@ -29,6 +29,7 @@ SENSES = {
 @click.option(
     "--open-loop", is_flag=True, help="Repeat the actions of a game of its task, whatever happens."
 )
+@trust_option
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 @click.pass_obj
 def evaluate(
@@ -41,6 +42,7 @@ def evaluate(
     ticks: int,
     freeze_senses: bool,
     open_loop: bool,
+    trust: bool,
     as_json: bool,
 ) -> None:
     """Let an organism play the game that its task is made of, from fresh starts, and print its results.
@@ -54,7 +56,7 @@ def evaluate(
     if freeze_senses and open_loop:
         raise InputError("--freeze-senses and --open-loop exclude each other; give one of them")
     senses: Any = "frozen" if freeze_senses else "ignored" if open_loop else "live"
-    chosen = chosen_organism(run, organism, world)
+    chosen = chosen_organism(run, organism, world, trust)
     result = chosen.evaluate(games=games, ticks=ticks, senses=senses, habitat=habitat)
     click.echo(json.dumps(result.to_dict()) if as_json else evaluation_text(result, habitat))
 

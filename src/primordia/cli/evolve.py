@@ -16,6 +16,7 @@ from primordia.cli.flags import (
     run_argument,
     set_value,
     take_limits,
+    trust_option,
 )
 from primordia.cli.stderr import report
 
@@ -63,16 +64,17 @@ def run(
 @limit_options
 @checkpoint_option
 @device_option
-@click.option("--inexact", is_flag=True, help="Go on even if versions or machine differ.")
+@click.option("--inexact", is_flag=True, help="Go on even if versions, code or machine differ.")
+@trust_option
 @quiet_option
-def resume(run: Path, quiet: bool, **options: Any) -> None:
+def resume(run: Path, quiet: bool, trust: bool, **options: Any) -> None:
     """Go on with a run that stopped, was interrupted, or was killed."""
-    from primordia.api import Run
+    from primordia.api import load
 
     limits = take_limits(options)
 
     def drive(listen: Any) -> None:
-        for note in Run(run).resume(listen=listen, **options, **limits):
+        for note in load(run, trust).resume(listen=listen, **options, **limits):
             report(note)
 
     _drive(run, quiet, drive)
@@ -85,6 +87,7 @@ def resume(run: Path, quiet: bool, **options: Any) -> None:
 @limit_options
 @checkpoint_option
 @device_option
+@trust_option
 @quiet_option
 @click.pass_obj
 def fork(
@@ -93,6 +96,7 @@ def fork(
     run: Path,
     at: int,
     out: Path | None,
+    trust: bool,
     quiet: bool,
     **options: Any,
 ) -> None:
@@ -101,12 +105,16 @@ def fork(
     Without either it repeats the RUN. Any setting can be changed that leaves brains, senses and cells
     unchanged.
     """
-    from primordia.api import Run, fresh_directory
+    from primordia.api import fresh_directory, load
 
     for name, value in take_limits(options).items():
         set_value(settings, f"stop.{name}", value)
     path = out or fresh_directory(f"{run.name}-at{at}")
-    _drive(path, quiet, lambda listen: Run(run).fork(at, path, settings, listen=listen, **options))
+    _drive(
+        path,
+        quiet,
+        lambda listen: load(run, trust).fork(at, path, settings, listen=listen, **options),
+    )
 
 
 def _drive(path: Path, quiet: bool, go: Callable[[Any], object]) -> None:

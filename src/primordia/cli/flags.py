@@ -19,6 +19,9 @@ device_option = click.option(
 checkpoint_option = click.option(
     "--checkpoint-every", type=float, default=60.0, show_default=True, metavar="SECONDS"
 )
+trust_option = click.option(
+    "--trust", is_flag=True, help="Let the run's own code be executed, from now on."
+)
 quiet_option = click.option("--quiet", is_flag=True, help="Print nothing while running.")
 
 LIMITS = {

@@ -153,7 +153,7 @@ def compare(
     ]
     if not any(map(often_saturated, saturation)):
         lives = [each.recorded_until(end) for each in lives]
-    names, settings, rate = _names(runs), differing(configs), runs[0].habitat.rate
+    names, settings, rate = _names(runs), differing(configs), runs[0].description.rate
     arms = []
     for number, (run, lived) in enumerate(zip(runs, lives, strict=True)):
         worlds = _worlds(lived)

@@ -37,8 +37,7 @@ class Engine:
         memory.check(self.law, habitat)
         self.tallies = habitat.tallies
         self.chunks: FusedChunks | HostedChunks = _chunks(self.law, habitat)
-        seeds = [config.seed + world for world in range(config.seeds)]
-        self.state: State = self.chunks.begin(begin(self.law, seeds))
+        self.state: State = self.chunks.begin(begin(self.law, config.world_seeds))
         self._ticks = 1
 
     @property

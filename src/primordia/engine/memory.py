@@ -6,6 +6,7 @@ from pathlib import Path
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 
 from primordia.errors import InputError
 from primordia.habitats.bodies import placeholder_bodies
@@ -38,7 +39,7 @@ def bytes_needed(law: Law, habitat: AnyHabitat) -> int:
             bodies = placeholder_bodies(habitat, cells)
         else:
             bodies = jnp.zeros((cells, habitat.senses_size), jnp.float32)
-        return begin(law, [0] * law.worlds), bodies, empty(law)
+        return begin(law, np.zeros(law.worlds, np.uint64)), bodies, empty(law)
 
     leaves = jax.tree.leaves(jax.eval_shape(arrays))
     return sum(leaf.size * leaf.dtype.itemsize for leaf in leaves)

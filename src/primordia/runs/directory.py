@@ -1,4 +1,4 @@
-"""A run's directory: settings, versions, the genomes it starts from, and its lock."""
+"""A run's directory: settings, versions, description, the genomes it starts from, and its lock."""
 
 import json
 from collections.abc import Iterator
@@ -8,11 +8,13 @@ from typing import Any
 
 from filelock import FileLock, Timeout
 
-from primordia import device, files
+from primordia import device, files, own_code
 from primordia.brains import genomes
 from primordia.config import Config, parsed
 from primordia.errors import InputError, Trouble
 from primordia.habitats.contract import AnyHabitat
+from primordia.runs import code
+from primordia.runs.description import Description
 from primordia.runs.schema import TABLES
 from primordia.settings.tables import from_toml
 
@@ -22,7 +24,7 @@ FORMAT = 2
 
 @contextmanager
 def create(run: Path, config: Config) -> Iterator[None]:
-    """Write settings, founders and versions into a new or empty directory, and hold its lock.
+    """Write settings, founders, code and versions into a new or empty directory, and hold its lock.
 
     The versions come last: a directory that has them is a run.
 
@@ -33,12 +35,15 @@ def create(run: Path, config: Config) -> Iterator[None]:
     refuse_if_taken(run)
     make_folders(run)
     with locked(run):
-        versions = {"format": FORMAT, **versions_here(config.build_habitat())}
-        if config.ancestors:
-            layout = config.build_layout(config.build_habitat())
-            founders = genomes.read(config.ancestors, layout)
-            genomes.write(run / genomes.FOUNDERS, layout, founders, {})
+        habitat = config.build_habitat()
+        law, versions = (
+            config.build_law(habitat),
+            {"format": FORMAT, **versions_here(config, habitat)},
+        )
+        if (founders := law.heredity.ancestors) is not None:
+            genomes.write(run / genomes.FOUNDERS, law.heredity.layout, founders, {})
             config = config.model_copy(update={"ancestors": (genomes.FOUNDERS,)})
+        Description.of(law, habitat, code.copy(config, run)).write(run)
         _write_text(run / "config.toml", config.to_toml())
         _write_text(run / "versions.json", json.dumps(versions, indent=1))
         yield
@@ -83,9 +88,10 @@ def read_config(run: Path) -> Config:
     return parsed(from_toml(run / "config.toml"), source=str(run / "config.toml"))
 
 
-def versions_here(habitat: AnyHabitat) -> dict[str, str]:
+def versions_here(config: Config, habitat: AnyHabitat) -> dict[str, str]:
     """Return the versions that a run begun here would depend on, by name."""
-    return {**device.versions(), **habitat.versions}
+    packages = own_code.packages(config.own_modules.values())
+    return {**device.versions(), **habitat.versions, **packages}
 
 
 def recorded_versions(run: Path) -> dict[str, Any]:
