@@ -131,6 +131,9 @@ def test_flags_override_the_file_and_the_file_overrides_the_task(tmp_path: Path)
     assert config.mutation["founder_scale"] == tasks()[TASK]["mutation"]["founder_scale"], "task"
     assert config.seasons == (Schedule(kind="schedule", setting="hazard", at=9, value=0.0),)
     assert json.loads(here("info", run, "--json").stdout)["ticks"] == 2
+    helped = " ".join(here("fork", run, "--help").stdout.split())
+    for part in (f"values of {run}", "cells of one world [8]", "--habitat.angle_limit"):
+        assert part in helped
 
 
 def test_merging_does_not_change_its_arguments() -> None:
@@ -224,11 +227,6 @@ def test_help_shows_the_values_of_a_file_or_else_the_defaults(tmp_path: Path) ->
     assert "for all organisms [0.25]" in " ".join(help_text(file).split())
     assert "for all organisms [0.0]" in " ".join(help_text().split())
     assert "values of" not in help_text("--out", tmp_path)
-    (tmp_path / "config.toml").write_text(f'task = "{TASK}"\nhazard = 0.5\n')
-    done = here("fork", tmp_path, "--help")
-    assert f"values of {tmp_path}" in " ".join(done.stdout.split())
-    assert "for all organisms [0.5]" in " ".join(done.stdout.split())
-    assert "--habitat.angle_limit" in done.stdout
     file.write_text('task = "own"\n[habitat]\nname = "no.such:Habitat"\n')
     assert "--cells" in help_text(file)
 
