@@ -310,3 +310,9 @@ def test_a_fork_cut_off_before_it_began_is_an_error_that_says_why(
         (fork.path / folder).rename(tmp_path / folder)
     with pytest.raises(InputError, match="cut off before it began"):
         fork.resume()
+
+
+def test_a_fork_has_the_task_of_its_run(mill: Path, tmp_path: Path) -> None:
+    words = ("fork", mill, "--at", 3, "--task", "mine", "--out", tmp_path / "fork")
+    complains(here(*words), 2, "no setting 'task'")
+    assert not (tmp_path / "fork").exists()

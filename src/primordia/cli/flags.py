@@ -98,15 +98,16 @@ class SettingsCommand(click.Command):
 
     def settings(self, ctx: click.Context) -> tuple[str, list[tuple[str, str]]]:
         """Return a title and rows for --help: all settings of the task, file or run that is named."""
-        from primordia.cli.help import setting_rows
+        from primordia.cli.help import run_rows, setting_rows
         from primordia.settings.tables import tasks
 
         known = tasks()
         for word in ctx.meta["words"]:
-            config = Path(word, "config.toml")
-            source = str(config) if config.exists() else word
-            if source in known or source.endswith(".toml"):
-                return f"Settings, as in TOML (values of {word})", setting_rows(source, ctx.obj)
+            title = f"Settings, as in TOML (values of {word})"
+            if Path(word, "config.toml").exists():
+                return title, run_rows(Path(word), ctx.obj)
+            if word in known or word.endswith(".toml"):
+                return title, setting_rows(word, ctx.obj)
         argument = " ".join(self.collect_usage_pieces(ctx)[1:])
         more = f"`{ctx.command_path} {argument} --help` shows those of its habitat too"
         return f"Settings, as in TOML (defaults; {more})", setting_rows(None, ctx.obj)

@@ -35,6 +35,12 @@ def setting_rows(task: str | None, given: dict[str, Any]) -> list[tuple[str, str
     return _rows({path: fields[path] for path in fields if path not in hidden}, values)
 
 
+def run_rows(run: Path, given: dict[str, Any]) -> list[tuple[str, str]]:
+    """Return each setting with its value in a run; see `setting_rows`."""
+    Archive(run).admit()
+    return setting_rows(str(run / "config.toml"), given)
+
+
 def habitat_rows(run: Path) -> list[tuple[str, str]]:
     """Return each setting of a run's habitat, with its meaning and its value in the run."""
     archive = Archive(run)

@@ -69,6 +69,8 @@ def fork(
 
 def _fork_config(source: Path, settings: dict[str, Any], at: int) -> Config:
     """Return the configuration of the fork."""
+    if "task" in settings:
+        raise InputError("there is no setting 'task' of a fork: it has the task of its run")
     values = merged(from_toml(source / "config.toml"), settings)
     values["fork"] = ForkedFrom(run=str(source), tick=at).model_dump()
     return validated(values, source=str(source))

@@ -23,14 +23,15 @@ def check_values(values: Any, path: str = "", depth: int = 0) -> None:
 
     Raises:
         InputError: a number is not finite, or does not fit into 64 bits or float32; a text cannot be
-            written as UTF-8, or has a NUL; tables are nested too deeply.
+            written as UTF-8, or has a NUL; a name cannot be printed; tables are nested too deeply.
     """
     if isinstance(values, dict | list | tuple):
         if depth > DEEPEST:
             raise InputError(f"{shown(path)} is nested more than {DEEPEST} levels deep")
         named = values.items() if isinstance(values, dict) else enumerate(values)
         for name, value in named:
-            check_values(name, "a name")
+            if not str(name).isprintable():
+                raise InputError(f"there is no setting {shown(f'{path}.{name}'.removeprefix('.'))}")
             check_values(value, f"{path}.{name}".removeprefix("."), depth + 1)
     elif isinstance(values, int) and not -(2**63) <= values < 2**64:
         raise InputError(f"{path}: {shown(values)} does not fit into 64 bits")
