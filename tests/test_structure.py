@@ -104,6 +104,20 @@ def test_no_module_uses_pickle_eval_or_other_randomness(module: str) -> None:
 
 
 @pytest.mark.parametrize("module", FILES)
+def test_texts_are_read_and_written_in_utf_8(module: str) -> None:
+    """Without an encoding, Python takes that of the user's locale."""
+    calls = (node for node in ast.walk(tree(module)) if isinstance(node, ast.Call))
+    for call in calls:
+        name = ast.unparse(call.func)
+        if name.endswith((".read_text", ".write_text")) and name != WRITER:
+            assert "encoding" in {each.arg for each in call.keywords}, ast.unparse(call)
+
+
+WRITER = "files.write_text"
+"""The function that writes all texts; it takes no encoding."""
+
+
+@pytest.mark.parametrize("module", FILES)
 def test_files_are_short_and_begin_with_a_docstring(module: str) -> None:
     assert len(FILES[module].read_text(encoding="utf-8").splitlines()) < 350
     assert ast.get_docstring(tree(module))

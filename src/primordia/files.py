@@ -86,10 +86,9 @@ def make_folder(path: Path) -> None:
         InputError: no folder can have this name.
         Trouble: it cannot be made.
     """
+    check_name(path)
     try:
         path.mkdir(parents=True, exist_ok=True)
-    except ValueError:
-        raise _no_name(path) from None
     except OSError as error:
         raise Trouble(f"{path} cannot be written: {error.strerror or error}") from None
 
@@ -110,22 +109,22 @@ def remove(path: Path) -> None:
 
 
 def _kind(path: Path) -> str | None:
-    """Return what a path is, such as "a folder"; None if it is free or a regular file.
-
-    Raises:
-        InputError: no file can have this name.
-    """
+    """Return what a path is, such as "a folder"; None if it is free or a regular file."""
+    check_name(path)
     try:
         return KINDS.get(stat.S_IFMT(path.lstat().st_mode))
-    except ValueError:
-        raise _no_name(path) from None
     except OSError:  # it is free, or cannot be looked at, of which writing says more
         return None
 
 
-def _no_name(path: Path) -> InputError:
-    """Return the error for a name that holds a NUL or half a surrogate pair."""
-    return InputError(f"{str(path)!r} cannot be a file's name; choose another")
+def check_name(path: Path) -> None:
+    """Raise InputError unless a path is UTF-8, as libraries want it, and holds no NUL.
+
+    Python represents bytes that are no UTF-8 by halves of surrogate pairs.
+    """
+    name = str(path)
+    if "\0" in name or name != name.encode(errors="replace").decode():
+        raise InputError(f"{name!r} is not in UTF-8 or holds a NUL; choose another name")
 
 
 def sync(path: Path) -> None:

@@ -1,5 +1,6 @@
 """The command line."""
 
+import os
 import sys
 
 from primordia import interrupts
@@ -7,8 +8,16 @@ from primordia import interrupts
 
 def main() -> None:
     """Execute a command and exit."""
+    open_streams()
     interrupts.end_commands_at_once()  # before anything else is imported, which takes seconds
     from primordia.cli import commands, streams
 
     streams.prepare()
     sys.exit(commands.execute())
+
+
+def open_streams() -> None:
+    """Let standard streams that are closed lead nowhere; the next file opened would take their place."""
+    while (nowhere := os.open(os.devnull, os.O_RDWR)) <= 2:
+        os.set_inheritable(nowhere, True)  # worker processes have the same streams
+    os.close(nowhere)

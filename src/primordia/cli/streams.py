@@ -1,4 +1,4 @@
-"""The standard streams of a command: open, in UTF-8, and without control characters of a run's names."""
+"""The standard streams of a command: in UTF-8, and without control characters of a run's names."""
 
 import io
 import os
@@ -20,16 +20,8 @@ class Printable(io.TextIOWrapper):
 
 
 def prepare() -> None:
-    """Replace the standard streams of this process by ones that take any text.
-
-    Streams that are closed lead nowhere: otherwise the next file that is opened would take their place.
-    """
-    while (nowhere := os.open(os.devnull, os.O_RDWR)) <= 2:
-        os.set_inheritable(nowhere, True)  # worker processes have the same streams
-    os.close(nowhere)
-    if isinstance(
-        sys.__stdout__, io.TextIOWrapper
-    ):  # which the live view writes escape sequences to
+    """Replace the standard streams of this process by ones that take any text."""
+    if isinstance(sys.__stdout__, io.TextIOWrapper):  # the live view writes escape sequences to it
         sys.__stdout__.reconfigure(encoding="utf-8", errors="backslashreplace")
     sys.stdout, sys.stderr = _stream(1), _stream(2)
 

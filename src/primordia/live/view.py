@@ -184,6 +184,6 @@ class Frame:
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         """Yield the rows, cut to the width."""
         for parts in self._rows:
-            row = [Segment(printable(text), style) for text, style, _ in parts]
+            row = [Segment(printable(text, kept=""), style) for text, style, _ in parts]
             yield from Segment.adjust_line_length(row, options.max_width, pad=False)
             yield Segment.line()

@@ -51,7 +51,7 @@ def create(run: Path, config: Config, fill: Callable[[], object] | None = None) 
         files.make_folder(run)
         with locked(run):
             refuse_if_taken(run)  # another process may have made it since
-            with interrupts.undone_by(partial(_remove_unbegun, run)):
+            with held(run) as check, interrupts.undone_by(partial(_remove_unbegun, run, check)):
                 make_folders(run)
                 if config.ancestors:
                     layout = config.build_layout(habitat)
@@ -65,13 +65,14 @@ def create(run: Path, config: Config, fill: Callable[[], object] | None = None) 
                 yield
 
 
-def _remove_unbegun(run: Path) -> None:
+def _remove_unbegun(run: Path, check: Callable[[], None]) -> None:
     """Remove what `create` has written, unless there is a checkpoint, from which the run can go on."""
     if (run / VERSIONS).exists() and checkpoint.exists(run):
         return
-    for name in OWN:
-        if os.path.lexists(run / name):
-            with suppress(Trouble):
+    with suppress(Trouble):
+        check()
+        for name in OWN:
+            if os.path.lexists(run / name):
                 files.remove(run / name)
 
 
@@ -83,6 +84,7 @@ def _remove_empty(folders: list[Path]) -> None:
 
 def refuse_if_taken(run: Path) -> None:
     """Raise InputError unless the path is free or a directory without files, but for a lock."""
+    files.check_name(run)
     if (run / VERSIONS).exists():
         raise InputError(f"{run} exists already; choose another --out, or `primordia resume {run}`")
     if run.exists() and not (run.is_dir() and {each.name for each in run.iterdir()} <= {LOCK}):
@@ -106,6 +108,7 @@ def read_config(run: Path) -> Config:
     Raises:
         InputError: this is no run directory, or one that this version cannot read.
     """
+    files.check_name(run)
     try:
         made_by = int(recorded_versions(run)["format"])
     except (OSError, ValueError, KeyError, TypeError):

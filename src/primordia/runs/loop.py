@@ -160,8 +160,8 @@ def drive(
         KeyboardInterrupt: on Ctrl-C, SIGTERM or SIGHUP, after a checkpoint if the run has advanced.
     """
     limits = engine.limits(progress.limits)
-    saver = Saver(engine, recorder, run, progress, checkpoint_every)
     with interrupts.noting() as noted, directory.held(run) as check:
+        saver = Saver(engine, recorder, run, progress, checkpoint_every, check)
         chunks = _chunks(engine, limits, noted)
         first = list(
             islice(chunks, 1)
@@ -192,8 +192,15 @@ class Saver:
     """The checkpoints of a run that goes on: some soon after the start, then one in each interval."""
 
     def __init__(
-        self, engine: Engine, recorder: Recorder, run: Path, progress: Progress, every: float
+        self,
+        engine: Engine,
+        recorder: Recorder,
+        run: Path,
+        progress: Progress,
+        every: float,
+        check: Callable[[], None],
     ) -> None:
+        self._check = check
         self._engine, self._recorder, self._run, self._progress = engine, recorder, run, progress
         self._before, self._every = progress.wall_s, every
         self._began = self._saved = time.perf_counter()
@@ -206,7 +213,8 @@ class Saver:
         return time.perf_counter() - self._began
 
     def save(self) -> None:
-        """Write a checkpoint."""
+        """Write a checkpoint, unless the run's folder is no longer there."""
+        self._check()
         self._progress.wall_s = self._before + self.seconds
         checkpoint.save(self._run, self._engine.arrays(), self._recorder, self._progress)
 
