@@ -210,7 +210,7 @@ def test_a_frame_spells_out_control_characters() -> None:
     console = Console(file=io.StringIO(), force_terminal=True, width=80, height=10)
     console.print(live.Frame([[Segment("a\x1b]0;title\x07b\x9b2Jc\n")]]))
     assert isinstance(console.file, io.StringIO)
-    assert console.file.getvalue() == "a\\x1b]0;title\\x07b\\x9b2Jc\\n\n\n"
+    assert console.file.getvalue() == "a\\x1b]0;title\\x07b\\x9b2Jc\\n\n"
 
 
 # Without a terminal.
