@@ -10,7 +10,7 @@ import pytest
 SOURCE = Path(__file__).parent.parent / "src" / "primordia"
 
 LAYERS = [
-    {"errors", "interrupts", "printable"},
+    {"errors", "interrupts", "own_code", "printable"},
     {"compiled", "device", "files", "random", "rounding", "settings", "tasks"},
     {"brains", "pool"},
     {"habitats", "mutations"},

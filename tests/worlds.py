@@ -63,8 +63,8 @@ class Lived:
         """`start`: the counts of ticks and births that the run starts at."""
         self.config, self.engine = config, Engine(config)
         if any(start):
-            seeds = [config.seed + world for world in range(config.seeds)]
-            self.engine.state = self.engine.chunks.begin(begin(self.engine.law, seeds, *start))
+            worlds = begin(self.engine.law, config.world_seeds, *start)
+            self.engine.state = self.engine.chunks.begin(worlds)
         self.recorder = recorder_for(self.engine, None)
         self.rows: dict[str, list[np.ndarray]] = {"births": [], "deaths": [], "metrics": []}
         self.advance_to(ticks, chunk, **stop)
@@ -91,7 +91,7 @@ class Lived:
         """Return the genomes of the living, float32 (n, P)."""
         organisms = self.engine.state.world.organisms
         blocks = {name: np.asarray(block) for name, block in organisms.genome.items()}
-        return self.engine.law.layout.join(blocks)[np.asarray(organisms.alive)]
+        return self.engine.law.heredity.layout.join(blocks)[np.asarray(organisms.alive)]
 
     def digests(self) -> list[str]:
         """Return the digest of each world."""

@@ -80,7 +80,7 @@ def own_folder(path: Path) -> None:
 
 
 def make_folder(path: Path) -> None:
-    """Make a folder and those that it is in, unless they exist; links to folders are followed.
+    """Make a folder and its missing parents, and wait until their names are on the disk.
 
     Raises:
         InputError: no folder can have this name.
@@ -88,7 +88,10 @@ def make_folder(path: Path) -> None:
     """
     check_name(path)
     try:
-        path.mkdir(parents=True, exist_ok=True)
+        for folder in reversed([path, *path.parents]):
+            if not folder.is_dir():
+                folder.mkdir(exist_ok=True)
+                sync(folder.parent)
     except OSError as error:
         raise Trouble(f"{path} cannot be written: {error.strerror or error}") from None
 

@@ -220,7 +220,7 @@ def test_two_equal_ratchets_both_turn() -> None:
     """Each looks on its own; neither stops the other."""
     twin = ratchet("metabolism.gain", "saturation", 0.5, 0.5, 10)
     law, _ = law_of([twin, twin])
-    world = begin(law, [1, 2])
+    world = begin(law, np.array([1, 2]))
     full = world.organisms.alive.at[:16].set(True)
     looks = world.worlds.looks._replace(wait=jnp.zeros((2, 2), jnp.int32))
     world = world._replace(
@@ -236,7 +236,7 @@ def test_a_world_that_has_stopped_has_no_seasons() -> None:
     law, _ = law_of(
         [ratchet("replication", "saturation", 0.0, 0.5, 10), schedule("hazard", 7, 0.5)]
     )
-    world = begin(law, [1, 2], tick=7)
+    world = begin(law, np.array([1, 2]), tick=7)
     looks = world.worlds.looks._replace(wait=jnp.zeros((2, 1), jnp.int32))
     alive = jnp.ones_like(world.organisms.alive)
     world = world._replace(

@@ -1,11 +1,10 @@
 """All commands. A user's error is one line on stderr with exit status 2; trouble has status 1."""
 
-import sys
-
 import click
 
 from primordia import interrupts
 from primordia.cli import evaluate, evolve, inspect
+from primordia.cli.cache import keep_compiled_code
 from primordia.cli.streams import flush, report
 from primordia.errors import InputError, Trouble
 
@@ -37,7 +36,7 @@ for command in (*evolve.COMMANDS, *inspect.COMMANDS, *evaluate.COMMANDS):
 
 def execute() -> int:
     """Execute the command that `sys.argv` gives -> its exit status."""
-    sys.path.insert(0, "")  # a user's habitats are found in the current folder
+    keep_compiled_code()
     try:
         return _outcome()
     finally:

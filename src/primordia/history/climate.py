@@ -1,35 +1,60 @@
-"""The values of the settings that seasons change, at any tick of a world's past."""
-
-from collections.abc import Callable
+"""The values of the settings that seasons change, at any tick of a run's past."""
 
 import numpy as np
-import pyarrow.compute as pc
 
 from primordia.runs.archive import Archive
+from primordia.runs.lives import Lives
+
+Climates = dict[str, np.ndarray]
+"""Dotted name of each setting -> its values, float32 (n,)."""
 
 
-def climate_at(run: Archive, world: int) -> Callable[[np.ndarray], dict[str, np.ndarray]]:
-    """Return a function of ticks (n,) -> {dotted setting: its value in each tick, float32 (n,)}.
+class PastClimate:
+    """The climates of all worlds of a run, as its metrics record them."""
 
-    A season that acts at the end of tick t is in force from tick t + 1 on; its sample has tick t.
-    """
-    start, metrics = _beginning(run, world), None
-    if run.config.seasons:
-        metrics = run.metrics.filter(pc.equal(run.metrics["world"], world))
+    def __init__(self, run: Archive) -> None:
+        self._beginning = _beginning(run)
+        self._metrics: dict[str, np.ndarray] | None = None
+        if run.config.seasons:
+            columns = ("world", "tick", *self._beginning)
+            metrics = {name: run.metrics[name].to_numpy() for name in columns}
+            order = np.lexsort((metrics["tick"], metrics["world"]))
+            self._metrics = {name: column[order] for name, column in metrics.items()}
 
-    def at(ticks: np.ndarray) -> dict[str, np.ndarray]:
-        climate = {name: np.full(len(ticks), value, np.float32) for name, value in start.items()}
-        if metrics is not None:
-            row = np.searchsorted(metrics["tick"].to_numpy(), ticks, side="left") - 1
-            for name, values in climate.items():
-                values[row >= 0] = metrics[name].to_numpy()[row[row >= 0]]
-        return climate
+    def of_lives(self, lives: Lives, ticks: np.ndarray) -> Climates:
+        """Return what is in force for n organisms, each in one tick (n,)."""
+        return self.of_worlds(lives.world, ticks)
 
-    return at
+    def of_worlds(self, worlds: np.ndarray, ticks: np.ndarray) -> Climates:
+        """Return what is in force in n worlds, each in one tick (n,).
+
+        A season that acts at the end of tick t is in force from tick t + 1 on; its sample has tick t.
+        """
+        climates = {name: start[worlds] for name, start in self._beginning.items()}
+        if self._metrics is not None:
+            row = self._last_sample_before(worlds, ticks)
+            for name, values in climates.items():
+                values[row >= 0] = self._metrics[name][row[row >= 0]]
+        return climates
+
+    def _last_sample_before(self, worlds: np.ndarray, ticks: np.ndarray) -> np.ndarray:
+        """Return the row of the world's last sample before each tick, int64 (n,); -1: there is none."""
+        assert self._metrics is not None
+        row = np.full(len(ticks), -1)
+        for world in np.unique(worlds):
+            first, last = np.searchsorted(self._metrics["world"], [world, world + 1])
+            here = worlds == world
+            earlier = np.searchsorted(self._metrics["tick"][first:last], ticks[here], side="left")
+            row[here] = np.where(earlier > 0, first + earlier - 1, -1)
+        return row
 
 
-def _beginning(run: Archive, world: int) -> dict[str, np.float32]:
-    """Return the climate that a world's records begin with."""
+def _beginning(run: Archive) -> Climates:
+    """Return the climates that the records of all worlds begin with, (W,) each."""
     if (stored := run.origin) is None:
-        return {name: np.float32(value) for name, value in run.law.beginning}
-    return {name: stored[f"world.worlds.climate.{name}"][world] for name in run.law.rates}
+        worlds = run.config.seeds
+        return {
+            name: np.full(worlds, value, np.float32)
+            for name, value in run.description.beginning.items()
+        }
+    return {name: stored[f"world.worlds.climate.{name}"] for name in run.description.beginning}

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from primordia.history.climate import climate_at
+from primordia.history.climate import Climates, PastClimate
 from primordia.law.metabolism import ONE, break_even
 from primordia.runs.archive import Archive
 from primordia.runs.checkpoint import read_count
@@ -79,12 +79,13 @@ def foraging(run: Archive) -> Foraging:
     first = min(int(harvest.tick[0]) for harvest in totals)
     edges = np.linspace(first, last, min(STRETCHES, samples) + 1)
     middle = (edges[1:] + edges[:-1]) / 2
-    enough = [_break_even(climate_at(run, world)(middle)) for world in range(worlds)]
+    past = PastClimate(run)
+    enough = [_break_even(past.of_worlds(np.full(len(middle), w), middle)) for w in range(worlds)]
     food = [harvest.between(edges) for harvest in totals]
     return Foraging(first, middle, np.array(food), np.array(enough))
 
 
-def _break_even(climate: dict[str, np.ndarray]) -> np.ndarray:
+def _break_even(climate: Climates) -> np.ndarray:
     """Return the food in a tick that keeps energy constant, (n,); infinite where no food does."""
     pairs = zip(climate["metabolism.drain"], climate["metabolism.gain"], strict=True)
     foods = (break_even(float(drain), float(gain)) for drain, gain in pairs)

@@ -12,16 +12,16 @@ import numpy as np
 from jax import Array, lax
 
 from primordia import device
+from primordia.brains.layout import Layout
 from primordia.compiled import shared
-from primordia.history.climate import climate_at
-from primordia.law.heredity import Birth, mutation_rates, rebuild_genomes
-from primordia.law.law import Law
+from primordia.history.climate import PastClimate
+from primordia.law.heredity import Birth, Heredity
 from primordia.law.world import BirthCause, Climate
 from primordia.mutations.contract import PURPOSES, Draws
 from primordia.random.keys import streams
 from primordia.random.wide import wide
 from primordia.runs.archive import Archive
-from primordia.runs.checkpoint import read_count
+from primordia.runs.checkpoint import read_count, world_ticks
 from primordia.runs.lives import Lives
 
 STEPS_AT_A_TIME = 64
@@ -46,11 +46,10 @@ def rebuild_all(run: Archive, organisms: Sequence[tuple[int, int]]) -> np.ndarra
     """Return the genomes of K organisms, by birth number and world, float32 (K, P); see `rebuild`."""
     device.prepare()
     lineages = [run.lives.take(descent(run.lives, *each)) for each in organisms]
-    climates = {world: climate_at(run, world) for world in {world for _, world in organisms}}
-    genomes = []
-    for (_, world), lineage in zip(organisms, lineages, strict=True):
-        genome, births = _starting_point(run, lineage, world)
-        genomes.append(_replay(run, births, climates[world](births.born), genome))
+    past, genomes = PastClimate(run), []
+    for lineage in lineages:
+        genome, births = _starting_point(run, lineage)
+        genomes.append(_replay(run, births, past.of_lives(births, births.born), genome))
     return np.stack(genomes)
 
 
@@ -69,22 +68,25 @@ def descent(lives: Lives, organism: int, world: int) -> np.ndarray:
     return np.array(rows[::-1])
 
 
-def genome_in(state: Mapping[str, np.ndarray], law: Law, organism: int, world: int) -> np.ndarray:
+def genome_in(
+    state: Mapping[str, np.ndarray], layout: Layout, organism: int, world: int
+) -> np.ndarray:
     """Return the genome of an organism that is alive in a state, float32 (P,)."""
-    cell = place_in(state, law, organism, world)
-    blocks = {name: state[f"world.organisms.genome.{name}"][[cell]] for name in law.layout.names}
-    return law.layout.join(blocks)[0]
+    cell = place_in(state, organism, world)
+    blocks = {name: state[f"world.organisms.genome.{name}"][[cell]] for name in layout.names}
+    return layout.join(blocks)[0]
 
 
-def place_in(state: Mapping[str, np.ndarray], law: Law, organism: int, world: int) -> int:
+def place_in(state: Mapping[str, np.ndarray], organism: int, world: int) -> int:
     """Return the cell, on the axis of all worlds, of an organism that is alive in a state."""
     number = read_count(state, "world.organisms.number")
-    here = np.arange(len(number)) // law.cells == world
+    cells = len(number) // len(world_ticks(state))
+    here = np.arange(len(number)) // cells == world
     (cell,) = np.flatnonzero(here & state["world.organisms.alive"] & (number == organism))
     return int(cell)
 
 
-def _starting_point(run: Archive, lineage: Lives, world: int) -> tuple[np.ndarray, Lives]:
+def _starting_point(run: Archive, lineage: Lives) -> tuple[np.ndarray, Lives]:
     """Return the genome (P,) to start a lineage from, and the births to replay from there.
 
     In a fork this is the genome of the lineage's youngest organism at the fork, if there is one.
@@ -93,9 +95,10 @@ def _starting_point(run: Archive, lineage: Lives, world: int) -> tuple[np.ndarra
     fork = run.config.fork
     older = int((lineage.born <= fork.tick).sum()) if fork is not None else 0
     if older and run.origin is not None:
-        genome = genome_in(run.origin, run.law, int(lineage.id[older - 1]), world)
+        youngest = int(lineage.id[older - 1]), int(lineage.world[0])
+        genome = genome_in(run.origin, run.layout, *youngest)
         return genome, lineage.take(slice(older, None))
-    return np.zeros(run.law.layout.length, np.float32), lineage
+    return np.zeros(run.layout.length, np.float32), lineage
 
 
 def _replay(
@@ -103,12 +106,12 @@ def _replay(
 ) -> np.ndarray:
     """Replay the births of a lineage (D,) in order, from a genome (P,) -> the last genome."""
     notes = run.notes_of(lineage)
-    replay = shared(_replay_births, run.law)
+    replay = shared(_replay_births, run.heredity)
     for first in range(0, len(lineage), STEPS_AT_A_TIME):
         rows = np.arange(first, first + STEPS_AT_A_TIME)
         births, real = lineage.take(rows % len(lineage)), rows < len(lineage)
         values = {name: each[rows % len(lineage)] for name, each in climate.items()}
-        seed = wide(np.uint64(run.config.seed) + births.world.astype(np.uint64))
+        seed = wide(run.config.world_seeds[births.world])
         genome = np.asarray(
             replay(
                 genome,
@@ -122,12 +125,17 @@ def _replay(
 
 
 def _replay_births(
-    law: Law, genome: Array, counts: tuple, marks: tuple, climate: Climate, notes: Array
+    heredity: Heredity,
+    genome: Array,
+    counts: tuple,
+    marks: tuple,
+    climate: Climate,
+    notes: Array,
 ) -> Array:
     """Replay births (S,) one after another, without those that only fill the shape -> genome (P,).
 
     Args:
-        law: the law of the run.
+        heredity: the heredity of the run.
         genome: genome of the first parent, (P,).
         counts: seed of the world, birth number and tick of each birth, Wide.
         marks: cell within the world; whether it is a founder; whether it is real, no filling.
@@ -140,8 +148,8 @@ def _replay_births(
             jnp.atleast_1d, given
         )
         draws = Draws(streams(seed, tick, *PURPOSES), cell)
-        birth = Birth(seed, number, draws, founder, mutation_rates(law, climate))
-        child = rebuild_genomes(law, birth, genome[None], notes.reshape(1, -1))[0]
+        birth = Birth(seed, number, draws, founder, heredity.rates(climate))
+        child = heredity.rebuild_genomes(birth, genome[None], notes.reshape(1, -1))[0]
         return jnp.where(real, child, genome), None
 
     return lax.scan(step, jnp.asarray(genome), (counts, marks, climate, notes))[0]

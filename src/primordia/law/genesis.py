@@ -12,16 +12,16 @@ from primordia.random.keys import Purpose, bits, stream
 from primordia.random.wide import Wide, never, wide, zero
 
 
-def begin(law: Law, seeds: list[int], tick: int = 0, births: int = 0) -> World:
+def begin(law: Law, seeds: np.ndarray, tick: int = 0, births: int = 0) -> World:
     """Return worlds without organisms. `settle` adds founders before the first tick.
 
     Args:
         law: the law.
-        seeds: a seed for each world.
+        seeds: seed of each world, uint64 (W,).
         tick: the first value of the worlds' tick counts.
         births: the first value of their birth counts.
     """
-    return shared(_begin, law, tick, births)(wide(np.array(seeds, np.uint64)))
+    return shared(_begin, law, tick, births)(wide(seeds))
 
 
 def _begin(law: Law, tick: int, births: int, seed: Wide) -> World:
@@ -44,11 +44,13 @@ def _begin(law: Law, tick: int, births: int, seed: Wide) -> World:
         climate=initial_climate(law, count),
         looks=initial_looks(law, count, tick),
     )
-    genome = {name: jnp.zeros((cells, *shape), jnp.float32) for name, shape in law.layout.blocks}
+    genome = {
+        name: jnp.zeros((cells, *shape), jnp.float32) for name, shape in law.heredity.layout.blocks
+    }
     organisms = Organisms(
         alive=jnp.zeros(cells, bool),
         genome=genome,
-        notes=jnp.zeros((cells, len(law.mutation.notes)), jnp.int32),
+        notes=jnp.zeros((cells, len(law.heredity.mutation.notes)), jnp.int32),
         memory=jnp.zeros((cells, law.memory), jnp.float32),
         energy=jnp.zeros(cells, jnp.int32),
         eaten=jnp.zeros(cells, jnp.int32),

@@ -74,17 +74,17 @@ def judge(
         world with memory, energy and food brought up to date; fates.
     """
     organisms, worlds = world
-    rates = Rates(*map(law.per_cell, Rates.of(worlds.climate)))
+    climate = law.in_cells(worlds.climate)
     vitals = Vitals(organisms.energy, organisms.eaten)
-    vitals, cause = life.judge(law, vitals, thought.faulty, bodies, outcome, rates)
+    vitals, cause = life.judge(law, vitals, thought.faulty, bodies, outcome, Rates.of(climate))
     organisms = organisms._replace(memory=thought.memory, **vitals._asdict())
     if outcome.food is not None:
         worlds = worlds._replace(food=worlds.food + _food(law, outcome.food, active))
     if law.has_hazard:
-        struck = _drawn(law, keys[Purpose.HAZARD], worlds.climate["hazard"])
+        struck = _drawn(law, keys[Purpose.HAZARD], climate["hazard"])
         cause = jnp.where(struck & (cause < 0), Cause.HAZARD, cause)
     cause = jnp.where(active, cause, -1)
-    replicates = _drawn(law, keys[Purpose.REPLICATE], worlds.climate["replication"])
+    replicates = _drawn(law, keys[Purpose.REPLICATE], climate["replication"])
     wants = replicates & active & (cause < 0)
     room = law.placement.room(law.by_world(organisms.alive)).ravel()
     eventful = ((cause >= 0) | (wants & room)).any()
@@ -98,9 +98,9 @@ def _food(law: Law, food: Array, active: Array) -> Wide:
 
 
 def _drawn(law: Law, key: Wide, probability: Array) -> Array:
-    """Draw an event of a given probability (W,) for every cell: bool (C,)."""
+    """Draw an event for every cell, of the probability there (C,): bool (C,)."""
     word = bits(key.take(np.s_[:, None]), jnp.arange(law.cells)[None]).hi
-    return chance(word, probability[:, None]).ravel()
+    return chance(word, law.by_world(probability)).ravel()
 
 
 def rest(before: Organisms, after: Organisms, active: Array) -> Organisms:

@@ -9,13 +9,14 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Literal, NamedTuple
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 
 from primordia.config import Config
 from primordia.errors import InputError
 from primordia.habitats.contract import AnyHabitat
-from primordia.history.climate import climate_at
+from primordia.history.climate import PastClimate
 from primordia.history.lineage import rebuild_all
 from primordia.law.metabolism import Rates
 from primordia.organism.games import Games, Players, play
@@ -137,14 +138,10 @@ def players_of(run: Archive, organisms: Sequence[tuple[int, int]]) -> Players:
         InputError: no such organism was born.
     """
     genomes = rebuild_all(run, organisms)
-    births, worlds = np.array(organisms, np.int64).T
-    climates = {w: climate_at(run, w)(run.ends[[w]]) for w in set(worlds.tolist())}
-    columns = (
-        np.concatenate([climates[w][f"metabolism.{name}"] for w in worlds])
-        for name in Rates._fields
-    )
-    rates = Rates(*map(jnp.asarray, columns))
-    keys = stream(wide(run.config.seed + worlds), Purpose.EVALUATION, wide(births))
+    lives = run.lives.take(np.array([run.lives.row(*each) for each in organisms]))
+    climate = PastClimate(run).of_lives(lives, run.ends[lives.world])
+    rates = Rates.of(jax.tree.map(jnp.asarray, climate))
+    keys = stream(wide(run.config.world_seeds[lives.world]), Purpose.EVALUATION, wide(lives.id))
     return Players(run.law, run.config.build_habitat(), genomes, keys, rates)
 
 

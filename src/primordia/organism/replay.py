@@ -12,7 +12,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from primordia import files
 from primordia.errors import InputError
-from primordia.habitats.contract import Ability
+from primordia.habitats.contract import Ability, AnyHabitat
 from primordia.habitats.framed import PAPER
 from primordia.law.metabolism import ONE
 from primordia.organism import video
@@ -60,13 +60,17 @@ def replay(
     return path
 
 
+def lacking(habitat: AnyHabitat) -> list[str]:
+    """Return the methods and properties that a habitat would have to define for videos of its lives."""
+    return [*habitat.lacks(Ability.PICTURE), *([] if habitat.rate else ["rate"])]
+
+
 def _picture_rate(life: RelivedLife) -> float:
     """Return the ticks in a second of a life; raise InputError if its habitat draws no pictures."""
-    lacking, rate = life.habitat.lacks(Ability.PICTURE), life.habitat.rate
-    if lacking or not rate:
-        lacks = " and no ".join(f"`{name}`" for name in lacking or ["rate"])
+    if lacks := " and no ".join(f"`{name}`" for name in lacking(life.habitat)):
         raise InputError(f"{life.run.path}: its habitat draws no pictures (it has no {lacks})")
-    return rate
+    assert life.habitat.rate
+    return life.habitat.rate
 
 
 def _parts(life: RelivedLife, rate: float, ages: tuple[int | None, int | None]) -> list[range]:

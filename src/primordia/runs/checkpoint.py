@@ -20,13 +20,14 @@ import numpy as np
 from primordia import files, interrupts
 from primordia.brains.genomes import FOUNDERS
 from primordia.errors import Trouble
+from primordia.runs.description import FILE as DESCRIPTION
 from primordia.runs.record import Recorder
 from primordia.runs.schema import TABLES
 
 KEPT = 2
 """Number of checkpoints kept; if the newest is damaged, the one before it is used."""
 FOLDER, ORIGIN = "checkpoints", "origin"
-INPUTS = ("config.toml", FOUNDERS)
+INPUTS = ("config.toml", DESCRIPTION, FOUNDERS)
 """Files that a run needs to go on, beside its checkpoints."""
 
 

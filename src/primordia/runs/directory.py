@@ -1,4 +1,4 @@
-"""A run's directory: settings, versions, the genomes it starts from, and its lock."""
+"""A run's directory: settings, versions, description, the genomes it starts from, and its lock."""
 
 import json
 import os
@@ -10,12 +10,13 @@ from typing import Any
 
 from filelock import FileLock, Timeout
 
-from primordia import device, files, interrupts
+from primordia import device, files, interrupts, own_code
 from primordia.brains import genomes
 from primordia.config import Config, parsed
 from primordia.errors import InputError, Trouble
 from primordia.habitats.contract import AnyHabitat
-from primordia.runs import checkpoint
+from primordia.runs import checkpoint, code
+from primordia.runs.description import Description
 from primordia.runs.schema import TABLES
 from primordia.settings.tables import from_toml
 
@@ -23,13 +24,13 @@ FORMAT = 2
 """of run directories; others are refused"""
 VERSIONS, LOCK = "versions.json", "lock"
 FOLDERS = (*TABLES, checkpoint.FOLDER)
-OWN = (VERSIONS, *FOLDERS, checkpoint.ORIGIN, *checkpoint.INPUTS, LOCK)
+OWN = (VERSIONS, *FOLDERS, code.FOLDER, checkpoint.ORIGIN, *checkpoint.INPUTS, LOCK)
 """What a new run's directory holds."""
 
 
 @contextmanager
 def create(run: Path, config: Config, fill: Callable[[], object] | None = None) -> Iterator[None]:
-    """Write settings, founders and versions into a new or empty directory, and hold its lock.
+    """Write settings, founders, code and versions into a new or empty directory, and hold its lock.
 
     The versions come last: a directory that has them is a run. If the `with` block ends by an error or a
     signal before the first checkpoint, nothing is left.
@@ -45,7 +46,8 @@ def create(run: Path, config: Config, fill: Callable[[], object] | None = None) 
     """
     refuse_if_taken(run)
     habitat = config.build_habitat()
-    versions = {"format": FORMAT, **versions_here(habitat)}
+    law = config.build_law(habitat)
+    versions = {"format": FORMAT, **versions_here(config, habitat)}
     missing = [path for path in (run, *run.parents) if not path.exists()]
     with interrupts.undone_by(partial(_remove_empty, missing)):
         files.make_folder(run)
@@ -53,11 +55,10 @@ def create(run: Path, config: Config, fill: Callable[[], object] | None = None) 
             refuse_if_taken(run)  # another process may have made it since
             with held(run) as check, interrupts.undone_by(partial(_remove_unbegun, run, check)):
                 make_folders(run)
-                if config.ancestors:
-                    layout = config.build_layout(habitat)
-                    founders = genomes.read(config.ancestors, layout)
-                    genomes.write(run / genomes.FOUNDERS, layout, founders, {})
+                if (founders := law.heredity.ancestors) is not None:
+                    genomes.write(run / genomes.FOUNDERS, law.heredity.layout, founders, {})
                     config = config.model_copy(update={"ancestors": (genomes.FOUNDERS,)})
+                Description.of(law, habitat, code.copy(config, run)).write(run)
                 files.write_text(run / "config.toml", config.to_toml())
                 if fill is not None:
                     fill()
@@ -127,9 +128,10 @@ def read_config(run: Path) -> Config:
     return parsed(from_toml(run / "config.toml"), source=str(run / "config.toml"))
 
 
-def versions_here(habitat: AnyHabitat) -> dict[str, str]:
+def versions_here(config: Config, habitat: AnyHabitat) -> dict[str, str]:
     """Return the versions that a run begun here would depend on, by name."""
-    return {**device.versions(), **habitat.versions}
+    packages = own_code.packages(config.own_modules.values())
+    return {**device.versions(), **habitat.versions, **packages}
 
 
 def recorded_versions(run: Path) -> dict[str, Any]:

@@ -52,6 +52,7 @@ def fork(
         Trouble: a file cannot be written, or the source does not repeat as recorded.
     """
     ticks = int(source.ends.min())
+    source.admit()
     changed = _fork_config(source.path, settings, at)
     directory.refuse_if_taken(out)
     if not 1 <= at <= ticks:
@@ -72,6 +73,8 @@ def fork(
 
 def _fork_config(source: Path, settings: dict[str, Any], at: int) -> Config:
     """Return the configuration of the fork."""
+    if "task" in settings:
+        raise InputError("there is no setting 'task' of a fork: it has the task of its run")
     values = merged(from_toml(source / "config.toml"), settings)
     values["fork"] = ForkedFrom(run=str(source), tick=at).model_dump()
     return validated(values, source=str(source))
@@ -120,7 +123,7 @@ def _birth_rows(living: Lives, engine: Engine) -> np.ndarray:
     """Return the births of the living as the law lists them, uint32 (n, words), in order of events."""
     living = living.take(np.lexsort((living.cell, living.world, living.born)))
     cell = living.world.astype(np.int64) * engine.law.cells + living.cell
-    names, notes = engine.law.mutation.notes, engine.state.world.organisms.notes
+    names, notes = engine.law.heredity.mutation.notes, engine.state.world.organisms.notes
     return BIRTHS.plus(*names).rows(
         cell=cell,
         id=living.id,
@@ -152,14 +155,14 @@ def _adapt(world: World, before: Engine, after: Engine, old: Config, new: Config
     """Return a world under new settings; unchanged settings keep the value that seasons gave them."""
     organisms, worlds = world
     worlds = worlds._replace(
-        seed=wide(np.array([new.seed + w for w in range(new.seeds)], np.uint64)),
+        seed=wide(new.world_seeds),
         sample_wait=jnp.full_like(worlds.sample_wait, new.sample_every - at % new.sample_every),
         climate=_climate(worlds.climate, before, after),
         looks=worlds.looks if new.seasons == old.seasons else _looks(worlds, after, at),
     )
     if new.metabolism is not None and old.metabolism is None:
-        store = after.law.per_cell(to_fixed_point(worlds.climate["metabolism.store"]))
-        organisms = organisms._replace(energy=store)
+        store = after.law.in_cells(worlds.climate)["metabolism.store"]
+        organisms = organisms._replace(energy=to_fixed_point(store))
     if new.model_dump(exclude=HARMLESS) != old.model_dump(exclude=HARMLESS):
         worlds = worlds._replace(  # the fork has to saturate again
             calm=jnp.zeros_like(worlds.calm),

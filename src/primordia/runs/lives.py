@@ -157,6 +157,7 @@ def join(
     for dead in (_columns(segment, Cause) for segment in deaths):
         rows = _rows(born["world"], born["id"], dead["world"], dead["id"])
         ended[rows], cause[rows] = dead["tick"], dead["cause"]
+    pa.default_memory_pool().release_unused()  # 100 MB after 5 million births
     return Lives(
         world=born["world"],
         id=born["id"],

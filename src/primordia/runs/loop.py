@@ -93,11 +93,11 @@ def resume(
     """
     _check_interval(checkpoint_every)
     given, archive = valid_limits(limits or {}), Archive(run)
+    _check_same(run, archive.changed_code, inexact)
+    archive.admit()
     config = checked(archive.config, source=str(run / "config.toml"))
-    if (differ := archive.other_versions) and not inexact:
-        raise InputError(
-            f"{run} cannot go on bit for bit: {'; '.join(differ)}. Restore that, or add --inexact"
-        )
+    differ = archive.other_versions
+    _check_same(run, differ, inexact)
     with interrupts.noting(), directory.locked(run):
         last, faults = archive.newest  # read under the lock, since another writer could change it
         if last is None and faults:
@@ -233,6 +233,13 @@ class Saver:
         except BaseException:
             self.save()
             raise
+
+
+def _check_same(run: Path, differ: list[str], inexact: bool) -> None:
+    if differ and not inexact:
+        raise InputError(
+            f"{run} cannot go on bit for bit: {'; '.join(differ)}. Restore that, or add --inexact"
+        )
 
 
 def _check_interval(checkpoint_every: float) -> None:

@@ -4,11 +4,12 @@ It is a function of the organism's genome, the world's seed, and the tick and ce
 promise), so the neighbours need not live again.
 """
 
-from collections.abc import Callable, Generator
+from collections.abc import Generator
 from contextlib import closing
 from dataclasses import dataclass
 from functools import cached_property
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pyarrow.compute as pc
@@ -18,7 +19,7 @@ from primordia.brains.contract import Genome
 from primordia.config import Config
 from primordia.errors import InputError, Trouble
 from primordia.habitats.contract import AnyHabitat
-from primordia.history.climate import climate_at
+from primordia.history.climate import PastClimate
 from primordia.history.lineage import place_in, rebuild
 from primordia.law.genesis import body_words
 from primordia.law.law import Law
@@ -57,7 +58,7 @@ class RelivedLife:
             InputError: no such organism was born, or its life cannot be lived again.
         """
         habitat, law, row = run.habitat, run.law, run.lives.row(organism, world)
-        genome = law.layout.split(jnp.asarray(rebuild(run, organism, world)[None]))
+        genome = law.heredity.layout.split(jnp.asarray(rebuild(run, organism, world)[None]))
         record = run.lives.take(np.array([row]))
         life = cls(run, run.config, law, habitat, genome, record)
         if life.begins_at_fork and not habitat.exact:
@@ -134,7 +135,7 @@ class RelivedLife:
     def _at_fork(self, alone: LifeInJax | LifeOnHost) -> Instant:
         arrays = self.run.origin
         assert arrays is not None
-        cell = [place_in(arrays, self.law, int(self.record.id[0]), self.world)]
+        cell = [place_in(arrays, int(self.record.id[0]), self.world)]
 
         def own(name: str) -> Array:
             return jnp.asarray(arrays[f"world.organisms.{name}"][cell])
@@ -170,13 +171,13 @@ class RelivedLife:
     @property
     def _seed(self) -> Wide:
         """The seed of the world, (1,)."""
-        return wide([self.config.seed + self.world])
+        return wide(self.config.world_seeds[self.record.world])
 
     @cached_property
-    def _climate(self) -> Callable[[np.ndarray], dict[str, np.ndarray]]:
-        return climate_at(self.run, self.world)
+    def _past(self) -> PastClimate:
+        return PastClimate(self.run)
 
     def _rates(self, ticks: np.ndarray) -> Rates:
         """Return the metabolism in force in each tick, float32 (n,) each."""
-        climate = self._climate(ticks)
-        return Rates(*(jnp.asarray(climate[f"metabolism.{name}"]) for name in Rates._fields))
+        itself = self.record.take(np.zeros(len(ticks), int))
+        return Rates.of(jax.tree.map(jnp.asarray, self._past.of_lives(itself, ticks)))

@@ -1,0 +1,127 @@
+"""Checks of brains: each fault is caught and named. `tests.brains.test_contract` checks the others."""
+
+import warnings
+from typing import Any
+
+import jax.numpy as jnp
+import pytest
+from jax import Array
+from pydantic import Field
+
+from primordia.brains.contract import Brain, Genome
+from primordia.brains.layers import matvec
+from primordia.brains.layout import Shape
+from primordia.brains.linear import Linear
+from primordia.testing import ContractError, check_brain
+from tests.testing.impure import counted
+
+
+class Plain(Brain):
+    """One matrix."""
+
+    def blocks(self, senses: int, outputs: int) -> dict[str, Shape]:
+        return {"w": (outputs, senses)}
+
+    def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:
+        return memory, matvec(genome["w"], senses)
+
+
+class Tent(Plain):
+    def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:
+        return memory, (genome["w"] * senses[:, None]).sum(-1)
+
+
+class Fused(Plain):
+    def memory(self, senses: int, outputs: int) -> int:
+        return outputs
+
+    def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:
+        memory = 0.9 * memory + 0.3 * matvec(genome["w"], senses)
+        return memory, memory
+
+
+class Crowd(Plain):
+    def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:
+        output = matvec(genome["w"], senses)
+        return memory, output - output.mean(axis=0)
+
+
+class Counting(Plain):
+    def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:
+        return memory, matvec(genome["w"], senses) + counted()
+
+
+class Halves(Plain):
+    def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:
+        return memory, matvec(genome["w"], senses).astype(jnp.float16)
+
+
+class Forgetful(Plain):
+    def memory(self, senses: int, outputs: int) -> int:
+        return 3
+
+    def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:
+        return memory[:, :2], matvec(genome["w"], senses)
+
+
+class Alone(Plain):
+    def __call__(self, genome: Genome, memory: Array, senses: Array) -> Any:
+        return matvec(genome["w"], senses)
+
+
+class Greedy(Plain):
+    def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:
+        return memory, matvec(genome.pop("w"), senses)
+
+
+class Misnamed(Plain):
+    def blocks(self, senses: int, outputs: int) -> dict[str, Shape]:
+        return {"my weights": (outputs, senses)}
+
+
+class Growing(Plain):
+    def blocks(self, senses: int, outputs: int) -> dict[str, Shape]:
+        return {"w": (outputs, senses), "more": (counted(),)}
+
+
+class Half(Plain):
+    def memory(self, senses: int, outputs: int) -> Any:
+        return 0.5
+
+
+class Listed(Plain):
+    widths: list[int] = Field([3])
+
+
+@pytest.mark.parametrize(
+    ("brain", "says"),
+    [
+        (Tent(), "Tent gives other bits for organism .* when 1 instead of 32 think together; sum with"
+         " brains.layers.matvec"),
+        (Fused(), "Fused gives other bits .* when compiled; .* rounding.rounded_product"),
+        (Crowd(), "Crowd .* when organism 0 has another genome; sum nothing over the first axis"),
+        (Counting(), "Counting .* when it is traced again, .* keep no counters"),
+        (Halves(), r"gives its output as float16 \(32, 5\); the contract says float32 \(32, 5\)"),
+        (Forgetful(), r"gives its memory as float32 \(32, 2\); the contract says float32 \(32, 3\)"),
+        (Alone(), "does not return a pair; return memory and output"),
+        (Greedy(), "changes the genome that it is given"),
+        (Misnamed(), "Misnamed: brain: 'my weights' cannot name a block .*; use letters"),
+        (Growing(), "has other blocks of weights at each call"),
+        (Half(), "has a memory of length 0.5; return a whole number"),
+    ],
+    ids=lambda each: type(each).__name__ if isinstance(each, Brain) else "",
+)  # fmt: skip
+def test_a_brain_with_a_fault(brain: Brain, says: str) -> None:
+    with pytest.raises(ContractError, match=says):
+        check_brain(brain)
+
+
+def test_what_is_compiled_for_each_run_is_warned_of() -> None:
+    with pytest.warns(UserWarning, match="Listed is not hashed by its values, .* define __hash__"):
+        check_brain(Listed())
+
+
+def test_nothing_is_said_of_what_is_well() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        check_brain(Linear())

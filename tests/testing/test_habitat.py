@@ -1,0 +1,250 @@
+"""Checks of habitats: what keeps its contract passes, and each fault is caught and named."""
+
+from typing import Any, ClassVar
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from jax import Array
+
+from primordia.config import load
+from primordia.habitats import Continuous, Discrete, HostHabitat, JaxHabitat, Outcome
+from primordia.habitats.cartpole.habitat import CartPole
+from primordia.settings.base import Settings
+from primordia.testing import ContractError, check_habitat
+from tests.testing.impure import counted
+from tests.toys import Clocked, HostCartPole, Mill
+
+
+@pytest.mark.parametrize("habitat", [CartPole(senses=("x", "theta")), Mill(), HostCartPole()])
+def test_habitats_that_keep_their_contract(habitat: Any) -> None:
+    check_habitat(habitat)
+
+
+def test_a_habitat_with_counts_and_pictures() -> None:
+    check_habitat(Clocked())
+
+
+def test_robots_keep_the_contract() -> None:
+    pytest.importorskip("mujoco")
+    check_habitat(load("Reacher-forager").build_habitat())
+
+
+@pytest.mark.slow  # starts emulators nine times
+def test_games_keep_the_contract() -> None:
+    pytest.importorskip("ale_py")
+    check_habitat(load("Pong-survival").build_habitat())
+
+
+class Still(JaxHabitat, Settings):
+    """Bodies that stay where they are born."""
+
+    senses_size: ClassVar = 2
+    action: ClassVar = Continuous(2)
+    words: ClassVar = 2
+
+    def reset(self, words: Array) -> Array:
+        return (words >> np.uint32(8)).astype(jnp.float32) * np.float32(2**-24)
+
+    def sense(self, bodies: Array) -> Array:
+        return bodies
+
+    def step(self, bodies: Array, action: Array) -> tuple[Array, Outcome]:
+        return bodies, Outcome(jnp.zeros(len(bodies), bool))
+
+
+class Coupled(Still):
+    def step(self, bodies: Array, action: Array) -> tuple[Array, Outcome]:
+        return super().step(bodies - action.mean(axis=0), action)
+
+
+class Moody(Still):
+    def reset(self, words: Array) -> Array:
+        return super().reset(words) + counted()
+
+
+class Sloppy(Still):
+    def step(self, bodies: Array, action: Array) -> tuple[Array, Outcome]:
+        return bodies, Outcome(jnp.zeros(len(bodies), bool), food=bodies[:, :1])
+
+
+class Wide(Still):
+    senses_size: ClassVar = 3
+
+
+class Melting(Still):
+    def step(self, bodies: Array, action: Array) -> tuple[Array, Outcome]:
+        return super().step(bodies.astype(jnp.float16), action)
+
+
+class Changing(Still):
+    def step(self, bodies: Array, action: Array) -> Any:
+        return (bodies, bodies), Outcome(jnp.zeros(len(bodies), bool))
+
+
+class Shared(Still):
+    def reset(self, words: Array) -> Any:
+        return {"place": super().reset(words), "wind": jnp.zeros(3)}
+
+
+class Mute(Still):
+    def step(self, bodies: Array, action: Array) -> Any:
+        return bodies, jnp.zeros(len(bodies), bool)
+
+
+class Senseless(JaxHabitat):
+    action, words = Discrete(2), 1
+    reset, sense, step = Still.reset, Still.sense, Still.step
+
+
+class Unready(Still):
+    words: ClassVar = -1
+
+
+class Choiceless(Still):
+    action: ClassVar = Discrete(1)
+
+
+class Scribble(Still):
+    def picture(self, body: Any, action: np.ndarray) -> Any:
+        return "a picture"
+
+
+JAX_FAULTS: list[tuple[Any, str]] = [
+    (Coupled(), "body .* has another life at age 1 among 1 bodies than among 32; .* elementwise"),
+    (Moody(), "when it is traced again, so it draws from more than `words`"),
+    (Sloppy(), r"gives outcome.food as float32 \(32, 1\); the contract says float32 \(32,\)"),
+    (Wide(), r"gives senses as float32 \(32, 2\); the contract says float32 \(32, 3\)"),
+    (Melting(), "gives bodies after a step as float16"),
+    (Changing(), "bodies of another form in step than in reset"),
+    (Shared(), "array float32 .3,.; its first axis must be bodies"),
+    (Mute(), "reports .*; return an Outcome from step"),
+    (Senseless(), "has no 'senses_size'; state it as an attribute"),
+    (Unready(), "has words = -1; it must be a whole number of at least 0"),
+    (Choiceless(), r"has action = Discrete\(size=1\); it must be Discrete\(2\) or more"),
+    (Scribble(), "draws str; return a PIL.Image.Image"),
+]
+
+
+# Habitats on the host that do not.
+
+
+class Wagon(HostHabitat):
+    """Bodies with a place and a speed, which an action changes."""
+
+    senses_size, action, words = 1, Discrete(2), 1
+
+    def open(self, cells: int, watched: bool = False) -> None:
+        self.place, self.speed = np.zeros((2, cells, 1), np.float32)
+
+    def reset(self, born: np.ndarray, words: np.ndarray) -> np.ndarray:
+        self.place[born], self.speed[born] = words % 7, 0
+        return self.place[born]
+
+    def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
+        self.speed[alive, 0] += action[alive]
+        self.place[alive] += self.speed[alive]
+        return self.place.copy(), Outcome(self.place[:, 0] > 40)
+
+    def save(self) -> dict[str, np.ndarray]:
+        return {"place": self.place, "speed": self.speed}
+
+    def load(self, arrays: dict[str, np.ndarray]) -> None:
+        self.place, self.speed = arrays["place"], arrays["speed"]
+
+
+class Restless(Wagon):
+    def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
+        return super().step(action, np.ones_like(alive))
+
+
+class Amnesiac(Wagon):
+    def load(self, arrays: dict[str, np.ndarray]) -> None:
+        self.place, self.speed = arrays["place"], np.zeros_like(arrays["speed"])
+
+
+class Fixed(Wagon):
+    """Its number of bodies cannot change once it is opened."""
+
+    def load(self, arrays: dict[str, np.ndarray]) -> None:
+        self.place[:], self.speed[:] = arrays["place"][0], arrays["speed"][0]
+
+
+class Heir(Wagon):
+    def reset(self, born: np.ndarray, words: np.ndarray) -> np.ndarray:
+        self.place[born] = words % 7
+        return self.place[born]
+
+
+class Intruder(Wagon):
+    def reset(self, born: np.ndarray, words: np.ndarray) -> np.ndarray:
+        self.speed += 1
+        return super().reset(born, words)
+
+
+class Gambler(Wagon):
+    def reset(self, born: np.ndarray, words: np.ndarray) -> np.ndarray:
+        return super().reset(born, words + counted())
+
+
+class Placed(Wagon):
+    def reset(self, born: np.ndarray, words: np.ndarray) -> np.ndarray:
+        return super().reset(born, words + born[:, None].astype(np.uint32))
+
+
+class Doubled(Wagon):
+    def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
+        senses, outcome = super().step(action, alive)
+        return senses.astype(float), outcome
+
+
+class Stored(Wagon):
+    load = HostHabitat.load
+
+
+class Scored(Wagon):
+    tallies = ("score",)
+
+    def tally(self) -> np.ndarray:
+        return self.place.astype(np.int32)
+
+
+class Eaten(Scored):
+    tallies = ("food",)
+
+
+class Partial(Wagon):
+    def save(self) -> dict[str, np.ndarray]:
+        return {"place": self.place, "speed": self.speed, "clock": np.zeros(2)}
+
+
+HOST_FAULTS: list[tuple[Any, str]] = [
+    (Restless(), "after a rest; leave bodies alone whose cells are not alive"),
+    (Amnesiac(), "at age 7 after `save` and `load`; save all that a body's future depends on"),
+    (Fixed(), "after `save` and `load`"),
+    (Heir(), "where another lived before; `reset` makes whole bodies"),
+    (Intruder(), "when others are born beside it"),
+    (Gambler(), "at age 0 when it begins again, .*; draw from `words` alone"),
+    (Placed(), "at age 0 among 1 bodies than among 32"),
+    (Doubled(), r"gives senses from step as float64 \(32, 1\); the contract says float32"),
+    (Stored(), "defines save without load; define both, or neither"),
+    (Scored(), "does not save its counts; save them as 'tally'"),
+    (Eaten(), r"counts \['food'\], which deaths have already"),
+    (Partial(), r"saves 'clock' as \(2,\); save NumPy arrays with cells as first axis"),
+]
+
+
+@pytest.mark.parametrize("part", [Still(), Wagon()])
+def test_the_habitats_without_these_faults(part: Any) -> None:
+    check_habitat(part)
+
+
+@pytest.mark.parametrize(
+    ("habitat", "says"),
+    [*JAX_FAULTS, *HOST_FAULTS],
+    ids=[type(habitat).__name__ for habitat, _ in (*JAX_FAULTS, *HOST_FAULTS)],
+)
+@pytest.mark.filterwarnings("ignore:Senseless is not hashed")
+def test_a_habitat_with_a_fault(habitat: Any, says: str) -> None:
+    with pytest.raises(ContractError, match=says):
+        check_habitat(habitat)

@@ -1,0 +1,189 @@
+"""Checks of mutations: what keeps its contract passes, and each fault is caught and named."""
+
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from jax import Array
+
+from primordia.brains.layout import Layout
+from primordia.mutations import contract as mutations
+from primordia.mutations.contract import Draws, Mutation
+from primordia.mutations.gaussian import Block, Gaussian
+from primordia.mutations.noise import standard_noise
+from primordia.random.keys import Purpose
+from primordia.rounding import rounded_product
+from primordia.settings.base import Rate
+from primordia.testing import ContractError, check_mutation
+from tests.testing.impure import counted
+from tests.toys import Sliding
+
+
+@pytest.mark.parametrize("name", mutations.KNOWN)
+def test_mutations_that_keep_their_contract(name: str) -> None:
+    check_mutation(mutations.find(name)())
+
+
+def test_a_mutation_with_settings_for_the_blocks_of_a_layout() -> None:
+    blocks = {"slide-2": Block(probability=0.0), "0": Block(scale=0.3)}
+    mutation = Gaussian(probability=0.4, blocks=blocks)
+    check_mutation(mutation, Sliding().layout(5, 3))
+    with pytest.raises(ContractError, match=r"no block 'slide-2'.*; give check_mutation a layout"):
+        check_mutation(mutation)
+
+
+class Steady(Mutation):
+    """Noise on all weights of every child."""
+
+    scale: Rate = 0.5
+
+    def inherit(
+        self,
+        layout: Layout,
+        parents: Array,
+        notes: Array,
+        rates: Mapping[str, Array],
+        draws: Draws,
+    ) -> tuple[Array, Array]:
+        noise = standard_noise(draws.streams[Purpose.NOISE], draws.cell, layout.length)
+        change = rounded_product(noise, self.size(rates)[:, None])
+        return self.added(parents, change), jnp.ones(len(parents), bool)
+
+    def size(self, rates: Mapping[str, Array]) -> Array:
+        return rates["scale"]
+
+    def added(self, parents: Array, change: Array) -> Array:
+        return parents + change
+
+    def founders(self, layout: Layout, draws: Draws) -> Array:
+        return standard_noise(draws.streams[Purpose.FOUNDER], draws.cell, layout.length)
+
+
+class Sociable(Steady):
+    def added(self, parents: Array, change: Array) -> Array:
+        return parents + change - change.mean(axis=0)
+
+
+class Lazy(Steady):
+    def size(self, rates: Mapping[str, Array]) -> Array:
+        return jnp.broadcast_to(rates["scale"][0], rates["scale"].shape)
+
+
+class Deaf(Steady):
+    def size(self, rates: Mapping[str, Array]) -> Array:
+        return jnp.full_like(rates["scale"], self.scale)
+
+
+class Contracted(Steady):
+    def added(self, parents: Array, change: Array) -> Array:
+        return parents + change * np.float32(0.3)
+
+
+class Random(Steady):
+    def added(self, parents: Array, change: Array) -> Array:
+        return parents + change + counted()
+
+
+class Liar(Steady):
+    def inherit(self, *given: Any) -> tuple[Array, Array]:
+        children, mutated = super().inherit(*given)
+        return children, ~mutated
+
+
+class Cleaner(Steady):
+    """Its copies are of what is finite only."""
+
+    def inherit(self, layout: Layout, parents: Array, *rest: Any) -> tuple[Array, Array]:
+        finite = jnp.nan_to_num(parents) + 0 * rest[1]["scale"][:, None]
+        return finite, jnp.zeros(len(parents), bool)
+
+
+class Counted(Steady):
+    """With a note; each of the further ones has one fault in it."""
+
+    notes: ClassVar = ("steps",)
+
+    def note(
+        self,
+        layout: Layout,
+        parents: Array,
+        notes: Array,
+        rates: Mapping[str, Array],
+        draws: Draws,
+    ) -> Array:
+        return notes + 1
+
+
+class Timed(Counted):
+    notes: ClassVar = ("tick",)
+
+
+class Real(Counted):
+    def note(self, *given: Any) -> Array:
+        return super().note(*given) * 0.5
+
+
+class Ranked(Counted):
+    def founders_notes(self, count: int) -> Array:
+        return jnp.arange(count, dtype=jnp.int32)[:, None]
+
+
+class Neighbourly(Counted):
+    def note(self, layout: Layout, parents: Array, notes: Array, *rest: Any) -> Array:
+        return jnp.cumsum(notes, axis=0) + 1
+
+
+class Open(Steady):
+    def governed(self, setting: str, layout: Layout) -> list[str]:
+        return ["scale"]
+
+
+class Closed(Steady):
+    def governed(self, setting: str, layout: Layout) -> list[str]:
+        return []
+
+
+class Elsewhere(Steady):
+    def governed(self, setting: str, layout: Layout) -> list[str]:
+        return [setting, "size"]
+
+
+class Few(Steady):
+    def founders(self, layout: Layout, draws: Draws) -> Array:
+        return super().founders(layout, draws)[:, 1:]
+
+
+@pytest.mark.parametrize("mutation", [Steady(), Counted()])
+def test_the_mutations_without_these_faults(mutation: Mutation) -> None:
+    check_mutation(mutation)
+
+
+@pytest.mark.parametrize(
+    ("mutation", "says"),
+    [
+        (Sociable(), "when 1 instead of 32 are born together; compute each birth by itself"),
+        (Lazy(), "instead of 32 are born together"),
+        (Deaf(), "the same children whatever its rates; read them from `rates`"),
+        (Contracted(), "Contracted gives other bits .* when compiled; .* rounding.rounded_product"),
+        (Random(), "when it is traced again, .*; draw from `draws` only"),
+        (Liar(), "organism 0 though it is said to be a copy; give parents' weights as they are"),
+        (Cleaner(), "though it is said to be a copy"),
+        (Timed(), "notes 'tick', which cannot be a column of births; take a word other than"),
+        (Real(), r"gives notes as float32 \(32, 1\); the contract says int32 \(32, 1\)"),
+        (Ranked(), "gives founders different notes"),
+        (Neighbourly(), "instead of 32 are born together"),
+        (Open(), "a season of a setting that it does not have; return"),
+        (Closed(), "has a rate scale that no season of scale changes"),
+        (Elsewhere(), "a season of .* changes .*size.*, which `rates` lacks"),
+        (
+            Few(),
+            r"gives genomes of founders as float32 \(32, 83\); the contract says .* \(32, 84\)",
+        ),
+    ],
+    ids=lambda each: type(each).__name__ if isinstance(each, Mutation) else "",
+)
+def test_a_mutation_with_a_fault(mutation: Mutation, says: str) -> None:
+    with pytest.raises(ContractError, match=says):
+        check_mutation(mutation)
