@@ -44,10 +44,13 @@ def test_a_world_is_the_same_alone_and_among_a_hundred(reference: Lived) -> None
     assert len(set(among.digests())) == 100
 
 
-def test_worlds_that_stop_early_do_not_change_the_others() -> None:
-    together = Lived(config(MILL, seeds=4), 600, births=25)
-    for world in range(4):
-        alone = Lived(config(MILL, seed=world), 600, births=25)
+@pytest.mark.parametrize("habitat", [{}, {"name": "tests.toys:Mirror", "inner": "mill"}])
+def test_worlds_that_stop_early_do_not_change_the_others(habitat: dict[str, str]) -> None:
+    """A world that has stopped stays as it is: bodies, memories, energy."""
+    mill = {**MILL, "habitat": habitat or MILL["habitat"]}
+    together = Lived(config(mill, seeds=4), 600, births=25)
+    for world in (1, 3):
+        alone = Lived(config(mill, seed=world), 600, births=25)
         assert alone.digests()[0] == together.digests()[world]
     ticks = together.engine.arrays()["world.worlds.tick.lo"]
     assert len(set(ticks.tolist())) > 1

@@ -11,8 +11,7 @@ from primordia.config import load
 from primordia.habitats.atari import games as atari_games
 from primordia.habitats.atari.games import games
 from primordia.habitats.atari.habitat import Atari
-from primordia.habitats.atari.simulator import FIELDS, Arcade, console
-from primordia.pool import board
+from primordia.habitats.atari.simulator import FIELDS, NOOP, Arcade, console
 from primordia.runs.archive import Archive
 from primordia.runs.verify import verify
 from tests.commands import complains, here
@@ -63,15 +62,23 @@ def played(made: Arcade, arrays: dict[str, np.ndarray], ticks: int, cell: int = 
 
 
 def test_a_life_depends_on_its_words_alone() -> None:
-    """The life does not depend on the cell, nor on what was played there before."""
-    options = {"sticky": 0.25, "noops": 30, "frame_skip": 2}
+    """The life does not depend on the cell, nor on what was played there before.
+
+    A button that was held at the end of a life is up at the next birth, however sticky it is.
+    """
+    options = {"sticky": 0.75, "noops": 30, "frame_skip": 2}
     (one, a), (other, b) = arcade(**options), arcade(**options)
-    played(other, b, 70, cell=1)
-    for cell, arrays, made in ((0, a, one), (1, b, other)):
-        arrays["words"][cell] = (17, 12345)
-        made.reset(cell)
-    assert a["ram"][0].tobytes() == b["ram"][1].tobytes()
-    assert played(one, a, 300, cell=0) == played(other, b, 300, cell=1)
+    for life in range(12):
+        b["action"][1] = 1 + life % 2
+        for _ in range(20):
+            other.step([1])
+        assert other._held[1] != NOOP
+        for cell, arrays, made in ((0, a, one), (1, b, other)):
+            arrays["words"][cell] = (17 + 31 * life, 12345 * life)
+            made.reset(cell)
+        assert one._held[0] == other._held[1] == NOOP
+        assert a["ram"][0].tobytes() == b["ram"][1].tobytes()
+        assert played(one, a, 60, cell=0) == played(other, b, 60, cell=1)
 
 
 def test_saved_lives_continue_in_another_pool() -> None:
@@ -157,29 +164,76 @@ def test_food_is_what_the_settings_say() -> None:
 
 
 def test_a_lost_life_is_reported() -> None:
-    played_ = Played(game="breakout", fatal="lives_lost > 0", actions="FIRE")
-    tick, _ = played_.until("fatal")
-    assert tick > 20
+    """It is reported in the tick in which it is lost, and once; so the emulator says."""
+    settings: dict[str, Any] = {"fatal": "lives_lost > 0", "food": "lives_lost", "actions": "FIRE"}
+    breakout = Played(game="breakout", frame_skip=3, **settings).habitat
+    alone = console("breakout")
+    (fire,) = breakout._buttons
+    left, lost, both = alone.lives(), 0, np.ones(2, bool)
+    for _ in range(400):
+        _, outcome = breakout.step(np.zeros(2, np.int32), both)
+        for _ in range(3):
+            alone.act(fire)
+        fewer = left - alone.lives()
+        left, lost = alone.lives(), lost + fewer
+        assert outcome.fatal.tolist() == [fewer > 0] * 2
+        assert outcome.food.tolist() == [fewer] * 2
+        assert breakout.tally()[:, 2].tolist() == [left] * 2
+    assert lost >= 2
+    breakout.close()
+
+
+def test_tallies_are_of_the_present_life_and_of_its_own_ticks() -> None:
+    """A cell that is not stepped keeps its tally, whatever its last points were."""
+    pong = Played(game="pong", frame_skip=8, food="0 - points")
+    pong.until("food")
+    before = pong.habitat.tally().copy()
+    assert (before[:, 0] == -1).all()
+    for _ in range(5):
+        pong.habitat.step(np.zeros(2, np.int32), np.array([False, True]))
+    assert pong.habitat.tally().tolist() == before.tolist()
+    pong.habitat.reset(np.array([1]), np.zeros((1, pong.habitat.words), np.uint32))
+    assert pong.habitat.tally().tolist() == [before[0].tolist(), [0, 0, 0]]
+    pong.habitat.close()
+    breakout = Played(game="breakout", frame_skip=3, food="lives_lost", actions="FIRE")
+    breakout.until("food")
+    assert breakout.habitat.tally()[:, 2].tolist() == [4, 4]
+    breakout.habitat.reset(np.array([0]), np.zeros((1, breakout.habitat.words), np.uint32))
+    assert breakout.habitat.tally()[:, 2].tolist() == [5, 4]
+    breakout.habitat.close()
 
 
 def test_runs_are_exact(tmp_path: Path) -> None:
-    """Runs are equal in chunks, with other workers, after a resume, and when lived again."""
+    """Runs are equal in chunks, with other workers, after a resume, in a fork and lived again."""
     noisy = {"sticky": 0.1, "noops": 5}
-    settings = {"cells": 4, "hazard": 0.005}
+    settings = {"cells": 4, "hazard": 0.03, "replication": 0.1, "brain": {"hidden": 2}}
 
     def lived(name: str, ticks: int, workers: int) -> primordia.Run:
-        habitat = {**noisy, "workers": workers}
-        stop = {"ticks": ticks}
+        habitat = {**noisy, "workers": workers, "frame_skip": 4}
+        stop = {"ticks": ticks, "until": "none"}
         return primordia.run(
             "Pong-survival", tmp_path / name, **settings, habitat=habitat, stop=stop
         )
 
-    whole, half = lived("whole", 300, 1), lived("half", 130, 3)
-    half.resume(ticks=300)
-    assert half.info()["digest"] == whole.info()["digest"]
+    def digest(run: primordia.Run) -> str:
+        return str(run.info()["digest"])
+
+    whole, half = lived("whole", 200, 1), lived("half", 90, 3)
+    assert whole.info()["births"] > 10
+    assert digest(half) != digest(whole)
+    half.resume(ticks=200)
+    assert digest(half) == digest(whole)
+    for name in ("births", "deaths", "metrics"):
+        assert half.table(name) == whole.table(name)
     assert verify(Archive(half.path)) == []
-    fork = whole.fork(200, tmp_path / "fork")
+    fork, other = whole.fork(140, tmp_path / "fork"), whole.fork(140, tmp_path / "other", seed=9)
     assert fork.info()["births"] == whole.info()["births"]
+    assert after(fork, 140) == after(whole, 140) != after(other, 140)
+
+
+def after(run: primordia.Run, tick: int) -> list[dict[str, Any]]:
+    """Return the deaths later than a tick."""
+    return [row for row in run.table("deaths").to_pylist() if row["tick"] > tick]
 
 
 @pytest.mark.parametrize(
@@ -221,4 +275,5 @@ def test_without_the_extra_the_error_says_what_to_install(
 def test_there_are_many_games() -> None:
     assert {"pong", "battle_zone", "space_invaders"} < set(games())
     assert len(games()) > 100
-    assert board.size(FIELDS, 2) > 0
+    assert not {"combat", "qbert", "pongg"} & set(games())
+    assert all(game == game.lower() and game.isidentifier() for game in games())

@@ -124,7 +124,18 @@ def test_a_store_is_drained_even_if_float32_could_not_show_it() -> None:
 
 
 @pytest.mark.parametrize("name", RATES)
-@pytest.mark.parametrize("value", [-1.0, 2e6, math.nan, math.inf])
+@pytest.mark.parametrize("value", [-1.0, -1e-9, 1.1e6, 2e6, math.nan, math.inf])
 def test_rates_out_of_range_are_refused(name: str, value: float) -> None:
-    with pytest.raises(ValidationError):
+    with pytest.raises(ValidationError, match=rf"\n{name}\n"):
         Metabolism(**{name: value})
+
+
+def test_rates_at_the_ends_of_their_range_are_accepted() -> None:
+    """A store or a cap of 0 would starve every organism in its first tick."""
+    for name in RATES:
+        assert getattr(Metabolism(**{name: 1e6}), name) == 1e6
+    for name in ("drain", "gain", "effort_cost"):
+        assert getattr(Metabolism(**{name: 0.0}), name) == 0
+    for name in ("store", "cap"):
+        with pytest.raises(ValidationError, match=f"{name}\n.*greater than 0"):
+            Metabolism(**{name: 0.0})

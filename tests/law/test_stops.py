@@ -2,9 +2,14 @@
 
 from typing import Any
 
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
+from primordia.law import events as log
+from primordia.law.genesis import begin
+from primordia.law.population import quiet_ticks, settle
+from primordia.law.tick import no_fates
 from primordia.random.wide import to_host
 from tests.chronicle import History
 from tests.worlds import MEADOW, Lived, config
@@ -66,3 +71,19 @@ def test_a_limit_of_ticks_is_exact() -> None:
     assert to_host(run.engine.state.world.worlds.tick).tolist() == [123] * 4
     run.advance_to(124)
     assert to_host(run.engine.state.world.worlds.tick).tolist() == [124] * 4
+
+
+@pytest.mark.parametrize("calm", [0, 100, 2**31 - 101, 2**31 - 100, 2**31 - 2, 2**31 - 1])
+def test_the_count_of_calm_ticks_saturates(calm: int) -> None:
+    """After 2^31 ticks without births and deaths the next settling is still ahead, not behind."""
+    made = config(MEADOW, **CALM)
+    law, running = made.build_law(made.build_habitat()), jnp.array([True, True, True, False])
+    world = begin(law, made.world_seeds)
+    worlds = world.worlds._replace(calm=jnp.full(4, calm, jnp.int32))
+    world = world._replace(
+        organisms=world.organisms._replace(alive=jnp.ones_like(world.organisms.alive)),
+        worlds=worlds._replace(sample_wait=jnp.full(4, 1000, jnp.int32)),
+    )
+    after, _, _ = settle(law, world, log.empty(law), no_fates(law), jnp.int32(100), running)
+    assert after.worlds.calm.tolist() == [min(calm + 100, 2**31 - 1)] * 3 + [calm]
+    assert 0 < int(quiet_ticks(law, after, running)) <= 900

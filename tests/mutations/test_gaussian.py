@@ -203,8 +203,9 @@ def test_children_made_in_a_compiled_function_have_the_same_bits() -> None:
 
 
 def test_founders_are_noise_of_their_blocks_scales() -> None:
-    mutation = Gaussian(founder_scale=0.3, blocks={"recurrent": Block(founder_scale=0.02)})
-    scales = np.repeat(np.array([0.3, 0.02, 0.3], np.float32), LAYOUT.sizes)
+    own = {"recurrent": Block(founder_scale=0.02), "output": Block(founder_scale=0.7)}
+    mutation = Gaussian(founder_scale=0.3, blocks=own)
+    scales = np.repeat(np.array([0.3, 0.02, 0.7], np.float32), LAYOUT.sizes)
     genomes = mutation.founders(LAYOUT, Draws(drawn(), jnp.arange(K)))
     same_bits(np.asarray(genomes), noise(drawn()[Purpose.FOUNDER]) * scales)
 
@@ -218,7 +219,7 @@ def test_a_copy_is_its_parent_to_the_last_bit() -> None:
 
 
 SCALES, PROBABILITIES = [0.3, 0.25, 0.01], [0.0, 0.6, 0.3]
-FOUNDER_SCALES = [1.0, 0.1, 1.0]
+FOUNDER_SCALES = [1.0, 0.1, 0.4]
 
 
 @pytest.fixture(scope="module")
@@ -229,6 +230,7 @@ def family() -> Lived:
         for name, scale, probability in zip(NAMES, SCALES, PROBABILITIES, strict=True)
     }
     blocks["recurrent"]["founder_scale"] = FOUNDER_SCALES[1]
+    blocks["output"]["founder_scale"] = FOUNDER_SCALES[2]
     mutation = {"founder_scale": FOUNDER_SCALES[0], "blocks": blocks}
     values = {"cells": 256, "replication": 0.3, "placement": {"topology": "well-mixed"}}
     lived = Lived(config(MEADOW, mutation=mutation, **values), 100)

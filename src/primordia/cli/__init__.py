@@ -5,6 +5,7 @@ import sys
 import click
 
 from primordia.cli import evaluate, evolve, inspect
+from primordia.cli.cache import keep_compiled_code
 from primordia.cli.stderr import report
 from primordia.errors import InputError, Trouble
 
@@ -36,6 +37,7 @@ for command in (*evolve.COMMANDS, *inspect.COMMANDS, *evaluate.COMMANDS):
 
 def main() -> None:
     """Run a command and exit."""
+    keep_compiled_code()
     try:
         commands(standalone_mode=False)
     except click.exceptions.Exit as done:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from primordia.cli.cache import cache_option
 from primordia.cli.flags import HabitatCommand, run_argument, trust_option
 from primordia.errors import InputError
 
@@ -30,6 +31,7 @@ SENSES = {
     "--open-loop", is_flag=True, help="Repeat the actions of a game of its task, whatever happens."
 )
 @trust_option
+@cache_option
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 @click.pass_obj
 def evaluate(

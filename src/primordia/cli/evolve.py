@@ -6,6 +6,7 @@ from typing import Any
 
 import click
 
+from primordia.cli.cache import cache_option
 from primordia.cli.flags import (
     SettingsCommand,
     checkpoint_option,
@@ -33,6 +34,7 @@ from primordia.cli.stderr import report
 @limit_options
 @checkpoint_option
 @device_option
+@cache_option
 @quiet_option
 @click.pass_obj
 def run(
@@ -64,6 +66,7 @@ def run(
 @limit_options
 @checkpoint_option
 @device_option
+@cache_option
 @click.option("--inexact", is_flag=True, help="Go on even if versions, code or machine differ.")
 @trust_option
 @quiet_option
@@ -87,6 +90,7 @@ def resume(run: Path, quiet: bool, trust: bool, **options: Any) -> None:
 @limit_options
 @checkpoint_option
 @device_option
+@cache_option
 @trust_option
 @quiet_option
 @click.pass_obj

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from primordia.cli.cache import cache_option
 from primordia.cli.flags import device_option, run_argument, trust_option
 from primordia.errors import Trouble
 
@@ -56,6 +57,7 @@ def plot(run: Path, out: Path | None, world: int, figures: tuple[str, ...]) -> N
     "--out", type=click.Path(path_type=Path), help="An .mp4 or .gif file [under RUN/videos]."
 )
 @trust_option
+@cache_option
 def replay(run: Path, begin: int | None, end: int | None, out: Path | None, **chosen: Any) -> None:
     """Make a video of a life: the whole life, or the first and last 30 seconds of a long one."""
     click.echo(chosen_organism(run, **chosen).replay(out, (begin, end)))
@@ -68,6 +70,7 @@ def replay(run: Path, begin: int | None, end: int | None, out: Path | None, **ch
 )
 @click.option("--world", type=int, default=0, help="The organisms' world [0].")
 @trust_option
+@cache_option
 @click.argument("file", type=click.Path(path_type=Path))
 def export(run: Path, organisms: tuple[int, ...], world: int, trust: bool, file: Path) -> None:
     """Write genomes to a safetensors FILE, which `primordia run --ancestor` takes.
@@ -92,6 +95,7 @@ def chosen_organism(run: Path, organism: int | None, world: int | None, trust: b
 @run_argument
 @device_option
 @trust_option
+@cache_option
 def verify(run: Path, device: str, trust: bool) -> None:
     """Repeat a run from its beginning and compare every birth, death and genome with its records."""
     from primordia.api import load

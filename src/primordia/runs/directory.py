@@ -59,7 +59,7 @@ def make_folders(run: Path) -> None:
     """Make the missing folders of a run."""
     try:
         for name in (*TABLES, "checkpoints"):
-            (run / name).mkdir(parents=True, exist_ok=True)
+            files.make_folder(run / name)
     except OSError as error:
         raise Trouble(f"{run} cannot be written: {error.strerror}") from None
 

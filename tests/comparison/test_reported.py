@@ -1,0 +1,121 @@
+"""Reported numbers at the borders: of ages, ticks, shares and draws."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from primordia.comparison.comparison import first_long, often_saturated
+from primordia.comparison.contrast import Measured, contrast
+from primordia.comparison.resample import RESAMPLES, interval
+from primordia.comparison.survival import survival
+from primordia.organism.evaluation import Spread
+from tests.synthetic import LIVED, alive, world_of, worlds_of
+
+Lived = list[tuple[int, int, bool]]
+UNTIL = 90
+"""a tick later than all births and deaths of LIVED"""
+
+
+@given(LIVED, LIVED, st.integers(1, 41))
+def test_every_death_up_to_the_limit_of_age_counts(one: Lived, other: Lived, limit: int) -> None:
+    """Deaths at the limit count too, and no age without a death has a step."""
+    lives = worlds_of(one, other, until=UNTIL)
+    estimate = survival(lives, 2, limit)
+    for world in range(2):
+        lived = lives.of_world(world)
+        by_age = dict(zip(estimate.ages.tolist(), estimate.deaths[world].tolist(), strict=True))
+        for age in range(limit + 50):
+            died = int((lived.died & (lived.lifespan == age)).sum())
+            assert by_age.get(age, 0) == (died if age <= limit else 0)
+    assert all(estimate.deaths.sum(axis=0) > 0)
+
+
+@given(LIVED, st.integers(0, UNTIL))
+def test_a_record_that_ends_in_a_tick_holds_the_deaths_of_that_tick(lived: Lived, end: int) -> None:
+    """Who is dead at the end of the last tick is no longer censored."""
+    world = world_of(lived, until=UNTIL)
+    cut = world.recorded_until(end)
+    assert cut.id.tolist() == world.id[world.born <= end].tolist()
+    for row in range(len(cut)):
+        assert alive(world, row, end) == (not cut.died[row])
+        assert cut.ended[row] == (end if not cut.died[row] else world.ended[row])
+        assert not cut.died[row] or cut.cause[row] == world.cause[row]
+
+
+@given(LIVED, st.integers(0, UNTIL))
+def test_a_record_that_begins_in_a_tick_lacks_the_dead_of_that_tick(
+    lived: Lived, begin: int
+) -> None:
+    world = world_of(lived, until=UNTIL)
+    later = world.recorded_since(begin)
+    known = [
+        row
+        for row in range(len(world))
+        if world.born[row] > begin or alive(world, row, begin) or not world.died[row]
+    ]
+    assert later.id.tolist() == world.id[known].tolist()
+    assert later.seen.tolist() == np.maximum(world.born[known], begin).tolist()
+
+
+@given(LIVED, LIVED, st.integers(1, 45))
+def test_the_first_long_life_is_known_when_no_earlier_one_can_become_long(
+    one: Lived, other: Lived, age: int
+) -> None:
+    worlds = [world_of(lived, until=50) for lived in (one, other)]
+    measured = first_long(worlds, age)
+    for number, world in enumerate(worlds):
+        long = (world.lifespan >= age).tolist()
+        may_be = (~world.died | (world.lifespan >= age)).tolist()
+        first = may_be.index(True) if True in may_be else len(world)
+        assert measured.value[number] == first + 1
+        assert measured.known[number] == (first < len(world) and long[first])
+
+
+@pytest.mark.parametrize("worlds", [1, 2, 3, 4, 7, 8])
+def test_worlds_saturate_often_if_at_least_half_of_them_do(worlds: int) -> None:
+    for by_births in range(worlds + 1):
+        for by_ticks in range(worlds + 1):
+            counts = {"births": by_births, "ticks": by_ticks}
+            measured = {
+                name: Measured(np.ones(worlds), np.arange(worlds) < count)
+                for name, count in counts.items()
+            }
+            assert often_saturated(measured) == (min(counts.values()) >= worlds / 2)
+
+
+def test_an_interval_holds_95_percent_of_the_resamples() -> None:
+    values = np.random.default_rng(0).permutation(RESAMPLES).astype(float)
+    assert interval(values) == (25, RESAMPLES - 1 - 25)
+    low, high = interval(np.stack([values, -values], axis=1))
+    assert low.tolist() == [25, -974]
+    assert high.tolist() == [974, -25]
+
+
+def test_the_worlds_of_two_runs_are_drawn_independently() -> None:
+    """With the same draws the ratio of a run to its equal would be 1 in every resample."""
+    values = np.random.default_rng(2).lognormal(0, 1, 30)
+    one = Measured(values, np.ones(30, bool))
+    low, high = contrast(one, one).interval
+    assert low < 0.8 < 1.2 < high
+    assert low * high == pytest.approx(1, rel=0.35)
+
+
+@given(st.lists(st.tuples(st.integers(1, 30), st.booleans()), min_size=1, max_size=15))
+def test_bounds_of_quartiles_are_order_statistics(worlds: list[tuple[int, bool]]) -> None:
+    value, known = (np.array(column) for column in zip(*worlds, strict=True))
+    measured = Measured(value.astype(float), known)
+    for q in (0.25, 0.5, 0.75):
+        place = max(int(np.ceil(q * len(worlds))), 1) - 1
+        low = sorted(value.tolist())[place]
+        high = sorted(np.where(known, value, np.inf).tolist())[place]
+        assert measured.quantile(q) == (low, high)
+    quartiles = [measured.quantile(q)[0] for q in (0.25, 0.5, 0.75)]
+    assert all(low <= high for low, high in pairwise(quartiles))
+
+
+def test_the_spread_of_games_is_quartiles_and_maximum() -> None:
+    assert Spread.of(np.array([40.0, 10, 20, 30, 0])) == (10, 20, 30, 40)
+    assert Spread.of(np.array([1.0, 2.0])) == (1.25, 1.5, 1.75, 2.0)

@@ -1,0 +1,134 @@
+"""A life lived again that differs from its record in any way is noticed; games count what is lived."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from primordia.errors import Trouble
+from primordia.law.metabolism import ONE
+from primordia.law.world import Cause
+from primordia.organism.evaluation import evaluate, players_of
+from primordia.organism.games import play
+from primordia.organism.reliving.relived import RelivedLife
+from primordia.runs import loop
+from primordia.runs.archive import Archive
+from primordia.runs.lives import ALIVE
+from tests.worlds import MEADOW, MILL, config
+
+HOST = {"name": "tests.toys:Mirror", "inner": "mill"}
+Change = Callable[[RelivedLife], None]
+
+
+@pytest.fixture(scope="module", params=["in JAX", "on the host"])
+def mill(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Archive:
+    """Make a run in which organisms die of hunger, of a broken wheel and by accident."""
+    run = tmp_path_factory.mktemp("mill") / "run"
+    habitat = HOST if request.param == "on the host" else MILL["habitat"]
+    settings = {**MILL, "habitat": habitat, "hazard": 0.02, "brain": {"hidden": 2}}
+    loop.start(config({**settings, "seed": 6, "stop": {"ticks": 400}}), run)
+    return Archive(run)
+
+
+def shifted(by: int) -> Change:
+    def shift(life: RelivedLife) -> None:
+        life.record.ended[0] += by
+
+    return shift
+
+
+def caused(cause: int) -> Change:
+    def change(life: RelivedLife) -> None:
+        if life.record.cause[0] == cause:  # so that each change is one
+            cause_now = Cause.FATAL if cause != Cause.FATAL else Cause.STARVED
+            life.record.cause[0] = cause_now
+        else:
+            life.record.cause[0] = cause
+
+    return change
+
+
+def left(energy: int, food: int) -> Change:
+    def change(life: RelivedLife) -> None:
+        before = life.at_death
+        life.__dict__["at_death"] = before[0] + energy, before[1] + food
+
+    return change
+
+
+CHANGES = {
+    "died a tick later": shifted(1),
+    "died a tick earlier": shifted(-1),
+    "died three ticks earlier": shifted(-3),
+    "was struck by accident": caused(Cause.HAZARD),
+    "broke": caused(Cause.FATAL),
+    "failed": caused(Cause.FAULT),
+    "lives": caused(ALIVE),
+    "had more energy": left(1, 0),
+    "had less energy": left(-1, 0),
+    "ate more": left(0, 1),
+    "ate less": left(0, -1),
+}
+BY_CHANCE = {"had more energy", "had less energy", "ate more", "ate less", "broke", "failed"}
+"""Changes that show where a death was an accident, which no organism repeats alone."""
+
+
+@pytest.mark.parametrize("said", CHANGES)
+def test_a_record_that_differs_from_the_life_is_noticed(mill: Archive, said: str) -> None:
+    """The record says that the organism died otherwise than it does."""
+    lives = mill.lives
+    for cause in (Cause.STARVED, Cause.FATAL, Cause.HAZARD):
+        if cause is Cause.HAZARD and said not in BY_CHANCE:
+            continue
+        row = int(np.flatnonzero((lives.cause == cause) & (lives.lifespan > 4))[0])
+        life = RelivedLife.of(mill, int(lives.id[row]))
+        assert len([*life.stretches()])
+        CHANGES[said](life)
+        with pytest.raises(Trouble, match="did not repeat as recorded"):
+            list(life.stretches())
+
+
+def test_a_game_counts_what_is_gathered_until_it_is_over(mill: Archive) -> None:
+    """Games of one player end at different ticks; when one is over, the others go on."""
+    players = players_of(mill, [(0, 0), (5, 0)])
+    whole = play(players, 5, 300)
+    assert whole.over.any()
+    assert len(np.unique(whole.ticks)) > 3
+    for player, game in ((0, 0), (0, 3), (1, 1), (1, 4)):
+        cut = play(players, 5, int(whole.ticks[player, game]))
+        for name in ("ticks", "over", "food", "course"):
+            value, expected = (getattr(games, name)[player, game] for games in (cut, whole))
+            assert value == expected, name
+
+
+def test_an_organism_that_starves_in_a_game_has_eaten_as_much_as_in_its_life(
+    tmp_path: Path,
+) -> None:
+    fed = {"habitat": {**MEADOW["habitat"], "food": 0.5}, "replication": 0.0}
+    settings = {**MEADOW, **fed, "brain": {"hidden": 1}, "metabolism": {"store": 20.0}}
+    loop.start(config({**settings, "stop": {"ticks": 100}}), tmp_path / "run")
+    run = Archive(tmp_path / "run")
+    (played,) = evaluate(run, [(0, 0)], games=3)
+    assert run.lives.lifespan[0] == 40
+    assert played.lived.ticks.tolist() == [40] * 3
+    assert played.lived.food.tolist() == [20.0] * 3
+    assert RelivedLife.of(run, 0).at_death == (0, 20 * ONE)
+
+
+def test_an_evaluation_is_under_the_latest_climate_of_the_organisms_world(tmp_path: Path) -> None:
+    """Life has become harder and then easier since the beginning, otherwise in each world."""
+
+    def season(setting: str, at: int, value: float) -> dict[str, Any]:
+        return {"kind": "schedule", "setting": f"metabolism.{setting}", "at": at, "value": value}
+
+    seasons = [season("drain", 20, 3.0), season("store", 30, 60.0), season("drain", 45, 6.0)]
+    settings = {**MEADOW, "brain": {"hidden": 1}, "seeds": 2, "replication": 0.2}
+    settings |= {"metabolism": {"store": 30.0}, "seasons": seasons, "placement": {"rule": "blind"}}
+    loop.start(config({**settings, "stop": {"ticks": 40}}), tmp_path / "run")
+    (played,) = evaluate(Archive(tmp_path / "run"), [(0, 1)], games=2)
+    assert played.lived.ticks.tolist() == [20, 20]
+    loop.resume(tmp_path / "run", {"ticks": 60})
+    (played,) = evaluate(Archive(tmp_path / "run"), [(0, 1)], games=2)
+    assert played.lived.ticks.tolist() == [10, 10]

@@ -1,0 +1,73 @@
+"""Seasons of a fork: its ratchets look back as far as the fork, and no further."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import primordia
+from primordia.errors import InputError
+from primordia.runs import loop
+from tests.worlds import MEADOW, config
+
+AT = 40
+
+
+def ratchet(above: float) -> dict[str, Any]:
+    """Return a season that multiplies the hazard by 2 if organisms gather more food than `above`."""
+    return {"kind": "ratchet", "setting": "metabolism.drain", "when": "food", "above": above,
+            "factor": 2.0, "every": 10}  # fmt: skip
+
+
+def meadow(food: float, **more: Any) -> dict[str, Any]:
+    habitat = {**MEADOW["habitat"], "food": food}
+    rest = {"brain": {"hidden": 1}, "replication": 0.1, "seeds": 2, "sample_every": 5}
+    metabolism = {"metabolism": {"store": 1000.0, "drain": 0.25}}
+    return {**MEADOW, **rest, **metabolism, "habitat": habitat, "stop": {"ticks": AT}, **more}
+
+
+@pytest.mark.parametrize(("before", "since", "turns"), [(1.0, 0.0, False), (0.0, 1.0, True)])
+def test_a_new_ratchet_counts_food_since_the_fork(
+    before: float, since: float, turns: bool, tmp_path: Path
+) -> None:
+    """Before the fork the meadow had other food than since."""
+    loop.start(config(meadow(before)), tmp_path / "run")
+    changes = {"habitat": {"food": since}, "seasons": [ratchet(0.9)], "stop": {"ticks": AT + 25}}
+    fork = primordia.load(tmp_path / "run").fork(AT, tmp_path / "fork", **changes)
+    metrics = fork.arrays("metrics")
+    for world in range(2):
+        here = (metrics["world"] == world) & (metrics["tick"] > AT)
+        values = metrics["metabolism.drain"][here]
+        drain = dict(zip(metrics["tick"][here].tolist(), values, strict=True))
+        expected = [0.25, 0.5, 0.5, 1.0] if turns else [0.25] * 4
+        assert [float(drain[AT + later]) for later in (5, 10, 15, 20)] == expected
+
+
+def test_an_old_ratchet_goes_on_looking_back_to_its_last_look(tmp_path: Path) -> None:
+    """The fork is between two looks, at ticks 20 and 40; food ends with it."""
+    seasons = [{**ratchet(0.4), "every": 20},
+               {**ratchet(0.6), "every": 20, "setting": "metabolism.store"}]  # fmt: skip
+    still = {"replication": 0.0, "genesis": "fill", "stop": {"ticks": 30}}
+    loop.start(config(meadow(1.0, seasons=seasons, **still)), tmp_path / "run")
+    changes = {"habitat": {"food": 0.0}, "stop": {"ticks": 65}}
+    fork = primordia.load(tmp_path / "run").fork(30, tmp_path / "fork", **changes)
+    metrics = fork.arrays("metrics")
+    here = metrics["world"] == 1
+    for setting, first, turns in (("drain", 0.25, [2, 4, 4]), ("store", 1000.0, [2, 2, 2])):
+        values = metrics[f"metabolism.{setting}"][here].tolist()
+        now = dict(zip(metrics["tick"][here].tolist(), values, strict=True))
+        assert [now[tick] for tick in (35, 40, 60)] == [first * times for times in turns]
+
+
+@pytest.mark.parametrize("setting", ["gain", "store", "drain", "effort_cost", "cap"])
+def test_a_season_of_a_metabolism_that_there_is_not_is_refused(
+    setting: str, tmp_path: Path
+) -> None:
+    season = {"kind": "schedule", "setting": f"metabolism.{setting}", "at": 5, "value": 1.0}
+    with pytest.raises(InputError, match=f"metabolism.{setting}"):
+        config(MEADOW, seasons=[season])
+    assert config(MEADOW, seasons=[season], metabolism={"store": 9.0}).seasons
+    if setting == "gain":
+        loop.start(config(MEADOW, brain={"hidden": 1}, stop={"ticks": 5}), tmp_path / "run")
+        with pytest.raises(InputError, match="metabolism.gain"):
+            primordia.load(tmp_path / "run").fork(3, tmp_path / "fork", seasons=[season])
