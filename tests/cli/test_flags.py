@@ -162,7 +162,7 @@ def test_no_flag_is_an_argument_of_a_python_function(
 ) -> None:
     """Flags are settings; what Python calls `self`, `listen` or `task` is none."""
     lines = {
-        run: ["run", TASK, "--quiet"],
+        run: ["run", TASK, "--quiet", "--out", "run"],
         fork: ["fork", "none", "--at", "3", "--out", "run"],
         evaluate: ["evaluate", "none"],
     }
