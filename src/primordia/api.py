@@ -201,7 +201,8 @@ def load(run: str | Path, trust: bool = False) -> Run:
 
 def default_name(chosen: config.Config) -> str:
     """Return the name of a run's directory, made of task and seed."""
-    return f"{chosen.task.replace('/', '-')}-seed{chosen.seed}"
+    task = "".join(each if each.isprintable() and each != "/" else "-" for each in chosen.task)
+    return f"{task}-seed{chosen.seed}"
 
 
 def fresh_directory(name: str) -> Path:

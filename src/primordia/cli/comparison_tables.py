@@ -28,7 +28,7 @@ WIDE = 1000
 
 def comparison_tables(compared: Comparison) -> str:
     """Return all tables of a comparison, with a row for each run, and the notes."""
-    console = Console(width=WIDE, color_system=None)
+    console = Console(width=WIDE, color_system=None, markup=False, emoji=False)
     with console.capture() as captured:
         console.print(_runs(compared))
         for outcome in compared.outcomes:

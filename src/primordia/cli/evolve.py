@@ -2,10 +2,11 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
+from primordia import interrupts
 from primordia.cli.cache import cache_option
 from primordia.cli.flags import (
     SettingsCommand,
@@ -19,7 +20,12 @@ from primordia.cli.flags import (
     take_limits,
     trust_option,
 )
-from primordia.cli.stderr import report
+from primordia.cli.streams import report
+from primordia.errors import Trouble
+from primordia.printable import printable
+
+if TYPE_CHECKING:
+    from primordia.runs.loop import Listener, Status
 
 
 @click.command(cls=SettingsCommand)
@@ -127,19 +133,35 @@ def _drive(path: Path, quiet: bool, go: Callable[[Any], object]) -> None:
     from primordia.live.view import watching
     from primordia.organism.replay import lacking
 
-    try:
-        with watching(quiet) as listen:
-            go(listen)
-    except KeyboardInterrupt:
+    def stopped() -> str:
         begun = (path / "versions.json").exists()
         saved = f"Stopped and saved. Go on with: primordia resume {path}"
-        click.echo(saved if begun else f"Stopped before {path} had begun", err=True)
-        raise SystemExit(130) from None
+        return printable(saved if begun else f"Stopped before {path} had begun")
+
+    with interrupts.last_words(stopped):
+        try:
+            with watching(quiet) as listen:
+                go(listen and _while_shown(listen, stopped))
+        except KeyboardInterrupt:
+            click.echo(stopped(), err=True)
+            raise SystemExit(interrupts.STATUS) from None
     if not quiet:
         click.echo(summary(Run(path).info()))
         click.echo(f"Figures: primordia plot {path}")
         if not lacking(Run(path).opened().habitat):
             click.echo(f"Video of the longest life: primordia replay {path}")
+
+
+def _while_shown(listen: "Listener", stopped: Callable[[], str]) -> "Listener":
+    """Return a listener that stops the run with one line once its output cannot be written."""
+
+    def show(status: "Status") -> None:
+        try:
+            listen(status)
+        except OSError as error:
+            raise Trouble(f"the output cannot be written: {error.strerror}. {stopped()}") from None
+
+    return show
 
 
 COMMANDS = (run, resume, fork)

@@ -52,9 +52,11 @@ def bytes_available() -> int:
         return int(statistics["bytes_limit"] - statistics["bytes_in_use"])
     amounts = [os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")]
     with suppress(OSError, ValueError):  # other systems than Linux; no limit
-        amounts.append(int(CGROUP.read_text()))
+        amounts.append(int(CGROUP.read_text(encoding="utf-8")))
     with suppress(OSError, ValueError):
-        lines = dict(line.split(":", 1) for line in MEMINFO.read_text().splitlines())
+        lines = dict(
+            line.split(":", 1) for line in MEMINFO.read_text(encoding="utf-8").splitlines()
+        )
         amounts.append(int(lines["MemAvailable"].split()[0]) * 1024)
     return min(amounts)
 

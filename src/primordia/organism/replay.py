@@ -10,6 +10,7 @@ import jax
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
+from primordia import files
 from primordia.errors import InputError
 from primordia.habitats.contract import Ability, AnyHabitat
 from primordia.habitats.framed import PAPER
@@ -53,6 +54,8 @@ def replay(
     rate = _picture_rate(life)
     step = ceil(rate / video.FASTEST[path.suffix])
     parts = _parts(life, rate, ages)
+    if out is None:
+        files.own_folder(path.parent)
     video.write(path, _pictures(life, parts, step, rate / step), rate / step)
     return path
 

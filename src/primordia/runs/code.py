@@ -29,7 +29,7 @@ def copy(config: Config, run: Path) -> dict[str, str]:
     code = _sources(config.own_modules.values(), [Path.cwd()])
     for name, file in code.items():
         path = run / FOLDER / name
-        path.parent.mkdir(parents=True, exist_ok=True)
+        files.make_folder(path.parent)
         files.write(path, partial(_fill, text=file.read_bytes()))
     checksums = own_code.checksums(code)
     _trust(checksums)

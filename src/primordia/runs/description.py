@@ -51,8 +51,7 @@ class Description(BaseModel):
         Raises:
             Trouble: it cannot be written.
         """
-        text = self.model_dump_json(indent=1)
-        files.write(run / FILE, lambda path: path.write_text(text, encoding="utf-8"))
+        files.write_text(run / FILE, self.model_dump_json(indent=1))
 
 
 def read(run: Path) -> Description:

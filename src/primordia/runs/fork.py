@@ -63,8 +63,12 @@ def fork(
     recorder = recorder_for(after, out)
     recorder.add("births", _birth_rows(living, after))
     progress = Progress(changed.stop.model_dump(), 0.0, after.chunks.exact)
-    with directory.create(out, changed):
+
+    def save_origin() -> None:
         checkpoint.save_origin(out, after.arrays(), recorder, progress)
+
+    with directory.create(out, changed, save_origin):
+        pass
 
 
 def _fork_config(source: Path, settings: dict[str, Any], at: int) -> Config:

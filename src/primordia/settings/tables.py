@@ -24,7 +24,7 @@ def tasks() -> dict[str, dict[str, Any]]:
     values_by_task = {}
     for file in sorted(resources.files("primordia.tasks").iterdir(), key=lambda f: f.name):
         if file.name.endswith(".toml"):
-            values = tomllib.loads(file.read_text())
+            values = tomllib.loads(file.read_text(encoding="utf-8"))
             values_by_task[values["task"]] = values
     return values_by_task
 
