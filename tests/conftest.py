@@ -17,6 +17,8 @@ flags = os.environ.get("XLA_FLAGS", "")
 if EMITTERS not in flags:
     os.environ["XLA_FLAGS"] = f"{flags} {EMITTERS}=false".strip()
 device.prepare()
+# Processes that tests start, and workers that those start, import this tree, whatever is installed.
+os.environ["PYTHONPATH"] = commands.TREE
 
 # A slow test is not a wrong test: the machine may be busy, and garbage collection takes up to 0.3 s.
 settings.register_profile("patient", deadline=None, suppress_health_check=[HealthCheck.too_slow])

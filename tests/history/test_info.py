@@ -1,7 +1,6 @@
 """A run in numbers, counted again from its records."""
 
 from collections import Counter
-from pathlib import Path
 from typing import Any
 
 import numpy as np

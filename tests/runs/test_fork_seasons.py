@@ -64,10 +64,10 @@ def test_a_season_of_a_metabolism_that_there_is_not_is_refused(
     setting: str, tmp_path: Path
 ) -> None:
     season = {"kind": "schedule", "setting": f"metabolism.{setting}", "at": 5, "value": 1.0}
-    with pytest.raises(InputError, match=f"metabolism.{setting}"):
+    with pytest.raises(InputError, match=rf"metabolism\.{setting}"):
         config(MEADOW, seasons=[season])
     assert config(MEADOW, seasons=[season], metabolism={"store": 9.0}).seasons
     if setting == "gain":
         loop.start(config(MEADOW, brain={"hidden": 1}, stop={"ticks": 5}), tmp_path / "run")
-        with pytest.raises(InputError, match="metabolism.gain"):
+        with pytest.raises(InputError, match=r"metabolism\.gain"):
             primordia.load(tmp_path / "run").fork(3, tmp_path / "fork", seasons=[season])
