@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
-from primordia import cli
+from primordia.cli.commands import execute
+from primordia.cli.streams import Printable
 
 HERE = Path(__file__).parent.parent
 TREE = os.pathsep.join([str(HERE / "src"), str(HERE)])
@@ -39,14 +40,13 @@ def begin(*words: object) -> subprocess.Popen[str]:
 
 def here(*words: object) -> subprocess.CompletedProcess[str]:
     """Run a command in this process."""
-    argv, status = ["primordia", *map(str, words)], 0
-    out, err = io.StringIO(), io.StringIO()
+    argv = ["primordia", *map(str, words)]
+    out, err = (Printable(io.BytesIO(), "utf-8", "backslashreplace") for _ in range(2))
     with patch.object(sys, "argv", argv), redirect_stdout(out), redirect_stderr(err):
-        try:
-            cli.main()
-        except SystemExit as end:
-            status = int(end.code or 0)
-    return subprocess.CompletedProcess(argv, status, out.getvalue(), err.getvalue())
+        status = execute()
+    for stream in (out, err):
+        stream.seek(0)
+    return subprocess.CompletedProcess(argv, status, out.read(), err.read())
 
 
 def complains(done: subprocess.CompletedProcess[str], status: int, *parts: str) -> None:

@@ -32,4 +32,6 @@ def _compiled_code(tmp_path_factory: pytest.TempPathFactory) -> None:
     shared = root.parent if root.name.startswith("popen") else root
     commands.CACHE = Path(shared) / "compiled"
     jax.config.update("jax_compilation_cache_dir", str(commands.CACHE))
+    os.environ["XDG_STATE_HOME"] = str(shared / "state")
+    os.environ["XDG_CACHE_HOME"] = str(shared / "cache")
     jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.2)

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import primordia
+from primordia import device
 from primordia.device import ISA_FLAG
 from tests.commands import environment
 
@@ -76,6 +77,26 @@ def test_a_run_is_limited_to_avx2_unless_the_user_chose_otherwise(
     printed = python(LIVE, run, tmp_path / "other", flags=flags)
     kept = flags if ISA_FLAG in flags else f"{flags} {ISA_FLAG}=AVX2".strip()
     assert printed.split(maxsplit=2)[1:] == [allowed, kept]
+
+
+@on_x86
+@pytest.mark.parametrize(
+    ("flags", "recorded"),
+    [
+        ("", "native"),
+        (f"{ISA_FLAG}=AVX {ISA_FLAG}=SSE4_2", "SSE4_2"),
+        (f"--xla_dump_to=/tmp {ISA_FLAG}=AVX2 --xla_cpu_use_fusion_emitters=false", "AVX2"),
+        (
+            f"--xla_b=1 {ISA_FLAG}=AVX2  --xla_allow_excess_precision=false",
+            "AVX2 --xla_allow_excess_precision=false --xla_b=1",
+        ),
+    ],
+)
+def test_flags_that_may_change_bits_are_part_of_the_instruction_set(
+    monkeypatch: pytest.MonkeyPatch, flags: str, recorded: str
+) -> None:
+    monkeypatch.setenv("XLA_FLAGS", flags)
+    assert device.instruction_set() == f"{platform.machine()} {recorded}"
 
 
 @on_x86

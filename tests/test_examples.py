@@ -39,7 +39,7 @@ def test_a_brain_lives_and_a_life_is_lived_again(tmp_path: Path) -> None:
     assert (done.returncode, done.stderr) == (0, "")
     run = Archive(tmp_path / "run")
     assert run.config.brain == {"kind": "examples.brain:Leaky", "neurons": 6}
-    assert run.law.layout.names == ["input", "recurrent", "keep", "output"]
+    assert run.law.heredity.layout.names == ["input", "recurrent", "keep", "output"]
     assert_rebuilt(run.path)
     lived_again(run)
 

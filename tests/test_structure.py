@@ -10,7 +10,7 @@ import pytest
 SOURCE = Path(__file__).parent.parent / "src" / "primordia"
 
 LAYERS = [
-    {"errors"},
+    {"errors", "interrupts", "own_code", "printable"},
     {"compiled", "device", "files", "random", "rounding", "settings", "tasks"},
     {"brains", "pool"},
     {"habitats", "mutations"},
@@ -101,6 +101,20 @@ def test_no_module_uses_pickle_eval_or_other_randomness(module: str) -> None:
         elif isinstance(node, ast.keyword) and node.arg == "allow_pickle":
             assert isinstance(node.value, ast.Constant)
             assert node.value.value is False
+
+
+@pytest.mark.parametrize("module", FILES)
+def test_texts_are_read_and_written_in_utf_8(module: str) -> None:
+    """Without an encoding, Python takes that of the user's locale."""
+    calls = (node for node in ast.walk(tree(module)) if isinstance(node, ast.Call))
+    for call in calls:
+        name = ast.unparse(call.func)
+        if name.endswith((".read_text", ".write_text")) and name != WRITER:
+            assert "encoding" in {each.arg for each in call.keywords}, ast.unparse(call)
+
+
+WRITER = "files.write_text"
+"""The function that writes all texts; it takes no encoding."""
 
 
 @pytest.mark.parametrize("module", FILES)

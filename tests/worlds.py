@@ -91,7 +91,7 @@ class Lived:
         """Return the genomes of the living, float32 (n, P)."""
         organisms = self.engine.state.world.organisms
         blocks = {name: np.asarray(block) for name, block in organisms.genome.items()}
-        return self.engine.law.layout.join(blocks)[np.asarray(organisms.alive)]
+        return self.engine.law.heredity.layout.join(blocks)[np.asarray(organisms.alive)]
 
     def digests(self) -> list[str]:
         """Return the digest of each world."""

@@ -72,7 +72,7 @@ def described(game: str) -> tuple:
 
 def scales(law: Any) -> list[float]:
     """Return the standard deviation of a founder's weights in each block."""
-    return law.mutation.per_block("founder_scale", law.layout)
+    return law.heredity.mutation.per_block("founder_scale", law.heredity.layout)
 
 
 class Brains:
@@ -89,7 +89,7 @@ class Brains:
         noise, discrete = np.random.default_rng(0), isinstance(habitat.action, Discrete)
         self._genome = {
             name: jnp.asarray(scale * noise.standard_normal((cells, *shape)), jnp.float32)
-            for scale, (name, shape) in zip(scales(law), law.layout.blocks, strict=True)
+            for scale, (name, shape) in zip(scales(law), law.heredity.layout.blocks, strict=True)
         }
         self._memory = jnp.zeros((cells, law.memory), jnp.float32)
 

@@ -1,4 +1,9 @@
-"""`python -m primordia`."""
+"""`python -m primordia`, which imports nothing from the current folder unless a task names it."""
+
+import sys
+
+if not sys.flags.safe_path:
+    del sys.path[0]
 
 from primordia.cli import main
 

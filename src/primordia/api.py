@@ -8,7 +8,7 @@ run.resume(ticks=200_000, until="none")
 policy = run.oldest().policy()
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain, count
 from pathlib import Path
@@ -26,9 +26,8 @@ from primordia.organism.evaluation import Evaluation, evaluate
 from primordia.organism.export import export
 from primordia.organism.organism import Organism
 from primordia.organism.policy import Policy
-from primordia.runs import loop
+from primordia.runs import code, loop
 from primordia.runs.archive import Archive
-from primordia.runs.directory import read_config
 from primordia.runs.fork import fork
 from primordia.runs.lives import Lives
 from primordia.runs.loop import Listener
@@ -103,16 +102,17 @@ class Run:
         self,
         at: int,
         out: str | Path | None = None,
+        settings: Mapping[str, Any] | None = None,
         *,
         checkpoint_every: float = 60.0,
         device: str = "cpu",
         listen: Listener | None = None,
-        **settings: Any,
+        **more: Any,
     ) -> "Run":
         """Make a run that goes on from the end of tick `at`, with changed settings; see `runs.fork`."""
         devices.select(device)
         path = Path(out) if out is not None else fresh_directory(f"{self.path.name}-at{at}")
-        fork(self.opened(), at, path, settings, listen)
+        fork(self.opened(), at, path, {**(settings or {}), **more}, listen)
         loop.resume(path, checkpoint_every=checkpoint_every, listen=listen)
         return Run(path)
 
@@ -140,11 +140,12 @@ class Run:
 def run(
     task: str,
     out: str | Path | None = None,
+    settings: Mapping[str, Any] | None = None,
     *,
     checkpoint_every: float = 60.0,
     device: str = "cpu",
     listen: Listener | None = None,
-    **settings: Any,
+    **more: Any,
 ) -> Run:
     """Run a task until its worlds stop.
 
@@ -154,7 +155,8 @@ def run(
         checkpoint_every: seconds from one checkpoint to the next.
         device: the device that JAX computes on, `cpu` or `gpu`.
         listen: called after each chunk.
-        settings: changed settings, tables as dicts: `cells=64, mutation={"scale": 0.02}`.
+        settings: changed settings, tables as dicts: `{"cells": 64, "mutation": {"scale": 0.02}}`.
+        more: further ones: `cells=64, mutation={"scale": 0.02}`.
 
     Raises:
         InputError: a name or setting is wrong, or `out` is taken.
@@ -162,7 +164,7 @@ def run(
         KeyboardInterrupt: on Ctrl-C, after a checkpoint.
     """
     devices.select(device)
-    chosen = config.load(task, settings)
+    chosen = config.load(task, {**(settings or {}), **more})
     path = Path(out) if out is not None else fresh_directory(default_name(chosen))
     loop.start(chosen, path, checkpoint_every=checkpoint_every, listen=listen)
     return Run(path)
@@ -179,19 +181,28 @@ def compare(
     return comparison.compare(opened, births, ticks)
 
 
-def load(run: str | Path) -> Run:
+def load(run: str | Path, trust: bool = False) -> Run:
     """Return the run in a directory.
+
+    Args:
+        run: the directory.
+        trust: allow the run's own code to be executed, from now on and on this machine. Without that,
+            code that the user did not begin a run with stops what executes it: `resume`, `replay` and
+            the like. Reading records executes nothing.
 
     Raises:
         InputError: the directory holds no run.
     """
-    read_config(Path(run))
+    opened = Archive(run)
+    if trust:
+        code.trust(opened.code())
     return Run(Path(run))
 
 
 def default_name(chosen: config.Config) -> str:
     """Return the name of a run's directory, made of task and seed."""
-    return f"{chosen.task.replace('/', '-')}-seed{chosen.seed}"
+    task = "".join(each if each.isprintable() and each != "/" else "-" for each in chosen.task)
+    return f"{task}-seed{chosen.seed}"
 
 
 def fresh_directory(name: str) -> Path:

@@ -1,12 +1,14 @@
 """Settings of a run: one validated, frozen object, made from a task's TOML, a file and flags."""
 
+from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 import tomli_w
-from pydantic import Field, ValidationError, ValidationInfo, field_validator
+from pydantic import Field, ValidationError
 
 from primordia.brains import contract as brains
 from primordia.brains import genomes
@@ -15,13 +17,13 @@ from primordia.brains.layout import Layout
 from primordia.errors import InputError
 from primordia.habitats import contract as habitats
 from primordia.habitats.contract import AnyHabitat, Continuous
+from primordia.law.heredity import Heredity
 from primordia.law.law import Law
 from primordia.law.metabolism import Metabolism
 from primordia.law.motor import Motor
 from primordia.law.placement import Placement
 from primordia.law.seasons import Season
 from primordia.mutations import contract as mutations
-from primordia.mutations.contract import Mutation
 from primordia.settings.base import Rate, Settings
 from primordia.settings.fields import first_fault, rates_of, setting_fields
 from primordia.settings.making import make
@@ -35,6 +37,7 @@ from primordia.settings.tables import (
     values_of,
     with_full_paths,
 )
+from primordia.settings.values import check_values
 
 
 class Stop(Settings):
@@ -63,18 +66,14 @@ class Config(Settings):
     task: str = Field(min_length=1, description="name of the task")
     about: str = Field("", description="the task, in one line")
     habitat: dict[str, Any] = Field(description="`name` of the habitat, and its own settings")
-    brain: dict[str, Any] = Field(
-        {}, validate_default=True, description="`kind` of the brain, and its own settings"
-    )
+    brain: dict[str, Any] = Field({}, description="`kind` of the brain, and its own settings")
     motor: Motor = Motor()
     cells: int = Field(32, ge=2, le=2**24, description="cells of one world")
     placement: Placement = Placement()
     replication: Rate = Field(
         0.05, ge=0, le=1, description="probability that an organism replicates in a tick"
     )
-    mutation: dict[str, Any] = Field(
-        {}, validate_default=True, description="`kind` of the mutation, and its own settings"
-    )
+    mutation: dict[str, Any] = Field({}, description="`kind` of the mutation, and its own settings")
     ancestors: tuple[str, ...] = Field(
         (),
         strict=False,
@@ -107,20 +106,6 @@ class Config(Settings):
     stop: Stop = Stop()
     fork: ForkedFrom | None = Field(None, description="set by `primordia fork`")
 
-    @field_validator("brain", "mutation")
-    @classmethod
-    def _complete(cls, table: dict[str, Any], info: ValidationInfo) -> dict[str, Any]:
-        """Add the part's defaults, so that `config.toml` holds even if a later version changes them.
-
-        A table from which no part can be made stays unchanged: records are read without its code, and
-        `checked` raises the error.
-        """
-        contract: Any = {"brain": brains, "mutation": mutations}[str(info.field_name)]
-        try:
-            return {"kind": contract.DEFAULT, **table, **contract.build(table).model_dump()}
-        except InputError:
-            return table
-
     def build_habitat(self) -> AnyHabitat:
         """Return the habitat, made from its class and settings.
 
@@ -143,36 +128,49 @@ class Config(Settings):
 
     def build_law(self, habitat: AnyHabitat) -> Law:
         """Return the law that holds in this run's worlds."""
-        brain, mutation = self.build_brain(), mutations.build(self.mutation)
-        layout = self.build_layout(habitat)
+        brain, heredity = self.build_brain(), self.build_heredity(self.build_layout(habitat))
         return Law(
             worlds=self.seeds,
             cells=self.cells,
             brain=brain,
-            layout=layout,
+            heredity=heredity,
             memory=brain.memory(habitat.senses_size, habitat.action.size),
             action=habitat.action,
             motor=self.motor,
             placement=self.placement,
-            mutation=mutation,
-            ancestors=genomes.read(self.ancestors, layout) if self.ancestors else None,
             metabolism=self.metabolism,
-            beginning=tuple(self._rates(mutation, layout).items()),
-            inheritance=self.inheritance,
+            beginning=tuple(self._rates(heredity).items()),
             genesis=self.genesis,
             seasons=self.seasons,
             saturation_ticks=self.saturation_ticks,
             sample_every=self.sample_every,
         )
 
-    def _rates(self, mutation: Mutation, layout: Layout) -> dict[str, float]:
+    def build_heredity(self, layout: Layout) -> Heredity:
+        """Return the heredity of genomes of a layout."""
+        return Heredity(
+            layout=layout,
+            mutation=mutations.build(self.mutation),
+            inheritance=self.inheritance,
+            ancestors=genomes.read(self.ancestors, layout) if self.ancestors else None,
+            worlds=self.seeds,
+        )
+
+    def _rates(self, heredity: Heredity) -> dict[str, float]:
         """Return the settings that seasons may change, by dotted name."""
-        own = mutation.rates(layout).items()
+        own = heredity.mutation.rates(heredity.layout).items()
         return {
             **rates_of(self),
             **{f"mutation.{name}": value for name, value in own},
             **rates_of(self.metabolism or Metabolism(), "metabolism."),
         }
+
+    @property
+    def own_modules(self) -> dict[str, str]:
+        """Return the modules of the parts that do not come with the package: part -> dotted name."""
+        names = {part: getattr(self, part).get(key) for part, key in PARTS.items()}
+        modules = {part: str(name).partition(":") for part, name in names.items()}
+        return {part: module for part, (module, colon, _) in modules.items() if colon}
 
     @property
     def world_seeds(self) -> np.ndarray:
@@ -207,22 +205,41 @@ def validated(values: dict[str, Any], source: str) -> Config:
     Raises:
         InputError: a value is wrong; the message names it and the source, in one line.
     """
-    return checked(parsed(values, source), source)
+    config = _parsed(values, source, partial(_settings_of_parts, values))
+    return checked(_completed(config, source), source)
 
 
 def parsed(values: dict[str, Any], source: str) -> Config:
-    """Return a Config of these values, each checked by itself, which needs no code of the habitat.
+    """Return a Config of these values, each checked by itself, which needs no code of any part.
 
     Raises:
         InputError: a value is wrong; the message names it and the source, in one line.
     """
+    return _parsed(values, source, list)
+
+
+def _parsed(values: dict[str, Any], source: str, others: Callable[[], list[str]]) -> Config:
+    """Return a Config; `others` names the settings of parts, among which a wrong name may be meant."""
     try:
+        check_values(values)
         return Config.model_validate(replaced(values, NONE, None))
     except ValidationError as error:
-        fault = first_fault(error, Config, others=_settings_of_parts(values))
-        raise InputError(f"{source}: {fault}") from None
-    except InputError as error:  # of a replaceable part
+        raise InputError(f"{source}: {first_fault(error, Config, others=others())}") from None
+    except InputError as error:  # of a value
         raise InputError(f"{source}: {error}") from None
+
+
+def _completed(config: Config, source: str) -> Config:
+    """Add the defaults of brain and mutation, so that `config.toml` holds if a version changes them."""
+    built: dict[str, Any] = {}
+    try:
+        for part, contract in {"brain": brains, "mutation": mutations}.items():
+            table: dict[str, Any] = getattr(config, part)
+            own = contract.build(table).model_dump()
+            built[part] = {"kind": contract.DEFAULT, **table, **own}
+    except InputError as error:
+        raise InputError(f"{source}: {error}") from None
+    return config.model_copy(update=built)
 
 
 def _settings_of_parts(values: dict[str, Any]) -> list[str]:
@@ -289,7 +306,7 @@ def _check(config: Config) -> None:
         )
     law = config.build_law(habitat)
     try:
-        law.mutation.check(law.layout)
+        law.heredity.mutation.check(law.heredity.layout)
     except ValueError as error:
         raise InputError(f"mutation.{error}") from None
     for season in config.seasons:
@@ -298,7 +315,9 @@ def _check(config: Config) -> None:
 
 def _check_season(setting: str, config: Config, law: Law) -> None:
     if not law.governed(setting):
-        known = sorted({*law.rates, *(f"mutation.{name}" for name in rates_of(law.mutation))})
+        known = sorted(
+            {*law.rates, *(f"mutation.{name}" for name in rates_of(law.heredity.mutation))}
+        )
         raise InputError(
             f"seasons: {setting} is no setting that seasons can change in this task"
             f"{did_you_mean(setting, known)}"

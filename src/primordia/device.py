@@ -12,6 +12,12 @@ from primordia.errors import InputError
 
 PACKAGES = ("primordia", "jax", "jaxlib", "numpy")
 ISA_FLAG = "--xla_cpu_max_isa"
+SAME_BITS = (
+    "--xla_dump",
+    "--xla_force_host_platform_device_count",
+    "--xla_cpu_use_fusion_emitters",
+)
+"""Beginnings of flags of XLA that change no bit of a result; any other may."""
 
 
 def prepare() -> None:
@@ -53,14 +59,17 @@ def select(name: str) -> None:
 
 
 def instruction_set() -> str:
-    """Return the architecture and the newest vector instructions that XLA may use."""
+    """Return the architecture, XLA's newest vector instructions, and its flags that may change bits."""
+    flags = os.environ.get("XLA_FLAGS", "").split()
+    others = sorted(flag for flag in flags if not flag.startswith((ISA_FLAG, *SAME_BITS)))
     machine = platform.machine()
     if machine not in ("x86_64", "AMD64"):
-        return machine
-    allowed = os.environ.get("XLA_FLAGS", "").rpartition(ISA_FLAG + "=")[2].split(" ")[0]
+        return " ".join([machine, *others])
+    limits = [flag.partition("=")[2] for flag in flags if flag.startswith(ISA_FLAG)]
     cpu = Path("/proc/cpuinfo")
-    has_avx2 = "avx2" in cpu.read_text() if cpu.exists() else True
-    return f"{machine} {allowed or 'native'}" + ("" if has_avx2 else " (this machine has no AVX2)")
+    has_avx2 = "avx2" in cpu.read_text(encoding="utf-8") if cpu.exists() else True
+    lacks = [] if has_avx2 else ["(this machine has no AVX2)"]
+    return " ".join([machine, limits[-1] if limits else "native", *lacks, *others])
 
 
 def versions() -> dict[str, str]:

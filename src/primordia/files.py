@@ -1,41 +1,133 @@
-"""Atomic files, either whole or absent: temporary name, fsync, rename, fsync of the folder."""
+"""Atomic files, either whole or absent: temporary name, fsync, rename, fsync of the folder.
+
+Nothing but regular files is ever replaced, and no link is followed where a run keeps its own.
+"""
 
 import hashlib
 import os
+import shutil
+import stat
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
-from primordia.errors import Trouble
+from primordia import interrupts
+from primordia.errors import InputError, Trouble
 
 TEMPORARY = ".writing-"
 """Prefix of the names of unfinished files."""
+
+KINDS: dict[int, str] = {
+    stat.S_IFDIR: "a folder",
+    stat.S_IFLNK: "a symbolic link",
+    stat.S_IFIFO: "a pipe",
+    stat.S_IFSOCK: "a socket",
+    stat.S_IFCHR: "a device",
+    stat.S_IFBLK: "a device",
+}
+"""Things other than regular files that have a path."""
 
 
 def write(path: Path, fill: Callable[[Path], object]) -> None:
     """Write the file `path`: `fill` writes a temporary path, which is then renamed.
 
     Raises:
+        InputError: the path is that of something else than a regular file.
         Trouble: the file cannot be written (disk full, no permission, ...).
     """
+    check_output(path)
     temporary = path.with_name(TEMPORARY + path.name)
-    try:
-        fill(temporary)
-        sync(temporary)
-        temporary.rename(path)
-        sync(path.parent)
-    except OSError as error:
+
+    def undo() -> None:
         with suppress(OSError):
             temporary.unlink()
+
+    try:
+        temporary.unlink(missing_ok=True)  # it could be a link, which `fill` would follow
+        with interrupts.undone_by(undo):
+            fill(temporary)
+            sync(temporary)
+            temporary.rename(path)
+            sync(path.parent)
+    except OSError as error:
         raise Trouble(f"{path} cannot be written: {error.strerror or error}") from None
 
 
+def write_text(path: Path, text: str) -> None:
+    """Write a text in UTF-8; see `write`."""
+    write(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))
+
+
+def check_output(path: Path) -> None:
+    """Raise InputError unless the path is free or that of a regular file, which may be replaced."""
+    if (kind := _kind(path)) is not None:
+        raise InputError(f"{path} is {kind}, not a file; it was left unchanged")
+
+
+def own_folder(path: Path) -> None:
+    """Make a folder of a run, unless it exists; a link is refused, since it leads out of the run.
+
+    Raises:
+        InputError: the path is that of something else than a folder.
+        Trouble: the folder cannot be made.
+    """
+    kind = _kind(path)
+    if kind not in (None, KINDS[stat.S_IFDIR]):
+        raise InputError(
+            f"{path} is {kind}, not a folder; a run writes into folders of its own only"
+        )
+    make_folder(path)
+
+
 def make_folder(path: Path) -> None:
-    """Make a folder and its missing parents, and wait until their names are on the disk."""
-    if not path.is_dir():
-        make_folder(path.parent)
-        path.mkdir(exist_ok=True)
-        sync(path.parent)
+    """Make a folder and its missing parents, and wait until their names are on the disk.
+
+    Raises:
+        InputError: no folder can have this name.
+        Trouble: it cannot be made.
+    """
+    check_name(path)
+    try:
+        for folder in reversed([path, *path.parents]):
+            if not folder.is_dir():
+                folder.mkdir(exist_ok=True)
+                sync(folder.parent)
+    except OSError as error:
+        raise Trouble(f"{path} cannot be written: {error.strerror or error}") from None
+
+
+def remove(path: Path) -> None:
+    """Remove a file, a folder with its content, or a link without what it leads to.
+
+    Raises:
+        Trouble: it cannot be removed.
+    """
+    try:
+        if path.is_dir() and not path.is_symlink():
+            shutil.rmtree(path)
+        else:
+            path.unlink()
+    except OSError as error:
+        raise Trouble(f"{path} cannot be removed: {error.strerror or error}") from None
+
+
+def _kind(path: Path) -> str | None:
+    """Return what a path is, such as "a folder"; None if it is free or a regular file."""
+    check_name(path)
+    try:
+        return KINDS.get(stat.S_IFMT(path.lstat().st_mode))
+    except OSError:  # it is free, or cannot be looked at, of which writing says more
+        return None
+
+
+def check_name(path: Path) -> None:
+    """Raise InputError unless a path is UTF-8, as libraries want it, and holds no NUL.
+
+    Python represents bytes that are no UTF-8 by halves of surrogate pairs.
+    """
+    name = str(path)
+    if "\0" in name or name != name.encode(errors="replace").decode():
+        raise InputError(f"{name!r} is not in UTF-8 or holds a NUL; choose another name")
 
 
 def sync(path: Path) -> None:

@@ -144,6 +144,45 @@ def test_runs_are_compared_up_to_a_horizon_that_all_worlds_reached(
     )
 
 
+AT = 60
+"""The tick of a fork, by which some worlds are saturated."""
+
+
+def test_births_and_ticks_count_from_the_fork(runs: list[Path], tmp_path: Path) -> None:
+    source = primordia.Run(runs[2])
+    fork = source.fork(AT, tmp_path / "fork")
+    whole, part = primordia.compare(source, fork).arms
+    born, worlds = source.arrays("births"), source.info()["worlds"]
+    for number, world in enumerate(worlds):
+        before = (born["tick"][born["world"] == number] < AT).sum()
+        expected = {"births": world["saturation"]["births"] - before, "ticks": world["ticks"] - AT}
+        for unit, value in expected.items():
+            for arm in (whole, part):
+                assert arm.measured[unit].known[number]
+                assert arm.measured[unit].value[number] == max(value, 0), unit
+    firsts = [arm.measured["first"].value for arm in (whole, part)]
+    np.testing.assert_array_equal(*firsts)
+    assert (firsts[0] <= whole.measured["births"].value).all()
+    assert primordia.compare(source, fork, ticks=1).arms[1].saturated == 0
+    printed = here("compare", source.path, fork.path, "--out", tmp_path).stdout
+    assert f"count from tick {AT}, that of the fork" in printed
+
+
+def test_single_worlds_are_shown_without_intervals_and_words(tmp_path: Path) -> None:
+    for seed in (0, 1):
+        loop.start(config({**QUICK, "seeds": 1, "seed": seed}), tmp_path / f"seed{seed}")
+    words = ("compare", tmp_path / "seed0", tmp_path / "seed1", "--out", tmp_path)
+    printed = here(*words).stdout
+    for part in ("need 5 worlds of each run (--seeds 5): seed0 has 1", "delta", "mean lifespan"):
+        assert part in printed
+    tables = printed.partition("Medians and intervals")[0]
+    for word in ("negligible", "small", "medium ", "large", " to 1", "95 %"):
+        assert word not in tables
+    against = json.loads(here(*words, "--json").stdout)["runs"][1]["lifespan"]["against"]
+    assert (against["interval"], against["word"]) == (None, None)
+    assert len(against["ratio"]) == 2
+
+
 def test_runs_that_cannot_be_compared_are_refused(runs: list[Path], tmp_path: Path) -> None:
     other = shutil.copytree(runs[0], tmp_path / "other")
     settings = (other / "config.toml").read_text().replace('task = "meadow"', 'task = "pasture"')

@@ -7,11 +7,13 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from primordia.comparison.contrast import Measured, contrast
-from primordia.comparison.resample import resamples
+from primordia.comparison.resample import LEAST, resamples
 from primordia.errors import InputError
 
 WORLD = st.tuples(st.integers(1, 20), st.booleans())
 SOME = st.lists(WORLD, min_size=1, max_size=12)
+ENOUGH = st.lists(WORLD, min_size=LEAST, max_size=12)
+FEW = st.lists(WORLD, min_size=1, max_size=LEAST - 1)
 
 
 def figures(worlds: list[tuple[int, bool]]) -> Measured:
@@ -38,7 +40,7 @@ def test_delta_changes_sign_when_the_runs_are_swapped(run: list, reference: list
     one, other = figures(run), figures(reference)
     assert contrast(one, other).delta == -contrast(other, one).delta
     assert contrast(one, one).delta == 0
-    assert contrast(one, one).word == "negligible"
+    assert contrast(one, one).word in ("negligible", None)
 
 
 @given(SOME, SOME, st.integers(1, 20))
@@ -85,9 +87,29 @@ def test_intervals_contain_the_true_ratio() -> None:
         one, other = (
             Measured(draws.lognormal(mean, 0.5, 40), np.ones(40, bool)) for mean in (1, 0)
         )
-        low, high = contrast(one, other).interval
+        low, high = contrast(one, other).interval or (0, 0)
         held += low <= np.e <= high
     assert 180 <= held <= 200  # of 190 expected
+
+
+@given(FEW, ENOUGH)
+def test_a_run_of_few_worlds_gives_no_interval_and_no_word(few: list, enough: list) -> None:
+    """Delta and the ratio of medians describe the worlds there are, so they remain."""
+    for one, other in ((few, enough), (enough, few), (few, few)):
+        effect = contrast(figures(one), figures(other))
+        assert (effect.interval, effect.word) == (None, None)
+        assert -1 <= effect.delta <= 1
+    assert contrast(figures(enough), figures(enough)).word == "negligible"
+    assert contrast(figures(enough), figures(enough)).interval is not None
+
+
+def test_the_fewest_worlds_are_those_whose_range_holds_the_median_nine_times_in_ten() -> None:
+    draws = np.random.default_rng(0).random((10_000, LEAST))
+    for worlds, enough in ((LEAST, True), (LEAST - 1, False)):
+        some = draws[:, :worlds]
+        held = (some.min(1) <= 0.5) & (some.max(1) >= 0.5)
+        assert held.mean() == pytest.approx(1 - 2 ** (1 - worlds), abs=0.01)
+        assert (held.mean() > 0.9) == enough
 
 
 def test_resamples_are_even_and_independent() -> None:
@@ -105,14 +127,14 @@ def test_resamples_are_even_and_independent() -> None:
 def test_effects_have_a_word_for_their_size(delta: float, word: str) -> None:
     share = round((1 + delta) / 2 * 100)
     run = figures([(3, True)] * share + [(1, True)] * (100 - share))
-    effect = contrast(run, figures([(2, True)]))
+    effect = contrast(run, figures([(2, True)] * LEAST))
     assert effect.delta == pytest.approx(delta, abs=0.02)
     assert effect.word == word
 
 
 @pytest.mark.parametrize("values", [(3, -1), (-1, 3), (3, 0), (-2, -1)])
 def test_figures_that_are_not_positive_have_no_ratio(values: tuple[int, int]) -> None:
-    run, reference = (figures([(value, True)] * 4) for value in values)
+    run, reference = (figures([(value, True)] * LEAST) for value in values)
     effect = contrast(run, reference)
     assert effect.ratio == effect.interval == (0, np.inf)
     assert effect.delta == np.sign(values[0] - values[1])

@@ -98,7 +98,9 @@ def test_the_worlds_of_two_runs_are_drawn_independently() -> None:
     """With the same draws the ratio of a run to its equal would be 1 in every resample."""
     values = np.random.default_rng(2).lognormal(0, 1, 30)
     one = Measured(values, np.ones(30, bool))
-    low, high = contrast(one, one).interval
+    bounds = contrast(one, one).interval
+    assert bounds is not None
+    low, high = bounds
     assert low < 0.8 < 1.2 < high
     assert low * high == pytest.approx(1, rel=0.35)
 

@@ -188,7 +188,7 @@ def test_food_is_drawn_in_the_unit_of_its_title(
     measured = Foraging(7, np.linspace(10, 90, 9), food, enough)
     monkeypatch.setattr(foraging, "foraging", lambda _: measured)
     run: Any = SimpleNamespace(
-        config=SimpleNamespace(metabolism=True), habitat=SimpleNamespace(rate=rate)
+        config=SimpleNamespace(metabolism=True), description=SimpleNamespace(rate=rate)
     )
     with style.applied():
         figure = foraging.draw(run, 0)
@@ -220,7 +220,7 @@ def arm(name: str, seed: int, known: bool = True) -> Arm:
 
 def drawn(*arms: Arm) -> Figure:
     with style.applied():
-        return comparison.draw(Comparison("t", arms, 100, None, None, "tick"))
+        return comparison.draw(Comparison("t", arms, 100, 0, None, None, "tick"))
 
 
 def test_a_comparison_draws_the_values_of_each_run() -> None:

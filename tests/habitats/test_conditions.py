@@ -1,6 +1,6 @@
 """The grammar of conditions: it computes what Python does, and refuses everything else."""
 
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -137,8 +137,97 @@ def test_lists_of_numbers_are_read(text: str, means: np.ndarray) -> None:
         ("place < 1", "'place' has parts; say which: place\\[\"hand\"\\]"),
         ('place["foot"][0] < 1', "place has the parts hand, target"),
         ("(" * 500 + "1" + ")" * 500 + " < 2", "cannot be read"),
+        ("not " * 500 + "points < 1", "nested more than 100 levels deep"),
+        (" + ".join(["points"] * 100) + " < 1", "nested more than 100 levels deep"),
+        (" or ".join(["points < 1"] * 2000), "at most 10,000 characters"),
+        ("min(100000000000000000000, lives) < 1", "column 5: numbers go up to 2"),
+        (f"lives < {2**53 + 1}", "column 9: numbers go up to 2"),
+        (f"lives < 0x{'f' * 5000}", "column 9: numbers go up to 2"),
+        (f"lives < {'9' * 5000}", "cannot be read"),
+        ("points < 1e39", r"with a decimal point up to 3.4e38"),
+        ("points < 1e999", "numbers go up to"),
+        ("points < 1or lives < 2", "cannot be read at column"),
+        ("points < '\\d'", "cannot be read at column"),
+        ("points < \0", "cannot be read"),
+        ("points < \ud800", "cannot be read"),
     ],
 )
 def test_text_outside_the_grammar_is_refused_with_a_reason(text: str, says: str) -> None:
-    with pytest.raises(ValueError, match=says):
+    with pytest.raises(ValueError, match=says) as refused:
         parse(text, "condition", NAMES)
+    assert len(str(refused.value)) < 300
+
+
+def test_numbers_that_can_be_written_out_are_exact_to_the_last_one() -> None:
+    counts = {**VALUES, "lives": np.array([2**53 - 1, 2**53, -(2**53)])}
+    assert parse(f"lives < {2**53}", "condition", NAMES)(counts).tolist() == [True, False, True]
+    assert parse(f"-{2**53} < lives", "condition", NAMES)(counts).tolist() == [True, True, False]
+    assert parse("points < 3.4028234e38", "condition", NAMES)(VALUES).all()
+
+
+def test_a_sum_of_many_terms_is_in_the_grammar() -> None:
+    text = " + ".join(["lives"] * 99)
+    assert parse(text, "amount", NAMES)(VALUES).tolist() == [297, 0, 99]
+
+
+@pytest.mark.parametrize("kind", [np.uint8, np.int16, np.uint16, np.int32, np.uint32, np.int64])
+@pytest.mark.parametrize("text", ["lives * lives * lives", "-lives - lives", "lives + lives - 300"])
+def test_arithmetic_of_counts_does_not_wrap(kind: type, text: str) -> None:
+    """Counts of 31 bits, cubed, need 93."""
+    most = min(int(np.iinfo(kind).max), 2**31 - 1)
+    counts = [most, 0, 1]
+    values = {**VALUES, "lives": np.array(counts, kind)}
+    amounts = parse(text, "amount", NAMES)(values)
+    np.testing.assert_allclose(amounts, [float(eval(text, {"lives": n})) for n in counts])
+
+
+def test_what_is_perceived_names_a_quantity() -> None:
+    """A number alone has no entry for each body."""
+    for text in ("1", "max(1, 2)", "1 < 2"):
+        with pytest.raises(ValueError, match="names no quantity; known: points"):
+            parse(text, "numbers", NAMES)
+
+
+PIECES = st.sampled_from(
+    ["points", "lives", "ram", "speed", "place", "[0]", "[1:]", '["hand"]', "min(", "max(", "sum(",
+     "norm(", "abs(", "cos(", "(", ")", ",", "+", "-", "*", "/", "**", "<", "==", "!=", "and", "or",
+     "not", "0", "3", "2.5", "1e38", "1e40", str(10**20), "0xffffffffffffffffff", "True", "None",
+     "'a'", "lambda", ":=", "if", "else", "is", "in", ".", "#", "\\", "\n", "\0", "é", "\ud800"]
+)  # fmt: skip
+WILD = st.one_of(
+    number,
+    condition,
+    st.lists(PIECES, max_size=12).map(" ".join),
+    st.text(max_size=20),
+    st.builds(lambda sign, times, text: sign * times + text, PIECES, st.integers(0, 600), number),
+)
+
+
+def is_computed_or_refused(text: str, kind: Literal["condition", "amount", "numbers"]) -> None:
+    """Assert that an expression that parses has a value for each body, and that any other says why."""
+    try:
+        parsed = parse(text, kind, NAMES)
+    except ValueError:
+        return
+    with np.errstate(all="ignore"):  # floats may overflow
+        values = parsed(VALUES)
+    assert np.result_type(values).kind == ("b" if kind == "condition" else "f")
+    width = (parsed.kind,) if isinstance(parsed.kind, int) else ()
+    assert np.broadcast_shapes(np.shape(values), (3, *width)) == (3, *width)
+    assert kind != "numbers" or np.shape(values) == (3, *width)
+
+
+KINDS: Any = st.sampled_from(["condition", "amount", "numbers"])
+
+
+@settings(max_examples=100)
+@given(WILD, KINDS)
+def test_any_text_is_computed_or_refused(text: str, kind: Any) -> None:
+    is_computed_or_refused(text, kind)
+
+
+@pytest.mark.slow
+@settings(max_examples=10_000)
+@given(WILD, KINDS)
+def test_ten_thousand_texts_are_computed_or_refused(text: str, kind: Any) -> None:
+    is_computed_or_refused(text, kind)

@@ -1,11 +1,14 @@
 """Models that users bring, and what is refused."""
 
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
 import primordia
 from primordia.habitats.mujoco import simulator as mujoco_model
+from tests import commands
 from tests.commands import complains, here
 
 mujoco = pytest.importorskip("mujoco")
@@ -101,3 +104,30 @@ def test_without_the_extra_the_error_says_what_to_install(
     done = here("run", "HalfCheetah-forager", "--out", tmp_path / "run")
     mujoco_model.package.cache_clear()
     complains(done, 2, "pip install 'primordia[mujoco]'")
+
+
+PICTURE = """
+import weakref
+from primordia.habitats.mujoco.picture import Renderer
+from primordia.habitats.mujoco.simulator import load_model
+
+class Early:
+    pass
+
+early = Early()
+weakref.finalize(early, print, "finalizers of earlier objects come last")
+model = load_model("gymnasium:reacher.xml", None)
+print(Renderer(model).draw(model.qpos0).size)
+"""
+
+
+@pytest.mark.parametrize("library", ["egl", "osmesa"])
+def test_a_process_that_has_drawn_ends_in_silence(library: str) -> None:
+    """EGL's display is closed at exit, before objects are finalized; contexts must be gone by then."""
+    variables = {**commands.environment(), "MUJOCO_GL": library}
+    words = [sys.executable, "-c", PICTURE]
+    done = subprocess.run(words, env=variables, capture_output=True, text=True, check=False)
+    if "cannot be used" in done.stderr:
+        pytest.skip(f"there is no {library} here")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("(640, 416)")

@@ -114,5 +114,5 @@ def test_runs_with_food_are_compared_by_it(runs: dict[str, Path], tmp_path: Path
         [arm.gathering.curve.mean() for arm in compared.arms], [FOOD, FOOD / 2]
     )
     printed = here("compare", runs["fed"], runs["less"], "--out", tmp_path)
-    assert "large less" in printed.stdout
+    assert "-1.00 less   0.5" in printed.stdout
     assert "Food gathered in a tick" in (tmp_path / "compare.svg").read_text(encoding="utf-8")

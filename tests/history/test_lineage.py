@@ -49,7 +49,7 @@ WORLDS: dict[str, tuple[dict[str, Any], int]] = {
 def living(run: Path) -> list[tuple[int, int, np.ndarray]]:
     """Return world, birth number and genome of all organisms in the newest checkpoint."""
     opened = Archive(run)
-    layout, arrays = opened.law.layout, opened.state
+    layout, arrays = opened.law.heredity.layout, opened.state
     genomes = layout.join({n: arrays[f"world.organisms.genome.{n}"] for n in layout.names})
     hi, lo = (arrays[f"world.organisms.number.{half}"].astype(int) for half in ("hi", "lo"))
     cells = np.flatnonzero(arrays["world.organisms.alive"])

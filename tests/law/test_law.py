@@ -109,7 +109,7 @@ def test_a_replaced_parent_passes_on_its_own_genome() -> None:
     history = History(Lived(config(MEADOW, **SMALL, **values, **rule), 3))
     worlds = history.lived.engine.state.world.worlds
     key = stream(worlds.seed, Purpose.FOUNDER, wide(np.zeros(1, np.uint64)))
-    length = history.lived.engine.law.layout.length
+    length = history.lived.engine.law.heredity.layout.length
     founders = quantiles()[np.asarray(noise_index(key, np.arange(64), length))] * np.float32(0.01)
     living = sorted(history.living_after[3], key=lambda life: life.cell)
     roots = []

@@ -15,6 +15,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from rich.console import Console, ConsoleDimensions
+from rich.segment import Segment
 
 from primordia.engine.engine import Engine
 from primordia.engine.state import Limits, State
@@ -203,6 +204,13 @@ def test_time_left_is_that_of_the_world_that_stops_last() -> None:
     assert left(500, never) == pytest.approx(8.0)
     assert left(500, 40) == pytest.approx(4.0), "the second world reaches its 500 ticks in 3"
     assert left(never, 40) is None, "the second world has no births"
+
+
+def test_a_frame_spells_out_control_characters() -> None:
+    console = Console(file=io.StringIO(), force_terminal=True, width=80, height=10)
+    console.print(live.Frame([[Segment("a\x1b]0;title\x07b\x9b2Jc\n")]]))
+    assert isinstance(console.file, io.StringIO)
+    assert console.file.getvalue() == "a\\x1b]0;title\\x07b\\x9b2Jc\\n\n"
 
 
 # Without a terminal.

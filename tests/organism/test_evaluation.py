@@ -119,7 +119,7 @@ def test_an_organism_starves_by_the_metabolism_of_its_task(tmp_path: Path) -> No
 def test_the_command_prints_figures_and_json(pong: Path) -> None:
     one = here("evaluate", pong).stdout
     assert "1 distinct game; nothing is drawn at random" in one
-    many = here("evaluate", pong, "--episodes", "3", "--sticky", "0.25", "--ticks", "300").stdout
+    many = here("evaluate", pong, "--games", "3", "--sticky", "0.25", "--ticks", "300").stdout
     assert "3 games, sticky 0.25" in many
     assert "3 still going on when cut" in many
     printed = json.loads(here("evaluate", pong, "--freeze-senses", "--json").stdout)
@@ -133,8 +133,8 @@ def test_any_setting_of_the_habitat_is_a_flag(poles: Path) -> None:
     assert "30 games, angle_limit 180, track_limit 1000000000.0" in wide.stdout
     assert "30 still alive when cut" in wide.stdout
     same = '["x", "x_dot", "theta", "theta_dot"]'
-    done = here("evaluate", poles, "--episodes", "2", "--senses", same, "--json")
-    plain = here("evaluate", poles, "--episodes", "2", "--json")
+    done = here("evaluate", poles, "--games", "2", "--senses", same, "--json")
+    plain = here("evaluate", poles, "--games", "2", "--json")
     assert json.loads(done.stdout)["lifespan"] == json.loads(plain.stdout)["lifespan"]
 
 
@@ -155,7 +155,7 @@ def test_wrong_input_is_an_error_that_says_why(pong: Path, poles: Path) -> None:
         ((poles, "--angle_limit", "-1"), "habitat.angle_limit"),
         ((pong, "--sticky", "1.5"), "sticky"),
         ((pong, "--open-loop", "--freeze-senses"), "exclude each other"),
-        ((pong, "--episodes", "0"), "at least one game"),
+        ((pong, "--games", "0"), "at least one game"),
         ((pong, "--organism", "9999"), "no organism 9999"),
     ):
         complains(here("evaluate", *words), 2, part)

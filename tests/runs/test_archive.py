@@ -14,6 +14,7 @@ from primordia.errors import InputError, Trouble
 from primordia.history.foraging import foraging
 from primordia.history.info import info
 from primordia.history.lineage import rebuild_all
+from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import loop, record
 from primordia.runs.archive import Archive
 from primordia.runs.schema import TABLES
@@ -61,7 +62,7 @@ def test_no_file_is_checked_twice(fork: Path, checked: Counter[str]) -> None:
     assert {"config.toml", "origin/state.npz", "births/000000.parquet"} < names
 
 
-@pytest.mark.parametrize("words", [("replay", "--to", 20), ("evaluate", "--episodes", 2), "export"])
+@pytest.mark.parametrize("words", [("replay", "--to", 20), ("evaluate", "--games", 2), "export"])
 def test_a_command_opens_its_run_once(
     words: str | tuple[object, ...], tmp_path: Path, checked: Counter[str]
 ) -> None:
@@ -84,7 +85,9 @@ def test_a_call_from_python_opens_its_run_once(tmp_path: Path, checked: Counter[
     assert {*checked.values()} == {2}, "each call of a run opens the run as it is then"
 
 
-def test_the_law_is_built_once(mill: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_law_is_built_once_and_only_for_living(
+    mill: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     built, build = [], Config.build_law
 
     def building(self: Config, habitat: object) -> object:
@@ -95,6 +98,9 @@ def test_the_law_is_built_once(mill: Path, monkeypatch: pytest.MonkeyPatch) -> N
     run = Archive(mill)
     foraging(run)
     rebuild_all(run, [(0, 0), (0, 1)])
+    assert not built
+    for world in (0, 1):
+        RelivedLife.of(run, 0, world)
     assert len(built) == 1
 
 

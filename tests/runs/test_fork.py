@@ -86,7 +86,8 @@ def test_figures_of_a_fork_begin_at_the_fork(mill: Path, tmp_path: Path, at: int
         for field in fields(one):
             np.testing.assert_array_equal(getattr(one, field.name), getattr(other, field.name))
     np.testing.assert_array_equal(source.lives.recorded_since(at).seen, fork.lives.seen)
-    np.testing.assert_array_equal(whole.measured["first"].value, part.measured["first"].value)
+    for name in ("first", "births", "ticks"):
+        np.testing.assert_array_equal(whole.measured[name].value, part.measured[name].value)
     later = [fork.lives.of_world(world).born > at for world in range(2)]
     assert (part.measured["first"].value <= [1 + born.sum() for born in later]).all()
     after, before = harvests(fork, 2), harvests(source, 2)
@@ -320,3 +321,9 @@ def test_a_fork_cut_off_before_it_began_is_an_error_that_says_why(
         (fork.path / folder).rename(tmp_path / folder)
     with pytest.raises(InputError, match="cut off before it began"):
         fork.resume()
+
+
+def test_a_fork_has_the_task_of_its_run(mill: Path, tmp_path: Path) -> None:
+    words = ("fork", mill, "--at", 3, "--task", "mine", "--out", tmp_path / "fork")
+    complains(here(*words), 2, "no setting 'task'")
+    assert not (tmp_path / "fork").exists()

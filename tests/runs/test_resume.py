@@ -4,11 +4,15 @@ import random
 import signal
 import time
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
 from primordia.history.info import info
+from primordia.runs import checkpoint, loop
 from primordia.runs.archive import Archive
+from primordia.runs.checkpoint import Progress
 from tests.commands import begin, complains, here
 
 WHAT = ("CartPole-survival", "--seeds", "8", "--cells", "64", "--stop.until", "saturation")
@@ -32,6 +36,26 @@ def test_checkpoint_intervals_make_no_difference(through: list[str], tmp_path: P
     run = tmp_path / "run"
     assert here("run", *WHAT, "--ticks", TICKS, "--out", run, *SLOWLY).returncode == 0
     assert digests(run) == through
+
+
+@pytest.mark.parametrize(
+    ("every", "expected"),
+    [(60, [1, 5, 15, 75, 135]), (7, [1, 5, 12, 19, 26]), (0.5, [0.5, 1.0, 1.5])],
+)
+def test_a_run_can_be_looked_at_soon_after_its_start(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, every: float, expected: list[float]
+) -> None:
+    """A run of a clock that ticks every half a second; nothing is written."""
+    now, saved = [0.0], list[float]()
+    monkeypatch.setattr(time, "perf_counter", lambda: now[0])
+    monkeypatch.setattr(checkpoint, "save", lambda *_: saved.append(now[0]))
+    nothing: Any = SimpleNamespace(arrays=dict)
+    progress = Progress({}, 0.0, True)
+    saver = loop.Saver(nothing, nothing, tmp_path, progress, every, lambda: None)
+    while now[0] < expected[-1]:
+        now[0] += 0.5
+        saver.save_if_due()
+    assert saved == expected
 
 
 def test_ticks_added_later_equal_ticks_lived_at_once(through: list[str], tmp_path: Path) -> None:

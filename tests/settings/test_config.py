@@ -31,7 +31,7 @@ def test_built_in_tasks_load_and_build(name: str) -> None:
     assert loaded.task == name
     assert loaded.about
     law = loaded.build_law(loaded.build_habitat())
-    assert law.layout.length == sum(law.layout.sizes) > 0
+    assert law.heredity.layout.length == sum(law.heredity.layout.sizes) > 0
 
 
 def test_tasks_are_listed() -> None:
@@ -100,7 +100,9 @@ def test_a_file_that_names_a_task_changes_only_what_it_says(tmp_path: Path) -> N
 def test_a_file_may_be_a_whole_task(tmp_path: Path) -> None:
     file = tmp_path / "mine.toml"
     file.write_text('task = "mine"\n[habitat]\nname = "cartpole"\n')
-    assert load(str(file)) == Config(task="mine", habitat={"name": "cartpole"})
+    assert load(str(file)) == validated(
+        {"task": "mine", "habitat": {"name": "cartpole"}}, source="test"
+    )
 
 
 def test_flags_override_the_file_and_the_file_overrides_the_task(tmp_path: Path) -> None:
@@ -129,6 +131,9 @@ def test_flags_override_the_file_and_the_file_overrides_the_task(tmp_path: Path)
     assert config.mutation["founder_scale"] == tasks()[TASK]["mutation"]["founder_scale"], "task"
     assert config.seasons == (Schedule(kind="schedule", setting="hazard", at=9, value=0.0),)
     assert json.loads(here("info", run, "--json").stdout)["ticks"] == 2
+    helped = " ".join(here("fork", run, "--help").stdout.split())
+    for part in (f"values of {run}", "cells of one world [8]", "--habitat.angle_limit"):
+        assert part in helped
 
 
 def test_merging_does_not_change_its_arguments() -> None:
@@ -185,6 +190,35 @@ def test_help_lists_every_setting_with_its_value_and_meaning(tmp_path: Path) -> 
     assert '["saturation"]' in squeezed
     assert "--placement.rows rows of a torus" in squeezed
     assert "[none]" in squeezed
+
+
+def test_help_names_the_values_of_every_choice() -> None:
+    squeezed = " ".join(help_text(TASK).split())
+    for listed in (
+        "(ring, torus4, torus8, well- mixed)",
+        "(blind, empty-only, replacing)",
+        "(direct, gaussian)",
+        "(parent, founder)",
+        "(one, fill)",
+        "(saturation, none)",
+        "(false, true)",
+        "(x, x_dot, theta, theta_dot)",
+    ):
+        assert listed in squeezed
+    with_pool = " ".join(help_text("Pong-survival").split())
+    assert "senses are constant (a control) (false, true) [false]" in with_pool
+
+
+def test_help_without_a_task_shows_what_all_tasks_have() -> None:
+    """The settings of simulators differ; help on a task shows those of its own."""
+    for command, named in (("run", "TASK|FILE.toml"), ("fork", "RUN")):
+        done = here(command, "--help")
+        assert (done.returncode, done.stderr) == (0, "")
+        habitat = [word for word in done.stdout.split() if word.startswith("--habitat.")]
+        assert habitat == ["--habitat.name"]
+        assert "--brain.hidden " in done.stdout
+        squeezed = " ".join(done.stdout.split())
+        assert f"primordia {command} {named} --help` shows those of its habitat too" in squeezed
 
 
 def test_help_shows_the_values_of_a_file_or_else_the_defaults(tmp_path: Path) -> None:

@@ -108,6 +108,7 @@ def test_a_disk_that_is_full_from_the_beginning_is_an_error(
             Disk(patch, writes)
             with pytest.raises(Trouble, match="cannot be written: No space left on device"):
                 started(tmp_path / str(writes))
+        assert not list(tmp_path.iterdir()), "a start that fails leaves nothing"
 
 
 @contextmanager

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from primordia import files
 from primordia.engine.state import State
 from primordia.runs import checkpoint, directory, loop
 from tests.commands import begin, complains, here
@@ -37,14 +38,14 @@ def test_a_half_made_directory_is_no_run(
     file: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A folder is no run before its last file is written, whichever file that is."""
-    write = directory._write_text
+    write = files.write_text
 
     def stop(path: Path, text: str) -> None:
         if path.name == file:
             raise KeyboardInterrupt
         write(path, text)
 
-    monkeypatch.setattr(directory, "_write_text", stop)
+    monkeypatch.setattr(files, "write_text", stop)
     with pytest.raises(KeyboardInterrupt):
         started(tmp_path / "run")
     for command in ("info", "resume", "verify"):

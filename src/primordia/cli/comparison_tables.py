@@ -9,6 +9,7 @@ from rich.table import Table
 
 from primordia.comparison.comparison import Arm, Comparison
 from primordia.comparison.contrast import Bounds, Contrast
+from primordia.comparison.resample import LEAST
 
 DIRECTIONS = {
     "first": ("earlier", "later"),
@@ -27,7 +28,7 @@ WIDE = 1000
 
 def comparison_tables(compared: Comparison) -> str:
     """Return all tables of a comparison, with a row for each run, and the notes."""
-    console = Console(width=WIDE, color_system=None)
+    console = Console(width=WIDE, color_system=None, markup=False, emoji=False)
     with console.capture() as captured:
         console.print(_runs(compared))
         for outcome in compared.outcomes:
@@ -49,13 +50,17 @@ def effect_text(against: Contrast, outcome: str) -> str:
     smaller, larger = DIRECTIONS[outcome]
     direction = f" {larger if against.delta > 0 else smaller}" if against.delta else ""
     known = f"; order known of {int(100 * against.decided)} %" if against.decided < 1 else ""
-    return f"{against.delta:+.2f} {against.word}{direction}{known}"
+    word = f" {against.word}" if against.word else ""
+    return f"{against.delta:+.2f}{word}{direction}{known}"
 
 
 def ratio_text(against: Contrast) -> str:
-    """Write the ratio of medians with its interval."""
+    """Write the ratio of medians, with its interval if there is one."""
+    ratio = bounds_text(against.ratio)
+    if against.interval is None:
+        return ratio
     low, high = map(number_text, against.interval)
-    return f"{bounds_text(against.ratio)} ({low} to {high})"
+    return f"{ratio} ({low} to {high})"
 
 
 def bounds_text(bounds: Bounds) -> str:
@@ -96,9 +101,9 @@ def _runs(compared: Comparison) -> Table:
 def _against(compared: Comparison, outcome: str) -> Table:
     """Return a table of one outcome of each run, and of each run against the first."""
     reference, *others = compared.arms
-    table = _table(
-        compared.outcomes[outcome], "median (quartiles)", "delta", "ratio of medians (95 %)"
-    )
+    has_interval = any(min(arm.worlds, reference.worlds) >= LEAST for arm in others)
+    ratio = "ratio of medians (95 %)" if has_interval else "ratio of medians"
+    table = _table(compared.outcomes[outcome], "median (quartiles)", "delta", ratio)
     table.add_row(reference.name, quartiles_text(reference, outcome), "reference", "")
     for arm in others:
         against = compared.contrast(arm, outcome)
@@ -115,6 +120,15 @@ def _notes(compared: Comparison) -> list[str]:
     notes = [
         "Medians and intervals are over worlds. A world that stopped unsaturated is treated as censored."
     ]
+    if few := [arm for arm in compared.arms if arm.worlds < LEAST]:
+        notes.append(
+            f"Intervals, and words for sizes, need {LEAST} worlds of each run (--seeds {LEAST}):"
+            f" {few[0].name} has {few[0].worlds}."
+        )
+    if compared.begin:
+        notes.append(
+            f"Births, ticks and lives count from tick {compared.begin:,}, that of the fork."
+        )
     if {"pace", "food"} & set(compared.outcomes):
         notes.append("Late: the last quarter of the time that all worlds have lived through.")
     return [

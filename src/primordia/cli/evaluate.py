@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from primordia.cli.flags import HabitatCommand, run_argument
+from primordia.cli.cache import cache_option
+from primordia.cli.flags import HabitatCommand, run_argument, trust_option
 from primordia.errors import InputError
 
 if TYPE_CHECKING:
@@ -23,12 +24,14 @@ SENSES = {
 @run_argument
 @click.option("--organism", type=int, help="Birth number [that of the longest life].")
 @click.option("--world", type=int, help="The organism's world [0, or that of the longest life].")
-@click.option("--episodes", default=30, show_default=True, help="Number of games.")
+@click.option("--games", default=30, show_default=True, help="Number of games.")
 @click.option("--ticks", default=100_000, show_default=True, help="Cut games at this length.")
 @click.option("--freeze-senses", is_flag=True, help="Keep senses as they are at the start.")
 @click.option(
     "--open-loop", is_flag=True, help="Repeat the actions of a game of its task, whatever happens."
 )
+@trust_option
+@cache_option
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 @click.pass_obj
 def evaluate(
@@ -37,10 +40,11 @@ def evaluate(
     run: Path,
     organism: int | None,
     world: int | None,
-    episodes: int,
+    games: int,
     ticks: int,
     freeze_senses: bool,
     open_loop: bool,
+    trust: bool,
     as_json: bool,
 ) -> None:
     """Let an organism play the game that its task is made of, from fresh starts, and print its results.
@@ -54,8 +58,8 @@ def evaluate(
     if freeze_senses and open_loop:
         raise InputError("--freeze-senses and --open-loop exclude each other; give one of them")
     senses: Any = "frozen" if freeze_senses else "ignored" if open_loop else "live"
-    chosen = chosen_organism(run, organism, world)
-    result = chosen.evaluate(games=episodes, ticks=ticks, senses=senses, habitat=habitat)
+    chosen = chosen_organism(run, organism, world, trust)
+    result = chosen.evaluate(games=games, ticks=ticks, senses=senses, habitat=habitat)
     click.echo(json.dumps(result.to_dict()) if as_json else evaluation_text(result, habitat))
 
 

@@ -2,10 +2,12 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
+from primordia import interrupts
+from primordia.cli.cache import cache_option
 from primordia.cli.flags import (
     SettingsCommand,
     checkpoint_option,
@@ -16,8 +18,14 @@ from primordia.cli.flags import (
     run_argument,
     set_value,
     take_limits,
+    trust_option,
 )
-from primordia.cli.stderr import report
+from primordia.cli.streams import report
+from primordia.errors import Trouble
+from primordia.printable import printable
+
+if TYPE_CHECKING:
+    from primordia.runs.loop import Listener, Status
 
 
 @click.command(cls=SettingsCommand)
@@ -32,6 +40,7 @@ from primordia.cli.stderr import report
 @limit_options
 @checkpoint_option
 @device_option
+@cache_option
 @quiet_option
 @click.pass_obj
 def run(
@@ -55,7 +64,7 @@ def run(
     if ancestor:
         set_value(settings, "ancestors", [str(file) for file in ancestor])
     path = out or api.fresh_directory(api.default_name(config.load(task, settings)))
-    _drive(path, quiet, lambda listen: api.run(task, path, listen=listen, **options, **settings))
+    _drive(path, quiet, lambda listen: api.run(task, path, settings, listen=listen, **options))
 
 
 @click.command()
@@ -63,16 +72,18 @@ def run(
 @limit_options
 @checkpoint_option
 @device_option
-@click.option("--inexact", is_flag=True, help="Go on even if versions or machine differ.")
+@cache_option
+@click.option("--inexact", is_flag=True, help="Go on even if versions, code or machine differ.")
+@trust_option
 @quiet_option
-def resume(run: Path, quiet: bool, **options: Any) -> None:
+def resume(run: Path, quiet: bool, trust: bool, **options: Any) -> None:
     """Go on with a run that stopped, was interrupted, or was killed."""
-    from primordia.api import Run
+    from primordia.api import load
 
     limits = take_limits(options)
 
     def drive(listen: Any) -> None:
-        for note in Run(run).resume(listen=listen, **options, **limits):
+        for note in load(run, trust).resume(listen=listen, **options, **limits):
             report(note)
 
     _drive(run, quiet, drive)
@@ -85,6 +96,8 @@ def resume(run: Path, quiet: bool, **options: Any) -> None:
 @limit_options
 @checkpoint_option
 @device_option
+@cache_option
+@trust_option
 @quiet_option
 @click.pass_obj
 def fork(
@@ -93,6 +106,7 @@ def fork(
     run: Path,
     at: int,
     out: Path | None,
+    trust: bool,
     quiet: bool,
     **options: Any,
 ) -> None:
@@ -101,13 +115,15 @@ def fork(
     Without either it repeats the RUN. Any setting can be changed that leaves brains, senses and cells
     unchanged.
     """
-    from primordia.api import Run, fresh_directory
+    from primordia.api import fresh_directory, load
 
     for name, value in take_limits(options).items():
         set_value(settings, f"stop.{name}", value)
     path = out or fresh_directory(f"{run.name}-at{at}")
     _drive(
-        path, quiet, lambda listen: Run(run).fork(at, path, listen=listen, **options, **settings)
+        path,
+        quiet,
+        lambda listen: load(run, trust).fork(at, path, settings, listen=listen, **options),
     )
 
 
@@ -115,19 +131,37 @@ def _drive(path: Path, quiet: bool, go: Callable[[Any], object]) -> None:
     from primordia.api import Run
     from primordia.history.summary import summary
     from primordia.live.view import watching
+    from primordia.organism.replay import lacking
 
-    try:
-        with watching(quiet) as listen:
-            go(listen)
-    except KeyboardInterrupt:
+    def stopped() -> str:
         begun = (path / "versions.json").exists()
         saved = f"Stopped and saved. Go on with: primordia resume {path}"
-        click.echo(saved if begun else f"Stopped before {path} had begun", err=True)
-        raise SystemExit(130) from None
+        return printable(saved if begun else f"Stopped before {path} had begun")
+
+    with interrupts.last_words(stopped):
+        try:
+            with watching(quiet) as listen:
+                go(listen and _while_shown(listen, stopped))
+        except KeyboardInterrupt:
+            click.echo(stopped(), err=True)
+            raise SystemExit(interrupts.STATUS) from None
     if not quiet:
         click.echo(summary(Run(path).info()))
         click.echo(f"Figures: primordia plot {path}")
-        click.echo(f"Video of the longest life: primordia replay {path}")
+        if not lacking(Run(path).opened().habitat):
+            click.echo(f"Video of the longest life: primordia replay {path}")
+
+
+def _while_shown(listen: "Listener", stopped: Callable[[], str]) -> "Listener":
+    """Return a listener that stops the run with one line once its output cannot be written."""
+
+    def show(status: "Status") -> None:
+        try:
+            listen(status)
+        except OSError as error:
+            raise Trouble(f"the output cannot be written: {error.strerror}. {stopped()}") from None
+
+    return show
 
 
 COMMANDS = (run, resume, fork)

@@ -1,12 +1,13 @@
 """Flags: a command's options, and any setting of a task by its dotted name."""
 
-import tomllib
 from pathlib import Path
 from typing import Any
 
 import click
 
 from primordia.errors import InputError
+from primordia.settings.tables import parsed_toml
+from primordia.settings.values import check_values
 
 run_argument = click.argument("run", type=click.Path(path_type=Path))
 out_option = click.option(
@@ -17,6 +18,9 @@ device_option = click.option(
 )
 checkpoint_option = click.option(
     "--checkpoint-every", type=float, default=60.0, show_default=True, metavar="SECONDS"
+)
+trust_option = click.option(
+    "--trust", is_flag=True, help="Let the run's own code be executed, from now on."
 )
 quiet_option = click.option("--quiet", is_flag=True, help="Print nothing while running.")
 
@@ -45,12 +49,14 @@ class SettingsCommand(click.Command):
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Move the flags that are settings into `ctx.obj`, as nested tables."""
-        options = {name for option in self.get_params(ctx) for name in option.opts}
         ctx.obj, own, rest = {}, [], list(args)
         while rest:
             word = rest.pop(0)
             name, equals, text = word.partition("=")
-            if not name.startswith("--") or name in options:
+            if word == "--":
+                own += [word, *rest]
+                break
+            if not self._is_setting(ctx, name):
                 own.append(word)
                 continue
             if not equals:
@@ -58,38 +64,63 @@ class SettingsCommand(click.Command):
                     raise InputError(f"{name} needs a value")
                 text = rest.pop(0)
             set_value(ctx.obj, name.removeprefix("--"), _value(text))
+        check_values(ctx.obj)
         ctx.meta["words"] = tuple(own)
         return super().parse_args(ctx, own)
 
+    def _is_setting(self, ctx: click.Context, flag: str) -> bool:
+        """Return whether a word is a flag of a setting.
+
+        Names of settings have no hyphens. So click itself suggests `--checkpoint-every` for
+        `--checkpoint_every` and for `--chekpoint-every`.
+
+        Raises:
+            InputError: it is the name of an argument.
+        """
+        options, arguments = set(), {}
+        for parameter in self.get_params(ctx):
+            if isinstance(parameter, click.Argument):
+                arguments[f"--{parameter.name}"] = parameter.make_metavar(ctx)
+            options.update(parameter.opts)
+        if flag in arguments:
+            raise InputError(
+                f"there is no flag {flag}; give it as a word: {ctx.command_path} {arguments[flag]}"
+            )
+        hyphenated = flag.replace("_", "-") in options or ("-" in flag[2:] and "." not in flag)
+        return flag.startswith("--") and not hyphenated
+
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Append every setting with its value, and what it means."""
-        title, rows = self.settings(ctx.meta["words"], ctx.obj)
+        title, rows = self.settings(ctx)
         if rows:
             with formatter.section(title):
                 formatter.write_dl(rows)
 
-    def settings(
-        self, words: tuple[str, ...], given: dict[str, Any]
-    ) -> tuple[str, list[tuple[str, str]]]:
-        """Return a title and rows for --help: all settings of a run, with values of the task named."""
-        from primordia.cli.help import setting_rows
+    def settings(self, ctx: click.Context) -> tuple[str, list[tuple[str, str]]]:
+        """Return a title and rows for --help: all settings of the task, file or run that is named."""
+        from primordia.cli.help import run_rows, setting_rows
         from primordia.settings.tables import tasks
 
         known = tasks()
-        task = next((word for word in words if word in known or word.endswith(".toml")), None)
-        values = f"values of {task}" if task else "defaults"
-        return f"Settings, as in TOML ({values})", setting_rows(task, given)
+        for word in ctx.meta["words"]:
+            title = f"Settings, as in TOML (values of {word})"
+            if Path(word, "config.toml").exists():
+                return title, run_rows(Path(word), ctx.obj)
+            if word in known or word.endswith(".toml"):
+                return title, setting_rows(word, ctx.obj)
+        argument = " ".join(self.collect_usage_pieces(ctx)[1:])
+        more = f"`{ctx.command_path} {argument} --help` shows those of its habitat too"
+        return f"Settings, as in TOML (defaults; {more})", setting_rows(None, ctx.obj)
 
 
 class HabitatCommand(SettingsCommand):
     """A command on a RUN that takes any setting of its habitat as a flag."""
 
-    def settings(
-        self, words: tuple[str, ...], given: dict[str, Any]
-    ) -> tuple[str, list[tuple[str, str]]]:
+    def settings(self, ctx: click.Context) -> tuple[str, list[tuple[str, str]]]:
         """Return a title and rows for --help: the settings of the habitat of the run named."""
         from primordia.cli.help import habitat_rows
 
+        words = ctx.meta["words"]
         run = next((Path(word) for word in words if Path(word, "config.toml").exists()), None)
         return f"Settings of the habitat (values of {run})", habitat_rows(run) if run else []
 
@@ -105,8 +136,9 @@ def set_value(settings: dict[str, Any], path: str, value: Any) -> None:
 
 
 def _value(text: str) -> Any:
-    """Return a flag's value, read as TOML; a text that is no TOML stays a string."""
+    """Return a flag's value, read as TOML; a text that is not one value of TOML stays a string."""
     try:
-        return tomllib.loads(f"value = {text}")["value"]
-    except tomllib.TOMLDecodeError:
+        values = parsed_toml(f"value = {text}")
+    except ValueError:
         return text
+    return values["value"] if len(values) == 1 else text

@@ -13,22 +13,18 @@ from primordia.config import Config
 from primordia.habitats import contract as habitats
 from primordia.mutations import contract as mutations
 from primordia.runs.archive import Archive
-from primordia.settings.fields import setting_fields
-from primordia.settings.tables import NONE, PARTS, merged, values_of
+from primordia.settings.fields import choices, setting_fields
+from primordia.settings.tables import DEFAULTS, NONE, PARTS, merged, replaced, values_of
 
-CONTRACTS: dict[str, tuple[Any, str | None]] = {
-    "habitat": (habitats, None),
-    "brain": (brains, brains.DEFAULT),
-    "mutation": (mutations, mutations.DEFAULT),
-}
-"""Module of each replaceable part's contract, and the part's name if a task gives none."""
+CONTRACTS: dict[str, Any] = {"habitat": habitats, "brain": brains, "mutation": mutations}
+"""Module of each replaceable part's contract."""
 
 
 def setting_rows(task: str | None, given: dict[str, Any]) -> list[tuple[str, str]]:
     """Return each setting with its value in a task (or by default), and what it means.
 
     Args:
-        task: name of a task or a file; None for none.
+        task: name of a task or a file; None for none, which has no habitat.
         given: settings by flags, such as another brain, whose own settings are then shown.
     """
     values = merged(values_of(task) if task else {}, given)
@@ -39,6 +35,12 @@ def setting_rows(task: str | None, given: dict[str, Any]) -> list[tuple[str, str
     return _rows({path: fields[path] for path in fields if path not in hidden}, values)
 
 
+def run_rows(run: Path, given: dict[str, Any]) -> list[tuple[str, str]]:
+    """Return each setting with its value in a run; see `setting_rows`."""
+    Archive(run).admit()
+    return setting_rows(str(run / "config.toml"), given)
+
+
 def habitat_rows(run: Path) -> list[tuple[str, str]]:
     """Return each setting of a run's habitat, with its meaning and its value in the run."""
     archive = Archive(run)
@@ -47,21 +49,28 @@ def habitat_rows(run: Path) -> list[tuple[str, str]]:
 
 def _rows(fields: dict[str, Any], values: dict[str, Any]) -> list[tuple[str, str]]:
     return [
-        (f"--{path}", f"{field.description or ''} [{_value_text(values, path, field)}]")
+        (f"--{path}", f"{_meaning(field)} [{_value_text(values, path, field)}]")
         for path, field in fields.items()
     ]
 
 
+def _meaning(field: Any) -> str:
+    """Return the description of a setting; if it is a choice, with the values that it can have."""
+    values = replaced(choices(field.annotation), None, NONE)
+    listed = ", ".join(each if isinstance(each, str) else json.dumps(each) for each in values)
+    return f"{field.description or ''}{f' ({listed})' if listed else ''}"
+
+
 def _of_part(part: str, values: dict[str, Any]) -> dict[str, Any]:
-    """Return the settings of a part of a task, or else of all known parts: path -> field."""
-    contract, default = CONTRACTS[part]
-    key, table = PARTS[part], values.get(part, {})
-    named = table.get(key, default) if values and isinstance(table, dict) else None
+    """Return the settings of the part that a task has, or has by default: path -> field."""
+    contract, key, table = CONTRACTS[part], PARTS[part], values.get(part, {})
+    default = DEFAULTS.get(part)
+    named = table.get(key, default) if isinstance(table, dict) else default
     described = f"{', '.join(contract.KNOWN)}, or module:Class"
     fields: dict[str, Any] = {f"{part}.{key}": Field(default, description=described)}
-    for name in contract.KNOWN if named is None else [named]:
+    if named is not None:
         with suppress(LookupError):  # `run` reports a wrong name
-            fields |= setting_fields(contract.find(name), f"{part}.")
+            fields |= setting_fields(contract.find(named), f"{part}.")
     return fields
 
 

@@ -2,11 +2,12 @@
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from primordia.cli.flags import device_option, run_argument
+from primordia.cli.cache import cache_option
+from primordia.cli.flags import device_option, run_argument, trust_option
 from primordia.errors import Trouble
 
 if TYPE_CHECKING:
@@ -55,9 +56,9 @@ def plot(run: Path, out: Path | None, world: int, figures: tuple[str, ...]) -> N
 @click.option(
     "--out", type=click.Path(path_type=Path), help="An .mp4 or .gif file [under RUN/videos]."
 )
-def replay(
-    run: Path, begin: int | None, end: int | None, out: Path | None, **chosen: int | None
-) -> None:
+@trust_option
+@cache_option
+def replay(run: Path, begin: int | None, end: int | None, out: Path | None, **chosen: Any) -> None:
     """Make a video of a life: the whole life, or the first and last 30 seconds of a long one."""
     click.echo(chosen_organism(run, **chosen).replay(out, (begin, end)))
 
@@ -68,33 +69,38 @@ def replay(
     "--organism", "organisms", type=int, multiple=True, help="Birth number; may be repeated."
 )
 @click.option("--world", type=int, default=0, help="The organisms' world [0].")
+@trust_option
+@cache_option
 @click.argument("file", type=click.Path(path_type=Path))
-def export(run: Path, organisms: tuple[int, ...], world: int, file: Path) -> None:
+def export(run: Path, organisms: tuple[int, ...], world: int, trust: bool, file: Path) -> None:
     """Write genomes to a safetensors FILE, which `primordia run --ancestor` takes.
 
     Without --organism it is the genome of the longest life.
     """
-    from primordia.api import Run
+    from primordia.api import load
 
-    chosen = Run(run).export(file, *organisms, world=world)
+    chosen = load(run, trust).export(file, *organisms, world=world)
     click.echo(f"{file}: organism {', '.join(map(str, chosen))}")
 
 
-def chosen_organism(run: Path, organism: int | None, world: int | None) -> "Organism":
+def chosen_organism(run: Path, organism: int | None, world: int | None, trust: bool) -> "Organism":
     """Return the organism with a birth number, or else the one that lived longest."""
-    from primordia.api import Run
+    from primordia.api import load
 
-    return Run(run).oldest(world) if organism is None else Run(run).organism(organism, world or 0)
+    opened = load(run, trust)
+    return opened.oldest(world) if organism is None else opened.organism(organism, world or 0)
 
 
 @click.command(short_help="Repeat a run and compare.")
 @run_argument
 @device_option
-def verify(run: Path, device: str) -> None:
+@trust_option
+@cache_option
+def verify(run: Path, device: str, trust: bool) -> None:
     """Repeat a run from its beginning and compare every birth, death and genome with its records."""
-    from primordia.api import Run
+    from primordia.api import load
 
-    differences = Run(run).verify(device)
+    differences = load(run, trust).verify(device)
     if differences:
         raise Trouble(f"{run} does not hold: {differences[0]}")
     click.echo(f"{run} holds: every world was repeated from its beginning with the same result.")

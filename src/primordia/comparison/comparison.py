@@ -3,8 +3,8 @@
 The units are worlds, which are taken to be independent. (Worlds of the same seed in two runs share random
 words. If that makes them alike, intervals are too wide rather than too narrow.) The first run is the
 reference of all others. A world that stopped before it saturated is treated as censored; see `contrast`.
-In forks, lives count from the tick of the latest fork on, in all runs. Where few worlds saturate, lives
-count up to the last tick that all worlds have lived through.
+In forks, births, ticks and lives count from the tick of the latest fork on, in all runs. Where few worlds
+saturate, lives count up to the last tick that all worlds have lived through.
 """
 
 from collections.abc import Sequence
@@ -77,6 +77,8 @@ class Comparison:
     """the first is the reference"""
     age: int
     """age, in ticks, up to which lives count"""
+    begin: int
+    """tick at the end of which births, ticks and lives begin to count: that of the latest fork, or 0"""
     births: int | None
     """horizon in births; None if there is none"""
     ticks: int | None
@@ -100,7 +102,8 @@ class Comparison:
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain values for JSON; an unknown bound is None."""
-        whole = {"task": self.task, "age": self.age, "births": self.births, "ticks": self.ticks}
+        names = "task", "age", "begin", "births", "ticks"
+        whole = {name: getattr(self, name) for name in names}
         return {**whole, "runs": [self._arm(arm) for arm in self.arms]}
 
     def _arm(self, arm: Arm) -> dict[str, Any]:
@@ -120,7 +123,7 @@ class Comparison:
                     "word": against.word,
                     "decided": against.decided,
                     "ratio": _plain(against.ratio),
-                    "interval": _plain(against.interval),
+                    "interval": against.interval and _plain(against.interval),
                 }
         return values
 
@@ -132,7 +135,8 @@ def compare(
 
     Args:
         runs: the first is the reference.
-        births: horizon: a world counts as saturated only if it saturates before that many births.
+        births: horizon: a world counts as saturated only if it saturates before that many births, which
+            count like all others from the latest fork.
         ticks: horizon in ticks, likewise.
 
     Raises:
@@ -143,10 +147,13 @@ def compare(
     age = min(config.saturation_ticks for config in configs)
     begin, end = _common_ticks(runs, configs)
     lives = [run.lives.recorded_since(begin) for run in runs]
-    saturation = [_saturation(run, births, ticks) for run in runs]
+    saturation = [
+        _saturation(run, lived, begin, births, ticks)
+        for run, lived in zip(runs, lives, strict=True)
+    ]
     if not any(map(often_saturated, saturation)):
         lives = [each.recorded_until(end) for each in lives]
-    names, settings, rate = _names(runs), differing(configs), runs[0].habitat.rate
+    names, settings, rate = _names(runs), differing(configs), runs[0].description.rate
     arms = []
     for number, (run, lived) in enumerate(zip(runs, lives, strict=True)):
         worlds = _worlds(lived)
@@ -162,7 +169,7 @@ def compare(
         }
         arms.append(Arm(names[number], settings[number], measured, survived, dying, gathered))
     span = "second" if rate else "tick"
-    return Comparison(configs[0].task, tuple(arms), age, births, ticks, span)
+    return Comparison(configs[0].task, tuple(arms), age, begin, births, ticks, span)
 
 
 def _common_ticks(runs: Sequence[Archive], configs: Sequence[Config]) -> tuple[int, int]:
@@ -242,18 +249,25 @@ def first_long(worlds: Sequence[Lives], age: int) -> Measured:
     return Measured(np.array(value, float), np.array(known))
 
 
-def _saturation(run: Archive, births: int | None, ticks: int | None) -> dict[str, Measured]:
-    """Return the births and ticks to saturation of each world of a run."""
+def _saturation(
+    run: Archive, lives: Lives, begin: int, births: int | None, ticks: int | None
+) -> dict[str, Measured]:
+    """Return the births and ticks to saturation of each world of a run, counted from tick `begin`.
+
+    They are 0 in a world that was saturated by then. `lives` are those recorded since.
+    """
 
     def by_world(name: str) -> np.ndarray:
-        return read_count(run.state, f"world.worlds.{name}")
+        return read_count(run.state, f"world.worlds.{name}").astype(np.int64)
 
-    known = by_world("saturated") != NEVER
+    known = read_count(run.state, "world.worlds.saturated") != NEVER
+    since = np.bincount(lives.world[lives.entered == 0], minlength=len(known))
+    before = {"births": by_world("births") - since, "ticks": begin}
     columns = {"births": ("births", "saturated_births"), "ticks": ("tick", "saturated")}
-    measured = {
-        unit: Measured(np.where(known, by_world(then), by_world(now)).astype(float), known)
-        for unit, (now, then) in columns.items()
-    }
+    measured = {}
+    for unit, (now, then) in columns.items():
+        moment = np.where(known, by_world(then), by_world(now)).astype(float)
+        measured[unit] = Measured(np.maximum(moment - before[unit], 0), known)
     for unit, horizon in (("births", births), ("ticks", ticks)):
         if horizon is not None:
             try:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from primordia.comparison.resample import interval, resamples
+from primordia.comparison.resample import LEAST, interval, resamples
 from primordia.errors import InputError
 
 WORDS = ((0.147, "negligible"), (0.33, "small"), (0.474, "medium"))
@@ -66,12 +66,15 @@ class Contrast:
     """share of pairs whose order is known, or known to be a tie"""
     ratio: Bounds
     """median of the run over median of the reference"""
-    interval: Bounds
-    """interval that holds this ratio, with both its bounds, in 95 % of resamples of the worlds"""
+    interval: Bounds | None
+    """interval that holds this ratio, with both its bounds, in 95 % of resamples of the worlds; None
+    where one of the runs has fewer than LEAST worlds"""
 
     @property
-    def word(self) -> str:
-        """The word for the size of the effect."""
+    def word(self) -> str | None:
+        """The word for the size of the effect; None without an interval."""
+        if self.interval is None:
+            return None
         return next((word for below, word in WORDS if abs(self.delta) < below), "large")
 
 
@@ -82,14 +85,21 @@ def contrast(run: Measured, reference: Measured) -> Contrast:
     one, other = (each.value[each.known] for each in (run, reference))
     equal = len(one) * len(other) - _pairs(one, other) - _pairs(other, one)
     pairs = len(run.value) * len(reference.value)
-    low, high = _ratio(_medians(run, 0), _medians(reference, 1))
     least, most = _ratio(run.quantile(0.5), reference.quantile(0.5))
     return Contrast(
         delta=(larger - smaller) / pairs,
         decided=(larger + smaller + equal) / pairs,
         ratio=(float(least), float(most)),
-        interval=(float(interval(low)[0]), float(interval(high)[1])),
+        interval=_interval(run, reference),
     )
+
+
+def _interval(run: Measured, reference: Measured) -> Bounds | None:
+    """Return the interval of the ratio of medians; None where there are too few worlds."""
+    if min(len(run.value), len(reference.value)) < LEAST:
+        return None
+    low, high = _ratio(_medians(run, 0), _medians(reference, 1))
+    return float(interval(low)[0]), float(interval(high)[1])
 
 
 def _pairs(small: np.ndarray, large: np.ndarray) -> int:

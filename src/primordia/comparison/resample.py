@@ -8,6 +8,9 @@ from primordia.random.wide import Wide
 RESAMPLES = 1000
 COVERED = 0.95
 """Share of resamples that lie within an interval."""
+LEAST = 5
+"""Fewest worlds of a run that are resampled. Even the whole range of n worlds holds the median of all
+possible worlds with probability 1 - 2^(1 - n) only: 94 % for 5, 88 % for 4."""
 
 
 def resamples(worlds: int, stream: int = 0) -> np.ndarray:

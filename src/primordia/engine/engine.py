@@ -9,6 +9,7 @@ import numpy as np
 
 from primordia import device
 from primordia.config import Config
+from primordia.engine import memory
 from primordia.engine.fused import FusedChunks
 from primordia.engine.hosted import HostedChunks
 from primordia.engine.state import Limits, State, running
@@ -28,10 +29,12 @@ class Engine:
     """A run in memory: law, habitat and state."""
 
     def __init__(self, config: Config) -> None:
+        """Raise InputError if there is not enough memory."""
         device.prepare()
         self.config = config
         habitat = config.build_habitat()
         self.law = config.build_law(habitat)
+        memory.check(self.law, habitat)
         self.tallies = habitat.tallies
         self.chunks: FusedChunks | HostedChunks = _chunks(self.law, habitat)
         self.state: State = self.chunks.begin(begin(self.law, config.world_seeds))

@@ -14,6 +14,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator
 
 from primordia.comparison.comparison import Arm, Comparison
+from primordia.comparison.resample import LEAST
 from primordia.figures import style
 
 STOPPED = "|"
@@ -77,12 +78,12 @@ def _styled(compared: Comparison) -> Iterator[tuple[Arm, dict[str, Any]]]:
 
 
 def _alive(axes: Axes, compared: Comparison) -> None:
-    """Draw the Kaplan-Meier curve of each run; a few runs get a band over resamples of worlds."""
+    """Draw the Kaplan-Meier curve of each run; a few runs get a band over resamples of enough worlds."""
     for arm, line in _styled(compared):
         survived = arm.survival
-        ages = np.maximum(survived.steps, 1)
-        curve, low, high = map(survived.with_ends, (survived.curve, *survived.band))
-        if len(compared.arms) <= FEW_ARMS:
+        ages, curve = np.maximum(survived.steps, 1), survived.with_ends(survived.curve)
+        if len(compared.arms) <= FEW_ARMS and arm.worlds >= LEAST:
+            low, high = map(survived.with_ends, survived.band)
             axes.fill_between(ages, low, high, step="post", color=line["color"], alpha=0.2, lw=0)
         axes.step(ages, curve, where="post", label=arm.name, **line)
     style.time_axis(axes, compared.age, "age (ticks)")
@@ -104,10 +105,10 @@ def _saturated(axes: Axes, compared: Comparison, unit: str) -> None:
     values = np.concatenate([arm.measured[unit].value for arm in compared.arms])
     power = 10 ** np.floor(np.log10(max(values.min(), 1)))
     first = power * (3 if values.min() >= 3 * power else 1)
-    last = 1.2 * values.max()
+    last = 1.2 * max(values.max(), first)
     for arm, line in _styled(compared):
         measured = arm.measured[unit]
-        at = np.concatenate([[first], np.unique(measured.value), [last]])
+        at = np.unique([first, *measured.value.clip(first), last])
         stopped = np.unique(measured.value[~measured.known])
         saturated = np.sort(measured.value[measured.known])
         share, share_at_stop = (

@@ -20,7 +20,7 @@ def draw(run: Archive, world: int) -> Figure | None:
         return None
     figure = Figure(figsize=(style.COLUMN, 2.4))
     axes, measured = figure.subplots(), foraging(run)
-    rate, middle = run.habitat.rate, measured.middle
+    rate, middle = run.description.rate, measured.middle
     food, enough = (each * (rate or 1) for each in (measured.food, measured.break_even))
     if len(middle):
         style.curves(axes, middle, food)

@@ -10,7 +10,8 @@ from typing import TypeAlias
 
 from matplotlib.figure import Figure
 
-from primordia.errors import InputError, Trouble
+from primordia import files
+from primordia.errors import InputError
 from primordia.figures import style
 from primordia.runs.archive import Archive
 from primordia.settings import parts
@@ -47,11 +48,10 @@ def plot(
         )
     drawing = {_file(name): find(name) for name in figures or KNOWN}
     assert len(run.lives)
-    folder = out if out is not None else run.path / "figures"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise Trouble(f"{folder} cannot be made: {error.strerror or error}") from None
+    if out is None:
+        files.own_folder(folder := run.path / "figures")
+    else:
+        files.make_folder(folder := out)
     with style.applied():
         drawn = {name: draw(run, world) for name, draw in drawing.items()}
         return [

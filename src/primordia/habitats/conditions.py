@@ -3,15 +3,23 @@
 All habitats share one small grammar: numbers, names, `name[3]`, `name[1:]`, `name["part"]`, `+ - *`,
 comparisons, `and or not`, some functions and parentheses. It is a part of Python's, so Python's parser
 reads it. Only the operations listed here are executed, on arrays.
+
+Arithmetic is that of floats. Bytes and counts are taken as float64, in which whole numbers are exact up
+to 2^53 and products do not wrap. A quantity that is a float keeps its precision, so an expression of
+float32 quantities alone is computed in float32. Everything that can be wrong with an expression is found
+when it is parsed: names, kinds, lengths, numbers out of range, and nesting.
 """
 
 import ast
 import operator
+import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
+
+from primordia.settings.values import LARGEST, shown
 
 Kind: TypeAlias = Literal["condition", "amount"] | int
 """A condition, an amount (one number), or the length of a list of numbers."""
@@ -43,6 +51,10 @@ REDUCTIONS = {
     "norm": lambda numbers: np.sqrt((numbers * numbers).sum(axis=1)),
 }
 """Functions of one list that return an amount."""
+LONGEST, DEEPEST = 10_000, 100
+"""Most characters of an expression, and most levels of its syntax tree; a sum of n terms has n + 1."""
+EXACT = 2**53
+"""Largest whole number that can be written out; with a decimal point, it is the largest float32."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +68,10 @@ class Expression:
     compute: Compute
 
     def __call__(self, values: Values) -> np.ndarray:
-        """Return its value for each body: (N,) for a condition (bool) or an amount, (N, K) for a list."""
+        """Return its value for each body: (N,) for a condition (bool) or an amount, (N, K) for a list.
+
+        An expression that names no quantity has one value, the same for all bodies.
+        """
         return self.compute(values)
 
 
@@ -72,21 +87,38 @@ def parse(text: str, kind: Literal["condition", "amount", "numbers"], names: Nam
     Raises:
         ValueError: it is not of the grammar or of the required kind; the message says what, and where.
     """
-    try:
-        tree = ast.parse(text.strip(), mode="eval")
-    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
-        column = getattr(error, "offset", None) or 1
-        raise ValueError(f"{text!r} cannot be read at column {column}") from None
-    reader = _Reader(text, names)
-    actual, compute = reader.read(tree.body)
+    tree = _tree(text)
+    actual, compute = _Reader(text, names).read(tree.body)
     if kind == "condition" and actual != "condition":
-        raise ValueError(f"{text!r} is a number, not a condition; compare it with something")
+        raise ValueError(f"{shown(text)} is a number, not a condition; compare it with something")
     if kind == "amount" and isinstance(actual, int):
-        raise ValueError(f"{text!r} is {_described(actual)}, where a number is needed")
+        raise ValueError(f"{shown(text)} is {_described(actual)}, where a number is needed")
     used = frozenset(n.id for n in ast.walk(tree) if isinstance(n, ast.Name) and n.id in names)
+    if kind == "numbers" and not used:
+        raise ValueError(f"{shown(text)} names no quantity; known: {', '.join(names)}")
     if kind != "condition" and actual == "condition":
         return Expression(text, "amount", used, lambda values: compute(values) * np.float32(1))
     return Expression(text, actual, used, compute)
+
+
+def _tree(text: str) -> ast.Expression:
+    """Return the syntax tree of an expression; raise ValueError if it cannot be read or is too large."""
+    if len(text) > LONGEST:
+        raise ValueError(f"an expression has at most {LONGEST:,} characters, not {len(text):,}")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # such as that `1or` is hard to read
+            tree = ast.parse(text.strip(), mode="eval")
+    except SyntaxError as error:
+        raise ValueError(f"{shown(text)} cannot be read at column {error.offset or 1}") from None
+    except (ValueError, RecursionError, MemoryError):
+        raise ValueError(f"{shown(text)} cannot be read") from None
+    level, depth = [*ast.iter_child_nodes(tree)], 0
+    while level:
+        level, depth = [inner for node in level for inner in ast.iter_child_nodes(node)], depth + 1
+    if depth > DEEPEST:
+        raise ValueError(f"{shown(text)} is nested more than {DEEPEST} levels deep")
+    return tree
 
 
 class _Reader:
@@ -130,9 +162,12 @@ class _Reader:
 
     def _read_constant(self, node: ast.Constant) -> tuple[Kind, Compute]:
         value = node.value
-        if type(value) not in (int, float):
+        if isinstance(value, bool) or not isinstance(value, int | float):
             raise self._error(node, "only numbers can be written out")
-        return "amount", lambda values: value
+        if not value <= (EXACT if isinstance(value, int) else LARGEST):
+            raise self._error(node, "numbers go up to 2^53, with a decimal point up to 3.4e38")
+        number = float(value)
+        return "amount", lambda values: number
 
     def _read_name(self, node: ast.Name) -> tuple[Kind, Compute]:
         name = node.id
@@ -142,9 +177,9 @@ class _Reader:
         if isinstance(kind, Mapping):
             example = next(iter(kind), "...")
             raise self._error(node, f'{name!r} has parts; say which: {name}["{example}"]')
-        if isinstance(kind, int):
-            return kind, lambda values: _as_int64(values[name])
-        return kind, lambda values: values[name]
+        if kind == "condition":
+            return kind, lambda values: values[name]
+        return kind, lambda values: _as_float(values[name])
 
     def _read_subscript(self, node: ast.Subscript) -> tuple[Kind, Compute]:
         base = node.value
@@ -165,7 +200,7 @@ class _Reader:
         part = node.slice.value if isinstance(node.slice, ast.Constant) else None
         if not isinstance(part, str) or part not in known:
             raise self._error(node, f"{name} has the parts {', '.join(known)}")
-        return known[part], lambda values: values[name][part]
+        return known[part], lambda values: _as_float(values[name][part])
 
     def _selection(
         self, node: ast.Subscript, name: str, count: int, numbers: Compute
@@ -176,11 +211,11 @@ class _Reader:
             if not chosen or node.slice.step is not None:
                 raise self._error(node, f"this takes none of {name}, which has {count} numbers")
             columns = slice(chosen.start, chosen.stop)
-            return len(chosen), lambda values: _as_int64(numbers(values)[:, columns])
+            return len(chosen), lambda values: _as_float(numbers(values)[:, columns])
         index = node.slice.value if isinstance(node.slice, ast.Constant) else None
         if type(index) is not int or not 0 <= index < count:
             raise self._error(node, f"{name} goes from {name}[0] to {name}[{count - 1}]")
-        return "amount", lambda values: _as_int64(numbers(values)[:, index])
+        return "amount", lambda values: _as_float(numbers(values)[:, index])
 
     def _limits(self, node: ast.Slice) -> slice:
         limits = []
@@ -252,12 +287,12 @@ class _Reader:
         return lambda values: REDUCTIONS[name](inner(values))
 
     def _error(self, node: ast.expr, message: str) -> ValueError:
-        return ValueError(f"{self._text!r}, column {node.col_offset + 1}: {message}")
+        return ValueError(f"{shown(self._text)}, column {node.col_offset + 1}: {message}")
 
 
-def _as_int64(numbers: np.ndarray) -> np.ndarray:
-    """Return integers as int64, and floats unchanged, so that arithmetic on bytes does not overflow."""
-    return numbers.astype(np.int64) if numbers.dtype.kind in "iu" else numbers
+def _as_float(numbers: np.ndarray) -> np.ndarray:
+    """Return integers as float64, in which products of counts do not wrap, and floats unchanged."""
+    return numbers.astype(np.float64) if numbers.dtype.kind in "iu" else numbers
 
 
 def _as_column(amount: Compute) -> Compute:

@@ -53,5 +53,8 @@ def _beginning(run: Archive) -> Climates:
     """Return the climates that the records of all worlds begin with, (W,) each."""
     if (stored := run.origin) is None:
         worlds = run.config.seeds
-        return {name: np.full(worlds, value, np.float32) for name, value in run.law.beginning}
-    return {name: stored[f"world.worlds.climate.{name}"] for name in run.law.rates}
+        return {
+            name: np.full(worlds, value, np.float32)
+            for name, value in run.description.beginning.items()
+        }
+    return {name: stored[f"world.worlds.climate.{name}"] for name in run.description.beginning}

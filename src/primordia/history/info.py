@@ -70,9 +70,9 @@ def _world(run: Archive, world: int, digest: str) -> dict[str, Any]:
         "digest": digest,
     }
     if (tally := arrays.get(TALLY)) is not None and alive.any():
-        numbers["tallies"] = _tallies(run.habitat.tallies, tally[here][alive])
+        numbers["tallies"] = _tallies(run.description.tallies, tally[here][alive])
     if config.metabolism is not None:
-        numbers["break_even"] = _break_even(arrays, world, run.habitat.rate)
+        numbers["break_even"] = _break_even(arrays, world, run.description.rate)
     if config.seasons:
         numbers["climate"] = _climate(arrays, world)
     return numbers

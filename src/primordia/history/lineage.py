@@ -12,16 +12,16 @@ import numpy as np
 from jax import Array, lax
 
 from primordia import device
+from primordia.brains.layout import Layout
 from primordia.compiled import shared
 from primordia.history.climate import PastClimate
-from primordia.law.heredity import Birth, mutation_rates, rebuild_genomes
-from primordia.law.law import Law
+from primordia.law.heredity import Birth, Heredity
 from primordia.law.world import BirthCause, Climate
 from primordia.mutations.contract import PURPOSES, Draws
 from primordia.random.keys import streams
 from primordia.random.wide import wide
 from primordia.runs.archive import Archive
-from primordia.runs.checkpoint import read_count
+from primordia.runs.checkpoint import read_count, world_ticks
 from primordia.runs.lives import Lives
 
 STEPS_AT_A_TIME = 64
@@ -68,17 +68,20 @@ def descent(lives: Lives, organism: int, world: int) -> np.ndarray:
     return np.array(rows[::-1])
 
 
-def genome_in(state: Mapping[str, np.ndarray], law: Law, organism: int, world: int) -> np.ndarray:
+def genome_in(
+    state: Mapping[str, np.ndarray], layout: Layout, organism: int, world: int
+) -> np.ndarray:
     """Return the genome of an organism that is alive in a state, float32 (P,)."""
-    cell = place_in(state, law, organism, world)
-    blocks = {name: state[f"world.organisms.genome.{name}"][[cell]] for name in law.layout.names}
-    return law.layout.join(blocks)[0]
+    cell = place_in(state, organism, world)
+    blocks = {name: state[f"world.organisms.genome.{name}"][[cell]] for name in layout.names}
+    return layout.join(blocks)[0]
 
 
-def place_in(state: Mapping[str, np.ndarray], law: Law, organism: int, world: int) -> int:
+def place_in(state: Mapping[str, np.ndarray], organism: int, world: int) -> int:
     """Return the cell, on the axis of all worlds, of an organism that is alive in a state."""
     number = read_count(state, "world.organisms.number")
-    here = np.arange(len(number)) // law.cells == world
+    cells = len(number) // len(world_ticks(state))
+    here = np.arange(len(number)) // cells == world
     (cell,) = np.flatnonzero(here & state["world.organisms.alive"] & (number == organism))
     return int(cell)
 
@@ -93,9 +96,9 @@ def _starting_point(run: Archive, lineage: Lives) -> tuple[np.ndarray, Lives]:
     older = int((lineage.born <= fork.tick).sum()) if fork is not None else 0
     if older and run.origin is not None:
         youngest = int(lineage.id[older - 1]), int(lineage.world[0])
-        genome = genome_in(run.origin, run.law, *youngest)
+        genome = genome_in(run.origin, run.layout, *youngest)
         return genome, lineage.take(slice(older, None))
-    return np.zeros(run.law.layout.length, np.float32), lineage
+    return np.zeros(run.layout.length, np.float32), lineage
 
 
 def _replay(
@@ -103,7 +106,7 @@ def _replay(
 ) -> np.ndarray:
     """Replay the births of a lineage (D,) in order, from a genome (P,) -> the last genome."""
     notes = run.notes_of(lineage)
-    replay = shared(_replay_births, run.law)
+    replay = shared(_replay_births, run.heredity)
     for first in range(0, len(lineage), STEPS_AT_A_TIME):
         rows = np.arange(first, first + STEPS_AT_A_TIME)
         births, real = lineage.take(rows % len(lineage)), rows < len(lineage)
@@ -122,12 +125,17 @@ def _replay(
 
 
 def _replay_births(
-    law: Law, genome: Array, counts: tuple, marks: tuple, climate: Climate, notes: Array
+    heredity: Heredity,
+    genome: Array,
+    counts: tuple,
+    marks: tuple,
+    climate: Climate,
+    notes: Array,
 ) -> Array:
     """Replay births (S,) one after another, without those that only fill the shape -> genome (P,).
 
     Args:
-        law: the law of the run.
+        heredity: the heredity of the run.
         genome: genome of the first parent, (P,).
         counts: seed of the world, birth number and tick of each birth, Wide.
         marks: cell within the world; whether it is a founder; whether it is real, no filling.
@@ -140,8 +148,8 @@ def _replay_births(
             jnp.atleast_1d, given
         )
         draws = Draws(streams(seed, tick, *PURPOSES), cell)
-        birth = Birth(seed, number, draws, founder, mutation_rates(law, climate))
-        child = rebuild_genomes(law, birth, genome[None], notes.reshape(1, -1))[0]
+        birth = Birth(seed, number, draws, founder, heredity.rates(climate))
+        child = heredity.rebuild_genomes(birth, genome[None], notes.reshape(1, -1))[0]
         return jnp.where(real, child, genome), None
 
     return lax.scan(step, jnp.asarray(genome), (counts, marks, climate, notes))[0]

@@ -68,7 +68,7 @@ def empty(law: Law) -> Events:
         return Rows(jnp.zeros((capacity, columns.width), jnp.uint32), jnp.int32(0))
 
     return Events(
-        births=empty_list(cells, 1 << 15, BIRTHS.plus(*law.mutation.notes)),
+        births=empty_list(cells, 1 << 15, BIRTHS.plus(*law.heredity.mutation.notes)),
         deaths=empty_list(cells, 1 << 15, DEATHS),
         samples=empty_list(law.worlds, 1 << 10, sample_columns(law.rates)),
     )

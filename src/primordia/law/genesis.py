@@ -44,11 +44,13 @@ def _begin(law: Law, tick: int, births: int, seed: Wide) -> World:
         climate=initial_climate(law, count),
         looks=initial_looks(law, count, tick),
     )
-    genome = {name: jnp.zeros((cells, *shape), jnp.float32) for name, shape in law.layout.blocks}
+    genome = {
+        name: jnp.zeros((cells, *shape), jnp.float32) for name, shape in law.heredity.layout.blocks
+    }
     organisms = Organisms(
         alive=jnp.zeros(cells, bool),
         genome=genome,
-        notes=jnp.zeros((cells, len(law.mutation.notes)), jnp.int32),
+        notes=jnp.zeros((cells, len(law.heredity.mutation.notes)), jnp.int32),
         memory=jnp.zeros((cells, law.memory), jnp.float32),
         energy=jnp.zeros(cells, jnp.int32),
         eaten=jnp.zeros(cells, jnp.int32),

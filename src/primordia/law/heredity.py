@@ -1,17 +1,20 @@
 """Heredity: the genomes of the newborn, made from parents, ancestors or nothing.
 
 Births use `make_newborn`. A genome is rebuilt from its line of descent by `rebuild_genomes`. Both use
-`_genomes`, so they cannot differ.
+`_genomes`, so they cannot differ. Heredity knows no habitat and no brain, so genomes can be rebuilt
+without them.
 """
 
 from collections.abc import Mapping
-from typing import NamedTuple
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
 
 import jax.numpy as jnp
+import numpy as np
 from jax import Array, lax
 
-from primordia.law.law import Law
-from primordia.mutations.contract import Draws
+from primordia.brains.layout import Layout
+from primordia.mutations.contract import Draws, Mutation
 from primordia.random.keys import Purpose
 from primordia.random.wide import Wide, modulo, select
 
@@ -41,50 +44,60 @@ class Newborn(NamedTuple):
     """bool (K,)"""
 
 
-def mutation_rates(law: Law, climate: Mapping[str, Array]) -> dict[str, Array]:
-    """Return the mutation's rates in a climate, by the names that `Mutation.rates` gives them."""
-    names = law.mutation.rates(law.layout)
-    return {name: climate[f"mutation.{name}"] for name in names}
+@dataclass(frozen=True)
+class Heredity:
+    """The part of the law by which genomes are made."""
 
+    layout: Layout
+    """layout of genomes"""
+    mutation: Mutation
+    inheritance: Literal["parent", "founder"]
+    ancestors: np.ndarray | None
+    """genomes that founders take in turn, float32 (K, P); None: founders are random"""
+    worlds: int
+    """number of worlds whose newborn are made together"""
 
-def make_newborn(law: Law, birth: Birth, parents: Array, notes: Array) -> Newborn:
-    """Make K newborn from their parents' genomes float32 (K, P) and notes int32 (K, n)."""
-    mutation = law.mutation
-    if mutation.notes:
-        children = mutation.note(law.layout, parents, notes, birth.rates, birth.draws)
-        founders = mutation.founders_notes(len(notes))
-        notes = jnp.where(birth.founder[:, None], founders, children)
-    genome, mutated = _genomes(law, birth, parents, notes)
-    return Newborn(genome, notes, mutated)
+    def rates(self, climate: Mapping[str, Array]) -> dict[str, Array]:
+        """Return the mutation's rates in a climate, by the names that `Mutation.rates` gives them."""
+        return {name: climate[f"mutation.{name}"] for name in self.mutation.rates(self.layout)}
 
+    def make_newborn(self, birth: Birth, parents: Array, notes: Array) -> Newborn:
+        """Make K newborn from their parents' genomes float32 (K, P) and notes int32 (K, n)."""
+        mutation = self.mutation
+        if mutation.notes:
+            children = mutation.note(self.layout, parents, notes, birth.rates, birth.draws)
+            founders = mutation.founders_notes(len(notes))
+            notes = jnp.where(birth.founder[:, None], founders, children)
+        genome, mutated = self._genomes(birth, parents, notes)
+        return Newborn(genome, notes, mutated)
 
-def rebuild_genomes(law: Law, birth: Birth, parents: Array, notes: Array) -> Array:
-    """Return the genomes (K, P) of recorded births, whose recorded notes are (K, n)."""
-    return _genomes(law, birth, parents, notes)[0]
+    def rebuild_genomes(self, birth: Birth, parents: Array, notes: Array) -> Array:
+        """Return the genomes (K, P) of recorded births, whose recorded notes are (K, n)."""
+        return self._genomes(birth, parents, notes)[0]
 
+    def _genomes(self, birth: Birth, parents: Array, notes: Array) -> tuple[Array, Array]:
+        if self.inheritance == "founder":
+            return self._founders(birth), jnp.zeros_like(birth.founder)
+        birth = birth._replace(draws=_one_noise(birth))
+        children, mutated = self.mutation.inherit(
+            self.layout, parents, notes, birth.rates, birth.draws
+        )
 
-def _genomes(law: Law, birth: Birth, parents: Array, notes: Array) -> tuple[Array, Array]:
-    if law.inheritance == "founder":
-        return _founders(law, birth), jnp.zeros_like(birth.founder)
-    birth = birth._replace(draws=_one_noise(birth))
-    children, mutated = law.mutation.inherit(law.layout, parents, notes, birth.rates, birth.draws)
+        def with_founders() -> Array:
+            return jnp.where(birth.founder[:, None], self._founders(birth), children)
 
-    def with_founders() -> Array:
-        return jnp.where(birth.founder[:, None], _founders(law, birth), children)
+        if self.worlds == 1:
+            return with_founders(), mutated & ~birth.founder
+        # What leaves a branch is stored. In 16 worlds of 32 cells that halves the time of a tick; in one
+        # world it would add a tenth.
+        genome = lax.cond(birth.founder.any(), with_founders, lambda: children)
+        return genome, mutated & ~birth.founder
 
-    if law.worlds == 1:
-        return with_founders(), mutated & ~birth.founder
-    # What leaves a branch is stored. In 16 worlds of 32 cells that halves the time of a tick; in one
-    # world it would add a tenth.
-    genome = lax.cond(birth.founder.any(), with_founders, lambda: children)
-    return genome, mutated & ~birth.founder
-
-
-def _founders(law: Law, birth: Birth) -> Array:
-    """Make random genomes, or take ancestors' in turn, beginning with another one in each world."""
-    if law.ancestors is None:
-        return law.mutation.founders(law.layout, birth.draws)
-    return jnp.asarray(law.ancestors)[modulo(birth.seed + birth.number, len(law.ancestors))]
+    def _founders(self, birth: Birth) -> Array:
+        """Make random genomes, or take ancestors' in turn, beginning with another one in each world."""
+        if self.ancestors is None:
+            return self.mutation.founders(self.layout, birth.draws)
+        return jnp.asarray(self.ancestors)[modulo(birth.seed + birth.number, len(self.ancestors))]
 
 
 def _one_noise(birth: Birth) -> Draws:

@@ -6,17 +6,15 @@ from functools import cached_property
 from typing import Literal
 
 import jax.numpy as jnp
-import numpy as np
 from jax import Array
 
 from primordia.brains.contract import Brain
-from primordia.brains.layout import Layout
 from primordia.habitats.contract import Continuous, Discrete
+from primordia.law.heredity import Heredity
 from primordia.law.metabolism import Metabolism
 from primordia.law.motor import Motor
 from primordia.law.placement import Placement
 from primordia.law.seasons import Ratchet, Schedule
-from primordia.mutations.contract import Mutation
 
 
 @dataclass(frozen=True)
@@ -27,20 +25,15 @@ class Law:
     cells: int
     """cells of one world"""
     brain: Brain
-    layout: Layout
-    """layout of genomes"""
+    heredity: Heredity
     memory: int
     """M, the length of an organism's memory"""
     action: Discrete | Continuous
     motor: Motor
     placement: Placement
-    mutation: Mutation
-    ancestors: np.ndarray | None
-    """genomes that founders take in turn, float32 (K, P); None: founders are random"""
     metabolism: Metabolism | None
     beginning: tuple[tuple[str, float], ...]
     """settings that seasons may change, by dotted name, with the values that worlds begin with"""
-    inheritance: Literal["parent", "founder"]
     genesis: Literal["one", "fill"]
     seasons: tuple[Schedule | Ratchet, ...]
     saturation_ticks: int
@@ -73,7 +66,7 @@ class Law:
         """Return the names among `rates` that a season of a setting changes; [] if it is unknown."""
         part, _, name_in_part = setting.partition(".")
         if part == "mutation":
-            names = self.mutation.governed(name_in_part, self.layout)
+            names = self.heredity.mutation.governed(name_in_part, self.heredity.layout)
             return [f"mutation.{name}" for name in names]
         return [setting] if setting in self.rates else []
 

@@ -12,7 +12,7 @@ from jax import Array
 
 from primordia.law import events as log
 from primordia.law.events import Events, Rows
-from primordia.law.heredity import Birth, Newborn, make_newborn, mutation_rates
+from primordia.law.heredity import Birth, Newborn
 from primordia.law.law import Law
 from primordia.law.metabolism import to_fixed_point
 from primordia.law.world import BirthCause, Cause, Organisms, World, Worlds
@@ -136,12 +136,12 @@ def _inherit(
         # outlive births, and reading the arrays that are written saves a copy of all genomes.
         genomes, parents_notes = before if law.placement.rule == "replacing" else (genome, notes)
         birth, parent = _birth(law, worlds, births, keys, cells), births.parent[cells]
-        parents = law.layout.flat(genomes, parent)
-        newborn = make_newborn(law, birth, parents, parents_notes[parent])
+        parents = law.heredity.layout.flat(genomes, parent)
+        newborn = law.heredity.make_newborn(birth, parents, parents_notes[parent])
         where = jnp.where(valid, cells, len(births.newborn))
         genome = {
             name: genome[name].at[where].set(block, mode="drop")
-            for name, block in law.layout.split(newborn.genome).items()
+            for name, block in law.heredity.layout.split(newborn.genome).items()
         }
         notes = notes.at[where].set(newborn.notes, mode="drop")
         rows = _birth_rows(law, world, births, cells, birth.founder, newborn)
@@ -158,8 +158,8 @@ def _birth(law: Law, worlds: Worlds, births: Births, keys: Streams, cells: Array
         seed=worlds.seed.take(world),
         number=births.number.take(cells),
         draws=Draws(keys.take(world), cells % law.cells),
-        founder=births.founded[cells] | (law.inheritance == "founder"),
-        rates=mutation_rates(law, law.in_cells(worlds.climate, cells)),
+        founder=births.founded[cells] | (law.heredity.inheritance == "founder"),
+        rates=law.heredity.rates(law.in_cells(worlds.climate, cells)),
     )
 
 
@@ -169,13 +169,13 @@ def _birth_rows(
     organisms, worlds = world
     parent = organisms.number.take(births.parent[cells])
     cause = jnp.where(newborn.mutated, BirthCause.MUTANT, BirthCause.COPY)
-    return log.BIRTHS.plus(*law.mutation.notes).words(
+    return log.BIRTHS.plus(*law.heredity.mutation.notes).words(
         cell=cells,
         id=births.number.take(cells),
         parent=select(births.founded[cells], never(cells.shape), parent),
         tick=worlds.tick.take(cells // law.cells),
         cause=jnp.where(founder, BirthCause.FOUNDER, cause),
-        **dict(zip(law.mutation.notes, newborn.notes.T, strict=True)),
+        **dict(zip(law.heredity.mutation.notes, newborn.notes.T, strict=True)),
     )
 
 

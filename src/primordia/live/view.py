@@ -1,8 +1,10 @@
 """The display of a run that advances: a view in a terminal, plain lines elsewhere."""
 
+import os
 import sys
 import time
-from contextlib import AbstractContextManager, nullcontext
+from collections.abc import Iterator
+from contextlib import contextmanager
 from types import TracebackType
 
 import numpy as np
@@ -10,23 +12,35 @@ from rich.console import Console, ConsoleOptions, RenderResult
 from rich.live import Live
 from rich.segment import Segment
 
+from primordia import interrupts
 from primordia.history.lines import CROWD, Lines, Turnover, turnovers
 from primordia.live.census import Census, Speed
 from primordia.live.paint import FAINT, Row
 from primordia.live.panel import Outlook, heading, numbers, saturation, with_prefix
 from primordia.live.scene import Room, scene
+from primordia.printable import printable
 from primordia.random.wide import to_host
 from primordia.runs.loop import Listener, Status
 
 
-def watching(quiet: bool) -> AbstractContextManager[Listener | None]:
-    """Return the listener that suits this terminal, or plain lines without a terminal."""
+@contextmanager
+def watching(quiet: bool) -> Iterator[Listener | None]:
+    """Yield the listener that suits this terminal, or plain lines without a terminal."""
+    console = Console(
+        highlight=False, file=sys.__stdout__
+    )  # not the stream that spells out escapes
     if quiet:
-        return nullcontext()
-    console = Console(highlight=False)
-    if not sys.stdout.isatty() or console.is_dumb_terminal:
-        return nullcontext(Plain())
-    return View(console)
+        yield None
+    elif not sys.stdout.isatty() or console.is_dumb_terminal:
+        yield Plain()
+    else:
+        with interrupts.before_end(_show_cursor), View(console) as view:
+            yield view
+
+
+def _show_cursor() -> None:
+    """Write the escape sequence that shows the cursor, without any lock."""
+    os.write(1, b"\x1b[?25h\r\n")
 
 
 class Plain:
@@ -169,6 +183,7 @@ class Frame:
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         """Yield the rows, cut to the width."""
-        for row in self._rows:
+        for parts in self._rows:
+            row = [Segment(printable(text, kept=""), style) for text, style, _ in parts]
             yield from Segment.adjust_line_length(row, options.max_width, pad=False)
             yield Segment.line()

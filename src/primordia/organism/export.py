@@ -29,5 +29,5 @@ def export(
         "seed": str(run.config.seed + world),
         "organisms": " ".join(map(str, chosen)),
     }
-    genomes.write(out, run.law.layout, rebuild_all(run, [(each, world) for each in chosen]), about)
+    genomes.write(out, run.layout, rebuild_all(run, [(each, world) for each in chosen]), about)
     return chosen

@@ -142,7 +142,7 @@ class _Boards:
         law, self._words = players.law, players.habitat.words
         per_game = partial(jnp.repeat, repeats=games, axis=0)
         cells = jnp.asarray(np.tile(np.arange(games), len(players.genomes)), jnp.int32)
-        genome = law.layout.split(per_game(jnp.asarray(players.genomes)))
+        genome = law.heredity.layout.split(per_game(jnp.asarray(players.genomes)))
         self._mind = Mind(genome, players.keys.map(per_game), cells)
         self._memory = jnp.zeros((len(cells), law.memory), jnp.float32)
         self._rates = Rates(*map(per_game, players.rates))

@@ -15,7 +15,7 @@ class Policy:
     def __init__(self, law: Law, genome: np.ndarray) -> None:
         """Take a genome, float32 (P,)."""
         self._law = law
-        self._genome = law.layout.split(jnp.asarray(genome, jnp.float32)[None])
+        self._genome = law.heredity.layout.split(jnp.asarray(genome, jnp.float32)[None])
         self._think = shared(type(law.brain).__call__, law.brain)
         self.reset()
 

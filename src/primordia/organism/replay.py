@@ -10,8 +10,9 @@ import jax
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
+from primordia import files
 from primordia.errors import InputError
-from primordia.habitats.contract import Ability
+from primordia.habitats.contract import Ability, AnyHabitat
 from primordia.habitats.framed import PAPER
 from primordia.law.metabolism import ONE
 from primordia.organism import video
@@ -53,17 +54,23 @@ def replay(
     rate = _picture_rate(life)
     step = ceil(rate / video.FASTEST[path.suffix])
     parts = _parts(life, rate, ages)
+    if out is None:
+        files.own_folder(path.parent)
     video.write(path, _pictures(life, parts, step, rate / step), rate / step)
     return path
 
 
+def lacking(habitat: AnyHabitat) -> list[str]:
+    """Return the methods and properties that a habitat would have to define for videos of its lives."""
+    return [*habitat.lacks(Ability.PICTURE), *([] if habitat.rate else ["rate"])]
+
+
 def _picture_rate(life: RelivedLife) -> float:
     """Return the ticks in a second of a life; raise InputError if its habitat draws no pictures."""
-    lacking, rate = life.habitat.lacks(Ability.PICTURE), life.habitat.rate
-    if lacking or not rate:
-        lacks = " and no ".join(f"`{name}`" for name in lacking or ["rate"])
+    if lacks := " and no ".join(f"`{name}`" for name in lacking(life.habitat)):
         raise InputError(f"{life.run.path}: its habitat draws no pictures (it has no {lacks})")
-    return rate
+    assert life.habitat.rate
+    return life.habitat.rate
 
 
 def _parts(life: RelivedLife, rate: float, ages: tuple[int | None, int | None]) -> list[range]:

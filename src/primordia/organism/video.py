@@ -16,7 +16,8 @@ FASTEST = {".mp4": 60, ".gif": 25}
 
 
 def check_name(path: Path) -> None:
-    """Raise InputError unless the file name ends in .mp4 or .gif."""
+    """Raise InputError unless the name ends in .mp4 or .gif, and is free or that of a regular file."""
+    files.check_output(path)
     if path.suffix not in FASTEST:
         raise InputError(f"--out {path}: a video is an .mp4 or a .gif")
 
@@ -27,7 +28,7 @@ def write(path: Path, pictures: Iterator[Image.Image], rate: float) -> None:
     Raises:
         Trouble: the file cannot be written.
     """
-    path.parent.mkdir(parents=True, exist_ok=True)
+    files.make_folder(path.parent)
     encode = _gif if path.suffix == ".gif" else _mp4
     files.write(path, lambda temporary: encode(temporary, pictures, rate))
 

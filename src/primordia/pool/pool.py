@@ -126,6 +126,7 @@ def _spawn(memory: int) -> subprocess.Popen:
         stdout=subprocess.PIPE,
         bufsize=0,
         pass_fds=[memory],
+        process_group=0,  # Ctrl-C in a terminal is for the run, which ends its workers
         env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
     )
 

@@ -10,14 +10,19 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from primordia import files
+from primordia.brains.layout import Layout
 from primordia.config import Config
 from primordia.errors import InputError
 from primordia.habitats.contract import AnyHabitat
+from primordia.law.heredity import Heredity
 from primordia.law.law import Law
-from primordia.runs import checkpoint, directory
+from primordia.own_code import Sources
+from primordia.runs import checkpoint, code, description, directory
 from primordia.runs.checkpoint import Arrays, Checkpoint
+from primordia.runs.description import Description
 from primordia.runs.lives import Lives, join
 from primordia.runs.schema import TABLES, Schema
+from primordia.settings.tables import PARTS
 
 
 class Archive:
@@ -40,14 +45,48 @@ class Archive:
         """`files.fault_in`, with a memory: no file is read twice"""
 
     @cached_property
+    def description(self) -> Description:
+        """What the run's parts said of themselves when it began."""
+        return description.read(self.path)
+
+    @cached_property
+    def layout(self) -> Layout:
+        """The layout of genomes."""
+        return Layout(tuple(self.description.blocks.items()))
+
+    def code(self, *parts: str) -> Sources:
+        """Return the files of the user's own code that these parts, or all, would execute here."""
+        return code.in_use(self.path, self.config, parts or tuple(PARTS))
+
+    def admit(self, *parts: str) -> None:
+        """Let the code of these parts, or of all, be imported.
+
+        Raises:
+            InputError: the user has not trusted it yet.
+        """
+        code.admit(self.path, self.code(*parts))
+
+    @cached_property
     def habitat(self) -> AnyHabitat:
-        """The habitat, for reading its properties; build another one to make bodies in."""
+        """The habitat, for reading its properties; build another one to make bodies in.
+
+        Raises:
+            InputError: the user has not trusted its code yet; so it is with `law` and `heredity`.
+        """
+        self.admit("habitat")
         return self.config.build_habitat()
 
     @cached_property
     def law(self) -> Law:
         """The law that holds in the run's worlds."""
+        self.admit()
         return self.config.build_law(self.habitat)
+
+    @cached_property
+    def heredity(self) -> Heredity:
+        """The part of the law that makes genomes, which needs neither habitat nor brain."""
+        self.admit("mutation")
+        return self.config.build_heredity(self.layout)
 
     @cached_property
     def versions(self) -> dict[str, Any]:
@@ -57,11 +96,17 @@ class Archive:
     @cached_property
     def other_versions(self) -> list[str]:
         """Versions that have changed since the run began; if there are none, it goes on bit for bit."""
-        return [
+        versions = [
             f"{name} {self.versions.get(name)} then, {now} now"
-            for name, now in directory.versions_here(self.habitat).items()
+            for name, now in directory.versions_here(self.config, self.habitat).items()
             if self.versions.get(name) != now
         ]
+        return versions + self.changed_code
+
+    @property
+    def changed_code(self) -> list[str]:
+        """A line for each file of the user's own code that is not as it was when the run began."""
+        return code.changes(self.code(), self.description.code)
 
     @cached_property
     def newest(self) -> tuple[Checkpoint | None, list[str]]:
@@ -143,7 +188,8 @@ class Archive:
     @cached_property
     def schema(self) -> Schema:
         """The columns of the run's tables."""
-        return Schema.of(self.law, self.habitat.tallies)
+        about = self.description
+        return Schema(self.config.cells, about.notes, tuple(about.beginning), about.tallies)
 
     def notes_of(self, lives: Lives) -> np.ndarray:
         """Return what the mutation noted at the births of some lives, int32 (L, n)."""

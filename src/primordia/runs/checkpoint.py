@@ -11,21 +11,23 @@ import json
 import shutil
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from primordia import files
+from primordia import files, interrupts
 from primordia.brains.genomes import FOUNDERS
 from primordia.errors import Trouble
+from primordia.runs.description import FILE as DESCRIPTION
 from primordia.runs.record import Recorder
 from primordia.runs.schema import TABLES
 
 KEPT = 2
 """Number of checkpoints kept; if the newest is damaged, the one before it is used."""
-ORIGIN = "origin"
-INPUTS = ("config.toml", FOUNDERS)
+FOLDER, ORIGIN = "checkpoints", "origin"
+INPUTS = ("config.toml", DESCRIPTION, FOUNDERS)
 """Files that a run needs to go on, beside its checkpoints."""
 
 
@@ -111,13 +113,10 @@ def save(run: Path, arrays: dict[str, np.ndarray], recorder: Recorder, progress:
         Trouble: it cannot be written; earlier checkpoints stay good.
     """
     number = 1 + max((int(path.name) for path in numbered(run)), default=-1)
-    final = run / "checkpoints" / f"{number:06d}"
+    final = run / FOLDER / f"{number:06d}"
     _write(run, final, arrays, recorder, progress)
-    try:
-        for old in numbered(run)[:-KEPT]:
-            shutil.rmtree(old)
-    except OSError as error:
-        raise Trouble(f"{old} cannot be removed: {error.strerror or error}") from None
+    for old in numbered(run)[:-KEPT]:
+        files.remove(old)
 
 
 def save_origin(
@@ -136,12 +135,12 @@ def _write(
 ) -> None:
     temporary = final.with_name(files.TEMPORARY + final.name)
     try:
-        temporary.mkdir(parents=True)
-        _fill(run, temporary, arrays, recorder, progress)
-        temporary.rename(final)
-        files.sync(final.parent)
+        temporary.mkdir()
+        with interrupts.undone_by(partial(shutil.rmtree, temporary, ignore_errors=True)):
+            _fill(run, temporary, arrays, recorder, progress)
+            temporary.rename(final)
+            files.sync(final.parent)
     except OSError as error:
-        shutil.rmtree(temporary, ignore_errors=True)
         raise Trouble(f"{final} cannot be written: {error.strerror or error}") from None
 
 
@@ -162,7 +161,8 @@ def _fill(
         "segments": {table.name: table.segments for table in recorder.tables},
         "digests": {table.name: table.digest.tolist() for table in recorder.tables},
     }
-    manifest.write_text(json.dumps({**content, "sha256": _checksum(content)}, indent=1))
+    text = json.dumps({**content, "sha256": _checksum(content)}, indent=1)
+    manifest.write_text(text, encoding="utf-8")
     files.sync(manifest)
     files.sync(folder)
 
@@ -181,9 +181,14 @@ def no_whole_checkpoint(run: Path, faults: list[str]) -> Trouble:
     return Trouble(f"no checkpoint of {run} is whole: {faults[0]}; {again}")
 
 
+def exists(run: Path) -> bool:
+    """Return whether a run has a checkpoint, whole or not."""
+    return (run / ORIGIN).exists() or bool(numbered(run))
+
+
 def numbered(run: Path) -> list[Path]:
     """Return the folders of the run's checkpoints, oldest first."""
-    folders = (path for path in (run / "checkpoints").glob("[0-9]*") if path.name.isdigit())
+    folders = (path for path in (run / FOLDER).glob("[0-9]*") if path.name.isdigit())
     return sorted(folders, key=lambda path: int(path.name))
 
 
@@ -233,7 +238,7 @@ def _read(run: Path, path: Path, fault_in: FaultIn) -> Checkpoint | str:
         Trouble: one of INPUTS has changed, so that no checkpoint is of use.
     """
     try:
-        manifest = json.loads((path / "manifest.json").read_text())
+        manifest = json.loads((path / "manifest.json").read_text(encoding="utf-8"))
         if manifest["sha256"] != _checksum(manifest):
             raise ValueError
         inputs = manifest["inputs"].items()
@@ -255,18 +260,11 @@ def remove_leftovers(run: Path, last: Checkpoint | None) -> None:
     """Delete all files that the given checkpoint does not name, such as those half written in a crash."""
     before = numbered(run)
     kept = before[: before.index(last.path) + 1] if last and last.path in before else []
-    for path in (run / "checkpoints").iterdir():
+    for path in (run / FOLDER).iterdir():
         if path not in kept:
-            _remove(path)
+            files.remove(path)
     for table in TABLES:
         named = {each["name"] for each in last.manifest["segments"][table]} if last else set()
         for path in (run / table).iterdir():
             if path.name not in named:
-                _remove(path)
-
-
-def _remove(path: Path) -> None:
-    try:
-        shutil.rmtree(path) if path.is_dir() else path.unlink()
-    except OSError as error:
-        raise Trouble(f"{path} cannot be removed: {error.strerror}") from None
+                files.remove(path)

@@ -1,62 +1,106 @@
-"""A run's directory: settings, versions, the genomes it starts from, and its lock."""
+"""A run's directory: settings, versions, description, the genomes it starts from, and its lock."""
 
 import json
-from collections.abc import Iterator
-from contextlib import contextmanager
+import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from filelock import FileLock, Timeout
 
-from primordia import device, files
+from primordia import device, files, interrupts, own_code
 from primordia.brains import genomes
 from primordia.config import Config, parsed
 from primordia.errors import InputError, Trouble
 from primordia.habitats.contract import AnyHabitat
+from primordia.runs import checkpoint, code
+from primordia.runs.description import Description
 from primordia.runs.schema import TABLES
 from primordia.settings.tables import from_toml
 
 FORMAT = 2
 """of run directories; others are refused"""
+VERSIONS, LOCK = "versions.json", "lock"
+FOLDERS = (*TABLES, checkpoint.FOLDER)
+OWN = (VERSIONS, *FOLDERS, code.FOLDER, checkpoint.ORIGIN, *checkpoint.INPUTS, LOCK)
+"""What a new run's directory holds."""
 
 
 @contextmanager
-def create(run: Path, config: Config) -> Iterator[None]:
-    """Write settings, founders and versions into a new or empty directory, and hold its lock.
+def create(run: Path, config: Config, fill: Callable[[], object] | None = None) -> Iterator[None]:
+    """Write settings, founders, code and versions into a new or empty directory, and hold its lock.
 
-    The versions come last: a directory that has them is a run.
+    The versions come last: a directory that has them is a run. If the `with` block ends by an error or a
+    signal before the first checkpoint, nothing is left.
+
+    Args:
+        run: the directory.
+        config: the run's settings.
+        fill: writes what a fork begins with.
 
     Raises:
         InputError: the directory is taken.
         Trouble: a file cannot be written.
     """
     refuse_if_taken(run)
-    make_folders(run)
-    with locked(run):
-        versions = {"format": FORMAT, **versions_here(config.build_habitat())}
-        if config.ancestors:
-            layout = config.build_layout(config.build_habitat())
-            founders = genomes.read(config.ancestors, layout)
-            genomes.write(run / genomes.FOUNDERS, layout, founders, {})
-            config = config.model_copy(update={"ancestors": (genomes.FOUNDERS,)})
-        _write_text(run / "config.toml", config.to_toml())
-        _write_text(run / "versions.json", json.dumps(versions, indent=1))
-        yield
+    habitat = config.build_habitat()
+    law = config.build_law(habitat)
+    versions = {"format": FORMAT, **versions_here(config, habitat)}
+    missing = [path for path in (run, *run.parents) if not path.exists()]
+    with interrupts.undone_by(partial(_remove_empty, missing)):
+        files.make_folder(run)
+        with locked(run):
+            refuse_if_taken(run)  # another process may have made it since
+            with held(run) as check, interrupts.undone_by(partial(_remove_unbegun, run, check)):
+                make_folders(run)
+                if (founders := law.heredity.ancestors) is not None:
+                    genomes.write(run / genomes.FOUNDERS, law.heredity.layout, founders, {})
+                    config = config.model_copy(update={"ancestors": (genomes.FOUNDERS,)})
+                Description.of(law, habitat, code.copy(config, run)).write(run)
+                files.write_text(run / "config.toml", config.to_toml())
+                if fill is not None:
+                    fill()
+                files.write_text(run / VERSIONS, json.dumps(versions, indent=1))
+                yield
+
+
+def _remove_unbegun(run: Path, check: Callable[[], None]) -> None:
+    """Remove what `create` has written, unless there is a checkpoint, from which the run can go on."""
+    if (run / VERSIONS).exists() and checkpoint.exists(run):
+        return
+    with suppress(Trouble):
+        check()
+        for name in OWN:
+            if os.path.lexists(run / name):
+                files.remove(run / name)
+
+
+def _remove_empty(folders: list[Path]) -> None:
+    for path in folders:
+        with suppress(OSError):
+            path.rmdir()
 
 
 def refuse_if_taken(run: Path) -> None:
-    """Raise InputError unless the path is free or an empty directory."""
-    if run.exists() and (not run.is_dir() or any(run.iterdir())):
+    """Raise InputError unless the path is free or a directory without files, but for a lock."""
+    files.check_name(run)
+    if (run / VERSIONS).exists():
         raise InputError(f"{run} exists already; choose another --out, or `primordia resume {run}`")
+    if run.exists() and not (run.is_dir() and {each.name for each in run.iterdir()} <= {LOCK}):
+        raise InputError(f"{run} exists already and is not a run; choose another --out")
 
 
 def make_folders(run: Path) -> None:
-    """Make the missing folders of a run."""
-    try:
-        for name in (*TABLES, "checkpoints"):
-            files.make_folder(run / name)
-    except OSError as error:
-        raise Trouble(f"{run} cannot be written: {error.strerror}") from None
+    """Make the missing folders of a run.
+
+    Raises:
+        InputError: there is a link or a file in place of a folder.
+        Trouble: a folder cannot be made.
+    """
+    for name in FOLDERS:
+        files.own_folder(run / name)
 
 
 def read_config(run: Path) -> Config:
@@ -65,6 +109,7 @@ def read_config(run: Path) -> Config:
     Raises:
         InputError: this is no run directory, or one that this version cannot read.
     """
+    files.check_name(run)
     try:
         made_by = int(recorded_versions(run)["format"])
     except (OSError, ValueError, KeyError, TypeError):
@@ -83,14 +128,15 @@ def read_config(run: Path) -> Config:
     return parsed(from_toml(run / "config.toml"), source=str(run / "config.toml"))
 
 
-def versions_here(habitat: AnyHabitat) -> dict[str, str]:
+def versions_here(config: Config, habitat: AnyHabitat) -> dict[str, str]:
     """Return the versions that a run begun here would depend on, by name."""
-    return {**device.versions(), **habitat.versions}
+    packages = own_code.packages(config.own_modules.values())
+    return {**device.versions(), **habitat.versions, **packages}
 
 
 def recorded_versions(run: Path) -> dict[str, Any]:
     """Return the content of `versions.json`: the format, and what `versions_here` gave then."""
-    recorded: dict[str, Any] = json.loads((run / "versions.json").read_text())
+    recorded: dict[str, Any] = json.loads((run / VERSIONS).read_text(encoding="utf-8"))
     return recorded
 
 
@@ -101,7 +147,8 @@ def locked(run: Path) -> Iterator[None]:
     Raises:
         InputError: another process holds it.
     """
-    lock = FileLock(run / "lock")
+    files.check_output(run / LOCK)
+    lock = FileLock(run / LOCK)
     try:
         lock.acquire(timeout=0)
     except Timeout:
@@ -114,8 +161,22 @@ def locked(run: Path) -> Iterator[None]:
         lock.release()
 
 
-def _write_text(path: Path, text: str) -> None:
-    def fill(temporary: Path) -> None:
-        temporary.write_text(text)
+@contextmanager
+def held(run: Path) -> Iterator[Callable[[], None]]:
+    """Yield a check for a writer, which raises Trouble once the directory is removed or replaced."""
+    handle = os.open(run, os.O_RDONLY)  # while it is open, no other directory gets its number
 
-    files.write(path, fill)
+    def check() -> None:
+        try:
+            same = os.path.samestat(os.fstat(handle), os.stat(run))
+        except OSError:
+            same = False
+        if not same:
+            raise Trouble(
+                f"{run} was removed or replaced while the run went on; the run has stopped"
+            )
+
+    try:
+        yield check
+    finally:
+        os.close(handle)

@@ -52,6 +52,7 @@ def fork(
         Trouble: a file cannot be written, or the source does not repeat as recorded.
     """
     ticks = int(source.ends.min())
+    source.admit()
     changed = _fork_config(source.path, settings, at)
     directory.refuse_if_taken(out)
     if not 1 <= at <= ticks:
@@ -62,12 +63,18 @@ def fork(
     recorder = recorder_for(after, out)
     recorder.add("births", _birth_rows(living, after))
     progress = Progress(changed.stop.model_dump(), 0.0, after.chunks.exact)
-    with directory.create(out, changed):
+
+    def save_origin() -> None:
         checkpoint.save_origin(out, after.arrays(), recorder, progress)
+
+    with directory.create(out, changed, save_origin):
+        pass
 
 
 def _fork_config(source: Path, settings: dict[str, Any], at: int) -> Config:
     """Return the configuration of the fork."""
+    if "task" in settings:
+        raise InputError("there is no setting 'task' of a fork: it has the task of its run")
     values = merged(from_toml(source / "config.toml"), settings)
     values["fork"] = ForkedFrom(run=str(source), tick=at).model_dump()
     return validated(values, source=str(source))
@@ -116,7 +123,7 @@ def _birth_rows(living: Lives, engine: Engine) -> np.ndarray:
     """Return the births of the living as the law lists them, uint32 (n, words), in order of events."""
     living = living.take(np.lexsort((living.cell, living.world, living.born)))
     cell = living.world.astype(np.int64) * engine.law.cells + living.cell
-    names, notes = engine.law.mutation.notes, engine.state.world.organisms.notes
+    names, notes = engine.law.heredity.mutation.notes, engine.state.world.organisms.notes
     return BIRTHS.plus(*names).rows(
         cell=cell,
         id=living.id,

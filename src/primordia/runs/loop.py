@@ -3,24 +3,29 @@
 A run is a directory. Everything in it is a function of `config.toml`; see `record` and `checkpoint`.
 """
 
-import signal
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import chain, islice, repeat
 from pathlib import Path
 from typing import Any
 
+from primordia import interrupts
 from primordia.config import Config, checked
 from primordia.config import limits as valid_limits
 from primordia.engine.engine import Engine
 from primordia.engine.state import Limits
 from primordia.errors import InputError
+from primordia.law.events import Events
 from primordia.runs import checkpoint, directory
 from primordia.runs.archive import Archive
 from primordia.runs.checkpoint import Checkpoint, Progress
 from primordia.runs.record import Recorder
 from primordia.runs.schema import Schema
+
+EARLY = (1.0, 4.0, 10.0)
+"""Seconds before each of the first checkpoints, so that a run can soon be looked at."""
 
 
 @dataclass
@@ -55,7 +60,7 @@ def start(
     _check_interval(checkpoint_every)
     if config.fork is not None:
         raise InputError(f"these are the settings of a fork of {config.fork.run}; fork that again")
-    with directory.create(run, config):
+    with interrupts.noting(), directory.create(run, config):
         engine = Engine(config)
         recorder = recorder_for(engine, run)
         progress = Progress(config.stop.model_dump(), 0.0, engine.chunks.exact)
@@ -88,12 +93,12 @@ def resume(
     """
     _check_interval(checkpoint_every)
     given, archive = valid_limits(limits or {}), Archive(run)
+    _check_same(run, archive.changed_code, inexact)
+    archive.admit()
     config = checked(archive.config, source=str(run / "config.toml"))
-    if (differ := archive.other_versions) and not inexact:
-        raise InputError(
-            f"{run} cannot go on bit for bit: {'; '.join(differ)}. Restore that, or add --inexact"
-        )
-    with directory.locked(run):
+    differ = archive.other_versions
+    _check_same(run, differ, inexact)
+    with interrupts.noting(), directory.locked(run):
         last, faults = archive.newest  # read under the lock, since another writer could change it
         if last is None and faults:
             raise checkpoint.no_whole_checkpoint(run, faults)
@@ -147,54 +152,96 @@ def drive(
     checkpoint_every: float,
     listen: Listener | None,
 ) -> None:
-    """Advance, record and checkpoint until every world stops, or Ctrl-C; see `start`.
+    """Advance, record and checkpoint until every world stops or a signal comes; see `start`.
+
+    If a listener fails, there is a checkpoint before its error goes on.
 
     Raises:
-        KeyboardInterrupt: on Ctrl-C or SIGTERM, after a checkpoint.
+        KeyboardInterrupt: on Ctrl-C, SIGTERM or SIGHUP, after a checkpoint if the run has advanced.
     """
-    limits, before = engine.limits(progress.limits), progress.wall_s
-    began = saved = time.perf_counter()
+    limits = engine.limits(progress.limits)
+    with interrupts.noting() as noted, directory.held(run) as check:
+        saver = Saver(engine, recorder, run, progress, checkpoint_every, check)
+        chunks = _chunks(engine, limits, noted)
+        first = list(
+            islice(chunks, 1)
+        )  # compiling takes seconds, in which a command may be ended at once
+        with interrupts.deferred():
+            for events in chain(first, chunks):
+                check()
+                recorder.append(events)
+                if listen is not None:
+                    with saver.saving_on_error():
+                        listen(Status(engine, saver.seconds, limits))
+                saver.save_if_due()
+            if not noted:
+                recorder.finish()
+            if first or not noted:
+                saver.save()
+        if noted:
+            raise KeyboardInterrupt
 
-    def save() -> None:
-        progress.wall_s = before + time.perf_counter() - began
-        checkpoint.save(run, engine.arrays(), recorder, progress)
 
-    with interruptible() as interrupted:
-        while engine.any_running(limits) and not interrupted:
-            recorder.append(engine.advance(limits))
-            if listen is not None:
-                listen(Status(engine, time.perf_counter() - began, limits))
-            if time.perf_counter() - saved >= checkpoint_every:
-                save()
-                saved = time.perf_counter()
-        if not interrupted:
-            recorder.finish()
-        save()
-    if interrupted:
-        raise KeyboardInterrupt
+def _chunks(engine: Engine, limits: Limits, noted: list[int]) -> Iterator[Events]:
+    """Advance chunk by chunk -> the events of each, until every world stops or a signal comes."""
+    while engine.any_running(limits) and not noted:
+        yield engine.advance(limits)
+
+
+class Saver:
+    """The checkpoints of a run that goes on: some soon after the start, then one in each interval."""
+
+    def __init__(
+        self,
+        engine: Engine,
+        recorder: Recorder,
+        run: Path,
+        progress: Progress,
+        every: float,
+        check: Callable[[], None],
+    ) -> None:
+        self._check = check
+        self._engine, self._recorder, self._run, self._progress = engine, recorder, run, progress
+        self._before, self._every = progress.wall_s, every
+        self._began = self._saved = time.perf_counter()
+        self._waits = chain(EARLY, repeat(every))
+        self._wait = min(next(self._waits), every)
+
+    @property
+    def seconds(self) -> float:
+        """Seconds since this process started or resumed the run."""
+        return time.perf_counter() - self._began
+
+    def save(self) -> None:
+        """Write a checkpoint, unless the run's folder is no longer there."""
+        self._check()
+        self._progress.wall_s = self._before + self.seconds
+        checkpoint.save(self._run, self._engine.arrays(), self._recorder, self._progress)
+
+    def save_if_due(self) -> None:
+        """Write a checkpoint if the time since the last one is up."""
+        if time.perf_counter() - self._saved >= self._wait:
+            self.save()
+            self._saved = time.perf_counter()
+            self._wait = min(next(self._waits), self._every)
+
+    @contextmanager
+    def saving_on_error(self) -> Iterator[None]:
+        """Write a checkpoint if the `with` block fails."""
+        try:
+            yield
+        except BaseException:
+            self.save()
+            raise
+
+
+def _check_same(run: Path, differ: list[str], inexact: bool) -> None:
+    if differ and not inexact:
+        raise InputError(
+            f"{run} cannot go on bit for bit: {'; '.join(differ)}. Restore that, or add --inexact"
+        )
 
 
 def _check_interval(checkpoint_every: float) -> None:
     if not checkpoint_every >= 0:
         raise InputError(f"--checkpoint-every: seconds, 0 or more, not {checkpoint_every}")
-
-
-@contextmanager
-def interruptible() -> Iterator[list[int]]:
-    """Yield a list that stays empty until Ctrl-C or SIGTERM."""
-    received: list[int] = []
-
-    def receive(number: int, _: object) -> None:
-        received.append(number)
-
-    signals = (signal.SIGINT, signal.SIGTERM)
-    try:
-        before = [signal.signal(each, receive) for each in signals]
-    except ValueError:  # this is not the main thread, which alone receives signals
-        yield received
-        return
-    try:
-        yield received
-    finally:
-        for each, handler in zip(signals, before, strict=True):
-            signal.signal(each, handler)

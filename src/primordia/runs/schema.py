@@ -32,7 +32,7 @@ class Schema:
     @classmethod
     def of(cls, law: Law, tallies: tuple[str, ...]) -> "Schema":
         """Return the schema for a law and a habitat's tallies."""
-        return cls(law.cells, law.mutation.notes, law.rates, tallies)
+        return cls(law.cells, law.heredity.mutation.notes, law.rates, tallies)
 
     def columns(self, table: str) -> Columns:
         """Return the columns of a table's rows, as the law and the tallies write them."""

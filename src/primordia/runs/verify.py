@@ -25,6 +25,7 @@ def verify(run: Archive, listen: Listener | None = None) -> list[str]:
         raise InputError(f"{run.path} has no checkpoint yet, so there is nothing to verify")
     if not last.progress.exact:
         raise InputError(f"{run.path} is not exact (see `primordia info`): nothing can be verified")
+    run.admit()
     engine = Engine(config)
     limits = engine.limits({}, world_ticks(run.state))
     recorder = recorder_for(engine, None)

@@ -1,13 +1,14 @@
 """Single settings by dotted path: the settings of a model, and the first faulty one of a table."""
 
 from collections.abc import Iterable
-from types import UnionType
-from typing import Any, Union, get_args, get_origin
+from types import NoneType, UnionType
+from typing import Any, Literal, Union, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
 from primordia.settings.base import SEASONAL, Settings
 from primordia.settings.tables import did_you_mean
+from primordia.settings.values import shown
 
 
 def setting_fields(model: type, prefix: str = "") -> dict[str, Any]:
@@ -30,6 +31,16 @@ def rates_of(group: Settings, prefix: str = "") -> dict[str, float]:
     return {
         prefix + name: getattr(group, name) for name, field in fields if SEASONAL in field.metadata
     }
+
+
+def choices(annotation: Any) -> tuple[Any, ...]:
+    """Return the values of a setting that is a choice, or a list of choices; () if it is neither."""
+    if annotation is bool:
+        return False, True
+    if get_origin(annotation) is Literal:
+        return get_args(annotation)
+    values = tuple(value for each in get_args(annotation) for value in choices(each))
+    return (*values, None) if values and NoneType in get_args(annotation) else values
 
 
 def _model_in(annotation: Any) -> type[BaseModel] | None:
@@ -58,10 +69,10 @@ def first_fault(
     if fault["type"] == "extra_forbidden":
         known = [*setting_fields(model, prefix), *others]
         known += sorted({name.rpartition(".")[0] for name in known} - {""})
-        return f"there is no setting {path!r}{did_you_mean(path, known)}{more}"
+        return f"there is no setting {shown(path)}{did_you_mean(path, known)}{more}"
     if fault["type"] == "missing":
         return f"{path} is missing{more}"
     if fault["type"] == "value_error":  # raised by our own validators, so its message is complete
         return f"{path}: {fault['ctx']['error']}{more}"
     message = fault["msg"][0].lower() + fault["msg"][1:]
-    return f"{path}: {message}, not {fault['input']!r}{more}"
+    return f"{path}: {message}, not {shown(fault['input'])}{more}"

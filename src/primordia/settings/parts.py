@@ -1,8 +1,9 @@
 """Replaceable parts of a run, such as a brain: classes found by name or as `module:Class`."""
 
 from collections.abc import Mapping
-from importlib import import_module
 from typing import Any
+
+from primordia import own_code
 
 
 def find(what: str, name: object, known: Mapping[str, str]) -> type:
@@ -29,6 +30,6 @@ def load(what: str, name: object, known: Mapping[str, str]) -> Any:
     if not module or not attribute:
         raise LookupError(f"no {what} named {name!r}; known: {', '.join(known)}, or module:Class")
     try:
-        return getattr(import_module(module), attribute)
+        return getattr(own_code.load(module), attribute)
     except Exception as error:  # the module is the user's, and may raise anything
         raise LookupError(f"{what} {name!r} cannot be loaded: {error}") from error

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from primordia.errors import InputError
+from primordia.settings.values import check_values
 
 NONE = "none"
 """None, as TOML and flags write it."""
@@ -22,7 +23,7 @@ def tasks() -> dict[str, dict[str, Any]]:
     values_by_task = {}
     for file in sorted(resources.files("primordia.tasks").iterdir(), key=lambda f: f.name):
         if file.name.endswith(".toml"):
-            values = tomllib.loads(file.read_text())
+            values = tomllib.loads(file.read_text(encoding="utf-8"))
             values_by_task[values["task"]] = values
     return values_by_task
 
@@ -54,14 +55,26 @@ def from_toml(path: Path) -> dict[str, Any]:
         InputError: the file cannot be read, or is not TOML.
     """
     try:
-        values = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        values = parsed_toml(path.read_text(encoding="utf-8"))
+    except ValueError as error:
         raise InputError(f"{path} is not valid TOML: {error}") from None
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror}") from None
+    try:
+        check_values(values)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
     if isinstance(genomes := values.get("ancestors"), list):
         values["ancestors"] = [str(path.parent / str(genome)) for genome in genomes]
     return with_full_paths(path.parent, values)
+
+
+def parsed_toml(text: str) -> dict[str, Any]:
+    """Return the values of a TOML text; raise ValueError if it is not TOML."""
+    try:
+        return tomllib.loads(text)
+    except RecursionError:
+        raise ValueError("it is nested too deeply") from None
 
 
 def merged(base: dict[str, Any], change: dict[str, Any]) -> dict[str, Any]:

@@ -1,5 +1,6 @@
 """Pictures of MuJoCo models, drawn without a screen."""
 
+import atexit
 import os
 import weakref
 from ctypes.util import find_library
@@ -38,7 +39,7 @@ class Renderer:
         self._scene = mujoco.MjvScene(model, MOST_SHAPES)
         self._scene.flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = 0
         self._context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100)
-        weakref.finalize(self, self._context.free)
+        atexit.register(weakref.finalize(self, self._context.free))  # before OpenGL's is released
         self._camera = self._make_camera()
 
     def _make_camera(self) -> Any:
@@ -88,6 +89,7 @@ def _gl_context() -> Any:
             f"pictures of robots need OpenGL without a screen, and {name} cannot be used:"
             " `apt-get install libosmesa6`, or set MUJOCO_GL to egl or osmesa"
         ) from None
-    # At exit it is released after the renderers, whose finalizers are younger.
-    weakref.finalize(_gl_context, _gl_context.cache_clear)
+    # What is registered last is released first: renderers, then this, then the display that EGL has
+    # registered above. A context without its display cannot be released.
+    atexit.register(_gl_context.cache_clear)
     return context

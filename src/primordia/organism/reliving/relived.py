@@ -58,7 +58,7 @@ class RelivedLife:
             InputError: no such organism was born, or its life cannot be lived again.
         """
         habitat, law, row = run.habitat, run.law, run.lives.row(organism, world)
-        genome = law.layout.split(jnp.asarray(rebuild(run, organism, world)[None]))
+        genome = law.heredity.layout.split(jnp.asarray(rebuild(run, organism, world)[None]))
         record = run.lives.take(np.array([row]))
         life = cls(run, run.config, law, habitat, genome, record)
         if life.begins_at_fork and not habitat.exact:
@@ -135,7 +135,7 @@ class RelivedLife:
     def _at_fork(self, alone: LifeInJax | LifeOnHost) -> Instant:
         arrays = self.run.origin
         assert arrays is not None
-        cell = [place_in(arrays, self.law, int(self.record.id[0]), self.world)]
+        cell = [place_in(arrays, int(self.record.id[0]), self.world)]
 
         def own(name: str) -> Array:
             return jnp.asarray(arrays[f"world.organisms.{name}"][cell])

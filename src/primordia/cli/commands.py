@@ -1,0 +1,64 @@
+"""All commands. A user's error is one line on stderr with exit status 2; trouble has status 1."""
+
+import click
+
+from primordia import interrupts
+from primordia.cli import evaluate, evolve, inspect
+from primordia.cli.cache import keep_compiled_code
+from primordia.cli.streams import flush, report
+from primordia.errors import InputError, Trouble
+
+
+class Commands(click.Group):
+    """A group that lists its commands in the order of a user's work."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Return the names of the commands in the order in which they were added."""
+        return list(self.commands)
+
+
+@click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(package_name="primordia")
+def commands() -> None:
+    """Natural selection in any simulator: no reward, no fitness, no generations.
+
+    \b
+    primordia run CartPole-survival      evolve; Ctrl-C stops it, nothing is lost
+    primordia plot runs/...              figures of what happened
+    primordia replay runs/...            the longest life on video
+    primordia resume runs/...            go on
+    """
+
+
+for command in (*evolve.COMMANDS, *inspect.COMMANDS, *evaluate.COMMANDS):
+    commands.add_command(command)
+
+
+def execute() -> int:
+    """Execute the command that `sys.argv` gives -> its exit status."""
+    keep_compiled_code()
+    try:
+        return _outcome()
+    finally:
+        flush()
+
+
+def _outcome() -> int:
+    try:
+        return commands(standalone_mode=False) or 0
+    except SystemExit as end:
+        return int(end.code or 0)
+    except click.Abort:
+        return interrupts.STATUS
+    except click.exceptions.NoArgsIsHelpError as error:
+        error.show()
+        return 2
+    except click.ClickException as error:
+        report(error.format_message())
+        return 2
+    except InputError as error:
+        report(error)
+        return 2
+    except (Trouble, OSError) as error:
+        report(error)
+        return 1

@@ -1,0 +1,65 @@
+"""Memory: what the arrays of a run need, known from their shapes before any is made."""
+
+import os
+from contextlib import suppress
+from pathlib import Path
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from primordia.errors import InputError
+from primordia.habitats.bodies import placeholder_bodies
+from primordia.habitats.contract import AnyHabitat
+from primordia.law.events import empty
+from primordia.law.genesis import begin
+from primordia.law.law import Law
+
+MEMINFO, CGROUP = Path("/proc/meminfo"), Path("/sys/fs/cgroup/memory.max")
+"""Where Linux says how much memory is available, and how much a container may have."""
+
+
+def check(law: Law, habitat: AnyHabitat) -> None:
+    """Raise InputError if the device has less memory than the arrays of a run need."""
+    needed, available = bytes_needed(law, habitat), bytes_available()
+    if needed > available:
+        cells = law.worlds * law.cells
+        raise InputError(
+            f"cells x seeds: {cells:,} cells need {_gigabytes(needed)} of memory or more,"
+            f" {_gigabytes(available)} are available; choose fewer cells, fewer seeds or a smaller brain"
+        )
+
+
+def bytes_needed(law: Law, habitat: AnyHabitat) -> int:
+    """Return the bytes of worlds, bodies in JAX or else senses, and lists of events."""
+    cells = law.worlds * law.cells
+
+    def arrays() -> object:
+        if habitat.kind == "jax":
+            bodies = placeholder_bodies(habitat, cells)
+        else:
+            bodies = jnp.zeros((cells, habitat.senses_size), jnp.float32)
+        return begin(law, np.zeros(law.worlds, np.uint64)), bodies, empty(law)
+
+    leaves = jax.tree.leaves(jax.eval_shape(arrays))
+    return sum(leaf.size * leaf.dtype.itemsize for leaf in leaves)
+
+
+def bytes_available() -> int:
+    """Return the bytes of memory that the default device has available."""
+    (device,) = jnp.zeros(()).devices()
+    if statistics := device.memory_stats():
+        return int(statistics["bytes_limit"] - statistics["bytes_in_use"])
+    amounts = [os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")]
+    with suppress(OSError, ValueError):  # other systems than Linux; no limit
+        amounts.append(int(CGROUP.read_text(encoding="utf-8")))
+    with suppress(OSError, ValueError):
+        lines = dict(
+            line.split(":", 1) for line in MEMINFO.read_text(encoding="utf-8").splitlines()
+        )
+        amounts.append(int(lines["MemAvailable"].split()[0]) * 1024)
+    return min(amounts)
+
+
+def _gigabytes(count: int) -> str:
+    return f"{count / 1e9:,.1f} GB"

@@ -1,0 +1,122 @@
+"""Interrupts: what Ctrl-C, SIGTERM and SIGHUP do to a command and to a run.
+
+Python's own handler raises KeyboardInterrupt between any two instructions of the main thread. Callbacks
+of libraries swallow it there, half an import breaks, and a compiler in C++ delays it. So signals are only
+noted here, and take effect in one of two ways:
+
+- A run that has advanced looks at `noted` between two chunks, and writes a checkpoint before it stops.
+- At all other times a command has nothing to lose, since a run survives even kill -9. A thread, which the
+  system wakes whatever the main thread does, ends the process (`end_commands_at_once`).
+"""
+
+import os
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager, suppress
+
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+STATUS = 130
+"""Exit status of a command that a signal has ended."""
+
+_handled: list[bool] = []
+"""one entry while signals are noted"""
+_noted: list[int] = []
+_deferred: list[bool] = []
+"""one entry for each block of `deferred` that the main thread is in"""
+_undo: list[Callable[[], object]] = []
+_last_words: list[Callable[[], str]] = [lambda: "Stopped"]
+
+
+def end_commands_at_once() -> None:
+    """Let signals end this process from now on, with a line on stderr, except in blocks of `deferred`."""
+    _handle(_note)
+    woken, waker = os.pipe()
+    os.set_blocking(waker, False)
+    signal.set_wakeup_fd(waker, warn_on_full_buffer=False)
+    threading.Thread(target=_wait_and_end, args=(woken,), daemon=True).start()
+    _handled.append(True)
+
+
+@contextmanager
+def noting() -> Iterator[list[int]]:
+    """Yield a list that stays empty until a signal comes; its entries are numbers of signals."""
+    if threading.current_thread() is not threading.main_thread():
+        yield []  # the main thread alone receives signals
+        return
+    if _handled:
+        yield _noted
+        return
+    before = _handle(_note)
+    with _entry(_handled, True):
+        try:
+            yield _noted
+        finally:
+            for each, handler in before:
+                signal.signal(each, handler)
+            _noted.clear()
+
+
+def deferred() -> AbstractContextManager[None]:
+    """Do not end the process at once in a `with` block, which looks at what is noted."""
+    return _entry(_deferred, True)
+
+
+def before_end(undo: Callable[[], object]) -> AbstractContextManager[None]:
+    """Call `undo` before the process is ended at once in a `with` block; it must not take a lock."""
+    return _entry(_undo, undo)
+
+
+@contextmanager
+def undone_by(undo: Callable[[], object]) -> Iterator[None]:
+    """Call `undo` if the `with` block fails, or before the process is ended at once in it."""
+    try:
+        with before_end(undo):
+            yield
+    except BaseException:
+        undo()
+        raise
+
+
+def last_words(words: Callable[[], str]) -> AbstractContextManager[None]:
+    """Say `words()` where the process is ended at once in a `with` block; it must not take a lock."""
+    return _entry(_last_words, words)
+
+
+@contextmanager
+def _entry(entries: list, entry: object) -> Iterator[None]:
+    entries.append(entry)
+    try:
+        yield
+    finally:
+        entries.remove(entry)
+
+
+def _note(number: int, _: object) -> None:
+    _noted.append(number)
+
+
+def _handle(handler: Callable[[int, object], None]) -> list:
+    """Handle the signals -> each with its handler before. SIGHUP stays ignored, as `nohup` asks."""
+    before = [(each, signal.getsignal(each)) for each in SIGNALS]
+    if before[-1] == (signal.SIGHUP, signal.SIG_IGN):
+        before.pop()
+    for each, _ in before:
+        signal.signal(each, handler)
+    return before
+
+
+def _wait_and_end(woken: int) -> None:
+    while True:
+        os.read(woken, 1)  # the system writes the number of each signal
+        if not _deferred:
+            _end()
+
+
+def _end() -> None:
+    for undo in reversed(_undo):
+        with suppress(OSError):
+            undo()
+    with suppress(OSError):
+        os.write(2, f"{_last_words[-1]()}\n".encode(errors="backslashreplace"))
+    os._exit(STATUS)

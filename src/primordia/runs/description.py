@@ -1,0 +1,66 @@
+"""The description of a run: what its habitat, brain and mutation say of themselves when it begins.
+
+It is written into the run, so that records can be read without the code of these parts.
+"""
+
+from pathlib import Path
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from primordia import files
+from primordia.errors import InputError
+from primordia.habitats.contract import AnyHabitat
+from primordia.law.law import Law
+
+FILE = "description.json"
+
+
+class Description(BaseModel):
+    """What a reader of the records must know."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    rate: float | None
+    """ticks in a second of the habitat; None: it has no clock"""
+    tallies: tuple[str, ...]
+    """names of the habitat's counts"""
+    notes: tuple[str, ...]
+    """names of the mutation's notes"""
+    beginning: dict[str, float]
+    """the settings that seasons may change, with their values at the beginning"""
+    blocks: dict[str, tuple[int, ...]]
+    """shape of each block of weights in a genome"""
+    code: dict[str, str] = Field({})
+    """SHA-256 of each file of the user's own code, by its path below `code`"""
+
+    @classmethod
+    def of(cls, law: Law, habitat: AnyHabitat, code: dict[str, str]) -> "Description":
+        """Return the description of a run."""
+        return cls(
+            rate=habitat.rate,
+            tallies=habitat.tallies,
+            notes=law.heredity.mutation.notes,
+            beginning=dict(law.beginning),
+            blocks=dict(law.heredity.layout.blocks),
+            code=code,
+        )
+
+    def write(self, run: Path) -> None:
+        """Write it into a run's directory.
+
+        Raises:
+            Trouble: it cannot be written.
+        """
+        files.write_text(run / FILE, self.model_dump_json(indent=1))
+
+
+def read(run: Path) -> Description:
+    """Return the description in a run's directory.
+
+    Raises:
+        InputError: it is missing or damaged.
+    """
+    try:
+        return Description.model_validate_json((run / FILE).read_bytes())
+    except (OSError, ValidationError):
+        raise InputError(f"{run / FILE} is missing or damaged; put it back") from None

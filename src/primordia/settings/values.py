@@ -1,0 +1,56 @@
+"""Single values of settings, before any setting is validated: what arrays and files can hold."""
+
+import math
+from typing import Any
+
+from primordia.errors import InputError
+
+DEEPEST = 16
+"""Most levels of nested tables and lists."""
+LARGEST = 3.4028234663852886e38
+"""Largest float32."""
+SHOWN = 100
+"""Most characters of a value in a message."""
+
+
+def check_values(values: Any, path: str = "", depth: int = 0) -> None:
+    """Check the values of settings in nested tables, whatever their meaning.
+
+    Args:
+        values: a value, or a table or list of values.
+        path: its dotted name, for messages.
+        depth: the number of tables and lists around it.
+
+    Raises:
+        InputError: a number is not finite, or does not fit into 64 bits or float32; a text cannot be
+            written as UTF-8, or has a NUL; a name cannot be printed; tables are nested too deeply.
+    """
+    if isinstance(values, dict | list | tuple):
+        if depth > DEEPEST:
+            raise InputError(f"{shown(path)} is nested more than {DEEPEST} levels deep")
+        named = values.items() if isinstance(values, dict) else enumerate(values)
+        for name, value in named:
+            if not str(name).isprintable():
+                raise InputError(f"there is no setting {shown(f'{path}.{name}'.removeprefix('.'))}")
+            check_values(value, f"{path}.{name}".removeprefix("."), depth + 1)
+    elif isinstance(values, int) and not -(2**63) <= values < 2**64:
+        raise InputError(f"{path}: {shown(values)} does not fit into 64 bits")
+    elif isinstance(values, float) and not abs(values) <= LARGEST:
+        unfit = "does not fit into float32" if math.isfinite(values) else "is not a finite number"
+        raise InputError(f"{path}: {values} {unfit}")
+    elif isinstance(values, str) and ("\0" in values or not _writable(values)):
+        raise InputError(f"{path}: {shown(values)} has a character that no text file can hold")
+
+
+def _writable(text: str) -> bool:
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
+
+
+def shown(value: object) -> str:
+    """Return a value as Python writes it, shortened for a message."""
+    text = hex(value) if isinstance(value, int) and value.bit_length() > SHOWN else repr(value)
+    return text if len(text) <= SHOWN else f"{text[: SHOWN - 3]}..."

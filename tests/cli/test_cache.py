@@ -1,0 +1,67 @@
+"""Compiled code on disk: kept by default, apart for each kind of processor, and left alone on demand."""
+
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from primordia.cli import cache
+from tests.commands import COMMAND, environment
+
+CPU = (
+    "processor\t: 0\nmodel name\t: one\nflags\t\t: fpu avx2\ncpu MHz\t\t: {mhz}\n\nprocessor\t: 1\n"
+)
+
+
+def test_a_command_keeps_its_compiled_code(tmp_path: Path) -> None:
+    home = {"XDG_CACHE_HOME": str(tmp_path / "cache")}
+    variables = {
+        name: value for name, value in environment().items() if not name.startswith("JAX_")
+    }
+
+    def run(name: str, *words: str) -> set[str]:
+        task = ["run", "CartPole-survival", "--ticks", "1", "--cells", "4", "--quiet"]
+        done = subprocess.run(
+            [*COMMAND, *task, "--out", str(tmp_path / name), *words],
+            env=variables | home,
+            capture_output=True,
+            text=True,
+        )
+        assert (done.returncode, done.stderr) == (0, "")
+        files = (tmp_path / "cache").rglob("*-cache")
+        return {str(file.relative_to(tmp_path / "cache")) for file in files}
+
+    assert run("first", "--no-cache") == set()
+    kept = run("second")
+    assert kept
+    assert all(file.startswith(f"primordia/compiled/{cache.processor()}/") for file in kept)
+    assert run("third") == kept
+
+
+def test_a_cache_that_cannot_be_written_is_not_used(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
+    monkeypatch.delenv("JAX_COMPILATION_CACHE_DIR", raising=False)
+    cache.keep_compiled_code()
+    assert "JAX_COMPILATION_CACHE_DIR" not in os.environ
+
+
+def test_the_users_own_cache_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setenv("JAX_COMPILATION_CACHE_DIR", "mine")
+    cache.keep_compiled_code()
+    assert os.environ["JAX_COMPILATION_CACHE_DIR"] == "mine"
+
+
+def test_processors_of_other_features_have_other_folders(tmp_path: Path) -> None:
+    def named(text: str) -> str:
+        (tmp_path / "cpuinfo").write_text(text)
+        return cache.processor(tmp_path / "cpuinfo")
+
+    one = named(CPU.format(mhz=2000))
+    assert named(CPU.format(mhz=3000)) == one
+    assert named(CPU.format(mhz=2000).replace("avx2", "avx2 avx512f")) != one
+    assert cache.processor(tmp_path / "missing") != one

@@ -1,0 +1,236 @@
+"""The user's own code: it is part of a run, is executed only when trusted, and never by looking."""
+
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import primordia
+from primordia import own_code
+from primordia.errors import InputError
+from primordia.organism.reliving.relived import RelivedLife
+from primordia.runs.archive import Archive
+from tests.commands import COMMAND, complains, environment, here
+
+POND = """
+from typing import Any
+
+import jax.numpy as jnp
+
+from pond_depth import DEPTH
+from primordia.habitats import Discrete, JaxHabitat, Outcome
+from primordia.settings.base import Settings
+
+
+class Pond(JaxHabitat, Settings):
+    depth: float = DEPTH
+    senses_size: int = 1
+    action: Any = Discrete(2)
+    words: int = 1
+    rate: float = 10.0
+
+    def reset(self, words):
+        return jnp.zeros((len(words), 1), jnp.float32)
+
+    def sense(self, bodies):
+        return bodies
+
+    def step(self, bodies, action):
+        bodies = bodies + 1
+        return bodies, Outcome(fatal=bodies[:, 0] > 20, food=None, effort=None)
+"""
+TASK = """
+task = "pond"
+cells = 8
+habitat = { name = "pond:Pond" }
+replication = 0.3
+[stop]
+ticks = 60
+until = "none"
+"""
+PARTS = ("pond.py", "pond_depth.py")
+LIVING = [
+    ["resume", "{run}", "--ticks", "70", "--quiet"],
+    ["verify", "{run}"],
+    ["fork", "{run}", "--at", "30", "--out", "{new}", "--quiet"],
+    ["evaluate", "{run}", "--ticks", "30", "--games", "2"],
+]
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A folder with a task and the code of its habitat; another user has no trust in it."""
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "pond.py").write_text(POND)
+    (tmp_path / "mine" / "pond_depth.py").write_text("DEPTH = 3.0\n")
+    (tmp_path / "mine" / "task.toml").write_text(TASK)
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    monkeypatch.chdir(tmp_path / "mine")
+    forget()
+    yield tmp_path / "mine"
+    forget()
+
+
+def forget() -> None:
+    """Act as another process, which has not imported the code."""
+    for name in ("pond", "pond_depth"):
+        sys.modules.pop(name, None)
+        own_code._admitted.folders.pop(name, None)
+
+
+def begun(folder: Path) -> Path:
+    primordia.run(str(folder / "task.toml"), folder / "run")
+    forget()
+    return folder / "run"
+
+
+def elsewhere(folder: Path, run: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Give the run to another user, who works in an empty folder."""
+    other = folder.parent / "other"
+    other.mkdir()
+    shutil.copytree(run, other / "run")
+    monkeypatch.chdir(other)
+    monkeypatch.setenv("XDG_STATE_HOME", str(other / "state"))
+    return other / "run"
+
+
+def words(command: list[str], run: Path) -> list[str]:
+    return [word.format(run=run, new=run.parent / "new") for word in command]
+
+
+def test_a_run_holds_the_code_that_it_executes(folder: Path) -> None:
+    run = begun(folder)
+    for name in PARTS:
+        assert (run / "code" / name).read_bytes() == (folder / name).read_bytes()
+    assert sorted(path.name for path in (run / "code").rglob("*")) == sorted(PARTS)
+    assert tuple(Archive(run).description.code) == PARTS
+    assert (
+        not (primordia.run("CartPole-survival", folder / "ours", stop={"ticks": 1}))
+        .path.joinpath("code")
+        .exists()
+    )
+
+
+def test_code_from_elsewhere_is_executed_only_when_trusted(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run = elsewhere(folder, begun(folder), monkeypatch)
+    for command in LIVING:
+        complains(here(*words(command, run)), 2, f"{run / 'code' / 'pond.py'}", "--trust")
+    assert "pond" not in sys.modules
+    assert not (run.parent / "new").exists()
+    with pytest.raises(InputError, match="trust=True"):
+        primordia.load(run).policy()
+    trusting = [*words(LIVING[0], run), "--trust"]
+    assert here(*trusting).returncode == 0
+    for command in LIVING[1:]:
+        forget()
+        done = here(*words(command, run))
+        assert (done.returncode, done.stderr) == (0, "")
+    assert Archive(run.parent / "new").description.code == Archive(run).description.code
+    forget()
+    (run / "code" / "pond_depth.py").write_text("DEPTH = 4.0\n")
+    complains(here("verify", run), 2, "--trust")
+
+
+def test_a_life_of_code_from_elsewhere_is_lived_again(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run = elsewhere(folder, begun(folder), monkeypatch)
+    oldest = primordia.load(run, trust=True).oldest()
+    life = RelivedLife.of(oldest.run, oldest.id, oldest.world)
+    assert sum(len(each.tick) for each in life.stretches()) == oldest.age == 21
+
+
+@pytest.mark.parametrize("name", PARTS)
+def test_a_run_does_not_go_on_with_changed_code(folder: Path, name: str) -> None:
+    run = begun(folder)
+    text = (folder / name).read_text().replace("> 20", "> 5") + "# changed\n"
+    (folder / name).write_text(text)
+    more = "resume", run, "--ticks", 70, "--quiet"
+    complains(here(*more), 2, f"{folder / name} has changed", "--inexact")
+    complains(here(*more, "--inexact"), 2, f"{folder / name}", "--trust")
+    if name == "pond.py":
+        done = here("verify", run, "--trust")
+        complains(done, 1, "differs: ", f"{folder / name} has changed")
+    assert here(*more, "--inexact", "--trust").returncode == 0
+    assert not primordia.load(run).info()["exact"]
+
+
+def test_looking_executes_no_code_of_a_run(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    run = elsewhere(folder, begun(folder), monkeypatch)
+    twin = shutil.copytree(run, run.parent / "twin")
+    text = (run / "config.toml").read_text().replace("[stop]", "[stopp]")
+    for command in (
+        ["info", run],
+        ["info", run, "--json"],
+        ["plot", run, "--out", run.parent / "figures"],
+        ["export", run, run.parent / "genome.safetensors"],
+        ["compare", run, twin, "--out", run.parent],
+    ):
+        done = here(*command)
+        assert done.returncode == 0, done.stderr
+    opened = primordia.load(run)
+    assert len(opened.lives()) == opened.table("births").num_rows > 8
+    assert len(opened.rebuild(0)) == Archive(run).layout.length
+    (run / "config.toml").write_text(text)
+    complains(here("info", run), 2, "stopp")
+    assert not {"pond", "pond_depth"} & set(sys.modules)
+
+
+@pytest.mark.parametrize("start", [COMMAND, [str(Path(sys.executable).with_name("primordia"))]])
+def test_no_file_of_the_current_folder_takes_the_place_of_an_installed_one(
+    tmp_path: Path, start: list[str]
+) -> None:
+    for name in ("numpy", "click", "jax", "tomllib", "platformdirs", "libtpu", "sitecustomize"):
+        (tmp_path / f"{name}.py").write_text("raise SystemExit('from the current folder')\n")
+    done = subprocess.run(
+        [*start, "run", "CartPole-survival", "--ticks", "1", "--quiet", "--out", "run"],
+        cwd=tmp_path,
+        env=environment(),
+        capture_output=True,
+        text=True,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_sources_are_a_module_and_those_beside_it_that_it_imports(tmp_path: Path) -> None:
+    files = {
+        "top.py": "import os, numpy\nfrom near import x\nimport box.inner\n",
+        "near.py": "def late():\n    import far\n",
+        "far.py": "import top\n",
+        "unused.py": "",
+        "numpy.py": "raise SystemExit\n",
+        "box/__init__.py": "",
+        "box/inner.py": "from . import twin\nfrom ..near import x\nfrom .deep.er import y\n",
+        "box/twin.py": "x = (\n",
+        "box/deep/er.py": "",
+        "box/other.py": "",
+    }
+    for name, text in files.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True, parents=True)
+        (tmp_path / name).write_text(text)
+    found = own_code.sources("top", [tmp_path])
+    wanted = {
+        "top.py",
+        "near.py",
+        "far.py",
+        "box/__init__.py",
+        "box/inner.py",
+        "box/twin.py",
+        "box/deep/er.py",
+    }
+    assert set(found) == wanted
+    assert all(path == tmp_path / name for name, path in found.items())
+    for installed in ("numpy", "json.decoder", "primordia.brains.linear", "no_such_module", "sys"):
+        assert own_code.sources(installed, [tmp_path]) == {}
+
+
+def test_parts_of_installed_packages_are_recorded_by_version() -> None:
+    assert own_code.packages(["numpy.linalg", "primordia.brains", "no_such"]) == {
+        "numpy": np.__version__
+    }

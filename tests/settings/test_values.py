@@ -1,0 +1,202 @@
+"""Values of settings: what a file holds is a valid run, or is refused in one line before it begins."""
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import tomli_w
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from primordia.config import Config, load
+from primordia.errors import InputError
+from primordia.settings.tables import from_toml, tasks
+from primordia.settings.values import DEEPEST, LARGEST, SHOWN, check_values, shown
+from tests.commands import complains, here
+
+TASK = "CartPole-survival"
+SOME = settings(max_examples=100, suppress_health_check=[HealthCheck.function_scoped_fixture])
+THOUSANDS = settings(SOME, max_examples=5000)
+
+
+def nested(value: Any, depth: int, wrap: Callable[[Any], Any]) -> Any:
+    for _ in range(depth):
+        value = wrap(value)
+    return value
+
+
+@pytest.mark.parametrize("wrap", [lambda value: {"a": value}, lambda value: [value]])
+def test_tables_and_lists_are_nested_only_so_deep(wrap: Callable[[Any], Any]) -> None:
+    check_values(nested(1, DEEPEST, wrap))
+    with pytest.raises(InputError, match=f"nested more than {DEEPEST} levels deep"):
+        check_values(nested(1, DEEPEST + 2, wrap))
+
+
+@pytest.mark.parametrize(
+    ("value", "says"),
+    [
+        (2**64, "18446744073709551616 does not fit into 64 bits"),
+        (-(2**63) - 1, "does not fit into 64 bits"),
+        (16**5000, "0x1000.*... does not fit into 64 bits"),
+        (math.nan, "nan is not a finite number"),
+        (-math.inf, "-inf is not a finite number"),
+        (1e39, r"1e\+39 does not fit into float32"),
+        ("a\0b", "has a character that no text file can hold"),
+        ("\ud800", "has a character that no text file can hold"),
+    ],
+    ids=range(8),
+)
+def test_values_that_nothing_can_hold_are_refused(value: Any, says: str) -> None:
+    with pytest.raises(InputError, match=f"a.b.1: .*{says}"):
+        check_values({"a": {"b": [0, value]}})
+    if isinstance(value, str):
+        with pytest.raises(InputError, match="there is no setting 'a"):
+            check_values({"a": {value: 1}})
+
+
+@pytest.mark.parametrize("value", [2**64 - 1, -(2**63), LARGEST, -LARGEST, 5e-324, True, "é\n", ""])
+def test_values_up_to_the_last_one_are_taken(value: Any) -> None:
+    check_values([value])
+    assert float(np.finfo(np.float32).max) == LARGEST
+
+
+@given(
+    st.one_of(
+        st.text(), st.integers(), st.lists(st.text()), st.integers(0, 9999).map(lambda n: 16**n - 1)
+    )
+)
+def test_what_is_shown_is_short_and_on_one_line(value: Any) -> None:
+    text = shown(value)
+    assert len(text) <= SHOWN
+    assert len(text.splitlines()) <= 1
+    assert text.endswith("...") or text in (
+        repr(value),
+        hex(value) if isinstance(value, int) else "",
+    )
+
+
+FILES = {
+    "deep list": f"cells = {'[' * 5000}{']' * 5000}",
+    "deep table": f"{'.'.join(['a'] * 5000)} = 1",
+    "deep tables": "".join(f"[{'.'.join(['a'] * depth)}]\n" for depth in range(1, 300)),
+    "deep inline tables": f"a = {'{a=' * 3000}1{'}' * 3000}",
+    "deep habitat": f"[habitat{'.a' * 5000}]\nfile = 'x'",
+    "many digits": f"cells = {'9' * 5000}",
+    "many hexadecimal digits": f"cells = 0x{'f' * 5000}",
+    "large": "[mutation]\nscale = 1e39",
+    "not a number": "hazard = nan",
+    "infinite": "[mutation.blocks.input]\nscale = inf",
+    "not text": 'about = "\\u0000"',
+    "date": "cells = 2001-01-01",
+}
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_files_of_values_that_nothing_can_hold_are_refused(name: str, tmp_path: Path) -> None:
+    file, out = tmp_path / "mine.toml", tmp_path / "run"
+    file.write_text(f"{FILES[name]}\n")
+    done = here("run", file, "--out", out)
+    complains(done, 2, str(file))
+    assert len(done.stderr) < 1000
+    assert not out.exists()
+
+
+SCALARS = st.one_of(
+    st.none(),
+    st.booleans(),
+    st.integers(),
+    st.integers(0, 100),
+    st.floats(),
+    st.floats(0, 1),
+    st.text(max_size=5),
+    st.sampled_from(
+        ["none", "ring", "torus4", "gaussian", "linear", "x", 2**63, 2**64, 1e39, "\0"]
+    ),
+)
+TABLES = st.recursive(
+    SCALARS,
+    lambda inner: st.one_of(
+        st.lists(inner, max_size=3), st.dictionaries(st.text(max_size=5), inner, max_size=3)
+    ),
+    max_leaves=8,
+)
+KEYS = st.sampled_from(
+    [*Config.model_fields, "kind", "name", "scale", "blocks", "hidden", "senses", "rows", "sd", "a"]
+)
+SETTINGS = st.dictionaries(
+    KEYS, st.one_of(TABLES, st.dictionaries(KEYS, TABLES, max_size=3)), max_size=4
+)
+
+
+def holds_or_is_refused(make: Callable[[], Config]) -> None:
+    """Assert that settings are refused in one line, or make a run that its own `config.toml` repeats."""
+    refusal = None
+    try:
+        made = make()
+    except InputError as error:
+        refusal = str(error)
+    if refusal is not None:
+        assert refusal
+        assert len(refusal.splitlines()) == 1
+        return
+    made.build_law(made.build_habitat())
+    assert made.to_toml().encode()
+
+
+@SOME
+@given(SETTINGS)
+def test_any_settings_are_taken_or_refused(changes: dict[str, Any]) -> None:
+    holds_or_is_refused(lambda: load(TASK, changes))
+
+
+@pytest.mark.slow
+@THOUSANDS
+@given(SETTINGS)
+def test_thousands_of_settings_are_taken_or_refused(changes: dict[str, Any]) -> None:
+    holds_or_is_refused(lambda: load(TASK, changes))
+
+
+TEXTS = [tomli_w.dumps(tasks()[name]) for name in (TASK, "HalfCheetah-forager", "Pong-survival")]
+TEXTS.append(load(TASK).to_toml())
+PIECES = st.sampled_from(
+    ["[", "]", "{", "}", "=", "\n", ".", "'", '"', "9" * 30, "nan", "1e39", "none", "\0", "é", "#", "-",
+     "[[a]]\n", "kind = 3\n", "not " * 200, '"""', "\\u0000", "0x", "_", "e", "true"]
+)  # fmt: skip
+
+
+@st.composite
+def mangled(draw: st.DrawFn) -> str:
+    """Draw the text of a task in which some places are overwritten."""
+    text = draw(st.sampled_from(TEXTS))
+    for _ in range(draw(st.integers(0, 4))):
+        at, length = draw(st.integers(0, len(text))), draw(st.integers(0, 12))
+        text = text[:at] + draw(PIECES | st.text(max_size=3)) + text[at + length :]
+    return text
+
+
+def file_is_taken_or_refused(text: str, folder: Path) -> None:
+    file = folder / "mine.toml"
+    file.write_text(text, encoding="utf-8", errors="replace")
+    holds_or_is_refused(lambda: load(str(file)))
+
+
+@SOME
+@given(mangled())
+def test_any_file_is_taken_or_refused(tmp_path: Path, text: str) -> None:
+    file_is_taken_or_refused(text, tmp_path)
+
+
+@pytest.mark.slow
+@THOUSANDS
+@given(mangled())
+def test_thousands_of_files_are_taken_or_refused(tmp_path: Path, text: str) -> None:
+    file_is_taken_or_refused(text, tmp_path)
+
+
+@pytest.mark.parametrize("name", tasks())
+def test_what_a_task_was_started_with_is_read_again(name: str, tmp_path: Path) -> None:
+    (tmp_path / "config.toml").write_text(load(name).to_toml(), encoding="utf-8")
+    check_values(from_toml(tmp_path / "config.toml"))

@@ -1,0 +1,124 @@
+"""Ctrl-C, SIGTERM and SIGHUP at any instant: one line, and nothing is lost."""
+
+import random
+import shutil
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+
+from primordia import files, interrupts
+from primordia.runs.directory import VERSIONS
+from tests.commands import begin, here
+from tests.trouble import SMALL, TICKS, goes_on
+
+pytestmark = pytest.mark.skipif(
+    not Path("/proc/self/status").exists(), reason="tells when a process handles signals"
+)
+OFTEN = ("--checkpoint-every", "0")
+COMMANDS: dict[str, tuple[object, ...]] = {
+    "run": ("run", *SMALL, "--ticks", TICKS, *OFTEN, "--out", "RUN"),
+    "resume": ("resume", "RUN", "--ticks", TICKS, *OFTEN),
+    "fork": ("fork", "RUN", "--at", 1_000, *OFTEN, "--out", "OUT/fork"),
+    "plot": ("plot", "RUN", "--out", "OUT"),
+    "replay": ("replay", "RUN", "--out", "OUT/life.mp4"),
+    "export": ("export", "RUN", "OUT/genome.safetensors"),
+    "info": ("info", "RUN"),
+    "verify": ("verify", "RUN"),
+}
+LONGEST = {"run": 3.0, "resume": 3.0, "fork": 3.0, "plot": 2.0, "replay": 2.0}
+"""Seconds within which commands are interrupted, many before they have ended; 0.7 for others."""
+
+
+def interrupted(words: tuple[object, ...], how: signal.Signals, after: float) -> tuple[int, str]:
+    """Send a signal to a command so many seconds after it has begun -> its exit status and stderr."""
+    process = begin(*words)
+    status = Path(f"/proc/{process.pid}/status")
+    while process.poll() is None and not handles(status, how):
+        time.sleep(0.002)
+    time.sleep(after)
+    process.send_signal(how)
+    try:
+        _, err = process.communicate(timeout=60)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        _, err = process.communicate()
+        raise AssertionError(f"{words} went on after the signal: {err}") from None
+    return process.returncode, err
+
+
+def handles(status: Path, how: signal.Signals) -> bool:
+    """Return whether a process has begun to handle a signal, before which Python ends it in its way."""
+    caught = status.read_text(encoding="utf-8").partition("SigCgt:")[2].split()[0]
+    return int(caught, 16) >> (signal.SIGTERM - 1) & 1 == 1
+
+
+def survives(half: Path, through: str, folder: Path, name: str, rng: random.Random) -> int:
+    """Interrupt a command at a random instant and assert that nothing is lost -> its exit status."""
+    run, out, fresh = folder / "run", folder / "out", name == "run"
+    out.mkdir()
+    if not fresh:
+        shutil.copytree(half, run)
+    words = [str(word).replace("RUN", str(run)).replace("OUT", str(out)) for word in COMMANDS[name]]
+    how, after = rng.choice(interrupts.SIGNALS), rng.uniform(0.0, LONGEST.get(name, 0.7))
+    status, err = interrupted(tuple(words), how, after)
+    if status == 0:
+        assert err == ""
+    else:
+        assert status == interrupts.STATUS, err
+        assert err.startswith("Stopped")
+        assert err.count("\n") == 1, err
+    assert not list(out.rglob(f"{files.TEMPORARY}*"))
+    assert (
+        "Go on with" not in err or (out / "fork" / VERSIONS).exists() or (run / VERSIONS).exists()
+    )
+    if fresh and not run.exists():
+        assert status == interrupts.STATUS
+    elif name != "fork":
+        goes_on(run, through)
+    return status
+
+
+@pytest.mark.parametrize("name", ["run", "resume", "plot", "replay"])
+def test_a_command_that_is_interrupted_says_one_line_and_loses_nothing(
+    half: Path, through: str, tmp_path: Path, name: str
+) -> None:
+    survives(half, through, tmp_path, name, random.Random(name))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", COMMANDS)
+def test_commands_are_interrupted_at_many_instants(
+    half: Path, through: str, tmp_path: Path, name: str
+) -> None:
+    statuses = []
+    for seed in range(20):
+        (tmp_path / str(seed)).mkdir()
+        rng = random.Random(seed)
+        statuses.append(survives(half, through, tmp_path / str(seed), name, rng))
+    assert statuses.count(interrupts.STATUS) > 5
+
+
+HOSTED = {
+    "an Atari game": ("Pong-survival", "--cells", "4"),
+    "a robot": ("Hopper-survival", "--cells", "4"),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", HOSTED)
+def test_runs_with_worker_processes_are_interrupted_at_many_instants(
+    tmp_path: Path, name: str
+) -> None:
+    for seed in range(10):
+        run, after = tmp_path / str(seed), random.Random(seed).uniform(0.0, 10.0)
+        words = ("run", *HOSTED[name], "--until", "none", "--quiet", *OFTEN, "--out", run)
+        status, err = interrupted(words, signal.SIGINT, after)
+        assert (status, err.count("\n")) == (interrupts.STATUS, 1), err
+        assert err.startswith("Stopped")
+        assert run.exists() == ("Go on with" in err)
+        if run.exists():
+            done = here("info", run)
+            assert (done.returncode, done.stderr) == (0, "")

@@ -1,0 +1,206 @@
+"""Names with any characters: one line where they are refused, and nothing that acts on a terminal."""
+
+import errno
+import io
+import json
+import os
+import shutil
+import subprocess
+import sys
+from contextlib import chdir, redirect_stderr, redirect_stdout, suppress
+from itertools import count
+from pathlib import Path
+from typing import Any
+
+import pytest
+import tomli_w
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+import primordia
+from primordia.cli.commands import execute
+from primordia.cli.streams import Printable
+from primordia.errors import InputError
+from primordia.printable import printable
+from tests import commands
+from tests.commands import COMMAND, complains, environment, here
+from tests.trouble import SMALL, TASK, TICKS, digest, goes_on
+
+CHARACTERS = "a/.\\:[]{}\"'= \n\r\t\0\x07\x1b\x7f\x9b\u202e\u2028é水😀\ud800\udcff"
+"""Those that mean something to terminals, paths, TOML or encoders."""
+ODD, ODD_WORDS = st.text(CHARACTERS), st.text(sorted(set(CHARACTERS) - {"\0", "\ud800"}))
+"""Texts, and those of them that the system can pass to a command."""
+
+
+@given(ODD | st.text())
+def test_printable_texts_have_no_control_characters(text: str) -> None:
+    shown = printable(text)
+    assert all(each.isprintable() or each in "\n\t" for each in shown)
+    shown.encode()
+    assert (shown == text) == all(each.isprintable() or each in "\n\t" for each in text)
+
+
+def answers(done: subprocess.CompletedProcess[str]) -> None:
+    """Assert that a command succeeded, or failed with one line."""
+    if done.returncode:
+        complains(done, done.returncode)
+    for each in done.stdout + done.stderr:
+        assert each.isprintable() or each in "\n\t"
+
+
+WORDS = (
+    ("info", "{}"),
+    ("resume", "{}"),
+    ("verify", "{}"),
+    ("fork", "{}", "--at", "5"),
+    ("run", "{}"),
+    ("run", TASK, "--{}", "1"),
+    ("run", TASK, "--hazard", "{}"),
+    ("run", TASK, "--about", "{}", "--ticks", "0"),
+    ("run", TASK, "--habitat.name", "{}"),
+    ("run", TASK, "--ancestor", "{}"),
+    ("evaluate", "{}"),
+    ("{}",),
+)
+"""Commands with a word of any characters."""
+
+
+@settings(max_examples=60)
+@given(ODD_WORDS, st.sampled_from(WORDS))
+@example("\udcff", WORDS[4])
+def test_odd_words_are_answered_with_one_line(
+    place: Path, text: str, words: tuple[str, ...]
+) -> None:
+    with chdir(place):
+        answers(here(*(word.replace("{}", text) for word in words)))
+
+
+FILES = (
+    ("export", "RUN", "{}"),
+    ("replay", "RUN", "--from", "0", "--to", "5", "--out", "{}.gif"),
+    ("run", *SMALL, "--ticks", "5", "--out", "{}"),
+)
+"""Commands that write a file or folder."""
+
+
+@settings(max_examples=20)
+@given(ODD_WORDS.map(lambda text: text.replace("/", "")), st.sampled_from(FILES))
+@example("\x1b\udcff", FILES[2])
+def test_odd_names_are_written_or_refused_with_one_line(
+    place: Path, half: Path, text: str, words: tuple[str, ...]
+) -> None:
+    file = place / f"{next(FRESH)}{text}"
+    replaced = (word.replace("{}", str(file)).replace("RUN", str(half)) for word in words)
+    answers(here(*replaced))
+
+
+FRESH = count()
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Make a folder for what commands write."""
+    return tmp_path_factory.mktemp("place")
+
+
+@settings(max_examples=6)
+@given(ODD)
+@example("\0")
+@example("\x1b[2J\u202e")
+def test_odd_texts_in_a_file_are_shown_or_refused_with_one_line(place: Path, text: str) -> None:
+    file, run = place / "mine.toml", place / f"run{next(FRESH)}"
+    toml = tomli_w.dumps({"task": "T", "habitat": {"name": "cartpole"}, "cells": 8})
+    quoted = json.dumps(text).replace("\\ud800", "?").replace("\\udcff", "?")
+    file.write_text(toml.replace('"T"', quoted), encoding="utf-8")
+    with chdir(place):
+        answers(here("run", file, "--ticks", "5", "--out", run))
+        answers(here("run", file, "--ticks", "5", "--quiet"))
+        answers(here("info", run))
+        answers(here("run", file, "--help"))
+
+
+def test_the_python_interface_refuses_names_that_no_file_can_have(half: Path) -> None:
+    for name in ("a\0b", "\ud800"):
+        with pytest.raises(InputError, match="not in UTF-8 or holds a NUL"):
+            primordia.load(half).export(name)
+        with pytest.raises(InputError, match="not in UTF-8 or holds a NUL"):
+            primordia.run(TASK, name, cells=8, stop={"ticks": 5})
+        with pytest.raises(InputError, match="not in UTF-8 or holds a NUL"):
+            primordia.load(name)
+
+
+# Streams of a process.
+
+LOCALE = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
+
+
+def test_files_and_streams_are_in_utf_8_whatever_the_locale(tmp_path: Path) -> None:
+    file, run = tmp_path / "mine.toml", tmp_path / "run"
+    file.write_text(f'task = "水\\u001b"\nabout = "é"\ncells = 8\n{HABITAT}', encoding="utf-8")
+    words = ("run", file, "--ticks", "50", "--out", run)
+    done = subprocess.run(
+        [*COMMAND, *map(str, words)],
+        env=environment(commands.CACHE) | LOCALE,
+        capture_output=True,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert done.stdout.decode().startswith("水\\x1b: 1 world")
+    assert f"primordia plot {run}\n" in done.stdout.decode()
+    assert here("info", run).returncode == 0
+
+
+HABITAT = '[habitat]\nname = "cartpole"\n'
+
+
+def test_streams_that_are_closed_at_the_start_are_not_taken_by_files(
+    half: Path, through: str, tmp_path: Path
+) -> None:
+    """The next file that is opened would otherwise be standard output."""
+    run = Path(shutil.copytree(half, tmp_path / "run"))
+    words = [*COMMAND, "resume", str(run), "--ticks", str(TICKS)]
+    shell = ["sh", "-c", '"$@" <&- >&- 2>&-', "sh", *words]
+    done = subprocess.run(shell, env=environment(commands.CACHE), check=False)
+    assert done.returncode == 0
+    assert digest(run) == through
+
+
+class Failing(io.RawIOBase):
+    """A stream that fails from its n-th byte on, as a pipe that is closed or a disk that is full."""
+
+    def __init__(self, error: int, after: int) -> None:
+        self._error, self._left = error, after
+
+    def writable(self) -> bool:
+        return True
+
+    def write(self, data: Any) -> int:
+        self._left -= len(data)
+        if self._left < 0:
+            raise OSError(self._error, os.strerror(self._error))
+        return len(data)
+
+
+@pytest.mark.parametrize("error", [errno.EPIPE, errno.ENOSPC, errno.EIO])
+@pytest.mark.parametrize("after", [0, 100])
+def test_a_run_whose_output_fails_stops_with_a_checkpoint(
+    tmp_path: Path, through: str, monkeypatch: pytest.MonkeyPatch, error: int, after: int
+) -> None:
+    """The reader ends early, as `| head -1` does, or a log's disk is full."""
+    run, loud = tmp_path / "run", [word for word in SMALL if word != "--quiet"]
+    monkeypatch.setattr("primordia.live.view.Plain.EVERY", 0.0)
+    monkeypatch.setattr(
+        sys, "argv", ["primordia", "run", *loud, "--ticks", str(TICKS), "--out", str(run)]
+    )
+    output = Printable(io.BufferedWriter(Failing(error, after)), "utf-8", "backslashreplace")
+    monkeypatch.setattr("primordia.cli.commands.flush", lambda: None)
+    messages = io.StringIO()
+    with redirect_stdout(output), redirect_stderr(messages):
+        assert execute() == 1
+    assert messages.getvalue() == (
+        f"primordia: the output cannot be written: {os.strerror(error)}."
+        f" Stopped and saved. Go on with: primordia resume {run}\n"
+    )
+    goes_on(run, through)
+    with suppress(OSError):
+        output.detach()
