@@ -4,7 +4,7 @@ BIN := .venv/bin
 # These versions are tested. `make CONSTRAINTS= demo` takes the newest releases instead.
 CONSTRAINTS ?= --constraint constraints.txt --build-constraint constraints.txt
 
-.PHONY: demo test quick slow check format bench constraints clean
+.PHONY: demo test quick slow check format bench mutants constraints clean
 
 demo: .venv/installed  ## evolve pole balancers, draw figures of the run, and film the longest life
 	rm -rf runs/demo
@@ -34,9 +34,12 @@ format: .venv/installed-dev
 bench: .venv/installed-dev  ## measure every figure; `make bench JSON=file.json` writes them to a file
 	$(BIN)/python benchmarks/bench.py $(if $(JSON),--json $(JSON))
 
+mutants: .venv/installed-mutants  ## plant faults and count those noticed, hours; `make mutants FILES="law/tick.py"`
+	$(BIN)/python benchmarks/mutants.py $(FILES) $(if $(JSON),--json $(JSON))
+
 constraints:  ## write the newest releases into constraints.txt; run `make check` before you commit it
 	rm -rf .venv
-	$(MAKE) CONSTRAINTS= .venv/installed-dev
+	$(MAKE) CONSTRAINTS= .venv/installed-mutants
 	sed -n '/^#/p' constraints.txt > .venv/constraints
 	$(BIN)/python -m pip freeze --exclude-editable | sed 's/$$/; python_version < "3.14"/' >> .venv/constraints
 	mv .venv/constraints constraints.txt
@@ -56,4 +59,8 @@ clean:
 
 .venv/installed-dev: .venv/installed
 	$(BIN)/python -m pip install --quiet $(CONSTRAINTS) --group dev
+	@touch $@
+
+.venv/installed-mutants: .venv/installed-dev
+	$(BIN)/python -m pip install --quiet $(CONSTRAINTS) --group mutants
 	@touch $@

@@ -13,6 +13,8 @@ from primordia.cli.commands import execute
 from primordia.cli.streams import Printable
 
 HERE = Path(__file__).parent.parent
+TREE = os.pathsep.join([str(HERE / "src"), str(HERE)])
+"""The import path of this tree's package and of the tests."""
 COMMAND = [sys.executable, "-m", "primordia"]
 
 
@@ -21,7 +23,7 @@ def environment(cache: Path | None = None) -> dict[str, str]:
 
     `cache` is the folder in which processes share compiled code.
     """
-    extra = {"PYTHONPATH": os.pathsep.join([str(HERE / "src"), str(HERE)])}
+    extra = {"PYTHONPATH": TREE}
     if cache is not None:
         extra |= {
             "JAX_COMPILATION_CACHE_DIR": str(cache),

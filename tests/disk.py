@@ -23,9 +23,9 @@ class Instant:
     """The disk after one operation: what was synced, and what processes see."""
 
     operation: str
-    """such as `rename` or `sync`"""
+    """`sync`, `rename`, `mkdir` or `remove`; `write`: all that was written before the next of these"""
     path: Path
-    """the file or folder that it concerns; the new name of one that was renamed"""
+    """the file or folder that it concerns, under its new name if it was renamed"""
     safe_names: Names
     safe_contents: Contents
     names: Names
@@ -44,7 +44,7 @@ class Disk:
         self._folders: set[int] = set()
         self._inode = self.root.stat().st_ino
         names, contents = self._seen()
-        self._safe_names, self._safe_contents = names, contents
+        self._safe_names, self._safe_contents = self._last = names, contents
 
     @contextmanager
     def watched(self) -> Iterator[None]:
@@ -68,9 +68,12 @@ class Disk:
 
     def _noted(self, name: str, real: Callable[..., None]) -> Callable[..., None]:
         def operate(*args: Any, **named: Any) -> None:
-            real(*args, **named)
             path = self._path(args, named)
-            if path == self.root or self.root in path.parents:
+            below = path == self.root or self.root in path.parents
+            if below and self._seen() != self._last:
+                self._note("write", path)
+            real(*args, **named)
+            if below:
                 self._note(name, path)
 
         return operate
@@ -84,15 +87,15 @@ class Disk:
         return path
 
     def _note(self, name: str, path: Path) -> None:
-        names, contents = self._seen()
+        names, contents = self._last = self._seen()
         if name == "sync":
             inode = path.stat().st_ino
             if inode in names:
                 self._safe_names = {**self._safe_names, inode: names[inode]}
             else:
                 self._safe_contents = {**self._safe_contents, inode: contents[inode]}
-        seen = names, contents
-        self.instants.append(Instant(name, path, self._safe_names, self._safe_contents, *seen))
+        safe = self._safe_names, self._safe_contents
+        self.instants.append(Instant(name, path, *safe, names, contents))
 
     def _seen(self) -> tuple[Names, Contents]:
         names: Names = {}

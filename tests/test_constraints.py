@@ -19,7 +19,7 @@ def test_every_requirement_has_a_tested_version() -> None:
         *about["build-system"]["requires"],
         *about["project"]["dependencies"],
         *chain(*about["project"]["optional-dependencies"].values()),
-        *about["dependency-groups"]["dev"],
+        *chain(*about["dependency-groups"].values()),
     ]
     for requirement in map(Requirement, wanted):
         version = tested[canonicalize_name(requirement.name)].removeprefix("==")

@@ -2,6 +2,7 @@
 
 import os
 import re
+import runpy
 import shlex
 import subprocess
 import sys
@@ -53,7 +54,10 @@ def try_out(kind: str, text: str, where: Path) -> None:
                 done = commands.here(*words)
                 assert done.returncode == 0, f"{line}\n{done.stdout}{done.stderr}"
     elif kind == "python":
-        run([sys.executable, "-c", text], where)
+        file = where / "block.py"
+        file.write_text(text, encoding="utf-8")
+        runpy.run_path(str(file), run_name="__main__")
+        file.unlink()
     elif kind == "toml":
         file = where / "block.toml"
         file.write_text(text)
@@ -64,7 +68,7 @@ def try_out(kind: str, text: str, where: Path) -> None:
 def test_every_command_and_block_of_a_page_works(
     page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Commands run in this process, for speed. A page's habitats are in the current folder."""
+    """Commands and Python run in this process, for speed. A page's habitats are in the current folder."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(str(tmp_path))
     for kind, text in blocks(page):

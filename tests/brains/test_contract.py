@@ -15,6 +15,7 @@ from primordia.brains.contract import KNOWN, Brain, build, find
 from primordia.errors import InputError
 from primordia.runs import loop
 from primordia.testing import check_brain
+from tests.commands import environment
 from tests.history.test_lineage import assert_rebuilt
 from tests.toys import Sliding
 from tests.worlds import CLOCKWORK, MILL, Lived, config
@@ -145,9 +146,8 @@ print(fingerprint())
 def test_brains_think_the_same_on_any_number_of_threads() -> None:
     if not hasattr(os, "sched_setaffinity") or len(os.sched_getaffinity(0)) < 2:
         pytest.skip("needs Linux and two processors")
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(["src", "."])}
     command = [sys.executable, "-c", PROGRAM, str(min(os.sched_getaffinity(0)))]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    done = subprocess.run(command, env=environment(), capture_output=True, text=True, check=True)
     assert done.stdout.strip() == fingerprint()
 
 

@@ -64,7 +64,7 @@ def test_a_record_that_begins_in_a_tick_lacks_the_dead_of_that_tick(
 def test_the_first_long_life_is_known_when_no_earlier_one_can_become_long(
     one: Lived, other: Lived, age: int
 ) -> None:
-    worlds = [world_of(lived, until=50) for lived in (one, other)]
+    worlds = [world_of(lived, until=41) for lived in (one, other)]
     measured = first_long(worlds, age)
     for number, world in enumerate(worlds):
         long = (world.lifespan >= age).tolist()

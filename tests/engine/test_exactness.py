@@ -11,6 +11,8 @@ import pytest
 
 from primordia.brains.contract import KNOWN, build
 from primordia.habitats.cartpole.habitat import CartPole
+from tests import commands
+from tests.commands import environment
 from tests.toys import Mill
 from tests.worlds import MILL, Lived, config
 
@@ -129,10 +131,10 @@ print(Lived(config(cells=64, seeds=8, seed=3), 600).digests())
 
 def test_a_run_is_the_same_on_any_number_of_threads() -> None:
     def run(*processors: int) -> str:
-        environment = {**os.environ, "PYTHONPATH": os.pathsep.join(["src", "."])}
         command = [sys.executable, "-c", PROGRAM, *map(str, processors)]
+        variables = environment(commands.CACHE)
         return subprocess.run(
-            command, env=environment, capture_output=True, text=True, check=True
+            command, env=variables, capture_output=True, text=True, check=True
         ).stdout
 
     if not hasattr(os, "sched_setaffinity") or len(os.sched_getaffinity(0)) < 2:

@@ -1,11 +1,18 @@
 """Promise 2 when lists are full: whatever happens in one tick, no birth, death or sample is lost."""
 
+from typing import Any
+
 import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
+from jax import Array
 
+from primordia.config import Config
+from primordia.engine.hosted import HostedChunks
 from primordia.law import events as log
 from primordia.law.events import Events, Rows
+from primordia.law.law import Law
 from tests.worlds import MEADOW, Lived, config
 
 BUSY = {
@@ -16,46 +23,81 @@ BUSY = {
     "sample_every": 1,
 }
 """Worlds in which a great part of all organisms dies and is born in every tick."""
-CLOCKWORK = {**BUSY, "replication": 0.0, "hazard": 1.0}
-"""Worlds in which all organisms die and are born in every tick."""
+LISTS = Events._fields
 
 
-def leave_least_room(lived: Lived) -> None:
-    """Cut the lists to the least room with which a chunk can go on: that of one tick."""
-    law, chunks = lived.engine.law, lived.engine.chunks
+def least(law: Law, which: str) -> int:
+    """Return the length of a list that has room for the fullest tick, and for no second one."""
     cells = law.worlds * law.cells
-    most = cells, cells, law.worlds
-    lists = chunks.events if lived.config.habitat["name"].endswith("Meadow") else chunks._lists
-    cut = Events(*(
-        Rows(rows.rows[: least + log.batch(cells)], rows.filled)
-        for rows, least in zip(log.emptied(lists), most, strict=True)
-    ))  # fmt: skip
-    assert log.have_room(law, cut)
-    chunks.events = chunks._lists = cut
+    return (law.worlds if which == "samples" else cells) + log.batch(cells)
+
+
+def leave_least_room(lived: Lived, which: str) -> None:
+    """Cut one of a chunk's lists; the others stay long."""
+    chunks: Any = lived.engine.chunks
+    name = "_lists" if isinstance(chunks, HostedChunks) else "events"
+    lists = log.emptied(getattr(chunks, name))
+    rows = getattr(lists, which)
+    cut = rows._replace(rows=rows.rows[: least(lived.engine.law, which)])
+    setattr(chunks, name, lists._replace(**{which: cut}))
+
+
+@pytest.fixture(scope="module")
+def roomy() -> dict[str, Lived]:
+    return {name: Lived(busy(name), 30) for name in ("Meadow", "Mirror")}
+
+
+def busy(habitat: str) -> Config:
+    inner = {"inner": "meadow"} if habitat == "Mirror" else {}
+    where = {"name": f"tests.toys:{habitat}", **inner}
+    return config(MEADOW, habitat=where, **BUSY, cells=300, seeds=2)
 
 
 @pytest.mark.parametrize(
-    ("habitat", "busy", "cells"),
-    [("Meadow", BUSY, 300), ("Mirror", BUSY, 300), ("Meadow", CLOCKWORK, 24)],
+    ("habitat", "which"), [*(("Meadow", which) for which in LISTS), ("Mirror", "births")]
 )
 def test_lists_with_the_least_room_lose_nothing(
-    habitat: str, busy: dict[str, object], cells: int
+    roomy: dict[str, Lived], habitat: str, which: str
 ) -> None:
-    """Cells are written one at a time in small worlds, and in batches in large ones."""
-    inner = {"inner": "meadow"} if habitat == "Mirror" else {}
-    where = {"name": f"tests.toys:{habitat}", **inner}
-    settings = config(MEADOW, habitat=where, **busy, cells=cells, seeds=2)
-    roomy, tight = Lived(settings, 30), Lived(settings, 1)
-    leave_least_room(tight)
+    whole, tight = roomy[habitat], Lived(busy(habitat), 1)
+    leave_least_room(tight, which)
     tight.advance_to(30)
     for name in ("births", "deaths", "metrics"):
-        expected, actual = (np.concatenate(lived.rows[name]) for lived in (roomy, tight))
+        expected, actual = (np.concatenate(lived.rows[name]) for lived in (whole, tight))
         np.testing.assert_array_equal(actual, expected, err_msg=name)
-        assert len(actual) > 2 * max(map(len, tight.rows[name])), "lists were full many times"
+    rows = tight.rows["metrics" if which == "samples" else which]
+    assert sum(map(len, rows)) > 2 * least(tight.engine.law, which), "it was full again and again"
     worlds = tight.engine.state.world.worlds
     assert len(np.concatenate(tight.rows["births"])) == int(worlds.births.lo.sum())
     assert len(np.concatenate(tight.rows["deaths"])) == int(worlds.deaths.lo.sum())
-    assert tight.digests() == roomy.digests()
+    assert tight.digests() == whole.digests()
+
+
+@pytest.mark.parametrize("which", ["births", "deaths"])
+@pytest.mark.parametrize("cells", [24, 700])
+def test_the_fullest_tick_fits_whenever_lists_have_room(which: str, cells: int) -> None:
+    """Cells are written one at a time in small worlds, and in batches in large ones."""
+    made = config(MEADOW, cells=cells)
+    law = made.build_law(made.build_habitat())
+    lists = log.empty(law)
+    list_ = getattr(lists, which)
+    longest = max(
+        filled
+        for filled in range(len(list_.rows) + 1)[-2 * cells :]
+        if log.have_room(law, lists._replace(**{which: list_._replace(filled=np.int32(filled))}))
+    )
+    full = Rows(jnp.full_like(list_.rows, 7), jnp.int32(longest))
+
+    def note(numbers: Array, valid: Array, carry: tuple[Rows]) -> tuple[Rows]:
+        block = jnp.broadcast_to(numbers[:, None].astype(jnp.uint32), (len(numbers), width))
+        return (log.append(carry[0], block, valid),)
+
+    width = full.rows.shape[1]
+    (after,) = log.for_each(jnp.ones(cells, bool), (full,), note)
+    assert int(after.filled) == longest + cells
+    assert (np.asarray(after.rows[:longest]) == 7).all()
+    expected = np.tile(np.arange(cells)[:, None], width)
+    np.testing.assert_array_equal(after.rows[longest : longest + cells], expected)
 
 
 @pytest.mark.parametrize(("cells", "seeds"), [(2, 1), (7, 3), (300, 2), (2, 3000), (2**17, 1)])

@@ -194,10 +194,18 @@ def test_a_policy_acts_as_its_organism_did(poles: Path) -> None:
 
 
 def test_a_policy_gives_continuous_actions(mill: Path) -> None:
-    policy = primordia.load(mill).policy()
-    action = policy(np.zeros(3))
-    assert isinstance(action, np.ndarray)
-    assert (action.shape, action.dtype) == ((2,), np.float32)
+    """They are those of the organism in its life, less the noise of its motor."""
+    organism = primordia.load(mill).oldest()
+    policy, life = organism.policy(), RelivedLife.of(organism.run, organism.id, organism.world)
+    seen = next(life.stretches())
+    actions = [policy(senses) for senses in seen.senses[:200]]
+    assert {(action.shape, action.dtype.name) for action in actions} == {((2,), "float32")}
+    noise = seen.action[:200] - np.array(actions)
+    assert noise.std() == pytest.approx(MILL["motor"]["sd"], rel=5 / np.sqrt(2 * noise.size))
+    assert np.abs(np.corrcoef(noise.T)[0, 1]) < 5 / np.sqrt(len(noise))
+    assert np.array(actions).std() > 0.01
+    policy.reset()
+    np.testing.assert_array_equal(policy(seen.senses[0]), actions[0])
 
 
 def test_an_organism_has_the_properties_that_are_recorded(poles: Path) -> None:

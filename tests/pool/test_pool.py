@@ -17,6 +17,7 @@ from primordia.errors import Trouble
 from primordia.pool import pool as pools
 from primordia.pool.board import STEP
 from primordia.pool.pool import Pool
+from tests.commands import environment
 from tests.counters import FIELDS
 
 ALL = np.ones(7, bool)
@@ -166,15 +167,13 @@ def test_workers_end_with_their_run_however_it_ends(kill: int) -> None:
     )
     before = set(Path("/dev/shm").iterdir())
     command = [sys.executable, "-c", script]
-    run = subprocess.Popen(
-        command, stdout=subprocess.PIPE, text=True, cwd=Path(__file__).parents[2]
-    )
+    run = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment())
     assert run.stdout is not None
     workers = [int(word) for word in run.stdout.readline().split()]
     assert len(workers) == 2
     assert set(Path("/dev/shm").iterdir()) == before
     run.send_signal(kill)
-    run.wait()
+    assert run.wait() == -kill
     run.stdout.close()
     for worker in workers:
         wait_until_gone(worker)

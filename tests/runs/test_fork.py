@@ -154,6 +154,17 @@ def test_forks_are_compared_where_they_have_time_in_common(mill: Path, tmp_path:
     late = primordia.load(mill).fork(1500, tmp_path / "late", stop={"ticks": 1600}).path
     with pytest.raises(InputError, match=r"forked at tick 1,500, .* ends at 1,500"):
         primordia.compare(mill, late)
+    early, later = (
+        primordia.load(mill).fork(at, tmp_path / f"at {at}", seed=at, stop={"ticks": end}).path
+        for at, end in ((900, 1450), (1200, 1500))
+    )
+    for runs in ((mill, early, later), (later, mill, early)):
+        for arm in primordia.compare(*runs).arms:
+            assert arm.pace.edges[[0, -1]].tolist() == [1200, 1450]
+            lives = Archive(next(run for run in runs if run.name == arm.name)).lives
+            within = lives.recorded_since(1200).recorded_until(1450)
+            assert arm.pace.deaths.sum() == within.died.sum() > 10
+            assert arm.pace.lived.sum() == (within.ended - within.seen).sum()
 
 
 def test_another_seed_is_another_future_of_the_same_past(poles: Path, tmp_path: Path) -> None:

@@ -64,7 +64,7 @@ def test_a_season_of_a_metabolism_that_there_is_not_is_refused(
     setting: str, tmp_path: Path
 ) -> None:
     season = {"kind": "schedule", "setting": f"metabolism.{setting}", "at": 5, "value": 1.0}
-    with pytest.raises(InputError, match=f"metabolism.{setting}"):
+    with pytest.raises(InputError, match=rf"metabolism\.{setting}"):
         config(MEADOW, seasons=[season])
     assert config(MEADOW, seasons=[season], metabolism={"store": 9.0}).seasons
     if setting == "gain":

@@ -40,9 +40,14 @@ def tables(worlds: list[list[bool]], cuts: int) -> tuple[list[pa.Table], list[pa
     return tuple([each.slice(at * size, size) for at in range(cuts)] for each in (births, deaths))  # type: ignore[return-value]
 
 
+def end(world: list[bool]) -> int:
+    """Return a world's last tick, in which its youngest organism may die."""
+    return 10 * len(world) - 5
+
+
 def lives_of(worlds: list[list[bool]], cuts: int) -> Lives:
     births, deaths = tables(worlds, cuts)
-    return join(births, deaths, np.array([1000 + w for w in range(len(worlds))]), 40)
+    return join(births, deaths, np.array([*map(end, worlds)]), 40)
 
 
 @given(WORLDS, st.integers(1, 3))
@@ -52,7 +57,7 @@ def test_every_birth_with_its_death(worlds: list[list[bool]], cuts: int) -> None
     assert list(zip(lives.world.tolist(), lives.id.tolist(), strict=True)) == expected
     for row, (world, number) in enumerate(expected):
         died = number % 3 > 0
-        assert lives.ended[row] == (10 * number + 5 if died else 1000 + world)
+        assert lives.ended[row] == (10 * number + 5 if died else end(worlds[world]))
         assert lives.cause[row] == (number % 3 if died else ALIVE)
         assert lives.parent[row] == number // 2 - 1
         assert lives.birth_cause[row] == min(number, 2)

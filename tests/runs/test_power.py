@@ -114,7 +114,7 @@ def test_a_power_cut_loses_no_checkpoint_and_changes_no_life(
     lived: Recorded, tmp_path: Path
 ) -> None:
     draw, last = random.Random(1), len(lived.disk.instants)
-    for number, cut in enumerate(draw.sample(range(1, last + 1), 15)):
+    for number, cut in enumerate(draw.sample(range(1, last + 1), 9)):
         how = ["forgets", "names", f"chooses {number}"][number % 3]
         assert_goes_on(lived, cut, how, tmp_path / str(number))
 
@@ -160,12 +160,16 @@ def test_files_are_written_synced_renamed_and_their_folder_synced(lived: Recorde
 
 
 def test_a_checkpoint_is_removed_only_when_two_newer_ones_are_safe(lived: Recorded) -> None:
-    """So one damaged checkpoint costs time only. All that are kept are whole."""
-    disk = lived.disk
-    for number, instant in enumerate(disk.instants, 1):
-        if instant.operation == "remove" and instant.path.parent.name == "checkpoints":
-            older = sum(saved <= number for saved, _ in lived.saved)
-            assert older >= checkpoint.KEPT
-    run = disk.root / "some" / "run"
-    assert len(checkpoint.numbered(run)) == checkpoint.KEPT
+    """So one damaged checkpoint costs time only, whenever the power is cut."""
+    run = lived.disk.root / "some" / "run"
+    folder, removed = (run / "checkpoints").stat().st_ino, set[str]()
+    for instant in lived.disk.instants:
+        name = instant.path.relative_to(lived.disk.root).parts[3:4]
+        if instant.operation == "remove" and instant.path.parts[-3:-1] == ("checkpoints", *name):
+            newer = [
+                each for each in instant.safe_names[folder] if each.isdigit() and each > name[0]
+            ]
+            assert len(newer) >= checkpoint.KEPT
+            removed.add(name[0])
+    assert len(removed) >= 3
     assert len([*checkpoint.whole_checkpoints(run)]) >= checkpoint.KEPT

@@ -1,0 +1,105 @@
+"""Plant small faults in the source, one at a time, and count how many the tests notice (`make mutants`).
+
+    python benchmarks/mutants.py [FILE ...] [--json FILE]
+
+FILE is a file or a folder below `src/primordia`; by default all that `[tool.mutants]` of `pyproject.toml`
+names. That table says which tests are run for each. Cosmic Ray plants the faults, in a copy of the tree.
+A fault that is not noticed is printed: it needs a test, or a reason in `benchmarks/results/mutants.md`.
+"""
+
+import argparse
+import json
+import os
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from cosmic_ray.work_db import WorkDB, use_db
+from cosmic_ray.work_item import TestOutcome
+
+ROOT = Path(__file__).parent.parent
+COPIED = "src", "tests", "examples"
+PYTEST = "-m pytest -x -q -p no:cacheprovider"
+
+
+def main() -> None:
+    """Plant the faults of each file, and print the score."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("files", nargs="*", help="files or folders below src/primordia")
+    parser.add_argument("--json", type=Path, help="write the score of each file to this file")
+    chosen = parser.parse_args()
+    table = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["mutants"]
+    scores = {}
+    with tempfile.TemporaryDirectory() as folder:
+        tree = Path(folder)
+        shutil.copy(ROOT / "pyproject.toml", tree)
+        for name in COPIED:
+            shutil.copytree(ROOT / name, tree / name)
+        for name in chosen.files or table["tests"]:
+            scores[name] = score(tree, name, tests_of(name, table["tests"]), table)
+            print(f"{name}: {scores[name]['noticed']} of {scores[name]['planted']} noticed")
+    if chosen.json is not None:
+        chosen.json.write_text(json.dumps(scores, indent=1) + "\n", encoding="utf-8")
+
+
+def tests_of(name: str, tests: dict[str, str]) -> str:
+    """Return the tests for a file: those of its own entry, or of the nearest folder that has one."""
+    for path in (Path(name), *Path(name).parents):
+        if str(path) in tests:
+            return tests[str(path)]
+    sys.exit(f"no entry of [tool.mutants.tests] in pyproject.toml is for {name}")
+
+
+def score(tree: Path, name: str, tests: str, table: dict[str, Any]) -> dict[str, Any]:
+    """Plant all faults in one file or folder -> how many were planted and noticed, and the others."""
+    config, session = tree / "mutants.toml", tree / "mutants.sqlite"
+    session.unlink(missing_ok=True)
+    command = f"{shlex.quote(sys.executable)} {PYTEST} {tests}"
+    config.write_text(
+        f'[cosmic-ray]\nmodule-path = "src/primordia/{name}"\ntimeout = {table["timeout"]}\n'
+        f"excluded-modules = []\ntest-command = {json.dumps(command)}\n"
+        '[cosmic-ray.distributor]\nname = "local"\n'
+        f"[cosmic-ray.filters.operators-filter]\nexclude-operators = {json.dumps(table['without'])}\n",
+        encoding="utf-8",
+    )
+    run("cosmic_ray.cli", "init", config.name, session.name, where=tree)
+    run("cosmic_ray.tools.filters.operators_filter", session.name, config.name, where=tree)
+    run("cosmic_ray.cli", "baseline", config.name, where=tree)
+    run("cosmic_ray.cli", "exec", config.name, session.name, where=tree)
+    with use_db(str(session), WorkDB.Mode.open) as db:
+        results = [result for _, result in db.results if result.test_outcome is not None]
+    survivors = [each.diff for each in results if each.test_outcome is TestOutcome.SURVIVED]
+    for diff in survivors:
+        print(diff)
+    return {
+        "planted": len(results),
+        "noticed": len(results) - len(survivors),
+        "tests": tests,
+        "survivors": [changed(diff) for diff in survivors],
+    }
+
+
+def run(module: str, *words: str, where: Path) -> None:
+    """Run a command of Cosmic Ray in a copy of the tree, and stop if it fails."""
+    variables = {**os.environ, "PYTHONPATH": os.pathsep.join([str(where / "src"), str(where)])}
+    command = [sys.executable, "-m", module, *words]
+    done = subprocess.run(command, cwd=where, env=variables, check=False)
+    if done.returncode != 0:
+        sys.exit(f"{module} {' '.join(words)} failed with status {done.returncode}")
+
+
+def changed(diff: str) -> str:
+    """Return the changed lines of a difference, without their file."""
+    lines = [
+        line for line in diff.splitlines() if line[:1] in "+-" and line[:3] not in ("+++", "---")
+    ]
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    main()
