@@ -8,10 +8,10 @@ import jax
 
 import published
 from limit import limit
-from primordia.config import load
+from primordia.config import Stop, load
 from primordia.engine.engine import Engine
-from primordia.runs.checkpoint import Progress
 from primordia.runs.loop import drive
+from primordia.runs.manifest import Progress
 from primordia.runs.record import Recorder
 from primordia.runs.schema import Schema
 from worlds import median, organism_ticks, random_phase, random_rate, rate, saturated_phase
@@ -80,6 +80,7 @@ def _on_disk(run: Path, seed: int) -> float:
     warm, made = Engine(config), Engine(config)
     warm.advance(warm.limits({}))
     recorder = Recorder(run, 1, Schema.of(made.law, ()))
+    progress = Progress(limits=Stop(ticks=3_000_000), wall_s=0.0, exact=True)
     began = time.perf_counter()
-    drive(made, recorder, run, Progress({"ticks": 3_000_000}, 0.0, True), 1.0, None)
+    drive(made, recorder, run, progress, 1.0, None)
     return organism_ticks(made) / (time.perf_counter() - began)

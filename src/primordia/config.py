@@ -57,7 +57,7 @@ class ForkedFrom(Settings):
     """The source of a fork. Its first checkpoint is in the run's directory, under `origin`."""
 
     run: str = Field(description="the run that was forked")
-    tick: int = Field(description="the tick at the end of which it was forked")
+    tick: int = Field(ge=1, lt=2**63, description="the tick at the end of which it was forked")
 
 
 class Config(Settings):

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from itertools import takewhile
 from pathlib import Path
+from typing import Any
 
 from primordia import interrupts
 from primordia.errors import InputError, Trouble
@@ -140,7 +141,18 @@ def sync(path: Path) -> None:
         os.close(handle)
 
 
-def seal(path: Path) -> dict[str, object]:
+def read(path: Path) -> bytes:
+    """Return the content of a regular file; to read a pipe might take for ever.
+
+    Raises:
+        OSError: it cannot be read, or is no regular file.
+    """
+    if not path.is_file():
+        raise FileNotFoundError(f"there is no file {path}")
+    return path.read_bytes()
+
+
+def seal(path: Path) -> dict[str, Any]:
     """Return size and checksum of a file, as manifests keep them."""
     with path.open("rb") as file:
         digest = hashlib.file_digest(file, "sha256").hexdigest()

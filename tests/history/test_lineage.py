@@ -122,7 +122,7 @@ def test_genomes_are_rebuilt_while_a_run_continues(
         loop.start(config(values), run, listen=press)
     last, _ = checkpoint.newest(run)
     assert last is not None
-    assert len(last.manifest["segments"]["births"]) >= 2
+    assert len(last.manifest.segments["births"]) >= 2
     assert len(last.arrays()["tail.births"]) > 0
     assert_rebuilt(run)
 

@@ -22,7 +22,7 @@ def tables(worlds: list[list[bool]], cuts: int) -> tuple[list[pa.Table], list[pa
         (n, w) for w, there in enumerate(worlds) for n, on_record in enumerate(there) if on_record
     ]
     number, world = np.array(sorted(rows), np.int64).reshape(-1, 2).T
-    parent, causes = number // 2 - 1, np.minimum(number, 2)
+    parent, causes = (number - 1) // 2, np.minimum(number, 2)
     births = pa.table(
         {
             "world": world.astype(np.int32),
@@ -47,7 +47,7 @@ def end(world: list[bool]) -> int:
 
 def lives_of(worlds: list[list[bool]], cuts: int) -> Lives:
     births, deaths = tables(worlds, cuts)
-    return join(births, deaths, np.array([*map(end, worlds)]), 40)
+    return join(births, deaths, np.array([*map(end, worlds)]), 40, 7)
 
 
 @given(WORLDS, st.integers(1, 3))
@@ -59,7 +59,7 @@ def test_every_birth_with_its_death(worlds: list[list[bool]], cuts: int) -> None
         died = number % 3 > 0
         assert lives.ended[row] == (10 * number + 5 if died else end(worlds[world]))
         assert lives.cause[row] == (number % 3 if died else ALIVE)
-        assert lives.parent[row] == number // 2 - 1
+        assert lives.parent[row] == (number - 1) // 2
         assert lives.birth_cause[row] == min(number, 2)
         assert (lives.born[row], lives.seen[row]) == (10 * number, max(10 * number, 40))
         assert lives.row(number, world) == row

@@ -17,6 +17,7 @@ from primordia.errors import InputError
 from primordia.history.info import info
 from primordia.runs import checkpoint, loop, record
 from primordia.runs.archive import Archive
+from primordia.runs.arrays import world_ticks
 from tests.disk import Disk, Instant
 from tests.worlds import MEADOW, config
 
@@ -84,7 +85,7 @@ def noting(save: Any, disk: Disk, saved: list[tuple[int, int]]) -> Any:
 
     def noted(run: Path, arrays: dict[str, Any], *rest: Any) -> None:
         save(run, arrays, *rest)
-        saved.append((len(disk.instants), int(checkpoint.world_ticks(arrays).min())))
+        saved.append((len(disk.instants), int(world_ticks(arrays).min())))
 
     return noted
 

@@ -9,10 +9,11 @@ from typing import Any
 
 import pytest
 
+from primordia.config import Stop
 from primordia.history.info import info
 from primordia.runs import checkpoint, loop
 from primordia.runs.archive import Archive
-from primordia.runs.checkpoint import Progress
+from primordia.runs.manifest import Progress
 from tests.commands import begin, complains, here
 
 WHAT = ("CartPole-survival", "--seeds", "8", "--cells", "64", "--stop.until", "saturation")
@@ -50,7 +51,7 @@ def test_a_run_can_be_looked_at_soon_after_its_start(
     monkeypatch.setattr(time, "perf_counter", lambda: now[0])
     monkeypatch.setattr(checkpoint, "save", lambda *_: saved.append(now[0]))
     nothing: Any = SimpleNamespace(arrays=dict)
-    progress = Progress({}, 0.0, True)
+    progress = Progress(limits=Stop(), wall_s=0.0, exact=True)
     saver = loop.Saver(nothing, nothing, tmp_path, progress, every, 0.0, lambda: None)
     while now[0] < expected[-1]:
         now[0] += 0.5

@@ -10,14 +10,13 @@ import numpy as np
 import pytest
 
 import primordia
-from primordia import files
 from primordia.errors import InputError, Trouble
 from primordia.history.info import info
 from primordia.runs import checkpoint, loop
 from primordia.runs.archive import Archive
 from primordia.runs.digest import digests
 from primordia.runs.verify import verify
-from tests.trouble import flip, newest
+from tests.trouble import flip, newest, reseal
 from tests.worlds import MEADOW, MILL, Lived, config
 
 TICKS = 120
@@ -150,9 +149,6 @@ def test_verify_compares_the_state_of_every_world(made: Path, tmp_path: Path, na
     cell = np.flatnonzero(arrays["world.organisms.alive"])[-1]
     arrays[f"world.organisms.{name}"][cell] += 1
     np.savez(path, allow_pickle=False, **arrays)
-    manifest = path.with_name("manifest.json")
-    content = json.loads(manifest.read_text()) | {"state": files.seal(path)}
-    content["sha256"] = checkpoint._checksum(content)
-    manifest.write_text(json.dumps(content))
+    reseal(path.parent)
     (fault,) = verify(Archive(run))
     assert fault.startswith("world 1 (seed 1) differs")

@@ -7,11 +7,12 @@ import json
 import signal
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from primordia import config
-from primordia.runs import checkpoint, loop
+from primordia import config, files
+from primordia.runs import checkpoint, loop, manifest
 from tests.commands import here
 
 TASK = "CartPole-survival"
@@ -46,15 +47,34 @@ def goes_on(run: Path, through: str, *words: str) -> None:
 
 def contents(folder: Path) -> dict[str, bytes]:
     """Return the content of every file except the lock."""
-    files = (path for path in folder.rglob("*") if path.is_file() and path.name != "lock")
-    return {str(path): path.read_bytes() for path in files}
+    paths = (path for path in folder.rglob("*") if path.is_file() and path.name != "lock")
+    return {str(path): path.read_bytes() for path in paths}
 
 
 def flip(path: Path, at: float = 0.5) -> None:
-    """Flip one bit."""
+    """Flip one bit, or add one to an empty file."""
     data = bytearray(path.read_bytes())
+    data = data or bytearray(1)
     data[int(len(data) * at)] ^= 1
     path.write_bytes(data)
+
+
+def reseal(folder: Path, change: Callable[[dict[str, Any]], object] | None = None) -> None:
+    """Change the manifest of a checkpoint, and seal all files anew as they are, like a forger."""
+    path, run = folder / "manifest.json", folder.parents[folder.name != "origin"]
+    content = json.loads(path.read_text())
+    del content["sha256"]
+    content["state"] = files.seal(folder / "state.npz")
+    content["inputs"] = {
+        name: files.seal(run / name) for name in content["inputs"] if (run / name).is_file()
+    }
+    for table, segments in content["segments"].items():
+        for each in segments:
+            if (run / table / each["name"]).is_file():
+                each |= files.seal(run / table / each["name"])
+    if change is not None:
+        change(content)
+    path.write_text(json.dumps({**content, "sha256": manifest._checksum(content)}))
 
 
 def newest(run: Path) -> Path:

@@ -3,6 +3,7 @@
 import json
 import shutil
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -10,7 +11,18 @@ from primordia import files
 from primordia.engine.state import State
 from primordia.runs import checkpoint, directory, loop
 from tests.commands import begin, complains, here
-from tests.trouble import HALF, SMALL, TASK, TICKS, contents, digest, goes_on, newest, started
+from tests.trouble import (
+    HALF,
+    SMALL,
+    TASK,
+    TICKS,
+    contents,
+    digest,
+    goes_on,
+    newest,
+    reseal,
+    started,
+)
 
 
 def test_a_directory_that_is_taken_is_refused(run: Path, tmp_path: Path) -> None:
@@ -103,11 +115,11 @@ def test_a_run_of_other_versions_is_resumed_on_request_only(
 
 def test_verify_says_what_differs_and_a_possible_reason(run: Path) -> None:
     change_versions(run, jax="0.0.1")
-    manifest = checkpoint.numbered(run)[-1] / "manifest.json"
-    content = json.loads(manifest.read_text())
-    content["digests"]["births"][0][0] ^= 1
-    content["sha256"] = checkpoint._checksum(content)
-    manifest.write_text(json.dumps(content))
+
+    def change(content: dict[str, Any]) -> None:
+        content["digests"]["births"][0][0] ^= 1
+
+    reseal(newest(run), change)
     parts = [str(run), "does not hold", "world 0 (seed 0) differs", "jax 0.0.1 then"]
     complains(here("verify", run), 1, *parts)
 

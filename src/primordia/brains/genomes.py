@@ -47,10 +47,10 @@ def read(paths: Sequence[str], layout: Layout) -> np.ndarray:
 
 
 def _read(path: Path, layout: Layout) -> np.ndarray:
+    if not path.is_file():  # to open a pipe might take for ever
+        raise InputError(f"there is no genome file {path}")
     try:
         blocks = load_file(path)
-    except FileNotFoundError:
-        raise InputError(f"there is no genome file {path}") from None
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror or error}") from None
     except (SafetensorError, KeyError, TypeError, ValueError) as error:

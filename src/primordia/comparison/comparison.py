@@ -21,7 +21,7 @@ from primordia.comparison.survival import Survival, survival
 from primordia.config import Config
 from primordia.errors import InputError
 from primordia.runs.archive import Archive
-from primordia.runs.checkpoint import NEVER, read_count
+from primordia.runs.arrays import NEVER, read_count
 from primordia.runs.lives import Lives
 
 OUTCOMES = {

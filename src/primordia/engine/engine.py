@@ -79,7 +79,11 @@ class Engine:
         return self.chunks.save(self.state)
 
     def load(self, arrays: dict[str, np.ndarray]) -> None:
-        """Restore the state from its arrays."""
+        """Restore the state from its arrays.
+
+        Raises:
+            Trouble: an array is missing, or does not fit.
+        """
         self.state = self.chunks.load(self.state, arrays)
 
 

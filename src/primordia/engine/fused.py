@@ -1,12 +1,11 @@
 """Chunks with a habitat in JAX: law and habitat fused into one compiled loop."""
 
-import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array, lax
 
 from primordia.compiled import shared
-from primordia.engine.state import Limits, State, named_leaves, running, ticks_left
+from primordia.engine.state import Limits, State, filled, named_leaves, running, ticks_left
 from primordia.habitats.bodies import fresh, insert_bodies, placeholder_bodies, select_bodies
 from primordia.habitats.contract import Bodies, JaxHabitat
 from primordia.law import events as log
@@ -50,8 +49,7 @@ class FusedChunks:
 
     def load(self, template: State, arrays: dict[str, np.ndarray]) -> State:
         """Return the state that `save` stored; `template` is any state of the same run."""
-        leaves = [jnp.asarray(arrays[name]) for name, _ in named_leaves(template)]
-        return jax.tree.unflatten(jax.tree.structure(template), leaves)
+        return filled(template, arrays)
 
 
 def _advance(

@@ -6,16 +6,15 @@ their first thought. The changes of unsettled ticks are kept beside the state, s
 tick.
 """
 
-import jax
-import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
 from primordia.brains.contract import Genome
 from primordia.engine.calls import Calls, Decision, Unsettled
 from primordia.engine.held import Form, Held
-from primordia.engine.state import Limits, State, named_leaves
+from primordia.engine.state import Limits, State, filled, named_leaves
 from primordia.engine.tallies import Tallies
+from primordia.errors import Trouble
 from primordia.habitats.contract import Ability, HostHabitat
 from primordia.law import events as log
 from primordia.law.genesis import body_words
@@ -117,14 +116,16 @@ class HostedChunks:
 
     def load(self, template: State, arrays: dict[str, np.ndarray]) -> State:
         """Return the state that `save` stored; `template` is any state of the same run."""
-        leaves = [jnp.array(arrays[f"world.{name}"]) for name, _ in named_leaves(template.world)]
-        prefix, senses = "bodies.", arrays["bodies.senses"]
+        prefix, world = "bodies.", filled(template.world, arrays, "world.")
+        senses = np.array(filled(template.bodies, arrays, "bodies.senses"))
         bodies = {n.removeprefix(prefix): a for n, a in arrays.items() if n.startswith(prefix)}
         bodies.pop("senses")
-        world = jax.tree.unflatten(jax.tree.structure(template.world), leaves)
         if not self._habitat.can(Ability.SAVE):
             return State(world, self._reset_to_birth(world, senses))
-        self._habitat.load(bodies)
+        try:
+            self._habitat.load(bodies)
+        except (IndexError, KeyError, ValueError) as error:
+            raise Trouble(f"the checkpoint is not one of this run: no bodies: {error}") from None
         return State(world, senses)
 
     def _reset_to_birth(self, world: World, senses: np.ndarray) -> np.ndarray:

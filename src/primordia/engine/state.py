@@ -4,17 +4,22 @@ A chunk is many ticks of law and habitat between two visits of the host. It may 
 depends on it.
 """
 
-from typing import NamedTuple
+from collections.abc import Mapping
+from typing import NamedTuple, TypeVar
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jax import Array
 
+from primordia.errors import Trouble
 from primordia.habitats.contract import Bodies
 from primordia.law.law import Law
 from primordia.law.population import quiet_ticks
 from primordia.law.world import World, Worlds
 from primordia.random.wide import Wide, happened
+
+Tree = TypeVar("Tree")
 
 
 class Limits(NamedTuple):
@@ -44,6 +49,21 @@ def named_leaves(tree: object) -> list[tuple[str, Array]]:
     """Return the arrays of a state with their paths, such as `world.organisms.genome.input`."""
     leaves = jax.tree_util.tree_flatten_with_path(tree)[0]
     return [(jax.tree_util.keystr(path, simple=True, separator="."), leaf) for path, leaf in leaves]
+
+
+def filled(template: Tree, arrays: Mapping[str, np.ndarray], prefix: str = "") -> Tree:
+    """Return a tree like the template, with stored arrays, whose names are its paths after a prefix.
+
+    Raises:
+        Trouble: an array is missing, or has another shape or type than the template's.
+    """
+    leaves = []
+    for name, own in named_leaves(template):
+        stored = arrays.get(prefix + name)
+        if stored is None or (stored.shape, stored.dtype) != (own.shape, own.dtype):
+            raise Trouble(f"the checkpoint is not one of this run: {prefix + name} does not fit")
+        leaves.append(jnp.array(stored))
+    return jax.tree.unflatten(jax.tree.structure(template), leaves)
 
 
 def ticks_left(law: Law, world: World, limits: Limits, live_worlds: Array) -> Array:

@@ -7,7 +7,7 @@ import numpy as np
 from primordia.history.climate import Climates, PastClimate
 from primordia.law.metabolism import ONE, break_even
 from primordia.runs.archive import Archive
-from primordia.runs.checkpoint import read_count
+from primordia.runs.arrays import read_count
 
 STRETCHES = 60
 """Largest number of stretches that a world's time is cut into."""

@@ -8,7 +8,7 @@ import numpy as np
 from primordia.law.metabolism import break_even
 from primordia.law.world import Cause
 from primordia.runs.archive import Archive
-from primordia.runs.checkpoint import NEVER, read_count
+from primordia.runs.arrays import NEVER, read_count
 from primordia.runs.digest import digests
 
 TALLY = "bodies.tally"
@@ -33,9 +33,9 @@ def info(run: Archive) -> dict[str, Any]:
         "cells": config.cells,
         "seeds": config.seeds,
         "worlds": worlds,
-        "wall_s": last.progress.wall_s,
-        "exact": last.progress.exact,
-        "limits": last.progress.limits,
+        "wall_s": last.manifest.progress.wall_s,
+        "exact": last.manifest.progress.exact,
+        "limits": last.manifest.progress.limits.model_dump(),
         "versions": run.versions,
     }
     return whole if config.seeds > 1 else {**worlds[0], **whole}

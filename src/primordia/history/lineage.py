@@ -21,7 +21,7 @@ from primordia.mutations.contract import PURPOSES, Draws
 from primordia.random.keys import streams
 from primordia.random.wide import wide
 from primordia.runs.archive import Archive
-from primordia.runs.checkpoint import read_count, world_ticks
+from primordia.runs.arrays import read_count, world_ticks
 from primordia.runs.lives import Lives
 
 STEPS_AT_A_TIME = 64

@@ -7,21 +7,23 @@ from typing import Any
 
 import numpy as np
 import pyarrow as pa
-import pyarrow.parquet as pq
 
 from primordia import files
 from primordia.brains.layout import Layout
 from primordia.config import Config
-from primordia.errors import InputError
+from primordia.errors import InputError, Trouble
 from primordia.habitats.contract import AnyHabitat
 from primordia.law.heredity import Heredity
 from primordia.law.law import Law
+from primordia.law.metabolism import Metabolism
 from primordia.own_code import Sources
-from primordia.runs import checkpoint, code, description, directory
-from primordia.runs.checkpoint import Arrays, Checkpoint
+from primordia.runs import checkpoint, code, description, directory, segment, shapes
+from primordia.runs.arrays import Arrays, world_ticks
+from primordia.runs.checkpoint import Checkpoint
 from primordia.runs.description import Description
 from primordia.runs.lives import Lives, join
 from primordia.runs.schema import TABLES, Schema
+from primordia.settings.fields import rates_of
 from primordia.settings.tables import PARTS
 
 
@@ -47,7 +49,11 @@ class Archive:
     @cached_property
     def description(self) -> Description:
         """What the run's parts said of themselves when it began."""
-        return description.read(self.path)
+        about = description.read(self.path)
+        rates = {*rates_of(self.config), *rates_of(Metabolism(), "metabolism.")}
+        if not rates <= set(about.beginning):
+            raise InputError(f"{self.path / description.FILE} does not describe this run")
+        return about
 
     @cached_property
     def layout(self) -> Layout:
@@ -86,12 +92,16 @@ class Archive:
     def heredity(self) -> Heredity:
         """The part of the law that makes genomes, which needs neither habitat nor brain."""
         self.admit("mutation")
-        return self.config.build_heredity(self.layout)
+        heredity, about = self.config.build_heredity(self.layout), self.description
+        rates = {f"mutation.{name}" for name in heredity.mutation.rates(self.layout)}
+        if heredity.mutation.notes != about.notes or not rates <= set(about.beginning):
+            raise Trouble(f"{self.path / description.FILE} does not describe this run's mutation")
+        return heredity
 
     @cached_property
     def versions(self) -> dict[str, Any]:
         """The format, package versions and device that the run was begun with."""
-        return directory.recorded_versions(self.path)
+        return directory.recorded_versions(self.path).model_dump()
 
     @cached_property
     def other_versions(self) -> list[str]:
@@ -132,8 +142,12 @@ class Archive:
 
     @cached_property
     def state(self) -> Arrays:
-        """The arrays of the newest whole checkpoint."""
-        return self.last.arrays()
+        """The arrays of the newest whole checkpoint.
+
+        Raises:
+            Trouble: they do not fit the settings.
+        """
+        return self._fitting(self.last)
 
     @cached_property
     def origin(self) -> Arrays | None:
@@ -143,12 +157,21 @@ class Archive:
             Trouble: they are damaged.
         """
         stored = checkpoint.origin(self.path, self.fault_in)
-        return None if stored is None else stored.arrays()
+        return None if stored is None else self._fitting(stored)
+
+    def _fitting(self, stored: Checkpoint) -> Arrays:
+        """Return the arrays of a checkpoint, which fit the settings of the run."""
+        arrays = stored.arrays()
+        if fault := shapes.fault(arrays, self.config, self.description):
+            raise Trouble(f"{stored.path} is no checkpoint of this run: {fault}")
+        if any(len(each) != self.config.seeds for each in stored.digests.values()):
+            raise Trouble(f"{stored.path} is no checkpoint of this run: it has other worlds")
+        return arrays
 
     @cached_property
     def ends(self) -> np.ndarray:
         """Ticks that each world has lived through, int64 (W,)."""
-        return checkpoint.world_ticks(self.state).astype(np.int64)
+        return world_ticks(self.state).astype(np.int64)
 
     def table(self, name: str, columns: Sequence[str] | None = None) -> pa.Table:
         """Read `births`, `deaths` or `metrics`, all columns or some, in the order of events."""
@@ -158,10 +181,10 @@ class Archive:
         """Read a table segment by segment, the open tail last; see `table`."""
         assert name in TABLES
         wanted, tail = columns and list(columns), self.state[f"tail.{name}"]
-        closed = self.last.manifest["segments"][name]
+        closed = self.last.manifest.segments[name]
+        empty = self.schema.arrow(name, tail[:0])
         for each in closed:
-            with pq.ParquetFile(self.path / name / each["name"]) as file:
-                yield file.read(wanted)
+            yield segment.read(self.path / name / each.name, each.rows, empty.schema, wanted)
         if len(tail) or not closed:
             rows = self.schema.arrow(name, tail)
             yield rows.select(wanted) if wanted else rows
@@ -177,10 +200,14 @@ class Archive:
 
         Raises:
             InputError: nothing has lived in the run yet.
+            Trouble: births and deaths contradict each other.
         """
         births = self.segments("births")
         deaths = self.segments("deaths", ("world", "id", "tick", "cause"))
-        lives = join(births, deaths, self.ends, self.config.begins)
+        try:
+            lives = join(births, deaths, self.ends, self.config.begins, self.config.cells)
+        except ValueError as error:
+            raise Trouble(f"the records of {self.path} contradict themselves: {error}") from None
         if not len(lives):
             raise InputError(f"{self.path} is empty: nothing has lived in it yet")
         return lives
@@ -188,8 +215,7 @@ class Archive:
     @cached_property
     def schema(self) -> Schema:
         """The columns of the run's tables."""
-        about = self.description
-        return Schema(self.config.cells, about.notes, tuple(about.beginning), about.tallies)
+        return Schema.described(self.config.cells, self.description)
 
     def notes_of(self, lives: Lives) -> np.ndarray:
         """Return what the mutation noted at the births of some lives, int32 (L, n)."""

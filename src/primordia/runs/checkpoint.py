@@ -6,21 +6,23 @@ RUN/checkpoints/000012/state.npz        the state's arrays, and `tail.*`: rows i
 A fork begins at its own checkpoint, RUN/origin, which is never deleted.
 """
 
-import hashlib
-import json
+import re
 import shutil
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from primordia import files, interrupts
 from primordia.brains.genomes import FOUNDERS
 from primordia.errors import Trouble
+from primordia.runs import manifest as manifests
+from primordia.runs.arrays import Arrays
+from primordia.runs.code import FOLDER as CODE
 from primordia.runs.description import FILE as DESCRIPTION
+from primordia.runs.manifest import Manifest, Progress, Seal
 from primordia.runs.record import Recorder
 from primordia.runs.schema import TABLES
 
@@ -28,59 +30,14 @@ KEPT = 2
 """Number of checkpoints kept; if the newest is damaged, the one before it is used."""
 FOLDER, ORIGIN = "checkpoints", "origin"
 INPUTS = ("config.toml", DESCRIPTION, FOUNDERS)
-"""Files that a run needs to go on, beside its checkpoints."""
+"""Files that a run needs to go on, beside its checkpoints and the user's own code."""
+STATE, MANIFEST = "state.npz", "manifest.json"
+NUMBER = re.compile("[0-9]{1,18}")
+"""Names of checkpoints."""
 
-
-@dataclass
-class Progress:
-    """The part of a manifest that concerns the run as a whole."""
-
-    limits: dict[str, Any]
-    """ticks, births, until: as last requested"""
-    wall_s: float
-    """seconds spent so far"""
-    exact: bool
-    """whether the whole run can be repeated bit for bit"""
-
-
-NEVER = 2**64 - 1
-"""The tick or count of an event that has not happened."""
 
 FaultIn = Callable[[Path, int, str], str | None]
 """`files.fault_in`, or a version of it that remembers the files it has checked."""
-
-
-class Arrays(Mapping[str, np.ndarray]):
-    """State and open tails of a checkpoint by name, each read at its first use.
-
-    The file stays open, so the arrays can be read even after the run has gone on and removed the file.
-    """
-
-    def __init__(self, file: Path) -> None:
-        self._stored = np.load(file, allow_pickle=False)
-        self._read: dict[str, np.ndarray] = {}
-
-    def __getitem__(self, name: str) -> np.ndarray:
-        if name not in self._read:
-            self._read[name] = self._stored[name]
-        return self._read[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._stored.files)
-
-    def __len__(self) -> int:
-        return len(self._stored.files)
-
-
-def read_count(arrays: Mapping[str, np.ndarray], name: str) -> np.ndarray:
-    """Return 64-bit numbers, which a state holds in two words, as uint64."""
-    hi, lo = arrays[f"{name}.hi"].astype(np.uint64), arrays[f"{name}.lo"]
-    return (hi << np.uint64(32)) | lo
-
-
-def world_ticks(arrays: Mapping[str, np.ndarray]) -> np.ndarray:
-    """Return the ticks that each world of a state has lived through, uint64 (W,)."""
-    return read_count(arrays, "world.worlds.tick")
 
 
 @dataclass(frozen=True)
@@ -88,22 +45,17 @@ class Checkpoint:
     """A checkpoint whose checksums hold."""
 
     path: Path
-    manifest: dict[str, Any]
+    manifest: Manifest
 
     def arrays(self) -> Arrays:
         """Open the state and the tails."""
-        return Arrays(self.path / "state.npz")
-
-    @property
-    def progress(self) -> Progress:
-        """The run's progress at this checkpoint."""
-        return Progress(**self.manifest["progress"])
+        return Arrays(self.path / STATE)
 
     @property
     def digests(self) -> dict[str, np.ndarray]:
         """The sums of row hashes of each table, uint64 (W, 2)."""
-        sums = self.manifest["digests"]
-        return {table: np.array(each, np.uint64) for table, each in sums.items()}
+        sums = self.manifest.digests
+        return {table: np.array(each, np.uint64).reshape(-1, 2) for table, each in sums.items()}
 
 
 def save(run: Path, arrays: dict[str, np.ndarray], recorder: Recorder, progress: Progress) -> None:
@@ -151,26 +103,31 @@ def _fill(
     recorder: Recorder,
     progress: Progress,
 ) -> None:
-    state, manifest = folder / "state.npz", folder / "manifest.json"
+    state, manifest = folder / STATE, folder / MANIFEST
     np.savez(state, allow_pickle=False, **arrays, **recorder.tails())
     files.sync(state)
-    content = {
-        "progress": vars(progress),
-        "inputs": {name: files.seal(run / name) for name in INPUTS if (run / name).exists()},
-        "state": files.seal(state),
-        "segments": {table.name: table.segments for table in recorder.tables},
-        "digests": {table.name: table.digest.tolist() for table in recorder.tables},
-    }
-    text = json.dumps({**content, "sha256": _checksum(content)}, indent=1)
-    manifest.write_text(text, encoding="utf-8")
+    content = Manifest.model_validate(
+        {
+            "progress": progress,
+            "inputs": {name: files.seal(run / name) for name in _inputs(run)},
+            "state": files.seal(state),
+            "segments": {table.name: table.segments for table in recorder.tables},
+            "digests": {
+                table.name: [tuple(each) for each in table.digest.tolist()]
+                for table in recorder.tables
+            },
+        }
+    )
+    manifest.write_text(content.text(), encoding="utf-8")
     files.sync(manifest)
     files.sync(folder)
 
 
-def _checksum(manifest: dict[str, Any]) -> str:
-    """Return the SHA-256 of a manifest's other entries."""
-    content = {name: value for name, value in manifest.items() if name != "sha256"}
-    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+def _inputs(run: Path) -> list[str]:
+    """Return the files that a run needs to go on, beside its checkpoints, by their path below it."""
+    code = sorted(path for path in (run / CODE).rglob("*") if path.is_file())
+    paths = [run / name for name in INPUTS]
+    return [path.relative_to(run).as_posix() for path in (*paths, *code) if path.exists()]
 
 
 def no_whole_checkpoint(run: Path, faults: list[str]) -> Trouble:
@@ -188,7 +145,7 @@ def exists(run: Path) -> bool:
 
 def numbered(run: Path) -> list[Path]:
     """Return the folders of the run's checkpoints, oldest first."""
-    folders = (path for path in (run / FOLDER).glob("[0-9]*") if path.name.isdigit())
+    folders = (path for path in (run / FOLDER).glob("[0-9]*") if NUMBER.fullmatch(path.name))
     return sorted(folders, key=lambda path: int(path.name))
 
 
@@ -238,20 +195,17 @@ def _read(run: Path, path: Path, fault_in: FaultIn) -> Checkpoint | str:
         Trouble: one of INPUTS has changed, so that no checkpoint is of use.
     """
     try:
-        manifest = json.loads((path / "manifest.json").read_text(encoding="utf-8"))
-        if manifest["sha256"] != _checksum(manifest):
-            raise ValueError
-        inputs = manifest["inputs"].items()
-        sealed = [(path / "state.npz", manifest["state"])]
+        manifest = manifests.read(path / MANIFEST)
+        sealed: list[tuple[Path, Seal]] = [(path / STATE, manifest.state)]
         for table in TABLES:
-            sealed += [(run / table / each["name"], each) for each in manifest["segments"][table]]
-    except (OSError, ValueError, KeyError, TypeError):
-        return f"{path / 'manifest.json'} is missing or damaged"
-    for name, seal in inputs:
-        if fault := fault_in(run / name, seal["bytes"], seal["sha256"]):
+            sealed += [(run / table / each.name, each) for each in manifest.segments[table]]
+    except (OSError, ValueError, KeyError):
+        return f"{path / MANIFEST} is missing or damaged"
+    for name, seal in manifest.inputs.items():
+        if fault := fault_in(run / name, seal.bytes, seal.sha256):
             raise Trouble(f"{fault}; put it back (`primordia fork` goes on with other settings)")
     for file, seal in sealed:
-        if fault := fault_in(file, seal["bytes"], seal["sha256"]):
+        if fault := fault_in(file, seal.bytes, seal.sha256):
             return fault
     return Checkpoint(path, manifest)
 
@@ -264,7 +218,7 @@ def remove_leftovers(run: Path, last: Checkpoint | None) -> None:
         if path not in kept:
             files.remove(path)
     for table in TABLES:
-        named = {each["name"] for each in last.manifest["segments"][table]} if last else set()
+        named = {each.name for each in last.manifest.segments[table]} if last else set()
         for path in (run / table).iterdir():
             if path.name not in named:
                 files.remove(path)

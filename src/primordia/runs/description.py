@@ -4,6 +4,7 @@ It is written into the run, so that records can be read without the code of thes
 """
 
 from pathlib import Path
+from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
@@ -18,17 +19,17 @@ FILE = "description.json"
 class Description(BaseModel):
     """What a reader of the records must know."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
 
-    rate: float | None
+    rate: float | None = Field(gt=0, allow_inf_nan=False)
     """ticks in a second of the habitat; None: it has no clock"""
     tallies: tuple[str, ...]
     """names of the habitat's counts"""
     notes: tuple[str, ...]
     """names of the mutation's notes"""
-    beginning: dict[str, float]
+    beginning: dict[str, Annotated[float, Field(allow_inf_nan=False)]]
     """the settings that seasons may change, with their values at the beginning"""
-    blocks: dict[str, tuple[int, ...]]
+    blocks: dict[str, tuple[Annotated[int, Field(ge=1, lt=2**31)], ...]]
     """shape of each block of weights in a genome"""
     code: dict[str, str] = Field({})
     """SHA-256 of each file of the user's own code, by its path below `code`"""
@@ -61,6 +62,6 @@ def read(run: Path) -> Description:
         InputError: it is missing or damaged.
     """
     try:
-        return Description.model_validate_json((run / FILE).read_bytes())
+        return Description.model_validate_json(files.read(run / FILE))
     except (OSError, ValidationError):
         raise InputError(f"{run / FILE} is missing or damaged; put it back") from None

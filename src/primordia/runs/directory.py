@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 from filelock import FileLock, Timeout
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from primordia import device, files, interrupts, own_code
 from primordia.brains import genomes
@@ -110,12 +110,7 @@ def read_config(run: Path) -> Config:
         InputError: this is no run directory, or one that this version cannot read.
     """
     files.check_name(run)
-    try:
-        made_by = int(recorded_versions(run)["format"])
-    except (OSError, ValueError, KeyError, TypeError):
-        raise InputError(
-            f"{run} is not a run of primordia: it has no readable versions.json"
-        ) from None
+    made_by = recorded_versions(run).format
     if made_by > FORMAT:
         raise InputError(
             f"{run} was made by a newer primordia (format {made_by}, this one reads {FORMAT}); upgrade"
@@ -125,7 +120,9 @@ def read_config(run: Path) -> Config:
             f"{run} has format {made_by}, and this primordia reads format {FORMAT} only;"
             f" `primordia run {run / 'config.toml'}` lives it again from its beginning"
         )
-    return parsed(from_toml(run / "config.toml"), source=str(run / "config.toml"))
+    if not (file := run / "config.toml").is_file():
+        raise InputError(f"{file} is missing; put it back")
+    return parsed(from_toml(file), source=str(file))
 
 
 def versions_here(config: Config, habitat: AnyHabitat) -> dict[str, str]:
@@ -134,10 +131,27 @@ def versions_here(config: Config, habitat: AnyHabitat) -> dict[str, str]:
     return {**device.versions(), **habitat.versions, **packages}
 
 
-def recorded_versions(run: Path) -> dict[str, Any]:
-    """Return the content of `versions.json`: the format, and what `versions_here` gave then."""
-    recorded: dict[str, Any] = json.loads((run / VERSIONS).read_text(encoding="utf-8"))
-    return recorded
+class Versions(BaseModel):
+    """The content of `versions.json`: the format, and what `versions_here` gave then."""
+
+    model_config = ConfigDict(extra="allow", strict=True)
+    __pydantic_extra__: dict[str, str]
+
+    format: int = Field(ge=0, lt=2**31)
+
+
+def recorded_versions(run: Path) -> Versions:
+    """Return the versions that a run was begun with.
+
+    Raises:
+        InputError: this is no run directory.
+    """
+    try:
+        return Versions.model_validate_json(files.read(run / VERSIONS))
+    except (OSError, ValidationError):
+        raise InputError(
+            f"{run} is not a run of primordia: it has no readable versions.json"
+        ) from None
 
 
 @contextmanager

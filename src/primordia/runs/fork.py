@@ -22,9 +22,10 @@ from primordia.law.world import Climate, Looks, World, Worlds
 from primordia.random.wide import Wide, never, wide
 from primordia.runs import checkpoint, directory
 from primordia.runs.archive import Archive
-from primordia.runs.checkpoint import Progress, world_ticks
+from primordia.runs.arrays import world_ticks
 from primordia.runs.lives import Lives
 from primordia.runs.loop import Listener, Status, recorder_for
+from primordia.runs.manifest import Progress
 from primordia.settings.tables import from_toml, merged
 
 HARMLESS = {"stop", "fork", "about", "sample_every"}
@@ -62,7 +63,7 @@ def fork(
     after = _transplant(before, source.config, changed, at)
     recorder = recorder_for(after, out)
     recorder.add("births", _birth_rows(living, after))
-    progress = Progress(changed.stop.model_dump(), 0.0, after.chunks.exact)
+    progress = Progress(limits=changed.stop, wall_s=0.0, exact=after.chunks.exact)
 
     def save_origin() -> None:
         checkpoint.save_origin(out, after.arrays(), recorder, progress)

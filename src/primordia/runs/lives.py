@@ -139,7 +139,11 @@ class Lives:
 
 
 def join(
-    births: Iterable[pa.Table], deaths: Iterable[pa.Table], ends: np.ndarray, begins: int
+    births: Iterable[pa.Table],
+    deaths: Iterable[pa.Table],
+    ends: np.ndarray,
+    begins: int,
+    cells: int,
 ) -> Lives:
     """Join the births and deaths of a run; each segment is released once it is read.
 
@@ -148,14 +152,20 @@ def join(
         deaths: segments; their world, id, tick and cause are enough.
         ends: last tick of each world so far, int64 (W,).
         begins: tick at the end of which the records begin.
+        cells: cells of one world.
+
+    Raises:
+        ValueError: births and deaths contradict each other; the message says where.
     """
     born = _concatenated([_columns(segment, BirthCause) for segment in births])
     if len(ends) > 1:  # world by world; NumPy sorts numbers of 16 bits in linear time
         order = np.argsort(born["world"].astype(np.uint16), kind="stable")
         born = {name: array[order] for name, array in born.items()}
+    _check_births(born, ends, cells)
     ended, cause = ends[born["world"]], np.full(len(born["id"]), ALIVE, np.int8)
     for dead in (_columns(segment, Cause) for segment in deaths):
         rows = _rows(born["world"], born["id"], dead["world"], dead["id"])
+        _check_deaths(dead, rows, born["tick"], ended, cause)
         ended[rows], cause[rows] = dead["tick"], dead["cause"]
     pa.default_memory_pool().release_unused()  # 100 MB after 5 million births
     return Lives(
@@ -169,6 +179,46 @@ def join(
         ended=ended,
         cause=cause,
     )
+
+
+def _check_births(born: dict[str, np.ndarray], ends: np.ndarray, cells: int) -> None:
+    world, number = born["world"], born["id"]
+    if not ((world >= 0) & (world < len(ends))).all():
+        raise ValueError("an organism lives in a world that does not exist")
+    faults = {
+        "lives in a cell that does not exist": (born["cell"] < 0) | (born["cell"] >= cells),
+        "has a birth number below 0": number < 0,
+        "is born before the first tick, or after the last": (born["tick"] < 0)
+        | (born["tick"] > ends[world]),
+        "is not younger than its parent": born["parent"] >= number,
+        "has no parent and is no founder": (born["parent"] < 0)
+        & (born["cause"] != BirthCause.FOUNDER),
+    }
+    for fault, where in faults.items():
+        if where.any():
+            raise ValueError(f"organism {number[where.argmax()]} {fault}")
+    ascending = (number[1:] > number[:-1]) | (world[1:] > world[:-1])
+    if not ascending.all():
+        raise ValueError(f"organism {number[1:][~ascending][0]} is not recorded in order of birth")
+
+
+def _check_deaths(
+    dead: dict[str, np.ndarray],
+    rows: np.ndarray,
+    born: np.ndarray,
+    ended: np.ndarray,
+    cause: np.ndarray,
+) -> None:
+    """Check deaths, with the rows of those who died; the other arrays are of all organisms."""
+    if len(rows) and rows.min() < 0:
+        raise ValueError(f"organism {dead['id'][rows.argmin()]} dies without having been born")
+    twice = (cause[rows] != ALIVE).any() or len(np.unique(rows)) < len(rows)
+    if twice:
+        raise ValueError("an organism dies twice")
+    early = (dead["tick"] < born[rows]) | (dead["tick"] > ended[rows])
+    if early.any():
+        number = dead["id"][early.argmax()]
+        raise ValueError(f"organism {number} dies before its birth, or after the last tick")
 
 
 def _rows(
@@ -213,7 +263,10 @@ def _columns(segment: pa.Table, kind: type[Named]) -> dict[str, np.ndarray]:
     }
     causes = segment["cause"].combine_chunks()
     codes = {each.label: each for each in kind}
-    code_of_word = np.array([codes[word] for word in causes.dictionary.to_pylist()], np.int8)
+    words = causes.dictionary.to_pylist()
+    if not set(words) <= set(codes):
+        raise ValueError(f"{min(set(words) - set(codes), key=str)!r} is no cause")
+    code_of_word = np.array([codes[word] for word in words], np.int8)
     return {**arrays, "cause": code_of_word[causes.indices.to_numpy()]}
 
 

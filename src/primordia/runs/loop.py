@@ -20,7 +20,8 @@ from primordia.errors import InputError
 from primordia.law.events import Events
 from primordia.runs import checkpoint, directory
 from primordia.runs.archive import Archive
-from primordia.runs.checkpoint import Checkpoint, Progress
+from primordia.runs.checkpoint import Checkpoint
+from primordia.runs.manifest import Progress
 from primordia.runs.record import Recorder
 from primordia.runs.schema import Schema
 
@@ -63,7 +64,7 @@ def start(
     with interrupts.noting(), directory.create(run, config):
         engine = Engine(config)
         recorder = recorder_for(engine, run)
-        progress = Progress(config.stop.model_dump(), 0.0, engine.chunks.exact)
+        progress = Progress(limits=config.stop, wall_s=0.0, exact=engine.chunks.exact)
         drive(engine, recorder, run, progress, checkpoint_every, listen)
 
 
@@ -110,14 +111,14 @@ def resume(
         checkpoint.remove_leftovers(run, last)
         engine = Engine(config)
         recorder = recorder_for(engine, run)
-        progress = Progress(config.stop.model_dump(), 0.0, engine.chunks.exact)
+        progress = Progress(limits=config.stop, wall_s=0.0, exact=engine.chunks.exact)
         if last is not None:
             restore(engine, recorder, last)
-            progress = last.progress
-        progress.limits |= given
+            progress = last.manifest.progress
+        progress.limits = progress.limits.model_copy(update=given)
         progress.exact &= not differ and engine.chunks.exact
         notes = [f"a damaged checkpoint was not used: {fault}" for fault in faults]
-        if not engine.any_running(engine.limits(progress.limits)):
+        if not engine.any_running(engine.limits(progress.limits.model_dump())):
             notes.append(_nothing_to_do(run, progress))
         drive(engine, recorder, run, progress, checkpoint_every, listen)
     return notes
@@ -132,12 +133,12 @@ def recorder_for(engine: Engine, run: Path | None) -> Recorder:
 def restore(engine: Engine, recorder: Recorder, stored: Checkpoint) -> None:
     """Load a checkpoint into an engine and a recorder."""
     arrays = dict(stored.arrays())
-    recorder.resume(stored.manifest["segments"], stored.digests, arrays)
+    recorder.resume(stored.manifest.segments, stored.digests, arrays)
     engine.load(arrays)
 
 
 def _nothing_to_do(run: Path, progress: Progress) -> str:
-    limits = ", ".join(f"{name} {value}" for name, value in progress.limits.items() if value)
+    limits = ", ".join(f"{name} {value}" for name, value in progress.limits if value)
     return (
         f"nothing to do: every world of {run} has reached a limit ({limits}); to go on, set"
         " another with --ticks, --births or --until, such as --ticks 1000000 --until none"
@@ -159,7 +160,7 @@ def drive(
     Raises:
         KeyboardInterrupt: on Ctrl-C, SIGTERM or SIGHUP, after a checkpoint if the run has advanced.
     """
-    limits = engine.limits(progress.limits)
+    limits = engine.limits(progress.limits.model_dump())
     with interrupts.noting() as noted, directory.held(run) as check:
         began, chunks = time.perf_counter(), _chunks(engine, limits, noted)
         # The first chunk is compiled, which takes seconds; in these a command may be ended at once.

@@ -13,6 +13,7 @@ import pyarrow.parquet as pq
 from primordia import files
 from primordia.law.events import Events
 from primordia.runs.digest import row_hashes
+from primordia.runs.manifest import Segment
 from primordia.runs.schema import TABLES, Schema
 
 SEGMENT_ROWS = 2**20
@@ -27,7 +28,7 @@ class Table:
     """sum of the row hashes of each world, uint64 (W, 2)"""
     tail: list[np.ndarray] = field(default_factory=list)
     tail_rows: int = 0
-    segments: list[dict[str, object]] = field(default_factory=list)
+    segments: list[Segment] = field(default_factory=list)
 
 
 class Recorder:
@@ -77,7 +78,8 @@ class Recorder:
         path = self._run / table.name / f"{len(table.segments):06d}.parquet"
         arrow = self.schema.arrow(table.name, rows)
         files.write(path, lambda temporary: pq.write_table(arrow, temporary))
-        table.segments.append({"name": path.name, "rows": len(rows), **files.seal(path)})
+        sealed = files.seal(path)
+        table.segments.append(Segment(name=path.name, rows=len(rows), **sealed))
 
     def tail(self, table: Table) -> np.ndarray:
         """Return the open tail, uint32 (n, fields)."""
@@ -98,7 +100,7 @@ class Recorder:
 
     def resume(
         self,
-        segments: dict[str, list[dict[str, object]]],
+        segments: dict[str, list[Segment]],
         digests: dict[str, np.ndarray],
         tails: dict[str, np.ndarray],
     ) -> None:

@@ -12,6 +12,7 @@ from primordia.law.events import BIRTHS, DEATHS, sample_columns
 from primordia.law.law import Law
 from primordia.law.metabolism import ONE
 from primordia.law.world import BirthCause, Cause
+from primordia.runs.description import Description
 
 TABLES = ("births", "deaths", "metrics")
 
@@ -33,6 +34,11 @@ class Schema:
     def of(cls, law: Law, tallies: tuple[str, ...]) -> "Schema":
         """Return the schema for a law and a habitat's tallies."""
         return cls(law.cells, law.heredity.mutation.notes, law.rates, tallies)
+
+    @classmethod
+    def described(cls, cells: int, about: Description) -> "Schema":
+        """Return the schema for the description of a run."""
+        return cls(cells, about.notes, tuple(about.beginning), about.tallies)
 
     def columns(self, table: str) -> Columns:
         """Return the columns of a table's rows, as the law and the tallies write them."""

@@ -6,7 +6,7 @@ from primordia.engine.engine import Engine
 from primordia.errors import InputError
 from primordia.runs import checkpoint
 from primordia.runs.archive import Archive
-from primordia.runs.checkpoint import world_ticks
+from primordia.runs.arrays import world_ticks
 from primordia.runs.digest import digests
 from primordia.runs.loop import Listener, Status, recorder_for, restore
 
@@ -23,7 +23,7 @@ def verify(run: Archive, listen: Listener | None = None) -> list[str]:
         return faults
     if last is None:
         raise InputError(f"{run.path} has no checkpoint yet, so there is nothing to verify")
-    if not last.progress.exact:
+    if not last.manifest.progress.exact:
         raise InputError(f"{run.path} is not exact (see `primordia info`): nothing can be verified")
     run.admit()
     engine = Engine(config)

@@ -1,0 +1,81 @@
+"""The arrays of a checkpoint: a state by name, and the open tails of the tables."""
+
+import zipfile
+import zlib
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+import numpy as np
+
+from primordia.errors import Trouble
+
+NEVER = 2**64 - 1
+"""The tick or count of an event that has not happened."""
+
+UNREADABLE = (
+    OSError,
+    EOFError,
+    KeyError,
+    MemoryError,
+    NotImplementedError,
+    OverflowError,
+    RuntimeError,
+    SyntaxError,
+    TypeError,
+    ValueError,
+    zipfile.BadZipFile,
+    zlib.error,
+)
+"""What NumPy and zipfile raise for files that are no archives of arrays."""
+
+
+class Arrays(Mapping[str, np.ndarray]):
+    """State and open tails of a checkpoint by name, each read at its first use.
+
+    The file stays open, so the arrays can be read even after the run has gone on and removed the file.
+    """
+
+    def __init__(self, file: Path) -> None:
+        """Open a file; raise Trouble if it holds no arrays."""
+        self._file = file
+        try:
+            self._stored = np.load(file, allow_pickle=False)
+            self._names = tuple(self._stored.files)
+        except (*UNREADABLE, AttributeError):
+            raise self._damaged() from None
+        self._read: dict[str, np.ndarray] = {}
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        if name not in self._names:
+            raise KeyError(name)
+        if name not in self._read:
+            try:
+                array = self._stored[name]
+            except UNREADABLE:
+                raise self._damaged() from None
+            if not isinstance(array, np.ndarray):
+                raise self._damaged()
+            self._read[name] = array
+        return self._read[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+    def _damaged(self) -> Trouble:
+        return Trouble(
+            f"{self._file} is damaged: it is no archive of arrays; restore it from a copy"
+        )
+
+
+def read_count(arrays: Mapping[str, np.ndarray], name: str) -> np.ndarray:
+    """Return 64-bit numbers, which a state holds in two words, as uint64."""
+    hi, lo = arrays[f"{name}.hi"].astype(np.uint64), arrays[f"{name}.lo"]
+    return (hi << np.uint64(32)) | lo
+
+
+def world_ticks(arrays: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Return the ticks that each world of a state has lived through, uint64 (W,)."""
+    return read_count(arrays, "world.worlds.tick")

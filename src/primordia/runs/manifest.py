@@ -1,0 +1,86 @@
+"""The manifest of a checkpoint: checksums, the segments that count, and progress."""
+
+import hashlib
+import json
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from primordia import files
+from primordia.config import Stop
+
+Table = Annotated[str, Field(pattern="^(births|deaths|metrics)$")]
+Word = Annotated[int, Field(ge=0, lt=2**64)]
+Input = Annotated[
+    str, Field(pattern=r"^(config\.toml|description\.json|founders\.safetensors|code(/[^/]+)+)$")
+]
+
+
+class Part(BaseModel):
+    """Values of one kind in a manifest; nothing else is accepted."""
+
+    model_config = ConfigDict(extra="forbid", strict=True)
+
+
+class Seal(Part):
+    """Size and checksum of a file; see `files.seal`."""
+
+    bytes: int = Field(ge=0)
+    sha256: str = Field(pattern="^[0-9a-f]{64}$")
+
+
+class Segment(Seal):
+    """A closed segment of a table."""
+
+    name: str = Field(pattern=r"^[0-9]{6,18}\.parquet$")
+    rows: int = Field(ge=0)
+
+
+class Progress(Part):
+    """What concerns the run as a whole."""
+
+    limits: Stop
+    """ticks, births, until: as last requested"""
+    wall_s: float = Field(ge=0, allow_inf_nan=False)
+    """seconds spent so far"""
+    exact: bool
+    """whether the whole run can be repeated bit for bit"""
+
+
+class Manifest(Part):
+    """The content of `manifest.json`, without the checksum of the content."""
+
+    progress: Progress
+    inputs: dict[Input, Seal]
+    """files that a run needs to go on, beside its checkpoints, by their path below the run"""
+    state: Seal
+    segments: dict[Table, list[Segment]]
+    digests: dict[Table, list[tuple[Word, Word]]]
+    """sums of the row hashes of each table, for each world"""
+
+    def text(self) -> str:
+        """Return the content of the file."""
+        content = self.model_dump(mode="json")
+        return json.dumps({**content, "sha256": _checksum(content)}, indent=1)
+
+
+def read(path: Path) -> Manifest:
+    """Return the manifest in a file.
+
+    Raises:
+        OSError: the file cannot be read.
+        ValueError: it holds no manifest, or was changed.
+    """
+    try:
+        content = json.loads(files.read(path))
+        recorded = content.pop("sha256")
+    except (RecursionError, AttributeError, KeyError, TypeError) as error:
+        raise ValueError(f"{path} is no manifest") from error
+    if recorded != _checksum(content):
+        raise ValueError(f"{path} was changed")
+    return Manifest.model_validate_json(json.dumps(content))
+
+
+def _checksum(content: dict[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()

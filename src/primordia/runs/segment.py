@@ -1,0 +1,41 @@
+"""A closed segment of a table: a Parquet file, which is read only if it has the table's columns."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from primordia.errors import Trouble
+
+NULLABLE = ("parent",)
+"""Columns that may have no value: that of a founder."""
+
+
+def read(path: Path, rows: int, schema: pa.Schema, columns: Sequence[str] | None) -> pa.Table:
+    """Return a segment, all columns or some.
+
+    Args:
+        path: its file.
+        rows: the number of rows that it must have.
+        schema: the columns that it must have.
+        columns: names of those that are wanted.
+
+    Raises:
+        Trouble: the file is no segment of this table.
+    """
+    try:
+        with pq.ParquetFile(path) as file:
+            found = {field.name: field.type for field in file.schema_arrow}
+            wanted = {field.name: field.type for field in schema}
+            if len(file.schema_arrow) != len(found) or found != wanted:
+                raise Trouble(f"{path} is damaged: it has other columns than this table")
+            table = file.read(columns)
+    except (OSError, pa.ArrowException, MemoryError, ValueError) as error:
+        message = str(error).partition("\n")[0]
+        raise Trouble(f"{path} is damaged: {message}; restore it from a copy") from None
+    if table.num_rows != rows:
+        raise Trouble(f"{path} is damaged: it has {table.num_rows} rows instead of {rows}")
+    if any(table[name].null_count for name in table.column_names if name not in NULLABLE):
+        raise Trouble(f"{path} is damaged: it lacks values")
+    return table
