@@ -9,6 +9,7 @@ import shutil
 import stat
 from collections.abc import Callable
 from contextlib import suppress
+from itertools import takewhile
 from pathlib import Path
 
 from primordia import interrupts
@@ -88,10 +89,10 @@ def make_folder(path: Path) -> None:
     """
     check_name(path)
     try:
-        for folder in reversed([path, *path.parents]):
-            if not folder.is_dir():
-                folder.mkdir(exist_ok=True)
-                sync(folder.parent)
+        missing = takewhile(lambda each: not each.exists(), [path, *path.parents])
+        for folder in reversed([path, *missing]):
+            folder.mkdir(exist_ok=True)
+            sync(folder.parent)
     except OSError as error:
         raise Trouble(f"{path} cannot be written: {error.strerror or error}") from None
 

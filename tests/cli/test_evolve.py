@@ -1,25 +1,26 @@
 """What commands that write runs say at their end."""
 
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 from tests.commands import complains, here
+from tests.toys import Meadow
 from tests.trouble import SMALL
 
 
-@pytest.mark.parametrize("drawn", [True, False])
 def test_a_replay_is_recommended_where_the_habitat_draws_pictures(
-    drawn: bool, tmp_path: Path
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     run = tmp_path / "run"
-    words: tuple[Any, ...] = () if drawn else ("--habitat", '{name = "tests.toys:Meadow"}')
-    loud = [word for word in SMALL if word != "--quiet"]
-    done = here("run", *loud, *words, "--ticks", 2, "--out", run)
-    assert done.returncode == 0
-    lines = done.stdout.splitlines()
-    assert f"Figures: primordia plot {run}" in lines
-    assert (f"Video of the longest life: primordia replay {run}" in lines) == drawn
-    if not drawn:
-        complains(here("replay", run), 2, "its habitat draws no pictures (it has no `picture`")
+    meadow = ("--habitat", '{name = "tests.toys:Meadow"}', "--brain.hidden", 1)
+    words = [word for word in SMALL if word != "--quiet"]
+    lines = here("run", *words, *meadow, "--ticks", 2, "--out", run).stdout.splitlines()
+    figures = f"Figures: primordia plot {run}"
+    video = f"Video of the longest life: primordia replay {run}"
+    assert (figures in lines, video in lines) == (True, False)
+    complains(here("replay", run), 2, "draws no pictures (it has no `picture` and no `rate`)")
+    monkeypatch.setattr(Meadow, "rate", 50.0, raising=False)
+    monkeypatch.setattr(Meadow, "picture", lambda self, body, action: None)
+    lines = here("resume", run, "--ticks", 3).stdout.splitlines()
+    assert (figures in lines, video in lines) == (True, True)

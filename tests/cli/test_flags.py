@@ -21,7 +21,7 @@ from primordia.settings.fields import setting_fields
 from tests.commands import complains, here
 from tests.trouble import TASK
 
-SOME = settings(max_examples=200, suppress_health_check=[HealthCheck.function_scoped_fixture])
+SOME = settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
 THOUSANDS = settings(SOME, max_examples=5000)
 
 
@@ -39,6 +39,15 @@ def started(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[list[Co
     assert not list(tmp_path.iterdir())
 
 
+HABITATS = {TASK: "cartpole", "Pong-survival": "atari", "Reacher-forager": "mujoco"}
+ANY = [
+    (task, path)
+    for task, name in HABITATS.items()
+    for path in sorted({*setting_fields(Config), *setting_fields(find(name), "habitat.")})
+]
+"""Tasks with simulators of three kinds, and the settings of each."""
+
+
 def accepted_or_refused(words: list[str], started: list[Config]) -> None:
     """Assert that `run` with these words starts a run or says in one line why not."""
     started.clear()
@@ -49,6 +58,12 @@ def accepted_or_refused(words: list[str], started: list[Config]) -> None:
     else:
         assert done.stderr == ""
         assert done.stdout.startswith("Usage") or len(started) == 1
+
+
+def test_a_name_that_is_too_long_is_no_file(started: list[Config]) -> None:
+    for name in ("x" * 300, f"{'x' * 300}.toml"):
+        complains(here("run", name), 2, name)
+    accepted_or_refused(["Reacher-forager", "--habitat.file", "x" * 300], started)
 
 
 PATHS = sorted({*setting_fields(Config), *setting_fields(find("cartpole"), "habitat.")})
@@ -97,6 +112,13 @@ FLAGS = st.one_of(
     st.tuples(st.builds(lambda name, value: f"--{name}={value}", NAMES, VALUES)),
     st.tuples(st.one_of(VALUES, st.sampled_from(["--", "---", "-", "-x", "--=", "-h", "--help"]))),
 ).filter(lambda words: not any(word.startswith("--out") for word in words))
+EXPRESSIONS = st.sampled_from(
+    ["ram[17] == 0", "points", "lives * lives", "not " * 500 + "game_over", "1", "['1']", "reached",
+     "['qpos[1:]', 'qvel']", "[127, 128]", "[-1]", "norm(qpos) < 1", "full", "NOOP UP", "combat",
+     "space_invaders", "nothing", "gymnasium:ant.xml", "gymnasium:../x", "/dev/null", ".", "x" * 300,
+     f"['{'x' * 300}']", "{body = 'x'}", "{fatal = 'nan < 1'}", "{scored = {scored = {}}}",
+     "{food = '1e39'}"]
+)  # fmt: skip
 LINES = st.lists(FLAGS, max_size=4).map(lambda parts: [word for part in parts for word in part])
 
 
@@ -115,21 +137,23 @@ def test_thousands_of_command_lines_are_accepted_or_refused(
     accepted_or_refused([TASK, "--quiet", *line], started)
 
 
-@SOME
-@given(st.sampled_from(PATHS), VALUES)
+@settings(SOME, max_examples=50)  # simulators take a while to check their settings
+@given(st.sampled_from(ANY), VALUES | EXPRESSIONS)
 def test_any_value_of_a_setting_is_accepted_or_refused(
-    started: list[Config], name: str, value: str
+    started: list[Config], setting: tuple[str, str], value: str
 ) -> None:
-    accepted_or_refused([TASK, "--quiet", f"--{name}={value}"], started)
+    task, path = setting
+    accepted_or_refused([task, "--quiet", f"--{path}={value}"], started)
 
 
 @pytest.mark.slow
 @THOUSANDS
-@given(st.sampled_from(PATHS), VALUES)
+@given(st.sampled_from(ANY), VALUES | EXPRESSIONS)
 def test_thousands_of_values_are_accepted_or_refused(
-    started: list[Config], name: str, value: str
+    started: list[Config], setting: tuple[str, str], value: str
 ) -> None:
-    accepted_or_refused([TASK, "--quiet", f"--{name}={value}"], started)
+    task, path = setting
+    accepted_or_refused([task, "--quiet", f"--{path}={value}"], started)
 
 
 @pytest.mark.parametrize("name", KEYWORDS)
@@ -138,7 +162,7 @@ def test_no_flag_is_an_argument_of_a_python_function(
 ) -> None:
     """Flags are settings; what Python calls `self`, `listen` or `task` is none."""
     lines = {
-        run: ["run", TASK, "--quiet"],
+        run: ["run", TASK, "--quiet", "--out", "run"],
         fork: ["fork", "none", "--at", "3", "--out", "run"],
         evaluate: ["evaluate", "none"],
     }

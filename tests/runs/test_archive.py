@@ -169,8 +169,8 @@ def test_a_fork_has_the_state_that_it_began_with(mill: Path, fork: Path) -> None
 def test_damage_to_any_table_is_noticed(mill: Path, tmp_path: Path, table: str) -> None:
     run = Archive(shutil.copytree(mill, tmp_path / "run"))
     flip(run.path / table / "000000.parquet")
-    with pytest.raises(Trouble, match=rf"{table}/000000\.parquet was changed or damaged"):
-        info(run)
+    _, (fault, *_) = run.newest
+    assert f"{table}/000000.parquet was changed or damaged" in fault
 
 
 def test_a_fork_with_damaged_records_is_read_as_it_began(fork: Path) -> None:

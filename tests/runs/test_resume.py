@@ -51,7 +51,7 @@ def test_a_run_can_be_looked_at_soon_after_its_start(
     monkeypatch.setattr(checkpoint, "save", lambda *_: saved.append(now[0]))
     nothing: Any = SimpleNamespace(arrays=dict)
     progress = Progress({}, 0.0, True)
-    saver = loop.Saver(nothing, nothing, tmp_path, progress, every, lambda: None)
+    saver = loop.Saver(nothing, nothing, tmp_path, progress, every, 0.0, lambda: None)
     while now[0] < expected[-1]:
         now[0] += 0.5
         saver.save_if_due()

@@ -1,6 +1,7 @@
 """Values of settings: what a file holds is a valid run, or is refused in one line before it begins."""
 
 import math
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -8,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import tomli_w
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 from primordia.config import Config, load
@@ -200,3 +201,70 @@ def test_thousands_of_files_are_taken_or_refused(tmp_path: Path, text: str) -> N
 def test_what_a_task_was_started_with_is_read_again(name: str, tmp_path: Path) -> None:
     (tmp_path / "config.toml").write_text(load(name).to_toml(), encoding="utf-8")
     check_values(from_toml(tmp_path / "config.toml"))
+
+
+def edge(least: float, most: float) -> st.SearchStrategy[float]:
+    """Draw a number between two bounds, often one of them."""
+    return st.sampled_from([least, most]) | st.floats(least, most)
+
+
+RATES = {"hazard": edge(0, 1), "replication": edge(0, 1)}
+ENERGY = {name: edge(1e-3, 1e6) for name in ("store", "drain", "gain", "effort_cost", "cap")}
+NOISE = {name: edge(0, LARGEST) for name in ("scale", "founder_scale")}
+SEASONS = st.one_of(
+    st.fixed_dictionaries(
+        {"kind": st.just("schedule"), "setting": st.sampled_from([*RATES, "mutation.scale"]),
+         "at": st.integers(1, 5) | st.just(2**64 - 1), "value": edge(0, LARGEST)}
+    ),
+    st.fixed_dictionaries(
+        {"kind": st.just("ratchet"), "setting": st.sampled_from([*RATES, "mutation.probability"]),
+         "when": st.sampled_from(["mean_age", "saturation", "food"]), "above": edge(0, LARGEST),
+         "factor": edge(1e-30, LARGEST), "every": st.sampled_from([1, 2, 2**31 - 1])}
+    ),
+)  # fmt: skip
+LIVABLE = st.fixed_dictionaries(
+    {"stop": st.fixed_dictionaries({"ticks": st.integers(1, 6)}), "cells": st.integers(2, 40)},
+    optional={
+        **RATES,
+        "habitat": st.fixed_dictionaries(
+            {}, optional={"spread": edge(0, 1e9), "track_limit": edge(1e-30, LARGEST),
+                          "senses": st.sampled_from([["x"], ["theta", "x_dot"]])}
+        ),
+        "brain": st.fixed_dictionaries(
+            {"kind": st.sampled_from(["linear", "gated", "feed-forward", "recurrent"])},
+        ),
+        "placement": st.fixed_dictionaries(
+            {"topology": st.sampled_from(["ring", "torus4", "torus8", "well-mixed"]),
+             "rule": st.sampled_from(["blind", "empty-only", "replacing"])}
+        ),
+        "mutation": st.fixed_dictionaries({}, optional={"probability": edge(0, 1), **NOISE}),
+        "metabolism": st.fixed_dictionaries({}, optional=ENERGY),
+        "genesis": st.sampled_from(["one", "fill"]),
+        "inheritance": st.sampled_from(["parent", "founder"]),
+        "seasons": st.lists(SEASONS, max_size=2),
+        "seed": st.sampled_from([0, 2**32, 2**64 - 4]),
+        "seeds": st.integers(1, 3),
+        "sample_every": st.sampled_from([1, 2, 2**31 - 1]),
+        "saturation_ticks": st.sampled_from([1, 2**31 - 1]),
+    },
+)  # fmt: skip
+
+
+@pytest.mark.slow
+@settings(SOME, max_examples=60, phases=[Phase.generate])  # each takes seconds
+@given(LIVABLE)
+def test_what_is_accepted_can_be_lived(
+    tmp_path_factory: pytest.TempPathFactory, changes: dict[str, Any]
+) -> None:
+    """Extreme values end in no error; a world whose cells make no torus is refused."""
+    folder = tmp_path_factory.mktemp("any")
+    file, run = folder / "mine.toml", folder / "run"
+    file.write_text(tomli_w.dumps({"task": TASK, **changes}))
+    done = here("run", file, "--until", "none", "--out", run, "--quiet")
+    if done.returncode:
+        complains(done, 2, "do not make a torus")
+        assert not run.exists()
+        return
+    assert (done.returncode, done.stderr) == (0, "")
+    assert f"{run} holds" in here("verify", run).stdout
+    shutil.rmtree(folder)

@@ -194,7 +194,7 @@ def test_a_signal_before_the_first_chunk_leaves_nothing(
 ) -> None:
     """Python's handler would raise KeyboardInterrupt in a library, which may swallow it."""
 
-    def press(_: object) -> dict[str, str]:
+    def press(*_: object) -> dict[str, str]:
         signal.raise_signal(number)
         return {}
 

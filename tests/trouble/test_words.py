@@ -133,8 +133,11 @@ def test_files_that_are_no_text_are_errors(tmp_path: Path) -> None:
         (["tasks", "more"], ["unexpected extra argument (more)"]),
     ],
 )
-def test_wrong_words_to_other_commands_are_errors(words: list[str], parts: list[str]) -> None:
-    complains(here(*words), 2, *parts)
+def test_wrong_words_to_other_commands_are_errors(
+    words: list[str], parts: list[str], run: Path
+) -> None:
+    """In these words, x is a run."""
+    complains(here(*(run if word == "x" else word for word in words)), 2, *parts)
 
 
 def test_a_command_without_words_prints_help() -> None:

@@ -1,5 +1,6 @@
 """Flags: a command's options, and any setting of a task by its dotted name."""
 
+from os.path import isfile  # false, not an error, for a name that is too long
 from pathlib import Path
 from typing import Any
 
@@ -104,7 +105,7 @@ class SettingsCommand(click.Command):
         known = tasks()
         for word in ctx.meta["words"]:
             title = f"Settings, as in TOML (values of {word})"
-            if Path(word, "config.toml").exists():
+            if isfile(Path(word, "config.toml")):
                 return title, run_rows(Path(word), ctx.obj)
             if word in known or word.endswith(".toml"):
                 return title, setting_rows(word, ctx.obj)
@@ -121,7 +122,7 @@ class HabitatCommand(SettingsCommand):
         from primordia.cli.help import habitat_rows
 
         words = ctx.meta["words"]
-        run = next((Path(word) for word in words if Path(word, "config.toml").exists()), None)
+        run = next((Path(word) for word in words if isfile(Path(word, "config.toml"))), None)
         return f"Settings of the habitat (values of {run})", habitat_rows(run) if run else []
 
 

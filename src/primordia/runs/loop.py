@@ -25,7 +25,7 @@ from primordia.runs.record import Recorder
 from primordia.runs.schema import Schema
 
 EARLY = (1.0, 4.0, 10.0)
-"""Seconds before each of the first checkpoints, so that a run can soon be looked at."""
+"""Seconds before each of the first checkpoints, after which a run can be looked at."""
 
 
 @dataclass
@@ -161,11 +161,10 @@ def drive(
     """
     limits = engine.limits(progress.limits)
     with interrupts.noting() as noted, directory.held(run) as check:
-        saver = Saver(engine, recorder, run, progress, checkpoint_every, check)
-        chunks = _chunks(engine, limits, noted)
-        first = list(
-            islice(chunks, 1)
-        )  # compiling takes seconds, in which a command may be ended at once
+        began, chunks = time.perf_counter(), _chunks(engine, limits, noted)
+        # The first chunk is compiled, which takes seconds; in these a command may be ended at once.
+        first = list(islice(chunks, 1))
+        saver = Saver(engine, recorder, run, progress, checkpoint_every, began, check)
         with interrupts.deferred():
             for events in chain(first, chunks):
                 check()
@@ -189,7 +188,7 @@ def _chunks(engine: Engine, limits: Limits, noted: list[int]) -> Iterator[Events
 
 
 class Saver:
-    """The checkpoints of a run that goes on: some soon after the start, then one in each interval."""
+    """The checkpoints of a run that goes on: some soon after its first chunk, then one an interval."""
 
     def __init__(
         self,
@@ -198,12 +197,13 @@ class Saver:
         run: Path,
         progress: Progress,
         every: float,
+        began: float,
         check: Callable[[], None],
     ) -> None:
         self._check = check
         self._engine, self._recorder, self._run, self._progress = engine, recorder, run, progress
         self._before, self._every = progress.wall_s, every
-        self._began = self._saved = time.perf_counter()
+        self._began, self._saved = began, time.perf_counter()
         self._waits = chain(EARLY, repeat(every))
         self._wait = min(next(self._waits), every)
 

@@ -3,6 +3,7 @@
 import difflib
 import tomllib
 from importlib import resources
+from os.path import isfile  # false, not an error, for a name that is too long
 from pathlib import Path
 from typing import Any
 
@@ -37,7 +38,7 @@ def values_of(task: str) -> dict[str, Any]:
     known = tasks()
     if task in known:
         return known[task]
-    if task.endswith(".toml") or Path(task).is_file():
+    if task.endswith(".toml") or isfile(task):
         values = from_toml(Path(task))
         return merged(known.get(str(values.get("task")), {}), values)
     raise InputError(
@@ -105,7 +106,7 @@ def _full_paths(folder: Path, table: dict[str, Any]) -> dict[str, Any]:
     changed = {}
     for name, value in table.items():
         file = folder / str(value)
-        full = str(file.resolve()) if name == "file" and file.is_file() else value
+        full = str(file.resolve()) if name == "file" and isfile(file) else value
         changed[name] = _full_paths(folder, value) if isinstance(value, dict) else full
     return changed
 

@@ -43,7 +43,10 @@ class CartPole(JaxHabitat, Settings):
         description="fatal distance from the middle, m; 1e9: there is no limit in practice",
     )
     spread: float = Field(
-        0.05, ge=0, description="each coordinate of a fresh body is uniform within +-spread"
+        0.05,
+        ge=0,
+        le=1e9,
+        description="each coordinate of a fresh body is uniform within +-spread",
     )
 
     @property

@@ -4,6 +4,7 @@ import hashlib
 from functools import cache
 from importlib import import_module
 from importlib.resources import files
+from os.path import isfile  # false, not an error, for a name that is too long
 from pathlib import Path
 from typing import Any
 
@@ -48,7 +49,7 @@ def load_model(file: str, timestep: float | None) -> Any:
         ValueError: there is no such file, MuJoCo does not accept it, or it has no actuators.
     """
     path = _path(file)
-    if not path.is_file():
+    if not isfile(path):
         raise ValueError(f"file: there is no {path}")
     try:
         model = package().MjModel.from_xml_path(str(path))
