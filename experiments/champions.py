@@ -34,7 +34,7 @@ def report(file: Path) -> None:
     path = file.parent / "genomes" / f"{file.stem}.safetensors"
     path.parent.mkdir(exist_ok=True)
     kept = rebuild_all(run, [(organism.id, organism.world) for organism in champions])
-    genomes.write(path, run.law.layout, kept, about)
+    genomes.write(path, run.layout, kept, about)
     print(path)
 
 

@@ -71,7 +71,8 @@ def trial(name: str, settings: dict[str, Any]) -> list[str]:
 def per_weight(law: Law, field: str) -> np.ndarray:
     """Return a setting of the mutation for each weight of a genome, float32 (P,)."""
     return np.repeat(
-        np.array(law.mutation.per_block(field, law.layout), np.float32), law.layout.sizes
+        np.array(law.heredity.mutation.per_block(field, law.heredity.layout), np.float32),
+        law.heredity.layout.sizes,
     )
 
 

@@ -1,8 +1,6 @@
 """Set-up of all tests: JAX, Hypothesis, and a shared cache of compiled code."""
 
-import hashlib
 import os
-import platform
 from pathlib import Path
 
 import jax
@@ -28,25 +26,17 @@ settings.load_profile("patient")
 
 
 @pytest.fixture(autouse=True, scope="session")
-def _compiled_code(tmp_path_factory: pytest.TempPathFactory, pytestconfig: pytest.Config) -> None:
-    """Share one cache of compiled code among test processes, the commands they run, and later tests.
+def _compiled_code(tmp_path_factory: pytest.TempPathFactory) -> None:
+    """Share one cache of compiled code among all test processes and all commands that they run.
 
-    It is in pytest's own cache, in a folder for each kind of processor, or else among temporary files.
+    The tests themselves keep it for the next time if JAX_COMPILATION_CACHE_DIR names a folder. Commands
+    do not, since some are killed while they write.
     """
     root = tmp_path_factory.getbasetemp()
     shared = root.parent if root.name.startswith("popen") else root
-    kept = getattr(pytestconfig, "cache", None)
-    commands.CACHE = kept.mkdir(f"compiled-{processor()}") if kept else Path(shared) / "compiled"
-    jax.config.update("jax_compilation_cache_dir", str(commands.CACHE))
-    jax.config.update("jax_compilation_cache_max_size", 2**31)
+    commands.CACHE = Path(shared) / "compiled"
+    kept = os.environ.get("JAX_COMPILATION_CACHE_DIR", str(commands.CACHE))
+    jax.config.update("jax_compilation_cache_dir", kept)
     os.environ["XDG_STATE_HOME"] = str(shared / "state")
     os.environ["XDG_CACHE_HOME"] = str(shared / "cache")
     jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.2)
-
-
-def processor() -> str:
-    """Return a name for this machine's kind of processor; code compiled for another may not run."""
-    file = Path("/proc/cpuinfo")
-    lines = file.read_text(encoding="utf-8").splitlines() if file.exists() else []
-    about = {line for line in lines if line.startswith(("model name", "flags", "Features"))}
-    return hashlib.sha256("\n".join([platform.machine(), *sorted(about)]).encode()).hexdigest()[:12]

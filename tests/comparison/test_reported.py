@@ -33,6 +33,17 @@ def test_every_death_up_to_the_limit_of_age_counts(one: Lived, other: Lived, lim
     assert all(estimate.deaths.sum(axis=0) > 0)
 
 
+@given(LIVED, LIVED, st.integers(0, 60))
+def test_at_risk_are_those_on_record_at_an_age(one: Lived, other: Lived, begin: int) -> None:
+    """Organisms of a fork come on record at different ages."""
+    lives = worlds_of(one, other, until=UNTIL).recorded_since(begin)
+    estimate = survival(lives, 2, 50)
+    for world in range(2):
+        lived = lives.of_world(world)
+        at_risk = [((lived.entered < age) & (age <= lived.lifespan)).sum() for age in estimate.ages]
+        assert estimate.at_risk[world].tolist() == at_risk
+
+
 @given(LIVED, st.integers(0, UNTIL))
 def test_a_record_that_ends_in_a_tick_holds_the_deaths_of_that_tick(lived: Lived, end: int) -> None:
     """Who is dead at the end of the last tick is no longer censored."""
