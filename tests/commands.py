@@ -32,10 +32,12 @@ def environment(cache: Path | None = None) -> dict[str, str]:
     return {**os.environ, **extra}
 
 
-def begin(*words: object) -> subprocess.Popen[str]:
-    """Start a command in another process and return while it runs."""
+def begin(*words: object, session: bool = False) -> subprocess.Popen[str]:
+    """Start a command in another process, if asked in a session of its own, and return while it runs."""
     pipes: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-    return subprocess.Popen([*COMMAND, *map(str, words)], env=environment(CACHE), **pipes)
+    return subprocess.Popen(
+        [*COMMAND, *map(str, words)], env=environment(CACHE), start_new_session=session, **pipes
+    )
 
 
 def here(*words: object) -> subprocess.CompletedProcess[str]:

@@ -112,7 +112,7 @@ HOSTED = {
 def test_runs_with_worker_processes_are_interrupted_at_many_instants(
     tmp_path: Path, name: str
 ) -> None:
-    for seed in range(10):
+    for seed in range(20):
         run, after = tmp_path / str(seed), random.Random(seed).uniform(0.0, 10.0)
         words = ("run", *HOSTED[name], "--until", "none", "--quiet", *OFTEN, "--out", run)
         status, err = interrupted(words, signal.SIGINT, after)

@@ -147,7 +147,7 @@ class Archive:
         Raises:
             Trouble: they do not fit the settings.
         """
-        return self._fitting(self.last)
+        return self.arrays_of(self.last)
 
     @cached_property
     def origin(self) -> Arrays | None:
@@ -157,10 +157,14 @@ class Archive:
             Trouble: they are damaged.
         """
         stored = checkpoint.origin(self.path, self.fault_in)
-        return None if stored is None else self._fitting(stored)
+        return None if stored is None else self.arrays_of(stored)
 
-    def _fitting(self, stored: Checkpoint) -> Arrays:
-        """Return the arrays of a checkpoint, which fit the settings of the run."""
+    def arrays_of(self, stored: Checkpoint) -> Arrays:
+        """Open the arrays of a checkpoint of this run.
+
+        Raises:
+            Trouble: they do not fit the settings.
+        """
         arrays = stored.arrays()
         if fault := shapes.fault(arrays, self.config, self.description):
             raise Trouble(f"{stored.path} is no checkpoint of this run: {fault}")

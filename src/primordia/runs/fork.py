@@ -86,7 +86,7 @@ def _engine_at(source: Archive, at: int, listen: Listener | None) -> Engine:
     engine = Engine(source.config)
     limits = engine.limits({"ticks": at})
     checkpoints = checkpoint.whole_checkpoints(source.path, source.fault_in)
-    stored = (each.arrays() for each in checkpoints)
+    stored = (source.arrays_of(each) for each in checkpoints)
     if before := next((each for each in stored if (world_ticks(each) <= at).all()), None):
         engine.load(dict(before))
     if not engine.any_running(limits):

@@ -158,12 +158,14 @@ def join(
         ValueError: births and deaths contradict each other; the message says where.
     """
     born = _concatenated([_columns(segment, BirthCause) for segment in births])
+    _check_worlds(born, ends)
     if len(ends) > 1:  # world by world; NumPy sorts numbers of 16 bits in linear time
         order = np.argsort(born["world"].astype(np.uint16), kind="stable")
         born = {name: array[order] for name, array in born.items()}
     _check_births(born, ends, cells)
     ended, cause = ends[born["world"]], np.full(len(born["id"]), ALIVE, np.int8)
     for dead in (_columns(segment, Cause) for segment in deaths):
+        _check_worlds(dead, ends)
         rows = _rows(born["world"], born["id"], dead["world"], dead["id"])
         _check_deaths(dead, rows, born["tick"], ended, cause)
         ended[rows], cause[rows] = dead["tick"], dead["cause"]
@@ -181,10 +183,13 @@ def join(
     )
 
 
+def _check_worlds(events: dict[str, np.ndarray], ends: np.ndarray) -> None:
+    if not ((events["world"] >= 0) & (events["world"] < len(ends))).all():
+        raise ValueError("an organism lives in a world that does not exist")
+
+
 def _check_births(born: dict[str, np.ndarray], ends: np.ndarray, cells: int) -> None:
     world, number = born["world"], born["id"]
-    if not ((world >= 0) & (world < len(ends))).all():
-        raise ValueError("an organism lives in a world that does not exist")
     faults = {
         "lives in a cell that does not exist": (born["cell"] < 0) | (born["cell"] >= cells),
         "has a birth number below 0": number < 0,

@@ -4,12 +4,14 @@ A run is a directory. Everything in it is a function of `config.toml`; see `reco
 """
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import chain, islice, repeat
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from primordia import interrupts
 from primordia.config import Config, checked
@@ -113,7 +115,7 @@ def resume(
         recorder = recorder_for(engine, run)
         progress = Progress(limits=config.stop, wall_s=0.0, exact=engine.chunks.exact)
         if last is not None:
-            restore(engine, recorder, last)
+            restore(engine, recorder, last, archive.arrays_of(last))
             progress = last.manifest.progress
         progress.limits = progress.limits.model_copy(update=given)
         progress.exact &= not differ and engine.chunks.exact
@@ -130,9 +132,11 @@ def recorder_for(engine: Engine, run: Path | None) -> Recorder:
     return Recorder(run, config.seeds, Schema.of(engine.law, engine.tallies))
 
 
-def restore(engine: Engine, recorder: Recorder, stored: Checkpoint) -> None:
-    """Load a checkpoint into an engine and a recorder."""
-    arrays = dict(stored.arrays())
+def restore(
+    engine: Engine, recorder: Recorder, stored: Checkpoint, arrays: Mapping[str, np.ndarray]
+) -> None:
+    """Load a checkpoint with its arrays into an engine and a recorder."""
+    arrays = dict(arrays)
     recorder.resume(stored.manifest.segments, stored.digests, arrays)
     engine.load(arrays)
 

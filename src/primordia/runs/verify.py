@@ -30,7 +30,7 @@ def verify(run: Archive, listen: Listener | None = None) -> list[str]:
     limits = engine.limits({}, world_ticks(run.state))
     recorder = recorder_for(engine, None)
     if (origin := checkpoint.origin(run.path, run.fault_in)) is not None:
-        restore(engine, recorder, origin)
+        restore(engine, recorder, origin, run.arrays_of(origin))
     began = time.perf_counter()
     while engine.any_running(limits):
         recorder.append(engine.advance(limits))
