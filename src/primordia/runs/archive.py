@@ -86,7 +86,10 @@ class Archive:
     def law(self) -> Law:
         """The law that holds in the run's worlds."""
         self.admit()
-        return self.config.build_law(self.habitat)
+        law = self.config.build_law(self.habitat)
+        if law.heredity.layout != self.layout:
+            raise Trouble(f"{self.path / description.FILE} does not describe this run's brain")
+        return law
 
     @cached_property
     def heredity(self) -> Heredity:
