@@ -18,7 +18,7 @@ test: .venv/installed-dev  ## run all tests: ten minutes on two cores
 quick: .venv/installed-dev  ## test each promise once, with the tests in tests/quick.txt: a minute on two cores
 	$(BIN)/python -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder @tests/quick.txt
 
-slow: .venv/installed-dev  ## run the tests marked slow, such as fifty kills
+slow: .venv/installed-dev  ## run the tests marked slow: an hour of kills, forged runs and generated inputs
 	$(BIN)/python -m pytest --numprocesses 2 -m slow
 
 check: .venv/installed-dev  ## check format, lint and types, and run all tests
