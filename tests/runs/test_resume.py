@@ -98,12 +98,6 @@ def test_kill_9_then_resume_equals_never_killed(
     assert killed_and_resumed(tmp_path / "run", seed) == through
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", range(100, 150))
-def test_fifty_kills_leave_the_run_unchanged(through: list[str], tmp_path: Path, seed: int) -> None:
-    assert killed_and_resumed(tmp_path / "run", seed) == through
-
-
 def test_ctrl_c_saves_and_says_how_to_resume(through: list[str], tmp_path: Path) -> None:
     run = tmp_path / "run"
     process = begin("run", *WHAT, "--ticks", TICKS, "--out", run, *SLOWLY)
