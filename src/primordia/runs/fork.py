@@ -53,11 +53,11 @@ def fork(
         Trouble: a file cannot be written, or the source does not repeat as recorded.
     """
     ticks = int(source.ends.min())
+    if not 1 <= at <= ticks:
+        raise InputError(f"--at {at}: {source.path} can be forked at any tick from 1 to {ticks}")
     source.admit()
     changed = _fork_config(source.path, settings, at)
     directory.refuse_if_taken(out)
-    if not 1 <= at <= ticks:
-        raise InputError(f"--at {at}: {source.path} can be forked at any tick from 1 to {ticks}")
     before = _engine_at(source, at, listen)
     living = _living(source.lives, before, source.config, at)
     after = _transplant(before, source.config, changed, at)
@@ -139,14 +139,14 @@ def _transplant(before: Engine, old: Config, new: Config, at: int) -> Engine:
     """Return an engine of the new configuration with the organisms and bodies of another engine."""
     after = Engine(new)
     arrays, own = before.arrays(), after.arrays()
-    for name, array in own.items():
-        same = new.brain == old.brain and np.shape(arrays.get(name, 0)) == array.shape
-        if ".looks." not in name and ".climate." not in name and not same:
-            raise InputError(
-                "a fork cannot change cells, seeds, senses, the brain, the habitat or what the mutation"
-                " notes"
-            )
-    after.load({**own, **arrays})
+    fitting = {name for name, array in own.items() if np.shape(arrays.get(name, 0)) == array.shape}
+    lasting = {name for name in own if ".looks." not in name and ".climate." not in name}
+    if new.brain != old.brain or not lasting <= fitting:
+        raise InputError(
+            "a fork cannot change cells, seeds, senses, the brain, the habitat or what the mutation"
+            " notes"
+        )
+    after.load(own | {name: arrays[name] for name in fitting})
     world, bodies = after.state
     after.state = State(_adapt(world, before, after, old, new, at), bodies)
     return after
