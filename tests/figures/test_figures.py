@@ -248,7 +248,7 @@ def test_a_run_that_cannot_be_drawn_gives_one_line_of_message(run: Path, tmp_pat
     (tmp_path / "file").write_text("")
     complains(here("plot", run, "--out", tmp_path / "file" / "in"), 1, "cannot be written")
     (tmp_path / "taken" / "ages.png").mkdir(parents=True)
-    complains(here("plot", run, "--out", tmp_path / "taken"), 1, "ages.png cannot be written")
+    complains(here("plot", run, "--out", tmp_path / "taken"), 2, "ages.png is a folder")
     empty = Path(shutil.copytree(run, tmp_path / "run"))
     shutil.rmtree(empty / "checkpoints")
     complains(here("plot", empty), 2, "no checkpoint yet")
