@@ -11,7 +11,8 @@ SOURCE = Path(__file__).parent.parent / "src" / "primordia"
 
 LAYERS = [
     {"errors", "interrupts", "own_code", "printable"},
-    {"compiled", "device", "files", "random", "rounding", "settings", "tasks"},
+    {"compiled", "device", "files", "random", "rounding", "tasks"},
+    {"settings"},
     {"brains", "pool"},
     {"habitats", "mutations"},
     {"law"},

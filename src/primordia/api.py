@@ -196,6 +196,7 @@ def load(run: str | Path, trust: bool = False) -> Run:
     opened = Archive(run)
     if trust:
         code.trust(opened.code())
+        code.trust(Archive(run, edited=True).code())
     return Run(Path(run))
 
 

@@ -3,6 +3,7 @@
 Nothing but regular files is ever replaced, and no link is followed where a run keeps its own.
 """
 
+import errno
 import hashlib
 import os
 import shutil
@@ -16,6 +17,8 @@ from typing import Any
 from primordia import interrupts
 from primordia.errors import InputError, Trouble
 
+READABLE = 2**26
+"""Largest size, in bytes, of a file of settings or of a manifest."""
 TEMPORARY = ".writing-"
 """Prefix of the names of unfinished files."""
 
@@ -145,10 +148,12 @@ def read(path: Path) -> bytes:
     """Return the content of a regular file; to read a pipe might take for ever.
 
     Raises:
-        OSError: it cannot be read, or is no regular file.
+        OSError: it cannot be read, is no regular file, or is larger than READABLE.
     """
-    if not path.is_file():
-        raise FileNotFoundError(f"there is no file {path}")
+    if path.exists() and not path.is_file():
+        raise OSError(errno.EINVAL, "it is not a regular file")
+    if path.stat().st_size > READABLE:
+        raise OSError(errno.EFBIG, "it is too large")
     return path.read_bytes()
 
 

@@ -5,6 +5,7 @@ of libraries swallow it there, half an import breaks, and a compiler in C++ dela
 noted here, and take effect in one of two ways:
 
 - A run that has advanced looks at `noted` between two chunks, and writes a checkpoint before it stops.
+  If a chunk does not end, as in a simulator that hangs, a second signal ends the process.
 - At all other times a command has nothing to lose, since a run survives even kill -9. A thread, which the
   system wakes whatever the main thread does, ends the process (`end_commands_at_once`).
 """
@@ -12,10 +13,13 @@ noted here, and take effect in one of two ways:
 import os
 import signal
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, suppress
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+PATIENCE = 2.0
+"""Seconds after which a second signal ends a process that the first one did not end."""
 STATUS = 130
 """Exit status of a command that a signal has ended."""
 
@@ -99,6 +103,7 @@ def _note(number: int, _: object) -> None:
 def _handle(handler: Callable[[int, object], None]) -> list:
     """Handle the signals -> each with its handler before. SIGHUP stays ignored, as `nohup` asks."""
     before = [(each, signal.getsignal(each)) for each in SIGNALS]
+    before = [(each, own) for each, own in before if own is not None]  # set by other than Python
     if before[-1] == (signal.SIGHUP, signal.SIG_IGN):
         before.pop()
     for each, _ in before:
@@ -107,16 +112,21 @@ def _handle(handler: Callable[[int, object], None]) -> list:
 
 
 def _wait_and_end(woken: int) -> None:
+    first = float("inf")
     while True:
         os.read(woken, 1)  # the system writes the number of each signal
-        if not _deferred:
+        now = time.monotonic()
+        if not _deferred or now - first >= PATIENCE:
             _end()
+        first = min(first, now)
 
 
 def _end() -> None:
-    for undo in reversed(_undo):
-        with suppress(OSError):
-            undo()
-    with suppress(OSError):
-        os.write(2, f"{_last_words[-1]()}\n".encode(errors="backslashreplace"))
-    os._exit(STATUS)
+    try:
+        for undo in reversed(_undo):
+            with suppress(Exception):
+                undo()
+        with suppress(Exception):
+            os.write(2, f"{_last_words[-1]()}\n".encode(errors="backslashreplace"))
+    finally:
+        os._exit(STATUS)

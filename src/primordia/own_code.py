@@ -1,8 +1,9 @@
 """A user's own code: modules of habitats, brains and mutations that no installed package holds.
 
-The code is found on `sys.path`, in the current folder, or in a run, which holds a copy. Only the modules
-that are needed are found in the last two places, and installed modules come before them. So a file
-`numpy.py` in the current folder is never imported.
+The code is found on `sys.path`, in the current folder, or in a run, which holds a copy. It is imported
+from the bytes that were read when it was found: neither a file that changes later nor a cache of compiled
+code can take their place. Installed modules come before it, so a file `numpy.py` in the current folder is
+never imported.
 """
 
 import ast
@@ -12,17 +13,16 @@ import importlib.util
 import site
 import sys
 import sysconfig
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from importlib.abc import MetaPathFinder
-from importlib.machinery import ModuleSpec, PathFinder
+import warnings
+from collections.abc import Iterable, Iterator, Sequence
+from importlib.abc import MetaPathFinder, SourceLoader
+from importlib.machinery import ModuleSpec
 from importlib.metadata import packages_distributions, version
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import NamedTuple
 
-Sources = dict[str, Path]
-"""Files of source code by their path below the folder that their imports begin in, such as `a/b.py`."""
-
+INIT = "__init__.py"
 _INSTALLED = tuple(
     Path(path).resolve()
     for path in {
@@ -33,76 +33,147 @@ _INSTALLED = tuple(
 )
 
 
+class Source(NamedTuple):
+    """A file of source code, as it was read."""
+
+    file: Path
+    text: bytes
+
+    @property
+    def sha256(self) -> str:
+        """The checksum of the text."""
+        return hashlib.sha256(self.text).hexdigest()
+
+
+Sources = dict[str, Source]
+"""Files by their path below the folder that their imports begin in, such as `a/b.py`."""
+
+
+class _Loader(SourceLoader):
+    """Executes the bytes of a source; the base class finds no time of change, so it uses no cache."""
+
+    def __init__(self, source: Source) -> None:
+        self.source = source
+
+    def get_filename(self, fullname: str) -> str:
+        return str(self.source.file)
+
+    def get_data(self, path: str | bytes) -> bytes:
+        if path != str(self.source.file):
+            raise OSError(f"{path!r} is not read")
+        return self.source.text
+
+
 class _Admitted(MetaPathFinder):
-    """Finds admitted modules after everything else has been searched."""
+    """Finds admitted modules, none of which has the name of an installed one."""
 
     def __init__(self) -> None:
+        self.sources: dict[str, Source] = {}
         self.folders: dict[str, str] = {}
-        """Top name of a module -> the folder that holds it."""
+        """folders around admitted modules, by the dotted name of the package"""
 
     def find_spec(
         self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        """Return where an admitted module lies; parts of a package are found by Python itself."""
-        folder = self.folders.get(name)
-        return None if folder is None else PathFinder.find_spec(name, [folder])
+        """Return where an admitted module, or a folder around one, lies."""
+        around = [self.folders[name]] if name in self.folders else None
+        if (source := self.sources.get(name)) is not None:
+            return importlib.util.spec_from_file_location(
+                name, source.file, loader=_Loader(source), submodule_search_locations=around
+            )
+        if around is None:
+            return None
+        spec = ModuleSpec(name, None, is_package=True)
+        spec.submodule_search_locations = around
+        return spec
 
 
 _admitted = _Admitted()
-sys.meta_path.append(_admitted)
+sys.meta_path.insert(0, _admitted)
 
 
 def load(module: str) -> ModuleType:
-    """Import a module that is installed, on `sys.path`, or in the current folder.
+    """Import a module that is admitted, installed, on `sys.path`, or in the current folder.
 
     Raises:
         Exception: anything that importing it raises.
     """
-    admit(sources(module, [Path.cwd()]))
+    if module not in sys.modules and module not in _admitted.sources:
+        admit(found(module))
     return importlib.import_module(module)
 
 
 def admit(code: Sources) -> None:
-    """Let these files be imported."""
-    for name, file in code.items():
-        top, _, rest = name.partition("/")
-        folder = file.parents[rest.count("/") + 1] if rest else file.parent
-        _admitted.folders[top.removesuffix(".py")] = str(folder)
+    """Let these files be imported.
+
+    Raises:
+        LookupError: the process has imported another module of one of their names.
+    """
+    for name, source in code.items():
+        if (loaded := _loaded(_module(name))) is not None and loaded.text != source.text:
+            raise LookupError(
+                f"{loaded.file} is imported already, and {source.file} is another module of that name;"
+                " use another process"
+            )
+    for name, source in code.items():
+        _admitted.sources[_module(name)] = source
+        folders = name.split("/")[:-1]
+        for depth in range(1, len(folders) + 1):
+            folder = source.file.parents[len(folders) - depth]
+            _admitted.folders[".".join(folders[:depth])] = str(folder)
 
 
 def is_loaded(code: Sources) -> bool:
     """Return whether the process has imported all of these files already."""
-    loaded = (getattr(module, "__file__", None) for module in list(sys.modules.values()))
-    return {file.resolve() for file in code.values()} <= {
-        Path(file).resolve() for file in loaded if file
-    }
+    loaded = {name: _loaded(_module(name)) for name in code}
+    return all(each is not None and each.text == code[name].text for name, each in loaded.items())
 
 
-def sources(module: str, folders: Iterable[Path]) -> Sources:
-    """Return the files of a module and of those beside it that it imports; {} if it is installed.
+def found(module: str) -> Sources:
+    """Return the files of a module that is on `sys.path` or in the current folder; see `below`."""
+    if is_installed(module):
+        return {}
+    top = module.partition(".")[0]
+    spec = _spec(top)
+    places = [] if spec is None else [spec.origin, *(spec.submodule_search_locations or ())]
+    roots = [Path(place).absolute().parent for place in places if place]
+    if spec is not None and spec.origin and Path(spec.origin).name == INIT:
+        roots[0] = roots[0].parent
+    for root in (*roots, Path.cwd()):
+        if code := below(root, module):
+            return code
+    return {}
+
+
+def below(root: Path, module: str) -> Sources:
+    """Return the files of a module and of those beside it that it imports; {} if there are none.
 
     Nothing is imported to find them.
 
     Args:
+        root: the folder in which its imports begin.
         module: dotted name.
-        folders: where to look after `sys.path`, in this order.
     """
-    if _is_installed(module):
-        return {}
-    spec = _spec(module, [str(folder) for folder in folders])
-    if spec is None or spec.origin is None or not Path(spec.origin).is_file():
-        return {}
-    file = Path(spec.origin).absolute()
-    is_package = file.name == "__init__.py"
-    root = file.parents[module.count(".") + is_package]
-    found: Sources = {}
-    waiting = [module]
+    code: Sources = {}
+    waiting = [] if is_installed(module) else [module]
     while waiting:
-        for name, path in _files(waiting.pop(), root):
-            if name not in found:
-                found[name] = path
-                waiting += [each for each in _imports(path, name) if not _is_installed(each)]
-    return found
+        for name, file in _files(waiting.pop(), root):
+            if name not in code:
+                code[name] = Source(file, file.read_bytes())
+                imported = _imports(code[name].text, name)
+                waiting += [each for each in sorted(imported) if not is_installed(each)]
+    return code
+
+
+def is_installed(module: str) -> bool:
+    """Return whether a module is part of Python, of this package, or of an installed one."""
+    top = module.partition(".")[0]
+    if top in sys.stdlib_module_names or top == "primordia":
+        return True
+    spec = _spec(top)
+    places = [] if spec is None else [spec.origin, *(spec.submodule_search_locations or ())]
+    files = [Path(place).resolve() for place in places if place]
+    return any(file.is_relative_to(folder) for file in files for folder in _INSTALLED)
 
 
 def packages(modules: Iterable[str]) -> dict[str, str]:
@@ -112,44 +183,24 @@ def packages(modules: Iterable[str]) -> dict[str, str]:
     return {name: version(name) for top in tops for name in owners.get(top, [])}
 
 
-def checksums(code: Sources) -> dict[str, str]:
-    """Return the SHA-256 of each file, by its name."""
-    return {
-        name: hashlib.sha256(file.read_bytes()).hexdigest() for name, file in sorted(code.items())
-    }
+def _module(name: str) -> str:
+    """Return the dotted name of the module that a file is."""
+    return name.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
 
 
-def fingerprint(checksums_by_file: Mapping[str, str]) -> str:
-    """Return one SHA-256 for files with these names and checksums."""
-    text = "".join(f"{name} {each}\n" for name, each in sorted(checksums_by_file.items()))
-    return hashlib.sha256(text.encode()).hexdigest()
+def _loaded(module: str) -> Source | None:
+    """Return the source of a module that the process has imported; None if it has not."""
+    spec = getattr(sys.modules.get(module), "__spec__", None)
+    if isinstance(loader := getattr(spec, "loader", None), _Loader):
+        return loader.source
+    file = getattr(sys.modules.get(module), "__file__", None)
+    try:
+        return None if file is None else Source(Path(file), Path(file).read_bytes())
+    except OSError:
+        return None
 
 
-def _is_installed(module: str) -> bool:
-    """Return whether a module is part of Python, of this package, or of an installed one."""
-    top = module.partition(".")[0]
-    if top in sys.builtin_module_names or top == "primordia":
-        return True
-    spec = _top_spec(top)
-    places = [] if spec is None else [spec.origin, *(spec.submodule_search_locations or ())]
-    files = [Path(place).resolve() for place in places if place]
-    return any(file.is_relative_to(folder) for file in files for folder in _INSTALLED)
-
-
-def _spec(module: str, folders: list[str]) -> ModuleSpec | None:
-    """Return where a module would be imported from, without importing it or the packages around it."""
-    top, *parts = module.split(".")
-    spec: Any = _top_spec(top) or PathFinder.find_spec(top, folders)
-    name = top
-    for part in parts:
-        name += f".{part}"
-        if spec is None or spec.submodule_search_locations is None:
-            return None
-        spec = PathFinder.find_spec(name, list(spec.submodule_search_locations))
-    return spec
-
-
-def _top_spec(name: str) -> ModuleSpec | None:
+def _spec(name: str) -> ModuleSpec | None:
     try:
         return importlib.util.find_spec(name)
     except (
@@ -164,25 +215,27 @@ def _files(module: str, root: Path) -> Iterator[tuple[str, Path]]:
     parts = module.split(".")
     for end in range(1, len(parts) + 1):
         stem = "/".join(parts[:end])
-        for name in (f"{stem}/__init__.py", f"{stem}.py"):
+        for name in (f"{stem}/{INIT}", f"{stem}.py"):
             if (path := root / name).is_file():
                 yield name, path
                 break
 
 
-def _imports(file: Path, name: str) -> set[str]:
+def _imports(text: bytes, name: str) -> set[str]:
     """Return the names of modules that a file may import; some of them may be names of other things."""
     package = name.removesuffix(".py").split("/")[:-1]
-    found: set[str] = set()
+    imported: set[str] = set()
     try:
-        tree = ast.parse(file.read_bytes())
-    except (SyntaxError, ValueError, RecursionError):  # importing it will say so
-        return found
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            tree = ast.parse(text)
+    except (SyntaxError, ValueError, RecursionError, MemoryError):  # importing it will say so
+        return imported
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
-            found |= {alias.name for alias in node.names}
+            imported |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
             around = package[: len(package) - node.level + 1] if node.level else []
             base = ".".join([*around, *([node.module] if node.module else [])])
-            found |= {base, *(f"{base}.{alias.name}" for alias in node.names)}
-    return found - {""}
+            imported |= {base, *(f"{base}.{alias.name}" for alias in node.names)}
+    return imported - {""}

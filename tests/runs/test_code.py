@@ -1,5 +1,7 @@
 """The user's own code: it is part of a run, is executed only when trusted, and never by looking."""
 
+import importlib.util
+import py_compile
 import shutil
 import subprocess
 import sys
@@ -13,7 +15,9 @@ import primordia
 from primordia import own_code
 from primordia.errors import InputError
 from primordia.organism.reliving.relived import RelivedLife
+from primordia.runs import code
 from primordia.runs.archive import Archive
+from tests import commands
 from tests.commands import COMMAND, complains, environment, here
 
 POND = """
@@ -79,7 +83,8 @@ def forget() -> None:
     """Act as another process, which has not imported the code."""
     for name in ("pond", "pond_depth"):
         sys.modules.pop(name, None)
-        own_code._admitted.folders.pop(name, None)
+        own_code._admitted.sources.pop(name, None)
+        code._trusted.clear()
 
 
 def begun(folder: Path) -> Path:
@@ -154,10 +159,10 @@ def test_a_run_does_not_go_on_with_changed_code(folder: Path, name: str) -> None
     more = "resume", run, "--ticks", 70, "--quiet"
     complains(here(*more), 2, f"{folder / name} has changed", "--inexact")
     complains(here(*more, "--inexact"), 2, f"{folder / name}", "--trust")
-    if name == "pond.py":
-        done = here("verify", run, "--trust")
-        complains(done, 1, "differs: ", f"{folder / name} has changed")
-    assert here(*more, "--inexact", "--trust").returncode == 0
+    assert here("verify", run).returncode == 0, "a run executes its own copy"
+    forget()
+    done = here(*more, "--inexact", "--trust")
+    assert (done.returncode, done.stderr) == (0, "")
     assert not primordia.load(run).info()["exact"]
 
 
@@ -182,20 +187,78 @@ def test_looking_executes_no_code_of_a_run(folder: Path, monkeypatch: pytest.Mon
     assert not {"pond", "pond_depth"} & set(sys.modules)
 
 
+@pytest.mark.parametrize("task", ["CartPole-survival", "Pong-survival"])
 @pytest.mark.parametrize("start", [COMMAND, [str(Path(sys.executable).with_name("primordia"))]])
 def test_no_file_of_the_current_folder_takes_the_place_of_an_installed_one(
-    tmp_path: Path, start: list[str]
+    tmp_path: Path, start: list[str], task: str
 ) -> None:
-    for name in ("numpy", "click", "jax", "tomllib", "platformdirs", "libtpu", "sitecustomize"):
+    names = "numpy", "click", "jax", "tomllib", "platformdirs", "libtpu", "sitecustomize", "mmap"
+    for name in names:
         (tmp_path / f"{name}.py").write_text("raise SystemExit('from the current folder')\n")
+    small = ["--ticks", "1", "--cells", "2", "--quiet", "--out", "run"]
     done = subprocess.run(
-        [*start, "run", "CartPole-survival", "--ticks", "1", "--quiet", "--out", "run"],
+        [*start, "run", task, *small],
         cwd=tmp_path,
-        env=environment(),
+        env=environment(commands.CACHE),
         capture_output=True,
         text=True,
     )
     assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_parts_in_several_files_are_trusted_together(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also where the trust cannot be stored, as in a home folder that is read-only."""
+    mutation = (
+        "from primordia.mutations.gaussian import Gaussian\n\n\nclass Own(Gaussian):\n    pass\n"
+    )
+    (folder / "pond_mutation.py").write_text(mutation)
+    (folder / "task.toml").write_text(
+        'mutation = { kind = "pond_mutation:Own" }\n' + (folder / "task.toml").read_text()
+    )
+    run = elsewhere(folder, begun(folder), monkeypatch)
+    sys.modules.pop("pond_mutation")
+    genome = run.parent / "genome.safetensors"
+    complains(here("export", run, genome), 2, "pond_mutation.py", "--trust")
+    monkeypatch.setenv("XDG_STATE_HOME", "/proc/nothing")
+    for command in (["export", run, genome, "--trust"], [*words(LIVING[3], run), "--trust"]):
+        done = here(*command)
+        assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_a_cache_of_compiled_code_is_not_executed(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Python would take a file of bytes without looking at the source that was trusted."""
+    run, forged = begun(folder), folder / "forged.py"
+    forged.write_text("raise SystemExit('the cache was executed')\n")
+    cache = Path(importlib.util.cache_from_source(str(folder / "pond.py")))
+    mode = py_compile.PycInvalidationMode.UNCHECKED_HASH
+    py_compile.compile(str(forged), str(cache), invalidation_mode=mode)
+    monkeypatch.setattr(sys, "dont_write_bytecode", False)
+    again = here("run", folder / "task.toml", "--quiet", "--out", folder / "again")
+    assert (again.returncode, again.stderr) == (0, "")
+    forget()
+    assert here("verify", run).returncode == 0
+    assert sorted(path.name for path in (run / "code").rglob("*")) == sorted(PARTS)
+    shutil.copytree(cache.parent, run / "code" / "__pycache__")
+    forget()
+    complains(here("verify", run), 1, "was not there when the run began")
+
+
+def test_edited_code_changes_no_life_on_record(folder: Path) -> None:
+    run = begun(folder)
+    before = primordia.load(run).oldest()
+    lifespan = before.age
+    forget()
+    (folder / "pond.py").write_text(POND.replace("> 20", "> 5"))
+    primordia.run(str(folder / "task.toml"), folder / "edited")
+    with pytest.raises(InputError, match="is another module of that name; use another process"):
+        primordia.load(run).policy()
+    forget()
+    life = RelivedLife.of(Archive(run), before.id, before.world)
+    assert sum(len(each.tick) for each in life.stretches()) == lifespan
 
 
 def test_sources_are_a_module_and_those_beside_it_that_it_imports(tmp_path: Path) -> None:
@@ -214,7 +277,7 @@ def test_sources_are_a_module_and_those_beside_it_that_it_imports(tmp_path: Path
     for name, text in files.items():
         (tmp_path / name).parent.mkdir(exist_ok=True, parents=True)
         (tmp_path / name).write_text(text)
-    found = own_code.sources("top", [tmp_path])
+    found = own_code.below(tmp_path, "top")
     wanted = {
         "top.py",
         "near.py",
@@ -225,9 +288,9 @@ def test_sources_are_a_module_and_those_beside_it_that_it_imports(tmp_path: Path
         "box/deep/er.py",
     }
     assert set(found) == wanted
-    assert all(path == tmp_path / name for name, path in found.items())
+    assert all(each.file == tmp_path / name for name, each in found.items())
     for installed in ("numpy", "json.decoder", "primordia.brains.linear", "no_such_module", "sys"):
-        assert own_code.sources(installed, [tmp_path]) == {}
+        assert own_code.found(installed) == {}
 
 
 def test_parts_of_installed_packages_are_recorded_by_version() -> None:

@@ -133,17 +133,17 @@ def _drive(path: Path, quiet: bool, go: Callable[[Any], object]) -> None:
     from primordia.live.view import watching
     from primordia.organism.replay import lacking
 
-    def stopped() -> str:
+    def stopped(saved: str = "") -> str:
         begun = (path / "versions.json").exists()
-        saved = f"Stopped and saved. Go on with: primordia resume {path}"
-        return printable(saved if begun else f"Stopped before {path} had begun")
+        go_on = f"Stopped{saved}. Go on with: primordia resume {path}"
+        return printable(go_on if begun else f"Stopped before {path} had begun")
 
     with interrupts.last_words(stopped):
         try:
             with watching(quiet) as listen:
-                go(listen and _while_shown(listen, stopped))
+                go(listen and _while_shown(listen, stopped(" and saved")))
         except KeyboardInterrupt:
-            click.echo(stopped(), err=True)
+            click.echo(stopped(" and saved"), err=True)
             raise SystemExit(interrupts.STATUS) from None
     if not quiet:
         click.echo(summary(Run(path).info()))
@@ -152,14 +152,14 @@ def _drive(path: Path, quiet: bool, go: Callable[[Any], object]) -> None:
             click.echo(f"Video of the longest life: primordia replay {path}")
 
 
-def _while_shown(listen: "Listener", stopped: Callable[[], str]) -> "Listener":
+def _while_shown(listen: "Listener", stopped: str) -> "Listener":
     """Return a listener that stops the run with one line once its output cannot be written."""
 
     def show(status: "Status") -> None:
         try:
             listen(status)
         except OSError as error:
-            raise Trouble(f"the output cannot be written: {error.strerror}. {stopped()}") from None
+            raise Trouble(f"the output cannot be written: {error.strerror}. {stopped}") from None
 
     return show
 

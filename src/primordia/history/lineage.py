@@ -14,6 +14,7 @@ from jax import Array, lax
 from primordia import device
 from primordia.brains.layout import Layout
 from primordia.compiled import shared
+from primordia.errors import Trouble
 from primordia.history.climate import PastClimate
 from primordia.law.heredity import Birth, Heredity
 from primordia.law.world import BirthCause, Climate
@@ -78,12 +79,18 @@ def genome_in(
 
 
 def place_in(state: Mapping[str, np.ndarray], organism: int, world: int) -> int:
-    """Return the cell, on the axis of all worlds, of an organism that is alive in a state."""
+    """Return the cell, on the axis of all worlds, of an organism that is alive in a state.
+
+    Raises:
+        Trouble: it is not there.
+    """
     number = read_count(state, "world.organisms.number")
     cells = len(number) // len(world_ticks(state))
     here = np.arange(len(number)) // cells == world
-    (cell,) = np.flatnonzero(here & state["world.organisms.alive"] & (number == organism))
-    return int(cell)
+    places = np.flatnonzero(here & state["world.organisms.alive"] & (number == organism))
+    if len(places) != 1:
+        raise Trouble(f"organism {organism} of world {world} is not in the state where it lived")
+    return int(places[0])
 
 
 def _starting_point(run: Archive, lineage: Lives) -> tuple[np.ndarray, Lives]:

@@ -119,7 +119,7 @@ class Pool:
 
 
 def _spawn(memory: int) -> subprocess.Popen:
-    command = [sys.executable, "-m", "primordia.pool.worker"]
+    command = [sys.executable, "-P", "-m", "primordia.pool.worker"]
     return subprocess.Popen(
         command,
         stdin=subprocess.PIPE,

@@ -14,11 +14,11 @@ import signal
 import sys
 import time
 from contextlib import suppress
-from importlib import import_module
 from typing import Any, Protocol
 
 import numpy as np
 
+from primordia import own_code
 from primordia.pool import board
 from primordia.pool.board import LOAD, READY, RESET, SAVE, STEP
 
@@ -58,7 +58,7 @@ def main() -> None:
     memory = mmap.mmap(setup["memory"], setup["size"])
     arrays = board.arrays(memory, setup["fields"], setup["cells"])
     module, _, name = setup["simulator"].partition(":")
-    simulator = getattr(import_module(module), name)(arrays, **setup["settings"])
+    simulator = getattr(own_code.load(module), name)(arrays, **setup["settings"])
     for cell in cells:
         simulator.make(cell)
         answers.write(READY)

@@ -35,13 +35,17 @@ class Archive:
     tables included, are checked against their checksums before anything is read from it.
     """
 
-    def __init__(self, path: str | Path) -> None:
+    def __init__(self, path: str | Path, edited: bool = False) -> None:
         """Open a run by its directory.
+
+        Args:
+            path: the directory.
+            edited: execute the user's own code as it is now found, not the run's copy of it.
 
         Raises:
             InputError: the directory holds no run, or one that this version cannot read.
         """
-        self.path = Path(path)
+        self.path, self.edited = Path(path), edited
         self.config: Config = directory.read_config(self.path)
         self.fault_in = cache(files.fault_in)
         """`files.fault_in`, with a memory: no file is read twice"""
@@ -62,7 +66,8 @@ class Archive:
 
     def code(self, *parts: str) -> Sources:
         """Return the files of the user's own code that these parts, or all, would execute here."""
-        return code.in_use(self.path, self.config, parts or tuple(PARTS))
+        wanted = parts or tuple(PARTS)
+        return code.of_run(self.path, self.config, self.description, wanted, self.edited)
 
     def admit(self, *parts: str) -> None:
         """Let the code of these parts, or of all, be imported.
@@ -77,7 +82,7 @@ class Archive:
         """The habitat, for reading its properties; build another one to make bodies in.
 
         Raises:
-            InputError: the user has not trusted its code yet; so it is with `law` and `heredity`.
+            InputError: the user has not trusted its code yet; `law` and `heredity` raise it too.
         """
         self.admit("habitat")
         return self.config.build_habitat()
@@ -119,7 +124,7 @@ class Archive:
     @property
     def changed_code(self) -> list[str]:
         """A line for each file of the user's own code that is not as it was when the run began."""
-        return code.changes(self.code(), self.description.code)
+        return code.changes(self.config, self.description.code)
 
     @cached_property
     def newest(self) -> tuple[Checkpoint | None, list[str]]:

@@ -1,7 +1,5 @@
 """The arrays of a checkpoint: a state by name, and the open tails of the tables."""
 
-import zipfile
-import zlib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
@@ -11,22 +9,6 @@ from primordia.errors import Trouble
 
 NEVER = 2**64 - 1
 """The tick or count of an event that has not happened."""
-
-UNREADABLE = (
-    OSError,
-    EOFError,
-    KeyError,
-    MemoryError,
-    NotImplementedError,
-    OverflowError,
-    RuntimeError,
-    SyntaxError,
-    TypeError,
-    ValueError,
-    zipfile.BadZipFile,
-    zlib.error,
-)
-"""What NumPy and zipfile raise for files that are no archives of arrays."""
 
 
 class Arrays(Mapping[str, np.ndarray]):
@@ -41,7 +23,7 @@ class Arrays(Mapping[str, np.ndarray]):
         try:
             self._stored = np.load(file, allow_pickle=False)
             self._names = tuple(self._stored.files)
-        except (*UNREADABLE, AttributeError):
+        except Exception:  # NumPy and zipfile raise errors of many kinds for what is no archive
             raise self._damaged() from None
         self._read: dict[str, np.ndarray] = {}
 
@@ -51,7 +33,7 @@ class Arrays(Mapping[str, np.ndarray]):
         if name not in self._read:
             try:
                 array = self._stored[name]
-            except UNREADABLE:
+            except Exception:  # as above
                 raise self._damaged() from None
             if not isinstance(array, np.ndarray):
                 raise self._damaged()

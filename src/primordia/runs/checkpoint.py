@@ -32,7 +32,7 @@ FOLDER, ORIGIN = "checkpoints", "origin"
 INPUTS = ("config.toml", DESCRIPTION, FOUNDERS)
 """Files that a run needs to go on, beside its checkpoints and the user's own code."""
 STATE, MANIFEST = "state.npz", "manifest.json"
-NUMBER = re.compile("[0-9]{1,18}")
+NUMBER = re.compile("[0-9]{6,9}")
 """Names of checkpoints."""
 
 
@@ -65,7 +65,9 @@ def save(run: Path, arrays: dict[str, np.ndarray], recorder: Recorder, progress:
         Trouble: it cannot be written; earlier checkpoints stay good.
     """
     number = 1 + max((int(path.name) for path in numbered(run)), default=-1)
-    final = run / FOLDER / f"{number:06d}"
+    if not NUMBER.fullmatch(name := f"{number:06d}"):
+        raise Trouble(f"{run / FOLDER} has no number left for one more checkpoint")
+    final = run / FOLDER / name
     _write(run, final, arrays, recorder, progress)
     for old in numbered(run)[:-KEPT]:
         files.remove(old)
@@ -125,7 +127,7 @@ def _fill(
 
 def _inputs(run: Path) -> list[str]:
     """Return the files that a run needs to go on, beside its checkpoints, by their path below it."""
-    code = sorted(path for path in (run / CODE).rglob("*") if path.is_file())
+    code = sorted(path for path in (run / CODE).rglob("*.py") if path.is_file())
     paths = [run / name for name in INPUTS]
     return [path.relative_to(run).as_posix() for path in (*paths, *code) if path.exists()]
 

@@ -1,8 +1,8 @@
-"""The user's own code in a run: a copy of it, and whether it may be executed.
+"""The user's own code in a run: a copy of it, which the run executes, if the user trusts it.
 
-RUN/code holds the files; their checksums are in the run's description. A run may come from a
-stranger, and so may its code. It is executed only after the user has trusted exactly these files, once on
-a machine. Code that a user has begun a run with is trusted.
+RUN/code holds the files; their checksums are in the run's description. A run may come from a stranger,
+and so may its code. It is executed only after the user has trusted exactly these files, once on a
+machine. Code that a user has begun a run with is trusted.
 """
 
 from collections.abc import Iterable, Sequence
@@ -14,10 +14,13 @@ from platformdirs import user_state_path
 
 from primordia import files, own_code
 from primordia.config import Config
-from primordia.errors import InputError
+from primordia.errors import InputError, Trouble
 from primordia.own_code import Sources
+from primordia.runs.description import Description
 
 FOLDER = "code"
+_trusted: set[str] = set()
+"""Checksums of the files trusted in this process, also where none can be stored."""
 
 
 def copy(config: Config, run: Path) -> dict[str, str]:
@@ -26,84 +29,104 @@ def copy(config: Config, run: Path) -> dict[str, str]:
     Raises:
         Trouble: a file cannot be written.
     """
-    code = _sources(config.own_modules.values(), [Path.cwd()])
-    for name, file in code.items():
+    code = found(config.own_modules.values())
+    for name, source in code.items():
         path = run / FOLDER / name
         files.make_folder(path.parent)
-        files.write(path, partial(_fill, text=file.read_bytes()))
-    checksums = own_code.checksums(code)
-    _trust(checksums)
-    return checksums
+        files.write(path, partial(_fill, text=source.text))
+    trust(code)
+    return {name: code[name].sha256 for name in sorted(code)}
 
 
 def _fill(path: Path, text: bytes) -> None:
     path.write_bytes(text)
 
 
-def in_use(run: Path, config: Config, parts: Sequence[str]) -> Sources:
-    """Return the files of the user's own code that these parts of a run would execute here.
+def found(modules: Iterable[str]) -> Sources:
+    """Return the files of modules that are on `sys.path` or in the current folder."""
+    code: Sources = {}
+    for module in modules:
+        code |= own_code.found(module)
+    return code
 
-    Files on `sys.path` and in the current folder come before the run's copy.
+
+def of_run(
+    run: Path, config: Config, about: Description, parts: Sequence[str], edited: bool
+) -> Sources:
+    """Return the files of the user's own code that these parts of a run execute: the run's copy.
+
+    Modules that the run holds no copy of are looked for elsewhere. If `edited`, all are looked for there
+    first.
+
+    Raises:
+        Trouble: the copy is not what the description says.
     """
-    modules = config.own_modules
-    wanted = [modules[part] for part in parts if part in modules]
-    return _sources(wanted, [Path.cwd(), run / FOLDER])
+    folder, code = run / FOLDER, Sources()
+    held = {each.relative_to(folder).as_posix() for each in folder.rglob("*") if not each.is_dir()}
+    if held != set(about.code):
+        odd = min(held ^ set(about.code))
+        raise Trouble(f"{folder / odd} is missing, or was not there when the run began")
+    for part, module in config.own_modules.items():
+        if part in parts:
+            ways = [partial(own_code.below, folder, module), partial(own_code.found, module)]
+            code |= next(filter(None, (way() for way in (ways[::-1] if edited else ways))), {})
+    for name, source in code.items():
+        if source.file == folder / name and source.sha256 != about.code[name]:
+            raise Trouble(f"{source.file} was changed or damaged: its checksum does not hold")
+    return code
 
 
 def admit(run: Path, code: Sources) -> None:
     """Let the code of a run be imported.
 
     Raises:
-        InputError: the user has not trusted it yet.
+        InputError: the user has not trusted it yet, or other modules of these names are imported.
     """
-    if not own_code.is_loaded(code) and not _is_trusted(own_code.checksums(code)):
-        names = ", ".join(map(str, code.values()))
+    if not own_code.is_loaded(code) and not _is_trusted(code):
+        names = ", ".join(str(source.file) for source in code.values())
         raise InputError(
             f"{run} executes code that is not of an installed package: {names}. Read it; then add"
             " --trust once, or call primordia.load(run, trust=True)"
         )
-    own_code.admit(code)
+    try:
+        own_code.admit(code)
+    except LookupError as error:
+        raise InputError(str(error)) from None
+
+
+def changes(config: Config, recorded: dict[str, str]) -> list[str]:
+    """Return a line for each file, on `sys.path` or in the current folder, that has changed.
+
+    A module that is found nowhere but in the run has not changed.
+    """
+    return [
+        f"{source.file} has changed" if name in recorded else f"{source.file} is new"
+        for name, source in sorted(found(config.own_modules.values()).items())
+        if recorded.get(name) != source.sha256
+    ]
 
 
 def trust(code: Sources) -> None:
-    """Trust this code from now on, on this machine."""
-    _trust(own_code.checksums(code))
+    """Trust these files from now on: in this process, and on this machine if that can be stored."""
+    new = {source.sha256 for source in code.values()} - _stored()
+    _trusted.update(new)
+    if new:
+        with suppress(OSError):
+            _store().parent.mkdir(parents=True, exist_ok=True)
+            with _store().open("a", encoding="utf-8") as file:
+                file.writelines(f"{each}\n" for each in sorted(new))
 
 
-def changes(code: Sources, recorded: dict[str, str]) -> list[str]:
-    """Return a line for each file that is not as it was when the run began."""
-    now = own_code.checksums(code)
-    differ = sorted(name for name in {*now, *recorded} if now.get(name) != recorded.get(name))
-    return [_change(name, code, recorded) for name in differ]
+def _is_trusted(code: Sources) -> bool:
+    return {source.sha256 for source in code.values()} <= _trusted | _stored()
 
 
-def _change(name: str, code: Sources, recorded: dict[str, str]) -> str:
-    if name not in recorded:
-        return f"{code[name]} is new"
-    return f"{code[name]} has changed" if name in code else f"{name} is no longer used"
+def _stored() -> set[str]:
+    with suppress(OSError, ValueError):
+        return set(_store().read_text(encoding="utf-8").split())
+    return set()
 
 
-def _sources(modules: Iterable[str], folders: Sequence[Path]) -> Sources:
-    code: Sources = {}
-    for module in modules:
-        code |= own_code.sources(module, folders)
-    return code
-
-
-def _record() -> Path:
+def _store() -> Path:
+    """Return the file that holds the checksums of trusted files."""
     return user_state_path("primordia", appauthor=False) / "trusted"
-
-
-def _is_trusted(checksums: dict[str, str]) -> bool:
-    with suppress(OSError):
-        return own_code.fingerprint(checksums) in _record().read_text(encoding="utf-8").split()
-    return False
-
-
-def _trust(checksums: dict[str, str]) -> None:
-    if not checksums or _is_trusted(checksums):
-        return
-    with suppress(OSError):  # without a folder to write to, the user is asked again
-        _record().parent.mkdir(parents=True, exist_ok=True)
-        with _record().open("a", encoding="utf-8") as file:
-            file.write(own_code.fingerprint(checksums) + "\n")

@@ -96,7 +96,9 @@ def resume(
     """
     _check_interval(checkpoint_every)
     given, archive = valid_limits(limits or {}), Archive(run)
-    _check_same(run, archive.changed_code, inexact)
+    if archive.changed_code:
+        _check_same(run, archive.changed_code, inexact)
+        archive = Archive(run, edited=True)
     archive.admit()
     config = checked(archive.config, source=str(run / "config.toml"))
     differ = archive.other_versions

@@ -5,16 +5,23 @@ import json
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
 from primordia import files
 from primordia.config import Stop
 
 Table = Annotated[str, Field(pattern="^(births|deaths|metrics)$")]
 Word = Annotated[int, Field(ge=0, lt=2**64)]
-Input = Annotated[
-    str, Field(pattern=r"^(config\.toml|description\.json|founders\.safetensors|code(/[^/]+)+)$")
-]
+
+
+def _within(name: str) -> str:
+    if ".." in name.split("/"):
+        raise ValueError(f"{name} is not below the run")
+    return name
+
+
+INPUTS = r"^(config\.toml|description\.json|founders\.safetensors|code(/[^/]+)+)$"
+Input = Annotated[str, Field(pattern=INPUTS), AfterValidator(_within)]
 
 
 class Part(BaseModel):
@@ -55,8 +62,8 @@ class Manifest(Part):
     inputs: dict[Input, Seal]
     """files that a run needs to go on, beside its checkpoints, by their path below the run"""
     state: Seal
-    segments: dict[Table, list[Segment]]
-    digests: dict[Table, list[tuple[Word, Word]]]
+    segments: dict[Table, list[Segment]] = Field(min_length=3)
+    digests: dict[Table, list[tuple[Word, Word]]] = Field(min_length=3)
     """sums of the row hashes of each table, for each world"""
 
     def text(self) -> str:

@@ -31,6 +31,8 @@ def read(path: Path, rows: int, schema: pa.Schema, columns: Sequence[str] | None
             if len(file.schema_arrow) != len(found) or found != wanted:
                 raise Trouble(f"{path} is damaged: it has other columns than this table")
             table = file.read(columns)
+            names = list(columns) if columns else schema.names
+            table = table.select(names).cast(pa.schema([schema.field(name) for name in names]))
     except (OSError, pa.ArrowException, MemoryError, ValueError) as error:
         message = str(error).partition("\n")[0]
         raise Trouble(f"{path} is damaged: {message}; restore it from a copy") from None

@@ -6,7 +6,8 @@ import numpy as np
 
 from primordia.config import Config
 from primordia.law.seasons import ratchets
-from primordia.law.world import Cause
+from primordia.law.world import BirthCause, Cause
+from primordia.runs.arrays import NEVER, read_count
 from primordia.runs.description import Description
 from primordia.runs.schema import TABLES, Schema
 
@@ -34,18 +35,43 @@ def fault(arrays: Mapping[str, np.ndarray], config: Config, about: Description) 
         if name not in arrays:
             return f"there is no array {name}"
         if not _fits(arrays[name], kind):
-            return _said(name, arrays[name])
+            return _misfit(name, arrays[name])
     for name in arrays:
         bodily = name.startswith("bodies")
         if bodily and arrays[name].shape[:1] != (cells,):
-            return _said(name, arrays[name])
-    if about.tallies and "bodies.tally" in arrays:
-        tally = arrays["bodies.tally"]
-        return None if tally.shape == (cells, len(about.tallies)) else _said("bodies.tally", tally)
+            return _misfit(name, arrays[name])
+    tally = arrays.get("bodies.tally")
+    if tally is not None and not _fits(tally, ("int32", (cells, len(about.tallies)))):
+        return _misfit("bodies.tally", tally)
+    return _odd_count(arrays) or _odd_row(arrays, config, schema)
+
+
+def _odd_count(arrays: Mapping[str, np.ndarray]) -> str | None:
+    """Return which number of a world no run can reach."""
+    for name in set(COUNTS) - {"seed", "food"}:
+        count = read_count(arrays, f"world.worlds.{name}")
+        if ((count >= 2**63) & (count != NEVER)).any():
+            return f"world.worlds.{name} is too large"
     return None
 
 
-def _said(name: str, array: np.ndarray) -> str:
+def _odd_row(arrays: Mapping[str, np.ndarray], config: Config, schema: Schema) -> str | None:
+    """Return which open tail names a world, a cell or a cause that does not exist."""
+    cells = config.seeds * config.cells
+    most = {
+        "births": {"cell": cells, "cause": len(BirthCause)},
+        "deaths": {"cell": cells, "cause": len(Cause)},
+        "metrics": {"world": config.seeds},
+    }
+    for table, limits in most.items():
+        words = schema.columns(table).unpacked(arrays[f"tail.{table}"])
+        for name, limit in limits.items():
+            if (words[name] >= limit).any():
+                return f"tail.{table} has a {name} that does not exist"
+    return None
+
+
+def _misfit(name: str, array: np.ndarray) -> str:
     return f"{name} is {array.dtype} {array.shape}, which does not fit the settings"
 
 

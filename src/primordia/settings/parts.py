@@ -31,5 +31,5 @@ def load(what: str, name: object, known: Mapping[str, str]) -> Any:
         raise LookupError(f"no {what} named {name!r}; known: {', '.join(known)}, or module:Class")
     try:
         return getattr(own_code.load(module), attribute)
-    except Exception as error:  # the module is the user's, and may raise anything
+    except (Exception, SystemExit) as error:  # the module is the user's, and may raise anything
         raise LookupError(f"{what} {name!r} cannot be loaded: {error}") from error

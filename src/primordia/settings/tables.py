@@ -7,6 +7,7 @@ from os.path import isfile  # false, not an error, for a name that is too long
 from pathlib import Path
 from typing import Any
 
+from primordia import files
 from primordia.errors import InputError
 from primordia.settings.values import check_values
 
@@ -56,7 +57,7 @@ def from_toml(path: Path) -> dict[str, Any]:
         InputError: the file cannot be read, or is not TOML.
     """
     try:
-        values = parsed_toml(path.read_text(encoding="utf-8"))
+        values = parsed_toml(files.read(path).decode())
     except ValueError as error:
         raise InputError(f"{path} is not valid TOML: {error}") from None
     except OSError as error:
