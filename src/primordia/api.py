@@ -36,7 +36,7 @@ from primordia.runs.verify import verify
 
 @dataclass(frozen=True)
 class Run:
-    """A run directory. Each call opens it as it then is; an `Organism` keeps the archive it came from."""
+    """A run directory. Each call opens the run again; an `Organism` keeps the archive it came from."""
 
     path: Path
 
@@ -187,8 +187,8 @@ def load(run: str | Path, trust: bool = False) -> Run:
     Args:
         run: the directory.
         trust: allow the run's own code to be executed, from now on and on this machine. Without that,
-            code that the user did not begin a run with stops what executes it: `resume`, `replay` and
-            the like. Reading records executes nothing.
+            code that the user did not begin a run with stops what executes it: `resume`, `fork`,
+            `verify`, `replay`, `evaluate` and `policy`. Reading records executes nothing.
 
     Raises:
         InputError: the directory holds no run.

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from primordia import files
 from primordia.cli.cache import cache_option
 from primordia.cli.flags import device_option, run_argument, trust_option
 from primordia.errors import Trouble
@@ -139,7 +140,7 @@ def compare(runs: tuple[Path, ...], out: Path, as_json: bool, **horizons: int | 
 
     compared = api.compare(*runs, **horizons)
     click.echo(json.dumps(compared.to_dict()) if as_json else comparison_tables(compared))
-    out.mkdir(parents=True, exist_ok=True)
+    files.make_folder(out)
     pictures = save(compared, out)
     if not as_json:
         click.echo(f"Figure: {' and '.join(map(str, pictures))}")
