@@ -2,6 +2,7 @@
 
 import numpy as np
 import pyarrow as pa
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -82,3 +83,14 @@ def test_the_oldest_of_one_world_or_of_all(worlds: list[list[bool]]) -> None:
         if len(here):
             longest = max(lives.lifespan[here])
             assert lives.oldest(world) == min(here[lives.lifespan[here] == longest])
+
+
+@pytest.mark.parametrize("cuts", [1, 2])
+def test_no_organism_dies_twice(cuts: int) -> None:
+    """Neither in one segment of deaths nor in two."""
+    births, deaths = tables([[True] * 12], 1)
+    again = pa.concat_tables([*deaths, deaths[0].slice(0, 1)])
+    size = len(again) // cuts + 1
+    segments = [again.slice(at * size, size) for at in range(cuts)]
+    with pytest.raises(ValueError, match="an organism dies twice|after the last tick"):
+        join(births, segments, np.array([end([True] * 12)]), 40, 7)

@@ -112,7 +112,7 @@ def test_files_that_are_no_text_are_errors(tmp_path: Path) -> None:
     file.write_bytes(b"\xff\x00\xfe")
     folder.mkdir()
     complains(here("run", file), 2, str(file), "not valid TOML")
-    complains(here("run", folder), 2, str(folder), "Is a directory")
+    complains(here("run", folder), 2, str(folder), "it is not a regular file")
 
 
 @pytest.mark.parametrize(

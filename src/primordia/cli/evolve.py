@@ -1,6 +1,7 @@
 """Commands that write a run directory: run, resume, fork."""
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -141,7 +142,7 @@ def _drive(path: Path, quiet: bool, go: Callable[[Any], object]) -> None:
     with interrupts.last_words(stopped):
         try:
             with watching(quiet) as listen:
-                go(listen and _while_shown(listen, stopped(" and saved")))
+                go(listen and _while_shown(listen, partial(stopped, " and saved")))
         except KeyboardInterrupt:
             click.echo(stopped(" and saved"), err=True)
             raise SystemExit(interrupts.STATUS) from None
@@ -152,14 +153,14 @@ def _drive(path: Path, quiet: bool, go: Callable[[Any], object]) -> None:
             click.echo(f"Video of the longest life: primordia replay {path}")
 
 
-def _while_shown(listen: "Listener", stopped: str) -> "Listener":
+def _while_shown(listen: "Listener", stopped: Callable[[], str]) -> "Listener":
     """Return a listener that stops the run with one line once its output cannot be written."""
 
     def show(status: "Status") -> None:
         try:
             listen(status)
         except OSError as error:
-            raise Trouble(f"the output cannot be written: {error.strerror}. {stopped}") from None
+            raise Trouble(f"the output cannot be written: {error.strerror}. {stopped()}") from None
 
     return show
 

@@ -164,11 +164,15 @@ def join(
         born = {name: array[order] for name, array in born.items()}
     _check_births(born, ends, cells)
     ended, cause = ends[born["world"]], np.full(len(born["id"]), ALIVE, np.int8)
+    died = 0
     for dead in (_columns(segment, Cause) for segment in deaths):
         _check_worlds(dead, ends)
         rows = _rows(born["world"], born["id"], dead["world"], dead["id"])
-        _check_deaths(dead, rows, born["tick"], ended, cause)
+        _check_deaths(dead, rows, born["tick"], ended)
         ended[rows], cause[rows] = dead["tick"], dead["cause"]
+        died += len(rows)
+    if np.count_nonzero(cause != ALIVE) != died:
+        raise ValueError("an organism dies twice")
     pa.default_memory_pool().release_unused()  # 100 MB after 5 million births
     return Lives(
         world=born["world"],
@@ -212,14 +216,10 @@ def _check_deaths(
     rows: np.ndarray,
     born: np.ndarray,
     ended: np.ndarray,
-    cause: np.ndarray,
 ) -> None:
     """Check deaths, with the rows of those who died; the other arrays are of all organisms."""
     if len(rows) and rows.min() < 0:
         raise ValueError(f"organism {dead['id'][rows.argmin()]} dies without having been born")
-    twice = (cause[rows] != ALIVE).any() or len(np.unique(rows)) < len(rows)
-    if twice:
-        raise ValueError("an organism dies twice")
     early = (dead["tick"] < born[rows]) | (dead["tick"] > ended[rows])
     if early.any():
         number = dead["id"][early.argmax()]
