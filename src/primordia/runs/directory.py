@@ -51,7 +51,7 @@ def create(run: Path, config: Config, fill: Callable[[], object] | None = None) 
     missing = [path for path in (run, *run.parents) if not path.exists()]
     with interrupts.undone_by(partial(_remove_empty, missing)):
         files.make_folder(run)
-        with locked(run):
+        with locked(run), interrupts.undone_by(partial(_remove_lock, run)):
             refuse_if_taken(run)  # another process may have made it since
             with held(run) as check, interrupts.undone_by(partial(_remove_unbegun, run, check)):
                 make_folders(run)
@@ -75,6 +75,13 @@ def _remove_unbegun(run: Path, check: Callable[[], None]) -> None:
         for name in OWN:
             if os.path.lexists(run / name):
                 files.remove(run / name)
+
+
+def _remove_lock(run: Path) -> None:
+    """Remove the lock of a folder that holds nothing else."""
+    with suppress(OSError):
+        if os.listdir(run) == [LOCK]:
+            (run / LOCK).unlink()
 
 
 def _remove_empty(folders: list[Path]) -> None:
