@@ -19,7 +19,7 @@ def settings():
     names = [name for name in dir(jax.config) if name.startswith("jax_")]
     read = {name: getattr(jax.config, name) for name in names}
     return read | {"async": jax.config.read("jax_cpu_enable_async_dispatch")}
-variables, before = dict(os.environ), settings()
+variables, before, finders = dict(os.environ), settings(), list(sys.meta_path)
 """
 LOOK = (
     SETTINGS
@@ -27,6 +27,7 @@ LOOK = (
 import primordia
 primordia.load(sys.argv[1]).info()
 assert (dict(os.environ), settings()) == (variables, before)
+assert sys.meta_path == finders
 """
 )
 LIVE = (

@@ -39,6 +39,9 @@ from primordia.settings.tables import (
 )
 from primordia.settings.values import check_values
 
+CONTRACTS: dict[str, Any] = {"habitat": habitats, "brain": brains, "mutation": mutations}
+"""Module of each replaceable part's contract, by the name of its table."""
+
 
 class Stop(Settings):
     """The limits of a world; a stopped world is frozen while others of the run go on."""
@@ -245,8 +248,7 @@ def _completed(config: Config, source: str) -> Config:
 def _settings_of_parts(values: dict[str, Any]) -> list[str]:
     """Return the dotted names of the settings of the parts that a task names, if they are found."""
     names: list[str] = []
-    contracts: dict[str, Any] = {"habitat": habitats, "brain": brains, "mutation": mutations}
-    for part, contract in contracts.items():
+    for part, contract in CONTRACTS.items():
         table = values.get(part, {})
         name = table.get(PARTS[part], DEFAULTS.get(part)) if isinstance(table, dict) else None
         with suppress(LookupError):

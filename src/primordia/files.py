@@ -58,9 +58,14 @@ def write(path: Path, fill: Callable[[Path], object]) -> None:
         raise Trouble(f"{path} cannot be written: {error.strerror or error}") from None
 
 
+def write_bytes(path: Path, content: bytes) -> None:
+    """Write a file with this content; see `write`."""
+    write(path, lambda temporary: temporary.write_bytes(content))
+
+
 def write_text(path: Path, text: str) -> None:
     """Write a text in UTF-8; see `write`."""
-    write(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))
+    write_bytes(path, text.encode())
 
 
 def check_output(path: Path) -> None:

@@ -89,7 +89,6 @@ class _Admitted(MetaPathFinder):
 
 
 _admitted = _Admitted()
-sys.meta_path.insert(0, _admitted)
 
 
 def load(module: str) -> ModuleType:
@@ -115,6 +114,8 @@ def admit(code: Sources) -> None:
                 f"{loaded.file} is imported already, and {source.file} is another module of that name;"
                 " use another process"
             )
+    if code and _admitted not in sys.meta_path:
+        sys.meta_path.insert(0, _admitted)
     for name, source in code.items():
         _admitted.sources[_module(name)] = source
         folders = name.split("/")[:-1]

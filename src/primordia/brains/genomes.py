@@ -29,7 +29,7 @@ def write(path: Path, layout: Layout, genomes: np.ndarray, about: dict[str, str]
     parts = layout.split(genomes).items()
     blocks = {name: np.ascontiguousarray(part, np.float32) for name, part in parts}
     content = save(blocks, metadata=about)
-    files.write(path, lambda temporary: temporary.write_bytes(content))
+    files.write_bytes(path, content)
 
 
 def read(paths: Sequence[str], layout: Layout) -> np.ndarray:

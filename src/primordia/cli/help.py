@@ -8,16 +8,10 @@ from typing import Any
 from pydantic import Field
 from pydantic_core import PydanticUndefined
 
-from primordia.brains import contract as brains
-from primordia.config import Config
-from primordia.habitats import contract as habitats
-from primordia.mutations import contract as mutations
+from primordia.config import CONTRACTS, Config
 from primordia.runs.archive import Archive
 from primordia.settings.fields import choices, setting_fields
 from primordia.settings.tables import DEFAULTS, NONE, PARTS, merged, replaced, values_of
-
-CONTRACTS: dict[str, Any] = {"habitat": habitats, "brain": brains, "mutation": mutations}
-"""Module of each replaceable part's contract."""
 
 
 def setting_rows(task: str | None, given: dict[str, Any]) -> list[tuple[str, str]]:

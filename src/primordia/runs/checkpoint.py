@@ -16,21 +16,17 @@ from pathlib import Path
 import numpy as np
 
 from primordia import files, interrupts
-from primordia.brains.genomes import FOUNDERS
 from primordia.errors import Trouble
 from primordia.runs import manifest as manifests
 from primordia.runs.arrays import Arrays
 from primordia.runs.code import FOLDER as CODE
-from primordia.runs.description import FILE as DESCRIPTION
-from primordia.runs.manifest import Manifest, Progress, Seal
+from primordia.runs.manifest import INPUTS, Manifest, Progress, Seal
 from primordia.runs.record import Recorder
 from primordia.runs.schema import TABLES
 
 KEPT = 2
 """Number of checkpoints kept; if the newest is damaged, the one before it is used."""
 FOLDER, ORIGIN = "checkpoints", "origin"
-INPUTS = ("config.toml", DESCRIPTION, FOUNDERS)
-"""Files that a run needs to go on, beside its checkpoints and the user's own code."""
 STATE, MANIFEST = "state.npz", "manifest.json"
 NUMBER = re.compile("[0-9]{6,9}")
 """Names of checkpoints."""

@@ -33,13 +33,9 @@ def copy(config: Config, run: Path) -> dict[str, str]:
     for name, source in code.items():
         path = run / FOLDER / name
         files.make_folder(path.parent)
-        files.write(path, partial(_fill, text=source.text))
+        files.write_bytes(path, source.text)
     trust(code)
     return {name: code[name].sha256 for name in sorted(code)}
-
-
-def _fill(path: Path, text: bytes) -> None:
-    path.write_bytes(text)
 
 
 def found(modules: Iterable[str]) -> Sources:

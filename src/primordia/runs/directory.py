@@ -17,6 +17,7 @@ from primordia.errors import InputError, Trouble
 from primordia.habitats.contract import AnyHabitat
 from primordia.runs import checkpoint, code
 from primordia.runs.description import Description
+from primordia.runs.manifest import INPUTS
 from primordia.runs.schema import TABLES
 from primordia.settings.tables import from_toml
 
@@ -24,7 +25,7 @@ FORMAT = 2
 """of run directories; others are refused"""
 VERSIONS, LOCK = "versions.json", "lock"
 FOLDERS = (*TABLES, checkpoint.FOLDER)
-OWN = (VERSIONS, *FOLDERS, code.FOLDER, checkpoint.ORIGIN, *checkpoint.INPUTS, LOCK)
+OWN = (VERSIONS, *FOLDERS, code.FOLDER, checkpoint.ORIGIN, *INPUTS, LOCK)
 """What a new run's directory holds."""
 
 

@@ -8,20 +8,32 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
 from primordia import files
+from primordia.brains.genomes import FOUNDERS
 from primordia.config import Stop
+from primordia.runs.code import FOLDER as CODE
+from primordia.runs.description import FILE as DESCRIPTION
+from primordia.runs.schema import TABLES
 
-Table = Annotated[str, Field(pattern="^(births|deaths|metrics)$")]
+INPUTS = ("config.toml", DESCRIPTION, FOUNDERS)
+"""Files that a run needs to go on, beside its checkpoints and the user's own code."""
 Word = Annotated[int, Field(ge=0, lt=2**64)]
 
 
-def _within(name: str) -> str:
-    if ".." in name.split("/"):
-        raise ValueError(f"{name} is not below the run")
+def _is_input(name: str) -> str:
+    folder, *parts = name.split("/")
+    if name not in INPUTS and (folder != CODE or not parts or ".." in parts):
+        raise ValueError(f"{name} is not one of a run's files")
     return name
 
 
-INPUTS = r"^(config\.toml|description\.json|founders\.safetensors|code(/[^/]+)+)$"
-Input = Annotated[str, Field(pattern=INPUTS), AfterValidator(_within)]
+def _is_table(name: str) -> str:
+    if name not in TABLES:
+        raise ValueError(f"{name} is no table")
+    return name
+
+
+Input = Annotated[str, AfterValidator(_is_input)]
+Table = Annotated[str, AfterValidator(_is_table)]
 
 
 class Part(BaseModel):
@@ -62,8 +74,8 @@ class Manifest(Part):
     inputs: dict[Input, Seal]
     """files that a run needs to go on, beside its checkpoints, by their path below the run"""
     state: Seal
-    segments: dict[Table, list[Segment]] = Field(min_length=3)
-    digests: dict[Table, list[tuple[Word, Word]]] = Field(min_length=3)
+    segments: dict[Table, list[Segment]] = Field(min_length=len(TABLES))
+    digests: dict[Table, list[tuple[Word, Word]]] = Field(min_length=len(TABLES))
     """sums of the row hashes of each table, for each world"""
 
     def text(self) -> str:
