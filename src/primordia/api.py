@@ -26,26 +26,37 @@ from primordia.organism.evaluation import Evaluation, evaluate
 from primordia.organism.export import export
 from primordia.organism.organism import Organism
 from primordia.organism.policy import Policy
-from primordia.runs import code, loop
+from primordia.runs import code, loop, opening
 from primordia.runs.archive import Archive
 from primordia.runs.fork import fork
 from primordia.runs.lives import Lives
 from primordia.runs.loop import Listener
+from primordia.runs.records import Records
 from primordia.runs.verify import verify
 
 
 @dataclass(frozen=True)
 class Run:
-    """A run directory. Each call opens the run again; an `Organism` keeps the archive it came from."""
+    """A run, or several runs as one arm: their worlds in the order of their seeds.
+
+    Each call opens the runs again; an `Organism` keeps the records that it came from.
+    """
 
     path: Path
+    """a run's directory, a folder that holds runs, or a pattern such as `runs/h*`"""
+    others: tuple[Path, ...] = ()
+    """further ones of the same arm"""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "path", Path(self.path))
 
-    def opened(self) -> Archive:
-        """Open the run for reading, as it is now."""
-        return Archive(self.path)
+    def opened(self) -> Records:
+        """Open the records for reading, as they are now."""
+        return opening.opened([self.path, *self.others])
+
+    def only(self) -> Archive:
+        """Open the run for reading; raise InputError if there are several."""
+        return opening.only([self.path, *self.others])
 
     def info(self) -> dict[str, Any]:
         """Return the run in numbers; see `info.info`."""
@@ -112,7 +123,7 @@ class Run:
         """Make a run that goes on from the end of tick `at`, with changed settings; see `runs.fork`."""
         devices.select(device)
         path = Path(out) if out is not None else fresh_directory(f"{self.path.name}-at{at}")
-        fork(self.opened(), at, path, {**(settings or {}), **more}, listen)
+        fork(self.only(), at, path, {**(settings or {}), **more}, listen)
         loop.resume(path, checkpoint_every=checkpoint_every, listen=listen)
         return Run(path)
 
@@ -128,13 +139,17 @@ class Run:
         """Go on with the run, with new `ticks`, `births` or `until` if given; see `loop.resume`."""
         devices.select(device)
         return loop.resume(
-            self.path, limits, inexact=inexact, checkpoint_every=checkpoint_every, listen=listen
+            self.only().path,
+            limits,
+            inexact=inexact,
+            checkpoint_every=checkpoint_every,
+            listen=listen,
         )
 
     def verify(self, device: str = "cpu", listen: Listener | None = None) -> list[str]:
         """Repeat the run and compare -> what differs; see `verify.verify`."""
         devices.select(device)
-        return verify(self.opened(), listen)
+        return verify(self.only(), listen)
 
 
 def run(
@@ -173,31 +188,47 @@ def run(
 def compare(
     *runs: Run | str | Path, births: int | None = None, ticks: int | None = None
 ) -> comparison.Comparison:
-    """Put runs of one task side by side, the first as the reference; see `comparison.compare`.
+    """Put runs or arms of one task side by side, the first as the reference; see `comparison.compare`.
+
+    Args:
+        runs: a run's directory, an arm's folder, or `name=PATTERN` for several runs as one arm, such as
+            `heredity=runs/h*`.
+        births: horizon in births.
+        ticks: horizon in ticks.
 
     `figures.comparison.save` draws the result.
     """
-    opened = [Archive(each.path if isinstance(each, Run) else each) for each in runs]
-    return comparison.compare(opened, births, ticks)
+    return comparison.compare([_arm(each) for each in runs], births, ticks)
 
 
-def load(run: str | Path, trust: bool = False) -> Run:
-    """Return the run in a directory.
+def _arm(place: Run | str | Path) -> Records:
+    if isinstance(place, Run):
+        return place.opened()
+    name, path = opening.split_name(str(place))
+    return opening.opened([path], name)
+
+
+def load(run: str | Path | Sequence[str | Path], trust: bool = False) -> Run:
+    """Return the run in a directory, or several runs as one arm.
 
     Args:
-        run: the directory.
+        run: a run's directory; a folder that holds runs; a pattern, such as `runs/h*`; or several of
+            these.
         trust: allow the run's own code to be executed, from now on and on this machine. Without that,
             code that the user did not begin a run with stops what executes it: `resume`, `fork`,
             `verify`, `replay`, `evaluate` and `policy`. Reading records executes nothing.
 
     Raises:
-        InputError: the directory holds no run.
+        InputError: there is no run, or the runs are not of one arm.
     """
-    opened = Archive(run)
+    places = [run] if isinstance(run, str | Path) else list(run)
+    opened = opening.opened(places)
     if trust:
-        code.trust(opened.code())
-        code.trust(Archive(run, edited=True).code())
-    return Run(Path(run))
+        for path in opened.paths:
+            code.trust(Archive(path).code())
+            code.trust(Archive(path, edited=True).code())
+    first, *others = map(Path, places)
+    return Run(first, tuple(others))
 
 
 def default_name(chosen: config.Config) -> str:

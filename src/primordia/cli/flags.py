@@ -11,6 +11,9 @@ from primordia.settings.tables import parsed_toml
 from primordia.settings.values import check_values
 
 run_argument = click.argument("run", type=click.Path(path_type=Path))
+runs_argument = click.argument(
+    "runs", type=click.Path(path_type=Path), nargs=-1, required=True, metavar="RUN..."
+)
 out_option = click.option(
     "--out", type=click.Path(path_type=Path), help="Directory to make [under runs/]."
 )

@@ -8,7 +8,7 @@ import click
 
 from primordia import files
 from primordia.cli.cache import cache_option
-from primordia.cli.flags import device_option, run_argument, trust_option
+from primordia.cli.flags import device_option, run_argument, runs_argument, trust_option
 from primordia.errors import Trouble
 
 if TYPE_CHECKING:
@@ -16,19 +16,19 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@run_argument
+@runs_argument
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
-def info(run: Path, as_json: bool) -> None:
-    """Summarise a run so far."""
+def info(runs: tuple[Path, ...], as_json: bool) -> None:
+    """Summarise a run so far, or several runs as one arm."""
     from primordia.api import Run
     from primordia.history.summary import summary
 
-    numbers = Run(run).info()
+    numbers = Run(runs[0], runs[1:]).info()
     click.echo(json.dumps(numbers) if as_json else summary(numbers))
 
 
 @click.command(short_help="Draw figures of a run.")
-@run_argument
+@runs_argument
 @click.option(
     "--out", type=click.Path(path_type=Path), help="Folder for the figures [RUN/figures]."
 )
@@ -40,11 +40,14 @@ def info(run: Path, as_json: bool) -> None:
     metavar="NAME|module:function",
     help="Draw this one alone; may be repeated [all of ours].",
 )
-def plot(run: Path, out: Path | None, world: int, figures: tuple[str, ...]) -> None:
-    """Draw figures: ages, survival, population, and lines of descent in space and time."""
+def plot(runs: tuple[Path, ...], out: Path | None, world: int, figures: tuple[str, ...]) -> None:
+    """Draw figures: ages, survival, population, and lines of descent in space and time.
+
+    Several runs are drawn as one arm.
+    """
     from primordia.api import Run
 
-    for path in Run(run).plot(out, world, figures):
+    for path in Run(runs[0], runs[1:]).plot(out, world, figures):
         click.echo(path)
 
 
@@ -117,7 +120,7 @@ def tasks() -> None:
 
 
 @click.command(short_help="Compare runs of one task.")
-@click.argument("runs", nargs=-1, metavar="REFERENCE RUN...", type=click.Path(path_type=Path))
+@click.argument("runs", nargs=-1, metavar="REFERENCE RUN...")
 @click.option(
     "--births", type=click.IntRange(1), help="Count only saturation before this number of births."
 )
@@ -129,10 +132,11 @@ def tasks() -> None:
     help="Folder for compare.png and compare.svg [the current one].",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
-def compare(runs: tuple[Path, ...], out: Path, as_json: bool, **horizons: int | None) -> None:
+def compare(runs: tuple[str, ...], out: Path, as_json: bool, **horizons: int | None) -> None:
     """Compare runs of one task: how soon worlds saturate, how long organisms live.
 
-    The first run is the reference of all others. The units are worlds, so give runs many (--seeds).
+    The first run is the reference of all others. The units are worlds, so give runs many (--seeds), or
+    several runs to an arm: 'heredity=runs/h*' 'none=runs/n*'.
     """
     from primordia import api
     from primordia.cli.comparison_tables import comparison_tables

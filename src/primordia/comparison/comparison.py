@@ -20,9 +20,10 @@ from primordia.comparison.pace import Pace, pace
 from primordia.comparison.survival import Survival, survival
 from primordia.config import Config
 from primordia.errors import InputError
-from primordia.runs.archive import Archive
 from primordia.runs.arrays import NEVER, read_count
 from primordia.runs.lives import Lives
+from primordia.runs.records import Records
+from primordia.settings.tables import flat
 
 OUTCOMES = {
     "first": "births to first long life",
@@ -129,7 +130,7 @@ class Comparison:
 
 
 def compare(
-    runs: Sequence[Archive], births: int | None = None, ticks: int | None = None
+    runs: Sequence[Records], births: int | None = None, ticks: int | None = None
 ) -> Comparison:
     """Read runs and put them side by side.
 
@@ -172,7 +173,7 @@ def compare(
     return Comparison(configs[0].task, tuple(arms), age, begin, births, ticks, span)
 
 
-def _common_ticks(runs: Sequence[Archive], configs: Sequence[Config]) -> tuple[int, int]:
+def _common_ticks(runs: Sequence[Records], configs: Sequence[Config]) -> tuple[int, int]:
     """Return the first and last tick between which all worlds of all runs are on record."""
     begun = [config.begins for config in configs]
     ended = [min(int(world.ended.max(initial=0)) for world in _worlds(run.lives)) for run in runs]
@@ -185,7 +186,7 @@ def _common_ticks(runs: Sequence[Archive], configs: Sequence[Config]) -> tuple[i
     return max(begun), min(ended)
 
 
-def _names(runs: Sequence[Archive]) -> list[str]:
+def _names(runs: Sequence[Records]) -> list[str]:
     """Return the names of the runs' directories; the whole path where two have one name."""
     names = [run.path.resolve().name for run in runs]
     return [
@@ -205,11 +206,12 @@ def _worlds(lives: Lives) -> list[Lives]:
     return [lives.of_world(world) for world in range(lives.worlds)]
 
 
-def _configs(runs: Sequence[Archive]) -> list[Config]:
+def _configs(runs: Sequence[Records]) -> list[Config]:
     """Return the settings of runs; raise InputError if the runs cannot be compared."""
     if len(runs) < 2:
         raise InputError("compare needs two runs or more; the first is the reference of the others")
-    if len({run.path.resolve() for run in runs}) < len(runs):
+    paths = [path.resolve() for run in runs for path in run.paths]
+    if len(set(paths)) < len(paths):
         raise InputError("a run is given twice; its worlds cannot be compared with themselves")
     first, *others = runs
     for run in others:
@@ -224,12 +226,12 @@ def _configs(runs: Sequence[Archive]) -> list[Config]:
 def differing(configs: Sequence[Config]) -> list[dict[str, Any]]:
     """Return, for each configuration, the settings in which the configurations differ."""
     ignored: Any = {"about": True, "fork": {"run"}}  # words, and the name of a folder
-    flat = [_flat(config.model_dump(mode="json", exclude=ignored)) for config in configs]
-    names = dict.fromkeys(name for settings in flat for name in settings)
+    each = [flat(config.model_dump(mode="json", exclude=ignored)) for config in configs]
+    names = dict.fromkeys(name for settings in each for name in settings)
     different = [
-        name for name in names if any(settings.get(name) != flat[0].get(name) for settings in flat)
+        name for name in names if any(settings.get(name) != each[0].get(name) for settings in each)
     ]
-    return [{name: settings.get(name) for name in different} for settings in flat]
+    return [{name: settings.get(name) for name in different} for settings in each]
 
 
 def first_long(worlds: Sequence[Lives], age: int) -> Measured:
@@ -250,7 +252,7 @@ def first_long(worlds: Sequence[Lives], age: int) -> Measured:
 
 
 def _saturation(
-    run: Archive, lives: Lives, begin: int, births: int | None, ticks: int | None
+    run: Records, lives: Lives, begin: int, births: int | None, ticks: int | None
 ) -> dict[str, Measured]:
     """Return the births and ticks to saturation of each world of a run, counted from tick `begin`.
 
@@ -281,15 +283,6 @@ def often_saturated(measured: dict[str, Measured]) -> bool:
     """Return whether at least half of a run's worlds saturate within the horizons."""
     known = measured["births"].known & measured["ticks"].known
     return 2 * int(known.sum()) >= len(known)
-
-
-def _flat(values: dict[str, Any], prefix: str = "") -> dict[str, Any]:
-    """Return nested tables as one, with dotted names."""
-    flat: dict[str, Any] = {}
-    for name, value in values.items():
-        inner = isinstance(value, dict)
-        flat |= _flat(value, f"{prefix}{name}.") if inner else {prefix + name: value}
-    return flat
 
 
 def _plain(bounds: Bounds) -> list[float | None]:

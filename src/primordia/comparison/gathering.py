@@ -7,7 +7,7 @@ import numpy as np
 from primordia.comparison.contrast import Measured
 from primordia.comparison.pace import LATE, WINDOWS
 from primordia.history.foraging import harvests
-from primordia.runs.archive import Archive
+from primordia.runs.records import Records
 
 
 @dataclass(frozen=True)
@@ -20,7 +20,7 @@ class Gathering:
     """food in the last quarter of the time; known if there was any food at all"""
 
 
-def gathering(run: Archive, worlds: int, begin: int, end: int, span: float) -> Gathering:
+def gathering(run: Records, worlds: int, begin: int, end: int, span: float) -> Gathering:
     """Return the food gathered in the worlds of a run, in a span of `span` ticks.
 
     All worlds must be on record between the ticks `begin` and `end`.

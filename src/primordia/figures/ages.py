@@ -6,8 +6,8 @@ from matplotlib.figure import Figure
 
 from primordia.figures import style
 from primordia.history import series
-from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
+from primordia.runs.records import Records
 
 DOTS = 3000
 """Largest number of dots, for the dead and for the living."""
@@ -15,7 +15,7 @@ BINS, ENOUGH = 40, 30
 """Largest number of stretches of birth order with quartiles; about how many dead each of them needs."""
 
 
-def draw(run: Archive, world: int) -> Figure:
+def draw(run: Records, world: int) -> Figure:
     """Draw mean age over time and over organisms, and lifespans of the dead by birth order."""
     lives = run.lives.since_fork()
     figure = Figure(figsize=(style.PAGE, 2.4))

@@ -5,12 +5,12 @@ from matplotlib.figure import Figure
 
 from primordia.figures import style
 from primordia.history.foraging import foraging
-from primordia.runs.archive import Archive
+from primordia.runs.records import Records
 
 BREAK_EVEN = style.ORANGE
 
 
-def draw(run: Archive, world: int) -> Figure | None:
+def draw(run: Records, world: int) -> Figure | None:
     """Draw the food an organism gathers, a second where the habitat knows of seconds, and the break-even.
 
     Returns:

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from primordia import files
 from primordia.errors import InputError
 from primordia.figures import style
-from primordia.runs.archive import Archive
+from primordia.runs.records import Records
 from primordia.settings import parts
 
 KNOWN = {
@@ -23,11 +23,11 @@ KNOWN = {
     "space-time": "primordia.figures.spacetime:draw",
     "foraging": "primordia.figures.foraging:draw",
 }
-Draw: TypeAlias = Callable[[Archive, int], Figure | None]
+Draw: TypeAlias = Callable[[Records, int], Figure | None]
 
 
 def plot(
-    run: Archive, out: Path | None = None, world: int = 0, figures: Sequence[str] = ()
+    run: Records, out: Path | None = None, world: int = 0, figures: Sequence[str] = ()
 ) -> list[Path]:
     """Draw figures of a run, up to its newest checkpoint -> the files made.
 

@@ -7,8 +7,8 @@ from matplotlib.figure import Figure
 from primordia.figures import style
 from primordia.history import series
 from primordia.law.world import Cause
-from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
+from primordia.runs.records import Records
 
 COLOURS = {
     Cause.FATAL: style.VERMILION,
@@ -22,7 +22,7 @@ COLOURS = {
 LIVING = style.BLUE
 
 
-def draw(run: Archive, world: int) -> Figure:
+def draw(run: Records, world: int) -> Figure:
     """Draw the population; what became of all who were born; births and deaths per tick."""
     lives, cells = run.lives.since_fork(), run.config.cells
     figure = Figure(figsize=(style.PAGE, 2.4))

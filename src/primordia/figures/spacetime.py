@@ -11,8 +11,8 @@ from primordia.figures import style
 from primordia.history import series
 from primordia.history.clades import Clades, find_clades
 from primordia.history.lines import CROWD
-from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
+from primordia.runs.records import Records
 
 ROWS, COLUMNS = 800, 512
 """Largest number of moments, and of cells, that are drawn; of more, every second or third is drawn."""
@@ -29,7 +29,7 @@ MAX_TAKEOVERS = 8
 """Largest number of takeovers that are marked."""
 
 
-def draw(run: Archive, world: int) -> Figure:
+def draw(run: Records, world: int) -> Figure:
     """Draw one world. Time runs in births: a world that lives long is calm for most of its ticks."""
     figure = Figure(figsize=(style.COLUMN, 4.8))
     axes = figure.subplots()

@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 from primordia.comparison.survival import survival
 from primordia.figures import style
 from primordia.history import series
-from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
+from primordia.runs.records import Records
 
 COHORTS = {
     "first quarter": "#d89000",
@@ -21,7 +21,7 @@ COHORTS = {
 """Quarters of a world's births in order, with colours from light to dark."""
 
 
-def draw(run: Archive, world: int) -> Figure:
+def draw(run: Records, world: int) -> Figure:
     """Draw survival over a table of numbers at risk, and risks of death. All worlds together."""
     lives = run.lives.since_fork()
     figure = Figure(figsize=(style.PAGE, 2.8))

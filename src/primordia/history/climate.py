@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
+from primordia.runs.records import Records
 
 Climates = dict[str, np.ndarray]
 """Dotted name of each setting -> its values, float32 (n,)."""
@@ -12,7 +12,7 @@ Climates = dict[str, np.ndarray]
 class PastClimate:
     """The climates of all worlds of a run, as its metrics record them."""
 
-    def __init__(self, run: Archive) -> None:
+    def __init__(self, run: Records) -> None:
         self._beginning = _beginning(run)
         self._metrics: dict[str, np.ndarray] | None = None
         if run.config.seasons:
@@ -49,7 +49,7 @@ class PastClimate:
         return row
 
 
-def _beginning(run: Archive) -> Climates:
+def _beginning(run: Records) -> Climates:
     """Return the climates that the records of all worlds begin with, (W,) each."""
     if (stored := run.origin) is None:
         worlds = run.config.seeds

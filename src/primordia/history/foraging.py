@@ -6,8 +6,8 @@ import numpy as np
 
 from primordia.history.climate import Climates, PastClimate
 from primordia.law.metabolism import ONE, break_even
-from primordia.runs.archive import Archive
 from primordia.runs.arrays import read_count
+from primordia.runs.records import Records
 
 STRETCHES = 60
 """Largest number of stretches that a world's time is cut into."""
@@ -45,7 +45,7 @@ class Harvest(NamedTuple):
         return np.where(lived > 0, food / np.maximum(lived, 1), np.nan)
 
 
-def harvests(run: Archive, worlds: int) -> list[Harvest]:
+def harvests(run: Records, worlds: int) -> list[Harvest]:
     """Return the harvest of each of the first `worlds` worlds of a run."""
     world = run.metrics["world"].to_numpy()
     columns = [run.metrics[name].to_numpy() for name in ("tick", "food", "organism_ticks")]
@@ -59,7 +59,7 @@ def harvests(run: Archive, worlds: int) -> list[Harvest]:
     ]
 
 
-def _beginning(run: Archive, worlds: int) -> list[np.ndarray]:
+def _beginning(run: Records, worlds: int) -> list[np.ndarray]:
     """Return tick, food and organism-ticks of each world before its first recorded tick, (W,) each."""
     if run.origin is None:
         return [np.zeros(worlds, np.int64)] * 3
@@ -70,7 +70,7 @@ def _beginning(run: Archive, worlds: int) -> list[np.ndarray]:
     return [tick, food / ONE, lived]
 
 
-def foraging(run: Archive) -> Foraging:
+def foraging(run: Records) -> Foraging:
     """Return the foraging of all worlds of a run that has a metabolism."""
     worlds = run.config.seeds
     totals = harvests(run, worlds)

@@ -7,14 +7,14 @@ import numpy as np
 
 from primordia.law.metabolism import break_even
 from primordia.law.world import Cause
-from primordia.runs.archive import Archive
 from primordia.runs.arrays import NEVER, read_count
 from primordia.runs.digest import digests
+from primordia.runs.records import Records
 
 TALLY = "bodies.tally"
 
 
-def info(run: Archive) -> dict[str, Any]:
+def info(run: Records) -> dict[str, Any]:
     """Return a run in numbers, as one dictionary that JSON can hold.
 
     `saturation` and `fixation` are None, or their tick and number of births (founders included).
@@ -24,8 +24,8 @@ def info(run: Archive) -> dict[str, Any]:
     the present replication; below one a lineage dies out.
     The fields of a single world also appear at the top level.
     """
-    config, last = run.config, run.last
-    world_digests = digests(last.digests, run.state, config.seeds)
+    config, progress = run.config, run.progress
+    world_digests = digests(run.row_digests, run.state, config.seeds)
     worlds = [_world(run, world, digest) for world, digest in enumerate(world_digests)]
     whole = {
         "task": config.task,
@@ -33,15 +33,15 @@ def info(run: Archive) -> dict[str, Any]:
         "cells": config.cells,
         "seeds": config.seeds,
         "worlds": worlds,
-        "wall_s": last.manifest.progress.wall_s,
-        "exact": last.manifest.progress.exact,
-        "limits": last.manifest.progress.limits.model_dump(),
+        "wall_s": progress.wall_s,
+        "exact": progress.exact,
+        "limits": progress.limits.model_dump(),
         "versions": run.versions,
     }
     return whole if config.seeds > 1 else {**worlds[0], **whole}
 
 
-def _world(run: Archive, world: int, digest: str) -> dict[str, Any]:
+def _world(run: Records, world: int, digest: str) -> dict[str, Any]:
     config, arrays = run.config, run.state
 
     def counted(name: str) -> Any:
@@ -53,7 +53,7 @@ def _world(run: Archive, world: int, digest: str) -> dict[str, Any]:
     ages = tick - read_count(arrays, "world.organisms.born")[here][alive].astype(np.int64)
     deaths = counted("deaths")
     numbers = {
-        "seed": config.seed + world,
+        "seed": int(run.world_seeds[world]),
         "ticks": tick,
         "alive": int(alive.sum()),
         "births": counted("births"),

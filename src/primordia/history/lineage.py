@@ -21,15 +21,15 @@ from primordia.law.world import BirthCause, Climate
 from primordia.mutations.contract import PURPOSES, Draws
 from primordia.random.keys import streams
 from primordia.random.wide import wide
-from primordia.runs.archive import Archive
 from primordia.runs.arrays import read_count, world_ticks
 from primordia.runs.lives import Lives
+from primordia.runs.records import Records
 
 STEPS_AT_A_TIME = 64
 """Births replayed in one call; the number is fixed, since JAX compiles for every new shape."""
 
 
-def rebuild(run: Archive, organism: int, world: int = 0) -> np.ndarray:
+def rebuild(run: Records, organism: int, world: int = 0) -> np.ndarray:
     """Return the genome of an organism, float32 (P,), blocks of weights in the brain's order.
 
     Args:
@@ -43,7 +43,7 @@ def rebuild(run: Archive, organism: int, world: int = 0) -> np.ndarray:
     return rebuild_all(run, [(organism, world)])[0]
 
 
-def rebuild_all(run: Archive, organisms: Sequence[tuple[int, int]]) -> np.ndarray:
+def rebuild_all(run: Records, organisms: Sequence[tuple[int, int]]) -> np.ndarray:
     """Return the genomes of K organisms, by birth number and world, float32 (K, P); see `rebuild`."""
     device.prepare()
     lineages = [run.lives.take(descent(run.lives, *each)) for each in organisms]
@@ -93,7 +93,7 @@ def place_in(state: Mapping[str, np.ndarray], organism: int, world: int) -> int:
     return int(places[0])
 
 
-def _starting_point(run: Archive, lineage: Lives) -> tuple[np.ndarray, Lives]:
+def _starting_point(run: Records, lineage: Lives) -> tuple[np.ndarray, Lives]:
     """Return the genome (P,) to start a lineage from, and the births to replay from there.
 
     In a fork this is the genome of the lineage's youngest organism at the fork, if there is one.
@@ -109,7 +109,7 @@ def _starting_point(run: Archive, lineage: Lives) -> tuple[np.ndarray, Lives]:
 
 
 def _replay(
-    run: Archive, lineage: Lives, climate: Mapping[str, np.ndarray], genome: np.ndarray
+    run: Records, lineage: Lives, climate: Mapping[str, np.ndarray], genome: np.ndarray
 ) -> np.ndarray:
     """Replay the births of a lineage (D,) in order, from a genome (P,) -> the last genome."""
     notes = run.notes_of(lineage)
@@ -118,7 +118,7 @@ def _replay(
         rows = np.arange(first, first + STEPS_AT_A_TIME)
         births, real = lineage.take(rows % len(lineage)), rows < len(lineage)
         values = {name: each[rows % len(lineage)] for name, each in climate.items()}
-        seed = wide(run.config.world_seeds[births.world])
+        seed = wide(run.world_seeds[births.world])
         genome = np.asarray(
             replay(
                 genome,

@@ -22,7 +22,7 @@ from primordia.law.metabolism import Rates
 from primordia.organism.games import Games, Players, play
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
-from primordia.runs.archive import Archive
+from primordia.runs.records import Records
 from primordia.settings.fields import setting_fields
 from primordia.settings.tables import NONE, did_you_mean, merged, replaced
 
@@ -86,7 +86,7 @@ class Evaluation:
 
 
 def evaluate(
-    run: Archive,
+    run: Records,
     organisms: Sequence[tuple[int, int]],
     *,
     games: int = GAMES,
@@ -131,7 +131,7 @@ def evaluate(
     ]
 
 
-def players_of(run: Archive, organisms: Sequence[tuple[int, int]]) -> Players:
+def players_of(run: Records, organisms: Sequence[tuple[int, int]]) -> Players:
     """Return organisms, by birth number and world, as players in the habitat of their own task.
 
     Raises:
@@ -141,7 +141,7 @@ def players_of(run: Archive, organisms: Sequence[tuple[int, int]]) -> Players:
     lives = run.lives.take(np.array([run.lives.row(*each) for each in organisms]))
     climate = PastClimate(run).of_lives(lives, run.ends[lives.world])
     rates = Rates.of(jax.tree.map(jnp.asarray, climate))
-    keys = stream(wide(run.config.world_seeds[lives.world]), Purpose.EVALUATION, wide(lives.id))
+    keys = stream(wide(run.world_seeds[lives.world]), Purpose.EVALUATION, wide(lives.id))
     return Players(run.law, run.config.build_habitat(), genomes, keys, rates)
 
 

@@ -5,11 +5,11 @@ from pathlib import Path
 
 from primordia.brains import genomes
 from primordia.history.lineage import rebuild_all
-from primordia.runs.archive import Archive
+from primordia.runs.records import Records
 
 
 def export(
-    run: Archive, out: Path, organisms: Sequence[int] = (), world: int = 0
+    run: Records, out: Path, organisms: Sequence[int] = (), world: int = 0
 ) -> tuple[int, ...]:
     """Write genomes of organisms to a safetensors file -> their birth numbers; see `genomes`.
 
@@ -26,7 +26,7 @@ def export(
     chosen = tuple(organisms) or (int(run.lives.id[run.lives.oldest(world)]),)
     about = {
         "task": run.config.task,
-        "seed": str(run.config.seed + world),
+        "seed": str(run.world_seeds[world]),
         "organisms": " ".join(map(str, chosen)),
     }
     genomes.write(out, run.layout, rebuild_all(run, [(each, world) for each in chosen]), about)

@@ -11,15 +11,15 @@ from primordia.law.world import BirthCause, Cause
 from primordia.organism.evaluation import Evaluation, evaluate
 from primordia.organism.policy import Policy
 from primordia.organism.replay import replay
-from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
+from primordia.runs.records import Records
 
 
 @dataclass(frozen=True)
 class Organism:
     """An organism, living or dead."""
 
-    run: Archive
+    run: Records
     row: int
     """row in the run's lives"""
 

@@ -18,7 +18,7 @@ from primordia.law.metabolism import ONE
 from primordia.organism import video
 from primordia.organism.reliving.instant import Stretch
 from primordia.organism.reliving.relived import RelivedLife
-from primordia.runs.archive import Archive
+from primordia.runs.records import Records
 
 PART = 30.0
 """Seconds shown at each end of a life that is longer than two such parts."""
@@ -28,7 +28,7 @@ SIZE, INK = 16, "#333333"
 
 
 def replay(
-    run: Archive,
+    run: Records,
     organism: int,
     world: int = 0,
     out: Path | None = None,

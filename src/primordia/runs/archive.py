@@ -1,4 +1,4 @@
-"""An opened run, through which all other code reads a run directory."""
+"""A run directory opened for reading."""
 
 from collections.abc import Iterator, Sequence
 from functools import cache, cached_property
@@ -9,7 +9,6 @@ import numpy as np
 import pyarrow as pa
 
 from primordia import files
-from primordia.brains.layout import Layout
 from primordia.config import Config
 from primordia.errors import InputError, Trouble
 from primordia.habitats.contract import AnyHabitat
@@ -18,16 +17,18 @@ from primordia.law.law import Law
 from primordia.law.metabolism import Metabolism
 from primordia.own_code import Sources
 from primordia.runs import checkpoint, code, description, directory, segment, shapes
-from primordia.runs.arrays import Arrays, world_ticks
+from primordia.runs.arrays import Arrays
 from primordia.runs.checkpoint import Checkpoint
 from primordia.runs.description import Description
 from primordia.runs.lives import Lives, join
-from primordia.runs.schema import TABLES, Schema
+from primordia.runs.manifest import Progress
+from primordia.runs.records import Records
+from primordia.runs.schema import TABLES
 from primordia.settings.fields import rates_of
 from primordia.settings.tables import PARTS
 
 
-class Archive:
+class Archive(Records):
     """A run directory opened for reading; each part is read, checked or built once, at its first use.
 
     Only the settings are read at once. The archive shows the run as of the checkpoint that was newest at
@@ -50,6 +51,11 @@ class Archive:
         self.fault_in = cache(files.fault_in)
         """`files.fault_in`, with a memory: no file is read twice"""
 
+    @property
+    def paths(self) -> tuple[Path, ...]:
+        """The run's directory alone."""
+        return (self.path,)
+
     @cached_property
     def description(self) -> Description:
         """What the run's parts said of themselves when it began."""
@@ -58,11 +64,6 @@ class Archive:
         if not rates <= set(about.beginning):
             raise InputError(f"{self.path / description.FILE} does not describe this run")
         return about
-
-    @cached_property
-    def layout(self) -> Layout:
-        """The layout of genomes."""
-        return Layout(tuple(self.description.blocks.items()))
 
     def code(self, *parts: str) -> Sources:
         """Return the files of the user's own code that these parts, or all, would execute here."""
@@ -148,6 +149,21 @@ class Archive:
             )
         return last
 
+    @property
+    def progress(self) -> Progress:
+        """The progress that the newest whole checkpoint holds."""
+        return self.last.manifest.progress
+
+    @property
+    def row_digests(self) -> dict[str, np.ndarray]:
+        """The sums of row hashes that the newest whole checkpoint holds."""
+        return self.last.digests
+
+    @property
+    def world_seeds(self) -> np.ndarray:
+        """The seed of each world, uint64 (W,)."""
+        return self.config.world_seeds
+
     @cached_property
     def state(self) -> Arrays:
         """The arrays of the newest whole checkpoint.
@@ -180,15 +196,6 @@ class Archive:
             raise Trouble(f"{stored.path} is no checkpoint of this run: it has other worlds")
         return arrays
 
-    @cached_property
-    def ends(self) -> np.ndarray:
-        """Ticks that each world has lived through, int64 (W,)."""
-        return world_ticks(self.state).astype(np.int64)
-
-    def table(self, name: str, columns: Sequence[str] | None = None) -> pa.Table:
-        """Read `births`, `deaths` or `metrics`, all columns or some, in the order of events."""
-        return pa.concat_tables(self.segments(name, columns))
-
     def segments(self, name: str, columns: Sequence[str] | None = None) -> Iterator[pa.Table]:
         """Read a table segment by segment, the open tail last; see `table`."""
         assert name in TABLES
@@ -200,11 +207,6 @@ class Archive:
         if len(tail) or not closed:
             rows = self.schema.arrow(name, tail)
             yield rows.select(wanted) if wanted else rows
-
-    @cached_property
-    def metrics(self) -> pa.Table:
-        """The table `metrics`."""
-        return self.table("metrics")
 
     @cached_property
     def lives(self) -> Lives:
@@ -223,18 +225,3 @@ class Archive:
         if not len(lives):
             raise InputError(f"{self.path} is empty: nothing has lived in it yet")
         return lives
-
-    @cached_property
-    def schema(self) -> Schema:
-        """The columns of the run's tables."""
-        return Schema.described(self.config.cells, self.description)
-
-    def notes_of(self, lives: Lives) -> np.ndarray:
-        """Return what the mutation noted at the births of some lives, int32 (L, n)."""
-        if not self.schema.notes:
-            return np.zeros((len(lives), 0), np.int32)
-        births = self.table("births", ("world", "id", *self.schema.notes))
-        world, number = births["world"].to_numpy(), births["id"].to_numpy()
-        order = np.lexsort((number, world))
-        rows = order[lives.rows_in(world[order], number[order])]
-        return np.stack([births[name].to_numpy()[rows] for name in self.schema.notes], axis=1)

@@ -1,6 +1,6 @@
 """Births and deaths of a run joined: one row for each organism that ever lived in it."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
@@ -185,6 +185,16 @@ def join(
         ended=ended,
         cause=cause,
     )
+
+
+def joined(parts: Sequence[Lives], firsts: np.ndarray) -> Lives:
+    """Return the lives of R runs, with the worlds of each numbered from its first on, int64 (R,)."""
+    columns = {
+        each.name: np.concatenate([getattr(part, each.name) for part in parts])
+        for each in fields(Lives)
+    }
+    shift = np.repeat(firsts, [len(part) for part in parts]).astype(np.int32)
+    return Lives(**{**columns, "world": columns["world"] + shift})
 
 
 def _check_worlds(events: dict[str, np.ndarray], ends: np.ndarray) -> None:

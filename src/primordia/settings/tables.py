@@ -121,6 +121,15 @@ def replaced(values: Any, old: Any, new: Any) -> Any:
     return new if type(values) is type(old) and values == old else values
 
 
+def flat(values: dict[str, Any], prefix: str = "") -> dict[str, Any]:
+    """Return nested tables as one, with dotted names."""
+    one: dict[str, Any] = {}
+    for name, value in values.items():
+        inner = isinstance(value, dict)
+        one |= flat(value, f"{prefix}{name}.") if inner else {prefix + name: value}
+    return one
+
+
 def did_you_mean(name: str, known: list[str]) -> str:
     """Return the nearest known name as the end of a sentence; "" if none is near."""
     close = difflib.get_close_matches(name, known, 1) or [

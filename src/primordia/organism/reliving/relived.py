@@ -32,15 +32,15 @@ from primordia.organism.reliving.instant import Instant, Stretch
 from primordia.organism.reliving.on_host import LifeOnHost
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import Wide, wide
-from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
+from primordia.runs.records import Records
 
 
 @dataclass(frozen=True)
 class RelivedLife:
     """The inputs of a life, and its record."""
 
-    run: Archive
+    run: Records
     config: Config
     law: Law
     habitat: AnyHabitat
@@ -51,7 +51,7 @@ class RelivedLife:
     """a single row"""
 
     @classmethod
-    def of(cls, run: Archive, organism: int, world: int = 0) -> "RelivedLife":
+    def of(cls, run: Records, organism: int, world: int = 0) -> "RelivedLife":
         """Prepare the life of an organism.
 
         Raises:
@@ -171,7 +171,7 @@ class RelivedLife:
     @property
     def _seed(self) -> Wide:
         """The seed of the world, (1,)."""
-        return wide(self.config.world_seeds[self.record.world])
+        return wide(self.run.world_seeds[self.record.world])
 
     @cached_property
     def _past(self) -> PastClimate:

@@ -1,0 +1,196 @@
+"""Several runs read as one: an arm, whose worlds were lived in jobs, on any machine and in any order.
+
+The worlds of the first run come first. They keep their seeds, so a world has the same record and the same
+digest whether it was lived alone or beside others.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+
+from primordia import files
+from primordia.brains.genomes import FOUNDERS
+from primordia.config import Config
+from primordia.errors import InputError
+from primordia.habitats.contract import AnyHabitat
+from primordia.law.heredity import Heredity
+from primordia.law.law import Law
+from primordia.runs.archive import Archive
+from primordia.runs.description import Description
+from primordia.runs.lives import Lives, joined
+from primordia.runs.manifest import Progress
+from primordia.runs.records import Records
+from primordia.settings.tables import flat
+
+MOST = 2**16
+"""Largest number of worlds that are read as one."""
+
+
+class Arm(Records):
+    """The worlds of several runs, which have the same settings and other seeds."""
+
+    def __init__(self, path: Path, runs: Sequence[Archive]) -> None:
+        """Read runs as one.
+
+        Args:
+            path: the arm's folder, or any name.
+            runs: one or more, all of the same settings but for `seed` and `seeds`.
+
+        Raises:
+            InputError: settings differ, or a world is given twice.
+        """
+        self.path, self.runs = path, tuple(runs)
+        _refuse_others(self.runs)
+        counts = [run.config.seeds for run in runs]
+        self._firsts = np.concatenate([[0], np.cumsum(counts)[:-1]])
+        self.config: Config = runs[0].config.model_copy(update={"seeds": sum(counts)})
+        _refuse_twice(self.runs, self.world_seeds)
+
+    @property
+    def paths(self) -> tuple[Path, ...]:
+        """The directories of all runs."""
+        return tuple(run.path for run in self.runs)
+
+    @property
+    def description(self) -> Description:
+        """What the parts said of themselves, the same in all runs."""
+        return self.runs[0].description
+
+    @cached_property
+    def versions(self) -> dict[str, Any]:
+        """The versions of all runs; where they differ, each once, separated by commas."""
+        names = dict.fromkeys(name for run in self.runs for name in run.versions)
+        return {name: self._one_or_all(name) for name in names}
+
+    def _one_or_all(self, name: str) -> Any:
+        found = list(dict.fromkeys(run.versions.get(name, "none") for run in self.runs))
+        return found[0] if len(found) == 1 else ", ".join(map(str, found))
+
+    @cached_property
+    def world_seeds(self) -> np.ndarray:
+        """The seed of each world, uint64 (W,)."""
+        return np.concatenate([run.world_seeds for run in self.runs])
+
+    @cached_property
+    def progress(self) -> Progress:
+        """The seconds of all runs together, and the limits of the first."""
+        each = [run.progress for run in self.runs]
+        wall_s, exact = sum(one.wall_s for one in each), all(one.exact for one in each)
+        return Progress(limits=each[0].limits, wall_s=wall_s, exact=exact)
+
+    @cached_property
+    def row_digests(self) -> dict[str, np.ndarray]:
+        """The sums of row hashes of each table, uint64 (W, 2)."""
+        tables = [run.row_digests for run in self.runs]
+        return {name: np.concatenate([each[name] for each in tables]) for name in tables[0]}
+
+    @cached_property
+    def state(self) -> Mapping[str, np.ndarray]:
+        """The arrays of all states, joined, without the open tails."""
+        return _Joined([run.state for run in self.runs])
+
+    @cached_property
+    def origin(self) -> Mapping[str, np.ndarray] | None:
+        """The arrays that the forks began with, joined; None if these are no forks."""
+        origins = [run.origin for run in self.runs]
+        return _Joined([each for each in origins if each is not None]) if all(origins) else None
+
+    @cached_property
+    def lives(self) -> Lives:
+        """All lives of all runs."""
+        return joined([run.lives for run in self.runs], self._firsts)
+
+    def segments(self, name: str, columns: Sequence[str] | None = None) -> Iterator[pa.Table]:
+        """Read a table run by run; see `Records.table`."""
+        for first, run in zip(self._firsts.tolist(), self.runs, strict=True):
+            for part in run.segments(name, columns):
+                yield _shifted(part, first)
+
+    def admit(self, *parts: str) -> None:
+        """Let the user's own code be imported, which is the same in all runs."""
+        self.runs[0].admit(*parts)
+
+    @property
+    def habitat(self) -> AnyHabitat:
+        """The habitat, for reading its properties."""
+        return self.runs[0].habitat
+
+    @property
+    def law(self) -> Law:
+        """The law that holds in the worlds."""
+        return self.runs[0].law
+
+    @property
+    def heredity(self) -> Heredity:
+        """The part of the law that makes genomes."""
+        return self.runs[0].heredity
+
+
+class _Joined(Mapping[str, np.ndarray]):
+    """The arrays of several states by name, each joined along its first axis when it is read."""
+
+    def __init__(self, states: Sequence[Mapping[str, np.ndarray]]) -> None:
+        self._states = states
+        self._names = [name for name in states[0] if not name.startswith("tail.")]
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        if name not in self._names:
+            raise KeyError(name)
+        return np.concatenate([state[name] for state in self._states])
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+
+def _shifted(part: pa.Table, first: int) -> pa.Table:
+    """Return rows whose worlds are numbered from `first` on."""
+    place = part.schema.get_field_index("world")
+    if place < 0 or first == 0:
+        return part
+    world = part["world"].to_numpy() + np.int32(first)
+    return part.set_column(place, part.schema.field(place), pa.array(world))
+
+
+def _refuse_others(runs: Sequence[Archive]) -> None:
+    """Raise InputError unless all runs have the settings, the code and the founders of the first."""
+    first, *others = runs
+    compared: dict[str, Callable[[Archive], Any]] = {
+        "settings": _settings,
+        "description": lambda run: flat(run.description.model_dump()),
+        "ancestors": lambda run: {"genomes": run.config.ancestors and _founders(run)},
+    }
+    for run in others:
+        for values in compared.values():
+            own, reference = values(run), values(first)
+            if differing := [name for name in own if own[name] != reference.get(name)]:
+                raise InputError(
+                    f"{run.path} and {first.path} are not one arm: they differ in {differing[0]}"
+                )
+
+
+def _settings(run: Archive) -> dict[str, Any]:
+    """Return the settings that must be equal, by dotted name."""
+    ignored: Any = {"about": True, "seed": True, "seeds": True, "fork": {"run"}}
+    return flat(run.config.model_dump(mode="json", exclude=ignored))
+
+
+def _founders(run: Archive) -> str:
+    return str(files.seal(run.path / FOUNDERS)["sha256"])
+
+
+def _refuse_twice(runs: Sequence[Archive], seeds: np.ndarray) -> None:
+    if len(seeds) > MOST:
+        raise InputError(f"an arm has at most {MOST:,} worlds, not {len(seeds):,}")
+    run_of = np.repeat(np.arange(len(runs)), [run.config.seeds for run in runs])
+    order = np.argsort(seeds, kind="stable")
+    twice = np.flatnonzero(seeds[order][1:] == seeds[order][:-1])
+    if len(twice):
+        one, other = (runs[run_of[row]].path for row in order[twice[0] : twice[0] + 2])
+        raise InputError(f"{one} and {other} both hold the world of seed {seeds[order[twice[0]]]}")

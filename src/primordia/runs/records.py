@@ -1,0 +1,148 @@
+"""The records of worlds, through which all figures and numbers are made, wherever they are held.
+
+`archive.Archive` reads those of one run directory, `arm.Arm` those of several runs as if they were one.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+
+from primordia.brains.layout import Layout
+from primordia.config import Config
+from primordia.habitats.contract import AnyHabitat
+from primordia.law.heredity import Heredity
+from primordia.law.law import Law
+from primordia.runs.arrays import world_ticks
+from primordia.runs.description import Description
+from primordia.runs.lives import Lives
+from primordia.runs.manifest import Progress
+from primordia.runs.schema import Schema
+
+
+class Records(ABC):
+    """The records of W worlds that live by one law; each part is read or built at its first use."""
+
+    path: Path
+    """the directory in which figures and videos are put"""
+    config: Config
+    """the settings; `seeds` is W"""
+
+    @property
+    @abstractmethod
+    def paths(self) -> tuple[Path, ...]:
+        """The run directories that hold the records."""
+
+    @property
+    @abstractmethod
+    def description(self) -> Description:
+        """What the parts said of themselves when the run began."""
+
+    @property
+    @abstractmethod
+    def versions(self) -> dict[str, Any]:
+        """The format, package versions and device that the worlds were begun with."""
+
+    @property
+    @abstractmethod
+    def world_seeds(self) -> np.ndarray:
+        """The seed of each world, uint64 (W,)."""
+
+    @property
+    @abstractmethod
+    def progress(self) -> Progress:
+        """Seconds spent, the limits now in force, and whether everything repeats bit for bit."""
+
+    @property
+    @abstractmethod
+    def row_digests(self) -> dict[str, np.ndarray]:
+        """The sums of row hashes of each table, uint64 (W, 2)."""
+
+    @property
+    @abstractmethod
+    def state(self) -> Mapping[str, np.ndarray]:
+        """The arrays of the newest state, by name; the first axis is worlds, or cells world by world."""
+
+    @property
+    @abstractmethod
+    def origin(self) -> Mapping[str, np.ndarray] | None:
+        """The arrays that a fork began with, as in `state`; None if this is no fork."""
+
+    @property
+    @abstractmethod
+    def lives(self) -> Lives:
+        """All lives, one row each.
+
+        Raises:
+            InputError: nothing has lived yet.
+            Trouble: births and deaths contradict each other.
+        """
+
+    @abstractmethod
+    def segments(self, name: str, columns: Sequence[str] | None = None) -> Iterator[pa.Table]:
+        """Read a table part by part; see `table`."""
+
+    @abstractmethod
+    def admit(self, *parts: str) -> None:
+        """Let the user's own code of these parts, or of all, be imported.
+
+        Raises:
+            InputError: the user has not trusted it yet.
+        """
+
+    @property
+    @abstractmethod
+    def habitat(self) -> AnyHabitat:
+        """The habitat, for reading its properties; build another one to make bodies in.
+
+        Raises:
+            InputError: the user has not trusted its code yet; `law` and `heredity` raise it too.
+        """
+
+    @property
+    @abstractmethod
+    def law(self) -> Law:
+        """The law that holds in the worlds."""
+
+    @property
+    @abstractmethod
+    def heredity(self) -> Heredity:
+        """The part of the law that makes genomes, which needs neither habitat nor brain."""
+
+    @cached_property
+    def layout(self) -> Layout:
+        """The layout of genomes."""
+        return Layout(tuple(self.description.blocks.items()))
+
+    @cached_property
+    def ends(self) -> np.ndarray:
+        """Ticks that each world has lived through, int64 (W,)."""
+        return world_ticks(self.state).astype(np.int64)
+
+    @cached_property
+    def schema(self) -> Schema:
+        """The columns of the tables."""
+        return Schema.described(self.config.cells, self.description)
+
+    def table(self, name: str, columns: Sequence[str] | None = None) -> pa.Table:
+        """Read `births`, `deaths` or `metrics`, all columns or some, in the order of events."""
+        return pa.concat_tables(self.segments(name, columns))
+
+    @cached_property
+    def metrics(self) -> pa.Table:
+        """The table `metrics`."""
+        return self.table("metrics")
+
+    def notes_of(self, lives: Lives) -> np.ndarray:
+        """Return what the mutation noted at the births of some lives, int32 (L, n)."""
+        if not self.schema.notes:
+            return np.zeros((len(lives), 0), np.int32)
+        births = self.table("births", ("world", "id", *self.schema.notes))
+        world, number = births["world"].to_numpy(), births["id"].to_numpy()
+        order = np.lexsort((number, world))
+        rows = order[lives.rows_in(world[order], number[order])]
+        return np.stack([births[name].to_numpy()[rows] for name in self.schema.notes], axis=1)

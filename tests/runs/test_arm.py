@@ -1,0 +1,140 @@
+"""Several runs read as one arm tell what one run of the same worlds tells."""
+
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import primordia
+from primordia.api import Run
+from primordia.errors import InputError
+from primordia.history.foraging import foraging
+from primordia.history.lineage import rebuild_all
+from primordia.runs import loop
+from primordia.runs.arm import Arm
+from primordia.runs.opening import opened, split_name
+from primordia.runs.records import Records
+from primordia.runs.schema import TABLES
+from tests.commands import complains, here
+from tests.worlds import MILL, config
+
+SETTINGS: dict[str, Any] = {**MILL, "brain": {"hidden": 4}, "seed": 3, "stop": {"ticks": 400}}
+JOBS = {"b": (0, 2), "a": (2, 1)}
+"""Names of runs, with the first of their worlds and their number; by name they are in another order."""
+
+
+def start(run: Path, first: int, worlds: int, **changes: Any) -> None:
+    settings = {**SETTINGS, "seed": SETTINGS["seed"] + first, "seeds": worlds, **changes}
+    loop.start(config(settings), run)
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Make three worlds in one run, `whole`, and in two, `arm`, and forks of these."""
+    folder = tmp_path_factory.mktemp("runs")
+    start(folder / "whole", 0, 3)
+    primordia.load(folder / "whole").fork(250, folder / "forked" / "whole", hazard=0.01)
+    for name, (first, worlds) in JOBS.items():
+        start(folder / "arm" / name, first, worlds)
+        primordia.load(folder / "arm" / name).fork(
+            250, folder / "forked" / "arm" / name, hazard=0.01
+        )
+    return folder
+
+
+@pytest.fixture(params=["", "forked"], ids=["begun", "forked"])
+def both(runs: Path, request: pytest.FixtureRequest) -> tuple[Run, Run]:
+    """Return the same worlds as one run and as an arm of two."""
+    folder = runs / request.param
+    return primordia.load(folder / "whole"), primordia.load(folder / "arm")
+
+
+def test_an_arm_has_the_numbers_of_one_run(both: tuple[Run, Run]) -> None:
+    whole, arm = (run.info() for run in both)
+    assert len(arm["worlds"]) == 3
+    for info in (whole, arm):
+        del info["wall_s"]
+    assert arm == whole
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_an_arm_has_the_rows_of_one_run(both: tuple[Run, Run], name: str) -> None:
+    whole, arm = (run.table(name) for run in both)
+    key = [
+        (each, "ascending") for each in ("world", "tick", *(("id",) if name != "metrics" else ()))
+    ]
+    assert arm.sort_by(key).to_pylist() == whole.sort_by(key).to_pylist()
+    assert arm.schema == whole.schema
+
+
+def test_an_arm_has_the_lives_and_the_food_of_one_run(both: tuple[Run, Run]) -> None:
+    whole, arm = (run.lives() for run in both)
+    for each in fields(whole):
+        np.testing.assert_array_equal(getattr(arm, each.name), getattr(whole, each.name))
+    for one, other in zip(*(foraging(run.opened()) for run in both), strict=True):
+        np.testing.assert_array_equal(other, one)
+
+
+def test_organisms_of_an_arm_are_those_of_one_run(both: tuple[Run, Run]) -> None:
+    """In the last world, which is the first of its job: genome, games, and a life lived again."""
+    whole, arm = (run.oldest(2) for run in both)
+    assert repr(arm) == repr(whole)
+    lives = both[0].lives()
+    chosen = [(int(lives.id[row]), int(lives.world[row])) for row in range(0, len(lives), 40)]
+    one, other = (rebuild_all(run.opened(), chosen) for run in both)
+    np.testing.assert_array_equal(other, one)
+    results = (each.evaluate(games=3, ticks=50).to_dict() for each in (whole, arm))
+    assert next(results) == next(results)
+
+
+def test_figures_of_an_arm_are_put_in_its_folder(runs: Path) -> None:
+    for path in primordia.load(runs / "arm").plot(world=2, figures=["ages", "space-time"]):
+        assert path.parent == runs / "arm" / "figures"
+
+
+def test_runs_are_compared_as_arms(runs: Path) -> None:
+    start(runs / "other-1", 50, 2, hazard=0.1)
+    start(runs / "other-2", 70, 1, hazard=0.1)
+    compared = primordia.compare(f"mild={runs / 'whole'}", f"harsh={runs}/other-*")
+    again = primordia.compare(runs / "arm", primordia.load([runs / "other-2", runs / "other-1"]))
+    assert [arm.name for arm in compared.arms] == ["mild", "harsh"]
+    assert [arm.worlds for arm in compared.arms] == [3, 3]
+    assert compared.arms[1].settings == {"hazard": 0.1, "seed": 53}
+    for one, other in zip(compared.arms, again.arms, strict=True):
+        for outcome, measured in one.measured.items():
+            np.testing.assert_array_equal(other.measured[outcome].value, measured.value)
+
+
+def test_a_name_is_told_from_a_path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("a=b").mkdir()
+    assert split_name("a=b") == (None, "a=b")
+    assert split_name("a=c=d") == ("a", "c=d")
+    assert split_name("runs/a=c") == (None, "runs/a=c")
+
+
+def test_what_is_no_arm_is_refused(runs: Path, tmp_path: Path) -> None:
+    start(tmp_path / "other", 9, 1, hazard=0.5)
+    start(tmp_path / "again", 2, 2)
+    one = runs / "arm" / "a"
+    with pytest.raises(InputError, match=r"not one arm: they differ in hazard"):
+        opened([one, tmp_path / "other"])
+    with pytest.raises(InputError, match=r"both hold the world of seed 5"):
+        opened([one, tmp_path / "again"])
+    with pytest.raises(InputError, match="there is no run"):
+        opened([f"{tmp_path}/none-*"])
+    with pytest.raises(InputError, match="given twice"):
+        primordia.compare(runs / "arm", one)
+    complains(here("resume", runs / "arm"), 2, "is an arm of 2 runs, and this takes a single one")
+    complains(here("verify", runs / "arm"), 2, "is an arm of 2 runs")
+    complains(here("fork", runs / "arm", "--at", "9"), 2, "is an arm of 2 runs")
+
+
+def test_a_run_is_not_an_arm(runs: Path) -> None:
+    def kind(place: Path) -> type[Records]:
+        return type(opened([place]))
+
+    assert kind(runs / "arm") is Arm
+    assert kind(runs / "arm" / "a") is not Arm
