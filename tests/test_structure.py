@@ -11,6 +11,7 @@ SOURCE = Path(__file__).parent.parent / "src" / "primordia"
 
 LAYERS = [
     {"errors", "interrupts", "own_code", "printable"},
+    {"cores"},
     {"compiled", "device", "files", "random", "rounding", "tasks"},
     {"settings"},
     {"brains", "pool"},

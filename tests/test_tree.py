@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import primordia
-from primordia.pool import pool as pools
+from primordia.pool import workers as pools
 from tests import commands
 
 SOURCE = commands.HERE / "src" / "primordia"
@@ -40,7 +40,7 @@ def test_processes_import_this_tree_from_any_folder(number: int, tmp_path: Path)
 def test_workers_import_this_tree(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """They import the simulators of the tests too, which no installed package has."""
     monkeypatch.chdir(tmp_path)
-    pool = pools.Pool(f"{__name__}:Place", {}, {"same": ("bool", ())}, 1, 1)
+    pool = pools.Workers(f"{__name__}:Place", {}, {"same": ("bool", ())}, 1, 1)
     pool.reset(np.ones(1, bool))
     assert pool.arrays["same"].tolist() == [True]
     pool.close()
@@ -56,4 +56,4 @@ class Place:
         self._arrays["same"][cell] = False
 
     def reset(self, cell: int) -> None:
-        self._arrays["same"][cell] = Path(pools.__file__) == SOURCE / "pool" / "pool.py"
+        self._arrays["same"][cell] = Path(pools.__file__) == SOURCE / "pool" / "workers.py"

@@ -8,6 +8,7 @@ from pathlib import Path
 import jax
 from jax._src.xla_bridge import backends_are_initialized  # JAX has no public name for it
 
+from primordia import cores
 from primordia.errors import InputError
 
 PACKAGES = ("primordia", "jax", "jaxlib", "numpy")
@@ -30,6 +31,7 @@ def prepare() -> None:
     """
     if backends_are_initialized():
         return
+    cores.limit_threads()
     flags = os.environ.get("XLA_FLAGS", "")
     if ISA_FLAG not in flags:
         # The flag stays set: JAX's cache of compiled code tells code for AVX2 from other code by it.

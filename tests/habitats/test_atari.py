@@ -203,13 +203,16 @@ def test_tallies_are_of_the_present_life_and_of_its_own_ticks() -> None:
     breakout.habitat.close()
 
 
-def test_runs_are_exact(tmp_path: Path) -> None:
-    """Runs are equal in chunks, with other workers, after a resume, in a fork and lived again."""
-    noisy = {"sticky": 0.1, "noops": 5}
+def test_runs_are_exact(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Runs are equal in chunks, with other workers or none, after a resume, in a fork and lived again.
+
+    A checkpoint that was written with workers is resumed without, and the other way round.
+    """
+    noisy = {"sticky": 0.1, "noops": 5, "frame_skip": 4}
     settings = {"cells": 4, "hazard": 0.03, "replication": 0.1, "brain": {"hidden": 2}}
 
-    def lived(name: str, ticks: int, workers: int) -> primordia.Run:
-        habitat = {**noisy, "workers": workers, "frame_skip": 4}
+    def lived(name: str, ticks: int, workers: int | None) -> primordia.Run:
+        habitat = {**noisy, "workers": workers}
         stop = {"ticks": ticks, "until": "none"}
         return primordia.run(
             "Pong-survival", tmp_path / name, **settings, habitat=habitat, stop=stop
@@ -218,11 +221,16 @@ def test_runs_are_exact(tmp_path: Path) -> None:
     def digest(run: primordia.Run) -> str:
         return str(run.info()["digest"])
 
-    whole, half = lived("whole", 200, 1), lived("half", 90, 3)
+    whole, inside = lived("whole", 200, 1), lived("inside", 200, 0)
     assert whole.info()["births"] > 10
-    assert digest(half) != digest(whole)
-    half.resume(ticks=200)
-    assert digest(half) == digest(whole)
+    assert digest(inside) == digest(whole)
+    for cores, others in (("3", "1"), ("1", "2")):
+        monkeypatch.setenv("PRIMORDIA_CORES", cores)
+        half = lived(f"half-{cores}", 90, None)
+        assert digest(half) != digest(whole)
+        monkeypatch.setenv("PRIMORDIA_CORES", others)
+        half.resume(ticks=200)
+        assert digest(half) == digest(whole)
     for name in ("births", "deaths", "metrics"):
         assert half.table(name) == whole.table(name)
     assert verify(Archive(half.path)) == []

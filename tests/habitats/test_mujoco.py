@@ -125,16 +125,19 @@ def test_our_reacher_has_no_lag() -> None:
     np.testing.assert_array_equal(senses[0, 8:], apart.astype(np.float32))
 
 
-@pytest.mark.parametrize("threads", [2, 16])
+@pytest.mark.parametrize("cores", [2, 16])
 def test_a_body_is_a_function_of_its_words_alone(
-    monkeypatch: pytest.MonkeyPatch, threads: int
+    monkeypatch: pytest.MonkeyPatch, cores: int
 ) -> None:
-    """The body does not depend on the number of bodies, its cell, or the number of threads."""
-    monkeypatch.setattr("os.sched_getaffinity", lambda _: {0})
+    """The body does not depend on the number of bodies, its cell, or the number of cores.
+
+    Each core has a thread; with one core, that is the thread that calls.
+    """
+    monkeypatch.setenv("PRIMORDIA_CORES", "1")
     one = of_task("Reacher-forager", 1)
-    monkeypatch.setattr("os.sched_getaffinity", lambda _: set(range(threads)))
+    monkeypatch.setenv("PRIMORDIA_CORES", str(cores))
     many = of_task("Reacher-forager", 37)
-    assert (one._bodies.nthread, many._bodies.nthread) == (1, threads)
+    assert (one._bodies.nthread, many._bodies.nthread) == (1, cores)
     words = np.random.default_rng(3).integers(0, 2**32, (37, many.words), np.uint32)
     both = [many.reset(np.arange(37), words)[21], one.reset(np.array([0]), words[21:22])[0]]
     np.testing.assert_array_equal(*both)

@@ -1,1 +1,1 @@
-"""Simulators in worker processes. This folder does not load JAX."""
+"""Simulators, one for each cell, in this process or in workers. This folder does not load JAX."""

@@ -14,37 +14,17 @@ import signal
 import sys
 import time
 from contextlib import suppress
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
 from primordia import own_code
 from primordia.pool import board
 from primordia.pool.board import LOAD, READY, RESET, SAVE, STEP
+from primordia.pool.contract import Simulator
 
 BUSY_WAIT = 0.002
 """Seconds for which an idle worker keeps its core."""
-
-
-class Simulator(Protocol):
-    """The simulators of a worker's cells. They read and fill the cells' rows of `arrays`."""
-
-    def __init__(self, arrays: dict[str, np.ndarray], **settings: Any) -> None: ...
-
-    def make(self, cell: int) -> None:
-        """Make the simulator of one more cell."""
-
-    def step(self, cells: list[int]) -> None:
-        """Step each of these cells by one tick, with the actions in their rows."""
-
-    def reset(self, cell: int) -> None:
-        """Begin a new life, from the random words in the cell's row."""
-
-    def save(self, cell: int) -> bytes:
-        """Return the whole state, from which the simulator goes on exactly."""
-
-    def load(self, cell: int, state: bytes) -> None:
-        """Restore a state that `save` returned."""
 
 
 def main() -> None:

@@ -1,1 +1,1 @@
-"""Atari games, emulated in worker processes."""
+"""Atari games, emulated in this process or in workers."""

@@ -22,7 +22,8 @@ from primordia.habitats.atari.games import (
 from primordia.habitats.atari.simulator import FIELDS, RAM, SCREEN
 from primordia.habitats.conditions import Expression, Names
 from primordia.habitats.contract import Discrete, HostHabitat, Outcome
-from primordia.pool.pool import Pool
+from primordia.pool.contract import Pool
+from primordia.pool.opening import open_pool
 from primordia.settings.base import Settings
 
 if TYPE_CHECKING:
@@ -66,8 +67,9 @@ class Atari(HostHabitat, Settings):
     difficulty: int | None = Field(None, ge=0, description="the game's difficulty")
     workers: int | None = Field(
         None,
-        ge=1,
-        description="emulator processes; no life depends on it (default: one for each core)",
+        ge=0,
+        description="emulator processes, or 0: emulators in this process; no life depends on it"
+        " (default: one for each core, 0 if there is one core)",
     )
 
     _pool: Pool = PrivateAttr()
@@ -162,7 +164,7 @@ class Atari(HostHabitat, Settings):
             )
 
     def open(self, cells: int, watched: bool = False) -> None:
-        """Start the emulators, with screens if they are watched."""
+        """Make the emulators, with screens if they are watched."""
         screen = {SCREEN: ("uint8", (*screen_size(self.game), 3))} if watched else {}
         settings = {
             **self.model_dump(
@@ -170,7 +172,7 @@ class Atari(HostHabitat, Settings):
             ),
             "actions": self._buttons,
         }
-        self._pool = Pool(
+        self._pool = open_pool(
             "primordia.habitats.atari.simulator:Arcade",
             settings,
             FIELDS | screen,

@@ -1,4 +1,4 @@
-"""One Atari game for each cell, on the Arcade Learning Environment (Bellemare et al. 2013), in workers.
+"""One Atari game for each cell, on the Arcade Learning Environment (Bellemare et al. 2013).
 
 A life begins in the state after the game's reset, plus no-ops if the settings say so. That state is
 cloned once and restored at each birth, since a reset takes as long as about 60 frames. The emulator
@@ -63,7 +63,7 @@ def console(
 
 
 class Arcade:
-    """The emulators of one worker's cells."""
+    """The emulators of some cells, in one process."""
 
     def __init__(
         self,

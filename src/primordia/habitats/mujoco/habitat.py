@@ -1,4 +1,4 @@
-"""Any MuJoCo model as a habitat: bodies, stepped in parallel on all cores.
+"""Any MuJoCo model as a habitat: bodies, stepped in parallel on all cores that the process may use.
 
 Schmidgall & Hays 2021, "Reacher", "HalfCheetah", "Walker". Settings define senses, death, food and effort
 by expressions of named parts of the state. The simulator is MuJoCo's batch (extra `primordia[mujoco]`).
@@ -6,7 +6,6 @@ Its results do not depend on the number of threads. A row of its state includes 
 goes on exactly from it.
 """
 
-import os
 from functools import cached_property
 from importlib.metadata import version
 from pathlib import Path
@@ -15,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from pydantic import Field, PrivateAttr, model_validator
 
+from primordia import cores
 from primordia.habitats import conditions
 from primordia.habitats.conditions import Expression, Names
 from primordia.habitats.contract import Continuous, HostHabitat, Outcome
@@ -145,8 +145,8 @@ class MuJoCo(HostHabitat, Settings):
 
     def open(self, cells: int, watched: bool = False) -> None:
         """Allocate the bodies."""
-        threads = len(os.sched_getaffinity(0))
-        self._bodies = package().batch.Batch(self._model, cells, nthread=threads)
+        # One thread is the one that calls: the batch then starts none.
+        self._bodies = package().batch.Batch(self._model, cells, nthread=cores.count())
         self._dice = np.zeros(cells, np.uint64)
         bind, model, observed = self._bodies.bind, self._model, self._observed
         self._views = {name: bind(name) for name in ("qpos", "qvel", "ctrl")}

@@ -18,12 +18,13 @@ import numpy as np
 from primordia.errors import Trouble
 from primordia.pool import board
 from primordia.pool.board import LOAD, READY, RESET, SAVE, STEP
+from primordia.pool.contract import Pool
 
 PATIENCE = 20.0
 """Seconds without an answer after which a worker is given up; each simulator that it makes is one."""
 
 
-class Pool:
+class Workers(Pool):
     """Workers and the arrays shared with them."""
 
     def __init__(
@@ -32,24 +33,17 @@ class Pool:
         settings: dict[str, Any],
         fields: dict[str, board.Field],
         cells: int,
-        workers: int | None = None,
+        workers: int,
     ) -> None:
-        """Start the workers.
-
-        Args:
-            simulator: `module:Class` that keeps the contract of `worker.Simulator`.
-            settings: the simulator's settings, as JSON can hold them.
-            fields: the arrays by name. `todo` (bool) is added: the cells that the next command is for.
-            cells: number of simulators.
-            workers: number of processes; None: one for each core, and at most one for each cell.
+        """Start the workers, at most one for each cell; the arguments are those of `opening.open_pool`.
 
         Raises:
             Trouble: a worker does not start.
         """
+        # Workers read from `todo` which cells the next command is for.
         fields = {"todo": ("bool", ()), **fields}
         size = board.size(fields, cells)
-        self._cells = cells
-        self._count = min(workers or len(os.sched_getaffinity(0)), cells)
+        self._cells, self._count = cells, workers
         file, memory = board.shared_memory(size)
         self.arrays = board.arrays(memory, fields, cells)
         setup = {

@@ -1,0 +1,61 @@
+"""What a pool of simulators promises a habitat, and what the simulators promise the pool."""
+
+from abc import ABC, abstractmethod
+from typing import Any, Protocol
+
+import numpy as np
+
+
+class Pool(ABC):
+    """One simulator for each cell, and the arrays through which cells are given actions and seen.
+
+    Whatever the kind of pool, the arrays hold the same numbers after the same calls.
+    """
+
+    arrays: dict[str, np.ndarray]
+    """the fields by name, (N, ...) each"""
+
+    @abstractmethod
+    def step(self, todo: np.ndarray) -> None:
+        """Step the cells of `todo`, bool (N,), by one tick.
+
+        Raises:
+            Trouble: a simulator failed.
+        """
+
+    @abstractmethod
+    def reset(self, todo: np.ndarray) -> None:
+        """Begin new lives in the cells of `todo`, bool (N,)."""
+
+    @abstractmethod
+    def save(self) -> list[bytes]:
+        """Return the state of each cell's simulator."""
+
+    @abstractmethod
+    def load(self, states: list[bytes]) -> None:
+        """Restore the states that `save` of any pool returned."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Release the simulators."""
+
+
+class Simulator(Protocol):
+    """The simulators of some cells. They read and fill the cells' rows of `arrays`."""
+
+    def __init__(self, arrays: dict[str, np.ndarray], **settings: Any) -> None: ...
+
+    def make(self, cell: int) -> None:
+        """Make the simulator of one more cell."""
+
+    def step(self, cells: list[int]) -> None:
+        """Step each of these cells by one tick, with the actions in their rows."""
+
+    def reset(self, cell: int) -> None:
+        """Begin a new life, from the random words in the cell's row."""
+
+    def save(self, cell: int) -> bytes:
+        """Return the whole state, from which the simulator goes on exactly."""
+
+    def load(self, cell: int, state: bytes) -> None:
+        """Restore a state that `save` returned."""

@@ -1,0 +1,37 @@
+"""Which pool a run gets."""
+
+from typing import Any
+
+from primordia import cores
+from primordia.pool.board import Field
+from primordia.pool.contract import Pool
+from primordia.pool.in_process import InProcess
+from primordia.pool.workers import Workers
+
+
+def open_pool(
+    simulator: str,
+    settings: dict[str, Any],
+    fields: dict[str, Field],
+    cells: int,
+    workers: int | None = None,
+) -> Pool:
+    """Make the simulators.
+
+    Args:
+        simulator: `module:Class` that keeps the contract of `contract.Simulator`.
+        settings: the simulator's settings, as JSON can hold them.
+        fields: dtype and shape of the arrays by name.
+        cells: number of simulators.
+        workers: number of worker processes, at most one for each cell; 0: the simulators are in this
+            process; None: one for each core, and none if there is one core.
+
+    Raises:
+        Trouble: a simulator cannot be made, or a worker does not start.
+    """
+    if workers is None:
+        among = cores.count()
+        workers = among if among > 1 else 0
+    if workers == 0:
+        return InProcess(simulator, settings, fields, cells)
+    return Workers(simulator, settings, fields, cells, min(workers, cells))

@@ -1,0 +1,128 @@
+"""Simulators in this process and in workers: what they do is the same, and so are their faults."""
+
+import os
+from collections.abc import Callable, Iterator
+from contextlib import closing
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from primordia import own_code
+from primordia.errors import Trouble
+from primordia.pool.contract import Pool
+from primordia.pool.in_process import InProcess
+from primordia.pool.opening import open_pool
+from primordia.pool.workers import Workers
+from tests.counters import FIELDS
+
+ALL = np.ones(7, bool)
+KINDS = pytest.mark.parametrize("workers", [0, 1, 3])
+
+
+def counters(workers: int | None, cells: int = 7) -> Pool:
+    return open_pool("tests.counters:Counters", {"start": 100}, FIELDS, cells, workers)
+
+
+def processes(pool: Pool) -> set[int]:
+    pool.reset(np.ones(len(pool.arrays["who"]), bool))
+    return set(pool.arrays["who"].tolist())
+
+
+@KINDS
+def test_each_cell_has_a_simulator(workers: int) -> None:
+    with closing(counters(workers)) as pool:
+        pool.reset(ALL)
+        pool.arrays["add"][:] = np.arange(7)
+        for _ in range(3):
+            pool.step(ALL)
+        assert pool.arrays["total"].tolist() == [100 + 3 * cell for cell in range(7)]
+
+
+@KINDS
+def test_only_cells_asked_for_are_stepped_and_reset(workers: int) -> None:
+    with closing(counters(workers)) as pool:
+        pool.reset(ALL)
+        pool.arrays["add"][:] = 5
+        pool.step(np.arange(7) % 2 == 0)
+        pool.reset(np.arange(7) == 0)
+        assert pool.arrays["total"].tolist() == [100, 100, 105, 100, 105, 100, 105]
+
+
+@pytest.mark.parametrize(("one", "other"), [(3, 2), (2, 0), (0, 3)])
+def test_saved_states_go_on_in_another_kind(one: int, other: int) -> None:
+    with closing(counters(one)) as pool:
+        pool.reset(ALL)
+        pool.arrays["add"][:] = np.arange(7) * 1000
+        pool.step(ALL)
+        states = pool.save()
+    with closing(counters(other)) as pool:
+        pool.load(states)
+        assert pool.arrays["total"].tolist() == [100 + 1000 * cell for cell in range(7)]
+
+
+@pytest.mark.parametrize(
+    ("cores", "asked", "cells", "in_workers"),
+    [("1", None, 5, 0), ("3", None, 5, 3), ("8", None, 5, 5), ("1", 2, 5, 2), ("3", 0, 5, 0)],
+)
+def test_simulators_are_in_workers_if_there_are_several_cores(
+    monkeypatch: pytest.MonkeyPatch, cores: str, asked: int | None, cells: int, in_workers: int
+) -> None:
+    monkeypatch.setenv("PRIMORDIA_CORES", cores)
+    with closing(counters(asked, cells)) as pool:
+        others = processes(pool) - {os.getpid()}
+        assert len(others) == in_workers
+        assert isinstance(pool, Workers if in_workers else InProcess)
+
+
+def fails_to_step(pool: Pool) -> None:
+    pool.arrays["add"][4] = -1
+    pool.step(ALL)
+
+
+def fails_to_load(pool: Pool) -> None:
+    pool.load([b"\xff"] * 7)
+
+
+@KINDS
+@pytest.mark.parametrize("fail", [fails_to_step, fails_to_load])
+def test_a_simulator_that_fails_is_one_line_of_trouble(
+    workers: int, fail: Callable[[Pool], None]
+) -> None:
+    with closing(counters(workers)) as pool:
+        pool.reset(ALL)
+        with pytest.raises(Trouble, match=r"resume the run from its last checkpoint$") as trouble:
+            fail(pool)
+        assert len(str(trouble.value).splitlines()) == 1
+
+
+@KINDS
+def test_a_simulator_that_cannot_be_made_is_trouble(workers: int) -> None:
+    with pytest.raises(Trouble):
+        open_pool("tests.counters:Missing", {"start": 0}, FIELDS, 2, workers)
+
+
+def test_a_failure_in_this_process_says_what_and_where() -> None:
+    pool = counters(0)
+    with pytest.raises(
+        Trouble, match=r"ValueError: failed on request; .*counters\.py, line \d+\)"
+    ) as trouble:
+        fails_to_step(pool)
+    assert isinstance(trouble.value.__cause__, ValueError)
+
+
+OWN = "class Own:\n    def __init__(self, arrays):\n        arrays['mark'][:] = {number}\n    def make(self, cell):\n        pass\n"  # noqa: E501
+
+
+@pytest.fixture
+def admitted(tmp_path: Path) -> Iterator[str]:
+    """A user's module as a run holds it, which neither `sys.path` nor the current folder leads to."""
+    (tmp_path / "own_simulator.py").write_text(OWN.format(number=6))
+    own_code.admit(own_code.below(tmp_path, "own_simulator"))
+    yield "own_simulator"
+    del own_code._admitted.sources["own_simulator"]
+
+
+def test_a_run_in_this_process_loads_its_own_copy_of_a_users_simulator(admitted: str) -> None:
+    pool = open_pool(f"{admitted}:Own", {}, {"mark": ("int64", ())}, 2, 0)
+    assert pool.arrays["mark"].tolist() == [6, 6]

@@ -1,0 +1,59 @@
+"""The number of cores that a process uses."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from primordia import cores
+from primordia.errors import InputError
+from tests.commands import environment
+
+
+def test_the_number_of_cores_is_that_of_the_variable(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PRIMORDIA_CORES", "5")
+    assert cores.count() == 5
+
+
+def test_without_the_variable_it_is_that_of_the_system(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("PRIMORDIA_CORES", raising=False)
+    monkeypatch.setattr("os.sched_getaffinity", lambda _: {2, 5, 7})
+    assert cores.count() == 3
+
+
+@pytest.mark.parametrize("wrong", ["0", "", "-1", "two", "1.5", "²"])
+def test_a_wrong_variable_is_one_line_that_names_it(
+    wrong: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PRIMORDIA_CORES", wrong)
+    with pytest.raises(
+        InputError, match=r"^PRIMORDIA_CORES: a number of cores, 1 or more, not "
+    ) as said:
+        cores.count()
+    assert repr(wrong) in str(said.value)
+    assert "\n" not in str(said.value)
+
+
+THREADS = """
+import os
+from pathlib import Path
+from primordia import device
+device.prepare()
+names = [task.joinpath("comm").read_text() for task in Path("/proc/self/task").iterdir()]
+print(sum("XLA" in name for name in names))
+"""
+
+
+@pytest.mark.parametrize("number", [1, 3])
+def test_xla_starts_as_many_threads_as_there_are_cores(number: int) -> None:
+    if not Path("/proc/self/task").is_dir():
+        pytest.skip("needs Linux")
+    done = subprocess.run(
+        [sys.executable, "-c", THREADS],
+        env={**environment(), "PRIMORDIA_CORES": str(number)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert int(done.stdout) == number
