@@ -261,6 +261,14 @@ def test_edited_code_changes_no_life_on_record(folder: Path) -> None:
     assert sum(len(each.tick) for each in life.stretches()) == lifespan
 
 
+@pytest.mark.parametrize("end", ["SystemExit(3)", "SystemExit('enough')", "RuntimeError('no')"])
+def test_a_module_that_ends_the_process_is_an_error(folder: Path, end: str) -> None:
+    (folder / "pond.py").write_text(f"raise {end}\n")
+    done = here("run", "task.toml", "--out", "run")
+    complains(done, 2, "habitat.name: habitat 'pond:Pond' cannot be loaded: ")
+    assert not (folder / "run").exists()
+
+
 def test_sources_are_a_module_and_those_beside_it_that_it_imports(tmp_path: Path) -> None:
     files = {
         "top.py": "import os, numpy\nfrom near import x\nimport box.inner\n",

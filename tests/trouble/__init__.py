@@ -60,7 +60,7 @@ def flip(path: Path, at: float = 0.5) -> None:
 
 
 def reseal(folder: Path, change: Callable[[dict[str, Any]], object] | None = None) -> None:
-    """Change the manifest of a checkpoint, and seal all files anew as they are, like a forger."""
+    """Change the manifest of a checkpoint, and seal all files as they are now, like a forger."""
     path, run = folder / "manifest.json", folder.parents[folder.name != "origin"]
     content = json.loads(path.read_text())
     del content["sha256"]

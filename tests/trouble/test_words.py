@@ -1,6 +1,8 @@
 """Wrong requests of a user: the exit status is 2, and no run directory is made."""
 
 import json
+import os
+import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +11,7 @@ import pytest
 from primordia import device
 from primordia.errors import InputError
 from tests import commands
-from tests.commands import complains, here
+from tests.commands import COMMAND, complains, environment, here
 from tests.trouble import TASK
 
 WRONG = {
@@ -113,6 +115,25 @@ def test_files_that_are_no_text_are_errors(tmp_path: Path) -> None:
     folder.mkdir()
     complains(here("run", file), 2, str(file), "not valid TOML")
     complains(here("run", folder), 2, str(folder), "it is not a regular file")
+
+
+@pytest.mark.parametrize(
+    ("words", "part"),
+    [
+        (("PIPE",), "PIPE cannot be read: it is not a regular file"),
+        ((TASK, "--ancestor", "PIPE"), "there is no genome file PIPE"),
+    ],
+)
+def test_a_pipe_is_not_opened(words: tuple[str, ...], part: str, tmp_path: Path) -> None:
+    """A command would wait until another program writes into it."""
+    pipe, out = tmp_path / "mine.toml", tmp_path / "run"
+    os.mkfifo(pipe)
+    command = [*COMMAND, "run", *(word.replace("PIPE", str(pipe)) for word in words), "--out", out]
+    done = subprocess.run(
+        command, env=environment(commands.CACHE), capture_output=True, text=True, timeout=120
+    )
+    complains(done, 2, part.replace("PIPE", str(pipe)))
+    assert not out.exists()
 
 
 @pytest.mark.parametrize(

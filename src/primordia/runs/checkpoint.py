@@ -197,7 +197,7 @@ def _read(run: Path, path: Path, fault_in: FaultIn) -> Checkpoint | str:
         sealed: list[tuple[Path, Seal]] = [(path / STATE, manifest.state)]
         for table in TABLES:
             sealed += [(run / table / each.name, each) for each in manifest.segments[table]]
-    except (OSError, ValueError, KeyError):
+    except (OSError, ValueError):
         return f"{path / MANIFEST} is missing or damaged"
     for name, seal in manifest.inputs.items():
         if fault := fault_in(run / name, seal.bytes, seal.sha256):

@@ -1,0 +1,116 @@
+"""One forgery at a time: what is sealed again is noticed by the part of the run that it contradicts."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+
+import primordia
+from primordia.errors import Trouble
+from primordia.history.info import info
+from primordia.law.world import BirthCause, Cause
+from primordia.runs import checkpoint
+from primordia.runs.archive import Archive
+from primordia.runs.schema import TABLES
+from tests.commands import complains, here
+from tests.trouble import TICKS, newest, reseal
+
+CELLS = 8
+"""Cells of the run, which has one world."""
+Arrays = dict[str, np.ndarray]
+
+
+def rewrite(folder: Path, change: Callable[[Arrays], object]) -> None:
+    """Change the arrays of a checkpoint, and seal it again."""
+    with np.load(folder / "state.npz") as stored:
+        arrays = dict(stored)
+    change(arrays)
+    np.savez(folder / "state.npz", allow_pickle=False, **arrays)
+    reseal(folder)
+
+
+@pytest.mark.parametrize(
+    ("table", "column", "value"),
+    [
+        ("births", "cell", CELLS),
+        ("births", "cause", len(BirthCause)),
+        ("deaths", "cell", CELLS),
+        ("deaths", "cause", len(Cause)),
+        ("metrics", "world", 1),
+    ],
+)
+def test_an_open_tail_names_no_world_cell_or_cause_that_does_not_exist(
+    run: Path, table: str, column: str, value: int
+) -> None:
+    columns = Archive(run).schema.columns(table)
+    row = columns.rows(**{name: np.array([value * (name == column)]) for name in columns.names})
+
+    def change(arrays: Arrays) -> None:
+        arrays[f"tail.{table}"] = np.concatenate([arrays[f"tail.{table}"], row])
+
+    rewrite(newest(run), change)
+    with pytest.raises(Trouble, match=f"tail.{table} has a {column} that does not exist"):
+        Archive(run).table(table)
+
+
+@pytest.mark.parametrize("count", [2**63, 2**64 - 2])
+@pytest.mark.parametrize("name", ["tick", "births", "organism_ticks", "saturated", "fixed_births"])
+def test_a_world_has_no_count_that_no_run_can_reach(run: Path, name: str, count: int) -> None:
+    def change(arrays: Arrays) -> None:
+        arrays[f"world.worlds.{name}.hi"][:] = count >> 32
+        arrays[f"world.worlds.{name}.lo"][:] = count & 0xFFFFFFFF
+
+    rewrite(newest(run), change)
+    with pytest.raises(Trouble, match=f"world.worlds.{name} is too large"):
+        info(Archive(run))
+
+
+def test_columns_in_another_order_are_the_same_columns(run: Path) -> None:
+    """Another program may have written the segment."""
+    before = Archive(run)
+    for table in TABLES:
+        for path in (run / table).iterdir():
+            stored = pq.read_table(path)
+            pq.write_table(stored.select(stored.column_names[::-1]), path)
+    reseal(newest(run))
+    after = Archive(run)
+    for table in TABLES:
+        assert after.table(table) == before.table(table)
+    assert after.table("births", ("tick", "world")) == before.table("births", ("tick", "world"))
+    assert len(after.lives) == len(before.lives)
+
+
+@pytest.mark.parametrize("part", ["segments", "digests"])
+def test_a_manifest_names_all_tables(run: Path, part: str) -> None:
+    def change(content: dict[str, Any]) -> None:
+        del content[part]["deaths"]
+
+    for folder in checkpoint.numbered(run):
+        reseal(folder, change)
+    manifest = str(newest(run) / "manifest.json")
+    for command in ("info", "resume"):
+        complains(here(command, run), 1, "no checkpoint of", f"{manifest} is missing or damaged")
+
+
+def test_the_last_number_of_a_checkpoint_has_none_after_it(run: Path) -> None:
+    last = newest(run).rename(run / "checkpoints" / "999999999")
+    done = here("resume", run, "--ticks", TICKS, "--quiet")
+    complains(done, 1, f"{last.parent} has no number left for one more checkpoint")
+    assert newest(run) == last
+
+
+def test_an_organism_that_lived_at_a_fork_is_in_its_origin(run: Path, tmp_path: Path) -> None:
+    fork = primordia.load(run).fork(1_000, tmp_path / "fork").path
+    oldest = Archive(fork).lives.oldest()
+    number, cell = Archive(fork).lives.id[oldest], Archive(fork).lives.cell[oldest]
+    assert len(primordia.load(fork).rebuild(int(number)))
+
+    def change(arrays: Arrays) -> None:
+        arrays["world.organisms.alive"][cell] = False
+
+    rewrite(fork / "origin", change)
+    done = here("export", fork, tmp_path / "genome", "--organism", number)
+    complains(done, 1, f"organism {number} of world 0 is not in the state where it lived")
