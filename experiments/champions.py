@@ -12,22 +12,23 @@ import csv
 from collections.abc import Iterable
 from pathlib import Path
 
-import files
+import named
 from games import BEST, longest_lived
 
 from primordia.brains import genomes
 from primordia.history.lineage import rebuild_all
 from primordia.organism.organism import Organism
-from primordia.runs.archive import Archive
+from primordia.runs.opening import opened
+from primordia.runs.records import Records
 
 
 def report(file: Path) -> None:
     """Write the genomes of the champions of an experiment, in the order of worlds."""
-    run = Archive(files.runs(file)[0])
+    run = opened([named.arms(file)[0]])
     config, champions = run.config, best_known(file, run)
     about = {
         "task": config.task,
-        "seeds": words(config.seed + organism.world for organism in champions),
+        "seeds": words(run.world_seeds[organism.world] for organism in champions),
         "organisms": words(organism.id for organism in champions),
         "ages": words(organism.age for organism in champions),
     }
@@ -38,7 +39,7 @@ def report(file: Path) -> None:
     print(path)
 
 
-def best_known(file: Path, run: Archive) -> list[Organism]:
+def best_known(file: Path, run: Records) -> list[Organism]:
     """Return the best organism of each world that is known."""
     games = file.parent / "results" / f"{file.stem}-games.csv"
     rows = csv.DictReader(games.read_text().splitlines()) if games.exists() else []
@@ -55,4 +56,4 @@ def words(numbers: Iterable[int]) -> str:
 
 
 if __name__ == "__main__":
-    files.for_each_named(report, __doc__)
+    named.for_each_named(report, __doc__)

@@ -15,11 +15,12 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-import files
+import named
 import numpy as np
 
 from primordia import config
 from primordia.config import Config
+from primordia.experiments.results import table
 from primordia.law.genesis import initial_climate
 from primordia.law.law import Law
 from primordia.law.metabolism import Rates
@@ -27,7 +28,6 @@ from primordia.organism.games import Players, play
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
 from primordia.settings.tables import merged
-from results import table
 
 FOUNDERS, PARENTS, MUTANTS = 512, 16, 16
 TICKS = 8_000
@@ -90,4 +90,4 @@ def lifespans(chosen: Config, genomes: np.ndarray, first: int = 0) -> np.ndarray
 
 
 if __name__ == "__main__":
-    files.for_each_named(report, __doc__)
+    named.for_each_named(report, __doc__)

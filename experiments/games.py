@@ -16,17 +16,19 @@ CSV.
 """
 
 import csv
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import files
+import named
 import numpy as np
 
 import primordia
-from primordia.cli.comparison_tables import number_text
+from primordia.api import Run
+from primordia.comparison.tables import number_text
+from primordia.experiments.results import table
 from primordia.organism.organism import Organism
 from primordia.runs.directory import read_config
-from results import table
 
 GAMES = 5
 TICKS = 20_000
@@ -53,16 +55,17 @@ COLUMNS = ("lifespan", "score", "length")
 
 def report(file: Path) -> None:
     """Let the organisms of an experiment play and write the table."""
-    runs = files.runs(file)
-    habitat = read_config(runs[0]).habitat["name"]
+    runs = named.arms(file)
+    habitat = str(primordia.load(runs[0]).opened().config.habitat["name"])
     ways, unknown = WAYS[habitat], UNKNOWN[habitat]
-    first = unforked(runs[0])
+    first = unforked([runs[0]])
     rows = played("a founder", first, founders(first), ways, GAMES)
     for run in runs:
-        rows += played(run.name, run, longest_lived(run), ways, GAMES)
-        one_game = played(f"{run.name}, all alive", run, alive(run), {unknown: ways[unknown]}, 1)
+        arm = primordia.load(run)
+        rows += played(run.name, arm, longest_lived(run), ways, GAMES)
+        one_game = played(f"{run.name}, all alive", arm, alive(run), {unknown: ways[unknown]}, 1)
         rows += one_game
-        rows += played(BEST.format(run.name), run, best(run, one_game), ways, GAMES)
+        rows += played(BEST.format(run.name), arm, best(run, one_game), ways, GAMES)
         write_rows(file.parent / "results" / f"{file.stem}-games", rows, summary(rows))
 
 
@@ -84,15 +87,17 @@ def longest_lived(run: Path) -> list[Organism]:
     return [Organism(opened, lives.oldest(world)) for world in range(lives.worlds)]
 
 
-def unforked(run: Path) -> Path:
-    """Return the run that a fork goes back to; a run that is no fork is returned itself."""
-    fork = read_config(run).fork
-    return run if fork is None else unforked(Path(fork.run))
+def unforked(runs: Sequence[Path]) -> Run:
+    """Return the runs that forks go back to; runs that are no forks are returned themselves."""
+    arm = primordia.load(runs)
+    forks = [read_config(path).fork for path in arm.directories()]
+    sources = [Path(fork.run) for fork in forks if fork is not None]
+    return unforked(sources) if sources else arm
 
 
-def founders(run: Path) -> list[Organism]:
+def founders(run: Run) -> list[Organism]:
     """Return the first organism that lived in each world."""
-    opened = primordia.load(run).opened()
+    opened = run.opened()
     lives = opened.lives
     return [Organism(opened, lives.row(0, world)) for world in range(lives.worlds)]
 
@@ -113,7 +118,7 @@ def best(run: Path, rows: list[dict[str, Any]]) -> list[Organism]:
 
 def played(
     name: str,
-    run: Path,
+    run: Run,
     organisms: list[Organism],
     ways: dict[str, dict[str, Any]],
     games: int,
@@ -121,7 +126,7 @@ def played(
     """Let organisms play in some ways and return a row for each organism and way."""
     rows = []
     for way, options in ways.items():
-        evaluations = primordia.Run(run).evaluate(organisms, games=games, ticks=TICKS, **options)
+        evaluations = run.evaluate(organisms, games=games, ticks=TICKS, **options)
         for organism, evaluation in zip(organisms, evaluations, strict=True):
             outcome = evaluation.to_dict()
             row = {"who": name, "world": organism.world, "organism": organism.id}
@@ -160,4 +165,4 @@ def spread(values: list[float]) -> str:
 
 
 if __name__ == "__main__":
-    files.for_each_named(report, __doc__)
+    named.for_each_named(report, __doc__)

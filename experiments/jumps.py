@@ -17,13 +17,13 @@ import sys
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import files
+import named
 import numpy as np
 import ruptures
 from games import write_rows
 
 import primordia
-from results import table
+from primordia.experiments.results import table
 
 POINTS = 1000
 """the most points of a world; each is the mean of a number of deaths in a row"""
@@ -49,7 +49,7 @@ class Steps(NamedTuple):
 
 def report(file: Path) -> None:
     """Find the jumps in each run of an experiment and write the table."""
-    rows = [row for run in files.runs(file) for row in steps_of(run)]
+    rows = [row for run in named.arms(file) for row in steps_of(run)]
     write_rows(file.parent / "results" / f"{file.stem}-jumps", rows, summary(rows))
 
 
@@ -124,4 +124,4 @@ def summary(rows: list[dict[str, Any]]) -> str:
 
 
 if __name__ == "__main__":
-    files.for_each_named(report, __doc__)
+    named.for_each_named(report, __doc__)

@@ -11,15 +11,15 @@ the file, as Markdown and CSV.
 from pathlib import Path
 from typing import Any
 
-import files
+import named
 import numpy as np
 from founders import per_weight
 from games import longest_lived, write_rows
 
+from primordia.experiments.results import table
 from primordia.organism.evaluation import players_of
 from primordia.organism.games import play
 from primordia.organism.organism import Organism
-from results import table
 
 MUTANTS = 24
 SCALES = (0.0001, 0.0003, 0.001, 0.003, 0.01, 0.03, 0.1)
@@ -32,7 +32,7 @@ SHARES = ("as long", "longer", "longer by a tenth", "shorter by a third")
 
 def report(file: Path) -> None:
     """Let mutants live and write the table."""
-    reference = files.runs(file)[0]
+    reference = named.arms(file)[0]
     rows = [row for organism in longest_lived(reference) for row in mutants_of(organism)]
     write_rows(file.parent / "results" / f"{file.stem}-mutants", rows, summary(rows))
 
@@ -84,4 +84,4 @@ def summary(rows: list[dict[str, Any]]) -> str:
 
 
 if __name__ == "__main__":
-    files.for_each_named(report, __doc__)
+    named.for_each_named(report, __doc__)

@@ -13,14 +13,14 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import files
+import named
 import numpy as np
 from games import founders, spread, write_rows
 
 import primordia
+from primordia.experiments.results import table
 from primordia.organism.organism import Organism
 from primordia.organism.reliving.relived import RelivedLife
-from results import table
 
 EACH = 8
 """the number of organisms of a world that are watched"""
@@ -44,9 +44,11 @@ def report(names: list[Path]) -> None:
     """Watch the arms of some experiments and write one table."""
     rows = []
     for file in names:
-        for run in files.runs(file):
+        for run in named.arms(file):
             name = f"{file.stem}, {run.name}"
-            rows += [watched(f"{name}: founders", organism) for organism in founders(run)]
+            rows += [
+                watched(f"{name}: founders", organism) for organism in founders(primordia.load(run))
+            ]
             rows += [watched(name, organism) for organism in some_alive(run)]
     write_rows(names[0].parent / "results" / "reaching", rows, summary(rows))
 

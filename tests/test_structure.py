@@ -24,6 +24,7 @@ LAYERS = [
     {"organism"},
     {"comparison"},
     {"figures", "live"},
+    {"experiments"},
     {"api", "testing"},
     {"cli"},
     {"__main__"},

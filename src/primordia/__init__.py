@@ -8,6 +8,8 @@ _HOMES = {
     "load": "api",
     "Run": "api",
     "compare": "api",
+    "experiment": "api",
+    "Experiment": "api",
     "InputError": "errors",
     "Trouble": "errors",
 }

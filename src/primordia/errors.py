@@ -5,5 +5,9 @@ class InputError(Exception):
     """The user's request cannot be carried out as it stands; exit status 2."""
 
 
+class InUseError(InputError):
+    """Another process is writing what was to be written."""
+
+
 class Trouble(Exception):  # noqa: N818
     """Something outside the program failed, such as a full disk; records are safe; exit status 1."""

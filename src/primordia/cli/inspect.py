@@ -8,6 +8,7 @@ import click
 
 from primordia import files
 from primordia.cli.cache import cache_option
+from primordia.cli.experiment import show_status
 from primordia.cli.flags import device_option, run_argument, runs_argument, trust_option
 from primordia.errors import Trouble
 
@@ -19,12 +20,17 @@ if TYPE_CHECKING:
 @runs_argument
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 def info(runs: tuple[Path, ...], as_json: bool) -> None:
-    """Summarise a run so far, or several runs as one arm."""
-    from primordia.api import Run
+    """Summarise a run so far, several runs as one arm, or an experiment."""
+    from primordia.api import Experiment, load
     from primordia.history.summary import summary
 
-    numbers = Run(runs[0], runs[1:]).info()
-    click.echo(json.dumps(numbers) if as_json else summary(numbers))
+    loaded = load(runs)
+    if as_json:
+        click.echo(json.dumps(loaded.info()))
+    elif isinstance(loaded, Experiment):
+        show_status(loaded.status())
+    else:
+        click.echo(summary(loaded.info()))
 
 
 @click.command(short_help="Draw figures of a run.")
@@ -43,11 +49,11 @@ def info(runs: tuple[Path, ...], as_json: bool) -> None:
 def plot(runs: tuple[Path, ...], out: Path | None, world: int, figures: tuple[str, ...]) -> None:
     """Draw figures: ages, survival, population, and lines of descent in space and time.
 
-    Several runs are drawn as one arm.
+    Several runs are drawn as one arm. The arms of an experiment are also drawn side by side.
     """
-    from primordia.api import Run
+    from primordia.api import load
 
-    for path in Run(runs[0], runs[1:]).plot(out, world, figures):
+    for path in load(runs).plot(out, world, figures):
         click.echo(path)
 
 
@@ -139,7 +145,7 @@ def compare(runs: tuple[str, ...], out: Path, as_json: bool, **horizons: int | N
     several runs to an arm: 'heredity=runs/h*' 'none=runs/n*'.
     """
     from primordia import api
-    from primordia.cli.comparison_tables import comparison_tables
+    from primordia.comparison.tables import comparison_tables
     from primordia.figures.comparison import save
 
     compared = api.compare(*runs, **horizons)

@@ -34,11 +34,11 @@ def watching(quiet: bool) -> Iterator[Listener | None]:
     elif not sys.stdout.isatty() or console.is_dumb_terminal:
         yield Plain()
     else:
-        with interrupts.before_end(_show_cursor), View(console) as view:
+        with interrupts.before_end(show_cursor), View(console) as view:
             yield view
 
 
-def _show_cursor() -> None:
+def show_cursor() -> None:
     """Write the escape sequence that shows the cursor, without any lock."""
     os.write(1, b"\x1b[?25h\r\n")
 

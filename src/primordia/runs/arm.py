@@ -14,7 +14,7 @@ import pyarrow as pa
 
 from primordia import files
 from primordia.brains.genomes import FOUNDERS
-from primordia.config import Config
+from primordia.config import Config, Stop
 from primordia.errors import InputError
 from primordia.habitats.contract import AnyHabitat
 from primordia.law.heredity import Heredity
@@ -31,14 +31,14 @@ MOST = 2**16
 
 
 class Arm(Records):
-    """The worlds of several runs, which have the same settings and other seeds."""
+    """The worlds of several runs, which have the same settings and other seeds, and perhaps limits."""
 
     def __init__(self, path: Path, runs: Sequence[Archive]) -> None:
         """Read runs as one.
 
         Args:
             path: the arm's folder, or any name.
-            runs: one or more, all of the same settings but for `seed` and `seeds`.
+            runs: one or more, all of the same settings but for `seed`, `seeds` and `stop`.
 
         Raises:
             InputError: settings differ, or a world is given twice.
@@ -77,10 +77,11 @@ class Arm(Records):
 
     @cached_property
     def progress(self) -> Progress:
-        """The seconds of all runs together, and the limits of the first."""
+        """The seconds of all runs together, and the limits that all have in common."""
         each = [run.progress for run in self.runs]
         wall_s, exact = sum(one.wall_s for one in each), all(one.exact for one in each)
-        return Progress(limits=each[0].limits, wall_s=wall_s, exact=exact)
+        common = set.intersection(*(set(one.limits) for one in each))
+        return Progress(limits=Stop(**dict(common)), wall_s=wall_s, exact=exact)
 
     @cached_property
     def row_digests(self) -> dict[str, np.ndarray]:
@@ -177,7 +178,7 @@ def _refuse_others(runs: Sequence[Archive]) -> None:
 
 def _settings(run: Archive) -> dict[str, Any]:
     """Return the settings that must be equal, by dotted name."""
-    ignored: Any = {"about": True, "seed": True, "seeds": True, "fork": {"run"}}
+    ignored: Any = {"about": True, "seed": True, "seeds": True, "stop": True, "fork": {"run"}}
     return flat(run.config.model_dump(mode="json", exclude=ignored))
 
 

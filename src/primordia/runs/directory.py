@@ -13,7 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from primordia import device, files, interrupts, own_code
 from primordia.brains import genomes
 from primordia.config import Config, parsed
-from primordia.errors import InputError, Trouble
+from primordia.errors import InputError, InUseError, Trouble
 from primordia.habitats.contract import AnyHabitat
 from primordia.runs import checkpoint, code
 from primordia.runs.description import Description
@@ -76,6 +76,24 @@ def _remove_unbegun(run: Path, check: Callable[[], None]) -> None:
         for name in OWN:
             if os.path.lexists(run / name):
                 files.remove(run / name)
+
+
+def clear_unbegun(run: Path) -> bool:
+    """Remove what a start that was killed has left -> whether the directory holds no run.
+
+    Raises:
+        InputError: another process is starting a run there.
+    """
+    files.check_name(run)
+    if not run.is_dir() or (run / VERSIONS).exists():
+        return not run.is_dir()
+    with locked(run):
+        if (run / VERSIONS).exists():
+            return False
+        for name in OWN:
+            if name != LOCK and os.path.lexists(run / name):
+                files.remove(run / name)
+    return True
 
 
 def _remove_lock(run: Path) -> None:
@@ -167,14 +185,14 @@ def locked(run: Path) -> Iterator[None]:
     """Hold the run's lock, which admits one writer at a time and is released even by kill -9.
 
     Raises:
-        InputError: another process holds it.
+        InUseError: another process holds it.
     """
     files.check_output(run / LOCK)
     lock = FileLock(run / LOCK)
     try:
         lock.acquire(timeout=0)
     except Timeout:
-        raise InputError(f"{run} is being written by another process") from None
+        raise InUseError(f"{run} is being written by another process") from None
     except OSError as error:
         raise Trouble(f"{run} cannot be written: {error.strerror}") from None
     try:

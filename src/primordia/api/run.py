@@ -1,12 +1,4 @@
-"""The Python interface, on which the command line is built.
-
-import primordia
-
-run = primordia.run("CartPole-survival", out="runs/first", seed=1)
-print(run.info()["saturation"])
-run.resume(ticks=200_000, until="none")
-policy = run.oldest().policy()
-"""
+"""A run as users handle it: each call opens the run, and one line gives what a command gives."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -17,16 +9,14 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from primordia import config
 from primordia import device as devices
-from primordia.comparison import comparison
 from primordia.history.info import info
 from primordia.history.lineage import rebuild
 from primordia.organism.evaluation import Evaluation, evaluate
 from primordia.organism.export import export
 from primordia.organism.organism import Organism
 from primordia.organism.policy import Policy
-from primordia.runs import code, loop, opening
+from primordia.runs import loop, opening
 from primordia.runs.archive import Archive
 from primordia.runs.fork import fork
 from primordia.runs.lives import Lives
@@ -57,6 +47,10 @@ class Run:
     def only(self) -> Archive:
         """Open the run for reading; raise InputError if there are several."""
         return opening.only([self.path, *self.others])
+
+    def directories(self) -> tuple[Path, ...]:
+        """Return the directories of the runs, once each is known to be one."""
+        return self.opened().paths
 
     def info(self) -> dict[str, Any]:
         """Return the run in numbers; see `info.info`."""
@@ -150,91 +144,6 @@ class Run:
         """Repeat the run and compare -> what differs; see `verify.verify`."""
         devices.select(device)
         return verify(self.only(), listen)
-
-
-def run(
-    task: str,
-    out: str | Path | None = None,
-    settings: Mapping[str, Any] | None = None,
-    *,
-    checkpoint_every: float = 60.0,
-    device: str = "cpu",
-    listen: Listener | None = None,
-    **more: Any,
-) -> Run:
-    """Run a task until its worlds stop.
-
-    Args:
-        task: name of a built-in task, or a TOML file.
-        out: directory to make; by default a new one under `runs/`.
-        checkpoint_every: seconds from one checkpoint to the next.
-        device: the device that JAX computes on, `cpu` or `gpu`.
-        listen: called after each chunk.
-        settings: changed settings, tables as dicts: `{"cells": 64, "mutation": {"scale": 0.02}}`.
-        more: further ones: `cells=64, mutation={"scale": 0.02}`.
-
-    Raises:
-        InputError: a name or setting is wrong, or `out` is taken.
-        Trouble: a file cannot be written; earlier checkpoints stay good.
-        KeyboardInterrupt: on Ctrl-C, after a checkpoint.
-    """
-    devices.select(device)
-    chosen = config.load(task, {**(settings or {}), **more})
-    path = Path(out) if out is not None else fresh_directory(default_name(chosen))
-    loop.start(chosen, path, checkpoint_every=checkpoint_every, listen=listen)
-    return Run(path)
-
-
-def compare(
-    *runs: Run | str | Path, births: int | None = None, ticks: int | None = None
-) -> comparison.Comparison:
-    """Put runs or arms of one task side by side, the first as the reference; see `comparison.compare`.
-
-    Args:
-        runs: a run's directory, an arm's folder, or `name=PATTERN` for several runs as one arm, such as
-            `heredity=runs/h*`.
-        births: horizon in births.
-        ticks: horizon in ticks.
-
-    `figures.comparison.save` draws the result.
-    """
-    return comparison.compare([_arm(each) for each in runs], births, ticks)
-
-
-def _arm(place: Run | str | Path) -> Records:
-    if isinstance(place, Run):
-        return place.opened()
-    name, path = opening.split_name(str(place))
-    return opening.opened([path], name)
-
-
-def load(run: str | Path | Sequence[str | Path], trust: bool = False) -> Run:
-    """Return the run in a directory, or several runs as one arm.
-
-    Args:
-        run: a run's directory; a folder that holds runs; a pattern, such as `runs/h*`; or several of
-            these.
-        trust: allow the run's own code to be executed, from now on and on this machine. Without that,
-            code that the user did not begin a run with stops what executes it: `resume`, `fork`,
-            `verify`, `replay`, `evaluate` and `policy`. Reading records executes nothing.
-
-    Raises:
-        InputError: there is no run, or the runs are not of one arm.
-    """
-    places = [run] if isinstance(run, str | Path) else list(run)
-    opened = opening.opened(places)
-    if trust:
-        for path in opened.paths:
-            code.trust(Archive(path).code())
-            code.trust(Archive(path, edited=True).code())
-    first, *others = map(Path, places)
-    return Run(first, tuple(others))
-
-
-def default_name(chosen: config.Config) -> str:
-    """Return the name of a run's directory, made of task and seed."""
-    task = "".join(each if each.isprintable() and each != "/" else "-" for each in chosen.task)
-    return f"{task}-seed{chosen.seed}"
 
 
 def fresh_directory(name: str) -> Path:

@@ -2,22 +2,26 @@
 
 import csv
 import datetime
+import io
 import statistics
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import late
-
-import primordia
-from primordia.cli.comparison_tables import (
+from primordia import files
+from primordia.comparison import late
+from primordia.comparison.comparison import Comparison, compare
+from primordia.comparison.tables import (
     effect_text,
     quartiles_text,
     ratio_text,
     setting_text,
 )
-from primordia.comparison.comparison import Comparison
 from primordia.figures import style
 from primordia.figures.comparison import draw
+from primordia.history.info import info
+from primordia.runs.directory import VERSIONS
+from primordia.runs.records import Records
 
 NOTE = (
     "Medians over worlds (quartiles); a world that stopped unsaturated is known only to be at least"
@@ -25,21 +29,26 @@ NOTE = (
 )
 
 
-def write(stem: Path, question: str, runs: list[Path]) -> None:
-    """Write STEM.md, STEM.csv and STEM.png; the first run is the reference."""
-    stem.parent.mkdir(exist_ok=True)
-    compared = primordia.compare(*runs)
-    infos = [primordia.Run(run).info() for run in runs]
+def write(stem: Path, question: str, arms: Sequence[Records]) -> list[Path]:
+    """Write STEM.md, STEM.csv and STEM.png; the first arm is the reference.
+
+    Raises:
+        InputError: nothing has lived in an arm yet, or the arms cannot be compared.
+        Trouble: a file cannot be written.
+    """
+    compared, infos = compare(arms), [info(arm) for arm in arms]
     parts = [f"# {question}", summary(compared, infos), effects(compared), NOTE]
-    ends = [late.last_deaths(run, compared) for run in runs] if "pace" in compared.outcomes else []
+    ends = [late.last_deaths(arm, compared) for arm in arms] if "pace" in compared.outcomes else []
     if ends:
         parts.insert(2, dying(compared, ends))
-    text = "\n\n".join([*parts, made(runs[0], infos[0])])
-    stem.with_suffix(".md").write_text(text + "\n", encoding="utf-8")
-    write_worlds(stem.with_suffix(".csv"), compared, infos, ends)
+    text = "\n\n".join([*parts, made(arms[0].paths[0], infos[0])])
+    paths = [stem.with_name(f"{stem.name}.{suffix}") for suffix in ("md", "csv", "png")]
+    files.write_text(paths[0], text + "\n")
+    files.write_text(paths[1], world_rows(compared, infos, ends))
     with style.applied():
-        draw(compared).savefig(stem.with_suffix(".png"), dpi=200)
-    print(f"{stem}: .md .csv .png")
+        figure = draw(compared)
+        files.write(paths[2], lambda file: figure.savefig(file, dpi=200, format="png"))
+    return paths
 
 
 def summary(compared: Comparison, infos: list[dict[str, Any]]) -> str:
@@ -95,28 +104,26 @@ def table(head: list[str], rows: list[list[Any]]) -> str:
 
 def made(run: Path, info: dict[str, Any]) -> str:
     """Say when the experiment was run, with which versions, and where it stopped."""
-    begun = datetime.date.fromtimestamp((run / "versions.json").stat().st_mtime)
+    begun = datetime.date.fromtimestamp((run / VERSIONS).stat().st_mtime)
     what = ", ".join(f"{name} {version}" for name, version in info["versions"].items())
     limits = [f"{name} {value}" for name, value in info["limits"].items() if value is not None]
     return f"Run on {begun} with {what}. Each world stopped at: {' or '.join(limits)}."
 
 
-def write_worlds(
-    path: Path,
-    compared: Comparison,
-    infos: list[dict[str, Any]],
-    ends: list[list[dict[str, float]]],
-) -> None:
-    """Write a row for each world of each arm; the moment of saturation is empty if there was none."""
-    with path.open("w", newline="", encoding="utf-8") as file:
-        rows = csv.writer(file, lineterminator="\n")
-        moments = ["saturated_births", "saturated_tick"]
-        counted = ["seed", "ticks", "births", "extinctions", "alive"]
-        rows.writerow(["arm", *counted, *moments, "mean_lifespan", *(ends[0][0] if ends else ())])
-        for number, (arm, info) in enumerate(zip(compared.arms, infos, strict=True)):
-            for w, world in enumerate(info["worlds"]):
-                at = world["saturation"] or {"births": "", "tick": ""}
-                mean = f"{arm.measured['lifespan'].value[w]:.1f}"
-                last = ends[number][w].values() if ends else ()
-                counts = [world[name] for name in counted]
-                rows.writerow([arm.name, *counts, at["births"], at["tick"], mean, *last])
+def world_rows(
+    compared: Comparison, infos: list[dict[str, Any]], ends: list[list[dict[str, float]]]
+) -> str:
+    """Return CSV with a row for each world of each arm; an empty moment of saturation: there was none."""
+    text = io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    moments = ["saturated_births", "saturated_tick"]
+    counted = ["seed", "ticks", "births", "extinctions", "alive"]
+    rows.writerow(["arm", *counted, *moments, "mean_lifespan", *(ends[0][0] if ends else ())])
+    for number, (arm, told) in enumerate(zip(compared.arms, infos, strict=True)):
+        for w, world in enumerate(told["worlds"]):
+            at = world["saturation"] or {"births": "", "tick": ""}
+            mean = f"{arm.measured['lifespan'].value[w]:.1f}"
+            last = ends[number][w].values() if ends else ()
+            counts = [world[name] for name in counted]
+            rows.writerow([arm.name, *counts, at["births"], at["tick"], mean, *last])
+    return text.getvalue()

@@ -1,4 +1,4 @@
-"""Experiments in the repository: their settings are valid, and a second run changes nothing."""
+"""Experiments in the repository: their settings are valid, and their scripts report what there is."""
 
 import csv
 import tomllib
@@ -11,31 +11,29 @@ import tomli_w
 from safetensors import safe_open
 
 import primordia
+from primordia.comparison.late import last_deaths
 from primordia.config import load
+from primordia.experiments.file import read
 from primordia.runs import loop
+from primordia.runs.opening import opened
 from primordia.settings.tables import merged
 from tests.worlds import MEADOW, config
 
-EXPERIMENTS = Path(__file__).parent.parent / "experiments"
+EXPERIMENTS = Path(__file__).parent.parent.parent / "experiments"
 FILES = sorted(EXPERIMENTS.glob("*/*.toml"))
 TRIALS = sorted(EXPERIMENTS.glob("*/founders/*.toml"))
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
-def test_settings_of_every_arm_are_valid_and_limits_are_shared(
-    file: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.syspath_prepend(str(EXPERIMENTS))
-    values = tomllib.loads(file.read_text(encoding="utf-8"))
-    assert values["question"].endswith("?")
-    arms = import_module("files").arms(file)
-    assert len(arms) == len(values["arms"]) > 1, "names differ"
-    configs = [load(settings.pop("task"), settings) for settings in arms.values()]
-    assert len({config.to_toml() for config in configs}) == len(configs)
-    assert len({config.task for config in configs}) == 1
+def test_settings_of_every_arm_are_valid_and_limits_are_shared(file: Path) -> None:
+    plan = read(file, Path("runs", file.stem))
+    assert plan.question.endswith("?")
+    configs = [arm.config for arm in plan.arms]
+    assert len({config.to_toml() for config in configs}) == len(configs) > 1
     assert len({config.stop for config in configs}) == 1
     assert min(config.seeds for config in configs) >= (20 if file.parent.name == "cartpole" else 5)
     assert configs[0].stop.ticks is not None
+    assert len({file.stem for file in FILES}) == len(FILES), "each has a folder of its name"
 
 
 @pytest.mark.parametrize("file", TRIALS, ids=lambda file: file.stem)
@@ -73,76 +71,6 @@ def test_trials_measure_what_mutants_inherit(
     assert rows[2][4] == rows[2][5]
 
 
-def test_an_experiment_is_run_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.syspath_prepend(str(EXPERIMENTS))
-    monkeypatch.chdir(tmp_path)
-    script = import_module("run")
-    settings = {
-        **MEADOW,
-        "brain": {"hidden": 1},
-        "seeds": 3,
-        "saturation_ticks": 20,
-        "hazard": 0.01,
-    }
-    values = {"question": "Does the seed matter?", **settings, "stop": {"ticks": 200}}
-    file = tmp_path / "meadow" / "seeds.toml"
-    file.parent.mkdir()
-    (tmp_path / "meadow.toml").write_text(tomli_w.dumps(settings))
-    values = {**values, "task": str(tmp_path / "meadow.toml")}
-    file.write_text(tomli_w.dumps({**values, "arms": [{"name": "a"}, {"name": "b", "seed": 50}]}))
-    script.experiment(file)
-    results = {path.name: path.read_bytes() for path in (file.parent / "results").iterdir()}
-    assert set(results) == {"seeds.md", "seeds.csv", "seeds.png"}
-    rows = list(csv.DictReader(results["seeds.csv"].decode().splitlines()))
-    assert [(row["arm"], row["seed"]) for row in rows] == [
-        (arm, str(seed)) for arm, first in (("a", 0), ("b", 50)) for seed in range(first, first + 3)
-    ]
-    assert "Does the seed matter?" in results["seeds.md"].decode()
-    checkpoints = sorted(tmp_path.glob("runs/**/manifest.json"))
-    before = [path.stat().st_mtime_ns for path in checkpoints]
-    script.experiment(file)
-    assert [path.stat().st_mtime_ns for path in checkpoints] == before
-    assert results == {path.name: path.read_bytes() for path in (file.parent / "results").iterdir()}
-    file.write_text(
-        tomli_w.dumps({**values, "arms": [{"name": "a", "hazard": 0.5}, {"name": "b"}]})
-    )
-    with pytest.raises(SystemExit, match="other settings"):
-        script.experiment(file)
-
-
-def test_an_experiment_may_continue_another(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Its arms are forks of an arm of the other experiment, with the settings of that arm."""
-    monkeypatch.syspath_prepend(str(EXPERIMENTS))
-    monkeypatch.chdir(tmp_path)
-    settings = {**MEADOW, "brain": {"hidden": 1}, "seeds": 2, "replication": 0.3}
-    (tmp_path / "meadow.toml").write_text(tomli_w.dumps(settings))
-    first = {"question": "How?", "task": str(tmp_path / "meadow.toml"), "stop": {"ticks": 200}}
-    arms = [{"name": "mild", "hazard": 0.02}, {"name": "rough", "hazard": 0.04}]
-    then = {"question": "And then?", "fork": {"of": "one/rough", "at": 150}, "stop": {"ticks": 300}}
-    folder, script = tmp_path / "meadow", import_module("run")
-    folder.mkdir()
-    (folder / "one.toml").write_text(tomli_w.dumps({**first, "arms": arms}))
-    others = [{"name": "unchanged"}, {"name": "safe", "hazard": 0.0}]
-    (folder / "two.toml").write_text(tomli_w.dumps({**then, "arms": others}))
-    for name in ("one", "two", "two"):
-        script.experiment(folder / f"{name}.toml")
-    primordia.run(first["task"], "rough", seeds=2, hazard=0.04, stop={"ticks": 300})
-    unchanged, safe = (Path("runs/experiments/meadow/two", arm["name"]) for arm in others)
-    here, there = (primordia.load(run).arrays("deaths") for run in (unchanged, "rough"))
-    later = there["tick"] > 150
-    assert later.any()
-    for name, column in here.items():
-        np.testing.assert_array_equal(column, there[name][later])
-    assert len(primordia.load(safe).arrays("deaths")["tick"]) == 0
-    text = (folder / "results" / "two.md").read_text()
-    assert "And then?" in text
-    (folder / "two.toml").write_text(tomli_w.dumps({**then, "arms": others[::-1], "cells": 9}))
-    with pytest.raises(SystemExit, match="other settings"):
-        script.experiment(folder / "two.toml")
-
-
 @pytest.fixture
 def ponged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Run a small experiment with Pong."""
@@ -155,7 +83,7 @@ def ponged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     file.parent.mkdir()
     values = {"question": "Do they?", **shared, "stop": {"ticks": 300, "until": "none"}}
     file.write_text(tomli_w.dumps({**values, "arms": arms}))
-    import_module("run").experiment(file)
+    primordia.experiment(file)
     return file
 
 
@@ -165,7 +93,7 @@ def champion(file: Path) -> int:
     kept = file.parent / "genomes" / f"{file.stem}.safetensors"
     with safe_open(kept, "numpy") as opened:
         metadata = opened.metadata()
-    named = primordia.load(import_module("files").runs(file)[0]).organism(
+    named = primordia.load(import_module("named").arms(file)[0]).organism(
         int(metadata["organisms"])
     )
     begun = Path(f"from-{named.id}")
@@ -180,9 +108,9 @@ def test_games_mutants_and_champions_are_reported(
     ponged: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     results = ponged.parent / "results"
-    assert "deaths in the last quarter" in (results / "pong.md").read_text()
+    assert "deaths in the last quarter" in Path("runs/pong/results.md").read_text()
     games, mutants, runs = (
-        import_module("games"), import_module("mutants"), import_module("files").runs)  # fmt: skip
+        import_module("games"), import_module("mutants"), import_module("named").arms)  # fmt: skip
     for script in (games, mutants):
         monkeypatch.setattr(script, "TICKS", 400)
     monkeypatch.setattr(games, "GAMES", 2)
@@ -213,7 +141,7 @@ def test_games_mutants_and_champions_are_reported(
 def test_founders_of_a_fork_are_those_of_the_first_run(
     ponged: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    games, runs = import_module("games"), import_module("files").runs
+    games, runs = import_module("games"), import_module("named").arms
     for name, value in {
         "TICKS": 400,
         "GAMES": 1,
@@ -225,8 +153,11 @@ def test_founders_of_a_fork_are_those_of_the_first_run(
     file = ponged.with_name("then.toml")
     fork = {"of": "pong/heredity", "at": 300}
     file.write_text(tomli_w.dumps({**values, "fork": fork, "arms": arms}))
-    import_module("run").experiment(file)
-    assert games.unforked(runs(file)[0]) == runs(ponged)[0]
+    primordia.experiment(file)
+    assert (
+        games.unforked([runs(file)[0]]).directories()
+        == primordia.load(runs(ponged)[0]).directories()
+    )
     games.report(file)
     rows = list(csv.DictReader((file.parent / "results/then-games.csv").read_text().splitlines()))
     assert [row["organism"] for row in rows if row["who"] == "a founder"] == ["0"]
@@ -260,9 +191,10 @@ def test_robots_in_fresh_games_are_reported(
     monkeypatch.chdir(tmp_path)
     file = tmp_path / "robots" / "arms.toml"
     file.parent.mkdir()
-    file.write_text(tomli_w.dumps({"arms": [{"name": "heredity"}]}))
-    run = import_module("files").runs(file)[0]
-    primordia.run("Reacher-forager", run, cells=4, genesis="fill", stop={"ticks": 150})
+    values = {"question": "Do they?", "task": "Reacher-forager", "cells": 4, "genesis": "fill"}
+    values |= {"stop": {"ticks": 150}, "arms": [{"name": "heredity"}]}
+    file.write_text(tomli_w.dumps(values))
+    primordia.experiment(file)
     games, reaching = import_module("games"), import_module("reaching")
     monkeypatch.setattr(games, "TICKS", 120)
     monkeypatch.setattr(games, "GAMES", 2)
@@ -288,7 +220,7 @@ def test_deaths_of_the_last_quarter_are_counted(
     for name, ticks in (("long", 480), ("short", 400)):
         loop.start(config({**settings, "stop": {"ticks": ticks}}), tmp_path / name)
     compared = primordia.compare(tmp_path / "long", tmp_path / "short")
-    worlds = import_module("late").last_deaths(tmp_path / "long", compared)
+    worlds = last_deaths(opened([tmp_path / "long"]), compared)
     lives = primordia.load(tmp_path / "long").lives()
     for world, counted in enumerate(worlds):
         here = zip(lives.world, lives.born, lives.ended, lives.died, strict=True)

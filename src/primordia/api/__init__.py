@@ -1,0 +1,169 @@
+"""The Python interface, on which the command line is built.
+
+import primordia
+
+run = primordia.run("CartPole-survival", out="runs/first", seed=1)
+print(run.info()["saturation"])
+run.resume(ticks=200_000, until="none")
+policy = run.oldest().policy()
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from primordia import config, cores
+from primordia import device as devices
+from primordia.api.experiment import Experiment
+from primordia.api.run import Run, fresh_directory
+from primordia.comparison import comparison
+from primordia.errors import Trouble
+from primordia.experiments import experiment as experiments
+from primordia.experiments.campaign import live_all
+from primordia.experiments.experiment import is_experiment
+from primordia.experiments.here import Here
+from primordia.experiments.status import Status
+from primordia.runs import code, loop, opening
+from primordia.runs.archive import Archive
+from primordia.runs.loop import Listener
+from primordia.runs.records import Records
+
+__all__ = [
+    "Experiment",
+    "Run",
+    "compare",
+    "default_name",
+    "experiment",
+    "fresh_directory",
+    "load",
+    "run",
+]
+
+
+def run(
+    task: str,
+    out: str | Path | None = None,
+    settings: Mapping[str, Any] | None = None,
+    *,
+    checkpoint_every: float = 60.0,
+    device: str = "cpu",
+    listen: Listener | None = None,
+    **more: Any,
+) -> Run:
+    """Run a task until its worlds stop.
+
+    Args:
+        task: name of a built-in task, or a TOML file.
+        out: directory to make; by default a new one under `runs/`.
+        checkpoint_every: seconds from one checkpoint to the next.
+        device: the device that JAX computes on, `cpu` or `gpu`.
+        listen: called after each chunk.
+        settings: changed settings, tables as dicts: `{"cells": 64, "mutation": {"scale": 0.02}}`.
+        more: further ones: `cells=64, mutation={"scale": 0.02}`.
+
+    Raises:
+        InputError: a name or setting is wrong, or `out` is taken.
+        Trouble: a file cannot be written; earlier checkpoints stay good.
+        KeyboardInterrupt: on Ctrl-C, after a checkpoint.
+    """
+    devices.select(device)
+    chosen = config.load(task, {**(settings or {}), **more})
+    path = Path(out) if out is not None else fresh_directory(default_name(chosen))
+    loop.start(chosen, path, checkpoint_every=checkpoint_every, listen=listen)
+    return Run(path)
+
+
+def experiment(
+    file: str | Path,
+    out: str | Path | None = None,
+    *,
+    jobs: int | None = None,
+    only: Sequence[str] = (),
+    checkpoint_every: float = 60.0,
+    look: Callable[[Status], object] | None = None,
+) -> Experiment:
+    """Run the arms of an experiment on all cores, or go on with it, and write its results.
+
+    Args:
+        file: an experiment's TOML file, or the directory of one that has begun.
+        out: the experiment's directory; by default the file's name under `runs/`.
+        jobs: jobs at a time; by default one for each core.
+        only: names of arms to run; by default all.
+        checkpoint_every: seconds from one checkpoint to the next.
+        look: called about twice a second with the status.
+
+    Raises:
+        InputError: something in the file is wrong, or `out` holds another experiment.
+        Trouble: jobs failed; the others are done.
+        KeyboardInterrupt: on Ctrl-C, after checkpoints.
+    """
+    chosen = experiments.begin(Path(file), Path(out) if out is not None else None)
+    if left := chosen.left(only):
+        place = Here(chosen.path, min(jobs or cores.count(), len(left)), checkpoint_every)
+        seen = (lambda: look(chosen.status())) if look is not None else (lambda: None)
+        result = live_all(left, place, seen, lambda job, outcome, again: None)
+        if result.stopped:
+            raise KeyboardInterrupt
+        if result.failed:
+            first = result.failed[0]
+            raise Trouble(f"{len(result.failed)} jobs failed; job {first.job}: {first.error}")
+    if not chosen.left():
+        chosen.gather()
+    return Experiment(chosen.path)
+
+
+def compare(
+    *runs: Run | str | Path, births: int | None = None, ticks: int | None = None
+) -> comparison.Comparison:
+    """Put runs or arms of one task side by side, the first as the reference; see `comparison.compare`.
+
+    Args:
+        runs: a run's directory, an arm's folder, `name=PATTERN` for several runs as one arm, such as
+            `heredity=runs/h*`, or the directory of an experiment, for all its arms.
+        births: horizon in births.
+        ticks: horizon in ticks.
+
+    `figures.comparison.save` draws the result.
+    """
+    arms = [arm for each in runs for arm in _arms(each)]
+    return comparison.compare(arms, births, ticks)
+
+
+def _arms(place: Run | str | Path) -> list[Records]:
+    if isinstance(place, Experiment):
+        return place.records()
+    if isinstance(place, Run):
+        return [place.opened()]
+    if is_experiment(Path(place)):
+        return Experiment(Path(place)).records()
+    name, path = opening.split_name(str(place))
+    return [opening.opened([path], name)]
+
+
+def load(run: str | Path | Sequence[str | Path], trust: bool = False) -> Run:
+    """Return the run in a directory, several runs as one arm, or an experiment.
+
+    Args:
+        run: a run's directory; a folder that holds runs; a pattern, such as `runs/h*`; several of
+            these; or the directory of an experiment, which gives an `Experiment`.
+        trust: allow the run's own code to be executed, from now on and on this machine. Without that,
+            code that the user did not begin a run with stops what executes it: `resume`, `fork`,
+            `verify`, `replay`, `evaluate` and `policy`. Reading records executes nothing.
+
+    Raises:
+        InputError: there is no run, or the runs are not of one arm.
+    """
+    places = [run] if isinstance(run, str | Path) else list(run)
+    first, *others = map(Path, places)
+    loaded = Experiment(first) if is_experiment(first) and not others else Run(first, tuple(others))
+    for path in loaded.directories():
+        if trust:
+            code.trust(Archive(path).code())
+            code.trust(Archive(path, edited=True).code())
+    return loaded
+
+
+def default_name(chosen: config.Config) -> str:
+    """Return the name of a run's directory, made of task and seed."""
+    task = "".join(each if each.isprintable() and each != "/" else "-" for each in chosen.task)
+    return f"{task}-seed{chosen.seed}"

@@ -1,0 +1,66 @@
+"""An experiment as users handle it."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from primordia.api.run import Run
+from primordia.comparison.comparison import Comparison, compare
+from primordia.experiments import experiment
+from primordia.experiments.status import Status
+from primordia.runs.records import Records
+
+
+class Experiment(Run):
+    """The directory of an experiment; `arms` gives its runs.
+
+    What takes a run, such as `oldest` or `table`, takes one of the arms: `experiment.arms["heredity"]`.
+    """
+
+    @property
+    def question(self) -> str:
+        """The question that the experiment answers."""
+        return self._recorded().plan.question
+
+    @property
+    def arms(self) -> dict[str, Run]:
+        """The runs of each arm by its name, the reference first."""
+        return {name: Run(folder) for name, folder in self._recorded().arms.items()}
+
+    def directories(self) -> tuple[Path, ...]:
+        """Return the directories of the runs that have begun."""
+        arms = (arm for arm in self.arms.values() if arm.path.is_dir())
+        return tuple(path for arm in arms for path in arm.directories())
+
+    def records(self) -> list[Records]:
+        """Open the records of each arm for reading."""
+        return self._recorded().opened()
+
+    def status(self) -> Status:
+        """Return the states of the jobs and the figures of the arms so far; no run is opened."""
+        return self._recorded().status()
+
+    def info(self) -> dict[str, Any]:
+        """Return the question, the number of jobs in each state, and the worlds of each arm."""
+        return self._recorded().info()
+
+    def compare(self, births: int | None = None, ticks: int | None = None) -> Comparison:
+        """Put the arms side by side; see `comparison.compare`."""
+        return compare(self.records(), births, ticks)
+
+    def plot(
+        self, out: str | Path | None = None, world: int = 0, figures: Sequence[str] = ()
+    ) -> list[Path]:
+        """Draw the arms side by side, and the figures of each arm into a folder of its name."""
+        from primordia.figures.comparison import save  # Matplotlib takes a second to load
+
+        folder = Path(out) if out is not None else self.path / "figures"
+        drawn = [
+            path
+            for name, arm in self.arms.items()
+            for path in arm.plot(folder / name, world, figures)
+        ]
+        return [*save(self.compare(), folder), *drawn]
+
+    def _recorded(self) -> experiment.Experiment:
+        return experiment.recorded(self.path)

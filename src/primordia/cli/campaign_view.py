@@ -1,0 +1,143 @@
+"""The display of an experiment that goes on: a table in a terminal, a plain line a minute elsewhere."""
+
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from rich import box
+from rich.console import Console, Group
+from rich.live import Live
+from rich.table import Table
+from rich.text import Text
+
+from primordia import interrupts
+from primordia.experiments.ledger import Entry
+from primordia.experiments.status import ArmStatus, Status
+from primordia.live.panel import duration, with_prefix
+from primordia.live.view import show_cursor
+
+SHARE = 0.02
+"""Share of the time that the display may take."""
+SHOWN = 12
+"""Most jobs under way that are listed."""
+
+
+@contextmanager
+def watching(quiet: bool, read: Callable[[], Status]) -> Iterator[Callable[[], None]]:
+    """Yield what is to be called often: it reads the status and shows it when that is due."""
+    console = Console(highlight=False, file=sys.__stdout__)
+    clock = Clock()
+    if quiet:
+        yield lambda: None
+    elif not sys.stdout.isatty() or console.is_dumb_terminal:
+        yield _Paced(60.0, lambda: print(line(read(), clock), flush=True))
+    else:
+        live = Live(console=console, auto_refresh=False)
+
+        def draw() -> None:
+            live.update(table(read(), clock), refresh=True)
+
+        with interrupts.before_end(show_cursor), live:
+            yield _Paced(0.5, draw)
+            draw()
+
+
+class Clock:
+    """The time since the command began, and what it has brought about."""
+
+    def __init__(self) -> None:
+        self._began, self._done = time.perf_counter(), -1
+
+    def seconds(self) -> float:
+        """Return the seconds since the command began."""
+        return time.perf_counter() - self._began
+
+    def left(self, status: Status) -> float | None:
+        """Return the seconds until all jobs are done, if they take as long as those done since."""
+        done = status.jobs["done"]
+        if self._done < 0:
+            self._done = done
+        open_jobs = sum(status.jobs.values()) - done
+        if done > self._done:
+            return self.seconds() / (done - self._done) * open_jobs
+        longest = max((entry.left_s or 0.0 for entry in status.running), default=0.0)
+        rounds = -(-open_jobs // max(len(status.running), 1))
+        return longest * rounds or None
+
+
+class _Paced:
+    """A call that is made at intervals, longer ones if it takes long."""
+
+    def __init__(self, interval: float, call: Callable[[], None]) -> None:
+        self._interval, self._call, self._due = interval, call, 0.0
+
+    def __call__(self) -> None:
+        began = time.perf_counter()
+        if began >= self._due:
+            self._call()
+            now = time.perf_counter()
+            self._due = now + max(self._interval, (now - began) / SHARE)
+
+
+def line(status: Status, clock: Clock) -> str:
+    """Return the states of jobs in one line."""
+    left = clock.left(status)
+    parts = [_jobs(status), f"{with_prefix(status.rate)} organism-ticks/s"]
+    if left is not None:
+        parts.append(f"about {duration(left)} left")
+    return f"{time.strftime('%H:%M:%S')}  {', '.join(parts)}"
+
+
+def table(status: Status, clock: Clock | None = None) -> Group:
+    """Return the arms so far, the jobs under way, and those that have failed."""
+    parts: list[Text | Table] = [Text(status.question, "bold"), _arms(status.arms)]
+    if status.running:
+        parts.append(_running(status.running))
+    for entry in status.failed[:SHOWN]:
+        parts.append(Text(f"job {entry.job} ({entry.arm}) failed: {entry.error}", "red"))
+    below = _jobs(status)
+    if clock is not None:
+        left = clock.left(status)
+        rest = f", about {duration(left)} left" if left is not None else ""
+        below += f"; {with_prefix(status.rate)} organism-ticks/s; {duration(clock.seconds())}{rest}"
+    return Group(*parts, Text(below, "dim"))
+
+
+def _jobs(status: Status) -> str:
+    total = sum(status.jobs.values())
+    names = {"running": "under way", "failed": "failed", "waiting": "waiting"}
+    others = [f"{status.jobs[state]:,} {name}" for state, name in names.items()]
+    return ", ".join([f"{status.jobs['done']:,} of {total:,} jobs done", *others])
+
+
+def _arms(arms: tuple[ArmStatus, ...]) -> Table:
+    made = _table("arm", "worlds begun", "saturated", "ticks lived for each death (95 %)")
+    for arm in arms:
+        life = "-" if arm.life is None else f"{arm.life:,.0f}"
+        if arm.life_interval is not None:
+            low, high = arm.life_interval
+            life += f" ({low:,.0f} to {high:,.0f})"
+        made.add_row(arm.name, f"{arm.begun:,} of {arm.worlds:,}", f"{arm.saturated:,}", life)
+    return made
+
+
+def _running(entries: tuple[Entry, ...]) -> Table:
+    made = _table("job", "arm", "worlds", "tick", "births", "organism-ticks/s", "left")
+    for entry in entries[:SHOWN]:
+        tick = max((world.ticks for world in entry.worlds), default=0)
+        births = sum(world.births for world in entry.worlds)
+        left = "" if entry.left_s is None else duration(entry.left_s)
+        numbers = f"{tick:,}", f"{births:,}", with_prefix(entry.rate), left
+        made.add_row(str(entry.job), entry.arm, str(len(entry.worlds) or ""), *numbers)
+    if len(entries) > SHOWN:
+        made.caption = f"and {len(entries) - SHOWN:,} more"
+    return made
+
+
+def _table(first: str, *others: str) -> Table:
+    made = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    made.add_column(first)
+    for name in others:
+        made.add_column(name, justify="left" if name == "arm" else "right")
+    return made

@@ -1,0 +1,133 @@
+"""The command `primordia experiment`: arms of many worlds, as jobs on all cores or on a cluster."""
+
+import json
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from primordia import cores, interrupts
+from primordia.cli.cache import cache_option
+from primordia.cli.flags import checkpoint_option, quiet_option
+from primordia.cli.streams import report
+from primordia.errors import InputError
+
+if TYPE_CHECKING:
+    from primordia.experiments.campaign import Result
+    from primordia.experiments.experiment import Experiment
+    from primordia.experiments.outcome import Outcome
+    from primordia.experiments.plan import Job
+    from primordia.experiments.status import Status
+
+
+@click.command(short_help="Run arms of many worlds on all cores.")
+@click.argument("file", metavar="FILE.toml|DIR", type=click.Path(path_type=Path))
+@click.option(
+    "--out", type=click.Path(path_type=Path), help="Directory of the runs [runs/, FILE's name]."
+)
+@click.option("--jobs", type=click.IntRange(1), help="Jobs at a time [one for each core].")
+@click.option("--only", multiple=True, metavar="ARM", help="Run this arm; may be repeated.")
+@click.option("--job", type=int, metavar="K", help="Run exactly one job, by its number from 0.")
+@click.option("--status", is_flag=True, help="Show how far the experiment is; run nothing.")
+@click.option("--json", "as_json", is_flag=True, help="With --status: print one JSON object.")
+@checkpoint_option
+@cache_option
+@quiet_option
+def experiment(
+    file: Path, out: Path | None, job: int | None, status: bool, as_json: bool, **options: Any
+) -> None:
+    """Run the arms of an experiment, and write its results.
+
+    FILE.toml holds a question, shared settings, and [[arms]] with the settings that differ. The worlds of
+    each arm are cut into jobs; each job is a run of its own. The same command goes on where it was
+    stopped or cut off, and does nothing twice. DIR is the directory of an experiment that has begun.
+    """
+    from primordia.experiments.experiment import begin, recorded
+
+    if as_json and not status:
+        raise InputError("--json goes with --status")
+    if status:
+        place = out or (file if file.is_dir() else Path("runs", file.stem))
+        return _show(recorded(place), as_json)
+    chosen = begin(file, out)
+    if job is not None:
+        return _live_one(chosen, job, options["checkpoint_every"])
+    return _live_all(chosen, **options)
+
+
+def _show(chosen: "Experiment", as_json: bool) -> None:
+    if as_json:
+        click.echo(json.dumps(chosen.status().to_dict()))
+    else:
+        show_status(chosen.status())
+
+
+def show_status(status: "Status") -> None:
+    """Print the status of an experiment."""
+    from rich.console import Console
+
+    from primordia.cli.campaign_view import table
+
+    Console(highlight=False).print(table(status))
+
+
+def _live_one(chosen: "Experiment", number: int, checkpoint_every: float) -> None:
+    """Live one job in this process, which has one core unless PRIMORDIA_CORES says more."""
+    os.environ.setdefault(cores.VARIABLE, "1")
+    from primordia.experiments.job import outcome_of
+
+    job = chosen.job(number)
+    outcome = outcome_of(chosen.plan, job, chosen.path, checkpoint_every)
+    if outcome.state == "stopped":
+        report(f"stopped job {number}; the same command goes on with it")
+        raise SystemExit(interrupts.STATUS)
+    if outcome.state == "elsewhere":
+        raise InputError(f"job {number} is being run by another process")
+    if outcome.state == "failed":
+        report(f"job {number} ({job.arm}) failed: {outcome.error}")
+        raise SystemExit(1)
+
+
+def _live_all(
+    chosen: "Experiment",
+    jobs: int | None,
+    only: tuple[str, ...],
+    checkpoint_every: float,
+    quiet: bool,
+) -> None:
+    from primordia.cli.campaign_view import watching
+    from primordia.experiments.campaign import live_all
+    from primordia.experiments.here import Here
+
+    left = chosen.left(only)
+    if left:
+        place = Here(chosen.path, min(jobs or cores.count(), len(left)), checkpoint_every)
+        with watching(quiet, chosen.status) as look:
+            result = live_all(left, place, look, _report_failure)
+        _end_unless_done(chosen, result)
+    if chosen.left():
+        return report(f"{len(chosen.left()):,} jobs of other arms are not done yet")
+    for path in chosen.gather():
+        click.echo(path)
+
+
+def _report_failure(job: "Job", outcome: "Outcome", again: bool) -> None:
+    more = "; it is tried again" if again else ""
+    report(f"job {job.number} ({job.arm}) failed: {outcome.error}{more}")
+
+
+def _end_unless_done(chosen: "Experiment", result: "Result") -> None:
+    """Say what is not done, and exit."""
+    if result.stopped:
+        report(f"Stopped and saved. Go on with: primordia experiment {chosen.path}")
+        raise SystemExit(interrupts.STATUS)
+    if result.failed:
+        report(f"{len(result.failed):,} jobs failed; the same command tries them again")
+        raise SystemExit(1)
+    if result.elsewhere:
+        report(f"{result.elsewhere:,} jobs are run by other processes; --status shows them")
+        raise SystemExit(0)
+
+
+COMMANDS = (experiment,)

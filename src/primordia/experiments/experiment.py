@@ -1,0 +1,124 @@
+"""An experiment by its file or its directory: begun, looked at, and gathered."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from primordia.comparison.comparison import differing
+from primordia.errors import InputError
+from primordia.experiments import file as files_of_users
+from primordia.experiments import plan as plans
+from primordia.experiments import results
+from primordia.experiments.ledger import Ledger
+from primordia.experiments.plan import Job, Plan
+from primordia.experiments.status import Status, status
+from primordia.history.info import info
+from primordia.runs.opening import EXPERIMENT, opened
+from primordia.runs.records import Records
+
+RESULTS = "results"
+"""Name of the results in an experiment's directory, without what follows the dot."""
+
+
+class Experiment:
+    """An experiment in a directory."""
+
+    def __init__(self, path: Path, plan: Plan) -> None:
+        """See `begin` and `recorded`."""
+        self.path, self.plan = path, plan
+        self.jobs = plan.jobs()
+        self._ledger = Ledger(path, self.jobs)
+
+    @property
+    def arms(self) -> dict[str, Path]:
+        """The folder of each arm's runs, by the name of the arm; the first is the reference."""
+        return {arm.name: self.path / arm.name for arm in self.plan.arms}
+
+    def job(self, number: int) -> Job:
+        """Return a job by its number; raise InputError if there is none."""
+        if not 0 <= number < len(self.jobs):
+            raise InputError(
+                f"{self.path} has no job {number}; they count from 0 to {len(self.jobs) - 1}"
+            )
+        return self.jobs[number]
+
+    def left(self, arms: Sequence[str] = ()) -> list[Job]:
+        """Return the jobs that are not done, of some arms or of all.
+
+        Raises:
+            InputError: there is no such arm.
+        """
+        names = {self.plan.arm(name).name for name in arms or self.arms}
+        return [
+            job for job in self.jobs if job.arm in names and self._ledger.entry(job).state != "done"
+        ]
+
+    def status(self) -> Status:
+        """Return the states of the jobs and the figures of the arms so far."""
+        return status(self.plan, self._ledger.entries())
+
+    def opened(self) -> list[Records]:
+        """Open the runs of each arm for reading.
+
+        Raises:
+            InputError: nothing has lived in an arm yet.
+        """
+        for name, folder in self.arms.items():
+            if not folder.is_dir():
+                raise InputError(f"arm {name} of {self.path} has not begun yet")
+        return [opened([folder]) for folder in self.arms.values()]
+
+    def gather(self) -> list[Path]:
+        """Write the results of all arms -> the files; none if there is a single arm."""
+        if len(self.plan.arms) < 2:
+            return []
+        return results.write(self.path / RESULTS, self.plan.question, self.opened())
+
+    def info(self) -> dict[str, Any]:
+        """Return the question, the number of jobs in each state, and the worlds of each arm.
+
+        The settings of an arm are those in which the arms differ.
+        """
+        settings = differing([arm.config for arm in self.plan.arms])
+        arms = [
+            {"name": name, "settings": own, "worlds": _worlds(folder)}
+            for (name, folder), own in zip(self.arms.items(), settings, strict=True)
+        ]
+        return {"question": self.plan.question, "jobs": self.status().jobs, "arms": arms}
+
+
+def _worlds(folder: Path) -> list[dict[str, Any]]:
+    """Return the worlds of an arm, as in the `info` of a run; those that have not begun are missing."""
+    try:
+        return list(info(opened([folder]))["worlds"])
+    except InputError:
+        return []
+
+
+def is_experiment(path: Path) -> bool:
+    """Return whether a path is the directory of an experiment."""
+    return (path / EXPERIMENT).is_file()
+
+
+def recorded(path: Path) -> Experiment:
+    """Return the experiment in a directory; raise InputError if there is none."""
+    return Experiment(path, plans.recorded(path))
+
+
+def begin(file: Path, out: Path | None = None) -> Experiment:
+    """Return the experiment of a file, or in a directory, which is made if it is new.
+
+    Args:
+        file: an experiment's file, or the directory of one that has begun.
+        out: the directory; by default the file's name under `runs/`.
+
+    Raises:
+        InputError: something in the file is wrong, or the directory holds another experiment.
+        Trouble: the directory cannot be written.
+    """
+    if is_experiment(file):
+        return recorded(file)
+    out = out if out is not None else Path("runs", file.stem)
+    plan = files_of_users.read(file, out)
+    plans.begin(plan, out)
+    return Experiment(out, plan)

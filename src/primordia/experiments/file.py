@@ -1,0 +1,192 @@
+"""The file of an experiment, which a user writes: a question, shared settings, and arms.
+
+question = "Does heredity matter?"
+task = "CartPole-survival"
+seeds = 100
+
+[[arms]]
+name = "heredity"
+
+[[arms]]
+name = "no-heredity"
+inheritance = "founder"
+
+The first arm is the reference. `[jobs] worlds` is the number of worlds of one job. With `[fork]`, all
+arms go on from the worlds `of` a run, of an arm's folder, or of an arm of another file in the same folder
+(`other/arm`), `at` the end of a tick.
+"""
+
+import os
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+from pydantic import Field, ValidationError
+
+from primordia import config
+from primordia.config import Config
+from primordia.errors import InputError
+from primordia.experiments import plan as plans
+from primordia.experiments.plan import RESERVED, Arm, Fork, Plan, Source
+from primordia.runs import opening
+from primordia.runs.directory import read_config
+from primordia.settings.base import Settings
+from primordia.settings.fields import first_fault
+from primordia.settings.tables import (
+    NONE,
+    did_you_mean,
+    from_toml,
+    merged,
+    replaced,
+    values_of,
+)
+
+OWN = ("question", "arms", "jobs", "fork")
+"""Keys of an experiment's file that are no settings of a run."""
+BY_TENS = 10
+"""Worlds of a job in a habitat in JAX, where worlds of one run share each compiled call. On the host the
+simulators take nearly all of the time, and a job has one world."""
+
+
+class _Jobs(Settings):
+    worlds: int | None = Field(None, ge=1)
+
+
+class _ForkOf(Settings):
+    of: str = Field(min_length=1)
+    at: int = Field(ge=1, lt=2**63)
+
+
+def read(file: Path, out: Path) -> Plan:
+    """Return the plan of an experiment by its file.
+
+    Args:
+        file: the experiment's file.
+        out: the directory in which the experiment is, or will be.
+
+    Raises:
+        InputError: the file cannot be read, or something in it is wrong; the message says what.
+    """
+    values = from_toml(file)
+    own = {name: values.pop(name) for name in OWN if name in values}
+    _refuse_unknown(values, file)
+    question, arms = own.get("question", ""), own.get("arms")
+    if not isinstance(question, str):
+        raise InputError(f"{file}: question is a text in quotes")
+    if not (isinstance(arms, list) and arms and all(isinstance(arm, dict) for arm in arms)):
+        raise InputError(f"{file}: an experiment has one or more arms, each a table [[arms]]")
+    jobs, fork = (
+        _table(own, name, kind, file) for name, kind in (("jobs", _Jobs), ("fork", _ForkOf))
+    )
+    sources: Fork | None = None
+    if fork is not None:
+        base, sources = _origin(fork, file, out)
+        if {"task", "seeds", "cells"} & {*values, *(name for arm in arms for name in arm)}:
+            raise InputError(f"{file}: task, seeds and cells of a fork are those of {fork.of}")
+        values = merged(base, values)
+    elif "task" not in values:
+        raise InputError(f"{file}: `task` is missing: the name of a task, or a file")
+    chosen = [_arm(values, arm, file, fork is not None) for arm in arms]
+    names = Counter(arm.name for arm in chosen)
+    if twice := [name for name, count in names.items() if count > 1 or name in RESERVED]:
+        raise InputError(f"{file}: {twice[0]!r} cannot be the name of an arm, or is that of two")
+    worlds = (jobs and jobs.worlds) or _recorded_worlds(out) or _default_worlds(chosen[0].config)
+    plan = Plan(question=question, worlds=worlds, fork=sources, arms=tuple(chosen))
+    if (count := len(plan.jobs())) > plans.LARGEST:
+        raise InputError(f"{file}: {count:,} jobs are more than {plans.LARGEST:,}; set jobs.worlds")
+    return plan
+
+
+def _refuse_unknown(values: dict[str, Any], file: Path) -> None:
+    known = [*OWN, *Config.model_fields]
+    for name in values:
+        if name not in known or name == "fork":
+            raise InputError(f"{file}: there is no {name!r}{did_you_mean(name, known)}")
+
+
+def _table(own: dict[str, Any], name: str, kind: type[Settings], file: Path) -> Any:
+    """Return one of the file's own tables, checked; None if it is missing."""
+    if name not in own:
+        return None
+    try:
+        return kind.model_validate(own[name])
+    except ValidationError as error:
+        raise InputError(f"{file}: {name}: {first_fault(error, kind)}") from None
+
+
+def _arm(shared: dict[str, Any], own: dict[str, Any], file: Path, complete: bool) -> Arm:
+    """Return an arm with all its settings, checked as a whole.
+
+    Args:
+        shared: the settings of all arms; if `complete`, all that there are, else those that differ from
+            the task's.
+        own: those that differ in this arm, and its name.
+        file: the experiment's file.
+        complete: see `shared`.
+    """
+    own = dict(own)
+    name = own.pop("name", None)
+    if name is None:
+        raise InputError(f"{file}: an arm has no name")
+    if own.get("task", shared["task"]) != shared["task"]:
+        raise InputError(f"{file}: arm {name!r} is of another task; all arms are of one")
+    values = merged(shared, own)
+    beside = file.parent / str(values["task"])
+    task = str(beside) if beside.is_file() else str(values["task"])
+    try:
+        if complete:
+            chosen = config.validated(values, str(file))
+        else:
+            chosen = config.load(task, {**values, "task": values_of(task).get("task", task)})
+    except InputError as error:
+        raise InputError(f"{file}: arm {name!r}: {error}") from None
+    settings = replaced(chosen.model_dump(mode="json"), None, NONE)
+    settings["ancestors"] = [str(Path(genomes).resolve()) for genomes in chosen.ancestors]
+    try:
+        return Arm(name=name, settings=settings)
+    except ValidationError as error:
+        raise InputError(f"{file}: arm {name!r}: {first_fault(error, Arm)}") from None
+
+
+def _origin(fork: _ForkOf, file: Path, out: Path) -> tuple[dict[str, Any], Fork]:
+    """Return the settings of the worlds that are forked, and their runs."""
+    other, _, arm = fork.of.partition("/")
+    try:
+        if (sibling := file.with_name(f"{other}.toml")).is_file() and arm:
+            settings, runs = _of_experiment(sibling, out.parent / other, arm)
+        else:
+            settings, runs = _of_runs(Path(fork.of))
+    except InputError as error:
+        raise InputError(f"{file}: fork.of: {error}") from None
+    sources = [Source(run=os.path.relpath(run, out), worlds=worlds) for run, worlds in runs]
+    del settings["fork"]
+    return settings, Fork(at=fork.at, sources=tuple(sources))
+
+
+def _of_experiment(
+    file: Path, out: Path, arm: str
+) -> tuple[dict[str, Any], list[tuple[Path, int]]]:
+    """Return the settings of another experiment's arm, and its runs with their numbers of worlds."""
+    begun = (out / opening.EXPERIMENT).is_file()
+    plan = plans.recorded(out) if begun else read(file, out)
+    runs = [(out / job.folder, job.worlds) for job in plan.jobs() if job.arm == arm]
+    return dict(plan.arm(arm).settings), runs
+
+
+def _of_runs(place: Path) -> tuple[dict[str, Any], list[tuple[Path, int]]]:
+    """Return the settings of runs that are one arm, and each with its number of worlds."""
+    paths = opening.opened([place]).paths
+    configs = [read_config(path) for path in paths]
+    settings = replaced(configs[0].model_dump(mode="json"), None, NONE)
+    settings["seeds"] = sum(each.seeds for each in configs)
+    settings["ancestors"] = [str(paths[0] / genomes) for genomes in configs[0].ancestors]
+    return settings, [(path, each.seeds) for path, each in zip(paths, configs, strict=True)]
+
+
+def _recorded_worlds(out: Path) -> int | None:
+    """Return the worlds of a job of an experiment that has begun; None if it has not."""
+    return plans.recorded(out).worlds if (out / opening.EXPERIMENT).is_file() else None
+
+
+def _default_worlds(chosen: Config) -> int:
+    return 1 if chosen.build_habitat().kind == "host" else BY_TENS

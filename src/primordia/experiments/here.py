@@ -1,0 +1,87 @@
+"""Jobs on the cores of this machine: a process for each core, which lives one job after another."""
+
+import json
+import os
+import subprocess
+import sys
+import threading
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import suppress
+from pathlib import Path
+
+from primordia import cores
+from primordia.experiments.job import note_failure
+from primordia.experiments.outcome import Outcome
+from primordia.experiments.plan import Job
+
+PATIENCE = 15.0
+"""Seconds in which a process that is to stop may write its checkpoint."""
+LOG = "workers.log"
+"""The file, in the experiment's directory, that holds what workers and their libraries print."""
+
+
+class Here:
+    """Processes on this machine."""
+
+    def __init__(self, out: Path, processes: int, checkpoint_every: float) -> None:
+        """Prepare to live jobs of the experiment in `out`, one at a time in each process."""
+        self._out, self._seconds = out, checkpoint_every
+        self._own = threading.local()
+        self._workers: list[subprocess.Popen[str]] = []
+        self._threads = ThreadPoolExecutor(processes)
+
+    def submit(self, job: Job) -> Future[Outcome]:
+        """Let a process live a job as soon as one is free."""
+        return self._threads.submit(self._live, job)
+
+    def stop(self) -> None:
+        """Stop all processes, each after a checkpoint; jobs that have not begun are dropped."""
+        self._threads.shutdown(wait=False, cancel_futures=True)
+        for worker in self._workers:
+            with suppress(OSError):
+                worker.terminate()
+        for worker in self._workers:
+            try:
+                worker.wait(PATIENCE)
+            except subprocess.TimeoutExpired:
+                worker.kill()
+        self._threads.shutdown()  # each has read its worker's last answer, or its end
+        for worker in self._workers:
+            with worker, suppress(BrokenPipeError):
+                assert worker.stdin is not None
+                worker.stdin.close()
+
+    def _live(self, job: Job) -> Outcome:
+        worker = getattr(self._own, "worker", None)
+        if worker is None or worker.poll() is not None:
+            worker = self._own.worker = self._started()
+        assert worker.stdin is not None
+        assert worker.stdout is not None
+        with suppress(BrokenPipeError):
+            worker.stdin.write(f"{job.number}\n")
+            worker.stdin.flush()
+        if answer := worker.stdout.readline():
+            return Outcome(**json.loads(answer))
+        error = f"its process ended with status {worker.wait()}; see {self._out / LOG}"
+        note_failure(job, self._out, error)
+        return Outcome(job.number, "failed", error)
+
+    def _started(self) -> subprocess.Popen[str]:
+        command = [sys.executable, "-P", "-m", "primordia.experiments.worker"]
+        with (self._out / LOG).open("a", encoding="utf-8") as log:
+            worker = subprocess.Popen(
+                [*command, str(self._out), str(self._seconds)],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=log,
+                text=True,
+                process_group=0,  # Ctrl-C in a terminal is for the experiment, which stops its workers
+                env=environment(),
+            )
+        self._workers.append(worker)
+        return worker
+
+
+def environment() -> dict[str, str]:
+    """Return the variables of a process that lives jobs: one core, and this process's modules."""
+    return {**os.environ, cores.VARIABLE: "1", "PYTHONPATH": os.pathsep.join(sys.path)}

@@ -1,0 +1,144 @@
+"""One job: an ordinary run, begun or gone on with, wherever it is lived."""
+
+import os
+import time
+import traceback
+from contextlib import suppress
+from pathlib import Path
+
+from primordia.config import Config
+from primordia.errors import InputError, InUseError, Trouble
+from primordia.experiments.ledger import Entry, Ledger, World
+from primordia.experiments.outcome import Outcome
+from primordia.experiments.plan import Job, Plan
+from primordia.history.info import info
+from primordia.live.census import Census, Speed
+from primordia.runs import code, directory, loop
+from primordia.runs.archive import Archive
+from primordia.runs.fork import fork
+from primordia.runs.loop import Status
+
+EVERY = 2.0
+"""Seconds from one sign of life to the next."""
+
+
+def live(plan: Plan, job: Job, out: Path, checkpoint_every: float = 60.0) -> None:
+    """Live a job to its end, from its beginning or from its newest checkpoint.
+
+    Args:
+        plan: the experiment.
+        job: one of its jobs.
+        out: the experiment's directory.
+        checkpoint_every: seconds from one checkpoint to the next.
+
+    Raises:
+        InputError: another process lives it, or it cannot go on with these versions or settings.
+        Trouble: a file cannot be written.
+        KeyboardInterrupt: on a signal, after a checkpoint.
+    """
+    config, run = configuration(plan, job), out / job.folder
+    ledger, entry = Ledger(out, [job]), Entry(job=job.number, arm=job.arm, state="running")
+    watch = _Watch(ledger, job, entry)
+    ledger.write(job, entry)
+    if not directory.clear_unbegun(run):
+        _go_on(run, config, checkpoint_every, watch)
+    elif job.source is not None and plan.fork is not None:
+        source = Path(os.path.normpath(out / job.source))
+        fork(Archive(source), plan.fork.at, run, _changes(config), watch)
+        _go_on(run, config, checkpoint_every, watch)
+    else:
+        loop.start(config, run, checkpoint_every=checkpoint_every, listen=watch)
+    done = Entry(job=job.number, arm=job.arm, state="done", worlds=_worlds(Archive(run)))
+    ledger.write(job, done)
+
+
+def outcome_of(plan: Plan, job: Job, out: Path, checkpoint_every: float = 60.0) -> Outcome:
+    """Live a job -> what became of it; a failure is noted for those who look on."""
+    try:
+        live(plan, job, out, checkpoint_every)
+    except KeyboardInterrupt:
+        return Outcome(job.number, "stopped")
+    except InUseError:
+        return Outcome(job.number, "elsewhere")
+    except (InputError, Trouble, OSError) as error:
+        note_failure(job, out, str(error))
+        return Outcome(job.number, "failed", str(error))
+    except Exception as error:  # of the user's own code, or ours: the other jobs go on
+        traceback.print_exc()
+        text = f"{type(error).__name__}: {error}".splitlines()[0]
+        note_failure(job, out, text)
+        return Outcome(job.number, "failed", text)
+    return Outcome(job.number, "done")
+
+
+def note_failure(job: Job, out: Path, error: str) -> None:
+    """Note that a job has failed, and why, if that can be written."""
+    ledger = Ledger(out, [job])
+    entry = ledger.entry(job).model_copy(update={"state": "failed", "error": error})
+    with suppress(Trouble, InputError):
+        ledger.write(job, entry)
+
+
+def configuration(plan: Plan, job: Job) -> Config:
+    """Return the configuration of a job's run."""
+    whole = plan.arm(job.arm).config
+    return whole.model_copy(update={"seed": whole.seed + job.first, "seeds": job.worlds})
+
+
+def _changes(config: Config) -> dict[str, object]:
+    """Return the settings of a fork; those that are unchanged are given too."""
+    return config.model_dump(mode="json", exclude={"task", "about", "fork", "seeds", "ancestors"})
+
+
+def _go_on(run: Path, config: Config, checkpoint_every: float, watch: "_Watch") -> None:
+    archive = Archive(run)
+    if not archive.changed_code:  # the experiment's own code, which its user has begun it with
+        code.trust(archive.code())
+    limits = config.stop.model_dump()
+    loop.resume(run, limits, checkpoint_every=checkpoint_every, listen=watch)
+
+
+def _worlds(run: Archive) -> list[World]:
+    return [
+        World(
+            **{name: world[name] for name in ("seed", "ticks", "births", "deaths")},
+            organism_ticks=world["organism_ticks"],
+            saturated=world["saturation"] and world["saturation"]["tick"],
+        )
+        for world in info(run)["worlds"]
+    ]
+
+
+class _Watch:
+    """A listener that writes a job's counts into its entry from time to time."""
+
+    def __init__(self, ledger: Ledger, job: Job, entry: Entry) -> None:
+        self._ledger, self._job, self._entry = ledger, job, entry
+        self._speed, self._due = Speed(), 0.0
+
+    def __call__(self, status: Status) -> None:
+        """Write the counts if that is due."""
+        now = time.perf_counter()
+        if now < self._due:
+            return
+        self._due = now + EVERY
+        census = Census.of(status.engine.state.world)
+        self._speed.add(now, census)
+        self._entry.rate = self._speed.organism_ticks_per_s()
+        if status.limits is not None:
+            self._entry.left_s = self._speed.seconds_left(status.limits)
+        seeds = status.engine.config.world_seeds.tolist()
+        self._entry.worlds = [_counts(census, world, seed) for world, seed in enumerate(seeds)]
+        self._ledger.write(self._job, self._entry)
+
+
+def _counts(census: Census, world: int, seed: int) -> World:
+    saturated = int(census.saturated[world])
+    return World(
+        seed=seed,
+        ticks=int(census.tick[world]),
+        births=int(census.births[world]),
+        deaths=int(census.deaths[world].sum()),
+        organism_ticks=int(census.organism_ticks[world]),
+        saturated=None if saturated < 0 else saturated,
+    )

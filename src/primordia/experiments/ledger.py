@@ -1,0 +1,127 @@
+"""What is known of each job: a small file that the process which lives it writes from time to time.
+
+Whether a job is done is decided by its run alone. The files are for those who look on, from any shell on
+any machine: they tell states and counts without opening a run.
+"""
+
+import json
+import os
+import socket
+import time
+from pathlib import Path
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from primordia import files
+from primordia.experiments.plan import Job
+
+FOLDER = "jobs"
+SILENT = 600.0
+"""Seconds without a sign after which a job on another machine is taken to be cut off."""
+State = Literal["waiting", "running", "done", "failed"]
+
+
+class World(BaseModel):
+    """The counts of a world."""
+
+    model_config = ConfigDict(extra="forbid", strict=True)
+
+    seed: int
+    ticks: int
+    births: int
+    deaths: int
+    organism_ticks: int
+    saturated: int | None
+    """tick, or None"""
+
+
+class Entry(BaseModel):
+    """What is known of a job."""
+
+    model_config = ConfigDict(extra="forbid", strict=True)
+
+    job: int
+    arm: str
+    state: State = "waiting"
+    error: str | None = None
+    worlds: list[World] = Field([])
+    rate: float | None = None
+    """organism-ticks a second of the last seconds"""
+    left_s: float | None = None
+    """seconds until the last world reaches a limit; None if unknown"""
+    updated: float = 0.0
+    """seconds since 1970"""
+    host: str = ""
+    process: int = 0
+
+
+class Ledger:
+    """The entries of all jobs; those that are done are read once."""
+
+    def __init__(self, out: Path, jobs: list[Job]) -> None:
+        self._folder, self._out = out / FOLDER, out
+        self._jobs = jobs
+        self._done: dict[int, Entry] = {}
+
+    def entries(self) -> list[Entry]:
+        """Return the entry of each job, in their order."""
+        try:
+            there = set(os.listdir(self._folder))
+        except OSError:
+            there = set()
+        return [
+            self.entry(job) if self._file(job).name in there else _nothing_of(job)
+            for job in self._jobs
+        ]
+
+    def entry(self, job: Job) -> Entry:
+        """Return the entry of a job, as it is now."""
+        if (known := self._done.get(job.number)) is not None:
+            return known
+        entry = self._read(job)
+        if entry.state == "done" and (self._out / job.folder).is_dir():
+            self._done[job.number] = entry
+        elif entry.state in ("done", "running") and not _is_lived(entry):
+            entry.state = "waiting"
+        return entry
+
+    def _read(self, job: Job) -> Entry:
+        try:
+            entry = Entry.model_validate_json(files.read(self._file(job)))
+        except (OSError, ValidationError):
+            return _nothing_of(job)
+        return entry
+
+    def write(self, job: Job, entry: Entry) -> None:
+        """Write the entry of a job.
+
+        Raises:
+            Trouble: it cannot be written.
+        """
+        entry.updated, entry.host, entry.process = time.time(), socket.gethostname(), os.getpid()
+        files.make_folder(self._folder)
+        files.write_text(self._file(job), json.dumps(entry.model_dump()))
+
+    def _file(self, job: Job) -> Path:
+        return self._folder / f"{job.number:06d}.json"
+
+
+def _nothing_of(job: Job) -> Entry:
+    """Return the entry of a job of which nothing is known."""
+    return Entry(job=job.number, arm=job.arm)
+
+
+def _is_lived(entry: Entry) -> bool:
+    """Return whether the process that writes an entry seems to go on."""
+    if entry.state != "running":
+        return False
+    if entry.host != socket.gethostname():
+        return time.time() - entry.updated < SILENT
+    try:
+        os.kill(entry.process, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:  # the process of another user
+        return True
+    return True

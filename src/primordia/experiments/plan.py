@@ -1,0 +1,165 @@
+"""The plan of an experiment: its question, its arms, and the jobs that their worlds are cut into.
+
+OUT/experiment.toml      the plan, written once
+    ARM/000-009/         a job: the run of an arm's worlds 0 to 9
+    jobs/000012.json     what is known of a job; see `ledger`
+"""
+
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import chain, zip_longest
+from pathlib import Path
+from typing import Annotated, Any
+
+import tomli_w
+from pydantic import Field, ValidationError
+
+from primordia import files
+from primordia.config import Config, parsed
+from primordia.errors import InputError
+from primordia.runs.opening import EXPERIMENT
+from primordia.settings.base import Settings
+from primordia.settings.fields import first_fault
+from primordia.settings.tables import flat, from_toml
+
+RESERVED = {"jobs", "figures"}
+"""Names of folders beside those of the arms."""
+LARGEST = 100_000
+"""Most jobs of an experiment."""
+
+
+class Source(Settings):
+    """A run whose worlds a job goes on with."""
+
+    run: str
+    """its directory, relative to that of the experiment"""
+    worlds: int = Field(ge=1)
+
+
+class Fork(Settings):
+    """What all arms go on from."""
+
+    at: int = Field(ge=1, lt=2**63)
+    sources: tuple[Source, ...] = Field(min_length=1, strict=False)
+
+
+class Arm(Settings):
+    """An arm by its name and all settings of its worlds."""
+
+    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9 ._+-]*$", max_length=100)]
+    settings: dict[str, Any]
+
+    @property
+    def config(self) -> Config:
+        """The configuration of one run of all worlds of the arm."""
+        return parsed(self.settings, f"arm {self.name}")
+
+
+@dataclass(frozen=True)
+class Job:
+    """Some worlds of an arm, lived in one run."""
+
+    number: int
+    arm: str
+    first: int
+    """number of the first world within the arm"""
+    worlds: int
+    folder: str
+    """the run's directory, relative to that of the experiment"""
+    source: str | None = None
+    """the run that it forks, relative to the directory of the experiment"""
+
+
+class Plan(Settings):
+    """An experiment, whole."""
+
+    question: str
+    worlds: int = Field(ge=1)
+    """worlds of a job"""
+    fork: Fork | None = None
+    arms: tuple[Arm, ...] = Field(min_length=1, strict=False)
+
+    def arm(self, name: str) -> Arm:
+        """Return the arm of a name; raise InputError if there is none."""
+        for each in self.arms:
+            if each.name == name:
+                return each
+        names = ", ".join(each.name for each in self.arms)
+        raise InputError(f"there is no arm {name!r}; the arms are {names}")
+
+    def jobs(self) -> list[Job]:
+        """Return all jobs in the order in which they are lived: the first of each arm, the second, ..."""
+        by_arm = ([(arm.name, *cut) for cut in self._cut(arm)] for arm in self.arms)
+        in_turn = filter(None, chain.from_iterable(zip_longest(*by_arm)))
+        return [Job(number, *values) for number, values in enumerate(in_turn)]
+
+    def _cut(self, arm: Arm) -> Iterator[tuple[int, int, str, str | None]]:
+        """Yield first world, number of worlds, folder and source of each of an arm's jobs."""
+        worlds = int(arm.settings["seeds"])
+        digits = len(str(worlds - 1))
+        sizes = [self.worlds] * (worlds // self.worlds) + [worlds % self.worlds]
+        sources: list[Source | None] = [None] * len(sizes)
+        if self.fork is not None:
+            sources = list(self.fork.sources)
+            sizes = [source.worlds for source in self.fork.sources]
+        first = 0
+        for size, source in zip(sizes, sources, strict=True):
+            if size:
+                span = range(first, first + size)
+                name = "-".join(f"{each:0{digits}}" for each in sorted({span[0], span[-1]}))
+                yield first, size, f"{arm.name}/{name}", source.run if source else None
+            first += size
+
+
+def recorded(out: Path) -> Plan:
+    """Return the plan in an experiment's directory.
+
+    Raises:
+        InputError: there is none, or it is damaged.
+    """
+    file = out / EXPERIMENT
+    try:
+        return Plan.model_validate(from_toml(file))
+    except ValidationError as error:
+        raise InputError(f"{file} is damaged: {first_fault(error, Plan)}") from None
+
+
+def begin(plan: Plan, out: Path) -> None:
+    """Write a plan into an experiment's directory, or check that it is there already.
+
+    Raises:
+        InputError: the directory holds another experiment, or something else.
+        Trouble: it cannot be written.
+    """
+    files.check_name(out)
+    if (out / EXPERIMENT).is_file():
+        _refuse_other(plan, recorded(out), out)
+    elif out.exists() and not (out.is_dir() and not os.listdir(out)):
+        raise InputError(f"{out} exists already and is not an experiment; choose another --out")
+    files.make_folder(out)
+    if not (out / EXPERIMENT).is_file():
+        values = plan.model_dump(mode="json", exclude_none=True)
+        files.write_text(out / EXPERIMENT, tomli_w.dumps(values))
+
+
+def _refuse_other(plan: Plan, there: Plan, out: Path) -> None:
+    """Raise InputError if two plans differ in more than the words of the question."""
+    ours, theirs = _named(plan), _named(there)
+    for name in (*ours, *theirs):
+        if ours.get(name) != theirs.get(name):
+            raise InputError(
+                f"{out} holds another experiment: {name} is {_shown(theirs.get(name))} there, and"
+                f" {_shown(ours.get(name))} here; choose another --out"
+            )
+
+
+def _named(plan: Plan) -> dict[str, Any]:
+    """Return all that two plans may differ in, by dotted name."""
+    values = plan.model_dump(mode="json", exclude={"question", "arms"})
+    arms = {arm.name: {**arm.settings, "about": ""} for arm in plan.arms}
+    return flat({**values, "arms": arms, "order": [arm.name for arm in plan.arms]})
+
+
+def _shown(value: Any) -> str:
+    return "missing" if value is None else str(value)

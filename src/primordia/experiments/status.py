@@ -1,0 +1,86 @@
+"""An experiment so far: the states of its jobs, and the figures of its arms, without opening a run."""
+
+from collections import Counter
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from primordia.comparison.resample import LEAST, interval, resamples
+from primordia.experiments.ledger import Entry, World
+from primordia.experiments.plan import Plan
+
+STATES = ("done", "running", "failed", "waiting")
+
+
+@dataclass(frozen=True)
+class ArmStatus:
+    """The worlds of an arm so far."""
+
+    name: str
+    worlds: int
+    """all that the arm will have"""
+    begun: int
+    saturated: int
+    life: float | None
+    """ticks lived for each death, median over worlds begun; None if none has begun"""
+    life_interval: tuple[float, float] | None
+    """95 % interval of the median over worlds; None of fewer than 5"""
+
+
+@dataclass(frozen=True)
+class Status:
+    """An experiment so far."""
+
+    question: str
+    jobs: dict[str, int]
+    """state -> number of jobs"""
+    arms: tuple[ArmStatus, ...]
+    running: tuple[Entry, ...]
+    failed: tuple[Entry, ...]
+
+    @property
+    def rate(self) -> float:
+        """Organism-ticks a second of all jobs under way."""
+        return sum(entry.rate or 0.0 for entry in self.running)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain values for JSON."""
+        return {
+            "question": self.question,
+            "jobs": self.jobs,
+            "arms": [vars(arm) for arm in self.arms],
+            "running": [entry.model_dump() for entry in self.running],
+            "failed": [entry.model_dump(include={"job", "arm", "error"}) for entry in self.failed],
+        }
+
+
+def status(plan: Plan, entries: list[Entry]) -> Status:
+    """Return the status of an experiment by the entries of its jobs."""
+    states = Counter(entry.state for entry in entries)
+    worlds: dict[str, list[World]] = {arm.name: [] for arm in plan.arms}
+    for entry in entries:
+        worlds[entry.arm] += entry.worlds
+    return Status(
+        question=plan.question,
+        jobs={state: states[state] for state in STATES},  # type: ignore[index]
+        arms=tuple(
+            _arm(arm.name, int(arm.settings["seeds"]), worlds[arm.name]) for arm in plan.arms
+        ),
+        running=tuple(entry for entry in entries if entry.state == "running"),
+        failed=tuple(entry for entry in entries if entry.state == "failed"),
+    )
+
+
+def _arm(name: str, count: int, worlds: list[World]) -> ArmStatus:
+    lives = np.array([world.organism_ticks / max(world.deaths, 1) for world in worlds])
+    saturated = sum(world.saturated is not None for world in worlds)
+    median = float(np.median(lives)) if len(lives) else None
+    return ArmStatus(name, count, len(worlds), saturated, median, _interval(lives))
+
+
+def _interval(lives: np.ndarray) -> tuple[float, float] | None:
+    if len(lives) < LEAST:
+        return None
+    low, high = interval(np.median(lives[resamples(len(lives))], axis=1))
+    return float(low), float(high)

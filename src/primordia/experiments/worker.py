@@ -1,0 +1,52 @@
+"""A process that lives jobs one after another, so that jobs of one shape are compiled once.
+
+    python -m primordia.experiments.worker OUT SECONDS
+
+A line of standard input is the number of a job; the answer is a line of standard output: the number, and
+what became of the job. When standard input closes, because the experiment's command has ended in whatever
+way, the job under way writes a checkpoint and the process ends.
+"""
+
+import json
+import os
+import queue
+import signal
+import sys
+import threading
+from pathlib import Path
+
+from primordia import interrupts
+
+Lines = queue.SimpleQueue[str]
+
+
+def main() -> None:
+    """Live the jobs that standard input names."""
+    interrupts.end_commands_at_once()
+    out, checkpoint_every = Path(sys.argv[1]), float(sys.argv[2])
+    answers = os.fdopen(os.dup(1), "w", encoding="utf-8", buffering=1)
+    os.dup2(2, 1)  # libraries may print, but not among the answers
+    lines: Lines = queue.SimpleQueue()
+    threading.Thread(target=_read, args=(lines,), daemon=True).start()
+
+    from primordia.experiments.job import outcome_of
+    from primordia.experiments.plan import recorded
+
+    plan = recorded(out)
+    jobs = plan.jobs()
+    while line := lines.get():
+        outcome = outcome_of(plan, jobs[int(line)], out, checkpoint_every)
+        answers.write(json.dumps(outcome._asdict()) + "\n")
+        if outcome.state == "stopped":
+            break
+
+
+def _read(lines: Lines) -> None:
+    """Pass on the lines of standard input; when it closes, end this process as a signal would."""
+    for line in sys.stdin:
+        lines.put(line)
+    os.kill(os.getpid(), signal.SIGTERM)
+
+
+if __name__ == "__main__":
+    main()

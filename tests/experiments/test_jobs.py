@@ -1,0 +1,209 @@
+"""Jobs: wherever, in whatever order and however often cut off they are lived, each world is the same."""
+
+import csv
+import json
+import os
+import random
+import shutil
+import signal
+from pathlib import Path
+
+import pytest
+
+import primordia
+from primordia.experiments import here as on_cores
+from primordia.experiments import job as jobs
+from primordia.experiments.experiment import Experiment, begin
+from primordia.experiments.outcome import Outcome
+from primordia.runs import loop
+from tests.commands import complains, here
+from tests.experiments.meadows import write
+
+
+def digests_of(experiment: Experiment) -> dict[str, list[str]]:
+    """Return the digests of the worlds of each arm."""
+    told = primordia.load(experiment.path).info()
+    assert told["jobs"] == {"done": len(experiment.jobs), "running": 0, "failed": 0, "waiting": 0}
+    return {arm["name"]: [world["digest"] for world in arm["worlds"]] for arm in told["arms"]}
+
+
+@pytest.fixture(scope="module")
+def alone(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[str]]:
+    """Return the digests of each arm's worlds, lived in one run for each arm."""
+    folder = tmp_path_factory.mktemp("alone")
+    plan = begin(write(folder), folder / "out").plan
+    for arm in plan.arms:
+        loop.start(arm.config, folder / arm.name)
+    return {
+        arm.name: [world["digest"] for world in primordia.load(folder / arm.name).info()["worlds"]]
+        for arm in plan.arms
+    }
+
+
+def test_jobs_in_any_order_make_the_worlds_of_one_run(
+    tmp_path: Path, alone: dict[str, list[str]]
+) -> None:
+    """By `--job K`, as the entries of a job array do."""
+    file, out = write(tmp_path), tmp_path / "out"
+    order = list(range(4))
+    random.Random(5).shuffle(order)
+    for number in [*order, order[0]]:
+        done = here("experiment", file, "--out", out, "--job", number, "--quiet")
+        assert done.returncode == 0, done.stderr
+    assert digests_of(begin(out)) == alone
+
+
+def test_an_experiment_is_run_once_on_all_cores(
+    tmp_path: Path, alone: dict[str, list[str]]
+) -> None:
+    file, out = write(tmp_path), tmp_path / "out"
+    done = here("experiment", file, "--out", out, "--jobs", 2)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines()[-3:] == [f"{out}/results.{end}" for end in ("md", "csv", "png")]
+    assert digests_of(begin(out)) == alone
+    rows = list(csv.DictReader((out / "results.csv").read_text().splitlines()))
+    assert [(row["arm"], row["seed"]) for row in rows] == [
+        (arm, str(seed)) for arm in ("mild", "harsh") for seed in range(3, 6)
+    ]
+    assert (out / "results.md").read_text().startswith("# Is it mild?")
+    before = {
+        path: path.stat().st_mtime_ns for path in out.rglob("*") if "results" not in path.name
+    }
+    results = (out / "results.md").read_bytes()
+    assert here("experiment", file, "--out", out).returncode == 0
+    assert {path: path.stat().st_mtime_ns for path in before} == before
+    assert (out / "results.md").read_bytes() == results
+
+
+def test_a_fork_goes_on_from_the_worlds_of_an_arm(tmp_path: Path) -> None:
+    """Unchanged, it lives on as the arm would have."""
+    folder, runs = tmp_path / "files", tmp_path / "runs"
+    one = begin(write(folder, "one"), runs / "one")
+    for job in one.jobs:
+        jobs.live(one.plan, job, one.path)
+    names = ("task", "seed", "seeds", "replication", "saturation_ticks", "hazard", "brain", "jobs")
+    arms = [{"name": "same"}, {"name": "other", "seed": 40}, {"name": "safe", "hazard": 0.0}]
+    fork = {"of": "one/harsh", "at": 150}
+    file = write(folder, "two", fork=fork, arms=arms, **dict.fromkeys(names))
+    two = begin(file, runs / "two")
+    for job in two.jobs:
+        jobs.live(two.plan, job, two.path)
+    once, same, other, safe = (
+        primordia.load(place)
+        .table("deaths")
+        .sort_by([("world", "ascending"), ("tick", "ascending")])
+        for place in (runs / "one" / "harsh", *(runs / "two" / arm["name"] for arm in arms))
+    )
+    later = [row for row in once.to_pylist() if row["tick"] > 150]
+    assert later
+    assert sorted(map(str, same.to_pylist())) == sorted(map(str, later))
+    assert len(safe) == 0
+    assert len(other)
+    assert other.to_pylist() != same.to_pylist()
+    seeds = [world["seed"] for world in primordia.load(runs / "two" / "other").info()["worlds"]]
+    assert seeds == [40, 41, 42]
+    place = {"of": str(runs / "one" / "harsh"), "at": 150}
+    by_place = begin(
+        write(folder, "three", fork=place, arms=arms, **dict.fromkeys(names)), runs / "3"
+    )
+    assert by_place.plan.arms == two.plan.arms
+    assert [job.worlds for job in by_place.jobs] == [job.worlds for job in two.jobs]
+
+
+def test_what_a_kill_leaves_is_taken_up(tmp_path: Path, alone: dict[str, list[str]]) -> None:
+    """A folder in which a run was about to begin, and a run in the middle of its life."""
+    chosen = begin(write(tmp_path), tmp_path / "out")
+    half = chosen.path / chosen.jobs[0].folder
+    (half / "births").mkdir(parents=True)
+    (half / "config.toml").write_text("begun")
+    config = jobs.configuration(chosen.plan, chosen.jobs[1])
+    part = config.model_copy(update={"stop": config.stop.model_copy(update={"ticks": 77})})
+    loop.start(part, chosen.path / chosen.jobs[1].folder)
+    for job in chosen.jobs:
+        assert jobs.outcome_of(chosen.plan, job, chosen.path) == Outcome(job.number, "done")
+    assert digests_of(begin(chosen.path)) == alone
+
+
+def test_a_process_that_dies_is_replaced_and_its_job_tried_again(
+    tmp_path: Path, alone: dict[str, list[str]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each of the first two processes is killed as soon as it is there."""
+    started, begun = on_cores.Here._started, []
+
+    def dying(self: on_cores.Here) -> object:
+        worker = started(self)
+        begun.append(worker)
+        if len(begun) <= 2:
+            os.kill(worker.pid, signal.SIGKILL)
+        return worker
+
+    monkeypatch.setattr(on_cores.Here, "_started", dying)
+    out = tmp_path / "out"
+    done = here("experiment", write(tmp_path), "--out", out, "--jobs", 1)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr.count("its process ended with status -9") == 2
+    assert done.stderr.count("it is tried again") == 2
+    assert digests_of(begin(out)) == alone
+
+
+def test_a_job_that_fails_stops_nobody_else(tmp_path: Path) -> None:
+    file, out = write(tmp_path), tmp_path / "out"
+    chosen = begin(file, out)
+    (out / "mild").mkdir()
+    (out / chosen.jobs[2].folder).write_text("in the way")
+    done = here("experiment", file, "--out", out, "--jobs", 1)
+    assert done.returncode == 1
+    lines = done.stderr.strip().splitlines()
+    assert lines[0].startswith("primordia: job 2 (mild) failed: ")
+    assert lines[0].endswith("; it is tried again")
+    assert len(lines) == 4
+    assert lines[-1].endswith("1 jobs failed; the same command tries them again")
+    told = json.loads(here("experiment", out, "--status", "--json").stdout)
+    assert told["jobs"] == {"done": 3, "running": 0, "failed": 1, "waiting": 0}
+    assert [entry["job"] for entry in told["failed"]] == [2]
+    complains(here("experiment", out, "--job", 2), 1, "job 2 (mild) failed")
+    (out / chosen.jobs[2].folder).unlink()
+    assert here("experiment", file, "--out", out).returncode == 0
+
+
+def test_the_status_tells_what_is_done_without_opening_a_run(tmp_path: Path) -> None:
+    chosen = begin(write(tmp_path), tmp_path / "out")
+    for job in chosen.jobs[:3]:
+        jobs.live(chosen.plan, job, chosen.path)
+    arms = {arm["name"]: arm["worlds"] for arm in primordia.load(chosen.path).info()["arms"]}
+    for path in chosen.path.glob("*/*/checkpoints"):
+        shutil.rmtree(path)
+    told = begin(chosen.path).status()
+    assert told.jobs == {"done": 3, "running": 0, "failed": 0, "waiting": 1}
+    assert [(arm.begun, arm.worlds) for arm in told.arms] == [(3, 3), (2, 3)]
+    for arm in told.arms:
+        lives = sorted(world["organism_ticks"] / world["deaths"] for world in arms[arm.name])
+        assert arm.life == (lives[(len(lives) - 1) // 2] + lives[len(lives) // 2]) / 2
+        assert arm.life_interval is None
+        assert arm.saturated == sum(world["saturation"] is not None for world in arms[arm.name])
+    text = here("experiment", chosen.path, "--status").stdout
+    assert "3 of 4 jobs done" in text
+    shutil.rmtree(chosen.path / chosen.jobs[0].folder)
+    assert begin(chosen.path).status().jobs["waiting"] == 2, "a run that was removed is not done"
+
+
+def test_some_arms_are_run_alone(tmp_path: Path) -> None:
+    file, out = write(tmp_path), tmp_path / "out"
+    done = here("experiment", file, "--out", out, "--only", "harsh", "--jobs", 1)
+    assert done.returncode == 0
+    assert "2 jobs of other arms are not done yet" in done.stderr
+    assert begin(out).status().jobs["done"] == 2
+    assert not (out / "mild").exists()
+    complains(here("compare", out), 2, f"arm mild of {out} has not begun yet")
+    complains(here("replay", out), 2, f"{out} is an experiment; name one of its arms")
+
+
+def test_a_job_that_another_process_lives_is_left_to_it(tmp_path: Path) -> None:
+    from primordia.runs import directory
+
+    chosen = begin(write(tmp_path), tmp_path / "out")
+    run = chosen.path / chosen.jobs[0].folder
+    loop.start(jobs.configuration(chosen.plan, chosen.jobs[0]), run)
+    with directory.locked(run):
+        assert jobs.outcome_of(chosen.plan, chosen.jobs[0], chosen.path).state == "elsewhere"
+        complains(here("experiment", chosen.path, "--job", 0), 2, "run by another process")

@@ -1,0 +1,137 @@
+"""Plans of experiments: what a file says, how arms are cut into jobs, and what is refused."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from primordia.errors import InputError
+from primordia.experiments import plan as plans
+from primordia.experiments.experiment import begin
+from primordia.experiments.file import read
+from primordia.experiments.job import configuration
+from primordia.experiments.plan import Job
+from tests.commands import complains, here
+from tests.experiments.meadows import ARMS, write
+
+
+def jobs(file: Path) -> list[Job]:
+    return read(file, file.parent / "out").jobs()
+
+
+def test_arms_are_cut_into_jobs_which_take_turns(tmp_path: Path) -> None:
+    got = jobs(write(tmp_path))
+    assert [(job.number, job.folder, job.first, job.worlds) for job in got] == [
+        (0, "mild/0-1", 0, 2),
+        (1, "harsh/0-1", 0, 2),
+        (2, "mild/2", 2, 1),
+        (3, "harsh/2", 2, 1),
+    ]
+
+
+@pytest.mark.parametrize(("seeds", "worlds"), [(1, 1), (7, 3), (12, 4), (101, 10), (5, 100)])
+def test_each_world_of_an_arm_is_in_one_job(tmp_path: Path, seeds: int, worlds: int) -> None:
+    plan = read(write(tmp_path, seeds=seeds, jobs={"worlds": worlds}), tmp_path / "out")
+    for arm in ("mild", "harsh"):
+        parts = [configuration(plan, job) for job in plan.jobs() if job.arm == arm]
+        lived = [seed for part in parts for seed in part.world_seeds.tolist()]
+        assert lived == list(range(3, 3 + seeds))
+        assert max(part.seeds for part in parts) == min(worlds, seeds)
+    folders = [job.folder for job in plan.jobs()]
+    assert len(set(folders)) == len(folders)
+
+
+def test_jobs_of_a_habitat_in_jax_have_ten_worlds(tmp_path: Path) -> None:
+    assert read(write(tmp_path, jobs=None), tmp_path / "out").worlds == 10
+
+
+def test_a_plan_is_read_as_it_was_written(tmp_path: Path) -> None:
+    plan = begin(write(tmp_path), tmp_path / "out").plan
+    assert plans.recorded(tmp_path / "out") == plan
+    assert begin(tmp_path / "out").plan == plan
+
+
+def test_words_of_a_question_may_change_and_settings_may_not(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    begin(write(tmp_path), out)
+    begin(write(tmp_path, question="Another one?", jobs=None), out)
+    other: list[dict[str, Any]] = [{"name": "mild"}, {"name": "harsh", "hazard": 0.5}]
+    for changes, words in [
+        ({"arms": other}, "arms.harsh.hazard is 0.05 there, and 0.5 here"),
+        ({"arms": ARMS[::-1]}, "order is"),
+        ({"arms": [*ARMS, {"name": "third"}]}, "is missing there"),
+        ({"jobs": {"worlds": 3}}, "worlds is 2 there, and 3 here"),
+        ({"stop": {"ticks": 400}}, "stop.ticks is 300 there, and 400 here"),
+    ]:
+        with pytest.raises(InputError, match=f"holds another experiment: .*{words}"):
+            begin(write(tmp_path, **changes), out)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"arms": [{"name": "a"}, {"name": "a"}]}, "'a' cannot be the name of an arm, or is that of two"),
+        ({"arms": [{"name": "jobs"}]}, "'jobs' cannot be the name"),
+        ({"arms": [{"name": "a/b"}]}, "arm 'a/b': name"),
+        ({"arms": [{"name": ".."}]}, "arm '..': name"),
+        ({"arms": [{"hazard": 0.1}]}, "an arm has no name"),
+        ({"arms": []}, "one or more arms"),
+        ({"arms": "heredity"}, "one or more arms"),
+        ({"questions": "?"}, "there is no 'questions'; did you mean 'question'?"),
+        ({"sees": 3}, "there is no 'sees'; did you mean 'seeds'?"),
+        ({"question": 3}, "question is a text"),
+        ({"jobs": {"world": 3}}, "jobs: there is no setting 'world'; did you mean 'worlds'?"),
+        ({"jobs": {"worlds": 0}}, "jobs: worlds: "),
+        ({"jobs": {"worlds": 1}, "seeds": 60_000}, "120,000 jobs are more than 100,000"),
+        ({"task": None}, "`task` is missing"),
+        ({"task": "CartPole-survivl"}, "did you mean 'CartPole-survival'?"),
+        ({"arms": [{"name": "a", "task": "Pong-survival"}]}, "arm 'a' is of another task"),
+        ({"arms": [{"name": "a", "hazrd": 0.1}]}, "arm 'a': .*did you mean 'hazard'?"),
+        ({"arms": [{"name": "a", "hazard": 2.0}]}, "arm 'a': .*hazard"),
+        ({"fork": {"of": "none", "at": 5}}, "none is not a run"),
+        ({"fork": {"at": 5}}, "fork: of"),
+        ({"fork": {"of": "meadows/mild", "at": 0}}, "fork: at"),
+    ],
+)  # fmt: skip
+def test_a_wrong_file_is_one_clear_line(
+    tmp_path: Path, changes: dict[str, Any], words: str
+) -> None:
+    file = write(tmp_path, **changes)
+    with pytest.raises(InputError, match=words):
+        begin(file, tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+    complains(here("experiment", file, "--out", tmp_path / "out"), 2, str(file.parent))
+
+
+def test_a_wrong_request_is_one_clear_line(tmp_path: Path) -> None:
+    file, out = write(tmp_path), tmp_path / "out"
+
+    def asked(*words: object) -> Any:
+        return here("experiment", file, "--out", out, *words)
+
+    complains(asked("--status"), 2, f"{out}/experiment.toml cannot be read")
+    complains(asked("--job", "4"), 2, f"{out} has no job 4; they count from 0 to 3")
+    complains(asked("--only", "mlid"), 2, "there is no arm 'mlid'; the arms are mild, harsh")
+    complains(asked("--json"), 2, "--json goes with --status")
+    complains(here("experiment", tmp_path / "none.toml"), 2, "none.toml cannot be read")
+    (tmp_path / "full").mkdir()
+    (tmp_path / "full" / "a").touch()
+    complains(here("experiment", file, "--out", tmp_path / "full"), 2, "is not an experiment")
+    assert (tmp_path / "full" / "a").exists()
+
+
+def test_a_fork_has_the_jobs_and_settings_of_its_source(tmp_path: Path) -> None:
+    """Also before its source has begun."""
+    write(tmp_path, "one")
+    fork = {"of": "one/harsh", "at": 150}
+    other = {"question": "And then?", "arms": [{"name": "same"}, {"name": "safe", "hazard": 0.0}]}
+    names = ("task", "seed", "seeds", "replication", "saturation_ticks", "hazard", "brain", "jobs")
+    file = write(tmp_path, "two", fork=fork, **other, **dict.fromkeys(names))
+    plan = read(file, tmp_path / "runs" / "two")
+    assert [arm.config.hazard for arm in plan.arms] == [0.05, 0.0]
+    assert [(job.folder, job.source) for job in plan.jobs()][::2] == [
+        ("same/0-1", "../one/harsh/0-1"),
+        ("same/2", "../one/harsh/2"),
+    ]
+    with pytest.raises(InputError, match="task, seeds and cells of a fork are those of one/harsh"):
+        read(write(tmp_path, "two", fork=fork, **other), tmp_path / "runs" / "two")
