@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 
 import primordia
 from primordia.law.world import Cause
-from primordia.runs import checkpoint, loop, record
+from primordia.runs import loop, record
+from primordia.runs.archive import Archive
 from primordia.runs.digest import row_hashes
 from primordia.runs.schema import TABLES
 from tests.worlds import MILL, Lived, config
@@ -81,9 +82,7 @@ def test_tails_and_segments_together_hold_every_row(
 ) -> None:
     monkeypatch.setattr(record, "SEGMENT_ROWS", size)
     run = recorded(tmp_path / "run", interrupted_after=TICKS // 3)
-    last, _ = checkpoint.newest(run.path)
-    assert last is not None
-    arrays = last.arrays()
+    arrays = Archive(run.path).state
     for name in TABLES:
         tail, closed = len(arrays[f"tail.{name}"]), segments(run.path, name)
         assert run.table(name).num_rows == sum(closed) + tail

@@ -114,3 +114,26 @@ def test_an_organism_that_lived_at_a_fork_is_in_its_origin(run: Path, tmp_path: 
     rewrite(fork / "origin", change)
     done = here("export", fork, tmp_path / "genome", "--organism", number)
     complains(done, 1, f"organism {number} of world 0 is not in the state where it lived")
+
+
+def test_an_array_is_read_and_checked_when_it_is_needed(run: Path) -> None:
+    """So a table of a run with large bodies is read without them."""
+    births, large = Archive(run).table("births"), list[str]()
+
+    def change(arrays: Arrays) -> None:
+        large.extend(name for name in arrays if name.startswith(("bodies", "world.organisms.")))
+        for name in large:
+            arrays[name] = arrays[name][:-1]
+
+    rewrite(newest(run), change)
+    assert large
+    assert Archive(run).table("births") == births
+    for command in ("info", "resume", "verify"):
+        complains(here(command, run), 1, f"{newest(run)} is no checkpoint of this run", "not fit")
+
+
+@pytest.mark.parametrize("name", ["world.organisms.wings", "tail.marriages", "other"])
+def test_an_array_that_no_run_has_is_refused(run: Path, name: str) -> None:
+    rewrite(newest(run), lambda arrays: arrays.update({name: np.zeros((CELLS, 2), np.float32)}))
+    for command in ("info", "resume", "verify"):
+        complains(here(command, run), 1, f"there is an array {name}, which no run has")

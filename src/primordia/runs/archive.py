@@ -16,7 +16,7 @@ from primordia.law.heredity import Heredity
 from primordia.law.law import Law
 from primordia.law.metabolism import Metabolism
 from primordia.own_code import Sources
-from primordia.runs import checkpoint, code, description, directory, segment, shapes
+from primordia.runs import checkpoint, code, description, directory, segment
 from primordia.runs.arrays import Arrays
 from primordia.runs.checkpoint import Checkpoint
 from primordia.runs.description import Description
@@ -24,6 +24,7 @@ from primordia.runs.lives import Lives, join
 from primordia.runs.manifest import Progress
 from primordia.runs.records import Records
 from primordia.runs.schema import TABLES
+from primordia.runs.shapes import Expected
 from primordia.settings.fields import rates_of
 from primordia.settings.tables import PARTS
 
@@ -184,16 +185,17 @@ class Archive(Records):
         return None if stored is None else self.arrays_of(stored)
 
     def arrays_of(self, stored: Checkpoint) -> Arrays:
-        """Open the arrays of a checkpoint of this run.
+        """Open the arrays of a checkpoint of this run; each is checked when it is first read.
 
         Raises:
             Trouble: they do not fit the settings.
         """
-        arrays = stored.arrays()
-        if fault := shapes.fault(arrays, self.config, self.description):
-            raise Trouble(f"{stored.path} is no checkpoint of this run: {fault}")
+        expected = Expected(self.config, self.description)
+        arrays = stored.arrays(expected.fault_of)
+        if fault := expected.fault(arrays):
+            raise arrays.unfit(fault)
         if any(len(each) != self.config.seeds for each in stored.digests.values()):
-            raise Trouble(f"{stored.path} is no checkpoint of this run: it has other worlds")
+            raise arrays.unfit("it has other worlds")
         return arrays
 
     def segments(self, name: str, columns: Sequence[str] | None = None) -> Iterator[pa.Table]:

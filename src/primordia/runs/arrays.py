@@ -1,6 +1,6 @@
 """The arrays of a checkpoint: a state by name, and the open tails of the tables."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -10,16 +10,19 @@ from primordia.errors import Trouble
 NEVER = 2**64 - 1
 """The tick or count of an event that has not happened."""
 
+FaultOf = Callable[[str, np.ndarray], str | None]
+"""Name and array -> what is wrong with it, or None."""
+
 
 class Arrays(Mapping[str, np.ndarray]):
-    """State and open tails of a checkpoint by name, each read at its first use.
+    """State and open tails of a checkpoint by name, each read and checked at its first use.
 
     The file stays open, so the arrays can be read even after the run has gone on and removed the file.
     """
 
-    def __init__(self, file: Path) -> None:
+    def __init__(self, file: Path, fault_of: FaultOf) -> None:
         """Open a file; raise Trouble if it holds no arrays."""
-        self._file = file
+        self._file, self._fault_of = file, fault_of
         try:
             self._stored = np.load(file, allow_pickle=False)
             self._names = tuple(self._stored.files)
@@ -37,14 +40,23 @@ class Arrays(Mapping[str, np.ndarray]):
                 raise self._damaged() from None
             if not isinstance(array, np.ndarray):
                 raise self._damaged()
+            if fault := self._fault_of(name, array):
+                raise self.unfit(fault)
             self._read[name] = array
         return self._read[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._names
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._names)
 
     def __len__(self) -> int:
         return len(self._names)
+
+    def unfit(self, fault: str) -> Trouble:
+        """Return the error for arrays that are not those of a checkpoint of their run."""
+        return Trouble(f"{self._file.parent} is no checkpoint of this run: {fault}")
 
     def _damaged(self) -> Trouble:
         return Trouble(

@@ -18,7 +18,7 @@ import numpy as np
 from primordia import files, interrupts
 from primordia.errors import Trouble
 from primordia.runs import manifest as manifests
-from primordia.runs.arrays import Arrays
+from primordia.runs.arrays import Arrays, FaultOf
 from primordia.runs.code import FOLDER as CODE
 from primordia.runs.manifest import INPUTS, Manifest, Progress, Seal
 from primordia.runs.record import Recorder
@@ -43,9 +43,9 @@ class Checkpoint:
     path: Path
     manifest: Manifest
 
-    def arrays(self) -> Arrays:
-        """Open the state and the tails."""
-        return Arrays(self.path / STATE)
+    def arrays(self, fault_of: FaultOf) -> Arrays:
+        """Open the state and the tails, each of which is checked when it is read."""
+        return Arrays(self.path / STATE, fault_of)
 
     @property
     def digests(self) -> dict[str, np.ndarray]:

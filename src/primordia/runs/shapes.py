@@ -19,60 +19,61 @@ COUNTS = (
     *("saturated", "saturated_births", "fixed", "fixed_births"),
 )
 """Numbers of 64 bits of each world."""
+BODIES = "bodies"
+"""Beginning of the names of a habitat's arrays, which have a row for each cell."""
 
 
-def expected(config: Config, about: Description) -> dict[str, Kind]:
-    """Return the arrays of every state of a run, by name, without those of bodies."""
-    return dict((*_of_worlds(config, about), *_of_organisms(config, about)))
+class Expected:
+    """The arrays of every checkpoint of a run."""
 
+    def __init__(self, config: Config, about: Description) -> None:
+        self._schema = Schema.described(config.cells, about)
+        self._worlds, self._cells = config.seeds, config.seeds * config.cells
+        tails = {f"tail.{each}": self._schema.columns(each).width for each in TABLES}
+        self._kinds: dict[str, Kind] = {
+            **dict(_of_worlds(config, about)),
+            **dict(_of_organisms(config, about)),
+            **{name: ("uint32", (None, width)) for name, width in tails.items()},
+        }
+        self._tally: Kind = "int32", (self._cells, len(about.tallies))
 
-def fault(arrays: Mapping[str, np.ndarray], config: Config, about: Description) -> str | None:
-    """Return which array is missing or does not fit the run's settings; None if all fit."""
-    cells = config.seeds * config.cells
-    schema = Schema.described(config.cells, about)
-    tails = {f"tail.{table}": ("uint32", (None, schema.columns(table).width)) for table in TABLES}
-    for name, kind in {**expected(config, about), **tails}.items():
-        if name not in arrays:
-            return f"there is no array {name}"
-        if not _fits(arrays[name], kind):
-            return _misfit(name, arrays[name])
-    for name in arrays:
-        bodily = name.startswith("bodies")
-        if bodily and arrays[name].shape[:1] != (cells,):
-            return _misfit(name, arrays[name])
-    tally = arrays.get("bodies.tally")
-    if tally is not None and not _fits(tally, ("int32", (cells, len(about.tallies)))):
-        return _misfit("bodies.tally", tally)
-    return _odd_count(arrays) or _odd_row(arrays, config, schema)
+    def fault(self, arrays: Mapping[str, np.ndarray]) -> str | None:
+        """Return which array is missing or unknown, or which number of a world no run can reach.
 
+        It reads the numbers of worlds alone; `fault_of` checks every array when it is read.
+        """
+        for name in self._kinds:
+            if name not in arrays:
+                return f"there is no array {name}"
+        for name in arrays:
+            if name not in self._kinds and not name.startswith(BODIES):
+                return f"there is an array {name}, which no run has"
+        for name in set(COUNTS) - {"seed", "food"}:
+            count = read_count(arrays, f"world.worlds.{name}")
+            if ((count >= 2**63) & (count != NEVER)).any():
+                return f"world.worlds.{name} is too large"
+        return None
 
-def _odd_count(arrays: Mapping[str, np.ndarray]) -> str | None:
-    """Return which number of a world no run can reach."""
-    for name in set(COUNTS) - {"seed", "food"}:
-        count = read_count(arrays, f"world.worlds.{name}")
-        if ((count >= 2**63) & (count != NEVER)).any():
-            return f"world.worlds.{name} is too large"
-    return None
+    def fault_of(self, name: str, array: np.ndarray) -> str | None:
+        """Return what is wrong with one array: type, shape, or a row; None if it fits the settings."""
+        kind = self._tally if name == f"{BODIES}.tally" else self._kinds.get(name)
+        if not (array.shape[:1] == (self._cells,) if kind is None else _fits(array, kind)):
+            return f"{name} is {array.dtype} {array.shape}, which does not fit the settings"
+        folder, _, table = name.partition(".")
+        return self._odd_row(table, array) if folder == "tail" else None
 
-
-def _odd_row(arrays: Mapping[str, np.ndarray], config: Config, schema: Schema) -> str | None:
-    """Return which open tail names a world, a cell or a cause that does not exist."""
-    cells = config.seeds * config.cells
-    most = {
-        "births": {"cell": cells, "cause": len(BirthCause)},
-        "deaths": {"cell": cells, "cause": len(Cause)},
-        "metrics": {"world": config.seeds},
-    }
-    for table, limits in most.items():
-        words = schema.columns(table).unpacked(arrays[f"tail.{table}"])
-        for name, limit in limits.items():
+    def _odd_row(self, table: str, tail: np.ndarray) -> str | None:
+        """Return what an open tail names that does not exist: a world, a cell or a cause."""
+        most = {
+            "births": {"cell": self._cells, "cause": len(BirthCause)},
+            "deaths": {"cell": self._cells, "cause": len(Cause)},
+            "metrics": {"world": self._worlds},
+        }
+        words = self._schema.columns(table).unpacked(tail)
+        for name, limit in most[table].items():
             if (words[name] >= limit).any():
                 return f"tail.{table} has a {name} that does not exist"
-    return None
-
-
-def _misfit(name: str, array: np.ndarray) -> str:
-    return f"{name} is {array.dtype} {array.shape}, which does not fit the settings"
+        return None
 
 
 def _fits(array: np.ndarray, kind: Kind) -> bool:
