@@ -26,6 +26,8 @@ STATUS = 130
 _handled: list[bool] = []
 """one entry while signals are noted"""
 _noted: list[int] = []
+_ending: list[bool] = []
+"""one entry once the process is being ended"""
 _deferred: list[bool] = []
 """one entry for each block of `deferred` that the main thread is in"""
 _undo: list[Callable[[], object]] = []
@@ -64,6 +66,19 @@ def noting() -> Iterator[list[int]]:
 def deferred() -> AbstractContextManager[None]:
     """Do not end the process at once in a `with` block, which looks at what is noted."""
     return _entry(_deferred, True)
+
+
+@contextmanager
+def giving_way() -> Iterator[None]:
+    """Do not leave the `with` block once the process is being ended, also not by an error.
+
+    The main thread goes on meanwhile, and may fail because a file of its own has been removed.
+    """
+    try:
+        yield
+    finally:
+        while _ending:
+            signal.pause()
 
 
 def before_end(undo: Callable[[], object]) -> AbstractContextManager[None]:
@@ -122,6 +137,7 @@ def _wait_and_end(woken: int) -> None:
 
 
 def _end() -> None:
+    _ending.append(True)
     try:
         # The main thread goes on meanwhile. It may make one more file, or leave a block of `before_end`.
         for undo in [*reversed(_undo)] * 3:

@@ -4,6 +4,7 @@ import random
 import shutil
 import signal
 import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -11,7 +12,7 @@ import pytest
 
 from primordia import files, interrupts
 from primordia.runs.directory import VERSIONS
-from tests.commands import begin, here
+from tests.commands import begin, environment, here
 from tests.trouble import SMALL, TICKS, goes_on
 
 pytestmark = pytest.mark.skipif(
@@ -33,7 +34,7 @@ LONGEST = {"run": 3.0, "resume": 3.0, "fork": 3.0, "plot": 2.0, "replay": 2.0}
 
 
 def interrupted(words: tuple[object, ...], how: signal.Signals, after: float) -> tuple[int, str]:
-    """Send a signal to a command so many seconds after it has begun -> its exit status and stderr."""
+    """Send a signal to a command that began `after` seconds ago -> its exit status and stderr."""
     process = begin(*words)
     status = Path(f"/proc/{process.pid}/status")
     while process.poll() is None and not handles(status, how):
@@ -122,3 +123,77 @@ def test_runs_with_worker_processes_are_interrupted_at_many_instants(
         if run.exists():
             done = here("info", run)
             assert (done.returncode, done.stderr) == (0, "")
+
+
+def process(script: str, *words: str) -> subprocess.CompletedProcess[str]:
+    """Run a script in another process."""
+    command = [sys.executable, "-c", script, *words]
+    return subprocess.run(command, env=environment(), capture_output=True, text=True, timeout=60)
+
+
+DEFERRED = """
+import os, signal, sys, threading
+from primordia import interrupts
+
+looked, read = threading.Semaphore(0), os.read
+
+def look(*given):
+    looked.release()
+    return read(*given)
+
+os.read, interrupts.PATIENCE = look, 0.0
+interrupts.end_commands_at_once()
+with interrupts.deferred():
+    for each in sys.argv[1:]:
+        looked.acquire()
+        os.kill(os.getpid(), getattr(signal, each))
+    looked.acquire()
+print("finished")
+"""
+"""Work that sends signals to its own process, and ends when the last of them has had its effect."""
+
+
+@pytest.mark.parametrize(
+    ("signals", "outcome"),
+    [
+        (["SIGINT"], (0, "finished\n", "")),
+        (["SIGINT", "SIGTERM"], (interrupts.STATUS, "", "Stopped\n")),
+    ],
+)
+def test_a_second_signal_ends_work_that_defers_the_first(
+    signals: list[str], outcome: tuple[int, str, str]
+) -> None:
+    done = process(DEFERRED, *signals)
+    assert (done.returncode, done.stdout, done.stderr) == outcome
+
+
+OVERTAKEN = """
+import atexit, os, signal, sys, threading
+from unittest.mock import patch
+from primordia import interrupts
+from primordia.cli import commands
+
+undone, at_the_end = threading.Event(), threading.Event()
+atexit.register(at_the_end.set)
+signal.pause = lambda: (at_the_end.set(), threading.Event().wait())
+
+def undo():
+    undone.set()
+    at_the_end.wait()
+
+def fail(**_):
+    with interrupts.before_end(undo):
+        os.kill(os.getpid(), signal.SIGINT)
+        undone.wait()
+    raise OSError("its file is gone")
+
+interrupts.end_commands_at_once()
+with patch.object(commands, "commands", fail):
+    sys.exit(commands.execute())
+"""
+"""A command whose main thread gets to its end before the thread that ends the process."""
+
+
+def test_a_command_that_a_signal_ends_says_nothing_of_what_failed_meanwhile() -> None:
+    done = process(OVERTAKEN)
+    assert (done.returncode, done.stdout, done.stderr) == (interrupts.STATUS, "", "Stopped\n")

@@ -46,7 +46,8 @@ def execute() -> int:
 
 def _outcome() -> int:
     try:
-        return commands(standalone_mode=False) or 0
+        with interrupts.giving_way():
+            return commands(standalone_mode=False) or 0
     except SystemExit as end:
         return int(end.code or 0)
     except click.Abort:
