@@ -2,7 +2,7 @@
 
     python experiments/champions.py experiments/atari/*.toml experiments/robots/*.toml
 
-The experiments must have been run (`experiments/run.py`). One genome from each world of the reference
+The experiments must have been run (`primordia experiment`). One genome from each world of the reference
 goes to `genomes/` beside the file. The organism is the one that `experiments/games.py` found best among
 all that are alive. If that script was not run, it is the longest-lived organism. `primordia run TASK
 --ancestor FILE --genesis fill` starts a run from these genomes.

@@ -2,7 +2,7 @@
 
     python experiments/games.py experiments/atari/*.toml experiments/robots/*.toml
 
-The experiments must have been run (`experiments/run.py`). An Atari player plays in four ways: the game
+The experiments must have been run (`primordia experiment`). An Atari player plays in four ways: the game
 of its task; games with sticky buttons and no-ops at the start; the game of its task with frozen senses;
 and the games with sticky buttons blindly, with the buttons that it pressed in the game of its task. The
 games of robots all begin differently. A robot plays fresh games in three ways: seeing, with frozen

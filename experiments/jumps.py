@@ -2,7 +2,7 @@
 
     python experiments/jumps.py experiments/robots/walker.toml
 
-The experiments must have been run (`experiments/run.py`). In each world, PELT (Killick, Fearnhead &
+The experiments must have been run (`primordia experiment`). In each world, PELT (Killick, Fearnhead &
 Eckley 2012, with least squares) parts the lifespans of the dead into stretches of one mean each.
 Lifespans are in the order of deaths and on a logarithmic scale. A further stretch must gain more than
 the best single cut gains in 19 of 20 shuffles of the same deaths. Where order means nothing, a world has

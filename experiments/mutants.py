@@ -2,7 +2,7 @@
 
     python experiments/mutants.py experiments/atari/*.toml
 
-The experiments must have been run (`experiments/run.py`), in tasks that draw nothing at random, so that
+The experiments must have been run (`primordia experiment`), in tasks that draw nothing at random, so that
 a genome has one lifespan. The organism that lived longest in each world of the reference gets mutants of
 several scales, with noise on every weight. Each mutant lives once. The table goes to `results/` beside
 the file, as Markdown and CSV.

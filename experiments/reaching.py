@@ -2,7 +2,7 @@
 
     python experiments/reaching.py experiments/robots/reacher.toml experiments/robots/reacher-costly.toml
 
-The experiments must be of Reacher's tasks and must have been run (`experiments/run.py`). In every world
+The experiments must be of Reacher's tasks and must have been run (`primordia experiment`). In every world
 the oldest organisms that are alive at the end live the last part of their lives again. The first founder
 does the same, as a control without selection. A target's time is from the tick in which it appears to
 the tick in which the next appears. Its path is the length of the fingertip's way in this time, over the

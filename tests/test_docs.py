@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from primordia.config import load
+from primordia.experiments.file import read
 from tests import commands
 
 HERE = Path(__file__).parent.parent
@@ -61,7 +62,10 @@ def try_out(kind: str, text: str, where: Path) -> None:
     elif kind == "toml":
         file = where / "block.toml"
         file.write_text(text)
-        load(str(file))
+        if "[[arms]]" in text:
+            read(file, where / "runs" / "block")
+        else:
+            load(str(file))
 
 
 @pytest.mark.parametrize("page", with_blocks(), ids=lambda page: page.stem)

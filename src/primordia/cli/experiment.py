@@ -43,13 +43,12 @@ def experiment(
     each arm are cut into jobs; each job is a run of its own. The same command goes on where it was
     stopped or cut off, and does nothing twice. DIR is the directory of an experiment that has begun.
     """
-    from primordia.experiments.experiment import begin, recorded
+    from primordia.experiments.experiment import begin, planned
 
     if as_json and not status:
         raise InputError("--json goes with --status")
     if status:
-        place = out or (file if file.is_dir() else Path("runs", file.stem))
-        return _show(recorded(place), as_json)
+        return _show(planned(file, out), as_json)
     chosen = begin(file, out)
     if job is not None:
         return _live_one(chosen, job, options["checkpoint_every"])

@@ -105,8 +105,8 @@ def recorded(path: Path) -> Experiment:
     return Experiment(path, plans.recorded(path))
 
 
-def begin(file: Path, out: Path | None = None) -> Experiment:
-    """Return the experiment of a file, or in a directory, which is made if it is new.
+def planned(file: Path, out: Path | None = None) -> Experiment:
+    """Return the experiment of a file, or in a directory; nothing is written.
 
     Args:
         file: an experiment's file, or the directory of one that has begun.
@@ -114,11 +114,22 @@ def begin(file: Path, out: Path | None = None) -> Experiment:
 
     Raises:
         InputError: something in the file is wrong, or the directory holds another experiment.
-        Trouble: the directory cannot be written.
     """
     if is_experiment(file):
         return recorded(file)
     out = out if out is not None else Path("runs", file.stem)
     plan = files_of_users.read(file, out)
-    plans.begin(plan, out)
+    plans.check(plan, out)
     return Experiment(out, plan)
+
+
+def begin(file: Path, out: Path | None = None) -> Experiment:
+    """Return an experiment, and make its directory if it is new; see `planned`.
+
+    Raises:
+        InputError: see `planned`.
+        Trouble: the directory cannot be written.
+    """
+    chosen = planned(file, out)
+    plans.write(chosen.plan, chosen.path)
+    return chosen

@@ -125,18 +125,21 @@ def recorded(out: Path) -> Plan:
         raise InputError(f"{file} is damaged: {first_fault(error, Plan)}") from None
 
 
-def begin(plan: Plan, out: Path) -> None:
-    """Write a plan into an experiment's directory, or check that it is there already.
-
-    Raises:
-        InputError: the directory holds another experiment, or something else.
-        Trouble: it cannot be written.
-    """
+def check(plan: Plan, out: Path) -> None:
+    """Raise InputError if a directory holds another experiment than this plan, or something else."""
     files.check_name(out)
     if (out / EXPERIMENT).is_file():
         _refuse_other(plan, recorded(out), out)
     elif out.exists() and not (out.is_dir() and not os.listdir(out)):
         raise InputError(f"{out} exists already and is not an experiment; choose another --out")
+
+
+def write(plan: Plan, out: Path) -> None:
+    """Write a plan into an experiment's directory, unless it is there already.
+
+    Raises:
+        Trouble: it cannot be written.
+    """
     files.make_folder(out)
     if not (out / EXPERIMENT).is_file():
         values = plan.model_dump(mode="json", exclude_none=True)
