@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import jax
 import numpy as np
 import pytest
 from hypothesis import given
@@ -13,6 +14,7 @@ from primordia.brains import genomes
 from primordia.brains.recurrent import Recurrent
 from primordia.config import load
 from primordia.errors import InputError
+from primordia.history.lineage import rebuild_all
 from primordia.random.wide import modulo, wide
 from primordia.runs import loop
 from primordia.runs.archive import Archive
@@ -58,14 +60,25 @@ def test_founders_of_a_run_have_the_genomes_of_its_ancestors(
     assert opened.info()["worlds"][0]["extinctions"] > 3
     births = opened.table("births").to_pylist()
     founders = [birth for birth in births if birth["cause"] == "founder"]
-    for birth in founders[:20] + founders[-20:]:
-        expected = given_[(2 + birth["world"] + birth["id"]) % 3]
-        np.testing.assert_array_equal(opened.rebuild(birth["id"], birth["world"]), expected)
+    ends = [(birth["id"], birth["world"]) for birth in founders[:20] + founders[-20:]]
+    expected = given_[[(2 + number + world) % 3 for number, world in ends]]
+    np.testing.assert_array_equal(rebuild_all(Archive(run), ends), expected)
     assert verify(Archive(run)) == []
     again = primordia.run(str(run / "config.toml"), tmp_path / "again")
     assert [w["digest"] for w in again.info()["worlds"]] == [
         w["digest"] for w in opened.info()["worlds"]
     ]
+
+
+def test_genomes_that_descend_from_ancestors_are_rebuilt_by_the_same_code(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    genomes.write(tmp_path / "a.safetensors", LAYOUT, some(3), {})
+    values = merged(MEADOW, SMALL | {"ancestors": [str(tmp_path / "a.safetensors")]})
+    loop.start(config(values), tmp_path / "run")
+    with jax.log_compiles():
+        rebuild_all(Archive(tmp_path / "run"), [(0, 0), (1, 0), (2, 0)])
+    assert caplog.text.count("Finished XLA compilation of jit(_replay_births)") == 1
 
 
 def test_a_run_starts_from_an_exported_genome(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 import av
+import jax
 import numpy as np
 import pytest
 from PIL import Image
@@ -90,16 +91,6 @@ def test_the_living_reach_their_recorded_state_when_lived_again(
         assert_ends_as_recorded(RelivedLife.of(run, lives.id[row], lives.world[row]))
 
 
-@pytest.mark.parametrize("cells", [32, 1024])
-def test_a_body_starts_as_it_was_born(cells: int, tmp_path: Path) -> None:
-    """Compiled code may round a product and a sum once, and several bodies may be born as vectors."""
-    full = {"genesis": "fill", "replication": 0.0, "cells": cells, "stop": {"ticks": 2}}
-    loop.start(config(MEADOW, habitat={"name": "tests.toys:Slope"}, **full), tmp_path / "run")
-    run = Archive(tmp_path / "run")
-    for row in range(0, cells, cells // 16):
-        assert_ends_as_recorded(RelivedLife.of(run, row))
-
-
 @pytest.mark.parametrize("which", ["mill", "mirror"])
 def test_the_dead_die_in_their_recorded_tick_when_lived_again(
     which: str, request: pytest.FixtureRequest
@@ -130,6 +121,19 @@ def test_a_life_older_than_a_fork_continues_from_the_fork(
     for row in [*np.flatnonzero(newest)[:1], *np.flatnonzero(older & ~newest)[:4]]:
         life = RelivedLife.of(fork, lives.id[row], lives.world[row])
         assert assert_ends_as_recorded(life)[0].tick[0] == at + 1
+
+
+def test_a_second_life_of_another_length_compiles_nothing(
+    poles: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    run = Archive(poles)
+    lives = run.lives
+    one, other = np.flatnonzero(lives.died & (lives.lifespan > 3))[[0, 1]]
+    assert lives.lifespan[one] != lives.lifespan[other]
+    list(RelivedLife.of(run, lives.id[one]).stretches())
+    with jax.log_compiles():
+        list(RelivedLife.of(run, lives.id[other]).stretches())
+    assert "Finished XLA compilation" not in caplog.text
 
 
 def test_a_life_older_than_a_fork_is_refused_if_bodies_cannot_be_saved(

@@ -4,7 +4,7 @@ The founder's genome is made first. Then the mutations along the line of descent
 the rule that made them (`law.heredity`). A mutation gives the same bits on every device and version.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import jax
 import jax.numpy as jnp
@@ -48,9 +48,11 @@ def rebuild_all(run: Records, organisms: Sequence[tuple[int, int]]) -> np.ndarra
     device.prepare()
     lineages = [run.lives.take(descent(run.lives, *each)) for each in organisms]
     past, genomes = PastClimate(run), []
+    replay = shared(_replay_births, run.heredity)
     for lineage in lineages:
         genome, births = _starting_point(run, lineage)
-        genomes.append(_replay(run, births, past.of_lives(births, births.born), genome))
+        climate = past.of_lives(births, births.born)
+        genomes.append(_replay(run, replay, births, climate, genome))
     return np.stack(genomes)
 
 
@@ -109,11 +111,14 @@ def _starting_point(run: Records, lineage: Lives) -> tuple[np.ndarray, Lives]:
 
 
 def _replay(
-    run: Records, lineage: Lives, climate: Mapping[str, np.ndarray], genome: np.ndarray
+    run: Records,
+    replay: Callable,
+    lineage: Lives,
+    climate: Mapping[str, np.ndarray],
+    genome: np.ndarray,
 ) -> np.ndarray:
     """Replay the births of a lineage (D,) in order, from a genome (P,) -> the last genome."""
     notes = run.notes_of(lineage)
-    replay = shared(_replay_births, run.heredity)
     for first in range(0, len(lineage), STEPS_AT_A_TIME):
         rows = np.arange(first, first + STEPS_AT_A_TIME)
         births, real = lineage.take(rows % len(lineage)), rows < len(lineage)

@@ -42,7 +42,7 @@ class LifeInJax:
     ) -> tuple[Instant, Stretch]:
         """Live the first `count` of TICKS ticks, with their rates (TICKS,); ignore the others."""
         now, lived = self._lived(self._mind, now, wide(ticks), rates)
-        columns = jax.tree.map(lambda each: np.asarray(each[:count, 0]), lived)
+        columns = jax.tree.map(lambda each: np.asarray(each)[:count, 0], lived)
         return now, Stretch(ticks[:count], *columns)
 
     def close(self) -> None:
