@@ -1,6 +1,7 @@
 """Set-up of all tests: JAX, Hypothesis, and a shared cache of compiled code."""
 
 import os
+from collections.abc import Iterator
 from pathlib import Path
 
 import jax
@@ -10,13 +11,34 @@ from hypothesis import HealthCheck, settings
 from primordia import device
 from tests import commands
 
-# XLA compiles faster with its older emitters. Their code is slower and gives the same bits: the digests
-# in these tests were made with the new emitters.
-EMITTERS = "--xla_cpu_use_fusion_emitters"
+# XLA compiles faster with its older emitters, and in half the time without optimisation. That code is
+# slower. Its bits are usually the same, since LLVM's usual selector of instructions contracts products
+# and sums; tests of bits take the fixture `optimised`.
+EMITTERS, SELECTOR = "--xla_cpu_use_fusion_emitters", "--xla_backend_extra_options"
 flags = os.environ.get("XLA_FLAGS", "")
 if EMITTERS not in flags:
-    os.environ["XLA_FLAGS"] = f"{flags} {EMITTERS}=false".strip()
+    os.environ["XLA_FLAGS"] = f"{flags} {EMITTERS}=false {SELECTOR}=-fast-isel=false".strip()
 device.prepare()
+
+
+def optimise(wanted: bool) -> None:
+    """Compile from now on with or without optimisation, here and in processes that tests start."""
+    os.environ["JAX_DISABLE_MOST_OPTIMIZATIONS"] = str(not wanted).lower()
+    jax.config.update("jax_disable_most_optimizations", not wanted)
+    jax.clear_caches()
+
+
+optimise(False)
+
+
+@pytest.fixture(scope="module")
+def optimised() -> Iterator[None]:
+    """Compile the code of a module's tests as users do."""
+    optimise(True)
+    yield
+    optimise(False)
+
+
 # Processes that tests start, and workers that those start, import this tree, whatever is installed.
 os.environ["PYTHONPATH"] = commands.TREE
 
@@ -39,4 +61,4 @@ def _compiled_code(tmp_path_factory: pytest.TempPathFactory) -> None:
     jax.config.update("jax_compilation_cache_dir", kept)
     os.environ["XDG_STATE_HOME"] = str(shared / "state")
     os.environ["XDG_CACHE_HOME"] = str(shared / "cache")
-    jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.2)
+    jax.config.update("jax_persistent_cache_min_compile_time_secs", 0)

@@ -17,6 +17,7 @@ SAME_BITS = (
     "--xla_dump",
     "--xla_force_host_platform_device_count",
     "--xla_cpu_use_fusion_emitters",
+    "--xla_backend_extra_options=-fast-isel=false",
 )
 """Beginnings of flags of XLA that change no bit of a result; any other may."""
 

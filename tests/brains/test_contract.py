@@ -3,8 +3,8 @@
 import os
 import subprocess
 import sys
+from functools import partial
 from hashlib import sha256
-from pathlib import Path
 from typing import Any
 
 import jax
@@ -13,12 +13,10 @@ import pytest
 
 from primordia.brains.contract import KNOWN, Brain, build, find
 from primordia.errors import InputError
-from primordia.runs import loop
 from primordia.testing import check_brain
 from tests.commands import environment
-from tests.history.test_lineage import assert_rebuilt
 from tests.toys import Sliding
-from tests.worlds import CLOCKWORK, MILL, Lived, config
+from tests.worlds import MILL, config
 
 TABLES: dict[str, dict[str, Any]] = {
     "recurrent": {"hidden": 12},
@@ -31,6 +29,7 @@ TABLES: dict[str, dict[str, Any]] = {
     "linear, biases": {"kind": "linear", "biases": True},
     "not ours": {"kind": "tests.toys:Sliding"},
 }
+pytestmark = pytest.mark.usefixtures("optimised")
 BRAINS = {name: build(table) for name, table in TABLES.items()}
 SENSES, OUTPUTS, MOST, TICKS = 5, 3, 1024, 6
 
@@ -50,9 +49,16 @@ def minds(brain: Brain) -> tuple[dict[str, Any], Any, Any]:
     return genome, memory, normal(TICKS, MOST, SENSES)
 
 
+@partial(jax.jit, static_argnums=0)
 def lived(brain: Brain, genome: Any, memory: Any, senses: Any) -> tuple:
     """Think for some ticks in one compiled loop; return memory (N, M) and outputs (T, N, A)."""
     return jax.lax.scan(lambda memory, seen: brain(genome, memory, seen), memory, senses)
+
+
+@partial(jax.jit, static_argnums=0)
+def thought(brain: Brain, genome: Any, memory: Any, senses: Any) -> tuple:
+    """Think once, compiled; return memory (N, M) and output (N, A)."""
+    return brain(genome, memory, senses)
 
 
 @each_brain
@@ -63,7 +69,7 @@ def test_a_brain_keeps_the_contract(brain: Brain) -> None:
 @each_brain
 def test_an_organism_thinks_the_same_among_any_number(brain: Brain) -> None:
     genome, memory, senses = minds(brain)
-    think = jax.jit(brain)
+    think = partial(thought, brain)
     after, output = (np.asarray(each) for each in think(genome, memory, senses[0]))
     shuffled = np.random.default_rng(3).permutation(MOST)
     for some in (shuffled, np.arange(1), np.arange(2), shuffled[:31], shuffled[:32]):
@@ -82,8 +88,8 @@ def test_a_brain_thinks_the_same_inside_a_loop_and_outside(
     genome, memory, senses = minds(brain)
     genome = {name: block[:count] for name, block in genome.items()}
     memory, senses = memory[:count], senses[:, :count]
-    last, outputs = jax.jit(lambda *given: lived(brain, *given))(genome, memory, senses)
-    think = jax.jit(brain) if compiled else brain
+    last, outputs = (np.asarray(each) for each in lived(brain, genome, memory, senses))
+    think = partial(thought, brain) if compiled else brain
     for tick in range(TICKS):
         memory, output = think(genome, memory, senses[tick])
         np.testing.assert_array_equal(output, outputs[tick])
@@ -93,7 +99,7 @@ def test_a_brain_thinks_the_same_inside_a_loop_and_outside(
 @each_brain
 def test_an_organism_that_is_not_finite_changes_no_other(brain: Brain) -> None:
     genome, memory, senses = minds(brain)
-    think = jax.jit(brain)
+    think = partial(thought, brain)
     whole = think(genome, memory, senses[0])
     broken = {name: block.copy() for name, block in genome.items()}
     for block in broken.values():
@@ -128,9 +134,7 @@ def fingerprint() -> str:
     """Return a hash of what all brains think; the processes below print it."""
     digest = sha256()
     for brain in BRAINS.values():
-        for each in jax.tree.leaves(
-            jax.jit(lambda *given, b=brain: lived(b, *given))(*minds(brain))
-        ):
+        for each in jax.tree.leaves(lived(brain, *minds(brain))):
             digest.update(np.asarray(each).tobytes())
     return digest.hexdigest()
 
@@ -149,44 +153,6 @@ def test_brains_think_the_same_on_any_number_of_threads() -> None:
     command = [sys.executable, "-c", PROGRAM, str(min(os.sched_getaffinity(0)))]
     done = subprocess.run(command, env=environment(), capture_output=True, text=True, check=True)
     assert done.stdout.strip() == fingerprint()
-
-
-LIVING: dict[str, Any] = {"replication": 0.3, "hazard": 0.03, "metabolism": None, "seasons": []}
-
-
-@pytest.mark.parametrize("name", ["recurrent, biases", "gated, biases", "linear", "not ours"])
-def test_organisms_with_the_brain_live_and_evolve_and_are_rebuilt(
-    name: str, tmp_path: Path
-) -> None:
-    values = {**MILL, **LIVING, "brain": TABLES[name], "seeds": 2, "stop": {"ticks": 200}}
-    loop.start(config(values), tmp_path / "run")
-    assert_rebuilt(tmp_path / "run")
-
-
-@pytest.mark.parametrize("name", ["gated, biases", "not ours"])
-def test_organisms_live_the_same_in_a_jax_habitat_and_on_the_host(name: str) -> None:
-    values = {**MILL, **LIVING, "brain": TABLES[name], "seeds": 2}
-    mirror = {**values, "habitat": {"name": "tests.toys:Mirror", "inner": "mill"}}
-    one, other = Lived(config(values), 200), Lived(config(mirror), 200, chunk=77)
-    for table in ("births", "deaths", "metrics"):
-        np.testing.assert_array_equal(
-            np.concatenate(one.rows[table]), np.concatenate(other.rows[table])
-        )
-    assert len(one.table("births")["id"]) > 100
-
-
-@pytest.mark.parametrize("name", ["gated, biases", "not ours"])
-def test_memory_is_zero_at_birth(name: str) -> None:
-    """In CLOCKWORK all organisms starve in tick 31, and then every cell is filled again."""
-    lived = Lived(config({**CLOCKWORK, "brain": TABLES[name]}), 30)
-
-    def memory() -> np.ndarray:
-        return np.asarray(lived.engine.state.world.organisms.memory)
-
-    assert memory().shape == (32, lived.engine.law.memory)
-    assert memory().all()
-    lived.advance_to(31)
-    assert not memory().any()
 
 
 def test_brains_are_found_by_name_and_by_class() -> None:

@@ -1,0 +1,49 @@
+"""Lives with all kinds of brains, and with a brain of the tests."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from primordia.runs import loop
+from tests.brains.test_contract import TABLES
+from tests.history.test_lineage import assert_rebuilt
+from tests.worlds import CLOCKWORK, MILL, Lived, config
+
+LIVING: dict[str, Any] = {"replication": 0.3, "hazard": 0.03, "metabolism": None, "seasons": []}
+
+
+@pytest.mark.parametrize("name", ["recurrent, biases", "gated, biases", "linear", "not ours"])
+def test_organisms_with_the_brain_live_and_evolve_and_are_rebuilt(
+    name: str, tmp_path: Path
+) -> None:
+    values = {**MILL, **LIVING, "brain": TABLES[name], "seeds": 2, "stop": {"ticks": 200}}
+    loop.start(config(values), tmp_path / "run")
+    assert_rebuilt(tmp_path / "run")
+
+
+@pytest.mark.parametrize("name", ["gated, biases", "not ours"])
+def test_organisms_live_the_same_in_a_jax_habitat_and_on_the_host(name: str) -> None:
+    values = {**MILL, **LIVING, "brain": TABLES[name], "seeds": 2}
+    mirror = {**values, "habitat": {"name": "tests.toys:Mirror", "inner": "mill"}}
+    one, other = Lived(config(values), 200), Lived(config(mirror), 200, chunk=77)
+    for table in ("births", "deaths", "metrics"):
+        np.testing.assert_array_equal(
+            np.concatenate(one.rows[table]), np.concatenate(other.rows[table])
+        )
+    assert len(one.table("births")["id"]) > 100
+
+
+@pytest.mark.parametrize("name", ["gated, biases", "not ours"])
+def test_memory_is_zero_at_birth(name: str) -> None:
+    """In CLOCKWORK all organisms starve in tick 31, and then every cell is filled again."""
+    lived = Lived(config({**CLOCKWORK, "brain": TABLES[name]}), 30)
+
+    def memory() -> np.ndarray:
+        return np.asarray(lived.engine.state.world.organisms.memory)
+
+    assert memory().shape == (32, lived.engine.law.memory)
+    assert memory().all()
+    lived.advance_to(31)
+    assert not memory().any()
