@@ -27,7 +27,7 @@ def environment(cache: Path | None = None) -> dict[str, str]:
     if cache is not None:
         extra |= {
             "JAX_COMPILATION_CACHE_DIR": str(cache),
-            "JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS": "0.2",
+            "JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS": "0",
         }
     return {**os.environ, **extra}
 

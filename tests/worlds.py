@@ -78,7 +78,7 @@ class Lived:
             events = self.engine.advance(limits)
             self.recorder.append(events)
             for name, table in zip(self.rows, events, strict=True):
-                self.rows[name].append(np.asarray(table.rows[: int(table.filled)]))
+                self.rows[name].append(np.asarray(table.rows)[: int(table.filled)].copy())
 
     def table(self, name: str) -> dict[str, np.ndarray]:
         """Return the columns of a table as NumPy arrays."""

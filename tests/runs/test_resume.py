@@ -17,7 +17,7 @@ from primordia.runs.manifest import Progress
 from tests.commands import begin, complains, here
 
 WHAT = ("CartPole-survival", "--seeds", "8", "--cells", "64", "--stop.until", "saturation")
-TICKS = 12_000
+TICKS = 3_000
 SLOWLY = ("--checkpoint-every", "0.05")
 
 
@@ -61,8 +61,8 @@ def test_a_run_can_be_looked_at_soon_after_its_start(
 
 def test_ticks_added_later_equal_ticks_lived_at_once(through: list[str], tmp_path: Path) -> None:
     run = tmp_path / "run"
-    assert here("run", *WHAT, "--ticks", 7_001, "--out", run).returncode == 0
-    assert here("resume", run, "--ticks", 9_999).returncode == 0
+    assert here("run", *WHAT, "--ticks", 1_701, "--out", run).returncode == 0
+    assert here("resume", run, "--ticks", 2_499).returncode == 0
     assert here("resume", run, "--ticks", TICKS).returncode == 0
     assert digests(run) == through
 
@@ -117,7 +117,7 @@ def test_ctrl_c_saves_and_says_how_to_resume(through: list[str], tmp_path: Path)
 )
 def test_half_written_files_are_ignored(through: list[str], tmp_path: Path, junk: str) -> None:
     run = tmp_path / "run"
-    assert here("run", *WHAT, "--ticks", 5_000, "--out", run).returncode == 0
+    assert here("run", *WHAT, "--ticks", 1_200, "--out", run).returncode == 0
     (run / junk).parent.mkdir(exist_ok=True)
     (run / junk).write_bytes(b"half")
     (run / "deaths" / "000099.parquet").write_bytes(b"named by no manifest")
@@ -129,7 +129,7 @@ def test_half_written_files_are_ignored(through: list[str], tmp_path: Path, junk
 
 def test_a_damaged_newest_checkpoint_is_skipped(through: list[str], tmp_path: Path) -> None:
     run = tmp_path / "run"
-    assert here("run", *WHAT, "--ticks", 11_000, "--out", run, *SLOWLY).returncode == 0
+    assert here("run", *WHAT, "--ticks", 2_700, "--out", run, *SLOWLY).returncode == 0
     newest = sorted(run.glob("checkpoints/0*"))[-1]
     state = newest / "state.npz"
     damaged = bytearray(state.read_bytes())
@@ -156,7 +156,7 @@ def test_a_run_has_one_writer_at_a_time(tmp_path: Path) -> None:
 
 def test_verify_finds_no_difference_in_a_good_run(tmp_path: Path) -> None:
     run = tmp_path / "run"
-    assert here("run", *WHAT, "--ticks", 5_000, "--out", run).returncode == 0
+    assert here("run", *WHAT, "--ticks", 1_200, "--out", run).returncode == 0
     done = here("verify", run)
     assert (done.returncode, done.stderr) == (0, "")
     assert "holds" in done.stdout
