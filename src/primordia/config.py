@@ -123,7 +123,7 @@ class Config(Settings):
 
     def build_brain(self) -> Brain:
         """Return the brain of this run's organisms."""
-        return brains.build(self.brain)
+        return make("brain", self.brain, brains.find)
 
     def build_layout(self, habitat: AnyHabitat) -> Layout:
         """Return the layout of the genomes of organisms that live in the habitat."""
@@ -153,7 +153,7 @@ class Config(Settings):
         """Return the heredity of genomes of a layout."""
         return Heredity(
             layout=layout,
-            mutation=mutations.build(self.mutation),
+            mutation=make("mutation", self.mutation, mutations.find),
             inheritance=self.inheritance,
             ancestors=genomes.read(self.ancestors, layout) if self.ancestors else None,
             worlds=self.seeds,
@@ -236,10 +236,10 @@ def _completed(config: Config, source: str) -> Config:
     """Add the defaults of brain and mutation, so that `config.toml` holds if a version changes them."""
     built: dict[str, Any] = {}
     try:
-        for part, contract in {"brain": brains, "mutation": mutations}.items():
+        for part, default in DEFAULTS.items():
             table: dict[str, Any] = getattr(config, part)
-            own = contract.build(table).model_dump()
-            built[part] = {"kind": contract.DEFAULT, **table, **own}
+            own = make(part, table, CONTRACTS[part].find).model_dump()
+            built[part] = {PARTS[part]: default, **table, **own}
     except InputError as error:
         raise InputError(f"{source}: {error}") from None
     return config.model_copy(update=built)

@@ -11,8 +11,9 @@ import jax
 import numpy as np
 import pytest
 
-from primordia.brains.contract import KNOWN, Brain, build, find
+from primordia.brains.contract import KNOWN, Brain, find
 from primordia.errors import InputError
+from primordia.settings.making import make
 from primordia.testing import check_brain
 from tests.commands import environment
 from tests.toys import Sliding
@@ -30,6 +31,13 @@ TABLES: dict[str, dict[str, Any]] = {
     "not ours": {"kind": "tests.toys:Sliding"},
 }
 pytestmark = pytest.mark.usefixtures("optimised")
+
+
+def build(table: dict[str, Any]) -> Brain:
+    """Return the brain that a table describes."""
+    return make("brain", table, find)
+
+
 BRAINS = {name: build(table) for name, table in TABLES.items()}
 SENSES, OUTPUTS, MOST, TICKS = 5, 3, 1024, 6
 

@@ -9,7 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from primordia.brains.contract import KNOWN, build
+from primordia.brains.contract import KNOWN, find
 from primordia.habitats.cartpole.habitat import CartPole
 from tests import commands
 from tests.commands import environment
@@ -98,7 +98,7 @@ def test_a_numpy_habitat_is_exact_in_chunks_of_any_length() -> None:
 @pytest.mark.parametrize("kind", KNOWN)
 @pytest.mark.parametrize("habitat", [CartPole(), Mill()])
 def test_brains_and_bodies_do_not_depend_on_their_number(kind: str, habitat) -> None:
-    brain, sizes = build({"kind": kind}), (habitat.senses_size, habitat.action.size)
+    brain, sizes = find(kind)(), (habitat.senses_size, habitat.action.size)
     rng, layout = np.random.default_rng(0), brain.layout(*sizes)
     genome = layout.split(rng.normal(size=(1024, layout.length)).astype(np.float32))
     words = rng.integers(0, 2**32, (1024, habitat.words), dtype=np.uint32)

@@ -9,16 +9,13 @@ other keys of the table are the class's own settings.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 from jax import Array
 
 from primordia.brains.layout import Layout, Shape
 from primordia.settings import parts
 from primordia.settings.base import Settings
-from primordia.settings.making import make
-from primordia.settings.tables import DEFAULTS
 
 Genome: TypeAlias = dict[str, Array]
 
@@ -28,7 +25,6 @@ KNOWN = {
     "gated": "primordia.brains.gated:Gated",
     "linear": "primordia.brains.linear:Linear",
 }
-DEFAULT = DEFAULTS["brain"]
 
 
 class Brain(Settings, ABC):
@@ -74,22 +70,5 @@ class Brain(Settings, ABC):
 
 
 def find(name: object) -> type[Brain]:
-    """Return the brain class called `name`.
-
-    Raises:
-        LookupError: there is no such name, module or class, or the class is no brain; the message
-            says which.
-    """
-    kind = parts.find("brain", name, KNOWN)
-    if not issubclass(kind, Brain):
-        raise LookupError(f"{kind.__name__} is no brain: subclass Brain of {__name__}")
-    return kind
-
-
-def build(table: Mapping[str, Any]) -> Brain:
-    """Return the brain that a `[brain]` table describes.
-
-    Raises:
-        InputError: there is no such brain, or it does not take these settings.
-    """
-    return make("brain", {"kind": DEFAULT, **table}, find)
+    """Return the brain class called `name`; LookupError says why there is none."""
+    return parts.find("brain", name, KNOWN, Brain)

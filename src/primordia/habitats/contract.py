@@ -253,7 +253,7 @@ def find(name: object) -> type[AnyHabitat]:
         LookupError: there is no such name, module or class, or the class is no habitat; the message
             says which.
     """
-    kind = parts.find("habitat", name, KNOWN)
+    kind = parts.find("habitat", name, KNOWN, object)
     if not issubclass(kind, JaxHabitat | HostHabitat):
         raise LookupError(
             f"{kind.__name__} is no habitat: subclass JaxHabitat (with reset, sense and step) or"

@@ -10,7 +10,7 @@ The other keys of the table are the class's own settings.
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from typing import Any, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
 import jax.numpy as jnp
 from jax import Array
@@ -21,11 +21,8 @@ from primordia.random.wide import Wide
 from primordia.settings import parts
 from primordia.settings.base import Settings
 from primordia.settings.fields import rates_of
-from primordia.settings.making import make
-from primordia.settings.tables import DEFAULTS
 
 KNOWN = {"gaussian": "primordia.mutations.gaussian:Gaussian"}
-DEFAULT = DEFAULTS["mutation"]
 
 PURPOSES = Purpose.MUTATE, Purpose.NOISE, Purpose.FOUNDER
 """The purposes for which a mutation may draw random bits."""
@@ -118,22 +115,5 @@ class Mutation(Settings, ABC):
 
 
 def find(name: object) -> type[Mutation]:
-    """Return the mutation class called `name`.
-
-    Raises:
-        LookupError: there is no such name, module or class, or the class is no mutation; the message
-            says which.
-    """
-    kind = parts.find("mutation", name, KNOWN)
-    if not issubclass(kind, Mutation):
-        raise LookupError(f"{kind.__name__} is no mutation: subclass Mutation of {__name__}")
-    return kind
-
-
-def build(table: Mapping[str, Any]) -> Mutation:
-    """Return the mutation that a `[mutation]` table describes.
-
-    Raises:
-        InputError: there is no such mutation, or it does not take these settings.
-    """
-    return make("mutation", {"kind": DEFAULT, **table}, find)
+    """Return the mutation class called `name`; LookupError says why there is none."""
+    return parts.find("mutation", name, KNOWN, Mutation)

@@ -7,7 +7,7 @@ from pydantic import ValidationError
 
 from primordia.errors import InputError
 from primordia.settings.fields import first_fault
-from primordia.settings.tables import PARTS
+from primordia.settings.tables import DEFAULTS, PARTS
 
 Part = TypeVar("Part")
 
@@ -17,7 +17,7 @@ def make(what: str, table: Mapping[str, Any], find: Callable[[object], type[Part
 
     Args:
         what: the kind of part and the name of its table, one of PARTS.
-        table: settings by name.
+        table: settings by name; a table that names no part describes the one of DEFAULTS.
         find: name -> the part's class; LookupError if there is none.
 
     Raises:
@@ -25,7 +25,7 @@ def make(what: str, table: Mapping[str, Any], find: Callable[[object], type[Part
     """
     own, key = dict(table), PARTS[what]
     try:
-        kind = find(own.pop(key, ""))
+        kind = find(own.pop(key, DEFAULTS.get(what, "")))
     except LookupError as error:
         raise InputError(f"{what}.{key}: {error}") from None
     try:

@@ -6,20 +6,26 @@ from typing import Any
 from primordia import own_code
 
 
-def find(what: str, name: object, known: Mapping[str, str]) -> type:
+def find(what: str, name: object, known: Mapping[str, str], base: type) -> type:
     """Return the class of a part.
 
     Args:
         what: the kind of part, such as `habitat`; for messages.
         name: one of the known names, or `module:Class`.
         known: `module:Class` of each part that comes with the package, by name.
+        base: the class that parts of this kind subclass.
 
     Raises:
-        LookupError: there is no such name, module or class; the message says which.
+        LookupError: there is no such name, module or class, or the class is no part of this kind; the
+            message says which.
     """
     found = load(what, name, known)
     if not isinstance(found, type):
         raise LookupError(f"{what} {name!r} is not a class")
+    if not issubclass(found, base):
+        raise LookupError(
+            f"{found.__name__} is no {what}: subclass {base.__name__} of {base.__module__}"
+        )
     return found
 
 
