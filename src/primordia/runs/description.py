@@ -6,12 +6,12 @@ It is written into the run, so that records can be read without the code of thes
 from pathlib import Path
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field
 
 from primordia import files
-from primordia.errors import InputError
 from primordia.habitats.contract import AnyHabitat
 from primordia.law.law import Law
+from primordia.runs import stored
 
 FILE = "description.json"
 
@@ -61,7 +61,4 @@ def read(run: Path) -> Description:
     Raises:
         InputError: it is missing or damaged.
     """
-    try:
-        return Description.model_validate_json(files.read(run / FILE))
-    except (OSError, ValidationError):
-        raise InputError(f"{run / FILE} is missing or damaged; put it back") from None
+    return stored.read(run / FILE, Description, f"{run / FILE} is missing or damaged; put it back")

@@ -8,14 +8,14 @@ from functools import partial
 from pathlib import Path
 
 from filelock import FileLock, Timeout
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field
 
 from primordia import device, files, interrupts, own_code
 from primordia.brains import genomes
 from primordia.config import Config, parsed
 from primordia.errors import InputError, InUseError, Trouble
 from primordia.habitats.contract import AnyHabitat
-from primordia.runs import checkpoint, code
+from primordia.runs import checkpoint, code, stored
 from primordia.runs.description import Description
 from primordia.runs.manifest import INPUTS
 from primordia.runs.schema import TABLES
@@ -172,12 +172,8 @@ def recorded_versions(run: Path) -> Versions:
     Raises:
         InputError: this is no run directory.
     """
-    try:
-        return Versions.model_validate_json(files.read(run / VERSIONS))
-    except (OSError, ValidationError):
-        raise InputError(
-            f"{run} is not a run of primordia: it has no readable versions.json"
-        ) from None
+    otherwise = f"{run} is not a run of primordia: it has no readable {VERSIONS}"
+    return stored.read(run / VERSIONS, Versions, otherwise)
 
 
 @contextmanager
