@@ -46,7 +46,7 @@ def left_by(session: int) -> list[int]:
 
 
 def killed(words: tuple[object, ...], after: float) -> None:
-    """Kill a command so many seconds after its start, and see all its processes end."""
+    """Kill a command `after` seconds after its start, and see all its processes end."""
     process = begin(*words, session=True)
     time.sleep(after)
     process.kill()

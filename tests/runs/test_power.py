@@ -44,7 +44,7 @@ class Recorded:
     digests: list[str]
 
     def safe_ticks(self, operations: int) -> int:
-        """Return the ticks of the newest checkpoint that was saved after so many operations."""
+        """Return the ticks of the newest checkpoint that this number of operations had saved."""
         return max((ticks for number, ticks in self.saved if number <= operations), default=-1)
 
 

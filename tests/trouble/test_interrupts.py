@@ -34,7 +34,11 @@ LONGEST = {"run": 3.0, "resume": 3.0, "fork": 3.0, "plot": 2.0, "replay": 2.0}
 
 
 def interrupted(words: tuple[object, ...], how: signal.Signals, after: float) -> tuple[int, str]:
-    """Send a signal to a command that began `after` seconds ago -> its exit status and stderr."""
+    """Send a signal to a command `after` seconds after it begins to handle signals.
+
+    Returns:
+        its exit status and stderr.
+    """
     process = begin(*words)
     status = Path(f"/proc/{process.pid}/status")
     while process.poll() is None and not handles(status, how):

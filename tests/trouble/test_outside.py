@@ -235,7 +235,7 @@ def test_a_start_that_fails_keeps_what_others_put_there(
 def test_a_run_that_begins_meanwhile_is_kept(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Of two runs that begin in one folder at once, the later one is refused."""
+    """The later one of two runs that begin in one folder at once is refused."""
     run, real = tmp_path / "run", directory.versions_here
 
     def overtaken(*given: object) -> dict[str, str]:
