@@ -199,7 +199,7 @@ def test_no_file_of_the_current_folder_takes_the_place_of_an_installed_one(
     done = subprocess.run(
         [*start, "run", task, *small],
         cwd=tmp_path,
-        env=environment(commands.CACHE),
+        env={**environment(commands.CACHE), "PRIMORDIA_CORES": "2"},
         capture_output=True,
         text=True,
     )
