@@ -140,7 +140,7 @@ def test_a_pipe_is_not_opened(words: tuple[str, ...], part: str, tmp_path: Path)
     ("words", "parts"),
     [
         (["frobnicate"], ["No such command 'frobnicate'"]),
-        (["info"], ["Missing argument 'RUN'"]),
+        (["info"], ["Missing argument 'RUN...'"]),
         (["info", "--yaml", "x"], ["No such option '--yaml'"]),
         (["resume", "--cells", "4", "x"], ["No such option '--cells'"]),
         (["resume", "x", "--ticks"], ["'--ticks' requires an argument"]),
