@@ -47,6 +47,12 @@ settings.register_profile("patient", deadline=None, suppress_health_check=[Healt
 settings.load_profile("patient")
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Begin with the files that take longest, so that none is left to one process at the end."""
+    longest = {"test_docs.py", "test_goldens.py", "test_goldens_of_laws.py"}
+    items.sort(key=lambda item: item.path.name not in longest)
+
+
 @pytest.fixture(autouse=True, scope="session")
 def _compiled_code(tmp_path_factory: pytest.TempPathFactory) -> None:
     """Share one cache of compiled code among all test processes and all commands that they run.

@@ -14,6 +14,7 @@ from primordia.config import load
 from primordia.experiments.file import read
 from tests import commands
 
+pytestmark = pytest.mark.usefixtures("optimised")  # some runs are long
 HERE = Path(__file__).parent.parent
 PAGES = [HERE / "README.md", *sorted((HERE / "docs").glob("*.md"))]
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
