@@ -9,7 +9,9 @@ from typing import Any
 
 import pytest
 
+import primordia
 from primordia.config import Stop
+from primordia.errors import InputError
 from primordia.history.info import info
 from primordia.runs import checkpoint, loop
 from primordia.runs.archive import Archive
@@ -160,3 +162,33 @@ def test_verify_finds_no_difference_in_a_good_run(tmp_path: Path) -> None:
     done = here("verify", run)
     assert (done.returncode, done.stderr) == (0, "")
     assert "holds" in done.stdout
+
+
+def test_a_script_begins_a_run_or_goes_on_with_it(tmp_path: Path) -> None:
+    """The same words three times: the run is begun, gone on with, and found to have ended."""
+    out = tmp_path / "run"
+    words = "run", "CartPole-survival", "--cells", 4, "--seed", 3, "--out", out, "--quiet"
+    assert here(*words, "--ticks", 100, "--resume").returncode == 0
+    for _ in range(2):
+        done = here(*words, "--ticks", 200, "--resume")
+        assert done.returncode == 0, done.stderr
+        assert primordia.load(out).info()["ticks"] == 200
+    assert here("resume", out).returncode == 0
+    complains(here(*words, "--cells", 5, "--resume"), 2, "cells is 4 there, and 5 here")
+    complains(here(*words), 2, "exists already")
+
+
+def test_what_a_killed_start_has_left_is_no_obstacle(tmp_path: Path) -> None:
+    (tmp_path / "run" / "births").mkdir(parents=True)
+    (tmp_path / "run" / "config.toml").write_text("half")
+    run = primordia.run(
+        "CartPole-survival", tmp_path / "run", cells=4, stop={"ticks": 5}, resume=True
+    )
+    assert run.info()["ticks"] == 5
+    with pytest.raises(InputError, match="name its directory"):
+        primordia.run("CartPole-survival", resume=True)
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "mine.txt").touch()
+    with pytest.raises(InputError, match="is not a run"):
+        primordia.run("CartPole-survival", tmp_path / "other", resume=True)
+    assert (tmp_path / "other" / "mine.txt").exists()

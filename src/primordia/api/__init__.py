@@ -12,16 +12,16 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from primordia import config, cores
+from primordia import config
 from primordia import device as devices
 from primordia.api.experiment import Experiment
 from primordia.api.run import Run, fresh_directory
 from primordia.comparison import comparison
-from primordia.errors import Trouble
+from primordia.errors import InputError, Trouble
 from primordia.experiments import experiment as experiments
 from primordia.experiments.campaign import live_all
 from primordia.experiments.experiment import is_experiment
-from primordia.experiments.here import Here
+from primordia.experiments.places import place_for
 from primordia.experiments.status import Status
 from primordia.runs import code, loop, opening
 from primordia.runs.archive import Archive
@@ -45,6 +45,7 @@ def run(
     out: str | Path | None = None,
     settings: Mapping[str, Any] | None = None,
     *,
+    resume: bool = False,
     checkpoint_every: float = 60.0,
     device: str = "cpu",
     listen: Listener | None = None,
@@ -55,6 +56,7 @@ def run(
     Args:
         task: name of a built-in task, or a TOML file.
         out: directory to make; by default a new one under `runs/`.
+        resume: go on with the run in `out` if it has begun, instead of refusing the directory.
         checkpoint_every: seconds from one checkpoint to the next.
         device: the device that JAX computes on, `cpu` or `gpu`.
         listen: called after each chunk.
@@ -68,8 +70,11 @@ def run(
     """
     devices.select(device)
     chosen = config.load(task, {**(settings or {}), **more})
+    if resume and out is None:
+        raise InputError("to go on with a run, name its directory: --out")
     path = Path(out) if out is not None else fresh_directory(default_name(chosen))
-    loop.start(chosen, path, checkpoint_every=checkpoint_every, listen=listen)
+    live = loop.begin_or_resume if resume else loop.start
+    live(chosen, path, checkpoint_every=checkpoint_every, listen=listen)
     return Run(path)
 
 
@@ -79,7 +84,9 @@ def experiment(
     *,
     jobs: int | None = None,
     only: Sequence[str] = (),
+    ray: str | None = None,
     checkpoint_every: float = 60.0,
+    device: str = "cpu",
     look: Callable[[Status], object] | None = None,
 ) -> Experiment:
     """Run the arms of an experiment on all cores, or go on with it, and write its results.
@@ -89,7 +96,9 @@ def experiment(
         out: the experiment's directory; by default the file's name under `runs/`.
         jobs: jobs at a time; by default one for each core.
         only: names of arms to run; by default all.
+        ray: address of a Ray cluster to run on; "": that of this machine, or a new one.
         checkpoint_every: seconds from one checkpoint to the next.
+        device: the device that JAX computes on, `cpu` or `gpu`.
         look: called about twice a second with the status.
 
     Raises:
@@ -99,7 +108,7 @@ def experiment(
     """
     chosen = experiments.begin(Path(file), Path(out) if out is not None else None)
     if left := chosen.left(only):
-        place = Here(chosen.path, min(jobs or cores.count(), len(left)), checkpoint_every)
+        place = place_for(chosen.path, len(left), jobs, ray, checkpoint_every, device)
         seen = (lambda: look(chosen.status())) if look is not None else (lambda: None)
         result = live_all(left, place, seen, lambda job, outcome, again: None)
         if result.stopped:

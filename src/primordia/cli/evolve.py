@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     help="Start from the genomes in a file (`primordia export`); may be repeated.",
 )
 @limit_options
+@click.option("--resume", is_flag=True, help="Go on with the run in --out if it has begun.")
 @checkpoint_option
 @device_option
 @cache_option

@@ -9,7 +9,7 @@ import click
 
 from primordia import cores, interrupts
 from primordia.cli.cache import cache_option
-from primordia.cli.flags import checkpoint_option, quiet_option
+from primordia.cli.flags import checkpoint_option, device_option, quiet_option
 from primordia.cli.streams import report
 from primordia.errors import InputError
 
@@ -31,7 +31,15 @@ if TYPE_CHECKING:
 @click.option("--job", type=int, metavar="K", help="Run exactly one job, by its number from 0.")
 @click.option("--status", is_flag=True, help="Show how far the experiment is; run nothing.")
 @click.option("--json", "as_json", is_flag=True, help="With --status: print one JSON object.")
+@click.option(
+    "--ray",
+    is_flag=False,
+    flag_value="",
+    metavar="[ADDRESS]",
+    help="Run jobs on a Ray cluster: that of ADDRESS, this machine's, or a new one.",
+)
 @checkpoint_option
+@device_option
 @cache_option
 @quiet_option
 def experiment(
@@ -51,7 +59,7 @@ def experiment(
         return _show(planned(file, out), as_json)
     chosen = begin(file, out)
     if job is not None:
-        return _live_one(chosen, job, options["checkpoint_every"])
+        return _live_one(chosen, job, options["checkpoint_every"], options["device"])
     return _live_all(chosen, **options)
 
 
@@ -71,13 +79,13 @@ def show_status(status: "Status") -> None:
     Console(highlight=False).print(table(status))
 
 
-def _live_one(chosen: "Experiment", number: int, checkpoint_every: float) -> None:
+def _live_one(chosen: "Experiment", number: int, checkpoint_every: float, device: str) -> None:
     """Live one job in this process, which has one core unless PRIMORDIA_CORES says more."""
     os.environ.setdefault(cores.VARIABLE, "1")
     from primordia.experiments.job import outcome_of
 
     job = chosen.job(number)
-    outcome = outcome_of(chosen.plan, job, chosen.path, checkpoint_every)
+    outcome = outcome_of(chosen.plan, job, chosen.path, checkpoint_every, device)
     if outcome.state == "stopped":
         report(f"stopped job {number}; the same command goes on with it")
         raise SystemExit(interrupts.STATUS)
@@ -92,16 +100,17 @@ def _live_all(
     chosen: "Experiment",
     jobs: int | None,
     only: tuple[str, ...],
-    checkpoint_every: float,
+    ray: str | None,
     quiet: bool,
+    **options: Any,
 ) -> None:
     from primordia.cli.campaign_view import watching
     from primordia.experiments.campaign import live_all
-    from primordia.experiments.here import Here
+    from primordia.experiments.places import place_for
 
     left = chosen.left(only)
     if left:
-        place = Here(chosen.path, min(jobs or cores.count(), len(left)), checkpoint_every)
+        place = place_for(chosen.path, len(left), jobs, ray, **options)
         with watching(quiet, chosen.status) as look:
             result = live_all(left, place, look, _report_failure)
         _end_unless_done(chosen, result)

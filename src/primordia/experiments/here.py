@@ -23,9 +23,11 @@ LOG = "workers.log"
 class Here:
     """Processes on this machine."""
 
-    def __init__(self, out: Path, processes: int, checkpoint_every: float) -> None:
+    def __init__(
+        self, out: Path, processes: int, checkpoint_every: float, device: str = "cpu"
+    ) -> None:
         """Prepare to live jobs of the experiment in `out`, one at a time in each process."""
-        self._out, self._seconds = out, checkpoint_every
+        self._out, self._arguments = out, (str(checkpoint_every), device)
         self._own = threading.local()
         self._workers: list[subprocess.Popen[str]] = []
         self._threads = ThreadPoolExecutor(processes)
@@ -70,7 +72,7 @@ class Here:
         command = [sys.executable, "-P", "-m", "primordia.experiments.worker"]
         with (self._out / LOG).open("a", encoding="utf-8") as log:
             worker = subprocess.Popen(
-                [*command, str(self._out), str(self._seconds)],
+                [*command, str(self._out), *self._arguments],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=log,

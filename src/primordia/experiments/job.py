@@ -6,6 +6,7 @@ import traceback
 from contextlib import suppress
 from pathlib import Path
 
+from primordia import device as devices
 from primordia.config import Config
 from primordia.errors import InputError, InUseError, Trouble
 from primordia.experiments.ledger import Entry, Ledger, World
@@ -22,7 +23,9 @@ EVERY = 2.0
 """Seconds from one sign of life to the next."""
 
 
-def live(plan: Plan, job: Job, out: Path, checkpoint_every: float = 60.0) -> None:
+def live(
+    plan: Plan, job: Job, out: Path, checkpoint_every: float = 60.0, device: str = "cpu"
+) -> None:
     """Live a job to its end, from its beginning or from its newest checkpoint.
 
     Args:
@@ -30,32 +33,36 @@ def live(plan: Plan, job: Job, out: Path, checkpoint_every: float = 60.0) -> Non
         job: one of its jobs.
         out: the experiment's directory.
         checkpoint_every: seconds from one checkpoint to the next.
+        device: the device that it is computed on, `cpu` or `gpu`.
 
     Raises:
         InputError: another process lives it, or it cannot go on with these versions or settings.
         Trouble: a file cannot be written.
         KeyboardInterrupt: on a signal, after a checkpoint.
     """
+    devices.select(device)
     config, run = configuration(plan, job), out / job.folder
     ledger, entry = Ledger(out, [job]), Entry(job=job.number, arm=job.arm, state="running")
     watch = _Watch(ledger, job, entry)
     ledger.write(job, entry)
-    if not directory.clear_unbegun(run):
-        _go_on(run, config, checkpoint_every, watch)
-    elif job.source is not None and plan.fork is not None:
+    unbegun = directory.clear_unbegun(run)
+    if unbegun and job.source is not None and plan.fork is not None:
         source = Path(os.path.normpath(out / job.source))
         fork(Archive(source), plan.fork.at, run, _changes(config), watch)
-        _go_on(run, config, checkpoint_every, watch)
-    else:
+    if unbegun and job.source is None:
         loop.start(config, run, checkpoint_every=checkpoint_every, listen=watch)
+    else:
+        _go_on(run, config, checkpoint_every, watch)
     done = Entry(job=job.number, arm=job.arm, state="done", worlds=_worlds(Archive(run)))
     ledger.write(job, done)
 
 
-def outcome_of(plan: Plan, job: Job, out: Path, checkpoint_every: float = 60.0) -> Outcome:
+def outcome_of(
+    plan: Plan, job: Job, out: Path, checkpoint_every: float = 60.0, device: str = "cpu"
+) -> Outcome:
     """Live a job -> what became of it; a failure is noted for those who look on."""
     try:
-        live(plan, job, out, checkpoint_every)
+        live(plan, job, out, checkpoint_every, device)
     except KeyboardInterrupt:
         return Outcome(job.number, "stopped")
     except InUseError:

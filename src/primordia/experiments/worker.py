@@ -1,6 +1,6 @@
 """A process that lives jobs one after another, so that jobs of one shape are compiled once.
 
-    python -m primordia.experiments.worker OUT SECONDS
+    python -m primordia.experiments.worker OUT SECONDS DEVICE
 
 A line of standard input is the number of a job; the answer is a line of standard output: the number, and
 what became of the job. When standard input closes, because the experiment's command has ended in whatever
@@ -23,7 +23,7 @@ Lines = queue.SimpleQueue[str]
 def main() -> None:
     """Live the jobs that standard input names."""
     interrupts.end_commands_at_once()
-    out, checkpoint_every = Path(sys.argv[1]), float(sys.argv[2])
+    out, checkpoint_every, device = Path(sys.argv[1]), float(sys.argv[2]), sys.argv[3]
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8", buffering=1)
     os.dup2(2, 1)  # libraries may print, but not among the answers
     lines: Lines = queue.SimpleQueue()
@@ -35,7 +35,7 @@ def main() -> None:
     plan = recorded(out)
     jobs = plan.jobs()
     while line := lines.get():
-        outcome = outcome_of(plan, jobs[int(line)], out, checkpoint_every)
+        outcome = outcome_of(plan, jobs[int(line)], out, checkpoint_every, device)
         answers.write(json.dumps(outcome._asdict()) + "\n")
         if outcome.state == "stopped":
             break

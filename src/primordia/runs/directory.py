@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from filelock import FileLock, Timeout
 from pydantic import BaseModel, ConfigDict, Field
@@ -19,7 +20,7 @@ from primordia.runs import checkpoint, code, stored
 from primordia.runs.description import Description
 from primordia.runs.manifest import INPUTS
 from primordia.runs.schema import TABLES
-from primordia.settings.tables import from_toml
+from primordia.settings.tables import flat, from_toml
 
 FORMAT = 2
 """of run directories; others are refused"""
@@ -116,6 +117,20 @@ def refuse_if_taken(run: Path) -> None:
         raise InputError(f"{run} exists already; choose another --out, or `primordia resume {run}`")
     if run.exists() and not (run.is_dir() and {each.name for each in run.iterdir()} <= {LOCK}):
         raise InputError(f"{run} exists already and is not a run; choose another --out")
+
+
+def check_same_settings(config: Config, run: Path) -> None:
+    """Raise InputError if a run was begun with other settings than these; limits may differ."""
+    ignored: Any = {"about", "stop", "ancestors"}
+    here, there = (
+        flat(each.model_dump(mode="json", exclude=ignored)) for each in (config, read_config(run))
+    )
+    for name in here | there:
+        if (ours := here.get(name)) != (theirs := there.get(name)):
+            raise InputError(
+                f"{run} was begun with other settings: {name} is {theirs} there, and {ours} here;"
+                " choose another --out"
+            )
 
 
 def make_folders(run: Path) -> None:

@@ -1,0 +1,161 @@
+"""Jobs as tasks of a Ray cluster (Moritz et al. 2018), which all see the folder of the experiment.
+
+Ray places tasks, and begins one again whose node has died; it then goes on from its newest checkpoint.
+"""
+
+import logging
+import os
+import socket
+import sys
+import time
+import uuid
+from concurrent.futures import Future, wait
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from primordia import cores
+from primordia.errors import InputError
+from primordia.experiments.outcome import Outcome
+from primordia.experiments.plan import Job
+
+PATIENCE = 30.0
+"""Seconds in which jobs that are to stop may write their checkpoints."""
+RELEASE = 120.0
+"""Seconds in which the lock of a run may become free whose node has died."""
+CONNECT = 5.0
+"""Seconds in which a cluster must answer."""
+ANSWER = 60.0
+"""Seconds in which a node must answer."""
+
+
+class OnRay:
+    """Tasks on a Ray cluster, with one core each, and one GPU each if jobs are computed there."""
+
+    def __init__(
+        self, out: Path, checkpoint_every: float, device: str = "cpu", address: str | None = None
+    ) -> None:
+        """Connect to a cluster.
+
+        Args:
+            out: the experiment's directory.
+            checkpoint_every: seconds from one checkpoint to the next.
+            device: the device that jobs are computed on, `cpu` or `gpu`.
+            address: that of the cluster; None: the one that this machine belongs to, or a new one on this
+                machine alone.
+
+        Raises:
+            InputError: Ray is not installed, the cluster cannot be reached, or a node does not see `out`.
+        """
+        self._ray = _connected(address)
+        self._arguments = str(out.resolve()), checkpoint_every, device
+        _check_folder(self._ray, out.resolve())
+        self._task = self._ray.remote(_live).options(
+            num_cpus=1, num_gpus=int(device == "gpu"), max_retries=-1, scheduling_strategy="SPREAD"
+        )
+        self._refs: list[Any] = []
+        self._futures: list[Future[Outcome]] = []
+
+    def submit(self, job: Job) -> Future[Outcome]:
+        """Let a node live a job as soon as it has a free core."""
+        future: Future[Outcome] = Future()
+        ref = self._task.remote(job.number, *self._arguments)
+        ref.future().add_done_callback(lambda done: future.set_result(_outcome(job, done)))
+        self._refs.append(ref)
+        self._futures.append(future)
+        return future
+
+    def stop(self) -> None:
+        """Stop all tasks, each after a checkpoint if there is time, and leave the cluster."""
+        left = [
+            ref for ref, future in zip(self._refs, self._futures, strict=True) if not future.done()
+        ]
+        for ref in left:
+            self._ray.cancel(ref)
+        wait(self._futures, PATIENCE)
+        self._ray.shutdown()
+
+
+def _connected(address: str | None) -> Any:
+    try:
+        import ray
+    except ImportError:
+        raise InputError("--ray needs Ray: pip install 'primordia[ray]'") from None
+    _check_address(address)
+    variables = {cores.VARIABLE: "1", "PYTHONPATH": os.pathsep.join(sys.path)}
+    try:
+        ray.init(
+            address,
+            runtime_env={"env_vars": variables},
+            log_to_driver=False,
+            logging_level=logging.ERROR,
+        )
+    except (ConnectionError, RuntimeError, ValueError, TimeoutError) as error:
+        first = str(error).strip().partition("\n")[0]
+        raise InputError(f"--ray: no cluster can be reached at {address}: {first}") from None
+    return ray
+
+
+def _check_address(address: str | None) -> None:
+    """Raise InputError unless something answers at an address `host:port`: Ray would try for minutes."""
+    host, colon, port = (address or "").removeprefix("ray://").rpartition(":")
+    if not colon:
+        return
+    try:
+        socket.create_connection((host.strip("[]"), int(port)), CONNECT).close()
+    except (OSError, ValueError, OverflowError) as error:
+        raise InputError(f"--ray: no cluster answers at {address}: {error}") from None
+
+
+def _check_folder(ray: Any, out: Path) -> None:
+    """Raise InputError unless all nodes see the folder."""
+    from ray.util.scheduling_strategies import NodeAffinitySchedulingStrategy
+
+    mark = out / f".seen-{uuid.uuid4().hex}"
+    mark.touch()
+    try:
+        seen, nodes = ray.remote(_sees), [node for node in ray.nodes() if node["Alive"]]
+        for node in nodes:
+            there = NodeAffinitySchedulingStrategy(node["NodeID"], soft=False)
+            answer = seen.options(num_cpus=0, scheduling_strategy=there).remote(str(mark))
+            try:
+                if ray.get(answer, timeout=ANSWER):
+                    continue
+                fault = "does not see"
+            except ray.exceptions.RayError as error:
+                first = str(error).strip().partition("\n")[0]
+                fault = f"does not answer ({type(error).__name__}: {first}), to be asked for"
+            ray.shutdown()
+            raise InputError(
+                f"--ray: node {node['NodeManagerAddress']} {fault} {out}; choose an --out in a folder"
+                " that all nodes share"
+            )
+    finally:
+        mark.unlink()
+
+
+def _sees(path: str) -> bool:
+    return Path(path).exists()
+
+
+def _live(number: int, out: str, checkpoint_every: float, device: str) -> Outcome:
+    """Live a job on a node; wait for a while if a node that has died still holds its lock."""
+    from primordia.experiments.job import outcome_of
+    from primordia.experiments.plan import recorded
+
+    plan, folder = recorded(Path(out)), Path(out)
+    end = time.monotonic() + RELEASE
+    while True:
+        outcome = outcome_of(plan, plan.jobs()[number], folder, checkpoint_every, device)
+        if outcome.state != "elsewhere" or time.monotonic() > end:
+            return outcome
+        time.sleep(1.0)
+
+
+def _outcome(job: Job, done: "Future[Any]") -> Outcome:
+    """Return what became of a task, also if Ray itself gave it up."""
+    with suppress(Exception):
+        return Outcome(*done.result())
+    error = done.exception()
+    first = str(error).strip().partition("\n")[0]
+    return Outcome(job.number, "failed", f"{type(error).__name__}: {first}")

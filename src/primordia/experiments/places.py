@@ -1,0 +1,38 @@
+"""The place for an experiment's jobs: this machine, or a Ray cluster."""
+
+from pathlib import Path
+
+from primordia import cores
+from primordia.errors import InputError
+from primordia.experiments.campaign import Place
+from primordia.experiments.here import Here
+from primordia.experiments.on_ray import OnRay
+
+
+def place_for(
+    out: Path,
+    left: int,
+    jobs: int | None,
+    ray: str | None,
+    checkpoint_every: float = 60.0,
+    device: str = "cpu",
+) -> Place:
+    """Return a place for jobs.
+
+    Args:
+        out: the experiment's directory.
+        left: number of jobs.
+        jobs: jobs at a time on this machine; None: one for each core, or one if they take all GPUs.
+        ray: address of a Ray cluster; "": that of this machine, or a new one; None: no cluster.
+        checkpoint_every: seconds from one checkpoint to the next.
+        device: the device that jobs are computed on, `cpu` or `gpu`.
+
+    Raises:
+        InputError: the cluster cannot be used.
+    """
+    if ray is None:
+        at_a_time = jobs or (cores.count() if device == "cpu" else 1)
+        return Here(out, min(at_a_time, left), checkpoint_every, device)
+    if jobs is not None:
+        raise InputError("--jobs is for this machine; with --ray the cluster's cores count")
+    return OnRay(out, checkpoint_every, device, ray or None)
