@@ -9,7 +9,6 @@ import numpy as np
 
 from primordia.config import load
 from primordia.engine.engine import Engine
-from primordia.law.genesis import begin
 from primordia.random.wide import to_host
 
 
@@ -26,7 +25,7 @@ def random_phase(cells: int, worlds: int) -> Engine:
 def random_rate(made: Engine, first_seed: int, ticks: int = 2000) -> float:
     """Return organism-ticks per second of the first ticks of new worlds, when most die young."""
     seeds = range(first_seed, first_seed + made.config.seeds)
-    made.state = made.chunks.begin(begin(made.law, list(seeds)))
+    made.state = made.chunks.begin(np.array(seeds))
     began = time.perf_counter()
     advanced(made, ticks)
     return organism_ticks(made) / (time.perf_counter() - began)

@@ -38,6 +38,7 @@ primordia.load(sys.argv[1]).rebuild(3)
 assert settings() == before
 assert {**os.environ, "XLA_FLAGS": ""} == {**variables, "XLA_FLAGS": ""}
 primordia.run("CartPole-survival", sys.argv[2], cells=8, stop={"ticks": 50})
+assert settings() == before
 print(primordia.load(sys.argv[2]).info()["versions"]["instruction_set"], os.environ["XLA_FLAGS"])
 """
 )

@@ -6,7 +6,6 @@ import numpy as np
 
 from primordia.config import Config, load, validated
 from primordia.engine.engine import Engine
-from primordia.law.genesis import begin
 from primordia.runs.digest import digests
 from primordia.runs.loop import recorder_for
 from primordia.settings.tables import merged
@@ -63,8 +62,7 @@ class Lived:
         """`start`: the counts of ticks and births that the run starts at."""
         self.config, self.engine = config, Engine(config)
         if any(start):
-            worlds = begin(self.engine.law, config.world_seeds, *start)
-            self.engine.state = self.engine.chunks.begin(worlds)
+            self.engine.state = self.engine.chunks.begin(config.world_seeds, *start)
         self.recorder = recorder_for(self.engine, None)
         self.rows: dict[str, list[np.ndarray]] = {"births": [], "deaths": [], "metrics": []}
         self.advance_to(ticks, chunk, **stop)

@@ -2,10 +2,13 @@
 
 import os
 import platform
+from collections.abc import Iterator
+from contextlib import contextmanager
 from importlib.metadata import version
 from pathlib import Path
 
 import jax
+import jax.numpy as jnp
 from jax._src.xla_bridge import backends_are_initialized  # JAX has no public name for it
 
 from primordia import cores
@@ -48,17 +51,43 @@ def prepare() -> None:
         jax.config.update(name, before)
 
 
-def select(name: str) -> None:
-    """Compute on the named platform, `cpu` or `gpu`.
+@contextmanager
+def selected(name: str) -> Iterator[None]:
+    """Compute on the named platform, `cpu` or `gpu`, in a `with` block.
 
     Raises:
         InputError: JAX has no such device here.
     """
     try:
         prepare()
-        jax.config.update("jax_default_device", jax.devices(name)[0])
+        first = jax.local_devices(backend=name)[0]
     except RuntimeError:
         raise InputError(f"--device: JAX finds no {name!r} device here") from None
+    with jax.default_device(first):
+        yield
+
+
+def default() -> jax.Device:
+    """Return the device that JAX computes on by default."""
+    prepare()
+    (device,) = jnp.zeros(()).devices()
+    return device
+
+
+def sharing(worlds: int) -> list[jax.Device]:
+    """Return the devices that share a run's worlds: the default one, and others of its kind.
+
+    All take equally many worlds, so there are as many devices as the largest divisor of `worlds` allows.
+    """
+    first = default()
+    alike = [
+        each
+        for each in jax.local_devices(backend=first.platform)
+        if each.device_kind == first.device_kind
+    ]
+    devices = [first, *(each for each in alike if each != first)]
+    most = max(n for n in range(1, len(devices) + 1) if worlds % n == 0)
+    return devices[:most]
 
 
 def instruction_set() -> str:
@@ -77,10 +106,9 @@ def instruction_set() -> str:
 
 def versions() -> dict[str, str]:
     """Return the versions, device and instruction set that must be equal for a run to go on exactly."""
-    prepare()
-    default = getattr(jax.config, "jax_default_device", None) or jax.devices()[0]
+    own = default()
     return {
         **{name: version(name) for name in PACKAGES},
-        "device": default.device_kind if default.platform != "cpu" else "cpu",
+        "device": own.device_kind if own.platform != "cpu" else "cpu",
         "instruction_set": instruction_set(),
     }

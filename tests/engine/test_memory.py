@@ -5,6 +5,7 @@ from typing import Any
 import jax
 import pytest
 
+from primordia import device
 from primordia.engine import memory
 from primordia.engine.engine import Engine
 from primordia.errors import InputError
@@ -28,8 +29,8 @@ def test_the_bytes_needed_are_those_of_the_state_and_the_lists(
 def test_a_run_for_which_there_is_no_memory_is_refused_before_anything_is_made(
     tmp_path: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    assert memory.bytes_available() > 1e8
-    monkeypatch.setattr(memory, "bytes_available", lambda: int(2e10))
+    assert memory.bytes_available([device.default()]) > 1e8
+    monkeypatch.setattr(memory, "bytes_available", lambda _: int(2e10))
     for words in (("--cells", 2**24, "--seeds", 4), ("--brain.hidden", 4096, "--seeds", 300)):
         done = here("run", "CartPole-survival", *words, "--out", tmp_path / "run", "--quiet")
         complains(done, 2, "GB of memory or more, 20.0 GB are available; choose fewer cells")
@@ -45,7 +46,7 @@ def test_the_memory_of_a_container_is_a_limit(
         limit.write_text(text)
     monkeypatch.setattr(memory, "CGROUP", limit)
     monkeypatch.setattr(memory, "MEMINFO", nowhere)
-    assert (memory.bytes_available() == 0) == (text == "0")
+    assert (memory.bytes_available([device.default()]) == 0) == (text == "0")
     if text == "0":
         with pytest.raises(InputError, match="of memory or more, 0"):
             Engine(config())

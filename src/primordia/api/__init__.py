@@ -58,7 +58,8 @@ def run(
         out: directory to make; by default a new one under `runs/`.
         resume: go on with the run in `out` if it has begun, instead of refusing the directory.
         checkpoint_every: seconds from one checkpoint to the next.
-        device: the device that JAX computes on, `cpu` or `gpu`.
+        device: what computes, `cpu` or `gpu`: all such devices that JAX has, if the number of worlds
+            allows it; see `device.sharing`.
         listen: called after each chunk.
         settings: changed settings, tables as dicts: `{"cells": 64, "mutation": {"scale": 0.02}}`.
         more: further ones: `cells=64, mutation={"scale": 0.02}`.
@@ -68,13 +69,13 @@ def run(
         Trouble: a file cannot be written; earlier checkpoints stay good.
         KeyboardInterrupt: on Ctrl-C, after a checkpoint.
     """
-    devices.select(device)
-    chosen = config.load(task, {**(settings or {}), **more})
-    if resume and out is None:
-        raise InputError("to go on with a run, name its directory: --out")
-    path = Path(out) if out is not None else fresh_directory(default_name(chosen))
-    live = loop.begin_or_resume if resume else loop.start
-    live(chosen, path, checkpoint_every=checkpoint_every, listen=listen)
+    with devices.selected(device):
+        chosen = config.load(task, {**(settings or {}), **more})
+        if resume and out is None:
+            raise InputError("to go on with a run, name its directory: --out")
+        path = Path(out) if out is not None else fresh_directory(default_name(chosen))
+        live = loop.begin_or_resume if resume else loop.start
+        live(chosen, path, checkpoint_every=checkpoint_every, listen=listen)
     return Run(path)
 
 

@@ -115,10 +115,10 @@ class Run:
         **more: Any,
     ) -> "Run":
         """Make a run that goes on from the end of tick `at`, with changed settings; see `runs.fork`."""
-        devices.select(device)
         path = Path(out) if out is not None else fresh_directory(f"{self.path.name}-at{at}")
-        fork(self.only(), at, path, {**(settings or {}), **more}, listen)
-        loop.resume(path, checkpoint_every=checkpoint_every, listen=listen)
+        with devices.selected(device):
+            fork(self.only(), at, path, {**(settings or {}), **more}, listen)
+            loop.resume(path, checkpoint_every=checkpoint_every, listen=listen)
         return Run(path)
 
     def resume(
@@ -131,19 +131,16 @@ class Run:
         **limits: Any,
     ) -> list[str]:
         """Go on with the run, with new `ticks`, `births` or `until` if given; see `loop.resume`."""
-        devices.select(device)
-        return loop.resume(
-            self.only().path,
-            limits,
-            inexact=inexact,
-            checkpoint_every=checkpoint_every,
-            listen=listen,
-        )
+        every = checkpoint_every
+        with devices.selected(device):
+            return loop.resume(
+                self.only().path, limits, inexact=inexact, checkpoint_every=every, listen=listen
+            )
 
     def verify(self, device: str = "cpu", listen: Listener | None = None) -> list[str]:
         """Repeat the run and compare -> what differs; see `verify.verify`."""
-        devices.select(device)
-        return verify(self.only(), listen)
+        with devices.selected(device):
+            return verify(self.only(), listen)
 
 
 def fresh_directory(name: str) -> Path:

@@ -18,7 +18,10 @@ out_option = click.option(
     "--out", type=click.Path(path_type=Path), help="Directory to make [under runs/]."
 )
 device_option = click.option(
-    "--device", default="cpu", show_default=True, help="Device that JAX computes on: cpu or gpu."
+    "--device",
+    default="cpu",
+    show_default=True,
+    help="What computes: cpu or gpu, all that JAX has.",
 )
 checkpoint_option = click.option(
     "--checkpoint-every", type=float, default=60.0, show_default=True, metavar="SECONDS"

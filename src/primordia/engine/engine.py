@@ -12,10 +12,10 @@ from primordia.config import Config
 from primordia.engine import memory
 from primordia.engine.fused import FusedChunks
 from primordia.engine.hosted import HostedChunks
+from primordia.engine.sharded import ShardedChunks
 from primordia.engine.state import Limits, State, running
 from primordia.habitats.contract import AnyHabitat
 from primordia.law.events import Events
-from primordia.law.genesis import begin
 from primordia.law.law import Law
 from primordia.random.wide import wide
 
@@ -34,10 +34,11 @@ class Engine:
         self.config = config
         habitat = config.build_habitat()
         self.law = config.build_law(habitat)
-        memory.check(self.law, habitat)
+        devices = device.sharing(config.seeds) if habitat.kind == "jax" else [device.default()]
+        memory.check(self.law, habitat, devices)
         self.tallies = habitat.tallies
-        self.chunks: FusedChunks | HostedChunks = _chunks(self.law, habitat)
-        self.state: State = self.chunks.begin(begin(self.law, config.world_seeds))
+        self.chunks: FusedChunks | HostedChunks = _chunks(self.law, habitat, devices)
+        self.state: State = self.chunks.begin(config.world_seeds)
         self._ticks = 1
 
     @property
@@ -57,7 +58,7 @@ class Engine:
 
     def any_running(self, limits: Limits) -> bool:
         """Return whether some world has not reached a limit."""
-        return bool(_running(self.state.world.worlds, limits).any())
+        return bool(np.asarray(_running(self.state.world.worlds, limits)).any())
 
     def limits(self, stop: dict[str, Any], ticks: np.ndarray | None = None) -> Limits:
         """Return the limits of all worlds for settings of `stop`.
@@ -87,5 +88,7 @@ class Engine:
         self.state = self.chunks.load(self.state, arrays)
 
 
-def _chunks(law: Law, habitat: AnyHabitat) -> FusedChunks | HostedChunks:
-    return HostedChunks(law, habitat) if habitat.kind == "host" else FusedChunks(law, habitat)
+def _chunks(law: Law, habitat: AnyHabitat, devices: list[jax.Device]) -> FusedChunks | HostedChunks:
+    if habitat.kind == "host":
+        return HostedChunks(law, habitat)
+    return ShardedChunks(law, habitat, devices) if devices[1:] else FusedChunks(law, habitat)

@@ -10,7 +10,7 @@ from primordia.habitats.bodies import fresh, insert_bodies, placeholder_bodies, 
 from primordia.habitats.contract import Bodies, JaxHabitat
 from primordia.law import events as log
 from primordia.law.events import Events
-from primordia.law.genesis import body_words
+from primordia.law.genesis import begin, body_words
 from primordia.law.law import Law
 from primordia.law.population import settle
 from primordia.law.tick import Fates, judge, keys_of, no_fates, rest, think
@@ -26,12 +26,13 @@ class FusedChunks:
 
     def __init__(self, law: Law, habitat: JaxHabitat) -> None:
         self._law, self._habitat = law, habitat
-        self._advance = shared(_advance, law, habitat, donate=(0, 1))
+        self._advance = shared(advance, law, habitat, donate=(0, 1))
         self.events = log.empty(law)
         """events of the latest chunk"""
 
-    def begin(self, world: World) -> State:
-        """Return the state of a run before genesis."""
+    def begin(self, seeds: np.ndarray, tick: int = 0, births: int = 0) -> State:
+        """Return the state of a run before genesis; see `genesis.begin`."""
+        world = begin(self._law, seeds, tick, births)
         return State(world, placeholder_bodies(self._habitat, len(world.organisms.alive)))
 
     def advance(self, state: State, limits: Limits, ticks: int) -> tuple[State, int]:
@@ -52,9 +53,11 @@ class FusedChunks:
         return filled(template, arrays)
 
 
-def _advance(
+def advance(
     law: Law, habitat: JaxHabitat, state: State, events: Events, limits: Limits, ticks: Array
 ) -> tuple[State, Events, Array]:
+    """Advance worlds by at most `ticks` -> state, events, number of ticks advanced, int32 ()."""
+
     def go_on(carry: tuple) -> Array:
         _, events, live_worlds, done = carry
         return (done < ticks) & live_worlds.any() & log.have_room(law, events)

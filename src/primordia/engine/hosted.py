@@ -17,7 +17,7 @@ from primordia.engine.tallies import Tallies
 from primordia.errors import Trouble
 from primordia.habitats.contract import Ability, HostHabitat
 from primordia.law import events as log
-from primordia.law.genesis import body_words
+from primordia.law.genesis import begin, body_words
 from primordia.law.law import Law
 from primordia.law.life import Thought
 from primordia.law.tick import no_fates
@@ -37,8 +37,9 @@ class HostedChunks:
         """events of the latest chunk"""
         habitat.open(law.worlds * law.cells)
 
-    def begin(self, world: World) -> State:
-        """Return the state of a run before genesis."""
+    def begin(self, seeds: np.ndarray, tick: int = 0, births: int = 0) -> State:
+        """Return the state of a run before genesis; see `genesis.begin`."""
+        world = begin(self._law, seeds, tick, births)
         self._no_fates = no_fates(self._law)
         self._calls = Calls(self._law, Form.of(world), self._habitat.words)
         cells = len(world.organisms.alive)

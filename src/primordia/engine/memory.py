@@ -2,6 +2,7 @@
 
 import os
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 
 import jax
@@ -19,9 +20,9 @@ MEMINFO, CGROUP = Path("/proc/meminfo"), Path("/sys/fs/cgroup/memory.max")
 """Where Linux says how much memory is available, and how much a container may have."""
 
 
-def check(law: Law, habitat: AnyHabitat) -> None:
-    """Raise InputError if the device has less memory than the arrays of a run need."""
-    needed, available = bytes_needed(law, habitat), bytes_available()
+def check(law: Law, habitat: AnyHabitat, devices: list[jax.Device]) -> None:
+    """Raise InputError if the devices have less memory than the arrays of a run need."""
+    needed, available = bytes_needed(law, habitat, len(devices)), bytes_available(devices)
     if needed > available:
         cells = law.worlds * law.cells
         raise InputError(
@@ -30,8 +31,9 @@ def check(law: Law, habitat: AnyHabitat) -> None:
         )
 
 
-def bytes_needed(law: Law, habitat: AnyHabitat) -> int:
-    """Return the bytes of worlds, bodies in JAX or else senses, and lists of events."""
+def bytes_needed(law: Law, habitat: AnyHabitat, devices: int = 1) -> int:
+    """Return the bytes of worlds, bodies in JAX or else senses, and lists of events, on all devices."""
+    law = replace(law, worlds=law.worlds // devices)
     cells = law.worlds * law.cells
 
     def arrays() -> object:
@@ -42,14 +44,14 @@ def bytes_needed(law: Law, habitat: AnyHabitat) -> int:
         return begin(law, np.zeros(law.worlds, np.uint64)), bodies, empty(law)
 
     leaves = jax.tree.leaves(jax.eval_shape(arrays))
-    return sum(leaf.size * leaf.dtype.itemsize for leaf in leaves)
+    return devices * sum(leaf.size * leaf.dtype.itemsize for leaf in leaves)
 
 
-def bytes_available() -> int:
-    """Return the bytes of memory that the default device has available."""
-    (device,) = jnp.zeros(()).devices()
-    if statistics := device.memory_stats():
-        return int(statistics["bytes_limit"] - statistics["bytes_in_use"])
+def bytes_available(devices: list[jax.Device]) -> int:
+    """Return the bytes of memory that devices have available for equal shares."""
+    known = [statistics for device in devices if (statistics := device.memory_stats())]
+    if known:
+        return len(known) * min(int(each["bytes_limit"] - each["bytes_in_use"]) for each in known)
     amounts = [os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")]
     with suppress(OSError, ValueError):  # other systems than Linux; no limit
         amounts.append(int(CGROUP.read_text(encoding="utf-8")))

@@ -4,7 +4,7 @@ A chunk is many ticks of law and habitat between two visits of the host. It may 
 depends on it.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import NamedTuple, TypeVar
 
 import jax
@@ -51,8 +51,15 @@ def named_leaves(tree: object) -> list[tuple[str, Array]]:
     return [(jax.tree_util.keystr(path, simple=True, separator="."), leaf) for path, leaf in leaves]
 
 
-def filled(template: Tree, arrays: Mapping[str, np.ndarray], prefix: str = "") -> Tree:
+def filled(
+    template: Tree,
+    arrays: Mapping[str, np.ndarray],
+    prefix: str = "",
+    place: Callable[[np.ndarray], Array] = jnp.array,
+) -> Tree:
     """Return a tree like the template, with stored arrays, whose names are its paths after a prefix.
+
+    `place` copies an array of the host to where it is needed.
 
     Raises:
         Trouble: an array is missing, or has another shape or type than the template's.
@@ -62,7 +69,7 @@ def filled(template: Tree, arrays: Mapping[str, np.ndarray], prefix: str = "") -
         stored = arrays.get(prefix + name)
         if stored is None or (stored.shape, stored.dtype) != (own.shape, own.dtype):
             raise Trouble(f"the checkpoint is not one of this run: {prefix + name} does not fit")
-        leaves.append(jnp.array(stored))
+        leaves.append(place(stored))
     return jax.tree.unflatten(jax.tree.structure(template), leaves)
 
 
