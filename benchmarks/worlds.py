@@ -2,6 +2,7 @@
 
 import statistics
 import time
+from functools import cache
 
 import jax
 import jax.numpy as jnp
@@ -31,21 +32,28 @@ def random_rate(made: Engine, first_seed: int, ticks: int = 2000) -> float:
     return organism_ticks(made) / (time.perf_counter() - began)
 
 
-def saturated_phase(cells: int, worlds: int) -> Engine:
-    """Return worlds full of copies of one organism that does not die, evolved in a world of 32 cells."""
+@cache
+def undying() -> dict[str, np.ndarray]:
+    """Return the genome, (1, ...) each, of an organism that does not die, evolved among 32 cells."""
     small = engine(32)
     limits = small.limits({"until": "saturation"})
     while small.any_running(limits):
         small.advance(limits)
+    genome = small.state.world.organisms.genome
+    return {name: np.asarray(block)[:1] for name, block in genome.items()}
+
+
+def saturated_phase(cells: int, worlds: int, settled: int = 2000) -> Engine:
+    """Return worlds full of copies of an organism that does not die, after some ticks."""
     made = advanced(engine(cells, worlds, genesis="fill", mutation={"probability": 0.0}), 1)
     organisms = made.state.world.organisms
     genome = {
-        name: jnp.broadcast_to(block[:1], organisms.genome[name].shape) + 0
-        for name, block in small.state.world.organisms.genome.items()
+        name: jnp.broadcast_to(block, organisms.genome[name].shape) + 0
+        for name, block in undying().items()
     }
     world = made.state.world._replace(organisms=organisms._replace(genome=genome))
     made.state = made.state._replace(world=world)
-    return advanced(made, 2000)
+    return advanced(made, settled)
 
 
 def advanced(made: Engine, ticks: int) -> Engine:
