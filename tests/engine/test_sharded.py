@@ -22,13 +22,16 @@ USED = {
 """How many of so many devices a run takes: as many as divide its worlds."""
 
 
+pytestmark = pytest.mark.usefixtures("optimised")
+
+
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("sharded")
 
 
 @pytest.fixture(scope="module")
-def told(folder: Path) -> dict[int, dict[str, Any]]:
+def told(folder: Path, optimised: None) -> dict[int, dict[str, Any]]:
     """Return what processes with different numbers of devices print."""
     variables, command = commands.environment(commands.CACHE), [sys.executable, "-m"]
     flags, results = variables.get("XLA_FLAGS", ""), {}
