@@ -143,7 +143,7 @@ def test_the_digest_of_a_world_depends_on_every_number_of_its_living(lived: Live
 @pytest.mark.parametrize("name", ["energy", "memory", "genome.output", "born.lo"])
 def test_verify_compares_the_state_of_every_world(made: Path, tmp_path: Path, name: str) -> None:
     """The records hold; a number of one organism that lives in the last world does not."""
-    run = Path(shutil.copytree(made / "run", tmp_path / "run"))
+    run = Path(shutil.copytree(made / "source", tmp_path / "run"))
     assert verify(Archive(run)) == []
     path = newest(run) / "state.npz"
     with np.load(path) as stored:
