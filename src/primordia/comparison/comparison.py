@@ -20,7 +20,7 @@ from primordia.comparison.pace import Pace, pace
 from primordia.comparison.survival import Survival, survival
 from primordia.config import Config
 from primordia.errors import InputError
-from primordia.runs.arrays import NEVER, read_count
+from primordia.runs.arrays import NEVER
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 from primordia.settings.tables import flat
@@ -260,9 +260,9 @@ def _saturation(
     """
 
     def by_world(name: str) -> np.ndarray:
-        return read_count(run.state, f"world.worlds.{name}").astype(np.int64)
+        return run.count(f"world.worlds.{name}").astype(np.int64)
 
-    known = read_count(run.state, "world.worlds.saturated") != NEVER
+    known = run.count("world.worlds.saturated") != NEVER
     since = np.bincount(lives.world[lives.entered == 0], minlength=len(known))
     before = {"births": by_world("births") - since, "ticks": begin}
     columns = {"births": ("births", "saturated_births"), "ticks": ("tick", "saturated")}

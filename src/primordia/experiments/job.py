@@ -40,21 +40,24 @@ def live(
         Trouble: a file cannot be written.
         KeyboardInterrupt: on a signal, after a checkpoint.
     """
+    ledger, entry = Ledger(out, [job]), Entry(job=job.number, arm=job.arm, state="running")
+    ledger.write(job, entry)
     with devices.selected(device):
-        config, run = configuration(plan, job), out / job.folder
-        ledger, entry = Ledger(out, [job]), Entry(job=job.number, arm=job.arm, state="running")
-        watch = _Watch(ledger, job, entry)
-        ledger.write(job, entry)
-        unbegun = directory.clear_unbegun(run)
-        if unbegun and job.source is not None and plan.fork is not None:
-            source = Path(os.path.normpath(out / job.source))
-            fork(Archive(source), plan.fork.at, run, _changes(config), watch)
-        if unbegun and job.source is None:
-            loop.start(config, run, checkpoint_every=checkpoint_every, listen=watch)
-        else:
-            _go_on(run, config, checkpoint_every, watch)
-        done = Entry(job=job.number, arm=job.arm, state="done", worlds=_worlds(Archive(run)))
-        ledger.write(job, done)
+        _live(plan, job, out, checkpoint_every, _Watch(ledger, job, entry))
+    worlds = _worlds(Archive(out / job.folder))
+    ledger.write(job, Entry(job=job.number, arm=job.arm, state="done", worlds=worlds))
+
+
+def _live(plan: Plan, job: Job, out: Path, checkpoint_every: float, watch: "_Watch") -> None:
+    config, run = configuration(plan, job), out / job.folder
+    unbegun = directory.clear_unbegun(run)
+    if unbegun and job.source is not None and plan.fork is not None:
+        source = Path(os.path.normpath(out / job.source))
+        fork(Archive(source), plan.fork.at, run, _changes(config), watch)
+    if unbegun and job.source is None:
+        loop.start(config, run, checkpoint_every=checkpoint_every, listen=watch)
+    else:
+        _go_on(run, config, checkpoint_every, watch)
 
 
 def outcome_of(

@@ -7,7 +7,7 @@ import numpy as np
 
 from primordia.law.metabolism import break_even
 from primordia.law.world import Cause
-from primordia.runs.arrays import NEVER, read_count
+from primordia.runs.arrays import NEVER
 from primordia.runs.digest import digests
 from primordia.runs.records import Records
 
@@ -45,12 +45,12 @@ def _world(run: Records, world: int, digest: str) -> dict[str, Any]:
     config, arrays = run.config, run.state
 
     def counted(name: str) -> Any:
-        return read_count(arrays, f"world.worlds.{name}")[world].tolist()
+        return run.count(f"world.worlds.{name}")[world].tolist()
 
     here = slice(world * config.cells, (world + 1) * config.cells)
     alive = arrays["world.organisms.alive"][here]
     tick = counted("tick")
-    ages = tick - read_count(arrays, "world.organisms.born")[here][alive].astype(np.int64)
+    ages = tick - run.count("world.organisms.born")[here][alive].astype(np.int64)
     deaths = counted("deaths")
     numbers = {
         "seed": int(run.world_seeds[world]),

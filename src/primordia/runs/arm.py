@@ -132,16 +132,19 @@ class Arm(Records):
 
 
 class _Joined(Mapping[str, np.ndarray]):
-    """The arrays of several states by name, each joined along its first axis when it is read."""
+    """The arrays of several states by name, each joined along its first axis when first read."""
 
     def __init__(self, states: Sequence[Mapping[str, np.ndarray]]) -> None:
         self._states = states
         self._names = [name for name in states[0] if not name.startswith("tail.")]
+        self._read: dict[str, np.ndarray] = {}
 
     def __getitem__(self, name: str) -> np.ndarray:
         if name not in self._names:
             raise KeyError(name)
-        return np.concatenate([state[name] for state in self._states])
+        if name not in self._read:
+            self._read[name] = np.concatenate([state[name] for state in self._states])
+        return self._read[name]
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._names)

@@ -1,5 +1,6 @@
 """The arrays of a checkpoint: a state by name, and the open tails of the tables."""
 
+import io
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
@@ -10,6 +11,8 @@ from primordia.errors import Trouble
 NEVER = 2**64 - 1
 """The tick or count of an event that has not happened."""
 
+SMALL = 2**20
+"""Largest size, in bytes, of a file that is read at once."""
 FaultOf = Callable[[str, np.ndarray], str | None]
 """Name and array -> what is wrong with it, or None."""
 
@@ -17,14 +20,18 @@ FaultOf = Callable[[str, np.ndarray], str | None]
 class Arrays(Mapping[str, np.ndarray]):
     """State and open tails of a checkpoint by name, each read and checked at its first use.
 
-    The file stays open, so the arrays can be read even after the run has gone on and removed the file.
+    The arrays can be read even after the run has gone on and removed the file: a small one is read at
+    once, since an arm may be thousands of runs and a process opens about a thousand files; another stays
+    open.
     """
 
     def __init__(self, file: Path, fault_of: FaultOf) -> None:
         """Open a file; raise Trouble if it holds no arrays."""
         self._file, self._fault_of = file, fault_of
         try:
-            self._stored = np.load(file, allow_pickle=False)
+            small = file.stat().st_size <= SMALL
+            content = io.BytesIO(file.read_bytes()) if small else file
+            self._stored = np.load(content, allow_pickle=False)
             self._names = tuple(self._stored.files)
         except Exception:  # NumPy and zipfile raise errors of many kinds for what is no archive
             raise self._damaged() from None

@@ -53,7 +53,7 @@ def _world_digest(
     digest = hashlib.sha256()
     for name in sorted(records):
         digest.update(records[name][world].astype("<u8").tobytes())
-    alive = np.split(np.asarray(arrays["world.organisms.alive"]), worlds)[world]
+    alive = np.asarray(arrays["world.organisms.alive"]).reshape(worlds, -1)[world]
     for name in sorted(arrays):
         digest.update(name.encode())
         array = arrays[name]

@@ -4,8 +4,8 @@
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping, Sequence
-from functools import cached_property
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cache, cached_property, partial
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,7 @@ from primordia.config import Config
 from primordia.habitats.contract import AnyHabitat
 from primordia.law.heredity import Heredity
 from primordia.law.law import Law
-from primordia.runs.arrays import world_ticks
+from primordia.runs.arrays import read_count
 from primordia.runs.description import Description
 from primordia.runs.lives import Lives
 from primordia.runs.manifest import Progress
@@ -119,9 +119,14 @@ class Records(ABC):
         return Layout(tuple(self.description.blocks.items()))
 
     @cached_property
+    def count(self) -> Callable[[str], np.ndarray]:
+        """Numbers of 64 bits in the state by their name, as uint64; each is read once."""
+        return cache(partial(read_count, self.state))
+
+    @cached_property
     def ends(self) -> np.ndarray:
         """Ticks that each world has lived through, int64 (W,)."""
-        return world_ticks(self.state).astype(np.int64)
+        return self.count("world.worlds.tick").astype(np.int64)
 
     @cached_property
     def schema(self) -> Schema:
