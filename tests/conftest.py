@@ -49,7 +49,7 @@ settings.load_profile("patient")
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Begin with the files that take longest, so that none is left to one process at the end."""
-    longest = {"test_docs.py", "test_goldens.py", "test_goldens_of_laws.py"}
+    longest = {"test_docs.py", "test_goldens.py", "test_goldens_of_laws.py", "test_sharded.py"}
     items.sort(key=lambda item: item.path.name not in longest)
 
 
