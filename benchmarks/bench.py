@@ -2,7 +2,7 @@
 
     python benchmarks/bench.py [--json FILE] [--only SECTION,...]
 
-Sections: paper, speed, plain, live, cells, atari, robots, shell, records.
+Sections: paper, speed, plain, live, cells, atari, robots, jobs, shell, records.
 
 Compare speeds within one run only. Machines differ, and one machine differs from hour to hour.
 """
@@ -15,6 +15,7 @@ import platform
 from pathlib import Path
 
 import hosted
+import jobs
 import paper
 import scale
 import show
@@ -29,6 +30,7 @@ SECTIONS = {
     "cells": scale.cost_by_cells,
     "atari": hosted.against_the_emulator,
     "robots": hosted.against_the_batch,
+    "jobs": jobs.against_bare_simulators,
     "shell": scale.shell_to_saturation,
     "records": scale.births_recorded_per_second,
 }

@@ -1,6 +1,6 @@
-"""A process that plays a game in one way, on request: `hosted.py` compares several of them.
+"""A process that plays a game in one way, on request: `hosted.py` and `jobs.py` compare several of them.
 
-    python benchmarks/contender.py WAY GAME CELLS
+    python benchmarks/contender.py WAY GAME CELLS WORLDS
 
 It first writes a line of JSON that says that it is ready, or what it lacks. It then reads lines such as
 `play 1.5`, which asks for 1.5 seconds of play, and answers each with a line of JSON. It ends when its
@@ -18,10 +18,10 @@ from contenders import arcade, robots
 from contenders.loop import NO_DEATH, ROBOTS, TASKS, Lacking, Loop
 
 
-def _ours(game: str, cells: int) -> Any:
+def _ours(game: str, cells: int, worlds: int) -> Any:
     from hosted_world import Ours
 
-    return Ours(TASKS[game], cells, NO_DEATH[game])
+    return Ours(TASKS[game], cells, NO_DEATH[game], worlds)
 
 
 def _gymnasium(mode: str, game: str, cells: int) -> Loop:
@@ -32,25 +32,27 @@ def _envpool(game: str, cells: int) -> Loop:
     return (robots if game in ROBOTS else arcade).Pool(game, cells)
 
 
-WAYS: dict[str, Callable[[str, int], Any]] = {
+OTHERS: dict[str, Callable[[str, int], Any]] = {
     "bare": arcade.Bare,
     "in step": arcade.InStep,
-    "ours": _ours,
     "batch": robots.Batch,
     "async": partial(_gymnasium, "async"),
     "sync": partial(_gymnasium, "sync"),
     "published": arcade.Published,
     "envpool": _envpool,
 }
+"""Ways of playing with as many cells as our worlds have together."""
 
 
 def main() -> None:
     """Prepare the way of playing, then answer requests until standard input ends."""
-    way, game, cells = sys.argv[1:]
+    way, game, *numbers = sys.argv[1:]
+    cells, worlds = map(int, numbers)
     answers = os.fdopen(os.dup(1), "w", buffering=1)
     os.dup2(2, 1)  # what libraries print is not an answer
     try:
-        player = WAYS[way](game, int(cells))
+        ours = way == "ours"
+        player = _ours(game, cells, worlds) if ours else OTHERS[way](game, cells * worlds)
     except Lacking as lacking:
         print(json.dumps({"not available": str(lacking)}), file=answers)
         return

@@ -3,21 +3,16 @@
 Each way has its own process (`contender.py`), which plays for some seconds on request; the ways take
 turns. `bare` has one process for each core. `bare` and `batch` have no brains. The other ways of 32
 cells have the same brains as ours, with random weights, but no law: no organism is born, dies or is
-recorded.
+recorded. Ours is one run on all cores; `jobs.py` measures a run a core.
 """
 
-import json
-import os
-import select
-import subprocess
-import sys
 import time
 from contextlib import ExitStack
-from pathlib import Path
 from typing import Any
 
 from contenders.loop import ROBOTS, TASKS
 from primordia.config import load
+from processes import Contender
 from worlds import median
 
 GAMES = "pong", "battle_zone"
@@ -32,8 +27,6 @@ STARTS = 3
 SECONDS = 1.0
 FULL = 0.95
 """the least share of occupied cells for which a figure counts"""
-PATIENCE = 120.0
-"""seconds until a process that does not answer counts as failed"""
 
 
 def against_the_emulator() -> dict:
@@ -60,55 +53,13 @@ def _start_up(game: str) -> float:
     return median(taken)
 
 
-class Contender:
-    """A way of playing, in one process or in several that play at the same time."""
-
-    def __init__(self, way: str, game: str, cells: int) -> None:
-        count = len(os.sched_getaffinity(0)) if way == "bare" else 1
-        words = [way, game, str(cells)]
-        command = [sys.executable, str(Path(__file__).with_name("contender.py")), *words]
-        self._way = f"{way} {game} {cells}"
-        how: dict[str, Any] = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
-        self._processes: list[Any] = [subprocess.Popen(command, **how) for _ in range(count)]
-
-    def __enter__(self) -> "Contender":
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        """End the processes by the end of their input; kill a process that does not react."""
-        for process in self._processes:
-            process.stdin.close()
-        for process in self._processes:
-            try:
-                process.wait(timeout=10)
-            except subprocess.TimeoutExpired:
-                process.kill()
-                process.wait()
-            process.stdout.close()
-
-    def ask(self, what: str, seconds: float) -> list[dict]:
-        """Send a request for some seconds of play to all processes and return their answers."""
-        for process in self._processes:
-            process.stdin.write(f"{what} {seconds}\n")
-            process.stdin.flush()
-        return self.answers()
-
-    def answers(self) -> list[dict]:
-        """Return the next answer of each process."""
-        lines = []
-        for process in self._processes:
-            ready, _, _ = select.select([process.stdout], [], [], PATIENCE)
-            line = process.stdout.readline() if ready else ""
-            if not line:
-                raise RuntimeError(f"no answer from contender.py {self._way}")
-            lines.append(json.loads(line))
-        return lines
-
-
 def _measured(game: str, cells: int, ways: tuple[str, ...]) -> dict:
     """Measure one game at one size: the rates of all ways, and the shares of the parts of our tick."""
     with ExitStack() as stack:
-        begun = {way: stack.enter_context(Contender(way, game, cells)) for way in ways}
+        begun = {
+            way: stack.enter_context(Contender(way, game, cells, one_core_each=way == "bare"))
+            for way in ways
+        }
         greetings = {way: contender.answers()[0] for way, contender in begun.items()}
         playing = {way: begun[way] for way in ways if "about" in greetings[way]}
         played: dict[str, list[list[dict]]] = {way: [] for way in playing}
@@ -117,14 +68,21 @@ def _measured(game: str, cells: int, ways: tuple[str, ...]) -> dict:
                 played[way].append(contender.ask("play", SECONDS))
         budget = playing["ours"].ask("budget", SECONDS)[0]
         if "batch" in playing:
-            again = [playing["ours"].ask("again", SECONDS)[0] for _ in range(ROUNDS)]
-            shares = [answer["alone"] / answer["seconds"] for answer in again]
-            budget["of the batch under our controls"] = median(shares)
+            budget["of the batch under our controls"] = _of_the_batch(playing["ours"])
     remarks = {way: greetings[way]["about"] for way in playing if greetings[way]["about"]}
     absent = {way: greetings[way]["not available"] for way in ways if way not in playing}
     remarks |= {way: f"not available: {why}" for way, why in absent.items()}
     figures = {"game": game, "cells": cells, **_compared(played), **_lived(played["ours"], cells)}
     return {**figures, "budget": budget, **({"ways": remarks} if remarks else {})}
+
+
+def _of_the_batch(ours: Contender) -> float:
+    """Return our speed as a share of that of the simulators alone, under our controls."""
+    shares = []
+    for _ in range(ROUNDS):
+        whole, alone = ours.ask("record", SECONDS)[0], ours.ask("alone", SECONDS)[0]
+        shares.append(alone["alone"] / whole["seconds"])
+    return median(shares)
 
 
 def _compared(played: dict[str, list[list[dict]]]) -> dict:

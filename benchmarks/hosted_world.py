@@ -1,9 +1,11 @@
-"""A full world of a task on the host, in memory: its speed, and the cost of each part of its tick."""
+"""Full worlds of a task on the host, with records: their speed, and the cost of each part of a tick."""
 
 import time
 from collections import defaultdict
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from collections.abc import Callable
+from contextlib import ExitStack
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import jax
@@ -11,6 +13,9 @@ import jax
 from primordia.config import load
 from primordia.engine.engine import Engine
 from primordia.random.wide import to_host
+from primordia.runs.loop import recorder_for
+from primordia.runs.schema import TABLES
+from tapes import replaced, tape_of
 from worlds import organism_ticks
 
 SETTINGS: dict[str, Any] = {
@@ -64,19 +69,29 @@ class Ours:
 
     about = ""
 
-    def __init__(self, task: str, cells: int, settings: dict[str, Any]) -> None:
+    def __init__(self, task: str, cells: int, settings: dict[str, Any], worlds: int = 1) -> None:
         """Take settings of the task under which organisms die by accident only."""
-        self._engine = Engine(load(task, {**SETTINGS, **settings, "cells": cells}))
+        shape = {"cells": cells, "seeds": worlds}
+        self._engine = Engine(load(task, {**SETTINGS, **settings, **shape}))
         self._limits = self._engine.limits({})
+        self._folder = TemporaryDirectory()
+        for table in TABLES:
+            Path(self._folder.name, table).mkdir()
+        self._recorder = recorder_for(self._engine, Path(self._folder.name))
+        self._tape = tape_of(self._engine.chunks._habitat)
         self.play(WARM)
 
     def play(self, seconds: float) -> dict[str, float]:
-        """Play for about `seconds` and return frames of living cells, births, ticks and seconds."""
-        before, began = self._counts(), time.perf_counter()
+        """Play for about `seconds`.
+
+        Returns:
+            frames of living cells, births, ticks of all worlds, seconds; `cpu`: seconds of processor time
+            of this process.
+        """
+        before, began, used = self._counts(), time.perf_counter(), time.process_time()
         self._advance(seconds)
-        spent = time.perf_counter() - began
-        lived = {name: count - before[name] for name, count in self._counts().items()}
-        return {**lived, "seconds": spent}
+        spent = {"seconds": time.perf_counter() - began, "cpu": time.process_time() - used}
+        return {**spent, **{name: n - before[name] for name, n in self._counts().items()}}
 
     def budget(self, seconds: float) -> dict[str, Any]:
         """Return microseconds per tick and the shares of its parts; the stopwatch costs some time."""
@@ -86,38 +101,20 @@ class Ours:
             for part, owner, names in self._parts():
                 for name in names:
                     timed = watch.of(part, getattr(owner, name))
-                    wrapped.enter_context(_replaced(owner, name, timed))
+                    wrapped.enter_context(replaced(owner, name, timed))
             self._advance(seconds)
             shares = watch.shares()
         ticks = self._counts()["ticks"] - before["ticks"]
         tick = 1e6 * sum(watch.spent.values()) / ticks
         return {"us a tick": tick, "shares": shares}
 
-    def again(self, seconds: float) -> dict[str, float]:
-        """Play with robots, then step the batch alone, and return the seconds of both.
+    def record(self, seconds: float) -> dict[str, float]:
+        """Play, and keep what the simulators were told."""
+        return self._tape.record(lambda: self.play(seconds))
 
-        The batch steps the same bodies under the same controls, without births. Random controls would
-        not do: brains move bodies in other ways than chance does, which costs other times.
-        """
-        habitat: Any = self._engine.chunks._habitat
-        bodies, begun, controls = habitat._bodies, habitat.save(), []
-        step = bodies.step
-
-        def record_and_step(*arguments: Any, **named: Any) -> None:
-            controls.append(bodies.ctrl.copy())
-            step(*arguments, **named)
-
-        with _replaced(bodies, "step", record_and_step):
-            spent = self.play(seconds)["seconds"]
-        ended = habitat.save()
-        habitat.load(begun)
-        began = time.perf_counter()
-        for control in controls:
-            bodies.ctrl[:] = control
-            step(nstep=habitat.substeps)
-        alone = time.perf_counter() - began
-        habitat.load(ended)
-        return {"seconds": spent, "alone": alone}
+    def alone(self, seconds: float) -> dict[str, float]:
+        """Step the simulators alone as in the recording, whatever `seconds`; return the seconds taken."""
+        return self._tape.play_alone()
 
     def _parts(self) -> list[tuple[str, Any, tuple[str, ...]]]:
         """Return what is timed: the part's name, the object, and the names of its methods."""
@@ -130,12 +127,13 @@ class Ours:
             ("habitat, NumPy", habitat, ("step", "reset")),
             ("simulation", simulator, ("step",)),
             ("simulators of the newborn", simulator, newborn),
+            ("records", self._recorder, ("append",)),
         ]
 
     def _advance(self, seconds: float) -> None:
         began = time.perf_counter()
         while time.perf_counter() - began < seconds:
-            self._engine.advance(self._limits)
+            self._recorder.append(self._engine.advance(self._limits))
         jax.block_until_ready(self._engine.state)
 
     def _counts(self) -> dict[str, int]:
@@ -143,17 +141,3 @@ class Ours:
         worlds = self._engine.state.world.worlds
         born, ticks = int(to_host(worlds.births).sum()), int(to_host(worlds.tick).sum())
         return {"frames": organism_ticks(self._engine), "births": born, "ticks": ticks}
-
-
-@contextmanager
-def _replaced(owner: Any, name: str, function: Callable) -> Iterator[None]:
-    """Replace a method of one object for a while; the object may be frozen."""
-    held, before = name in vars(owner), getattr(owner, name)
-    object.__setattr__(owner, name, function)
-    try:
-        yield
-    finally:
-        if held:
-            object.__setattr__(owner, name, before)
-        else:
-            object.__delattr__(owner, name)

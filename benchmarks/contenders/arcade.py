@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from contenders.loop import Brains, Lacking, Loop, described, envpool, scales
+from primordia import cores
 
 BUTTONS_DRAWN = 10_007
 """random buttons drawn in advance; a prime number, so that no other period divides it"""
@@ -159,7 +160,7 @@ class Pool(Loop):
         self._envs = package.make_gymnasium(
             f"{_pascal(game)}-v5",
             num_envs=cells,
-            num_threads=len(os.sched_getaffinity(0)),
+            num_threads=cores.count(),
             frame_skip=1,
             repeat_action_probability=0.0,
             full_action_space=False,

@@ -1,11 +1,11 @@
 """MuJoCo's robots: MuJoCo's batch, Gymnasium's vector environments, EnvPool."""
 
-import os
 from importlib.metadata import version
 
 import numpy as np
 
 from contenders.loop import Brains, Lacking, Loop, described, envpool
+from primordia import cores
 
 
 class Batch(Loop):
@@ -65,7 +65,7 @@ class Pool(Loop):
         self._envs = package.make_gymnasium(
             game.replace("-v5", "-v4"),
             num_envs=cells,
-            num_threads=len(os.sched_getaffinity(0)),
+            num_threads=cores.count(),
             frame_skip=habitat.substeps,
         )
         self.about = f"envpool {package.__version__}"
