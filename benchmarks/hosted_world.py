@@ -78,7 +78,6 @@ class Ours:
         for table in TABLES:
             Path(self._folder.name, table).mkdir()
         self._recorder = recorder_for(self._engine, Path(self._folder.name))
-        self._tape = tape_of(self._engine.chunks._habitat)
         self.play(WARM)
 
     def play(self, seconds: float) -> dict[str, float]:
@@ -110,6 +109,7 @@ class Ours:
 
     def record(self, seconds: float) -> dict[str, float]:
         """Play, and keep what the simulators were told."""
+        self._tape = tape_of(self._engine.chunks._habitat)
         return self._tape.record(lambda: self.play(seconds))
 
     def alone(self, seconds: float) -> dict[str, float]:
@@ -120,7 +120,7 @@ class Ours:
         """Return what is timed: the part's name, the object, and the names of its methods."""
         law: Any = self._engine.chunks
         habitat = law._habitat
-        simulator = habitat._pool if hasattr(habitat, "_pool") else habitat._bodies
+        simulator = habitat._pool if hasattr(habitat, "_pool") else habitat._bodies.batch
         newborn = ("reset", "forward") if hasattr(simulator, "forward") else ("reset",)
         return [
             ("law and brains, compiled", law._calls, ("think", "live", "settle", "survey")),

@@ -15,13 +15,13 @@ import numpy as np
 
 def tape_of(habitat: Any) -> "Tape":
     """Return an empty tape for a habitat's simulators."""
-    return Tape(habitat, (Bodies if hasattr(habitat, "_bodies") else Games)(habitat))
+    return Tape(habitat, (Robots if hasattr(habitat, "_bodies") else Games)(habitat))
 
 
 class Tape:
     """The controls of some ticks, with the simulators' states before and after them."""
 
-    def __init__(self, habitat: Any, simulators: "Games | Bodies") -> None:
+    def __init__(self, habitat: Any, simulators: "Games | Robots") -> None:
         self._habitat, self._simulators = habitat, simulators
 
     def record(self, play: Callable[[], dict[str, float]]) -> dict[str, float]:
@@ -85,11 +85,11 @@ class Games:
         """Return a function for each tick and each birth: `act` and `getRAM` alone."""
         arcade, calls = self._arcade, []
         for what, cells, actions in told:
-            consoles = [(arcade._ale[cell], arcade._ram[cell]) for cell in cells.tolist()]
+            consoles = [arcade._consoles[cell] for cell in cells.tolist()]
             if what == "reset":
                 calls.append(lambda consoles=consoles: self._begin(consoles))
             else:
-                buttons = [arcade._actions[choice] for choice in actions[cells].tolist()]
+                buttons = arcade._buttons[actions[cells]].tolist()
                 moves = [(*console, code) for console, code in zip(consoles, buttons, strict=True)]
                 calls.append(lambda moves=moves: _frames(moves))
         return calls
@@ -105,13 +105,14 @@ def _frames(moves: list) -> None:
         ale.getRAM(ram)
 
 
-class Bodies:
-    """MuJoCo's batch."""
+class Robots:
+    """MuJoCo's batch; positions that organisms perceive are computed, as RAM is read of games."""
 
     state = "state"
 
     def __init__(self, habitat: Any) -> None:
-        self._bodies, self._substeps = habitat._bodies, habitat.substeps
+        self._bodies, self._named = habitat._bodies.batch, {"nstep": habitat.substeps}
+        self._named["stage"] = habitat._bodies._stage
 
     def recorders(self, told: list) -> list[tuple[Any, str, Callable]]:
         """Return which methods are recorded, and how."""
@@ -140,7 +141,7 @@ class Bodies:
         def call(cells: np.ndarray | None, numbers: np.ndarray) -> None:
             if numbers.shape == shape:
                 bodies.ctrl[:] = numbers
-                bodies.step(cells, nstep=self._substeps)
+                bodies.step(cells, **self._named)
             else:
                 bodies.state[cells] = numbers
 

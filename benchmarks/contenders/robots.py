@@ -19,7 +19,7 @@ class Batch(Loop):
         habitat = described(game)[1]
         habitat.open(cells)
         habitat.reset(np.arange(cells), _words(cells, habitat.words))
-        self._bodies, self._substeps = habitat._bodies, habitat.substeps
+        self._bodies, self._substeps = habitat._bodies.batch, habitat.substeps
         noise = np.random.default_rng(0)
         self._controls = noise.uniform(-1, 1, (64, cells, habitat.action.size))
         self._cells, self._number = cells, 0

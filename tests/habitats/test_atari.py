@@ -98,7 +98,7 @@ def test_no_ops_are_drawn_from_0_to_the_maximum() -> None:
     for word in range(40):
         arrays["words"][0] = (word, 0)
         made.reset(0)
-        frames.add(made._ale[0].getEpisodeFrameNumber())
+        frames.add(made._consoles[0][0].getEpisodeFrameNumber())
     assert len(frames) == 4
 
 

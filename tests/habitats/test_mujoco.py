@@ -21,7 +21,7 @@ def started_alike(name: str, habitat: Any, body: int, **options: Any) -> Any:
     """Return Gymnasium's environment in the state that a body was born in."""
     env = gymnasium.make(name, disable_env_checker=True, **options).unwrapped
     env.reset(seed=0)
-    seen = habitat._views
+    seen = habitat._bodies.views
     env.set_state(seen["qpos"][body].copy(), seen["qvel"][body].copy())
     return env
 
@@ -47,12 +47,12 @@ def test_senses_and_physics_are_gymnasiums_to_the_bit(
     for _ in range(TICKS):
         high = envs[0].action_space.high
         action = high * rng.uniform(-1, 1, (4, habitat.action.size)).astype(np.float32)
-        before = habitat._views["qpos"][:, 0].copy()
+        before = habitat._bodies.views["qpos"][:, 0].copy()
         senses, outcome = habitat.step(action, FOUR)
         for body, env in enumerate(envs):
             # Gymnasium's target stays in place, ours moves when it is reached.
             if task == "Reacher-forager":
-                env.data.qpos[2:] = habitat._views["qpos"][body, 2:]
+                env.data.qpos[2:] = habitat._bodies.views["qpos"][body, 2:]
             seen, _, terminated, _, _ = env.step(action[body])
             if not alive[body] or (outcome.food[body] and task == "Reacher-forager"):
                 continue
@@ -137,7 +137,7 @@ def test_a_body_is_a_function_of_its_words_alone(
     one = of_task("Reacher-forager", 1)
     monkeypatch.setenv("PRIMORDIA_CORES", str(cores))
     many = of_task("Reacher-forager", 37)
-    assert (one._bodies.nthread, many._bodies.nthread) == (1, cores)
+    assert (one._bodies.batch.nthread, many._bodies.batch.nthread) == (1, cores)
     words = np.random.default_rng(3).integers(0, 2**32, (37, many.words), np.uint32)
     both = [many.reset(np.arange(37), words)[21], one.reset(np.array([0]), words[21:22])[0]]
     np.testing.assert_array_equal(*both)
@@ -156,7 +156,7 @@ def test_each_position_and_velocity_has_a_word_of_its_own(task: str) -> None:
     """So no velocity follows from a position. The last two words of a reacher place its target."""
     habitat = of_task(task, 1)
     words = np.random.default_rng(8).integers(0, 2**32, (1, habitat.words), np.uint32)
-    sizes = [habitat._views[name].shape[1] for name in ("qpos", "qvel")]
+    sizes = [habitat._bodies.views[name].shape[1] for name in ("qpos", "qvel")]
     target = 2 if task == "Reacher-forager" else 0
     assert habitat.words == sum(sizes) + target
 
@@ -165,7 +165,7 @@ def test_each_position_and_velocity_has_a_word_of_its_own(task: str) -> None:
         if word is not None:
             changed[0, word] ^= np.uint32(0x5A5A5A5A)
         habitat.reset(np.array([0]), changed)
-        return [habitat._views[name][0, : size - target].copy()
+        return [habitat._bodies.views[name][0, : size - target].copy()
                 for name, size in zip(("qpos", "qvel"), sizes, strict=True)]  # fmt: skip
 
     before = place()
@@ -180,13 +180,13 @@ def test_births_are_spread_as_the_settings_say() -> None:
     uniform = opened(2000, position_noise=0.25, velocity_noise=0.5)
     born(uniform, 2000)
     for name, most in (("qpos", 0.25), ("qvel", 0.5)):
-        assert np.abs(uniform._views[name]).max() == pytest.approx(most, rel=1e-3)
-        assert uniform._views[name].std() == pytest.approx(most / np.sqrt(3), rel=0.02)
+        assert np.abs(uniform._bodies.views[name]).max() == pytest.approx(most, rel=1e-3)
+        assert uniform._bodies.views[name].std() == pytest.approx(most / np.sqrt(3), rel=0.02)
     gaussian = opened(2000, velocity_sd=2.0)
     born(gaussian, 2000)
-    assert (gaussian._views["qpos"] == 0).all()
-    assert gaussian._views["qvel"].std() == pytest.approx(2.0, rel=0.02)
-    assert np.abs(gaussian._views["qvel"]).max() > 6
+    assert (gaussian._bodies.views["qpos"] == 0).all()
+    assert gaussian._bodies.views["qvel"].std() == pytest.approx(2.0, rel=0.02)
+    assert np.abs(gaussian._bodies.views["qvel"]).max() > 6
 
 
 def test_a_reached_target_feeds_once_and_then_moves() -> None:
@@ -194,10 +194,10 @@ def test_a_reached_target_feeds_once_and_then_moves() -> None:
     born(habitat, 1000)
     all_alive, places = np.ones(1000, bool), []
     for _ in range(20):
-        before = habitat._views["qpos"][:, 2:].copy()
+        before = habitat._bodies.views["qpos"][:, 2:].copy()
         senses, outcome = habitat.step(np.full((1000, 2), 0.05, np.float32), all_alive)
-        fed, after = outcome.food == 1, habitat._views["qpos"][:, 2:]
-        apart = np.hypot(*habitat._views["xpos"]["fingertip"][:, :2].T)
+        fed, after = outcome.food == 1, habitat._bodies.views["qpos"][:, 2:]
+        apart = np.hypot(*habitat._bodies.views["xpos"]["fingertip"][:, :2].T)
         assert ((outcome.food == 0) | fed).all()
         assert (after[~fed] == before[~fed]).all()
         assert (after[fed] != before[fed]).all()
@@ -214,14 +214,14 @@ def test_the_dead_are_not_stepped_and_a_failure_does_not_disturb_other_bodies() 
     habitat, undisturbed = opened(), opened()
     for each in (habitat, undisturbed):
         born(each)
-    habitat._views["qvel"][1] = 1e200
+    habitat._bodies.views["qvel"][1] = 1e200
     alive, action = np.array([True, True, False, True]), np.full((4, 6), 0.5, np.float32)
     for _ in range(5):
-        before = habitat._views["qpos"][2].copy(), habitat._views["qvel"][2].copy()
+        before = habitat._bodies.views["qpos"][2].copy(), habitat._bodies.views["qvel"][2].copy()
         senses, outcome = habitat.step(action, alive)
         others, _ = undisturbed.step(action, FOUR)
-        np.testing.assert_array_equal(before[0], habitat._views["qpos"][2])
-        np.testing.assert_array_equal(before[1], habitat._views["qvel"][2])
+        np.testing.assert_array_equal(before[0], habitat._bodies.views["qpos"][2])
+        np.testing.assert_array_equal(before[1], habitat._bodies.views["qvel"][2])
         np.testing.assert_array_equal(senses[[0, 3]], others[[0, 3]])
         assert outcome.fault[1] or not np.isfinite(senses[1]).all()
 
@@ -233,10 +233,10 @@ def test_named_amounts_are_those_of_the_model() -> None:
     )
     senses = born(habitat)
     assert (senses[:, 2:] == 0).all()
-    start, gone = habitat._views["qpos"][:, 0].copy(), 0.0
+    start, gone = habitat._bodies.views["qpos"][:, 0].copy(), 0.0
     for _ in range(15):
         senses, _ = habitat.step(np.full((4, 3), -0.4, np.float32), FOUR)
-        position = habitat._views["qpos"]
+        position = habitat._bodies.views["qpos"]
         np.testing.assert_allclose(senses[:, 0], position[:, 1], atol=1e-6)
         np.testing.assert_allclose(senses[:, 1], position[:, 2], atol=1e-6)
         assert (senses[:, 3] >= 0).all()

@@ -74,6 +74,11 @@ class Expression:
         """
         return self.compute(values)
 
+    def of_all(self, values: Values, count: int, dtype: type) -> Any:
+        """Return the value of a condition or an amount for each of `count` bodies, a new array (N,)."""
+        value = self.compute(values)
+        return value.astype(dtype) if np.ndim(value) else np.full(count, value, dtype)
+
 
 def parse(text: str, kind: Literal["condition", "amount", "numbers"], names: Names) -> Expression:
     """Parse an expression.

@@ -7,7 +7,7 @@ Arcade Learning Environment (extra `primordia[atari]`).
 
 from functools import cached_property
 from importlib.metadata import version
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from pydantic import Field, PrivateAttr, field_validator, model_validator
@@ -202,8 +202,8 @@ class Atari(HostHabitat, Settings):
         lives[:] = values["lives"]
         if values["points"].any():
             self._count(values["points"], alive)
-        fatal: Any = np.full(len(lives), self._fatal_condition(values), bool)
-        food: Any = np.full(len(lives), self._food_amount(values), np.float32)
+        fatal = self._fatal_condition.of_all(values, len(lives), bool)
+        food = self._food_amount.of_all(values, len(lives), np.float32)
         return self._compute_senses(), Outcome(fatal, food)
 
     def _count(self, points: np.ndarray, alive: np.ndarray) -> None:

@@ -14,14 +14,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from pydantic import Field, PrivateAttr, model_validator
 
-from primordia import cores
 from primordia.habitats import conditions
 from primordia.habitats.conditions import Expression, Names
 from primordia.habitats.contract import Continuous, HostHabitat, Outcome
+from primordia.habitats.mujoco.bodies import Bodies
 from primordia.habitats.mujoco.simulator import (
-    ROOT,
     fingerprint,
-    ids_by_name,
     load_model,
     observables,
     package,
@@ -34,9 +32,6 @@ from primordia.settings.base import Settings
 
 if TYPE_CHECKING:
     from PIL.Image import Image
-
-DERIVED = {"xpos", "site", "height", "pitch", "travelled", "com_forward", "reached"}
-"""Observables that MuJoCo derives from the state after a step."""
 
 
 class MuJoCo(HostHabitat, Settings):
@@ -64,11 +59,7 @@ class MuJoCo(HostHabitat, Settings):
         {}, description="settings of the standard benchmark that differ; food is then its score"
     )
 
-    _bodies: Any = PrivateAttr()
-    _views: dict[str, Any] = PrivateAttr()
-    """Views of the bodies' state by name, which change as the bodies do"""
-    _tracked: dict[str, np.ndarray] = PrivateAttr()
-    """Views of the positions whose displacement in a tick is observed"""
+    _bodies: Bodies = PrivateAttr()
     _dice: np.ndarray = PrivateAttr()
     """uint64 (N,): dice from which targets get their positions"""
 
@@ -145,36 +136,12 @@ class MuJoCo(HostHabitat, Settings):
 
     def open(self, cells: int, watched: bool = False) -> None:
         """Allocate the bodies."""
-        # One thread is the one that calls: the batch then starts none.
-        self._bodies = package().batch.Batch(self._model, cells, nthread=cores.count())
+        self._bodies = Bodies(self._model, cells, self._observed)
         self._dice = np.zeros(cells, np.uint64)
-        bind, model, observed = self._bodies.bind, self._model, self._observed
-        self._views = {name: bind(name) for name in ("qpos", "qvel", "ctrl")}
-        if observed & {"xpos", "reached"}:
-            xpos, bodies = bind("xpos"), ids_by_name(model, "body")
-            self._views["xpos"] = {name: xpos[:, number] for name, number in bodies.items()}
-        if "site" in observed:
-            xpos, sites = bind("site_xpos"), ids_by_name(model, "site")
-            self._views["site"] = {name: xpos[:, number] for name, number in sites.items()}
-        if "height" in observed:
-            self._views["height"] = bind("xpos")[:, ROOT, 2]
-        if "pitch" in observed:
-            self._views["rotation"] = bind("xmat")[:, ROOT]
-        self._tracked = {}
-        if "forward" in observed:
-            self._tracked["forward"] = self._views["qpos"][:, 0]
-        if observed & {"travelled", "com_forward"}:
-            self._tracked["com"] = bind("subtree_com")[:, 0, :2]
-
-    @cached_property
-    def _stage(self) -> Any:
-        """Stage of MuJoCo's derived quantities to compute after a step: positions, if observed."""
-        stages = package().mjtStage
-        return stages.mjSTAGE_POS if self._observed & DERIVED else stages.mjSTAGE_NONE
 
     def reset(self, cells: np.ndarray, words: np.ndarray) -> np.ndarray:
         """Put the bodies of cells into the model's pose, with noise from words uint32 (K, words)."""
-        bodies, positions = self._bodies, self._model.nq
+        bodies, positions = self._bodies.batch, self._model.nq
         bodies.reset(cells, stage=package().mjtStage.mjSTAGE_NONE)
         bodies.qpos[cells] += self.position_noise * _uniform(words[:, :positions])
         of_velocity = words[:, positions : positions + self._model.nv]
@@ -185,19 +152,20 @@ class MuJoCo(HostHabitat, Settings):
                 self._dice[cell] = dice.begin(high, low)
                 self._move_target(self.target, cell)
         bodies.forward(cells)
-        return self._compute_senses(self._observe(self._tracked_positions()))[cells]
+        return self._compute_senses(self._observe(self._bodies.positions()))[cells]
 
     def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
         """Step the bodies of the living by one tick."""
-        np.clip(action, *self._range, out=self._views["ctrl"])
-        before, fault = self._tracked_positions(), self._simulate(alive)
+        bodies = self._bodies  # pydantic takes some time to find a private attribute
+        np.clip(action, *self._range, out=bodies.views["ctrl"])
+        before, fault = bodies.positions(), bodies.step(alive, self.substeps)
         values = self._observe(before)
         outcome = self._judge(values, fault)
         if self.target is not None and (reached := values["reached"] & alive).any():
             cells = np.flatnonzero(reached)
             for cell in cells.tolist():
                 self._move_target(self.target, cell)
-            self._bodies.forward(cells)
+            bodies.batch.forward(cells)
         return self._compute_senses(values), outcome
 
     @cached_property
@@ -206,41 +174,20 @@ class MuJoCo(HostHabitat, Settings):
         limited, (low, high) = self._model.actuator_ctrllimited, self._model.actuator_ctrlrange.T
         return np.where(limited, low, -np.inf), np.where(limited, high, np.inf)
 
-    def _simulate(self, alive: np.ndarray) -> np.ndarray:
-        """Step the bodies of the living, and return those whose simulation failed, bool (N,)."""
-        fault = np.zeros(len(alive), bool)
-        try:
-            cells = None if alive.all() else np.flatnonzero(alive)
-            self._bodies.step(cells, nstep=self.substeps, stage=self._stage)
-        except package().batch.SimulationError as error:
-            fault[error.ids] = True
-        return fault
-
     def _judge(self, values: dict[str, Any], fault: Any) -> Outcome:
         """Return the outcome of a tick, from the values of the observables after it."""
-        is_fatal = self._fatal_condition(values) if self._fatal_condition else False
-        fatal: Any = np.full(len(fault), is_fatal, bool)
-        food: Any = np.full(len(fault), self._food_amount(values), np.float32)
-        effort: Any = np.full(len(fault), self._effort_amount(values), np.float32)
+        count, condition = len(fault), self._fatal_condition
+        none: Any = np.zeros(count, bool)
+        fatal = condition.of_all(values, count, bool) if condition else none
+        food = self._food_amount.of_all(values, count, np.float32)
+        effort = self._effort_amount.of_all(values, count, np.float32)
         return Outcome(fatal, food, effort, fault)
 
-    def _tracked_positions(self) -> dict[str, np.ndarray]:
-        """Return a copy of the positions whose displacement is observed."""
-        return {name: position.copy() for name, position in self._tracked.items()}
-
     def _observe(self, before: dict[str, np.ndarray]) -> dict[str, Any]:
-        """Return the present values of the observables, given the tracked positions before the tick."""
-        views, values = self._views, dict(self._views)
-        if "forward" in before:
-            values["forward"] = self._tracked["forward"] - before["forward"]
-        if "com" in before:
-            displacement = self._tracked["com"] - before["com"]
-            values["com_forward"] = displacement[:, 0]
-            values["travelled"] = np.hypot(*displacement.T)
-        if "rotation" in views:
-            values["pitch"] = np.arctan2(-views["rotation"][:, 6], views["rotation"][:, 0])
+        """Return the present values of the observables, given the positions before the tick."""
+        values = self._bodies.observe(before)
         if self.target is not None:
-            values["reached"] = self.target.reached(views["xpos"])
+            values["reached"] = self.target.reached(values["xpos"])
         return values
 
     def _compute_senses(self, values: dict[str, Any]) -> np.ndarray:
@@ -253,8 +200,8 @@ class MuJoCo(HostHabitat, Settings):
         """Move a cell's target to a random position, at rest."""
         self._dice[cell], position = target.draw_position(int(self._dice[cell]))
         for (qpos, qvel), coordinate in zip(self._target_joints, position, strict=True):
-            self._views["qpos"][cell, qpos] = coordinate
-            self._views["qvel"][cell, qvel] = 0.0
+            self._bodies.views["qpos"][cell, qpos] = coordinate
+            self._bodies.views["qvel"][cell, qvel] = 0.0
 
     @cached_property
     def _target_joints(self) -> list[tuple[int, int]]:
@@ -267,7 +214,7 @@ class MuJoCo(HostHabitat, Settings):
 
     def seen(self) -> dict[str, np.ndarray]:
         """Return the positions of the joints, float64 (N, nq)."""
-        return {"qpos": self._views["qpos"]}
+        return {"qpos": self._bodies.views["qpos"]}
 
     @cached_property
     def _renderer(self) -> Any:
@@ -285,13 +232,12 @@ class MuJoCo(HostHabitat, Settings):
 
     def save(self) -> dict[str, np.ndarray]:
         """Return MuJoCo's states, float64 (N, L), and the dice of targets."""
-        return {"state": self._bodies.state.copy(), "dice": self._dice.copy()}
+        return {"state": self._bodies.batch.state.copy(), "dice": self._dice.copy()}
 
     def load(self, arrays: dict[str, np.ndarray]) -> None:
         """Restore the states that `save` returned."""
-        self._bodies.state[:], self._dice[:] = arrays["state"], arrays["dice"]
-        if self._stage:
-            self._bodies.forward(stage=self._stage)
+        self._bodies.load(arrays["state"])
+        self._dice[:] = arrays["dice"]
 
 
 def _uniform(words: np.ndarray) -> np.ndarray:

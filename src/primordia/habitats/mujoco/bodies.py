@@ -1,0 +1,76 @@
+"""The bodies of a run: MuJoCo's batch, and what is observed of it after a tick."""
+
+from collections.abc import Collection
+from typing import Any
+
+import numpy as np
+
+from primordia import cores
+from primordia.habitats.mujoco.simulator import ROOT, ids_by_name, package
+
+DERIVED = {"xpos", "site", "height", "pitch", "travelled", "com_forward", "reached"}
+"""Observables that MuJoCo derives from the state after a step."""
+
+
+class Bodies:
+    """A batch of bodies of one model; habitats are settings, and this is what they step."""
+
+    def __init__(self, model: Any, cells: int, observed: Collection[str]) -> None:
+        """Allocate the bodies, and observe those of `simulator.observables` that are named."""
+        # One thread is the one that calls: the batch then starts none.
+        self.batch = package().batch.Batch(model, cells, nthread=cores.count())
+        bind, wanted = self.batch.bind, set(observed)
+        self.views: dict[str, Any] = {name: bind(name) for name in ("qpos", "qvel", "ctrl")}
+        """Views of the bodies' state by name, which change as the bodies do"""
+        if wanted & {"xpos", "reached"}:
+            xpos, bodies = bind("xpos"), ids_by_name(model, "body")
+            self.views["xpos"] = {name: xpos[:, number] for name, number in bodies.items()}
+        if "site" in wanted:
+            xpos, sites = bind("site_xpos"), ids_by_name(model, "site")
+            self.views["site"] = {name: xpos[:, number] for name, number in sites.items()}
+        if "height" in wanted:
+            self.views["height"] = bind("xpos")[:, ROOT, 2]
+        if "pitch" in wanted:
+            self.views["rotation"] = bind("xmat")[:, ROOT]
+        self._tracked: dict[str, np.ndarray] = {}
+        """Views of the positions whose displacement in a tick is observed"""
+        if "forward" in wanted:
+            self._tracked["forward"] = self.views["qpos"][:, 0]
+        if wanted & {"travelled", "com_forward"}:
+            self._tracked["com"] = bind("subtree_com")[:, 0, :2]
+        stages = package().mjtStage
+        self._stage = stages.mjSTAGE_POS if wanted & DERIVED else stages.mjSTAGE_NONE
+        """Stage of MuJoCo's derived quantities to compute after a step: positions, if observed"""
+
+    def step(self, alive: np.ndarray, substeps: int) -> np.ndarray:
+        """Step the bodies of the living, and return those whose simulation failed, bool (N,)."""
+        fault = np.zeros(len(alive), bool)
+        try:
+            cells = None if alive.all() else np.flatnonzero(alive)
+            self.batch.step(cells, nstep=substeps, stage=self._stage)
+        except package().batch.SimulationError as error:
+            fault[error.ids] = True
+        return fault
+
+    def positions(self) -> dict[str, np.ndarray]:
+        """Return a copy of the positions whose displacement is observed."""
+        return {name: position.copy() for name, position in self._tracked.items()}
+
+    def observe(self, before: dict[str, np.ndarray]) -> dict[str, Any]:
+        """Return the present values of the observables, given `positions` before the tick."""
+        views, values = self.views, dict(self.views)
+        if "forward" in before:
+            values["forward"] = self._tracked["forward"] - before["forward"]
+        if "com" in before:
+            displacement = self._tracked["com"] - before["com"]
+            values["com_forward"] = displacement[:, 0]
+            values["travelled"] = np.hypot(*displacement.T)
+        if "rotation" in views:
+            values["pitch"] = np.arctan2(-views["rotation"][:, 6], views["rotation"][:, 0])
+        return values
+
+    def load(self, state: np.ndarray) -> None:
+        """Restore MuJoCo's states, float64 (N, L)."""
+        self.batch.state[:] = state
+        if self._stage:
+            self.batch.forward(stage=self._stage)
