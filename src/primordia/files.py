@@ -68,6 +68,22 @@ def write_text(path: Path, text: str) -> None:
     write_bytes(path, text.encode())
 
 
+def replace_text(path: Path, text: str) -> None:
+    """Write a text in UTF-8 without waiting for the disk: readers see the old file or the new one.
+
+    After a power cut the file may be damaged or missing; it is for what can be found out again.
+
+    Raises:
+        Trouble: the file cannot be written.
+    """
+    temporary = path.with_name(TEMPORARY + path.name)
+    try:
+        temporary.write_text(text, encoding="utf-8")
+        temporary.replace(path)
+    except OSError as error:
+        raise Trouble(f"{path} cannot be written: {error.strerror or error}") from None
+
+
 def check_output(path: Path) -> None:
     """Raise InputError unless the path is free or that of a regular file, which may be replaced."""
     if (kind := _kind(path)) is not None:
@@ -86,7 +102,8 @@ def own_folder(path: Path) -> None:
         raise InputError(
             f"{path} is {kind}, not a folder; a run writes into folders of its own only"
         )
-    make_folder(path)
+    if kind is None:
+        make_folder(path)
 
 
 def make_folder(path: Path) -> None:

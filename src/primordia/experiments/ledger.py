@@ -100,8 +100,8 @@ class Ledger:
             Trouble: it cannot be written.
         """
         entry.updated, entry.host, entry.process = time.time(), socket.gethostname(), os.getpid()
-        files.make_folder(self._folder)
-        files.write_text(self._file(job), json.dumps(entry.model_dump()))
+        self._folder.mkdir(exist_ok=True)
+        files.replace_text(self._file(job), json.dumps(entry.model_dump()))
 
     def _file(self, job: Job) -> Path:
         return self._folder / f"{job.number:06d}.json"
