@@ -2,7 +2,8 @@
 
     python benchmarks/bench.py [--json FILE] [--only SECTION,...]
 
-Sections: paper, speed, plain, live, cells, atari, robots, jobs, shell, records.
+Sections: paper, speed, plain, live, cells, atari, robots, jobs, campaign, cores, bookkeeping,
+shell, records.
 
 Compare speeds within one run only. Machines differ, and one machine differs from hour to hour.
 """
@@ -14,6 +15,7 @@ import os
 import platform
 from pathlib import Path
 
+import campaigns
 import hosted
 import jobs
 import paper
@@ -31,6 +33,9 @@ SECTIONS = {
     "atari": hosted.against_the_emulator,
     "robots": hosted.against_the_batch,
     "jobs": jobs.against_bare_simulators,
+    "campaign": campaigns.jobs_against_runs,
+    "cores": campaigns.all_cores_against_one,
+    "bookkeeping": campaigns.bookkeeping,
     "shell": scale.shell_to_saturation,
     "records": scale.births_recorded_per_second,
 }

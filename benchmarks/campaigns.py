@@ -1,35 +1,27 @@
-"""Experiments as a whole: jobs against runs of the same worlds, one core against all, and bookkeeping.
+"""Experiments as a whole: jobs against runs of the same worlds, and one core against all.
 
 Each command is a process of its own, from its start to its end, with all its records on disk. Code was
 compiled before and is kept on disk, as for a user's second experiment.
 """
 
-import resource
+import json
 import subprocess
 import sys
 import tempfile
 import time
 from collections.abc import Callable
-from concurrent.futures import Future
 from pathlib import Path
 from typing import Any
 
 import tomli_w
 
 from primordia import cores
-from primordia.experiments.campaign import live_all
-from primordia.experiments.experiment import Experiment, begin
-from primordia.experiments.ledger import Entry, Ledger, World
-from primordia.experiments.outcome import Outcome
-from primordia.experiments.plan import Job
 
 TICKS = 200_000
 """Ticks of each world, the limit of the shipped experiments."""
 ARMS, WORLDS = 4, 100
 EACH = 4
 """worlds of a job in the comparison of cores"""
-IDLE = 10_000
-"""jobs that do nothing"""
 ROUNDS = 3
 COMMAND = [sys.executable, "-m", "primordia"]
 
@@ -71,46 +63,9 @@ def all_cores_against_one() -> dict[str, Any]:
 
 
 def bookkeeping() -> dict[str, Any]:
-    """Return the seconds and the memory that 10,000 jobs take which do nothing."""
-    with tempfile.TemporaryDirectory() as folder:
-        out = Path(folder)
-        began = time.perf_counter()
-        chosen = begin(_file(out, ARMS, IDLE // ARMS, 1, TICKS), out / "idle")
-        live_all(chosen.left(), _Nowhere(chosen), chosen.status, lambda *_: None)
-        started = time.perf_counter()
-        told = begin(chosen.path).status()
-        seen = time.perf_counter()
-        assert told.jobs["done"] == len(chosen.jobs)
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    return {
-        "jobs": len(chosen.jobs),
-        "start_and_end_s": round(started - began, 1),
-        "status_s": round(seen - started, 2),
-        "peak_mb": round(peak),
-    }
-
-
-class _Nowhere:
-    """A place where each job is done at once: what is left is bookkeeping."""
-
-    def __init__(self, chosen: Experiment) -> None:
-        self._ledger = Ledger(chosen.path, chosen.jobs)
-        self._path = chosen.path
-
-    def submit(self, job: Job) -> Future[Outcome]:
-        """Note that a job is done."""
-        (self._path / job.folder).mkdir(parents=True)
-        world = World(
-            seed=job.first, ticks=1, births=1, deaths=1, organism_ticks=1, saturated=None
-        )
-        done = Entry(job=job.number, arm=job.arm, state="done", worlds=[world])
-        self._ledger.write(job, done)
-        future: Future[Outcome] = Future()
-        future.set_result(Outcome(job.number, "done"))
-        return future
-
-    def stop(self) -> None:
-        """Do nothing."""
+    """Return the figures of `idle_jobs.py`, which is a process of its own since memory counts."""
+    command = [sys.executable, str(Path(__file__).with_name("idle_jobs.py"))]
+    return json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)
 
 
 def _file(folder: Path, arms: int, worlds: int, each: int, ticks: int) -> Path:

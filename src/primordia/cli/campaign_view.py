@@ -82,11 +82,7 @@ class _Paced:
 
 def line(status: Status, clock: Clock) -> str:
     """Return the states of jobs in one line."""
-    left = clock.left(status)
-    parts = [_jobs(status), f"{with_prefix(status.rate)} organism-ticks/s"]
-    if left is not None:
-        parts.append(f"about {duration(left)} left")
-    return f"{time.strftime('%H:%M:%S')}  {', '.join(parts)}"
+    return f"{time.strftime('%H:%M:%S')}  {'; '.join([_jobs(status), *_pace(status, clock)])}"
 
 
 def table(status: Status, clock: Clock | None = None) -> Group:
@@ -96,12 +92,17 @@ def table(status: Status, clock: Clock | None = None) -> Group:
         parts.append(_running(status.running))
     for entry in status.failed[:SHOWN]:
         parts.append(Text(f"job {entry.job} ({entry.arm}) failed: {entry.error}", "red"))
-    below = _jobs(status)
+    below = [_jobs(status)]
     if clock is not None:
-        left = clock.left(status)
-        rest = f", about {duration(left)} left" if left is not None else ""
-        below += f"; {with_prefix(status.rate)} organism-ticks/s; {duration(clock.seconds())}{rest}"
-    return Group(*parts, Text(below, "dim"))
+        below += [*_pace(status, clock), f"{duration(clock.seconds())} so far"]
+    return Group(*parts, Text("; ".join(below), "dim"))
+
+
+def _pace(status: Status, clock: Clock) -> list[str]:
+    """Return the speed of the jobs under way, and the time that is left if it is known."""
+    left = clock.left(status)
+    rate = [f"{with_prefix(status.rate)} organism-ticks/s"] if status.rate else []
+    return [*rate, f"about {duration(left)} left"] if left else rate
 
 
 def _jobs(status: Status) -> str:
