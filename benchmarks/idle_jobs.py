@@ -21,10 +21,10 @@ import tomli_w
 from primordia import files
 from primordia.config import Config
 from primordia.experiments import job as jobs
-from primordia.experiments.campaign import live_all
-from primordia.experiments.experiment import Experiment, begin
-from primordia.experiments.ledger import Entry, Ledger, World
-from primordia.experiments.outcome import Outcome
+from primordia.experiments.campaign import Campaign, begin
+from primordia.experiments.dispatch import live_all
+from primordia.experiments.ending import Ending
+from primordia.experiments.ledger import Entry, Ledger, WorldCounts
 from primordia.experiments.plan import Job
 from primordia.runs import checkpoint, loop
 from primordia.runs import manifest as manifests
@@ -55,17 +55,19 @@ def main() -> None:
 class _Nowhere:
     """A place where each job is done at once: what is left is bookkeeping."""
 
-    def __init__(self, chosen: Experiment) -> None:
+    def __init__(self, chosen: Campaign) -> None:
         self._ledger, self._path = Ledger(chosen.path, chosen.jobs), chosen.path
 
-    def submit(self, job: Job) -> Future[Outcome]:
+    def submit(self, job: Job) -> Future[Ending]:
         """Note that a job is done."""
         (self._path / job.folder).mkdir(parents=True)
-        world = World(seed=job.first, ticks=1, births=1, deaths=1, organism_ticks=1, saturated=None)
+        world = WorldCounts(
+            seed=job.first, ticks=1, births=1, deaths=1, organism_ticks=1, saturated=None
+        )
         done = Entry(job=job.number, arm=job.arm, state="done", worlds=[world])
         self._ledger.write(job, done)
-        future: Future[Outcome] = Future()
-        future.set_result(Outcome(job.number, "done"))
+        future: Future[Ending] = Future()
+        future.set_result(Ending(job.number, "done"))
         return future
 
     def stop(self) -> None:
@@ -80,11 +82,11 @@ def _file(folder: Path) -> Path:
     return file
 
 
-def _check_done(chosen: Experiment) -> None:
+def _check_done(chosen: Campaign) -> None:
     assert chosen.status().jobs["done"] == JOBS
 
 
-def _make_runs(chosen: Experiment) -> None:
+def _make_runs(chosen: Campaign) -> None:
     """Put the run of each job in its place: a copy of the first one of its arm, with its own seed."""
     originals: dict[str, Path] = {}
     for job in chosen.jobs:

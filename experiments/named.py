@@ -4,7 +4,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from primordia.experiments import experiment
+from primordia.experiments import campaign
 
 
 def for_each_named(do: Callable[[Path], None], usage: str | None) -> None:
@@ -17,4 +17,4 @@ def for_each_named(do: Callable[[Path], None], usage: str | None) -> None:
 
 def arms(file: Path) -> list[Path]:
     """Return the folder of each arm's runs, the reference first."""
-    return list(experiment.recorded(Path("runs", file.stem)).arms.values())
+    return list(campaign.recorded(Path("runs", file.stem)).arms.values())

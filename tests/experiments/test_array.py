@@ -5,7 +5,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from primordia.experiments.experiment import begin
+from primordia.experiments.campaign import begin
 from tests import commands
 from tests.experiments.meadows import write
 

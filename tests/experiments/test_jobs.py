@@ -13,14 +13,14 @@ import pytest
 import primordia
 from primordia.experiments import here as on_cores
 from primordia.experiments import job as jobs
-from primordia.experiments.experiment import Experiment, begin
-from primordia.experiments.outcome import Outcome
+from primordia.experiments.campaign import Campaign, begin
+from primordia.experiments.ending import Ending
 from primordia.runs import loop
 from tests.commands import complains, here
 from tests.experiments.meadows import write
 
 
-def digests_of(experiment: Experiment) -> dict[str, list[str]]:
+def digests_of(experiment: Campaign) -> dict[str, list[str]]:
     """Return the digests of the worlds of each arm."""
     told = primordia.load(experiment.path).info()
     assert told["jobs"] == {"done": len(experiment.jobs), "running": 0, "failed": 0, "waiting": 0}
@@ -120,7 +120,7 @@ def test_what_a_kill_leaves_is_taken_up(tmp_path: Path, alone: dict[str, list[st
     part = config.model_copy(update={"stop": config.stop.model_copy(update={"ticks": 77})})
     loop.start(part, chosen.path / chosen.jobs[1].folder)
     for job in chosen.jobs:
-        assert jobs.outcome_of(chosen.plan, job, chosen.path) == Outcome(job.number, "done")
+        assert jobs.ending_of(chosen.plan, job, chosen.path) == Ending(job.number, "done")
     assert digests_of(begin(chosen.path)) == alone
 
 
@@ -205,5 +205,5 @@ def test_a_job_that_another_process_lives_is_left_to_it(tmp_path: Path) -> None:
     run = chosen.path / chosen.jobs[0].folder
     loop.start(jobs.configuration(chosen.plan, chosen.jobs[0]), run)
     with directory.locked(run):
-        assert jobs.outcome_of(chosen.plan, chosen.jobs[0], chosen.path).state == "elsewhere"
+        assert jobs.ending_of(chosen.plan, chosen.jobs[0], chosen.path).state == "elsewhere"
         complains(here("experiment", chosen.path, "--job", 0), 2, "run by another process")

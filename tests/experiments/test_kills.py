@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import primordia
-from primordia.experiments.experiment import begin
+from primordia.experiments.campaign import begin
 from primordia.runs import loop
 from tests import commands
 from tests.experiments.meadows import write

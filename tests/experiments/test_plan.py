@@ -7,7 +7,7 @@ import pytest
 
 from primordia.errors import InputError
 from primordia.experiments import plan as plans
-from primordia.experiments.experiment import begin
+from primordia.experiments.campaign import begin
 from primordia.experiments.file import read
 from primordia.experiments.job import configuration
 from primordia.experiments.plan import Job

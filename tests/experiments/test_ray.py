@@ -9,8 +9,8 @@ import pytest
 import primordia
 from primordia.errors import InputError
 from primordia.experiments import on_ray
-from primordia.experiments.experiment import begin
-from primordia.experiments.status import Status
+from primordia.experiments.campaign import begin
+from primordia.experiments.status import CampaignStatus
 from primordia.runs import loop
 from tests.commands import complains, here
 from tests.experiments.meadows import write
@@ -50,7 +50,7 @@ def test_a_node_that_dies_in_the_middle_changes_no_world(tmp_path: Path) -> None
     nodes = [cluster.add_node(num_cpus=1) for _ in range(2)]
     seen: list[int] = []
 
-    def kill_one(status: Status) -> None:
+    def kill_one(status: CampaignStatus) -> None:
         lived = [entry.job for entry in status.running if entry.worlds]
         if len(lived) == 3 and not seen:
             seen.extend(lived)

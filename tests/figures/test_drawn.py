@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
-from primordia.comparison.comparison import Arm, Comparison
+from primordia.comparison.comparison import ComparedArm, Comparison
 from primordia.comparison.contrast import Measured
 from primordia.comparison.gathering import Gathering
 from primordia.comparison.pace import WINDOWS, Pace
@@ -201,7 +201,7 @@ def test_food_is_drawn_in_the_unit_of_its_title(
         np.testing.assert_allclose(y, values * (rate or 1))
 
 
-def arm(name: str, seed: int, known: bool = True) -> Arm:
+def arm(name: str, seed: int, known: bool = True) -> ComparedArm:
     """Return a run of three worlds with invented values, of which one may be unknown."""
     draw = np.random.default_rng(seed)
     is_known = np.array([True, True, known])
@@ -215,10 +215,10 @@ def arm(name: str, seed: int, known: bool = True) -> Arm:
     deaths = draw.integers(1, 9, (3, WINDOWS))
     paces = Pace(edges, draw.integers(1, 900, (3, WINDOWS)).astype(float), deaths)
     gathered = Gathering(draw.random((3, WINDOWS)), values["food"])
-    return Arm(name, {}, values, survived(LIVES, 3, 100 + seed), paces, gathered)
+    return ComparedArm(name, {}, values, survived(LIVES, 3, 100 + seed), paces, gathered)
 
 
-def drawn(*arms: Arm) -> Figure:
+def drawn(*arms: ComparedArm) -> Figure:
     with style.applied():
         return comparison.draw(Comparison("t", arms, 100, 0, None, None, "tick"))
 

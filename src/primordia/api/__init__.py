@@ -18,11 +18,11 @@ from primordia.api.experiment import Experiment
 from primordia.api.run import Run, fresh_directory
 from primordia.comparison import comparison
 from primordia.errors import InputError, Trouble
-from primordia.experiments import experiment as experiments
-from primordia.experiments.campaign import live_all
-from primordia.experiments.experiment import is_experiment
+from primordia.experiments import campaign as campaigns
+from primordia.experiments.campaign import is_experiment
+from primordia.experiments.dispatch import live_all
 from primordia.experiments.places import place_for
-from primordia.experiments.status import Status
+from primordia.experiments.status import CampaignStatus
 from primordia.runs import code, loop, opening
 from primordia.runs.archive import Archive
 from primordia.runs.loop import Listener
@@ -88,7 +88,7 @@ def experiment(
     ray: str | None = None,
     checkpoint_every: float = 60.0,
     device: str = "cpu",
-    look: Callable[[Status], object] | None = None,
+    look: Callable[[CampaignStatus], object] | None = None,
 ) -> Experiment:
     """Run the arms of an experiment on all cores, or go on with it, and write its results.
 
@@ -107,11 +107,11 @@ def experiment(
         Trouble: jobs failed; the others are done.
         KeyboardInterrupt: on Ctrl-C, after checkpoints.
     """
-    chosen = experiments.begin(Path(file), Path(out) if out is not None else None)
+    chosen = campaigns.begin(Path(file), Path(out) if out is not None else None)
     if left := chosen.left(only):
         place = place_for(chosen.path, len(left), jobs, ray, checkpoint_every, device)
         seen = (lambda: look(chosen.status())) if look is not None else (lambda: None)
-        result = live_all(left, place, seen, lambda job, outcome, again: None)
+        result = live_all(left, place, seen, lambda job, ending, again: None)
         if result.stopped:
             raise KeyboardInterrupt
         if result.failed:

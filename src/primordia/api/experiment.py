@@ -6,8 +6,8 @@ from typing import Any
 
 from primordia.api.run import Run
 from primordia.comparison.comparison import Comparison, compare
-from primordia.experiments import experiment
-from primordia.experiments.status import Status
+from primordia.experiments import campaign
+from primordia.experiments.status import CampaignStatus
 from primordia.runs.records import Records
 
 
@@ -36,7 +36,7 @@ class Experiment(Run):
         """Open the records of each arm for reading."""
         return self._recorded().opened()
 
-    def status(self) -> Status:
+    def status(self) -> CampaignStatus:
         """Return the states of the jobs and the figures of the arms so far; no run is opened."""
         return self._recorded().status()
 
@@ -62,5 +62,5 @@ class Experiment(Run):
         ]
         return [*save(self.compare(), folder), *drawn]
 
-    def _recorded(self) -> experiment.Experiment:
-        return experiment.recorded(self.path)
+    def _recorded(self) -> campaign.Campaign:
+        return campaign.recorded(self.path)

@@ -13,7 +13,7 @@ from rich.text import Text
 
 from primordia import interrupts
 from primordia.experiments.ledger import Entry
-from primordia.experiments.status import ArmStatus, Status
+from primordia.experiments.status import ArmStatus, CampaignStatus
 from primordia.live.panel import duration, with_prefix
 from primordia.live.view import show_cursor
 
@@ -24,7 +24,7 @@ SHOWN = 12
 
 
 @contextmanager
-def watching(quiet: bool, read: Callable[[], Status]) -> Iterator[Callable[[], None]]:
+def watching(quiet: bool, read: Callable[[], CampaignStatus]) -> Iterator[Callable[[], None]]:
     """Yield what is to be called often: it reads the status and shows it when that is due."""
     console = Console(highlight=False, file=sys.__stdout__)
     clock = Clock()
@@ -53,7 +53,7 @@ class Clock:
         """Return the seconds since the command began."""
         return time.perf_counter() - self._began
 
-    def left(self, status: Status) -> float | None:
+    def left(self, status: CampaignStatus) -> float | None:
         """Return the seconds until all jobs are done, if they take as long as those done since."""
         done = status.jobs["done"]
         if self._done < 0:
@@ -80,12 +80,12 @@ class _Paced:
             self._due = now + max(self._interval, (now - began) / SHARE)
 
 
-def line(status: Status, clock: Clock) -> str:
+def line(status: CampaignStatus, clock: Clock) -> str:
     """Return the states of jobs in one line."""
     return f"{time.strftime('%H:%M:%S')}  {'; '.join([_jobs(status), *_pace(status, clock)])}"
 
 
-def table(status: Status, clock: Clock | None = None) -> Group:
+def table(status: CampaignStatus, clock: Clock | None = None) -> Group:
     """Return the arms so far, the jobs under way, and those that have failed."""
     parts: list[Text | Table] = [Text(status.question, "bold"), _arms(status.arms)]
     if status.running:
@@ -98,14 +98,14 @@ def table(status: Status, clock: Clock | None = None) -> Group:
     return Group(*parts, Text("; ".join(below), "dim"))
 
 
-def _pace(status: Status, clock: Clock) -> list[str]:
+def _pace(status: CampaignStatus, clock: Clock) -> list[str]:
     """Return the speed of the jobs under way, and the time that is left if it is known."""
     left = clock.left(status)
     rate = [f"{with_prefix(status.rate)} organism-ticks/s"] if status.rate else []
     return [*rate, f"about {duration(left)} left"] if left else rate
 
 
-def _jobs(status: Status) -> str:
+def _jobs(status: CampaignStatus) -> str:
     total = sum(status.jobs.values())
     names = {"running": "under way", "failed": "failed", "waiting": "waiting"}
     others = [f"{status.jobs[state]:,} {name}" for state, name in names.items()]

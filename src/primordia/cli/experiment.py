@@ -14,11 +14,11 @@ from primordia.cli.streams import report
 from primordia.errors import InputError
 
 if TYPE_CHECKING:
-    from primordia.experiments.campaign import Result
-    from primordia.experiments.experiment import Experiment
-    from primordia.experiments.outcome import Outcome
+    from primordia.experiments.campaign import Campaign
+    from primordia.experiments.dispatch import Result
+    from primordia.experiments.ending import Ending
     from primordia.experiments.plan import Job
-    from primordia.experiments.status import Status
+    from primordia.experiments.status import CampaignStatus
 
 
 @click.command(short_help="Run arms of many worlds on all cores.")
@@ -51,7 +51,7 @@ def experiment(
     each arm are cut into jobs; each job is a run of its own. The same command goes on where it was
     stopped or cut off, and does nothing twice. DIR is the directory of an experiment that has begun.
     """
-    from primordia.experiments.experiment import begin, planned
+    from primordia.experiments.campaign import begin, planned
 
     if as_json and not status:
         raise InputError("--json goes with --status")
@@ -63,14 +63,14 @@ def experiment(
     return _live_all(chosen, **options)
 
 
-def _show(chosen: "Experiment", as_json: bool) -> None:
+def _show(chosen: "Campaign", as_json: bool) -> None:
     if as_json:
         click.echo(json.dumps(chosen.status().to_dict()))
     else:
         show_status(chosen.status())
 
 
-def show_status(status: "Status") -> None:
+def show_status(status: "CampaignStatus") -> None:
     """Print the status of an experiment."""
     from rich.console import Console
 
@@ -79,25 +79,25 @@ def show_status(status: "Status") -> None:
     Console(highlight=False).print(table(status))
 
 
-def _live_one(chosen: "Experiment", number: int, checkpoint_every: float, device: str) -> None:
+def _live_one(chosen: "Campaign", number: int, checkpoint_every: float, device: str) -> None:
     """Live one job in this process, which has one core unless PRIMORDIA_CORES says more."""
     os.environ.setdefault(cores.VARIABLE, "1")
-    from primordia.experiments.job import outcome_of
+    from primordia.experiments.job import ending_of
 
     job = chosen.job(number)
-    outcome = outcome_of(chosen.plan, job, chosen.path, checkpoint_every, device)
-    if outcome.state == "stopped":
+    ending = ending_of(chosen.plan, job, chosen.path, checkpoint_every, device)
+    if ending.state == "stopped":
         report(f"stopped job {number}; the same command goes on with it")
         raise SystemExit(interrupts.STATUS)
-    if outcome.state == "elsewhere":
+    if ending.state == "elsewhere":
         raise InputError(f"job {number} is being run by another process")
-    if outcome.state == "failed":
-        report(f"job {number} ({job.arm}) failed: {outcome.error}")
+    if ending.state == "failed":
+        report(f"job {number} ({job.arm}) failed: {ending.error}")
         raise SystemExit(1)
 
 
 def _live_all(
-    chosen: "Experiment",
+    chosen: "Campaign",
     jobs: int | None,
     only: tuple[str, ...],
     ray: str | None,
@@ -105,7 +105,7 @@ def _live_all(
     **options: Any,
 ) -> None:
     from primordia.cli.campaign_view import watching
-    from primordia.experiments.campaign import live_all
+    from primordia.experiments.dispatch import live_all
     from primordia.experiments.places import place_for
 
     left = chosen.left(only)
@@ -120,12 +120,12 @@ def _live_all(
         click.echo(path)
 
 
-def _report_failure(job: "Job", outcome: "Outcome", again: bool) -> None:
+def _report_failure(job: "Job", ending: "Ending", again: bool) -> None:
     more = "; it is tried again" if again else ""
-    report(f"job {job.number} ({job.arm}) failed: {outcome.error}{more}")
+    report(f"job {job.number} ({job.arm}) failed: {ending.error}{more}")
 
 
-def _end_unless_done(chosen: "Experiment", result: "Result") -> None:
+def _end_unless_done(chosen: "Campaign", result: "Result") -> None:
     """Say what is not done, and exit."""
     if result.stopped:
         report(f"Stopped and saved. Go on with: primordia experiment {chosen.path}")

@@ -39,7 +39,7 @@ UNSATURATED = ("longest", "pace")
 
 
 @dataclass(frozen=True)
-class Arm:
+class ComparedArm:
     """One run of a comparison."""
 
     name: str
@@ -74,7 +74,7 @@ class Comparison:
     """Runs of one task side by side."""
 
     task: str
-    arms: tuple[Arm, ...]
+    arms: tuple[ComparedArm, ...]
     """the first is the reference"""
     age: int
     """age, in ticks, up to which lives count"""
@@ -97,7 +97,7 @@ class Comparison:
             if name not in useless and any(arm.measured[name].known.any() for arm in self.arms)
         }
 
-    def contrast(self, arm: Arm, outcome: str) -> Contrast:
+    def contrast(self, arm: ComparedArm, outcome: str) -> Contrast:
         """Return the contrast of a run with the reference in one of OUTCOMES."""
         return contrast(arm.measured[outcome], self.arms[0].measured[outcome])
 
@@ -107,7 +107,7 @@ class Comparison:
         whole = {name: getattr(self, name) for name in names}
         return {**whole, "runs": [self._arm(arm) for arm in self.arms]}
 
-    def _arm(self, arm: Arm) -> dict[str, Any]:
+    def _arm(self, arm: ComparedArm) -> dict[str, Any]:
         values: dict[str, Any] = {
             "name": arm.name,
             "settings": arm.settings,
@@ -168,7 +168,9 @@ def compare(
             "pace": dying.late,
             "food": gathered.late,
         }
-        arms.append(Arm(names[number], settings[number], measured, survived, dying, gathered))
+        arms.append(
+            ComparedArm(names[number], settings[number], measured, survived, dying, gathered)
+        )
     span = "second" if rate else "tick"
     return Comparison(configs[0].task, tuple(arms), age, begin, births, ticks, span)
 

@@ -7,7 +7,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from primordia.comparison.comparison import Arm, Comparison
+from primordia.comparison.comparison import ComparedArm, Comparison
 from primordia.comparison.contrast import Bounds, Contrast
 from primordia.comparison.resample import LEAST
 
@@ -38,7 +38,7 @@ def comparison_tables(compared: Comparison) -> str:
     return text.replace("\n\n\n", "\n\n").strip()
 
 
-def quartiles_text(arm: Arm, outcome: str) -> str:
+def quartiles_text(arm: ComparedArm, outcome: str) -> str:
     """Write the median, and the quartiles in brackets if they differ."""
     quartiles = (bounds_text(arm.measured[outcome].quantile(q)) for q in (0.25, 0.5, 0.75))
     q1, median, q3 = quartiles

@@ -1,94 +1,135 @@
-"""The loop over jobs: each is lived once, by a process that is free; one that fails is tried again."""
+"""A campaign: an experiment in its directory, with its jobs; begun, looked at, and gathered."""
 
-import queue
-from collections import Counter
-from collections.abc import Callable
-from concurrent.futures import Future
-from dataclasses import dataclass, field
-from typing import Protocol
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
 
-from primordia import interrupts
-from primordia.experiments.outcome import Outcome
-from primordia.experiments.plan import Job
+from primordia.comparison.comparison import differing
+from primordia.errors import InputError
+from primordia.experiments import file as files_of_users
+from primordia.experiments import plan as plans
+from primordia.experiments import results
+from primordia.experiments.ledger import Ledger
+from primordia.experiments.plan import Job, Plan
+from primordia.experiments.status import CampaignStatus, status
+from primordia.history.info import info
+from primordia.runs.opening import EXPERIMENT, opened
+from primordia.runs.records import Records
 
-ATTEMPTS = 3
-"""Times that a job is tried before it has failed."""
-MOMENT = 0.5
-"""Seconds from one look at the jobs to the next."""
-
-
-class Place(Protocol):
-    """Where jobs are lived."""
-
-    def submit(self, job: Job) -> Future[Outcome]:
-        """Let a job be lived as soon as there is room."""
-
-    def stop(self) -> None:
-        """Stop all jobs, each after a checkpoint if that is possible, and release everything."""
+RESULTS = "results"
+"""Name of the results in an experiment's directory, without what follows the dot."""
 
 
-@dataclass
-class Result:
-    """What became of all jobs."""
+class Campaign:
+    """An experiment in a directory."""
 
-    done: int = 0
-    failed: list[Outcome] = field(default_factory=list)
-    elsewhere: int = 0
-    """jobs that another process lives"""
-    stopped: bool = False
-    """a signal came before the end"""
+    def __init__(self, path: Path, plan: Plan) -> None:
+        """See `begin` and `recorded`."""
+        self.path, self.plan = path, plan
+        self.jobs = plan.jobs()
+        self._ledger = Ledger(path, self.jobs)
+
+    @property
+    def arms(self) -> dict[str, Path]:
+        """The folder of each arm's runs, by the name of the arm; the first is the reference."""
+        return {arm.name: self.path / arm.name for arm in self.plan.arms}
+
+    def job(self, number: int) -> Job:
+        """Return a job by its number; raise InputError if there is none."""
+        if not 0 <= number < len(self.jobs):
+            raise InputError(
+                f"{self.path} has no job {number}; they count from 0 to {len(self.jobs) - 1}"
+            )
+        return self.jobs[number]
+
+    def left(self, arms: Sequence[str] = ()) -> list[Job]:
+        """Return the jobs that are not done, of some arms or of all.
+
+        Raises:
+            InputError: there is no such arm.
+        """
+        names = {self.plan.arm(name).name for name in arms or self.arms}
+        return [
+            job for job in self.jobs if job.arm in names and self._ledger.entry(job).state != "done"
+        ]
+
+    def status(self) -> CampaignStatus:
+        """Return the states of the jobs and the figures of the arms so far."""
+        return status(self.plan, self._ledger.entries())
+
+    def opened(self) -> list[Records]:
+        """Open the runs of each arm for reading.
+
+        Raises:
+            InputError: nothing has lived in an arm yet.
+        """
+        for name, folder in self.arms.items():
+            if not folder.is_dir():
+                raise InputError(f"arm {name} of {self.path} has not begun yet")
+        return [opened([folder]) for folder in self.arms.values()]
+
+    def gather(self) -> list[Path]:
+        """Write the results of all arms -> the files; none if there is a single arm."""
+        if len(self.plan.arms) < 2:
+            return []
+        return results.write(self.path / RESULTS, self.plan.question, self.opened())
+
+    def info(self) -> dict[str, Any]:
+        """Return the question, the number of jobs in each state, and the worlds of each arm.
+
+        The settings of an arm are those in which the arms differ.
+        """
+        settings = differing([arm.config for arm in self.plan.arms])
+        arms = [
+            {"name": name, "settings": own, "worlds": _worlds(folder)}
+            for (name, folder), own in zip(self.arms.items(), settings, strict=True)
+        ]
+        return {"question": self.plan.question, "jobs": self.status().jobs, "arms": arms}
 
 
-def live_all(
-    jobs: list[Job],
-    place: Place,
-    look: Callable[[], object],
-    failed: Callable[[Job, Outcome, bool], object],
-) -> Result:
-    """Live jobs, and stop early if a signal comes.
+def _worlds(folder: Path) -> list[dict[str, Any]]:
+    """Return the worlds of an arm, as in the `info` of a run; those that have not begun are missing."""
+    try:
+        return list(info(opened([folder]))["worlds"])
+    except InputError:
+        return []
+
+
+def is_experiment(path: Path) -> bool:
+    """Return whether a path is the directory of an experiment."""
+    return (path / EXPERIMENT).is_file()
+
+
+def recorded(path: Path) -> Campaign:
+    """Return the experiment in a directory; raise InputError if there is none."""
+    return Campaign(path, plans.recorded(path))
+
+
+def planned(file: Path, out: Path | None = None) -> Campaign:
+    """Return the experiment of a file, or in a directory; nothing is written.
 
     Args:
-        jobs: those to be lived, in this order.
-        place: where.
-        look: called about twice a second.
-        failed: called with each job that fails, and whether it will be tried again.
+        file: an experiment's file, or the directory of one that has begun.
+        out: the directory; by default the file's name under `runs/`.
+
+    Raises:
+        InputError: something in the file is wrong, or the directory holds another experiment.
     """
-    ended: queue.SimpleQueue[tuple[Job, Future[Outcome]]] = queue.SimpleQueue()
-    result, tries = Result(), Counter[int]()
-
-    def submit(job: Job) -> None:
-        tries[job.number] += 1
-        place.submit(job).add_done_callback(lambda future: ended.put((job, future)))
-
-    with interrupts.noting() as noted, interrupts.deferred():
-        try:
-            for job in jobs:
-                submit(job)
-            while len(jobs) > result.done + len(result.failed) + result.elsewhere and not noted:
-                look()
-                for job, outcome in _ended(ended):
-                    if outcome.state == "failed":
-                        again = tries[job.number] < ATTEMPTS
-                        failed(job, outcome, again)
-                        if again:
-                            submit(job)
-                        else:
-                            result.failed.append(outcome)
-                    result.done += outcome.state == "done"
-                    result.elsewhere += outcome.state == "elsewhere"
-        finally:
-            place.stop()
-        result.stopped = bool(noted)
-    look()
-    return result
+    if is_experiment(file):
+        return recorded(file)
+    out = out if out is not None else Path("runs", file.stem)
+    plan = files_of_users.read(file, out)
+    plans.check(plan, out)
+    return Campaign(out, plan)
 
 
-def _ended(ended: queue.SimpleQueue) -> list[tuple[Job, Outcome]]:
-    """Return the jobs that have ended, after waiting for a moment if there are none."""
-    found = []
-    try:
-        found.append(ended.get(timeout=MOMENT))
-        while True:
-            found.append(ended.get_nowait())
-    except queue.Empty:
-        return [(job, future.result()) for job, future in found]
+def begin(file: Path, out: Path | None = None) -> Campaign:
+    """Return an experiment, and make its directory if it is new; see `planned`.
+
+    Raises:
+        InputError: see `planned`.
+        Trouble: the directory cannot be written.
+    """
+    chosen = planned(file, out)
+    plans.write(chosen.plan, chosen.path)
+    return chosen

@@ -27,7 +27,7 @@ from primordia import config
 from primordia.config import Config
 from primordia.errors import InputError
 from primordia.experiments import plan as plans
-from primordia.experiments.plan import RESERVED, Arm, Fork, Plan, Source
+from primordia.experiments.plan import RESERVED, ArmPlan, Fork, Plan, Source
 from primordia.runs import opening
 from primordia.runs.directory import read_config
 from primordia.settings.base import Settings
@@ -114,7 +114,7 @@ def _table(own: dict[str, Any], name: str, kind: type[Settings], file: Path) -> 
         raise InputError(f"{file}: {name}: {first_fault(error, kind)}") from None
 
 
-def _arm(shared: dict[str, Any], own: dict[str, Any], file: Path, complete: bool) -> Arm:
+def _arm(shared: dict[str, Any], own: dict[str, Any], file: Path, complete: bool) -> ArmPlan:
     """Return an arm with all its settings, checked as a whole.
 
     Args:
@@ -143,9 +143,9 @@ def _arm(shared: dict[str, Any], own: dict[str, Any], file: Path, complete: bool
     settings = replaced(chosen.model_dump(mode="json"), None, NONE)
     settings["ancestors"] = [str(Path(genomes).resolve()) for genomes in chosen.ancestors]
     try:
-        return Arm(name=name, settings=settings)
+        return ArmPlan(name=name, settings=settings)
     except ValidationError as error:
-        raise InputError(f"{file}: arm {name!r}: {first_fault(error, Arm)}") from None
+        raise InputError(f"{file}: arm {name!r}: {first_fault(error, ArmPlan)}") from None
 
 
 def _origin(fork: _ForkOf, file: Path, out: Path) -> tuple[dict[str, Any], Fork]:

@@ -9,9 +9,9 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
 
-from primordia import cores
+from primordia import cores, files
+from primordia.experiments.ending import Ending
 from primordia.experiments.job import note_failure
-from primordia.experiments.outcome import Outcome
 from primordia.experiments.plan import Job
 
 PATIENCE = 15.0
@@ -32,7 +32,7 @@ class Here:
         self._workers: list[subprocess.Popen[str]] = []
         self._threads = ThreadPoolExecutor(processes)
 
-    def submit(self, job: Job) -> Future[Outcome]:
+    def submit(self, job: Job) -> Future[Ending]:
         """Let a process live a job as soon as one is free."""
         return self._threads.submit(self._live, job)
 
@@ -53,7 +53,7 @@ class Here:
                 assert worker.stdin is not None
                 worker.stdin.close()
 
-    def _live(self, job: Job) -> Outcome:
+    def _live(self, job: Job) -> Ending:
         worker = getattr(self._own, "worker", None)
         if worker is None or worker.poll() is not None:
             worker = self._own.worker = self._started()
@@ -63,13 +63,14 @@ class Here:
             worker.stdin.write(f"{job.number}\n")
             worker.stdin.flush()
         if answer := worker.stdout.readline():
-            return Outcome(**json.loads(answer))
+            return Ending(**json.loads(answer))
         error = f"its process ended with status {worker.wait()}; see {self._out / LOG}"
         note_failure(job, self._out, error)
-        return Outcome(job.number, "failed", error)
+        return Ending(job.number, "failed", error)
 
     def _started(self) -> subprocess.Popen[str]:
         command = [sys.executable, "-P", "-m", "primordia.experiments.worker"]
+        files.check_output(self._out / LOG)
         with (self._out / LOG).open("a", encoding="utf-8") as log:
             worker = subprocess.Popen(
                 [*command, str(self._out), *self._arguments],

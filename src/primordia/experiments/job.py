@@ -9,8 +9,8 @@ from pathlib import Path
 from primordia import device as devices
 from primordia.config import Config
 from primordia.errors import InputError, InUseError, Trouble
-from primordia.experiments.ledger import Entry, Ledger, World
-from primordia.experiments.outcome import Outcome
+from primordia.experiments.ending import Ending
+from primordia.experiments.ledger import Entry, Ledger, WorldCounts
 from primordia.experiments.plan import Job, Plan
 from primordia.history.info import info
 from primordia.live.census import Census, Speed
@@ -60,25 +60,25 @@ def _live(plan: Plan, job: Job, out: Path, checkpoint_every: float, watch: "_Wat
         _go_on(run, config, checkpoint_every, watch)
 
 
-def outcome_of(
+def ending_of(
     plan: Plan, job: Job, out: Path, checkpoint_every: float = 60.0, device: str = "cpu"
-) -> Outcome:
+) -> Ending:
     """Live a job -> what became of it; a failure is noted for those who look on."""
     try:
         live(plan, job, out, checkpoint_every, device)
     except KeyboardInterrupt:
-        return Outcome(job.number, "stopped")
+        return Ending(job.number, "stopped")
     except InUseError:
-        return Outcome(job.number, "elsewhere")
+        return Ending(job.number, "elsewhere")
     except (InputError, Trouble, OSError) as error:
         note_failure(job, out, str(error))
-        return Outcome(job.number, "failed", str(error))
+        return Ending(job.number, "failed", str(error))
     except Exception as error:  # of the user's own code, or ours: the other jobs go on
         traceback.print_exc()
         text = f"{type(error).__name__}: {error}".splitlines()[0]
         note_failure(job, out, text)
-        return Outcome(job.number, "failed", text)
-    return Outcome(job.number, "done")
+        return Ending(job.number, "failed", text)
+    return Ending(job.number, "done")
 
 
 def note_failure(job: Job, out: Path, error: str) -> None:
@@ -108,9 +108,9 @@ def _go_on(run: Path, config: Config, checkpoint_every: float, watch: "_Watch") 
     loop.resume(run, limits, checkpoint_every=checkpoint_every, listen=watch)
 
 
-def _worlds(run: Archive) -> list[World]:
+def _worlds(run: Archive) -> list[WorldCounts]:
     return [
-        World(
+        WorldCounts(
             **{name: world[name] for name in ("seed", "ticks", "births", "deaths")},
             organism_ticks=world["organism_ticks"],
             saturated=world["saturation"] and world["saturation"]["tick"],
@@ -142,9 +142,9 @@ class _Watch:
         self._ledger.write(self._job, self._entry)
 
 
-def _counts(census: Census, world: int, seed: int) -> World:
+def _counts(census: Census, world: int, seed: int) -> WorldCounts:
     saturated = int(census.saturated[world])
-    return World(
+    return WorldCounts(
         seed=seed,
         ticks=int(census.tick[world]),
         births=int(census.births[world]),

@@ -22,7 +22,7 @@ SILENT = 600.0
 State = Literal["waiting", "running", "done", "failed"]
 
 
-class World(BaseModel):
+class WorldCounts(BaseModel):
     """The counts of a world."""
 
     model_config = ConfigDict(extra="forbid", strict=True)
@@ -45,7 +45,7 @@ class Entry(BaseModel):
     arm: str
     state: State = "waiting"
     error: str | None = None
-    worlds: list[World] = Field([])
+    worlds: list[WorldCounts] = Field([])
     rate: float | None = None
     """organism-ticks a second of the last seconds"""
     left_s: float | None = None
@@ -100,7 +100,7 @@ class Ledger:
             Trouble: it cannot be written.
         """
         entry.updated, entry.host, entry.process = time.time(), socket.gethostname(), os.getpid()
-        self._folder.mkdir(exist_ok=True)
+        files.own_folder(self._folder)
         files.replace_text(self._file(job), json.dumps(entry.model_dump()))
 
     def _file(self, job: Job) -> Path:

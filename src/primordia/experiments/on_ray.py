@@ -16,7 +16,7 @@ from typing import Any
 
 from primordia import cores
 from primordia.errors import InputError
-from primordia.experiments.outcome import Outcome
+from primordia.experiments.ending import Ending
 from primordia.experiments.plan import Job
 
 PATIENCE = 30.0
@@ -54,11 +54,11 @@ class OnRay:
             num_cpus=1, num_gpus=int(device == "gpu"), max_retries=-1, scheduling_strategy="SPREAD"
         )
         self._refs: list[Any] = []
-        self._futures: list[Future[Outcome]] = []
+        self._futures: list[Future[Ending]] = []
 
-    def submit(self, job: Job) -> Future[Outcome]:
+    def submit(self, job: Job) -> Future[Ending]:
         """Let a node live a job as soon as it has a free core."""
-        future: Future[Outcome] = Future()
+        future: Future[Ending] = Future()
         ref = self._task.remote(job.number, *self._arguments)
         ref.future().add_done_callback(lambda done: future.set_result(_outcome(job, done)))
         self._refs.append(ref)
@@ -138,24 +138,24 @@ def _sees(path: str) -> bool:
     return Path(path).exists()
 
 
-def _live(number: int, out: str, checkpoint_every: float, device: str) -> Outcome:
+def _live(number: int, out: str, checkpoint_every: float, device: str) -> Ending:
     """Live a job on a node; wait for a while if a node that has died still holds its lock."""
-    from primordia.experiments.job import outcome_of
+    from primordia.experiments.job import ending_of
     from primordia.experiments.plan import recorded
 
     plan, folder = recorded(Path(out)), Path(out)
     end = time.monotonic() + RELEASE
     while True:
-        outcome = outcome_of(plan, plan.jobs()[number], folder, checkpoint_every, device)
-        if outcome.state != "elsewhere" or time.monotonic() > end:
-            return outcome
+        ending = ending_of(plan, plan.jobs()[number], folder, checkpoint_every, device)
+        if ending.state != "elsewhere" or time.monotonic() > end:
+            return ending
         time.sleep(1.0)
 
 
-def _outcome(job: Job, done: "Future[Any]") -> Outcome:
+def _outcome(job: Job, done: "Future[Any]") -> Ending:
     """Return what became of a task, also if Ray itself gave it up."""
     with suppress(Exception):
-        return Outcome(*done.result())
+        return Ending(*done.result())
     error = done.exception()
     first = str(error).strip().partition("\n")[0]
-    return Outcome(job.number, "failed", f"{type(error).__name__}: {first}")
+    return Ending(job.number, "failed", f"{type(error).__name__}: {first}")

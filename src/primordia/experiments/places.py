@@ -4,7 +4,7 @@ from pathlib import Path
 
 from primordia import cores
 from primordia.errors import InputError
-from primordia.experiments.campaign import Place
+from primordia.experiments.dispatch import Place
 from primordia.experiments.here import Here
 from primordia.experiments.on_ray import OnRay
 

@@ -44,7 +44,7 @@ class Fork(Settings):
     sources: tuple[Source, ...] = Field(min_length=1, strict=False)
 
 
-class Arm(Settings):
+class ArmPlan(Settings):
     """An arm by its name and all settings of its worlds."""
 
     name: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9 ._+-]*$", max_length=100)]
@@ -78,9 +78,9 @@ class Plan(Settings):
     worlds: int = Field(ge=1)
     """worlds of a job"""
     fork: Fork | None = None
-    arms: tuple[Arm, ...] = Field(min_length=1, strict=False)
+    arms: tuple[ArmPlan, ...] = Field(min_length=1, strict=False)
 
-    def arm(self, name: str) -> Arm:
+    def arm(self, name: str) -> ArmPlan:
         """Return the arm of a name; raise InputError if there is none."""
         for each in self.arms:
             if each.name == name:
@@ -94,7 +94,7 @@ class Plan(Settings):
         in_turn = filter(None, chain.from_iterable(zip_longest(*by_arm)))
         return [Job(number, *values) for number, values in enumerate(in_turn)]
 
-    def _cut(self, arm: Arm) -> Iterator[tuple[int, int, str, str | None]]:
+    def _cut(self, arm: ArmPlan) -> Iterator[tuple[int, int, str, str | None]]:
         """Yield first world, number of worlds, folder and source of each of an arm's jobs."""
         worlds = int(arm.settings["seeds"])
         digits = len(str(worlds - 1))

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from primordia.comparison.resample import LEAST, interval, resamples
-from primordia.experiments.ledger import Entry, World
+from primordia.experiments.ledger import Entry, WorldCounts
 from primordia.experiments.plan import Plan
 
 STATES = ("done", "running", "failed", "waiting")
@@ -29,7 +29,7 @@ class ArmStatus:
 
 
 @dataclass(frozen=True)
-class Status:
+class CampaignStatus:
     """An experiment so far."""
 
     question: str
@@ -55,13 +55,13 @@ class Status:
         }
 
 
-def status(plan: Plan, entries: list[Entry]) -> Status:
+def status(plan: Plan, entries: list[Entry]) -> CampaignStatus:
     """Return the status of an experiment by the entries of its jobs."""
     states = Counter(entry.state for entry in entries)
-    worlds: dict[str, list[World]] = {arm.name: [] for arm in plan.arms}
+    worlds: dict[str, list[WorldCounts]] = {arm.name: [] for arm in plan.arms}
     for entry in entries:
         worlds[entry.arm] += entry.worlds
-    return Status(
+    return CampaignStatus(
         question=plan.question,
         jobs={state: states[state] for state in STATES},  # type: ignore[index]
         arms=tuple(
@@ -72,7 +72,7 @@ def status(plan: Plan, entries: list[Entry]) -> Status:
     )
 
 
-def _arm(name: str, count: int, worlds: list[World]) -> ArmStatus:
+def _arm(name: str, count: int, worlds: list[WorldCounts]) -> ArmStatus:
     lives = np.array([world.organism_ticks / max(world.deaths, 1) for world in worlds])
     saturated = sum(world.saturated is not None for world in worlds)
     median = float(np.median(lives)) if len(lives) else None

@@ -29,15 +29,15 @@ def main() -> None:
     lines: Lines = queue.SimpleQueue()
     threading.Thread(target=_read, args=(lines,), daemon=True).start()
 
-    from primordia.experiments.job import outcome_of
+    from primordia.experiments.job import ending_of
     from primordia.experiments.plan import recorded
 
     plan = recorded(out)
     jobs = plan.jobs()
     while line := lines.get():
-        outcome = outcome_of(plan, jobs[int(line)], out, checkpoint_every, device)
-        answers.write(json.dumps(outcome._asdict()) + "\n")
-        if outcome.state == "stopped":
+        ending = ending_of(plan, jobs[int(line)], out, checkpoint_every, device)
+        answers.write(json.dumps(ending._asdict()) + "\n")
+        if ending.state == "stopped":
             break
 
 

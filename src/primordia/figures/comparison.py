@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator
 
-from primordia.comparison.comparison import Arm, Comparison
+from primordia.comparison.comparison import ComparedArm, Comparison
 from primordia.comparison.resample import LEAST
 from primordia.figures import style
 
@@ -73,7 +73,7 @@ def line_styles(arms: int) -> list[dict[str, Any]]:
     return [{"color": colour} for colour in (style.INK, *map(to_hex, shades[: arms - 1]))]
 
 
-def _styled(compared: Comparison) -> Iterator[tuple[Arm, dict[str, Any]]]:
+def _styled(compared: Comparison) -> Iterator[tuple[ComparedArm, dict[str, Any]]]:
     return zip(compared.arms, line_styles(len(compared.arms)), strict=True)
 
 
@@ -133,7 +133,9 @@ def _gathering(axes: Axes, compared: Comparison) -> None:
     axes.set_title(f"Food gathered in a {compared.span}")
 
 
-def _over_time(axes: Axes, compared: Comparison, curve: Callable[[Arm], np.ndarray]) -> None:
+def _over_time(
+    axes: Axes, compared: Comparison, curve: Callable[[ComparedArm], np.ndarray]
+) -> None:
     """Draw the median of the curves (W, WINDOWS) of each run; a few runs get the curve of every world."""
     few, edges = len(compared.arms) <= FEW_ARMS, compared.arms[0].pace.edges
     middle = (edges[1:] + edges[:-1]) / 2

@@ -3,7 +3,7 @@
 from typing import Literal, NamedTuple
 
 
-class Outcome(NamedTuple):
+class Ending(NamedTuple):
     """What became of a job that was to be lived."""
 
     job: int

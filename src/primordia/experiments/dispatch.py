@@ -1,0 +1,94 @@
+"""The loop over jobs: each is lived once, by a process that is free; one that fails is tried again."""
+
+import queue
+from collections import Counter
+from collections.abc import Callable
+from concurrent.futures import Future
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from primordia import interrupts
+from primordia.experiments.ending import Ending
+from primordia.experiments.plan import Job
+
+ATTEMPTS = 3
+"""Times that a job is tried before it has failed."""
+MOMENT = 0.5
+"""Seconds from one look at the jobs to the next."""
+
+
+class Place(Protocol):
+    """Where jobs are lived."""
+
+    def submit(self, job: Job) -> Future[Ending]:
+        """Let a job be lived as soon as there is room."""
+
+    def stop(self) -> None:
+        """Stop all jobs, each after a checkpoint if that is possible, and release everything."""
+
+
+@dataclass
+class Result:
+    """What became of all jobs."""
+
+    done: int = 0
+    failed: list[Ending] = field(default_factory=list)
+    elsewhere: int = 0
+    """jobs that another process lives"""
+    stopped: bool = False
+    """a signal came before the end"""
+
+
+def live_all(
+    jobs: list[Job],
+    place: Place,
+    look: Callable[[], object],
+    failed: Callable[[Job, Ending, bool], object],
+) -> Result:
+    """Live jobs, and stop early if a signal comes.
+
+    Args:
+        jobs: those to be lived, in this order.
+        place: where.
+        look: called about twice a second.
+        failed: called with each job that fails, and whether it will be tried again.
+    """
+    ended: queue.SimpleQueue[tuple[Job, Future[Ending]]] = queue.SimpleQueue()
+    result, tries = Result(), Counter[int]()
+
+    def submit(job: Job) -> None:
+        tries[job.number] += 1
+        place.submit(job).add_done_callback(lambda future: ended.put((job, future)))
+
+    with interrupts.noting() as noted, interrupts.deferred():
+        try:
+            for job in jobs:
+                submit(job)
+            while len(jobs) > result.done + len(result.failed) + result.elsewhere and not noted:
+                look()
+                for job, ending in _ended(ended):
+                    if ending.state == "failed":
+                        again = tries[job.number] < ATTEMPTS
+                        failed(job, ending, again)
+                        if again:
+                            submit(job)
+                        else:
+                            result.failed.append(ending)
+                    result.done += ending.state == "done"
+                    result.elsewhere += ending.state == "elsewhere"
+        finally:
+            place.stop()
+        result.stopped = bool(noted)
+    look()
+    return result
+
+
+def _ended(ended: queue.SimpleQueue) -> list[tuple[Job, Ending]]:
+    """Return the jobs that have ended, after waiting for a moment if there are none."""
+    found = []
+    try:
+        found.append(ended.get(timeout=MOMENT))
+        while True:
+            found.append(ended.get_nowait())
+    except queue.Empty:
+        return [(job, future.result()) for job, future in found]
