@@ -184,6 +184,11 @@ class Archive(Records):
         stored = checkpoint.origin(self.path, self.fault_in)
         return None if stored is None else self.arrays_of(stored)
 
+    def release(self) -> None:
+        """Forget the arrays and the lives, which are read again at their next use."""
+        for name in ("state", "origin", "lives", "count", "ends", "metrics"):
+            self.__dict__.pop(name, None)
+
     def arrays_of(self, stored: Checkpoint) -> Arrays:
         """Open the arrays of a checkpoint of this run; each is checked when it is first read.
 

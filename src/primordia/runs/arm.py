@@ -7,7 +7,7 @@ digest whether it was lived alone or beside others.
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import pyarrow as pa
@@ -26,6 +26,8 @@ from primordia.runs.manifest import Progress
 from primordia.runs.records import Records
 from primordia.settings.tables import flat
 
+WORLDS = "world.worlds."
+"""Beginning of the names of arrays that have a row for each world, not for each cell."""
 MOST = 2**16
 """Largest number of worlds that are read as one."""
 
@@ -92,24 +94,28 @@ class Arm(Records):
     @cached_property
     def state(self) -> Mapping[str, np.ndarray]:
         """The arrays of all states, joined, without the open tails."""
-        return _Joined([run.state for run in self.runs])
+        return _Joined(self.runs, "state")
 
     @cached_property
     def origin(self) -> Mapping[str, np.ndarray] | None:
         """The arrays that the forks began with, joined; None if these are no forks."""
-        origins = [run.origin for run in self.runs]
-        return _Joined([each for each in origins if each is not None]) if all(origins) else None
+        return None if self.config.fork is None else _Joined(self.runs, "origin")
 
     @cached_property
     def lives(self) -> Lives:
         """All lives of all runs."""
-        return joined([run.lives for run in self.runs], self._firsts)
+        each = []
+        for run in self.runs:
+            each.append(run.lives)
+            run.release()
+        return joined(each, self._firsts)
 
     def segments(self, name: str, columns: Sequence[str] | None = None) -> Iterator[pa.Table]:
         """Read a table run by run; see `Records.table`."""
         for first, run in zip(self._firsts.tolist(), self.runs, strict=True):
             for part in run.segments(name, columns):
                 yield _shifted(part, first)
+            run.release()
 
     def admit(self, *parts: str) -> None:
         """Let the user's own code be imported, which is the same in all runs."""
@@ -132,19 +138,37 @@ class Arm(Records):
 
 
 class _Joined(Mapping[str, np.ndarray]):
-    """The arrays of several states by name, each joined along its first axis when first read."""
+    """The arrays of several states by name, joined along their first axis.
 
-    def __init__(self, states: Sequence[Mapping[str, np.ndarray]]) -> None:
-        self._states = states
-        self._names = [name for name in states[0] if not name.startswith("tail.")]
+    Those of worlds are read in one pass over the runs, and all others in another.
+    """
+
+    def __init__(self, runs: Sequence[Archive], which: Literal["state", "origin"]) -> None:
+        self._runs, self._which = runs, which
+        self._names = [name for name in self._of(runs[0]) if not name.startswith("tail.")]
         self._read: dict[str, np.ndarray] = {}
 
     def __getitem__(self, name: str) -> np.ndarray:
         if name not in self._names:
             raise KeyError(name)
         if name not in self._read:
-            self._read[name] = np.concatenate([state[name] for state in self._states])
+            own = name.startswith(WORLDS)
+            self._read |= self._joined([n for n in self._names if n.startswith(WORLDS) == own])
         return self._read[name]
+
+    def _joined(self, names: list[str]) -> dict[str, np.ndarray]:
+        parts: dict[str, list[np.ndarray]] = {name: [] for name in names}
+        for run in self._runs:
+            stored = self._of(run)
+            for name, arrays in parts.items():
+                arrays.append(stored[name])
+            run.release()
+        return {name: np.concatenate(arrays) for name, arrays in parts.items()}
+
+    def _of(self, run: Archive) -> Mapping[str, np.ndarray]:
+        stored = run.state if self._which == "state" else run.origin
+        assert stored is not None
+        return stored
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._names)
