@@ -23,7 +23,7 @@ LAYERS = [
     {"history"},
     {"organism"},
     {"comparison"},
-    {"figures", "live"},
+    {"figures", "live", "tracking"},
     {"experiments"},
     {"api", "testing"},
     {"cli"},

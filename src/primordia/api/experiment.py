@@ -9,6 +9,7 @@ from primordia.comparison.comparison import Comparison, compare
 from primordia.experiments import campaign
 from primordia.experiments.status import CampaignStatus
 from primordia.runs.records import Records
+from primordia.tracking.track import Sources
 
 
 class Experiment(Run):
@@ -28,9 +29,8 @@ class Experiment(Run):
         return {name: Run(folder) for name, folder in self._recorded().arms.items()}
 
     def directories(self) -> tuple[Path, ...]:
-        """Return the directories of the runs that have begun."""
-        arms = (arm for arm in self.arms.values() if arm.path.is_dir())
-        return tuple(path for arm in arms for path in arm.directories())
+        """Return the directories of the runs that have a checkpoint."""
+        return tuple(path for runs in self._recorded().runs().values() for path in runs)
 
     def records(self) -> list[Records]:
         """Open the records of each arm for reading."""
@@ -61,6 +61,13 @@ class Experiment(Run):
             for path in arm.plot(folder / name, world, figures)
         ]
         return [*save(self.compare(), folder), *drawn]
+
+    def sources(self) -> Sources:
+        """Return the directories of the runs of each arm, and whether there are jobs left."""
+        recorded = self._recorded()
+        jobs, runs = recorded.status().jobs, recorded.runs()
+        named = {name if len(runs) > 1 else "": paths for name, paths in runs.items()}
+        return Sources(named, jobs["running"] + jobs["waiting"] > 0)
 
     def _recorded(self) -> campaign.Campaign:
         return campaign.recorded(self.path)

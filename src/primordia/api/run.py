@@ -16,13 +16,14 @@ from primordia.organism.evaluation import Evaluation, evaluate
 from primordia.organism.export import export
 from primordia.organism.organism import Organism
 from primordia.organism.policy import Policy
-from primordia.runs import loop, opening
+from primordia.runs import directory, loop, opening
 from primordia.runs.archive import Archive
 from primordia.runs.fork import fork
 from primordia.runs.lives import Lives
 from primordia.runs.loop import Listener
 from primordia.runs.records import Records
 from primordia.runs.verify import verify
+from primordia.tracking.track import Sources, track
 
 
 @dataclass(frozen=True)
@@ -102,6 +103,17 @@ class Run:
         from primordia.figures.plot import plot  # Matplotlib takes a second to load
 
         return plot(self.opened(), Path(out) if out is not None else None, world, figures)
+
+    def track(
+        self, tensorboard: str | Path | None = None, wandb: str | Path | None = None, **options: Any
+    ) -> None:
+        """Write the metrics for TensorBoard or Weights & Biases; see `tracking.track`."""
+        track(self.sources, self.path.resolve().name, tensorboard, wandb, **options)
+
+    def sources(self) -> Sources:
+        """Return the directories of the runs, and whether a process goes on with one of them."""
+        paths = self.directories()
+        return Sources({"": paths}, any(map(directory.is_written, paths)))
 
     def fork(
         self,

@@ -13,6 +13,7 @@ from primordia.experiments.ledger import Ledger
 from primordia.experiments.plan import Job, Plan
 from primordia.experiments.status import CampaignStatus, status
 from primordia.history.info import info
+from primordia.runs import checkpoint
 from primordia.runs.opening import EXPERIMENT, opened
 from primordia.runs.records import Records
 
@@ -33,6 +34,14 @@ class Campaign:
     def arms(self) -> dict[str, Path]:
         """The folder of each arm's runs, by the name of the arm; the first is the reference."""
         return {arm.name: self.path / arm.name for arm in self.plan.arms}
+
+    def runs(self) -> dict[str, list[Path]]:
+        """Return the directories of the runs of each arm that have a checkpoint, by the arm's name."""
+        runs: dict[str, list[Path]] = {name: [] for name in self.arms}
+        for job in self.jobs:
+            if checkpoint.exists(path := self.path / job.folder):
+                runs[job.arm].append(path)
+        return runs
 
     def job(self, number: int) -> Job:
         """Return a job by its number; raise InputError if there is none."""

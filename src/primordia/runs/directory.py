@@ -1,5 +1,6 @@
 """A run's directory: settings, versions, description, the genomes it starts from, and its lock."""
 
+import fcntl
 import json
 import os
 from collections.abc import Callable, Iterator
@@ -26,6 +27,8 @@ FORMAT = 2
 """of run directories; others are refused"""
 VERSIONS, LOCK = "versions.json", "lock"
 FOLDERS = (*TABLES, checkpoint.FOLDER)
+GLANCE = 0.05
+"""Seconds in which a lock becomes free that `is_written` holds in another process, for a moment."""
 OWN = (VERSIONS, *FOLDERS, code.FOLDER, checkpoint.ORIGIN, *INPUTS, LOCK)
 """What a new run's directory holds."""
 
@@ -201,7 +204,7 @@ def locked(run: Path) -> Iterator[None]:
     files.check_output(run / LOCK)
     lock = FileLock(run / LOCK)
     try:
-        lock.acquire(timeout=0)
+        lock.acquire(timeout=GLANCE, poll_interval=GLANCE / 4)
     except Timeout:
         raise InUseError(f"{run} is being written by another process") from None
     except OSError as error:
@@ -210,6 +213,21 @@ def locked(run: Path) -> Iterator[None]:
         yield
     finally:
         lock.release()
+
+
+def is_written(run: Path) -> bool:
+    """Return whether a process holds the run's lock; nothing is written, and no writer is refused."""
+    try:
+        handle = os.open(run / LOCK, os.O_RDONLY)
+    except OSError:
+        return False
+    try:
+        fcntl.flock(handle, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    finally:
+        os.close(handle)
+    return False
 
 
 @contextmanager

@@ -1,0 +1,67 @@
+"""The command `primordia track`: metrics for dashboards."""
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from primordia import interrupts
+from primordia.cli.flags import runs_argument
+from primordia.cli.streams import report
+
+
+@click.command(short_help="Write metrics for TensorBoard or W&B.")
+@runs_argument
+@click.option(
+    "--tensorboard", type=click.Path(path_type=Path), metavar="DIR", help="Folder for TensorBoard."
+)
+@click.option(
+    "--wandb",
+    type=click.Path(path_type=Path),
+    metavar="DIR",
+    help="Folder for Weights & Biases, in its offline format.",
+)
+@click.option("--follow", is_flag=True, help="Go on until the runs have stopped, or Ctrl-C.")
+@click.option(
+    "--every",
+    type=float,
+    default=30.0,
+    show_default=True,
+    metavar="SECONDS",
+    help="With --follow: time from one look to the next.",
+)
+def track(
+    runs: tuple[Path, ...], tensorboard: Path | None, wandb: Path | None, **options: Any
+) -> None:
+    """Write the metrics of a run, several runs as one arm, or an experiment for dashboards.
+
+    Each column of the table `metrics` becomes a series over ticks, and each world a run of the
+    dashboard, such as seed-3. The RUN is read as of its newest checkpoint, and is not disturbed. What an
+    earlier call wrote of the same worlds is replaced.
+    """
+    from primordia.api import load
+
+    shown: list[int] = []
+
+    def say(rows: int) -> None:
+        if rows and not shown:
+            shown.append(rows)
+            for line in _how_to_look(tensorboard, wandb):
+                click.echo(line)
+
+    try:
+        load(runs).track(tensorboard, wandb, seen=say, **options)
+    except KeyboardInterrupt:
+        report("stopped; what was read until now is written")
+        raise SystemExit(interrupts.STATUS) from None
+
+
+def _how_to_look(tensorboard: Path | None, wandb: Path | None) -> list[str]:
+    ways = {
+        "tensorboard --logdir {}": tensorboard,
+        "wandb sync {}/wandb/offline-run-*": wandb,
+    }
+    return [f"Look at it with: {way.format(folder)}" for way, folder in ways.items() if folder]
+
+
+COMMANDS = (track,)

@@ -1,0 +1,119 @@
+"""The rows of metrics of several runs, read again and again while these go on; each is given once."""
+
+import hashlib
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pyarrow.compute as pc
+
+from primordia import files
+from primordia.brains.genomes import FOUNDERS
+from primordia.errors import Trouble
+from primordia.runs import checkpoint
+from primordia.runs.archive import Archive
+
+Row = dict[str, Any]
+"""A row of metrics: `tick`, and the values of all other columns by name."""
+Version = tuple[str, int] | None
+"""Name and time of the newest checkpoint of a run; None if it has none."""
+
+
+@dataclass(frozen=True)
+class World:
+    """A world as dashboards name it."""
+
+    name: str
+    """such as `seed-3`, or `heredity/seed-3` in one of several arms"""
+    identity: str
+    """16 hexadecimal digits that follow from all that the world's life follows from"""
+    group: str
+    """the name that all worlds share which are looked at together"""
+    settings: dict[str, Any]
+
+
+class Reader:
+    """The rows of metrics of several runs."""
+
+    def __init__(self, group: str) -> None:
+        """Begin to read for dashboards on which all worlds are of one group."""
+        self._group = group
+        self._given: dict[str, int] = {}
+        """last tick of each world whose row was given"""
+        self._seen: dict[Path, Version] = {}
+        """newest checkpoint of each run when it was last read"""
+        self._fault_in = cache(files.fault_in)
+        """no file is read twice; that of a segment never changes"""
+
+    def new(
+        self, runs: Mapping[str, Sequence[Path]], patient: bool
+    ) -> Iterator[tuple[World, list[Row]]]:
+        """Read the runs as of their newest checkpoints -> each world that has new rows, with these.
+
+        A run that was cut off goes on from an earlier tick and repeats its rows to the last bit; these
+        are not new.
+
+        Args:
+            runs: directories of runs by arm; "" names an arm that is alone.
+            patient: leave out for this time a run that has no checkpoint, or none that is whole: its
+                writer may have removed what is being read.
+
+        Raises:
+            InputError: a directory holds no run.
+            Trouble: a run is damaged.
+        """
+        for arm, paths in runs.items():
+            for path in paths:
+                try:
+                    version = _version(path)
+                    if (patient or path in self._seen) and version == self._seen.get(path):
+                        continue  # it has no checkpoint yet, or none since the last look
+                    found = list(self._of_run(arm, path))
+                except (Trouble, OSError):
+                    if not patient:
+                        raise
+                    continue
+                self._seen[path] = version
+                for world, rows in found:
+                    self._given[world.identity] = rows[-1]["tick"]
+                    yield world, rows
+
+    def _of_run(self, arm: str, path: Path) -> Iterator[tuple[World, list[Row]]]:
+        run = Archive(path)
+        run.fault_in = self._fault_in
+        metrics, identity = run.metrics, _identity(run, arm)
+        for number, seed in enumerate(run.world_seeds.tolist()):
+            world = self._world(run, arm, seed, identity)
+            after = self._given.get(world.identity, -1)
+            fresh = (pc.field("world") == number) & (pc.field("tick") > after)
+            if rows := metrics.filter(fresh).drop_columns("world").to_pylist():
+                yield world, rows
+
+    def _world(self, run: Archive, arm: str, seed: int, identity: str) -> World:
+        return World(
+            name=f"{arm}/seed-{seed}" if arm else f"seed-{seed}",
+            identity=hashlib.sha256(f"{identity} {seed}".encode()).hexdigest()[:16],
+            group=self._group,
+            settings={**_settings(run), "seed": seed},
+        )
+
+
+def _version(path: Path) -> Version:
+    folders = checkpoint.numbered(path)
+    return (folders[-1].name, folders[-1].stat().st_mtime_ns) if folders else None
+
+
+def _settings(run: Archive) -> dict[str, Any]:
+    """Return the settings of a run that all worlds of its arm have in common."""
+    return run.config.model_dump(mode="json", exclude={"seed", "seeds"})
+
+
+def _identity(run: Archive, arm: str) -> str:
+    """Return a text that differs for runs of other worlds, wherever they are; limits do not count."""
+    settings = {name: value for name, value in _settings(run).items() if name != "stop"}
+    begun = (run.path / FOUNDERS, run.path / checkpoint.ORIGIN / checkpoint.MANIFEST)
+    seals = [files.seal(path)["sha256"] for path in begun if path.exists()]
+    return json.dumps([arm, settings, run.description.model_dump(mode="json"), seals])

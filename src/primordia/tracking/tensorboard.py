@@ -1,0 +1,86 @@
+"""Event files for TensorBoard: a run of it, which is a folder, for each world.
+
+FOLDER/seed-3/events.out.tfevents.TIME.HOST.primordia-IDENTITY
+
+A file is known by the world's identity, so that another call replaces the files of the same world alone.
+"""
+
+import time
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from primordia import files
+from primordia.errors import InputError, Trouble
+from primordia.tracking.reader import Row, World
+
+
+class TensorBoard:
+    """A folder that `tensorboard --logdir` shows; values are kept in single precision there."""
+
+    def __init__(self, folder: Path) -> None:
+        """Prepare to write into a folder; nothing is made yet.
+
+        Raises:
+            InputError: tensorboardX is not installed.
+        """
+        try:
+            from tensorboardX.event_file_writer import EventsWriter
+            from tensorboardX.proto.event_pb2 import Event
+            from tensorboardX.proto.summary_pb2 import Summary
+        except ImportError:
+            raise InputError(
+                "--tensorboard needs tensorboardX: pip install 'primordia[tensorboard]'"
+            ) from None
+        self._writer_at, self._event, self._summary = EventsWriter, Event, Summary
+        self._folder = folder
+        self._open: dict[str, Any] = {}
+
+    def add(self, world: World, rows: list[Row]) -> None:
+        """Append rows of a world, with the time of now; at the first call, replace its earlier files.
+
+        Raises:
+            InputError: the world's folder holds files of others.
+            Trouble: it cannot be written.
+        """
+        try:
+            if world.identity not in self._open:
+                self._open[world.identity] = self._begun(world)
+            writer, now = self._open[world.identity], time.time()
+            for row in rows:
+                writer.write_event(self._event_of(row, now))
+            writer.flush()
+        except OSError as error:
+            raise Trouble(
+                f"{self._folder / world.name} cannot be written: {error.strerror or error}"
+            ) from None
+
+    def finish(self) -> None:
+        """Close all files."""
+        while self._open:
+            _, writer = self._open.popitem()
+            with suppress(OSError):  # all rows were flushed by `add`
+                writer.close()
+
+    def close(self) -> None:
+        """Close all files."""
+        self.finish()
+
+    def _begun(self, world: World) -> Any:
+        folder, ending = self._folder / world.name, f".primordia-{world.identity}"
+        files.own_folder(folder)
+        earlier = sorted(folder.iterdir())
+        for path in earlier:
+            if not (path.name.startswith("events.out.tfevents.") and path.name.endswith(ending)):
+                raise InputError(f"{path} is not of this world; choose another --tensorboard")
+        for path in earlier:
+            files.remove(path)
+        return self._writer_at(str(folder / "events"), ending)
+
+    def _event_of(self, row: Row, now: float) -> Any:
+        values = [
+            self._summary.Value(tag=name, simple_value=value)
+            for name, value in row.items()
+            if name != "tick"
+        ]
+        return self._event(wall_time=now, step=row["tick"], summary=self._summary(value=values))
