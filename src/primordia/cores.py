@@ -4,6 +4,8 @@ Processors are not pinned: the system moves a process to a core that is free.
 """
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 from primordia.errors import InputError
 
@@ -25,6 +27,18 @@ def count() -> int:
     if not (given.isascii() and given.isdecimal() and int(given)):
         raise InputError(f"{VARIABLE}: a number of cores, 1 or more, not {given!r}")
     return int(given)
+
+
+@contextmanager
+def one_unless_given() -> Iterator[None]:
+    """Let this process use one core in a `with` block, unless PRIMORDIA_CORES says otherwise."""
+    given = VARIABLE in os.environ
+    os.environ.setdefault(VARIABLE, "1")
+    try:
+        yield
+    finally:
+        if not given:
+            del os.environ[VARIABLE]
 
 
 def available() -> int:

@@ -1,7 +1,6 @@
 """The command `primordia experiment`: arms of many worlds, as jobs on all cores or on a cluster."""
 
 import json
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -81,11 +80,11 @@ def show_status(status: "CampaignStatus") -> None:
 
 def _live_one(chosen: "Campaign", number: int, checkpoint_every: float, device: str) -> None:
     """Live one job in this process, which has one core unless PRIMORDIA_CORES says more."""
-    os.environ.setdefault(cores.VARIABLE, "1")
     from primordia.experiments.job import ending_of
 
     job = chosen.job(number)
-    ending = ending_of(chosen.plan, job, chosen.path, checkpoint_every, device)
+    with cores.one_unless_given():
+        ending = ending_of(chosen.plan, job, chosen.path, checkpoint_every, device)
     if ending.state == "stopped":
         report(f"stopped job {number}; the same command goes on with it")
         raise SystemExit(interrupts.STATUS)
