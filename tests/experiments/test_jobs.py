@@ -157,7 +157,7 @@ def test_a_job_that_fails_stops_nobody_else(tmp_path: Path) -> None:
     assert lines[0].startswith("primordia: job 2 (mild) failed: ")
     assert lines[0].endswith("; it is tried again")
     assert len(lines) == 4
-    assert lines[-1].endswith("1 jobs failed; the same command tries them again")
+    assert lines[-1].endswith("1 job failed; the same command tries again")
     told = json.loads(here("experiment", out, "--status", "--json").stdout)
     assert told["jobs"] == {"done": 3, "running": 0, "failed": 1, "waiting": 0}
     assert [entry["job"] for entry in told["failed"]] == [2]
@@ -191,7 +191,7 @@ def test_some_arms_are_run_alone(tmp_path: Path) -> None:
     file, out = write(tmp_path), tmp_path / "out"
     done = here("experiment", file, "--out", out, "--only", "harsh", "--jobs", 1)
     assert done.returncode == 0
-    assert "2 jobs of other arms are not done yet" in done.stderr
+    assert "2 jobs of other arms not done yet" in done.stderr
     assert begin(out).status().jobs["done"] == 2
     assert not (out / "mild").exists()
     complains(here("compare", out), 2, f"arm mild of {out} has not begun yet")

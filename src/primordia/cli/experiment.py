@@ -114,7 +114,7 @@ def _live_all(
             result = live_all(left, place, look, _report_failure)
         _end_unless_done(chosen, result)
     if chosen.left():
-        return report(f"{len(chosen.left()):,} jobs of other arms are not done yet")
+        return report(f"{_jobs(len(chosen.left()))} of other arms not done yet")
     for path in chosen.gather():
         click.echo(path)
 
@@ -130,11 +130,15 @@ def _end_unless_done(chosen: "Campaign", result: "Result") -> None:
         report(f"Stopped and saved. Go on with: primordia experiment {chosen.path}")
         raise SystemExit(interrupts.STATUS)
     if result.failed:
-        report(f"{len(result.failed):,} jobs failed; the same command tries them again")
+        report(f"{_jobs(len(result.failed))} failed; the same command tries again")
         raise SystemExit(1)
     if result.elsewhere:
-        report(f"{result.elsewhere:,} jobs are run by other processes; --status shows them")
+        report(f"{_jobs(result.elsewhere)} under way in other processes; see --status")
         raise SystemExit(0)
+
+
+def _jobs(count: int) -> str:
+    return "1 job" if count == 1 else f"{count:,} jobs"
 
 
 COMMANDS = (experiment,)
