@@ -6,6 +6,9 @@ import os
 import random
 import shutil
 import signal
+import subprocess
+import sys
+from concurrent.futures import Future
 from pathlib import Path
 
 import pytest
@@ -14,8 +17,11 @@ import primordia
 from primordia.experiments import here as on_cores
 from primordia.experiments import job as jobs
 from primordia.experiments.campaign import Campaign, begin
+from primordia.experiments.dispatch import live_all
 from primordia.experiments.ending import Ending
+from primordia.experiments.plan import Job
 from primordia.runs import loop
+from tests import commands, toys
 from tests.commands import complains, here
 from tests.experiments.meadows import write
 
@@ -207,3 +213,49 @@ def test_a_job_that_another_process_lives_is_left_to_it(tmp_path: Path) -> None:
     with directory.locked(run):
         assert jobs.ending_of(chosen.plan, chosen.jobs[0], chosen.path).state == "elsewhere"
         complains(here("experiment", chosen.path, "--job", 0), 2, "run by another process")
+
+
+def test_a_job_whose_process_alone_is_stopped_goes_on(tmp_path: Path) -> None:
+    """A place that stops each job once; the loop ends when all are done."""
+    stopped: set[int] = set()
+
+    class Restless:
+        def submit(self, job: Job) -> Future[Ending]:
+            future: Future[Ending] = Future()
+            future.set_result(Ending(job.number, "done" if job.number in stopped else "stopped"))
+            stopped.add(job.number)
+            return future
+
+        def stop(self) -> None: ...
+
+    chosen = begin(write(tmp_path), tmp_path / "out")
+    result = live_all(chosen.jobs, Restless(), lambda: None, lambda *_: None)
+    assert (result.done, result.stopped) == (4, False)
+
+
+def test_code_of_a_folder_from_elsewhere_is_not_executed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its author has begun the job. Where its module is not found, nobody has trusted it."""
+    (tmp_path / "author").mkdir()
+    monkeypatch.chdir(tmp_path / "author")
+    source = (Path(toys.__file__)).read_text(encoding="utf-8")
+    Path("strange_toys.py").write_text(source, encoding="utf-8")
+    file = write(Path(), arms=[{"name": "all", "habitat": {"name": "strange_toys:Meadow"}}])
+    chosen = begin(file, tmp_path / "out")
+    job, config = chosen.jobs[0], jobs.configuration(chosen.plan, chosen.jobs[0])
+    stop = config.stop.model_copy(update={"ticks": 5})
+    loop.start(config.model_copy(update={"stop": stop}), chosen.path / job.folder)
+    (tmp_path / "reader").mkdir()
+    Path("strange_toys.py").unlink()
+    script = (
+        "import sys; from primordia.cli import main;"
+        f"sys.argv = ['primordia', 'experiment', {str(chosen.path)!r}, '--job', '0']; main()"
+    )
+    here_ = {**commands.environment(commands.CACHE), "XDG_STATE_HOME": str(tmp_path / "state")}
+    done = subprocess.run(
+        [sys.executable, "-P", "-c", script], cwd=tmp_path / "reader", env=here_,
+        capture_output=True, text=True,
+    )  # fmt: skip
+    assert done.returncode == 1
+    assert "executes code that is not of an installed package" in done.stderr

@@ -74,6 +74,8 @@ def live_all(
                             submit(job)
                         else:
                             result.failed.append(ending)
+                    if ending.state == "stopped" and not noted:
+                        submit(job)  # its process alone got a signal
                     result.done += ending.state == "done"
                     result.elsewhere += ending.state == "elsewhere"
         finally:

@@ -31,6 +31,7 @@ class Here:
         self._own = threading.local()
         self._workers: list[subprocess.Popen[str]] = []
         self._threads = ThreadPoolExecutor(processes)
+        self._starting, self._stopping = threading.Lock(), False
 
     def submit(self, job: Job) -> Future[Ending]:
         """Let a process live a job as soon as one is free."""
@@ -38,6 +39,8 @@ class Here:
 
     def stop(self) -> None:
         """Stop all processes, each after a checkpoint; jobs that have not begun are dropped."""
+        with self._starting:  # no process is started from now on
+            self._stopping = True
         self._threads.shutdown(wait=False, cancel_futures=True)
         for worker in self._workers:
             with suppress(OSError):
@@ -56,7 +59,10 @@ class Here:
     def _live(self, job: Job) -> Ending:
         worker = getattr(self._own, "worker", None)
         if worker is None or worker.poll() is not None:
-            worker = self._own.worker = self._started()
+            with self._starting:
+                if self._stopping:
+                    return Ending(job.number, "stopped")
+                worker = self._own.worker = self._started()
         assert worker.stdin is not None
         assert worker.stdout is not None
         with suppress(BrokenPipeError):
@@ -64,6 +70,8 @@ class Here:
             worker.stdin.flush()
         if answer := worker.stdout.readline():
             return Ending(**json.loads(answer))
+        if self._stopping:
+            return Ending(job.number, "stopped")
         error = f"its process ended with status {worker.wait()}; see {self._out / LOG}"
         note_failure(job, self._out, error)
         return Ending(job.number, "failed", error)

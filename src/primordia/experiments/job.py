@@ -102,8 +102,10 @@ def _changes(config: Config) -> dict[str, object]:
 
 def _go_on(run: Path, config: Config, checkpoint_every: float, watch: "_Watch") -> None:
     archive = Archive(run)
-    if not archive.changed_code:  # the experiment's own code, which its user has begun it with
-        code.trust(archive.code())
+    held = archive.code()
+    here = {source.sha256 for source in code.found(config.own_modules.values()).values()}
+    if {source.sha256 for source in held.values()} <= here:
+        code.trust(held)  # the user's own files; a folder from elsewhere may hold others
     limits = config.stop.model_dump()
     loop.resume(run, limits, checkpoint_every=checkpoint_every, listen=watch)
 

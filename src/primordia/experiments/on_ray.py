@@ -60,7 +60,7 @@ class OnRay:
         """Let a node live a job as soon as it has a free core."""
         future: Future[Ending] = Future()
         ref = self._task.remote(job.number, *self._arguments)
-        ref.future().add_done_callback(lambda done: future.set_result(_outcome(job, done)))
+        ref.future().add_done_callback(lambda done: future.set_result(_ending(job, done)))
         self._refs.append(ref)
         self._futures.append(future)
         return future
@@ -152,7 +152,7 @@ def _live(number: int, out: str, checkpoint_every: float, device: str) -> Ending
         time.sleep(1.0)
 
 
-def _outcome(job: Job, done: "Future[Any]") -> Ending:
+def _ending(job: Job, done: "Future[Any]") -> Ending:
     """Return what became of a task, also if Ray itself gave it up."""
     with suppress(Exception):
         return Ending(*done.result())

@@ -64,7 +64,7 @@ def summary(compared: Comparison, infos: list[dict[str, Any]]) -> str:
             arm.saturated,
             f"{extinct(info):g}",
         ]
-        + [quartiles_text(arm, ending) for ending in outcomes]
+        + [quartiles_text(arm, outcome) for outcome in outcomes]
         for arm, info in zip(compared.arms, infos, strict=True)
     ]
     return table(head, rows)
@@ -90,8 +90,8 @@ def effects(compared: Comparison) -> str:
     reference, *others = compared.arms
     rows = []
     for arm in others:
-        contrasts = {ending: compared.contrast(arm, ending) for ending in compared.outcomes}
-        cells = [f"{effect_text(c, ending)}; {ratio_text(c)}" for ending, c in contrasts.items()]
+        contrasts = {outcome: compared.contrast(arm, outcome) for outcome in compared.outcomes}
+        cells = [f"{effect_text(c, outcome)}; {ratio_text(c)}" for outcome, c in contrasts.items()]
         rows.append([arm.name, *cells])
     return table([f"against {reference.name}", *compared.outcomes.values()], rows)
 
