@@ -1,10 +1,10 @@
 """Speed of a run on each core, as campaigns have them, against the bare simulators.
 
 Two runs of 4 worlds of 32 cells on two cores, for each game and robot: births and records are included,
-checkpoints are not. Each has a process (`contender.py`) that is told to use one core.
+checkpoints are not. Each has a process (`contender.py`) that uses one core.
 
 `bare` are the same simulators in the same processes under the same controls, without law, brains and
-records (`tapes.py`); emulators and bodies come to the same states, which is checked. `one run` has all
+records (`tapes.py`); emulators and bodies reach the same states, which is checked. `one run` has all
 worlds on all cores. The others have the same brains, and no law. Ways take turns. Shares are given of
 rates by the clock, and of processor time, which counts where other programs use the machine.
 """

@@ -20,7 +20,7 @@ class Contender:
     def __init__(
         self, way: str, game: str, cells: int, worlds: int = 1, one_core_each: bool = False
     ) -> None:
-        """Start one process; or a process for each core, which is told to use one."""
+        """Start one process; or a process for each core, which uses that one alone."""
         count = cores.count() if one_core_each else 1
         variables = {**os.environ, **({cores.VARIABLE: "1"} if one_core_each else {})}
         words = [way, game, str(cells), str(worlds)]

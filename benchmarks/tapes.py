@@ -1,7 +1,7 @@
 """What a run told its simulators, tick by tick: they can then be stepped again without the run.
 
 A tape holds a run's controls, and where newborn bodies or moved targets began. Played again without law,
-brains and records, the same simulators come to the same states, which is checked. Random controls would
+brains and records, the same simulators reach the same states, which is checked. Random controls would
 not do for a comparison: brains move bodies in other ways than chance does, which costs other times.
 """
 
@@ -38,7 +38,7 @@ class Tape:
         """Play the tape to the simulators alone; return seconds, and seconds of processor time.
 
         Raises:
-            RuntimeError: the simulators do not come to the states that they had after the run.
+            RuntimeError: the simulators do not reach the states that they had after the run.
         """
         self._habitat.load(self._begun)
         calls = self._simulators.calls(self._told)
@@ -48,7 +48,7 @@ class Tape:
         spent = {"alone": time.perf_counter() - began, "alone, cpu": time.process_time() - used}
         ended, name = self._habitat.save(), self._simulators.state
         if not np.array_equal(ended[name], self._ended[name]):
-            raise RuntimeError("the simulators alone came to other states than in the run")
+            raise RuntimeError("the simulators alone reached other states than in the run")
         self._habitat.load(self._ended)
         return spent
 

@@ -197,7 +197,8 @@ def _refuse_others(runs: Sequence[Archive]) -> None:
     for run in others:
         for values in compared.values():
             own, reference = values(run), values(first)
-            if differing := [name for name in own if own[name] != reference.get(name)]:
+            names = own | reference
+            if differing := [name for name in names if own.get(name) != reference.get(name)]:
                 raise InputError(
                     f"{run.path} and {first.path} are not one arm: they differ in {differing[0]}"
                 )
