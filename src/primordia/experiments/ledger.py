@@ -1,7 +1,7 @@
 """What is known of each job: a small file that the process which lives it writes from time to time.
 
 The files tell states and counts without opening a run, from any shell on any machine. A job is done if
-its file says so and its run is there. If a file is lost, the job is gone on with, and found to have ended.
+its file says so and its run is there. If a file is lost, the job is gone on with and has nothing to do.
 """
 
 import json
