@@ -15,7 +15,7 @@ class Gathering:
     """Mean food of an organism in a span of time, for each of W worlds."""
 
     curve: np.ndarray
-    """food in each window, float64 (W, WINDOWS); NaN where no organism lived"""
+    """food in each window, float64 (W, WINDOWS); NaN where no organism lived, or found any food"""
     late: Measured
     """food in the last quarter of the time; known if there was any food at all"""
 
@@ -23,11 +23,18 @@ class Gathering:
 def gathering(run: Records, worlds: int, begin: int, end: int, span: float) -> Gathering:
     """Return the food gathered in the worlds of a run, in a span of `span` ticks.
 
-    All worlds must be on record between the ticks `begin` and `end`.
+    All worlds must be on record between the ticks `begin` and `end`. If there was no food
+    at all, the metrics are not read.
     """
+    if not run.count("world.worlds.food").any():
+        return Gathering(np.full((worlds, WINDOWS), np.nan), _known(np.zeros(worlds), False))
     edges = np.linspace(begin, end, WINDOWS + 1)
     totals = harvests(run, worlds)
     curve = span * np.array([harvest.between(edges) for harvest in totals])
     late = span * np.array([harvest.between(edges[[-1 - LATE, -1]])[0] for harvest in totals])
     any_food = bool(np.nan_to_num(curve).any())
-    return Gathering(curve, Measured(np.nan_to_num(late), np.full(worlds, any_food)))
+    return Gathering(curve, _known(np.nan_to_num(late), any_food))
+
+
+def _known(late: np.ndarray, known: bool) -> Measured:
+    return Measured(late, np.full(len(late), known))

@@ -8,7 +8,6 @@ from primordia.comparison.comparison import differing
 from primordia.errors import InputError
 from primordia.experiments import file as files_of_users
 from primordia.experiments import plan as plans
-from primordia.experiments import results
 from primordia.experiments.ledger import Ledger
 from primordia.experiments.plan import Job, Plan
 from primordia.experiments.status import CampaignStatus, status
@@ -81,6 +80,8 @@ class Campaign:
         """Write the results of all arms -> the files; none if there is a single arm."""
         if len(self.plan.arms) < 2:
             return []
+        from primordia.experiments import results  # Matplotlib takes a second to load
+
         return results.write(self.path / RESULTS, self.plan.question, self.opened())
 
     def info(self) -> dict[str, Any]:

@@ -3,10 +3,11 @@
 import csv
 import datetime
 import io
-import statistics
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from primordia import files
 from primordia.comparison import late
@@ -19,7 +20,7 @@ from primordia.comparison.tables import (
 )
 from primordia.figures import style
 from primordia.figures.comparison import draw
-from primordia.history.info import info
+from primordia.runs.arrays import NEVER
 from primordia.runs.directory import VERSIONS
 from primordia.runs.records import Records
 
@@ -27,6 +28,8 @@ NOTE = (
     "Medians over worlds (quartiles); a world that stopped unsaturated is known only to be at least"
     " so late. Effects: Cliff's delta; ratio of medians (95 % interval over worlds)."
 )
+
+SATURATED = {"saturated_births": "saturated_births", "saturated_tick": "saturated"}
 
 
 def write(stem: Path, question: str, arms: Sequence[Records]) -> list[Path]:
@@ -36,22 +39,31 @@ def write(stem: Path, question: str, arms: Sequence[Records]) -> list[Path]:
         InputError: nothing has lived in an arm yet, or the arms cannot be compared.
         Trouble: a file cannot be written.
     """
-    compared, infos = compare(arms), [info(arm) for arm in arms]
-    parts = [f"# {question}", summary(compared, infos), effects(compared), NOTE]
+    compared, counted = compare(arms), [counts(arm) for arm in arms]
+    parts = [f"# {question}", summary(compared, counted), effects(compared), NOTE]
     ends = [late.last_deaths(arm, compared) for arm in arms] if "pace" in compared.outcomes else []
     if ends:
         parts.insert(2, dying(compared, ends))
-    text = "\n\n".join([*parts, made(arms[0].paths[0], infos[0])])
+    text = "\n\n".join([*parts, made(arms[0])])
     paths = [stem.with_name(f"{stem.name}.{suffix}") for suffix in ("md", "csv", "png")]
     files.write_text(paths[0], text + "\n")
-    files.write_text(paths[1], world_rows(compared, infos, ends))
+    files.write_text(paths[1], world_rows(compared, counted, ends))
     with style.applied():
         figure = draw(compared)
         files.write(paths[2], lambda file: figure.savefig(file, dpi=200, format="png"))
     return paths
 
 
-def summary(compared: Comparison, infos: list[dict[str, Any]]) -> str:
+def counts(arm: Records) -> dict[str, np.ndarray]:
+    """Return the numbers of each world of an arm, (W,) each; NEVER where a world is not saturated."""
+    names = {"ticks": "tick", "births": "births", "extinctions": "extinctions"}
+    own = {name: arm.count(f"world.worlds.{stored}") for name, stored in names.items()}
+    alive = arm.state["world.organisms.alive"].reshape(len(arm.world_seeds), -1).sum(axis=1)
+    moments = {name: arm.count(f"world.worlds.{stored}") for name, stored in SATURATED.items()}
+    return {"seed": arm.world_seeds, **own, "alive": alive, **moments}
+
+
+def summary(compared: Comparison, counted: list[dict[str, np.ndarray]]) -> str:
     """Return a table with a row for each arm: medians over worlds, with quartiles."""
     names = list(compared.arms[0].settings)
     outcomes = compared.outcomes
@@ -62,17 +74,12 @@ def summary(compared: Comparison, infos: list[dict[str, Any]]) -> str:
             *map(setting_text, arm.settings.values()),
             arm.worlds,
             arm.saturated,
-            f"{extinct(info):g}",
+            f"{np.median(numbers['extinctions']):g}",
         ]
         + [quartiles_text(arm, outcome) for outcome in outcomes]
-        for arm, info in zip(compared.arms, infos, strict=True)
+        for arm, numbers in zip(compared.arms, counted, strict=True)
     ]
     return table(head, rows)
-
-
-def extinct(info: dict[str, Any]) -> float:
-    """Return the median number of extinctions of a world."""
-    return statistics.median(world["extinctions"] for world in info["worlds"])
 
 
 def dying(compared: Comparison, ends: list[list[dict[str, float]]]) -> str:
@@ -102,28 +109,26 @@ def table(head: list[str], rows: list[list[Any]]) -> str:
     return "\n".join(f"| {' | '.join(map(str, line))} |" for line in lines)
 
 
-def made(run: Path, info: dict[str, Any]) -> str:
+def made(arm: Records) -> str:
     """Say when the experiment was run, with which versions, and where it stopped."""
-    begun = datetime.date.fromtimestamp((run / VERSIONS).stat().st_mtime)
-    what = ", ".join(f"{name} {version}" for name, version in info["versions"].items())
-    limits = [f"{name} {value}" for name, value in info["limits"].items() if value is not None]
+    begun = datetime.date.fromtimestamp((arm.paths[0] / VERSIONS).stat().st_mtime)
+    what = ", ".join(f"{name} {version}" for name, version in arm.versions.items())
+    limits = [f"{name} {value}" for name, value in arm.progress.limits if value is not None]
     return f"Run on {begun} with {what}. Each world stopped at: {' or '.join(limits)}."
 
 
 def world_rows(
-    compared: Comparison, infos: list[dict[str, Any]], ends: list[list[dict[str, float]]]
+    compared: Comparison, counted: list[dict[str, np.ndarray]], ends: list[list[dict[str, float]]]
 ) -> str:
     """Return CSV with a row for each world of each arm; an empty moment of saturation: there was none."""
     text = io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
-    moments = ["saturated_births", "saturated_tick"]
-    counted = ["seed", "ticks", "births", "extinctions", "alive"]
-    rows.writerow(["arm", *counted, *moments, "mean_lifespan", *(ends[0][0] if ends else ())])
-    for number, (arm, told) in enumerate(zip(compared.arms, infos, strict=True)):
-        for w, world in enumerate(told["worlds"]):
-            at = world["saturation"] or {"births": "", "tick": ""}
+    rows.writerow(["arm", *counted[0], "mean_lifespan", *(ends[0][0] if ends else ())])
+    for number, (arm, numbers) in enumerate(zip(compared.arms, counted, strict=True)):
+        columns = [column.tolist() for column in numbers.values()]
+        for w, row in enumerate(zip(*columns, strict=True)):
             mean = f"{arm.measured['lifespan'].value[w]:.1f}"
             last = ends[number][w].values() if ends else ()
-            counts = [world[name] for name in counted]
-            rows.writerow([arm.name, *counts, at["births"], at["tick"], mean, *last])
+            shown = ("" if value == NEVER else value for value in row)
+            rows.writerow([arm.name, *shown, mean, *last])
     return text.getvalue()

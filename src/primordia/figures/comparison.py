@@ -24,6 +24,8 @@ MAX_COLUMNS = 3
 """Largest number of panels side by side."""
 FEW_ARMS = 5
 """Largest number of runs that are coloured from dark to light, and drawn with all their worlds."""
+FEW_WORLDS = 200
+"""Largest number of worlds of a run whose curves can be told apart at all."""
 
 
 def save(compared: Comparison, folder: Path) -> list[Path]:
@@ -136,8 +138,9 @@ def _gathering(axes: Axes, compared: Comparison) -> None:
 def _over_time(
     axes: Axes, compared: Comparison, curve: Callable[[ComparedArm], np.ndarray]
 ) -> None:
-    """Draw the median of the curves (W, WINDOWS) of each run; a few runs get the curve of every world."""
-    few, edges = len(compared.arms) <= FEW_ARMS, compared.arms[0].pace.edges
+    """Draw the median of the curves (W, WINDOWS) of each run, and each world's curve if they are few."""
+    most = max(arm.worlds for arm in compared.arms)
+    few, edges = len(compared.arms) <= FEW_ARMS and most <= FEW_WORLDS, compared.arms[0].pace.edges
     middle = (edges[1:] + edges[:-1]) / 2
     for arm, line in _styled(compared):
         worlds = curve(arm)

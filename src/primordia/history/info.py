@@ -25,8 +25,11 @@ def info(run: Records) -> dict[str, Any]:
     The fields of a single world also appear at the top level.
     """
     config, progress = run.config, run.progress
-    world_digests = digests(run.row_digests, run.state, config.seeds)
-    worlds = [_world(run, world, digest) for world, digest in enumerate(world_digests)]
+    worlds = [
+        {**_world(part, world), "digest": digest}
+        for part in run.parts()
+        for world, digest in enumerate(digests(part.row_digests, part.state, part.config.seeds))
+    ]
     whole = {
         "task": config.task,
         "inheritance": config.inheritance,
@@ -41,7 +44,7 @@ def info(run: Records) -> dict[str, Any]:
     return whole if config.seeds > 1 else {**worlds[0], **whole}
 
 
-def _world(run: Records, world: int, digest: str) -> dict[str, Any]:
+def _world(run: Records, world: int) -> dict[str, Any]:
     config, arrays = run.config, run.state
 
     def counted(name: str) -> Any:
@@ -67,7 +70,6 @@ def _world(run: Records, world: int, digest: str) -> dict[str, Any]:
         "tries_per_life": _tries(_climate(arrays, world)["replication"], counted),
         "saturation": _moment(counted("saturated"), counted("saturated_births")),
         "fixation": _moment(counted("fixed"), counted("fixed_births")),
-        "digest": digest,
     }
     if (tally := arrays.get(TALLY)) is not None and alive.any():
         numbers["tallies"] = _tallies(run.description.tallies, tally[here][alive])

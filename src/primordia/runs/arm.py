@@ -20,14 +20,15 @@ from primordia.habitats.contract import AnyHabitat
 from primordia.law.heredity import Heredity
 from primordia.law.law import Law
 from primordia.runs.archive import Archive
+from primordia.runs.arrays import WORLDS
 from primordia.runs.description import Description
 from primordia.runs.lives import Lives, joined
 from primordia.runs.manifest import Progress
 from primordia.runs.records import Records
 from primordia.settings.tables import flat
 
-WORLDS = "world.worlds."
-"""Beginning of the names of arrays that have a row for each world, not for each cell."""
+OWN = ("about", "seed", "seeds", "stop", "fork")
+"""The settings that each run of an arm has for itself; but forks begin at the same tick."""
 MOST = 2**16
 """Largest number of worlds that are read as one."""
 
@@ -56,6 +57,13 @@ class Arm(Records):
     def paths(self) -> tuple[Path, ...]:
         """The directories of all runs."""
         return tuple(run.path for run in self.runs)
+
+    def parts(self) -> Iterator[Archive]:
+        """Yield each run; what was read of it is forgotten afterwards."""
+        for number, run in enumerate(self.runs):
+            yield run
+            self.state.keep(number)
+            run.release()
 
     @property
     def description(self) -> Description:
@@ -92,30 +100,25 @@ class Arm(Records):
         return {name: np.concatenate([each[name] for each in tables]) for name in tables[0]}
 
     @cached_property
-    def state(self) -> Mapping[str, np.ndarray]:
+    def state(self) -> "_Joined":
         """The arrays of all states, joined, without the open tails."""
-        return _Joined(self.runs, "state")
+        return _Joined(self.runs, self._firsts, "state")
 
     @cached_property
     def origin(self) -> Mapping[str, np.ndarray] | None:
         """The arrays that the forks began with, joined; None if these are no forks."""
-        return None if self.config.fork is None else _Joined(self.runs, "origin")
+        return None if self.config.fork is None else _Joined(self.runs, self._firsts, "origin")
 
     @cached_property
     def lives(self) -> Lives:
         """All lives of all runs."""
-        each = []
-        for run in self.runs:
-            each.append(run.lives)
-            run.release()
-        return joined(each, self._firsts)
+        return joined([run.lives for run in self.parts()], self._firsts)
 
     def segments(self, name: str, columns: Sequence[str] | None = None) -> Iterator[pa.Table]:
         """Read a table run by run; see `Records.table`."""
-        for first, run in zip(self._firsts.tolist(), self.runs, strict=True):
+        for first, run in zip(self._firsts.tolist(), self.parts(), strict=True):
             for part in run.segments(name, columns):
                 yield _shifted(part, first)
-            run.release()
 
     def admit(self, *parts: str) -> None:
         """Let the user's own code be imported, which is the same in all runs."""
@@ -140,30 +143,48 @@ class Arm(Records):
 class _Joined(Mapping[str, np.ndarray]):
     """The arrays of several states by name, joined along their first axis.
 
-    Those of worlds are read in one pass over the runs, and all others in another.
+    Those of worlds, which are small, are copied when a run is first open. Others are read when asked for.
     """
 
-    def __init__(self, runs: Sequence[Archive], which: Literal["state", "origin"]) -> None:
-        self._runs, self._which = runs, which
+    def __init__(
+        self, runs: Sequence[Archive], firsts: np.ndarray, which: Literal["state", "origin"]
+    ) -> None:
+        self._runs, self._firsts, self._which = runs, firsts, which
         self._names = [name for name in self._of(runs[0]) if not name.startswith("tail.")]
         self._read: dict[str, np.ndarray] = {}
+        self._worlds: dict[str, np.ndarray] = {}
+        self._kept, self._count = np.zeros(len(runs), bool), sum(run.config.seeds for run in runs)
+
+    def keep(self, number: int) -> None:
+        """Copy the arrays of worlds of a run, given by its place among all."""
+        if self._kept[number]:
+            return
+        stored, first = self._of(self._runs[number]), self._firsts[number]
+        for name in self._names:
+            if name.startswith(WORLDS):
+                own = stored[name]
+                whole = self._worlds.setdefault(
+                    name, np.empty((self._count, *own.shape[1:]), own.dtype)
+                )
+                whole[first : first + len(own)] = own
+        self._kept[number] = True
 
     def __getitem__(self, name: str) -> np.ndarray:
         if name not in self._names:
             raise KeyError(name)
+        if name.startswith(WORLDS):
+            for number in np.flatnonzero(~self._kept).tolist():
+                self.keep(number)
+                self._runs[number].release()
+            return self._worlds[name]
         if name not in self._read:
-            own = name.startswith(WORLDS)
-            self._read |= self._joined([n for n in self._names if n.startswith(WORLDS) == own])
+            self._read[name] = np.concatenate([self._one(run, name) for run in self._runs])
         return self._read[name]
 
-    def _joined(self, names: list[str]) -> dict[str, np.ndarray]:
-        parts: dict[str, list[np.ndarray]] = {name: [] for name in names}
-        for run in self._runs:
-            stored = self._of(run)
-            for name, arrays in parts.items():
-                arrays.append(stored[name])
-            run.release()
-        return {name: np.concatenate(arrays) for name, arrays in parts.items()}
+    def _one(self, run: Archive, name: str) -> np.ndarray:
+        array = self._of(run)[name]
+        run.release()
+        return array
 
     def _of(self, run: Archive) -> Mapping[str, np.ndarray]:
         stored = run.state if self._which == "state" else run.origin
@@ -202,11 +223,14 @@ def _refuse_others(runs: Sequence[Archive]) -> None:
                 raise InputError(
                     f"{run.path} and {first.path} are not one arm: they differ in {differing[0]}"
                 )
+        own = {name: getattr(run.config, name) for name in OWN}
+        run.config = first.config.model_copy(update=own)  # held once, and the description too
+        run.description = first.description
 
 
 def _settings(run: Archive) -> dict[str, Any]:
     """Return the settings that must be equal, by dotted name."""
-    ignored: Any = {"about": True, "seed": True, "seeds": True, "stop": True, "fork": {"run"}}
+    ignored: Any = {**dict.fromkeys(OWN, True), "fork": {"run"}}
     return flat(run.config.model_dump(mode="json", exclude=ignored))
 
 

@@ -250,7 +250,7 @@ def _rows(
     if not len(numbers):
         return np.full(len(number), -1)
     # Birth numbers mostly have no gaps up to the last of a world, so subtraction gives the row.
-    last = np.searchsorted(worlds, np.arange(2**16), side="right") - 1
+    last = np.searchsorted(worlds, np.arange(world.max(initial=0) + 1), side="right") - 1
     row = (last - numbers[last])[world] + number
     there = (row >= 0) & (row < len(numbers))
     row[~there] = 0

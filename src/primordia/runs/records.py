@@ -37,6 +37,10 @@ class Records(ABC):
     def paths(self) -> tuple[Path, ...]:
         """The run directories that hold the records."""
 
+    @abstractmethod
+    def parts(self) -> "Iterator[Records]":
+        """Yield the records of each run, world by world in the same order; each is read in its turn."""
+
     @property
     @abstractmethod
     def description(self) -> Description:

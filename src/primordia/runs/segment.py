@@ -10,6 +10,8 @@ from primordia.errors import Trouble
 
 NULLABLE = ("parent",)
 """Columns that may have no value: that of a founder."""
+MANY = 2**16
+"""Number of rows from which several threads read a segment sooner than one."""
 
 
 def read(path: Path, rows: int, schema: pa.Schema, columns: Sequence[str] | None) -> pa.Table:
@@ -25,12 +27,12 @@ def read(path: Path, rows: int, schema: pa.Schema, columns: Sequence[str] | None
         Trouble: the file is no segment of this table.
     """
     try:
-        with pq.ParquetFile(path) as file:
+        with pq.ParquetFile(path, pre_buffer=False) as file:
             found = {field.name: field.type for field in file.schema_arrow}
             wanted = {field.name: field.type for field in schema}
             if len(file.schema_arrow) != len(found) or found != wanted:
                 raise Trouble(f"{path} is damaged: it has other columns than this table")
-            table = file.read(columns)
+            table = file.read(columns, use_threads=rows >= MANY)
             names = list(columns) if columns else schema.names
             table = table.select(names).cast(pa.schema([schema.field(name) for name in names]))
     except (OSError, pa.ArrowException, MemoryError, ValueError) as error:

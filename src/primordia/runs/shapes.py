@@ -1,6 +1,7 @@
 """The arrays that a checkpoint must hold, known from a run's settings and description alone."""
 
 from collections.abc import Iterator, Mapping
+from functools import lru_cache
 
 import numpy as np
 
@@ -13,6 +14,8 @@ from primordia.runs.schema import TABLES, Schema
 
 Kind = tuple[str, tuple[int | None, ...]]
 """Type and shape of an array; None is a length that nothing tells."""
+
+Blocks = tuple[tuple[str, tuple[int, ...]], ...]
 
 COUNTS = (
     *("seed", "tick", "births", "extinctions", "organism_ticks", "food"),
@@ -29,12 +32,8 @@ class Expected:
     def __init__(self, config: Config, about: Description) -> None:
         self._schema = Schema.described(config.cells, about)
         self._worlds, self._cells = config.seeds, config.seeds * config.cells
-        tails = {f"tail.{each}": self._schema.columns(each).width for each in TABLES}
-        self._kinds: dict[str, Kind] = {
-            **dict(_of_worlds(config, about)),
-            **dict(_of_organisms(config, about)),
-            **{name: ("uint32", (None, width)) for name, width in tails.items()},
-        }
+        looks = len(ratchets(config.seasons))
+        self._kinds = _kinds(self._schema, tuple(about.blocks.items()), config.seeds, looks)
         self._tally: Kind = "int32", (self._cells, len(about.tallies))
 
     def fault(self, arrays: Mapping[str, np.ndarray]) -> str | None:
@@ -88,26 +87,42 @@ def _count(name: str, *shape: int) -> Iterator[tuple[str, Kind]]:
         yield f"{name}.{half}", ("uint32", shape)
 
 
-def _of_worlds(config: Config, about: Description) -> Iterator[tuple[str, Kind]]:
-    worlds, looks = config.seeds, (config.seeds, len(ratchets(config.seasons)))
+@lru_cache(maxsize=64)
+def _kinds(schema: Schema, blocks: Blocks, worlds: int, looks: int) -> dict[str, Kind]:
+    """Return the kind of each array but the habitat's, by name; runs of one arm share it.
+
+    Args:
+        schema: the columns of the tables.
+        blocks: name and shape of each block of weights in a genome.
+        worlds: number of worlds.
+        looks: number of ratchets, which look at the world from time to time.
+    """
+    tails = {f"tail.{each}": schema.columns(each).width for each in TABLES}
+    return {
+        **dict(_of_worlds(schema, worlds, looks)),
+        **dict(_of_organisms(schema, blocks, worlds * schema.cells)),
+        **{name: ("uint32", (None, width)) for name, width in tails.items()},
+    }
+
+
+def _of_worlds(schema: Schema, worlds: int, looks: int) -> Iterator[tuple[str, Kind]]:
     for name in COUNTS:
         yield from _count(f"world.worlds.{name}", worlds)
     yield from _count("world.worlds.deaths", worlds, len(Cause))
     for name in ("calm", "sample_wait"):
         yield f"world.worlds.{name}", ("int32", (worlds,))
-    for name in about.beginning:
+    for name in schema.rates:
         yield f"world.worlds.climate.{name}", ("float32", (worlds,))
-    yield "world.worlds.looks.wait", ("int32", looks)
+    yield "world.worlds.looks.wait", ("int32", (worlds, looks))
     for name in ("food", "organism_ticks"):
-        yield from _count(f"world.worlds.looks.{name}", *looks)
+        yield from _count(f"world.worlds.looks.{name}", worlds, looks)
 
 
-def _of_organisms(config: Config, about: Description) -> Iterator[tuple[str, Kind]]:
-    cells = config.seeds * config.cells
+def _of_organisms(schema: Schema, blocks: Blocks, cells: int) -> Iterator[tuple[str, Kind]]:
     yield "world.organisms.alive", ("bool", (cells,))
-    for name, shape in about.blocks.items():
+    for name, shape in blocks:
         yield f"world.organisms.genome.{name}", ("float32", (cells, *shape))
-    yield "world.organisms.notes", ("int32", (cells, len(about.notes)))
+    yield "world.organisms.notes", ("int32", (cells, len(schema.notes)))
     yield "world.organisms.memory", ("float32", (cells, None))
     for name in ("energy", "eaten"):
         yield f"world.organisms.{name}", ("int32", (cells,))
