@@ -48,9 +48,8 @@ def _measured(game: str) -> dict:
             worlds = WORLDS if one_core_each else WORLDS * cores.count()
             contender = Contender(way, game, CELLS, worlds, one_core_each)
             begun[name] = stack.enter_context(contender)
-            greetings[name] = contender.answers()[
-                0
-            ]  # one way after the other: emulators start slowly
+            # one way after the other, since emulators start slowly
+            greetings[name] = contender.answers()[0]
         playing = {way: begun[way] for way in WAYS if "about" in greetings[way]}
         rounds = [_one_round(playing) for _ in range(ROUNDS)]
         budget = begun["jobs"].ask("budget", SECONDS)[0]

@@ -1,6 +1,7 @@
 """Jobs: wherever, in whatever order and however often cut off they are lived, each world is the same."""
 
 import csv
+import errno
 import json
 import os
 import random
@@ -10,7 +11,9 @@ import subprocess
 import sys
 from concurrent.futures import Future
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
 import primordia
@@ -170,6 +173,24 @@ def test_a_job_that_fails_stops_nobody_else(tmp_path: Path) -> None:
     complains(here("experiment", out, "--job", 2), 1, "job 2 (mild) failed")
     (out / chosen.jobs[2].folder).unlink()
     assert here("experiment", file, "--out", out).returncode == 0
+
+
+def test_a_job_whose_disk_is_full_fails_alone_and_is_lived_later(
+    tmp_path: Path, alone: dict[str, list[str]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: Any, **__: Any) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    chosen = begin(write(tmp_path), tmp_path / "out")
+    for job in chosen.jobs:
+        with monkeypatch.context() as patch:
+            if job.number == 2:
+                patch.setattr(np, "savez", full)
+            ending = jobs.ending_of(chosen.plan, job, chosen.path)
+        assert ending.state == ("failed" if job.number == 2 else "done")
+        assert ("No space left on device" in (ending.error or "")) == (job.number == 2)
+    assert here("experiment", chosen.path).returncode == 0
+    assert digests_of(chosen) == alone
 
 
 def test_the_status_tells_what_is_done_without_opening_a_run(tmp_path: Path) -> None:
