@@ -81,10 +81,11 @@ def write_rows(stem: Path, rows: list[dict[str, Any]], summary_text: str) -> Non
 
 
 def longest_lived(run: Path) -> list[Organism]:
-    """Return the longest-lived organism of each world."""
+    """Return the champion of each world in which anything was born since the run began."""
     opened = primordia.load(run).opened()
     lives = opened.lives
-    return [Organism(opened, lives.oldest(world)) for world in range(lives.worlds)]
+    worlds = np.unique(lives.world[lives.late()]).tolist()
+    return [Organism(opened, lives.oldest(world)) for world in worlds]
 
 
 def unforked(runs: Sequence[Path]) -> Run:

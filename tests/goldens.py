@@ -18,6 +18,7 @@ import pyarrow.compute as pc
 
 import primordia
 from primordia import Run
+from primordia.runs.lives import Lives
 
 FILE = Path(__file__).with_suffix(".json")
 PLAIN = ("world", "tick", "population", "births", "extinctions", "organism_ticks", "mean_age",
@@ -75,7 +76,7 @@ def entries(case: Case, run: Run) -> dict[str, Any]:
         "digest": [world["digest"] for world in worlds],
     }
     if case.evaluate:
-        of_oldest = run.oldest().evaluate(**case.evaluate)
+        of_oldest = run.organism(*longest_life(run.lives())).evaluate(**case.evaluate)
         described["evaluation"] = of_oldest.to_dict()
     return described
 
@@ -129,10 +130,17 @@ def genomes_hash(run: Run, births: pa.Table) -> str:
         own, mutants = (
             np.sort(ids[some]) for some in (worlds == world, mutant & (worlds == world))
         )
-        chosen = [run.oldest(world).id, own[0], own[len(own) // 2], own[-1], *mutants[-1:]]
+        oldest, _ = longest_life(run.lives().of_world(world))
+        chosen = [oldest, own[0], own[len(own) // 2], own[-1], *mutants[-1:]]
         for organism in chosen:
             digest.update(run.rebuild(int(organism), world).astype("<f4").tobytes())
     return digest.hexdigest()
+
+
+def longest_life(lives: Lives) -> tuple[int, int]:
+    """Return the birth number and the world of the longest life; of equals the first."""
+    row = np.argmax(lives.lifespan)
+    return int(lives.id[row]), int(lives.world[row])
 
 
 def ticks(number: int) -> dict[str, Any]:

@@ -17,7 +17,7 @@ def test_a_replay_is_recommended_where_the_habitat_draws_pictures(
     words = [word for word in SMALL if word != "--quiet"]
     lines = here("run", *words, *meadow, "--ticks", 2, "--out", run).stdout.splitlines()
     figures = f"Figures: primordia plot {run}"
-    video = f"Video of the longest life: primordia replay {run}"
+    video = f"Video of the champion: primordia replay {run}"
     assert (figures in lines, video in lines) == (True, False)
     complains(here("replay", run), 2, "draws no pictures (it has no `picture` and no `rate`)")
     monkeypatch.setattr(Meadow, "rate", 50.0, raising=False)

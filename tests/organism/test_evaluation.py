@@ -70,7 +70,8 @@ def test_organisms_play_side_by_side_as_they_play_alone(
 
 def test_repeating_its_actions_blindly_gives_the_same_life(pong: Path) -> None:
     """Its actions, repeated in the same game, give the same life; with sticky buttons they do not."""
-    oldest = primordia.load(pong).oldest()
+    run = Archive(pong)
+    oldest = Organism(run, int(np.argmax(np.where(run.lives.died, run.lives.lifespan, 0))))
     live, ignored = oldest.evaluate(), oldest.evaluate(senses="ignored")
     assert live.lived.ticks == ignored.lived.ticks == oldest.age
     assert live.lived.course == ignored.lived.course

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from primordia.errors import InputError
 from primordia.law.world import BirthCause, Cause
 from primordia.runs.lives import ALIVE, Lives, join
 
@@ -75,14 +76,29 @@ def test_parents_are_found_wherever_numbers_have_gaps(worlds: list[list[bool]], 
     assert some.parent_row.tolist() == expected
 
 
-@given(WORLDS)
-def test_the_oldest_of_one_world_or_of_all(worlds: list[list[bool]]) -> None:
+@given(WORLDS, st.floats(0, 0.99))
+def test_the_oldest_is_the_last_of_the_longest_late_lives(
+    worlds: list[list[bool]], after: float
+) -> None:
+    """Late are the births after a share of those of their world; those before a fork do not count."""
     lives = lives_of(worlds, 1)
-    for world in {None, *lives.world.tolist()}:
-        here = np.arange(len(lives)) if world is None else np.flatnonzero(lives.world == world)
-        if len(here):
+    late: list[int] = []
+    for world in dict.fromkeys(lives.world.tolist()):
+        born = np.flatnonzero((lives.world == world) & (lives.born >= lives.seen))
+        here = born[int(after * len(born)) :].tolist()
+        late += here
+        if here:
             longest = max(lives.lifespan[here])
-            assert lives.oldest(world) == min(here[lives.lifespan[here] == longest])
+            equals = [row for row in here if lives.lifespan[row] == longest]
+            assert lives.oldest(world, after) == equals[-1]
+        else:
+            with pytest.raises(InputError, match="nothing has been born since the fork"):
+                lives.oldest(world, after)
+    assert np.flatnonzero(lives.late(after)).tolist() == late
+    if late:
+        longest = max(lives.lifespan[late])
+        equals = [row for row in late if lives.lifespan[row] == longest]
+        assert lives.oldest(None, after) == equals[-1]
 
 
 @pytest.mark.parametrize("cuts", [1, 2])

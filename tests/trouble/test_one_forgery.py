@@ -104,7 +104,7 @@ def test_the_last_number_of_a_checkpoint_has_none_after_it(run: Path) -> None:
 
 def test_an_organism_that_lived_at_a_fork_is_in_its_origin(run: Path, tmp_path: Path) -> None:
     fork = primordia.load(run).fork(1_000, tmp_path / "fork").path
-    oldest = Archive(fork).lives.oldest()
+    oldest = int(np.argmax(Archive(fork).lives.lifespan))
     number, cell = Archive(fork).lives.id[oldest], Archive(fork).lives.cell[oldest]
     assert len(primordia.load(fork).rebuild(int(number)))
 

@@ -19,7 +19,7 @@ from primordia.organism.policy import Policy
 from primordia.runs import directory, loop, opening
 from primordia.runs.archive import Archive
 from primordia.runs.fork import fork
-from primordia.runs.lives import Lives
+from primordia.runs.lives import LATE, Lives
 from primordia.runs.loop import Listener
 from primordia.runs.records import Records
 from primordia.runs.verify import verify
@@ -75,17 +75,21 @@ class Run:
         run = self.opened()
         return Organism(run, run.lives.row(organism, world))
 
-    def oldest(self, world: int | None = None) -> Organism:
-        """Return the organism that lived longest, in one world or in all."""
+    def oldest(self, world: int | None = None, after: float = LATE) -> Organism:
+        """Return the organism that lived longest, in one world or in all.
+
+        Only those count that were born after a share `after` of their world's births, and never before a
+        fork. So founders, which no evolution has made, are not among them. Of equals it is the last-born.
+        """
         run = self.opened()
-        return Organism(run, run.lives.oldest(world))
+        return Organism(run, run.lives.oldest(world, after))
 
     def evaluate(self, organisms: Iterable[Organism], **options: Any) -> list[Evaluation]:
         """Let organisms play games side by side; see `evaluation.evaluate`."""
         return evaluate(self.opened(), [(each.id, each.world) for each in organisms], **options)
 
     def policy(self) -> Policy:
-        """Return the brain of the organism that lived longest, as `policy(senses) -> action`."""
+        """Return the brain of the champion, see `oldest`, as `policy(senses) -> action`."""
         return self.oldest().policy()
 
     def export(self, out: str | Path, *organisms: int, world: int = 0) -> tuple[int, ...]:

@@ -25,7 +25,7 @@ def commands() -> None:
     \b
     primordia run CartPole-survival      evolve; Ctrl-C stops it, nothing is lost
     primordia plot runs/...              figures of what happened
-    primordia replay runs/...            the longest life on video
+    primordia replay runs/...            the life of the champion on video
     primordia resume runs/...            go on
     """
 

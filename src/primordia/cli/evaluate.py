@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from primordia.cli.cache import cache_option
-from primordia.cli.flags import HabitatCommand, run_argument, trust_option
+from primordia.cli.flags import CHAMPION, HabitatCommand, run_argument, trust_option
 from primordia.errors import InputError
 
 if TYPE_CHECKING:
@@ -22,8 +22,8 @@ SENSES = {
 
 @click.command(cls=HabitatCommand, short_help="Measure an organism in whole games.")
 @run_argument
-@click.option("--organism", type=int, help="Birth number [that of the longest life].")
-@click.option("--world", type=int, help="The organism's world [0, or that of the longest life].")
+@click.option("--organism", type=int, help=f"Birth number [{CHAMPION}].")
+@click.option("--world", type=int, help="The organism's world [0, or that of the champion].")
 @click.option("--games", default=30, show_default=True, help="Number of games.")
 @click.option("--ticks", default=100_000, show_default=True, help="Cut games at this length.")
 @click.option("--freeze-senses", is_flag=True, help="Keep senses as they are at the start.")

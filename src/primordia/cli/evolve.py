@@ -151,7 +151,7 @@ def _drive(path: Path, quiet: bool, go: Callable[[Any], object]) -> None:
         click.echo(summary(Run(path).info()))
         click.echo(f"Figures: primordia plot {path}")
         if not lacking(Run(path).opened().habitat):
-            click.echo(f"Video of the longest life: primordia replay {path}")
+            click.echo(f"Video of the champion: primordia replay {path}")
 
 
 def _while_shown(listen: "Listener", stopped: Callable[[], str]) -> "Listener":

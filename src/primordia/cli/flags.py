@@ -10,6 +10,9 @@ from primordia.errors import InputError
 from primordia.settings.tables import parsed_toml
 from primordia.settings.values import check_values
 
+CHAMPION = "that of the longest-lived of the later half of the births"
+"""the organism that is meant where none is named"""
+
 run_argument = click.argument("run", type=click.Path(path_type=Path))
 runs_argument = click.argument(
     "runs", type=click.Path(path_type=Path), nargs=-1, required=True, metavar="RUN..."

@@ -9,7 +9,13 @@ import click
 from primordia import files
 from primordia.cli.cache import cache_option
 from primordia.cli.experiment import show_status
-from primordia.cli.flags import device_option, run_argument, runs_argument, trust_option
+from primordia.cli.flags import (
+    CHAMPION,
+    device_option,
+    run_argument,
+    runs_argument,
+    trust_option,
+)
 from primordia.errors import Trouble
 
 if TYPE_CHECKING:
@@ -59,8 +65,8 @@ def plot(runs: tuple[Path, ...], out: Path | None, world: int, figures: tuple[st
 
 @click.command(short_help="Make a video of a life.")
 @run_argument
-@click.option("--organism", type=int, help="Birth number [that of the longest life].")
-@click.option("--world", type=int, help="The organism's world [0, or that of the longest life].")
+@click.option("--organism", type=int, help=f"Birth number [{CHAMPION}].")
+@click.option("--world", type=int, help="The organism's world [0, or that of the champion].")
 @click.option("--from", "begin", type=int, help="First age shown, in ticks.")
 @click.option("--to", "end", type=int, help="Last age shown, in ticks.")
 @click.option(
@@ -69,7 +75,10 @@ def plot(runs: tuple[Path, ...], out: Path | None, world: int, figures: tuple[st
 @trust_option
 @cache_option
 def replay(run: Path, begin: int | None, end: int | None, out: Path | None, **chosen: Any) -> None:
-    """Make a video of a life: the whole life, or the first and last 30 seconds of a long one."""
+    """Make a video of a life: the whole life, or the first and last 30 seconds of a long one.
+
+    Without --organism it is the life of the champion: the longest-lived of the later half of the births.
+    """
     click.echo(chosen_organism(run, **chosen).replay(out, (begin, end)))
 
 
@@ -85,7 +94,7 @@ def replay(run: Path, begin: int | None, end: int | None, out: Path | None, **ch
 def export(run: Path, organisms: tuple[int, ...], world: int, trust: bool, file: Path) -> None:
     """Write genomes to a safetensors FILE, which `primordia run --ancestor` takes.
 
-    Without --organism it is the genome of the longest life.
+    Without --organism it is the champion, the longest-lived of the later half of the births.
     """
     from primordia.api import load
 
@@ -94,7 +103,7 @@ def export(run: Path, organisms: tuple[int, ...], world: int, trust: bool, file:
 
 
 def chosen_organism(run: Path, organism: int | None, world: int | None, trust: bool) -> "Organism":
-    """Return the organism with a birth number, or else the one that lived longest."""
+    """Return the organism with a birth number, or else the champion."""
     from primordia.api import load
 
     opened = load(run, trust)

@@ -16,7 +16,7 @@ def export(
     Args:
         run: the organisms' run.
         out: path of the file.
-        organisms: birth numbers; by default that of the longest life.
+        organisms: birth numbers; by default that of the champion; see `Lives.oldest`.
         world: the organisms' world.
 
     Raises:

@@ -10,6 +10,8 @@ import pyarrow as pa
 from primordia.errors import InputError
 from primordia.law.world import BirthCause, Cause, Named
 
+LATE = 0.5
+"""Share of a world's births after which a birth is late."""
 ALIVE = -1
 """The cause of death of an organism that is alive."""
 
@@ -97,16 +99,36 @@ class Lives:
         then = int(self.seen[inherited].min()) if inherited.any() else 0
         return replace(self, born=self.born - then, seen=self.seen - then, ended=self.ended - then)
 
-    def oldest(self, world: int | None = None) -> int:
-        """Return the row of the longest life, in one world or in all; of equals the first.
+    def late(self, after: float = LATE) -> np.ndarray:
+        """Return whether each life began late, bool (L,).
+
+        Late are the births of a world that come after a share `after` of all its births. The organisms
+        that were alive at a fork were born before it, so they are not late and do not count.
+        """
+        own = self.entered == 0
+        ordinal = np.cumsum(own) - 1  # among the births of all worlds
+        first, count = (np.zeros(self.worlds, np.int64) for _ in range(2))
+        np.add.at(count, self.world[own], 1)
+        first[1:] = np.cumsum(count)[:-1]
+        return own & (ordinal - first[self.world] >= np.floor(after * count)[self.world])
+
+    def oldest(self, world: int | None = None, after: float = LATE) -> int:
+        """Return the row of the longest of the late lives, in one world or in all; see `late`.
+
+        Early organisms are left out: the longest-lived founder of a world is no product of its evolution.
+        Of equals it is the last-born, since limits of time cut many lives at the same age.
 
         Raises:
-            InputError: nothing has lived there.
+            InputError: nothing was born there.
         """
         here = self._rows_of_world(world) if world is not None else slice(0, len(self))
         if here.start == here.stop:
             raise InputError(f"there is no world {world}; the worlds are 0 to {self.worlds - 1}")
-        return here.start + int(np.argmax(self.ended[here] - self.born[here]))
+        rows = here.start + np.flatnonzero(self.late(after)[here])
+        if not len(rows):
+            raise InputError("nothing has been born since the fork; name an organism by its number")
+        lifespan = self.lifespan[rows]
+        return int(rows[len(rows) - 1 - np.argmax(lifespan[::-1])])
 
     def row(self, organism: int, world: int = 0) -> int:
         """Return the row of an organism.
