@@ -11,7 +11,7 @@ import pytest
 
 import primordia
 from primordia.comparison.comparison import Comparison
-from primordia.comparison.contrast import Measured
+from primordia.comparison.measured import Measured
 from primordia.figures import style
 from primordia.figures.comparison import FEW_ARMS, draw, line_styles
 from primordia.runs import loop
@@ -127,6 +127,34 @@ def test_json_is_one_object_and_is_the_same_each_time(runs: list[Path], tmp_path
         "large",
         "negligible",
     )
+
+
+def test_runs_of_the_same_seeds_are_compared_pair_by_pair(runs: list[Path], tmp_path: Path) -> None:
+    """A run of other seeds beside them has no pairs; all are corrected for two contrasts."""
+    twin = tmp_path / "twin"
+    loop.start(config({**QUICK, "replication": 0.4}), twin)
+    compared = primordia.compare(runs[0], twin, runs[1])
+    values = [arm.measured["lifespan"].value for arm in compared.arms]
+    within = compared.contrast(compared.arms[1], "lifespan").paired
+    assert within is not None
+    assert within.larger == (values[1] > values[0]).sum()
+    assert within.larger + within.smaller == within.pairs == WORLDS
+    assert compared.contrast(compared.arms[2], "lifespan").paired is None
+    words = ("compare", runs[0], twin, runs[1], "--out", tmp_path)
+    _, one, other = json.loads(here(*words, "--json").stdout)["runs"]
+    assert one["lifespan"]["against"]["same_seeds"] == {"pairs": WORLDS, "delta": within.delta}
+    assert other["lifespan"]["against"]["same_seeds"] is None
+    assert {each["births"]["against"]["coverage"] for each in (one, other)} == {0.975}
+    assert other["lifespan"]["against"]["needed"] > 0
+    printed = here(*words).stdout
+    for part in (
+        "within seeds",
+        f"{other['lifespan']['against']['needed']:,} worlds an arm",
+        "Intervals need 6 worlds of each run (--seeds 6): one has 5.",
+        "at a level of 2.5 %",
+    ):
+        assert part in printed
+    assert "95 %" not in printed
 
 
 def test_runs_are_compared_up_to_a_horizon_that_all_worlds_reached(

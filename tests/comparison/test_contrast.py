@@ -6,7 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from primordia.comparison.contrast import Measured, contrast
+from primordia.comparison.contrast import contrast
+from primordia.comparison.measured import Measured
 from primordia.comparison.resample import LEAST, resamples
 from primordia.errors import InputError
 

@@ -7,8 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from primordia.comparison.comparison import first_long, often_saturated
-from primordia.comparison.contrast import Measured, contrast
+from primordia.comparison.contrast import contrast
+from primordia.comparison.measured import Measured
+from primordia.comparison.moments import first_long, often_saturated
 from primordia.comparison.resample import RESAMPLES, interval
 from primordia.comparison.survival import survival
 from primordia.organism.evaluation import Spread

@@ -10,8 +10,8 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 from primordia.comparison.comparison import ComparedArm, Comparison
-from primordia.comparison.contrast import Measured
 from primordia.comparison.gathering import Gathering
+from primordia.comparison.measured import Measured
 from primordia.comparison.pace import WINDOWS, Pace
 from primordia.comparison.survival import survival as survived
 from primordia.figures import ages, comparison, foraging, population, style, survival
@@ -201,6 +201,9 @@ def test_food_is_drawn_in_the_unit_of_its_title(
         np.testing.assert_allclose(y, values * (rate or 1))
 
 
+SEEDS = np.arange(3)
+
+
 def arm(name: str, seed: int, known: bool = True) -> ComparedArm:
     """Return a run of three worlds with invented values, of which one may be unknown."""
     draw = np.random.default_rng(seed)
@@ -215,7 +218,7 @@ def arm(name: str, seed: int, known: bool = True) -> ComparedArm:
     deaths = draw.integers(1, 9, (3, WINDOWS))
     paces = Pace(edges, draw.integers(1, 900, (3, WINDOWS)).astype(float), deaths)
     gathered = Gathering(draw.random((3, WINDOWS)), values["food"])
-    return ComparedArm(name, {}, values, survived(LIVES, 3, 100 + seed), paces, gathered)
+    return ComparedArm(name, {}, SEEDS, values, survived(LIVES, 3, 100 + seed), paces, gathered)
 
 
 def drawn(*arms: ComparedArm) -> Figure:

@@ -1,8 +1,9 @@
 """Runs side by side: how soon their worlds saturate, and how long organisms live in them.
 
-The units are worlds, which are taken to be independent. (Worlds of the same seed in two runs share random
-words. If that makes them alike, intervals are too wide rather than too narrow.) The first run is the
-reference of all others. A world that stopped before it saturated is treated as censored; see `contrast`.
+The units are worlds; those of one run are independent. Where two runs have the same seeds, the worlds of
+one seed are a pair; see `pairs`. The first run is the reference of all others, and all intervals of one
+outcome hold together; see `resample`. A world that stopped before it saturated is treated as censored;
+see `measured`.
 In forks, births, ticks and lives count from the tick of the latest fork on, in all runs. Where few worlds
 saturate, lives count up to the last tick that all worlds have lived through.
 """
@@ -14,13 +15,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from primordia.comparison.contrast import Bounds, Contrast, Measured, contrast
+from primordia.comparison.contrast import Contrast, contrast, plain
 from primordia.comparison.gathering import Gathering, gathering
+from primordia.comparison.measured import Measured
+from primordia.comparison.moments import first_long, often_saturated, saturation
 from primordia.comparison.pace import Pace, pace
+from primordia.comparison.pairs import same_seeds
 from primordia.comparison.survival import Survival, survival
 from primordia.config import Config
 from primordia.errors import InputError
-from primordia.runs.arrays import NEVER
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 from primordia.settings.tables import flat
@@ -45,6 +48,8 @@ class ComparedArm:
     name: str
     settings: dict[str, Any]
     """dotted name -> value, of the settings in which the runs differ"""
+    seeds: np.ndarray
+    """the seed of each world, uint64 (W,)"""
     measured: dict[str, Measured]
     """name in OUTCOMES -> its value in each world.
 
@@ -88,6 +93,11 @@ class Comparison:
     """unit of time in which food is counted: second, or tick if the habitat has no rate"""
 
     @property
+    def contrasts(self) -> int:
+        """Number of runs that are held against the reference; their intervals hold together."""
+        return max(len(self.arms) - 1, 1)
+
+    @property
     def outcomes(self) -> dict[str, str]:
         """The outcomes worth showing, name -> title: known in some world, and of use."""
         useless = UNSATURATED if any(often_saturated(arm.measured) for arm in self.arms) else ()
@@ -99,7 +109,9 @@ class Comparison:
 
     def contrast(self, arm: ComparedArm, outcome: str) -> Contrast:
         """Return the contrast of a run with the reference in one of OUTCOMES."""
-        return contrast(arm.measured[outcome], self.arms[0].measured[outcome])
+        reference = self.arms[0]
+        pairs = same_seeds(arm.seeds, reference.seeds)
+        return contrast(arm.measured[outcome], reference.measured[outcome], pairs, self.contrasts)
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain values for JSON; an unknown bound is None."""
@@ -115,17 +127,10 @@ class Comparison:
             "saturated": arm.saturated,
         }
         for outcome, measured in arm.measured.items():
-            quartiles = [_plain(measured.quantile(q)) for q in (0.25, 0.5, 0.75)]
+            quartiles = [plain(measured.quantile(q)) for q in (0.25, 0.5, 0.75)]
             values[outcome] = dict(zip(("q1", "median", "q3"), quartiles, strict=True))
             if arm is not self.arms[0]:
-                against = self.contrast(arm, outcome)
-                values[outcome]["against"] = {
-                    "delta": against.delta,
-                    "word": against.word,
-                    "decided": against.decided,
-                    "ratio": _plain(against.ratio),
-                    "interval": against.interval and _plain(against.interval),
-                }
+                values[outcome]["against"] = self.contrast(arm, outcome).to_dict()
         return values
 
 
@@ -148,11 +153,10 @@ def compare(
     age = min(config.saturation_ticks for config in configs)
     begin, end = _common_ticks(runs, configs)
     lives = [run.lives.recorded_since(begin) for run in runs]
-    saturation = [
-        _saturation(run, lived, begin, births, ticks)
-        for run, lived in zip(runs, lives, strict=True)
+    saturated = [
+        saturation(run, lived, begin, births, ticks) for run, lived in zip(runs, lives, strict=True)
     ]
-    if not any(map(often_saturated, saturation)):
+    if not any(map(often_saturated, saturated)):
         lives = [each.recorded_until(end) for each in lives]
     names, settings, rate = _names(runs), differing(configs), runs[0].description.rate
     arms = []
@@ -162,14 +166,22 @@ def compare(
         gathered = gathering(run, len(worlds), begin, end, rate or 1)
         measured = {
             "first": first_long(worlds, age),
-            **saturation[number],
+            **saturated[number],
             "lifespan": _known_everywhere(survived.restricted_mean),
             "longest": _known_everywhere([world.lifespan.max() for world in worlds]),
             "pace": dying.late,
             "food": gathered.late,
         }
         arms.append(
-            ComparedArm(names[number], settings[number], measured, survived, dying, gathered)
+            ComparedArm(
+                names[number],
+                settings[number],
+                run.world_seeds,
+                measured,
+                survived,
+                dying,
+                gathered,
+            )
         )
     span = "second" if rate else "tick"
     return Comparison(configs[0].task, tuple(arms), age, begin, births, ticks, span)
@@ -234,59 +246,3 @@ def differing(configs: Sequence[Config]) -> list[dict[str, Any]]:
         name for name in names if any(settings.get(name) != each[0].get(name) for settings in each)
     ]
     return [{name: settings.get(name) for name in different} for settings in each]
-
-
-def first_long(worlds: Sequence[Lives], age: int) -> Measured:
-    """Return the number of the first birth in each world, after its fork, whose life reached an age.
-
-    It is known if all organisms born before are dead. Otherwise it is at least the number of the first
-    one that is still alive.
-    """
-    value, known = [], []
-    for lived in (world.take(np.flatnonzero(world.entered == 0)) for world in worlds):
-        long = lived.lifespan >= age
-        first, undecided = (
-            int(each.argmax()) if each.any() else len(lived) for each in (long, ~long & ~lived.died)
-        )
-        value.append(min(first, undecided) + 1)
-        known.append(first < undecided)
-    return Measured(np.array(value, float), np.array(known))
-
-
-def _saturation(
-    run: Records, lives: Lives, begin: int, births: int | None, ticks: int | None
-) -> dict[str, Measured]:
-    """Return the births and ticks to saturation of each world of a run, counted from tick `begin`.
-
-    They are 0 in a world that was saturated by then. `lives` are those recorded since.
-    """
-
-    def by_world(name: str) -> np.ndarray:
-        return run.count(f"world.worlds.{name}").astype(np.int64)
-
-    known = run.count("world.worlds.saturated") != NEVER
-    since = np.bincount(lives.world[lives.entered == 0], minlength=len(known))
-    before = {"births": by_world("births") - since, "ticks": begin}
-    columns = {"births": ("births", "saturated_births"), "ticks": ("tick", "saturated")}
-    measured = {}
-    for unit, (now, then) in columns.items():
-        moment = np.where(known, by_world(then), by_world(now)).astype(float)
-        measured[unit] = Measured(np.maximum(moment - before[unit], 0), known)
-    for unit, horizon in (("births", births), ("ticks", ticks)):
-        if horizon is not None:
-            try:
-                measured[unit] = measured[unit].before(horizon)
-            except InputError as error:
-                raise InputError(f"--{unit} {horizon}: in {run.path}, {error}") from None
-    return measured
-
-
-def often_saturated(measured: dict[str, Measured]) -> bool:
-    """Return whether at least half of a run's worlds saturate within the horizons."""
-    known = measured["births"].known & measured["ticks"].known
-    return 2 * int(known.sum()) >= len(known)
-
-
-def _plain(bounds: Bounds) -> list[float | None]:
-    """Return bounds for JSON, which has no infinity."""
-    return [each if np.isfinite(each) else None for each in bounds]

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from primordia.comparison.contrast import Measured
+from primordia.comparison.measured import Measured
 from primordia.comparison.pace import LATE, WINDOWS
 from primordia.history.foraging import harvests
 from primordia.runs.records import Records

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from primordia.comparison.contrast import Measured
+from primordia.comparison.measured import Measured
 from primordia.history import series
 from primordia.runs.lives import Lives
 

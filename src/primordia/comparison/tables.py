@@ -8,8 +8,9 @@ from rich.console import Console
 from rich.table import Table
 
 from primordia.comparison.comparison import ComparedArm, Comparison
-from primordia.comparison.contrast import Bounds, Contrast
-from primordia.comparison.resample import LEAST
+from primordia.comparison.contrast import Contrast
+from primordia.comparison.measured import Bounds
+from primordia.comparison.resample import LEAST, MISSED, least
 
 DIRECTIONS = {
     "first": ("earlier", "later"),
@@ -52,6 +53,16 @@ def effect_text(against: Contrast, outcome: str) -> str:
     known = f"; order known of {int(100 * against.decided)} %" if against.decided < 1 else ""
     word = f" {against.word}" if against.word else ""
     return f"{against.delta:+.2f}{word}{direction}{known}"
+
+
+def paired_text(against: Contrast) -> str:
+    """Write delta within pairs of worlds of one seed; nothing if there are no pairs."""
+    return f"{against.paired.delta:+.2f}" if against.paired else ""
+
+
+def needed_text(against: Contrast) -> str:
+    """Write how many worlds a claim of this size needs; nothing if that is unknown."""
+    return "" if against.needed is None else f"{against.needed:,} worlds an arm"
 
 
 def ratio_text(against: Contrast) -> str:
@@ -101,15 +112,51 @@ def _runs(compared: Comparison) -> Table:
 def _against(compared: Comparison, outcome: str) -> Table:
     """Return a table of one outcome of each run, and of each run against the first."""
     reference, *others = compared.arms
-    has_interval = any(min(arm.worlds, reference.worlds) >= LEAST for arm in others)
-    ratio = "ratio of medians (95 %)" if has_interval else "ratio of medians"
-    table = _table(compared.outcomes[outcome], "median (quartiles)", "delta", ratio)
-    table.add_row(reference.name, quartiles_text(reference, outcome), "reference", "")
+    against = {arm.name: compared.contrast(arm, outcome) for arm in others}
+    columns = {
+        "delta": {name: effect_text(each, outcome) for name, each in against.items()},
+        "within seeds": {name: paired_text(each) for name, each in against.items()},
+        _ratio_title(list(against.values())): {
+            name: ratio_text(each) for name, each in against.items()
+        },
+        "needs": {name: needed_text(each) for name, each in against.items()},
+    }
+    shown = {title: cells for title, cells in columns.items() if any(cells.values())}
+    table = _table(compared.outcomes[outcome], "median (quartiles)", *shown)
+    table.add_row(reference.name, quartiles_text(reference, outcome), "reference")
     for arm in others:
-        against = compared.contrast(arm, outcome)
-        effect, ratio = effect_text(against, outcome), ratio_text(against)
-        table.add_row(arm.name, quartiles_text(arm, outcome), effect, ratio)
+        cells = [column[arm.name] for column in shown.values()]
+        table.add_row(arm.name, quartiles_text(arm, outcome), *cells)
     return table
+
+
+def _ratio_title(against: list[Contrast]) -> str:
+    """Return the title of the ratio's column, with the share that its intervals hold."""
+    if all(each.interval is None for each in against):
+        return "ratio of medians"
+    return f"ratio of medians ({100 * (1 - MISSED):.0f} %{' for all' if len(against) > 1 else ''})"
+
+
+def evidence_notes(compared: Comparison) -> list[str]:
+    """Say how pairs, intervals and needed worlds are to be read, as far as there are any."""
+    against = [compared.contrast(arm, "births") for arm in compared.arms[1:]]
+    notes = []
+    if any(each.paired for each in against):
+        notes.append(
+            "Within seeds: delta within pairs of worlds of one seed; intervals draw such pairs."
+        )
+    if len(against) > 1 and any(each.interval for each in against):
+        notes.append(
+            f"All intervals of an outcome hold together in {100 * (1 - MISSED):.0f} % of cases, each"
+            f" alone in {100 * against[0].coverage:.4g} % (Bonferroni, for {len(against)} contrasts)."
+        )
+    if any(each.worlds >= LEAST for each in against):
+        level = f"{100 * (1 - against[0].coverage):.3g} %"
+        notes.append(
+            "Needs: worlds of each arm with which an effect of this size is told from none in 80 % of"
+            f" cases, at a level of {level} (Noether 1987)."
+        )
+    return notes
 
 
 def _table(*columns: str) -> Table:
@@ -120,11 +167,7 @@ def _notes(compared: Comparison) -> list[str]:
     notes = [
         "Medians and intervals are over worlds. A world that stopped unsaturated is treated as censored."
     ]
-    if few := [arm for arm in compared.arms if arm.worlds < LEAST]:
-        notes.append(
-            f"Intervals, and words for sizes, need {LEAST} worlds of each run (--seeds {LEAST}):"
-            f" {few[0].name} has {few[0].worlds}."
-        )
+    notes += _too_few(compared) + evidence_notes(compared)
     if compared.begin:
         notes.append(
             f"Births, ticks and lives count from tick {compared.begin:,}, that of the fork."
@@ -138,4 +181,16 @@ def _notes(compared: Comparison) -> list[str]:
         "Delta: Cliff's delta, the share of pairs of worlds in which the run's value is larger than the"
         " reference's,",
         "less the share in which it is smaller.",
+    ]
+
+
+def _too_few(compared: Comparison) -> list[str]:
+    """Say which run has too few worlds for intervals, or even for words."""
+    few, wanted = min(compared.arms, key=lambda arm: arm.worlds), least(compared.contrasts)
+    if few.worlds >= wanted:
+        return []
+    what = "Intervals, and words for sizes, need" if wanted == LEAST else "Intervals need"
+    words = f"; words for sizes need {LEAST}" if few.worlds < LEAST < wanted else ""
+    return [
+        f"{what} {wanted} worlds of each run (--seeds {wanted}): {few.name} has {few.worlds}{words}."
     ]

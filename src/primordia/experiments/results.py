@@ -12,8 +12,12 @@ import numpy as np
 from primordia import files
 from primordia.comparison import late
 from primordia.comparison.comparison import Comparison, compare
+from primordia.comparison.contrast import Contrast
 from primordia.comparison.tables import (
     effect_text,
+    evidence_notes,
+    needed_text,
+    paired_text,
     quartiles_text,
     ratio_text,
     setting_text,
@@ -40,7 +44,8 @@ def write(stem: Path, question: str, arms: Sequence[Records]) -> list[Path]:
         Trouble: a file cannot be written.
     """
     compared, counted = compare(arms), [counts(arm) for arm in arms]
-    parts = [f"# {question}", summary(compared, counted), effects(compared), NOTE]
+    note = " ".join([NOTE, *evidence_notes(compared)])
+    parts = [f"# {question}", summary(compared, counted), effects(compared), note]
     ends = [late.last_deaths(arm, compared) for arm in arms] if "pace" in compared.outcomes else []
     if ends:
         parts.insert(2, dying(compared, ends))
@@ -98,9 +103,21 @@ def effects(compared: Comparison) -> str:
     rows = []
     for arm in others:
         contrasts = {outcome: compared.contrast(arm, outcome) for outcome in compared.outcomes}
-        cells = [f"{effect_text(c, outcome)}; {ratio_text(c)}" for outcome, c in contrasts.items()]
+        cells = [_effect(each, outcome) for outcome, each in contrasts.items()]
         rows.append([arm.name, *cells])
     return table([f"against {reference.name}", *compared.outcomes.values()], rows)
+
+
+def _effect(against: Contrast, outcome: str) -> str:
+    """Write an effect in a few words: of all worlds, within seeds, of medians, and what it needs."""
+    within, needed = paired_text(against), needed_text(against)
+    parts = [
+        effect_text(against, outcome),
+        f"within seeds {within}" if within else "",
+        ratio_text(against),
+        f"needs {needed}" if needed else "",
+    ]
+    return "; ".join(filter(None, parts))
 
 
 def table(head: list[str], rows: list[list[Any]]) -> str:

@@ -1,0 +1,60 @@
+"""One value of each world, some of them censored.
+
+The value of a world that stopped before it saturated is *at least* the births or ticks that it reached.
+Nothing is assumed about the course of such a world after it stopped. A quartile is given by its bounds,
+which are equal where it is known. So every statement is exact, for any reason why worlds stopped.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from primordia.errors import InputError
+
+Bounds = tuple[float, float]
+"""Lower and upper bound of a value; infinity where no upper bound is known."""
+
+
+@dataclass(frozen=True)
+class Measured:
+    """One value of each world, known or censored."""
+
+    value: np.ndarray
+    """float64 (W,)"""
+    known: np.ndarray
+    """bool (W,); where False, the true value is at least `value`"""
+
+    @property
+    def high(self) -> np.ndarray:
+        """Upper bound of each value, float64 (W,)."""
+        return np.where(self.known, self.value, np.inf)
+
+    def before(self, horizon: float) -> "Measured":
+        """Return the values censored at a horizon.
+
+        Raises:
+            InputError: a world stopped before the horizon, and its value is not known.
+        """
+        if (short := ~self.known & (self.value < horizon)).any():
+            world = int(np.flatnonzero(short)[0])
+            raise InputError(
+                f"world {world} stopped at {self.value[world]:,.0f} before it saturated, so nothing is"
+                f" known about it up to {horizon:,.0f}"
+            )
+        near = self.value < horizon
+        return Measured(np.where(near, self.value, horizon), self.known & near)
+
+    def take(self, rows: np.ndarray) -> "Measured":
+        """Return the values of some worlds; `rows` may have any shape."""
+        return Measured(self.value[rows], self.known[rows])
+
+    def quantile(self, q: float) -> Bounds:
+        """Return bounds of the smallest value that a share q of worlds does not exceed."""
+        low, high = (quantile(each, q) for each in (self.value, self.high))
+        return float(low), float(high)
+
+
+def quantile(values: np.ndarray, q: float) -> np.ndarray:
+    """Return a quantile along the last axis, as an order statistic, so that infinities do no harm."""
+    place = max(int(np.ceil(q * values.shape[-1])) - 1, 0)
+    return np.partition(values, place, axis=-1)[..., place]
