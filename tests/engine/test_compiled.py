@@ -9,7 +9,10 @@ import numpy as np
 import pytest
 
 from primordia import compiled
+from primordia.brains.recurrent import Recurrent
 from primordia.compiled import shared
+from primordia.law.heredity import Heredity
+from primordia.mutations.gaussian import Gaussian
 from primordia.runs import loop
 from primordia.settings.base import Settings
 from tests.toys import Meadow
@@ -77,6 +80,18 @@ def test_equal_arguments_share_code() -> None:
     assert shared(_grown, Meadow()) is shared(_grown, Meadow())
     assert shared(_grown, Meadow()) is not shared(_grown, Meadow(lifespan=2))
     assert shared(_grown, Meadow()) is not shared(_scaled, Meadow())
+
+
+def test_equal_ancestors_share_code_and_others_do_not() -> None:
+    layout = Recurrent(hidden=1).layout(2, 2)
+    genomes = np.ones((2, layout.length), np.float32)
+
+    def code(ancestors: np.ndarray | None) -> Any:
+        return shared(_grown, Heredity(layout, Gaussian(), "parent", ancestors, 1))
+
+    assert code(genomes) is code(genomes.copy())
+    others = [code(each) for each in (2 * genomes, genomes[:1], None)]
+    assert len({code(genomes), *others}) == 4
 
 
 def _grown(thing: Any, x: jax.Array) -> jax.Array:

@@ -44,7 +44,7 @@ class Newborn(NamedTuple):
     """bool (K,)"""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Heredity:
     """The part of the law by which genomes are made."""
 
@@ -56,6 +56,18 @@ class Heredity:
     """genomes that founders take in turn, float32 (K, P); None: founders are random"""
     worlds: int
     """number of worlds whose newborn are made together"""
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Heredity) and self._content() == other._content()
+
+    def __hash__(self) -> int:
+        return hash(self._content())
+
+    def _content(self) -> tuple:
+        """Return what decides whether two are equal: of ancestors, which have no hash, their bytes."""
+        of = self.ancestors
+        ancestors = None if of is None else (of.shape, of.dtype.str, of.tobytes())
+        return self.layout, self.mutation, self.inheritance, ancestors, self.worlds
 
     def rates(self, climate: Mapping[str, Array]) -> dict[str, Array]:
         """Return the mutation's rates in a climate, by the names that `Mutation.rates` gives them."""
