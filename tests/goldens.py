@@ -188,9 +188,9 @@ def toy(base: dict[str, Any], **more: Any) -> Case:
 
 
 def game(task: str, number: int = 220, **more: Any) -> Case:
-    """Return a case of a few Atari players."""
+    """Return a case of a few Atari players, whose emulators are in this process to save time."""
     evaluate = more.pop("evaluate", {})
-    habitat = {"frame_skip": 4, **more.pop("habitat", {})}
+    habitat = {"frame_skip": 4, "workers": 0, **more.pop("habitat", {})}
     settings = {**SMALL, "hazard": 0.015, "cells": 6, "habitat": habitat, "stop": ticks(number)}
     return Case(task, {**settings, **more}, needs="ale_py", evaluate=evaluate)
 

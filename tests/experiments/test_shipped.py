@@ -71,20 +71,29 @@ def test_trials_measure_what_mutants_inherit(
     assert rows[2][4] == rows[2][5]
 
 
-@pytest.fixture
-def ponged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+@pytest.fixture(scope="module")
+def pong_experiment(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Run a small experiment with Pong."""
     pytest.importorskip("ale_py")
-    monkeypatch.syspath_prepend(str(EXPERIMENTS))
-    monkeypatch.chdir(tmp_path)
-    shared = {"task": "Pong-survival", "cells": 4, "genesis": "fill"}
+    root = tmp_path_factory.mktemp("ponged")
+    shared = {"task": "Pong-survival", "cells": 4, "genesis": "fill", "habitat": {"workers": 0}}
     arms = [{"name": "heredity"}, {"name": "none", "inheritance": "founder"}]
-    file = tmp_path / "games" / "pong.toml"
+    file = root / "games" / "pong.toml"
     file.parent.mkdir()
     values = {"question": "Do they?", **shared, "stop": {"ticks": 300, "until": "none"}}
     file.write_text(tomli_w.dumps({**values, "arms": arms}))
-    primordia.experiment(file)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(root)
+        primordia.experiment(file)
     return file
+
+
+@pytest.fixture
+def ponged(pong_experiment: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Return the file of an experiment with Pong that has been run from the current folder."""
+    monkeypatch.syspath_prepend(str(EXPERIMENTS))
+    monkeypatch.chdir(pong_experiment.parent.parent)
+    return pong_experiment
 
 
 def champion(file: Path) -> int:
@@ -98,7 +107,8 @@ def champion(file: Path) -> int:
     )
     begun = Path(f"from-{named.id}")
     if not begun.exists():
-        primordia.run(metadata["task"], begun, ancestors=[str(kept)], stop={"ticks": 1})
+        alone = {"cells": 2, "habitat": {"workers": 0}, "stop": {"ticks": 1}}
+        primordia.run(metadata["task"], begun, ancestors=[str(kept)], **alone)
     founder = primordia.load(begun).organism(0)
     np.testing.assert_array_equal(founder.genome(), named.genome())
     return named.id

@@ -111,10 +111,10 @@ def test_sticky_buttons_stay_down_as_often_as_the_settings_say() -> None:
 
 
 class Played:
-    """An Atari habitat with two cells in a pool."""
+    """An Atari habitat with two cells in a pool, in this process to save time."""
 
     def __init__(self, **settings: Any) -> None:
-        self.habitat = Atari(**settings)
+        self.habitat = Atari(**settings, workers=0)
         self.habitat.open(2)
         both = np.array([0, 1])
         self.senses = self.habitat.reset(both, np.zeros((2, self.habitat.words), np.uint32))

@@ -29,7 +29,7 @@ SETTINGS = {
     "seeds": 2,
     "genesis": "fill",
     "habitat": {"senses": SENSES, "sticky": 0.25, "noops": 30, "frame_skip": 3,
-                "food": "ram[51] > 130"},
+                "food": "ram[51] > 130", "workers": 0},
     "metabolism": {"store": 60.0, "gain": 0.75},
     "hazard": 0.003,
 }  # fmt: skip

@@ -23,6 +23,7 @@ def pong(tmp_path_factory: pytest.TempPathFactory) -> Path:
     pytest.importorskip("ale_py")
     run = tmp_path_factory.mktemp("pong") / "run"
     settings = {"cells": 6, "genesis": "fill", "mutation": {"founder_scale": 1.0}}
+    settings["habitat"] = {"workers": 0}
     return primordia.run(
         "Pong-survival", run, stop={"ticks": 400, "until": "none"}, **settings
     ).path
