@@ -18,10 +18,10 @@ import primordia
 from primordia.engine import memory
 from primordia.engine.engine import Engine
 from primordia.random.wide import to_host
+from primordia.runs import loop
 from tests.worlds import MEADOW, MILL, Lived, config
 
 TICKS = 150
-RUN: dict[str, Any] = {"cells": 16, "seeds": 4, "genesis": "fill", "sample_every": 40}
 CROWD: dict[str, Any] = {
     **MEADOW,
     "cells": 1000,
@@ -35,9 +35,11 @@ CROWD: dict[str, Any] = {
 }
 """Worlds that fill the lists of events again and again, until nothing dies any more."""
 HOST = {**MILL, "seeds": 4, "habitat": {"name": "tests.toys:Mirror", "inner": "mill"}}
+RUN = {**MILL, "seeds": 6, "genesis": "fill"}
+"""Every run of the mill has this law, so that a process compiles it once."""
 LIVED: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
-    "seasons": ({**MILL, "seeds": 8}, {"ticks": 400}),
-    "births": ({**MILL, "seeds": 6, "genesis": "fill"}, {"ticks": 600, "births": 50}),
+    "seasons": (RUN, {"ticks": 400}),
+    "births": (RUN, {"ticks": 600, "births": 50}),
     "crowd": (CROWD, {"ticks": 3000, "until": "saturation"}),
 }
 """name -> settings of a run, and how far it goes"""
@@ -101,7 +103,8 @@ def reloaded() -> bool:
 def one_part_of(run: Path) -> primordia.Run:
     """Begin a run, or go on with it, for TICKS ticks."""
     if not run.exists():
-        return primordia.run("CartPole-survival", run, RUN, stop={"ticks": TICKS})
+        loop.start(config(RUN, stop={"ticks": TICKS}), run)
+        return primordia.load(run)
     begun = primordia.load(run)
     begun.resume(ticks=int(begun.only().ends.min()) + TICKS)
     return begun

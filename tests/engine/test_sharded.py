@@ -15,7 +15,7 @@ from tests.engine.sharing import LIVED, TICKS
 COUNTS = (4, 1, 2)
 """Numbers of devices of the processes, in the order in which they begin a run and go on with it."""
 USED = {
-    "seasons": {1: 1, 2: 2, 4: 4},
+    "seasons": {1: 1, 2: 2, 4: 3},
     "births": {1: 1, 2: 2, 4: 3},
     "crowd": {1: 1, 2: 2, 4: 4},
 }

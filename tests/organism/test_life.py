@@ -30,9 +30,9 @@ from tests.worlds import MEADOW, MILL, config
 
 @pytest.fixture(scope="module")
 def mill(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Make a run of three worlds with a noisy motor and seasons that change the metabolism."""
+    """Make a run of two worlds with a noisy motor and seasons that change the metabolism."""
     run = tmp_path_factory.mktemp("mill") / "run"
-    loop.start(config({**MILL, "seeds": 3, "seed": 5, "stop": {"ticks": 700}}), run)
+    loop.start(config({**MILL, "seeds": 2, "seed": 5, "stop": {"ticks": 700}}), run)
     return run
 
 

@@ -19,7 +19,7 @@ from tests.commands import complains, here
 from tests.history.test_lineage import assert_rebuilt
 from tests.worlds import MILL, config, merged
 
-SHIFTING = {**MILL, "brain": {"hidden": 6}, "seeds": 2, "seed": 11, "stop": {"ticks": 1500}}
+SHIFTING = {**MILL, "brain": {"hidden": 4}, "seeds": 2, "seed": 11, "stop": {"ticks": 1500}}
 
 
 @pytest.fixture(scope="module")
@@ -108,7 +108,7 @@ def test_figures_of_a_fork_begin_at_the_fork(mill: Path, tmp_path: Path, at: int
 
 def test_a_season_changes_lives_as_a_fork_does(tmp_path: Path) -> None:
     """They give the same bits, so a change that a fork has shown can be shipped as a season."""
-    settings = {**MILL, "seasons": [], "seeds": 2, "brain": {"hidden": 6}, "stop": {"ticks": 500}}
+    settings = {**MILL, "seasons": [], "seeds": 2, "brain": {"hidden": 4}, "stop": {"ticks": 500}}
     change = {"mutation": {"probability": 0.1}, "hazard": 0.03}
     then = [
         {"kind": "schedule", "setting": name, "at": 250, "value": value}

@@ -19,7 +19,7 @@ from primordia.runs.digest import row_hashes
 from primordia.runs.schema import TABLES
 from tests.worlds import MILL, Lived, config
 
-WHAT: dict[str, Any] = {**MILL, "brain": {"hidden": 6}, "seeds": 3, "hazard": 0.02}
+WHAT: dict[str, Any] = {**MILL, "brain": {"hidden": 4}, "seeds": 3, "hazard": 0.02}
 TICKS = 900
 WORDS = st.integers(0, 2**32 - 1)
 

@@ -108,7 +108,7 @@ def test_a_run_once_inexact_stays_inexact(made: Path, tmp_path: Path) -> None:
 @pytest.fixture(scope="module")
 def lived() -> Lived:
     """Live worlds with seasons and a metabolism, so that every part of the state is in use."""
-    return Lived(config(MILL, seeds=3, brain={"hidden": 2}), 150)
+    return Lived(config(MILL, seeds=3, brain={"hidden": 4}), 150)
 
 
 def test_the_digest_of_a_world_depends_on_every_number_of_its_living(lived: Lived) -> None:
