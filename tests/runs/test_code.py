@@ -187,8 +187,13 @@ def test_looking_executes_no_code_of_a_run(folder: Path, monkeypatch: pytest.Mon
     assert not {"pond", "pond_depth"} & set(sys.modules)
 
 
-@pytest.mark.parametrize("task", ["CartPole-survival", "Pong-survival"])
-@pytest.mark.parametrize("start", [COMMAND, [str(Path(sys.executable).with_name("primordia"))]])
+@pytest.mark.parametrize(
+    ("start", "task"),
+    [
+        (COMMAND, "Pong-survival"),
+        ([str(Path(sys.executable).with_name("primordia"))], "CartPole-survival"),
+    ],
+)
 def test_no_file_of_the_current_folder_takes_the_place_of_an_installed_one(
     tmp_path: Path, start: list[str], task: str
 ) -> None:

@@ -93,7 +93,9 @@ def killed_and_resumed(run: Path, seed: int) -> list[str]:
     return digests(run)
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize(
+    "seed", [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (1, 2))]
+)
 def test_kill_9_then_resume_equals_never_killed(
     through: list[str], tmp_path: Path, seed: int
 ) -> None:
