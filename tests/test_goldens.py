@@ -4,14 +4,28 @@ Their bits are the same in code that is not optimised; those in `test_goldens_of
 """
 
 import json
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from primordia import device
+from tests import plays
 from tests.goldens import CASES, FILE, entries, live, tasks
 
 GOLDENS: dict[str, Any] = json.loads(FILE.read_text(encoding="utf-8"))
+PLAYS: dict[str, Any] = json.loads(plays.FILE.read_text(encoding="utf-8"))
+
+SHOWN = {"CartPole-survival", "resumed", "fork", "fork-of-fork", "Pong-survival", "pong-random",
+         "Breakout-survival-forager", "HalfCheetah-forager-ratchet"}  # fmt: skip
+"""Tasks of each kind: what is drawn at random, what feeds, what seasons change. Others are slow."""
+
+
+def marked(cases: Iterable[tuple[str, Any]], shown: set[str]) -> list[Any]:
+    """Return the names of cases as parameters; those that are not in `shown` are slow."""
+    slow = pytest.mark.slow
+    return [pytest.param(name, marks=() if name in shown else slow) for name, _ in cases]
 
 
 def test_each_case_has_its_golden() -> None:
@@ -27,9 +41,21 @@ def test_much_happens_in_the_worlds_of_each_golden(name: str) -> None:
     assert counts["samples"] >= 3
 
 
-@pytest.mark.parametrize("name", dict(tasks()))
+@pytest.mark.parametrize("name", marked(tasks(), SHOWN))
 def test_each_task_lives_as_it_did(name: str, tmp_path: Path) -> None:
     assert_lives_as_it_did(name, tmp_path)
+
+
+@pytest.mark.parametrize("file", plays.NAMES)
+def test_each_task_is_played_as_it_was(file: str) -> None:
+    package = {"atari": "ale_py", "mujoco": "mujoco"}.get(
+        plays.settings_of(file)["habitat"]["name"]
+    )
+    if package is not None:
+        pytest.importorskip(package)
+    if device.instruction_set() != PLAYS["instruction_set"]:
+        pytest.skip(f"the plays are exact on {PLAYS['instruction_set']} only")
+    assert plays.played(file) == PLAYS["plays"][file]
 
 
 def assert_lives_as_it_did(name: str, tmp_path: Path) -> None:
