@@ -7,6 +7,7 @@ import shlex
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -26,8 +27,14 @@ def blocks(page: Path) -> list[tuple[str, str]]:
     return BLOCK.findall(page.read_text(encoding="utf-8"))
 
 
-def with_blocks() -> list[Path]:
-    return [page for page in PAGES if blocks(page)]
+def with_blocks() -> list[Any]:
+    """Return the pages that have blocks; the tutorial, which lives the longest runs, is slow."""
+    marks = {"tutorial": pytest.mark.slow}
+    return [
+        pytest.param(page, id=page.stem, marks=marks.get(page.stem, ()))
+        for page in PAGES
+        if blocks(page)
+    ]
 
 
 def environment() -> dict[str, str]:
@@ -69,7 +76,7 @@ def try_out(kind: str, text: str, where: Path) -> None:
             load(str(file))
 
 
-@pytest.mark.parametrize("page", with_blocks(), ids=lambda page: page.stem)
+@pytest.mark.parametrize("page", with_blocks())
 def test_every_command_and_block_of_a_page_works(
     page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

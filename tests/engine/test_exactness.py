@@ -70,7 +70,10 @@ def test_different_seeds_differ() -> None:
     assert one.digests() != other.digests()
 
 
-@pytest.mark.parametrize(("fused", "inner"), [("CartPole-survival", "cartpole"), (MILL, "mill")])
+@pytest.mark.parametrize(
+    ("fused", "inner"),
+    [pytest.param("CartPole-survival", "cartpole", marks=pytest.mark.slow), (MILL, "mill")],
+)
 def test_a_habitat_on_the_host_lives_under_the_same_law(fused: str | dict, inner: str) -> None:
     changed = {"seeds": 2, "habitat": {"name": "tests.toys:Mirror", "inner": inner}}
     one, other = Lived(config(fused, seeds=2), 500), Lived(config(fused, **changed), 500, chunk=77)

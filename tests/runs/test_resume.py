@@ -116,18 +116,17 @@ def test_ctrl_c_saves_and_says_how_to_resume(through: list[str], tmp_path: Path)
     assert digests(run) == through
 
 
-@pytest.mark.parametrize(
-    "junk", ["checkpoints/.writing-000007/state.npz", "births/.writing-000003.parquet"]
-)
-def test_half_written_files_are_ignored(through: list[str], tmp_path: Path, junk: str) -> None:
+def test_half_written_files_are_ignored(through: list[str], tmp_path: Path) -> None:
     run = tmp_path / "run"
+    half = [run / "checkpoints/.writing-000007/state.npz", run / "births/.writing-000003.parquet"]
     assert here("run", *WHAT, "--ticks", 1_200, "--out", run).returncode == 0
-    (run / junk).parent.mkdir(exist_ok=True)
-    (run / junk).write_bytes(b"half")
+    for junk in half:
+        junk.parent.mkdir(exist_ok=True)
+        junk.write_bytes(b"half")
     (run / "deaths" / "000099.parquet").write_bytes(b"named by no manifest")
     assert here("resume", run, "--ticks", TICKS).returncode == 0
     assert digests(run) == through
-    assert not (run / junk).exists()
+    assert not any(junk.exists() for junk in half)
     assert not (run / "deaths" / "000099.parquet").exists()
 
 
