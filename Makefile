@@ -12,13 +12,13 @@ demo: .venv/installed  ## evolve pole balancers, draw figures of the run, and fi
 	$(BIN)/primordia plot runs/demo
 	$(BIN)/primordia replay runs/demo
 
-test: .venv/installed-dev  ## run all tests: thirteen minutes on two cores
+test: .venv/installed-dev  ## run all tests: ten minutes on two cores
 	$(BIN)/python -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder
 
 quick: .venv/installed-dev  ## test each promise once, with the tests in tests/quick.txt: a minute on two cores
 	$(BIN)/python -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder @tests/quick.txt
 
-slow: .venv/installed-dev  ## run the tests marked slow: an hour of kills, forged runs and generated inputs
+slow: .venv/installed-dev  ## run the tests marked slow: an hour of kills, forged runs, generated inputs and all goldens
 	$(BIN)/python -m pytest --numprocesses 2 -m slow
 
 check: .venv/installed-dev  ## check format, lint and types, and run all tests
