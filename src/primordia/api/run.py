@@ -10,6 +10,7 @@ import numpy as np
 import pyarrow as pa
 
 from primordia import device as devices
+from primordia.comparison.shadow import ORGANISMS, Shadow, shadow
 from primordia.history.info import info
 from primordia.history.lineage import rebuild
 from primordia.organism.evaluation import Evaluation, evaluate
@@ -87,6 +88,10 @@ class Run:
     def evaluate(self, organisms: Iterable[Organism], **options: Any) -> list[Evaluation]:
         """Let organisms play games side by side; see `evaluation.evaluate`."""
         return evaluate(self.opened(), [(each.id, each.world) for each in organisms], **options)
+
+    def shadow(self, organisms: int = ORGANISMS, ticks: int | None = None) -> Shadow:
+        """Let organisms and their unselected shadows live once more; see `shadow.shadow`."""
+        return shadow(self.opened(), organisms, ticks)
 
     def policy(self) -> Policy:
         """Return the brain of the champion, see `oldest`, as `policy(senses) -> action`."""

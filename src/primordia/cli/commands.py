@@ -3,7 +3,7 @@
 import click
 
 from primordia import interrupts
-from primordia.cli import evaluate, evolve, experiment, inspect, track
+from primordia.cli import evaluate, evolve, experiment, inspect, shadow, track
 from primordia.cli.cache import keep_compiled_code
 from primordia.cli.streams import flush, report
 from primordia.errors import InputError, Trouble
@@ -30,7 +30,7 @@ def commands() -> None:
     """
 
 
-PARTS = (evolve, experiment, inspect, track, evaluate)
+PARTS = (evolve, experiment, inspect, track, evaluate, shadow)
 for command in (each for part in PARTS for each in part.COMMANDS):
     commands.add_command(command)
 

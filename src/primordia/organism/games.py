@@ -21,7 +21,7 @@ from primordia.random.keys import Purpose, stream
 from primordia.random.wide import Wide, wide
 
 AT_ONCE = 128
-"""Games played side by side; the games of one player are never separated."""
+"""Games played side by side, if not told otherwise; the games of one player are never separated."""
 MIX = np.uint64(0x9E3779B97F4A7C15)
 """An odd number, which mixes the bits of courses."""
 
@@ -80,6 +80,7 @@ def play(
     *,
     frozen: bool = False,
     script: Games | None = None,
+    at_once: int | None = None,
 ) -> Games:
     """Let each player play a number of games, until all games are over or cut.
 
@@ -89,8 +90,9 @@ def play(
         ticks: length at which a game is cut.
         frozen: whether senses stay as they are at the start.
         script: earlier games of the same players; their actions are repeated, whatever is perceived.
+        at_once: games played side by side.
     """
-    size, parts = max(AT_ONCE // games, 1), []
+    size, parts = max((at_once or AT_ONCE) // games, 1), []
     for first in range(0, len(players.genomes), size):
         some = slice(first, first + size)
         part_of_script = script and script._replace(actions=script.actions[some])

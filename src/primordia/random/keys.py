@@ -36,6 +36,8 @@ class Purpose(IntEnum):
     BODY = 8
     MOTOR = 9
     EVALUATION = 10
+    SHADOW = 11
+    REBIRTH = 12
 
 
 @jax.jit

@@ -1,0 +1,69 @@
+"""The command `primordia shadow`, which tells selection from chance."""
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from primordia.cli.cache import cache_option
+from primordia.cli.flags import runs_argument, trust_option
+
+if TYPE_CHECKING:
+    from primordia.comparison.shadow import Shadow
+
+
+@click.command(short_help="Compare organisms with a pedigree that nothing selected.")
+@runs_argument
+@click.option("--organisms", default=500, show_default=True, help="Most organisms of a world.")
+@click.option("--ticks", type=int, help="Cut lives at this age [the task's saturation_ticks].")
+@trust_option
+@cache_option
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+def shadow(
+    runs: tuple[Path, ...], organisms: int, ticks: int | None, trust: bool, as_json: bool
+) -> None:
+    """Let organisms live once more, and beside each its shadow, whose line was never selected.
+
+    The shadows have the same pedigree, with founders and mutations drawn again. Both live alone, under
+    the same fresh keys. Several runs are one arm; of an experiment each arm is one.
+    """
+    from primordia.api import Experiment, load
+
+    loaded = load(runs, trust)
+    arms = list(loaded.arms.values()) if isinstance(loaded, Experiment) else [loaded]
+    found = [arm.shadow(organisms, ticks) for arm in arms]
+    if as_json:
+        click.echo(json.dumps({"arms": [each.to_dict() for each in found]}))
+    else:
+        click.echo("\n\n".join(map(shadow_text, found)))
+
+
+def shadow_text(found: "Shadow") -> str:
+    """Return the result for people."""
+    told = found.to_dict()
+    longer, shorter = found.longer
+    head = (
+        f"{found.name}: {told['organisms']:,} of {found.births:,} births in {told['worlds']} worlds,"
+        f" born again alone; {2 * told['organisms']:,} lives, {told['ticks']:,} ticks"
+    )
+    lines = [f"{'':12}{'mean life':>12}{f'reach {found.cut:,} ticks':>24}"]
+    for line in ("original", "shadow"):
+        reached = told[line]["reached_cut"]
+        share = f"{reached:,} ({reached / told['organisms']:.1%})"
+        lines.append(f"{line:12}{told[line]['mean']:>12,.1f}{share:>24}")
+    within = found.ratio_interval
+    bounds = f", 95 % interval {within[0]:.2f} to {within[1]:.2f}" if within else ""
+    return "\n  ".join(
+        [
+            head,
+            *lines,
+            f"originals live longer than shadows in {longer} worlds and shorter in {shorter}"
+            f" (sign test, p = {found.p:.2g})",
+            f"{found.ratio:.2f} times as long in the median world{bounds}",
+        ]
+    )
+
+
+COMMANDS = (shadow,)
+"""The commands of this module."""

@@ -1,0 +1,147 @@
+"""The neutral shadow: would the same pedigree live as long if life and death had chosen nothing?
+
+All organisms of a sample are born again, alone and under fresh keys, which no run has used. So are their
+shadows: organisms of the same pedigree whose founders and mutations were drawn again. A shadow has the
+generations and mutations of its original, but no genome in its line was ever tried by life. What the
+originals live longer is due to selection (Bedau & Packard 1992).
+"""
+
+from dataclasses import dataclass
+from math import comb
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from primordia.comparison.resample import LEAST, interval, resamples
+from primordia.errors import InputError
+from primordia.history import pedigree
+from primordia.history.climate import PastClimate
+from primordia.law.metabolism import Rates
+from primordia.organism.games import AT_ONCE, Players, play
+from primordia.random.keys import Purpose, stream
+from primordia.random.wide import wide
+from primordia.runs.records import Records
+
+ORGANISMS = 500
+"""Largest number of organisms of a world that are born again, if not told otherwise."""
+AT_ONCE_IN_JAX = 1024
+"""Lives side by side in a habitat of arrays, where each costs little more memory than its genome."""
+
+
+@dataclass(frozen=True)
+class Shadow:
+    """The second lives of K organisms of W worlds, and those of their shadows."""
+
+    name: str
+    births: int
+    """births that the organisms were taken from"""
+    world: np.ndarray
+    """world of each organism, int32 (K,), not falling"""
+    original: np.ndarray
+    """ticks that each organism lived when it was born again, int64 (K,)"""
+    shadow: np.ndarray
+    """ticks that its shadow lived, int64 (K,)"""
+    cut: int
+    """ticks after which lives were cut"""
+
+    @property
+    def means(self) -> tuple[np.ndarray, np.ndarray]:
+        """Mean life of originals and of shadows in each world, float64 (W,) each."""
+        _, place, count = np.unique(self.world, return_inverse=True, return_counts=True)
+        original, shadow = (np.bincount(place, each) for each in (self.original, self.shadow))
+        return original / count, shadow / count
+
+    @property
+    def longer(self) -> tuple[int, int]:
+        """Worlds in which the originals live longer than the shadows, and shorter, on average."""
+        original, shadow = self.means
+        return int((original > shadow).sum()), int((original < shadow).sum())
+
+    @property
+    def p(self) -> float:
+        """The probability of a split of the worlds at least as uneven, without selection (sign test)."""
+        most, least = max(self.longer), min(self.longer)
+        tail = sum(comb(most + least, k) for k in range(least + 1)) / 2 ** (most + least)
+        return min(2 * tail, 1.0)
+
+    @property
+    def ratio(self) -> float:
+        """Median over worlds of the originals' mean life over the shadows'."""
+        return float(np.median(np.divide(*self.means)))
+
+    @property
+    def ratio_interval(self) -> tuple[float, float] | None:
+        """The interval of `ratio` over resampled worlds (95 %); None with fewer than LEAST worlds."""
+        ratios = np.divide(*self.means)
+        if len(ratios) < LEAST:
+            return None
+        low, high = interval(np.median(ratios[resamples(len(ratios))], axis=1))
+        return float(low), float(high)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain values for JSON."""
+        lines = {"original": self.original, "shadow": self.shadow}
+        return {
+            "name": self.name,
+            "worlds": len(self.means[0]),
+            "births": self.births,
+            "organisms": len(self.world),
+            "cut": self.cut,
+            "ticks": int(sum(each.sum() for each in lines.values())),
+            **{
+                line: {"mean": float(each.mean()), "reached_cut": int((each >= self.cut).sum())}
+                for line, each in lines.items()
+            },
+            "worlds_longer": self.longer[0],
+            "worlds_shorter": self.longer[1],
+            "p": self.p,
+            "ratio": self.ratio,
+            "interval": self.ratio_interval,
+        }
+
+
+def shadow(run: Records, organisms: int = ORGANISMS, ticks: int | None = None) -> Shadow:
+    """Let organisms of a run and their shadows live once more, in pairs.
+
+    Args:
+        run: the run, or an arm.
+        organisms: how many of each world, evenly spaced over its births; all if there are fewer.
+        ticks: age at which lives are cut; by default that without a death which saturates a world.
+
+    Raises:
+        InputError: a number below one, or nothing was born since the fork.
+    """
+    cut = run.config.saturation_ticks if ticks is None else ticks
+    if organisms < 1 or cut < 1:
+        raise InputError("shadow needs at least one organism and one tick")
+    own = np.flatnonzero(run.lives.entered == 0)
+    if not len(own):
+        raise InputError(f"{run.path}: nothing has been born since the fork")
+    rows = _sample(run.lives.world[own], own, organisms)
+    original, redrawn = (_lifespans(run, rows, each, cut) for each in (False, True))
+    return Shadow(run.path.name, len(own), run.lives.world[rows], original, redrawn, cut)
+
+
+def _sample(worlds: np.ndarray, rows: np.ndarray, most: int) -> np.ndarray:
+    """Return at most so many rows of each world, evenly spaced."""
+    each = (rows[worlds == world] for world in np.unique(worlds))
+    return np.concatenate(
+        [own[np.linspace(0, len(own) - 1, min(most, len(own))).round().astype(int)] for own in each]
+    )
+
+
+def _lifespans(run: Records, rows: np.ndarray, redrawn: bool, cut: int) -> np.ndarray:
+    """Return the ticks that organisms live, or their shadows, each under its own fresh key, (K,)."""
+    lives = run.lives.take(rows)
+    climate = PastClimate(run).of_lives(lives, lives.born)
+    keys = stream(wide(run.world_seeds[lives.world]), Purpose.REBIRTH, wide(lives.id))
+    rates = Rates.of(jax.tree.map(jnp.asarray, climate))
+    habitat = run.config.build_habitat()
+    at_once = AT_ONCE if habitat.kind == "host" else AT_ONCE_IN_JAX
+    genomes = pedigree.genomes(run, rows, redrawn)
+    players = Players(run.law, habitat, genomes, keys, rates)
+    parts = (players.take(slice(k, k + at_once)) for k in range(0, len(rows), at_once))
+    # Part by part, since games keep all actions of their players.
+    return np.concatenate([play(part, 1, cut, at_once=at_once).ticks[:, 0] for part in parts])

@@ -1,0 +1,82 @@
+"""Pedigrees: genomes of many organisms made together, as recorded or with all chance drawn again."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import primordia
+from primordia.history.lineage import rebuild_all
+from primordia.history.pedigree import genomes
+from primordia.runs import loop
+from primordia.runs.archive import Archive
+from tests.worlds import MEADOW, config
+
+NOTED = {
+    **MEADOW,
+    "brain": {"hidden": 6},
+    "hazard": 0.03,
+    "replication": 0.3,
+    "mutation": {"kind": "examples.mutation:SelfAdaptive"},
+    "seeds": 2,
+}
+
+
+@pytest.fixture(scope="module")
+def noted(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Make a run whose mutation keeps a number with each birth."""
+    run = tmp_path_factory.mktemp("noted") / "run"
+    loop.start(config(NOTED, stop={"ticks": 300}), run)
+    return run
+
+
+@pytest.fixture(scope="module")
+def forked(noted: Path) -> Path:
+    """Fork it: some organisms were alive then, and others are born later."""
+    return primordia.load(noted).fork(200, noted.parent / "fork", stop={"ticks": 320}).path
+
+
+@pytest.mark.parametrize("which", ["noted", "forked"])
+def test_recorded_genomes_are_those_of_the_lineages(
+    which: str, request: pytest.FixtureRequest
+) -> None:
+    run = Archive(request.getfixturevalue(which))
+    rows = np.arange(len(run.lives))[::-3]  # in any order
+    each = [(int(run.lives.id[row]), int(run.lives.world[row])) for row in rows]
+    assert genomes(run, rows).tobytes() == rebuild_all(run, each).tobytes()
+    assert genomes(run, rows[:0]).shape == (0, run.layout.length)
+
+
+def test_a_redrawn_genome_is_another_one_and_always_the_same(noted: Path) -> None:
+    """It does not depend on the organisms that are asked for beside it."""
+    run = Archive(noted)
+    rows = np.arange(len(run.lives))
+    recorded, redrawn = genomes(run, rows), genomes(run, rows, redrawn=True)
+    assert (recorded != redrawn).all(axis=1).mean() > 0.9
+    assert (recorded != redrawn).any(axis=1).all()
+    some = rows[5::17]
+    assert genomes(run, some, redrawn=True).tobytes() == redrawn[some].tobytes()
+    assert redrawn.std() == pytest.approx(recorded.std(), rel=0.5)
+
+
+def test_a_redrawn_child_differs_from_its_redrawn_parent_as_mutations_do(tmp_path: Path) -> None:
+    settings = {
+        "mutation": {"probability": 1.0, "scale": 0.02, "founder_scale": 1.0},
+        "hazard": 0.03,
+    }
+    loop.start(config(MEADOW, stop={"ticks": 300}, **settings), tmp_path / "run")
+    run = Archive(tmp_path / "run")
+    children = np.flatnonzero(run.lives.parent_row >= 0)
+    parents = run.lives.parent_row[children]
+    made = genomes(run, np.arange(len(run.lives)), redrawn=True)
+    assert (made[children] - made[parents]).std() == pytest.approx(0.02, rel=0.1)
+    assert made[run.lives.parent < 0].std() == pytest.approx(1.0, rel=0.2)
+
+
+def test_organisms_that_were_alive_at_a_fork_keep_their_genomes(forked: Path) -> None:
+    run = Archive(forked)
+    inherited = np.flatnonzero(run.lives.entered > 0)
+    assert len(inherited) > 5
+    assert (genomes(run, inherited, redrawn=True) == genomes(run, inherited)).all()
+    born = np.flatnonzero((run.lives.entered == 0) & (run.lives.birth_cause == 2))
+    assert (genomes(run, born, redrawn=True) != genomes(run, born)).any(axis=1).all()
