@@ -54,6 +54,9 @@ def experiment(
 
     if as_json and not status:
         raise InputError("--json goes with --status")
+    several = [f"--{name}" for name in ("jobs", "only", "ray") if options[name] not in (None, ())]
+    if job is not None and several:
+        raise InputError(f"--job runs one job in this process; leave out {' and '.join(several)}")
     if status:
         return _show(planned(file, out), as_json)
     chosen = begin(file, out)
