@@ -16,6 +16,7 @@ from primordia.comparison.pace import WINDOWS, Pace
 from primordia.comparison.survival import survival as survived
 from primordia.figures import ages, comparison, foraging, population, style, survival
 from primordia.history import series
+from primordia.history.extinctions import Extinctions
 from primordia.history.foraging import Foraging
 from primordia.law.world import Cause
 from primordia.runs.lives import ALIVE, Lives
@@ -202,6 +203,7 @@ def test_food_is_drawn_in_the_unit_of_its_title(
 
 
 SEEDS = np.arange(3)
+NONE = Extinctions(np.zeros(3, np.int64), np.zeros(3, np.int64))
 
 
 def arm(name: str, seed: int, known: bool = True) -> ComparedArm:
@@ -218,7 +220,9 @@ def arm(name: str, seed: int, known: bool = True) -> ComparedArm:
     deaths = draw.integers(1, 9, (3, WINDOWS))
     paces = Pace(edges, draw.integers(1, 900, (3, WINDOWS)).astype(float), deaths)
     gathered = Gathering(draw.random((3, WINDOWS)), values["food"])
-    return ComparedArm(name, {}, SEEDS, values, survived(LIVES, 3, 100 + seed), paces, gathered)
+    return ComparedArm(
+        name, {}, SEEDS, values, survived(LIVES, 3, 100 + seed), paces, gathered, NONE
+    )
 
 
 def drawn(*arms: ComparedArm) -> Figure:

@@ -8,7 +8,7 @@ from primordia.history.summary import summary
 def world(**changed: Any) -> dict[str, Any]:
     return {
         "seed": 0, "ticks": 5000, "births": 900, "alive": 8, "mean_age": 70.0, "oldest_age": 300,
-        "deaths_by_cause": {"fatal": 890, "hazard": 2, "fault": 0}, "extinctions": 0,
+        "deaths_by_cause": {"fatal": 890, "hazard": 2, "fault": 0}, "extinctions": 0, "crashes": 0,
         "saturation": {"tick": 4000, "births": 800}, "fixation": None, "tries_per_life": 3.0,
         **changed,
     }  # fmt: skip
@@ -27,6 +27,14 @@ def test_the_summary_of_one_world_names_its_moments() -> None:
         "    one common ancestor since tick 70 (birth 9)",
         "    saturated at tick 4,000 (birth 800)",
     ]
+    lines = (
+        (1, 1, "extinct once, after half of the cells were full"),
+        (2, 1, "extinct 2 times, once after half of the cells were full"),
+        (9, 3, "extinct 9 times, 3 times after half of the cells were full"),
+    )
+    for extinctions, crashes, words in lines:
+        line = summarised([world(extinctions=extinctions, crashes=crashes)]).splitlines()[1]
+        assert line.endswith(f"2 hazard, {words}")
     empty = summarised([world(alive=0, saturation=None, mean_age=None, oldest_age=None)])
     assert empty.endswith("    0 alive\n    not saturated")
     assert "no heredity" in summarised([world()], inheritance="founder")
@@ -63,6 +71,8 @@ def test_the_summary_of_many_worlds_gives_quartiles() -> None:
     many = summarised(worlds)
     assert "9 of 9 saturated, births until then: median 400 (quartiles 200, 600)" in many
     assert "8,100 births" in many
+    dying = summarised([world(extinctions=3, crashes=1)] * 9)
+    assert "extinctions: 27 (9 after half of the cells were full)" in dying
     assert len(many.splitlines()) <= 6
     half = [world(saturation=None) for _ in range(9)]
     assert "9 of 18 saturated, births until then: median 800 (quartiles 400, later)" in summarised(

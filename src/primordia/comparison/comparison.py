@@ -24,6 +24,7 @@ from primordia.comparison.pairs import same_seeds
 from primordia.comparison.survival import Survival, survival
 from primordia.config import Config
 from primordia.errors import InputError
+from primordia.history.extinctions import Extinctions, extinctions
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 from primordia.settings.tables import flat
@@ -62,6 +63,8 @@ class ComparedArm:
     survival: Survival
     pace: Pace
     gathering: Gathering
+    extinctions: Extinctions
+    """those on record in the time that is compared"""
 
     @property
     def worlds(self) -> int:
@@ -125,6 +128,8 @@ class Comparison:
             "settings": arm.settings,
             "worlds": arm.worlds,
             "saturated": arm.saturated,
+            "extinctions": int(arm.extinctions.total.sum()),
+            "crashes": int(arm.extinctions.crashes.sum()),
         }
         for outcome, measured in arm.measured.items():
             quartiles = [plain(measured.quantile(q)) for q in (0.25, 0.5, 0.75)]
@@ -181,6 +186,7 @@ def compare(
                 survived,
                 dying,
                 gathered,
+                extinctions(worlds, run.config.cells),
             )
         )
     span = "second" if rate else "tick"

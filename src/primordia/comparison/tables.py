@@ -102,10 +102,12 @@ def _runs(compared: Comparison) -> Table:
     horizons = [f"{horizon:,} {unit}" for unit, horizon in units.items() if horizon is not None]
     settings = compared.arms[0].settings
     saturated = f"saturated within {' and '.join(horizons)}" if horizons else "saturated"
-    table = _table(compared.task, *settings, "worlds", saturated)
+    table = _table(compared.task, *settings, "worlds", saturated, "extinctions", "crashes")
     for arm in compared.arms:
         own = [setting_text(value) for value in arm.settings.values()]
-        table.add_row(arm.name, *own, str(arm.worlds), str(arm.saturated))
+        lost = arm.extinctions
+        counts = map(str, (arm.worlds, arm.saturated, lost.total.sum()))
+        table.add_row(arm.name, *own, *counts, lost.text)
     return table
 
 
@@ -168,6 +170,10 @@ def _notes(compared: Comparison) -> list[str]:
         "Medians and intervals are over worlds. A world that stopped unsaturated is treated as censored."
     ]
     notes += _too_few(compared) + evidence_notes(compared)
+    if any(arm.extinctions.crashes.any() for arm in compared.arms):
+        notes.append(
+            "Crashes: extinctions after half of the cells were full of founders' descendants."
+        )
     if compared.begin:
         notes.append(
             f"Births, ticks and lives count from tick {compared.begin:,}, that of the fork."

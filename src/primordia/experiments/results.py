@@ -24,13 +24,15 @@ from primordia.comparison.tables import (
 )
 from primordia.figures import style
 from primordia.figures.comparison import draw
+from primordia.history.extinctions import Extinctions, crashes
 from primordia.runs.arrays import NEVER
 from primordia.runs.directory import VERSIONS
 from primordia.runs.records import Records
 
 NOTE = (
     "Medians over worlds (quartiles); a world that stopped unsaturated is known only to be at least"
-    " so late. Effects: Cliff's delta; ratio of medians (95 % interval over worlds)."
+    " so late. Effects: Cliff's delta; ratio of medians (95 % interval over worlds). Crashes:"
+    " extinctions after half of the cells were full of founders' descendants."
 )
 
 SATURATED = {"saturated_births": "saturated_births", "saturated_tick": "saturated"}
@@ -65,6 +67,7 @@ def counts(arm: Records) -> dict[str, np.ndarray]:
     own = {name: arm.count(f"world.worlds.{stored}") for name, stored in names.items()}
     alive = arm.state["world.organisms.alive"].reshape(len(arm.world_seeds), -1).sum(axis=1)
     moments = {name: arm.count(f"world.worlds.{stored}") for name, stored in SATURATED.items()}
+    own["crashes"] = crashes(arm)
     return {"seed": arm.world_seeds, **own, "alive": alive, **moments}
 
 
@@ -72,7 +75,15 @@ def summary(compared: Comparison, counted: list[dict[str, np.ndarray]]) -> str:
     """Return a table with a row for each arm: medians over worlds, with quartiles."""
     names = list(compared.arms[0].settings)
     outcomes = compared.outcomes
-    head = ["", *names, "worlds", "saturated", "extinctions (median)", *outcomes.values()]
+    head = [
+        "",
+        *names,
+        "worlds",
+        "saturated",
+        "extinctions (median)",
+        "crashes",
+        *outcomes.values(),
+    ]
     rows = [
         [
             arm.name,
@@ -80,6 +91,7 @@ def summary(compared: Comparison, counted: list[dict[str, np.ndarray]]) -> str:
             arm.worlds,
             arm.saturated,
             f"{np.median(numbers['extinctions']):g}",
+            Extinctions(numbers["extinctions"], numbers["crashes"]).text,
         ]
         + [quartiles_text(arm, outcome) for outcome in outcomes]
         for arm, numbers in zip(compared.arms, counted, strict=True)

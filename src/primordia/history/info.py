@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from primordia.history.extinctions import crashes
 from primordia.law.metabolism import break_even
 from primordia.law.world import Cause
 from primordia.runs.arrays import NEVER
@@ -17,6 +18,7 @@ TALLY = "bodies.tally"
 def info(run: Records) -> dict[str, Any]:
     """Return a run in numbers, as one dictionary that JSON can hold.
 
+    `crashes` are the extinctions after a rise; see `extinctions`.
     `saturation` and `fixation` are None, or their tick and number of births (founders included).
     Ages, in ticks, and the habitat's counts (`tallies`) are those of the living.
     `break_even` is the food in a tick, and in a second, that keeps energy constant under the present
@@ -26,9 +28,11 @@ def info(run: Records) -> dict[str, Any]:
     """
     config, progress = run.config, run.progress
     worlds = [
-        {**_world(part, world), "digest": digest}
+        {**world, "digest": digest}
         for part in run.parts()
-        for world, digest in enumerate(digests(part.row_digests, part.state, part.config.seeds))
+        for world, digest in zip(
+            _worlds(part), digests(part.row_digests, part.state, part.config.seeds), strict=True
+        )
     ]
     whole = {
         "task": config.task,
@@ -44,7 +48,11 @@ def info(run: Records) -> dict[str, Any]:
     return whole if config.seeds > 1 else {**worlds[0], **whole}
 
 
-def _world(run: Records, world: int) -> dict[str, Any]:
+def _worlds(run: Records) -> list[dict[str, Any]]:
+    return [_world(run, world, crashed) for world, crashed in enumerate(crashes(run).tolist())]
+
+
+def _world(run: Records, world: int, crashed: int) -> dict[str, Any]:
     config, arrays = run.config, run.state
 
     def counted(name: str) -> Any:
@@ -63,6 +71,7 @@ def _world(run: Records, world: int) -> dict[str, Any]:
         "deaths": sum(deaths),
         "deaths_by_cause": dict(zip((cause.label for cause in Cause), deaths, strict=True)),
         "extinctions": counted("extinctions"),
+        "crashes": crashed,
         "cell_ticks": tick * config.cells,
         "organism_ticks": counted("organism_ticks"),
         "mean_age": float(ages.mean()) if len(ages) else None,

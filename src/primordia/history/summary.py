@@ -29,7 +29,7 @@ def summary(info: dict[str, Any]) -> str:
 def _one_world(world: dict[str, Any]) -> list[str]:
     lines = [
         f"  seed {world['seed']}: {world['ticks']:,} ticks, {world['births']:,} births, "
-        f"deaths: {_causes([world])}{_extinct(world['extinctions'])}",
+        f"deaths: {_causes([world])}{_extinct(world)}",
         f"    {world['alive']:,} alive",
     ]
     if world["alive"]:
@@ -43,10 +43,15 @@ def _one_world(world: dict[str, Any]) -> list[str]:
     return [*lines, "    not saturated"]
 
 
-def _extinct(times: int) -> str:
+def _extinct(world: dict[str, Any]) -> str:
+    times, crashes = world["extinctions"], world["crashes"]
     if not times:
         return ""
-    return ", extinct once" if times == 1 else f", extinct {times:,} times"
+    extinct = ", extinct once" if times == 1 else f", extinct {times:,} times"
+    if not crashes:
+        return extinct
+    risen = "" if times == 1 else f" {'once' if crashes == 1 else f'{crashes:,} times'}"
+    return f"{extinct},{risen} after half of the cells were full"
 
 
 def _break_even(worlds: list[dict[str, Any]]) -> list[str]:
@@ -87,10 +92,12 @@ def _all_worlds(worlds: list[dict[str, Any]]) -> list[str]:
         return sum(world[name] for world in worlds)
 
     oldest = max(world["oldest_age"] or 0 for world in worlds)
+    crashes = total("crashes")
+    risen = f" ({crashes:,} after half of the cells were full)" if crashes else ""
     return [
         f"  seeds {worlds[0]['seed']} to {worlds[-1]['seed']}: {total('ticks'):,} ticks, "
         f"{total('births'):,} births, deaths: {_causes(worlds)}",
-        f"    {total('alive'):,} alive, oldest {oldest:,}; extinctions: {total('extinctions'):,}",
+        f"    {total('alive'):,} alive, oldest {oldest:,}; extinctions: {total('extinctions'):,}{risen}",
         f"    {_share(worlds, 'fixation', 'with one common ancestor')}",
         f"    {_share(worlds, 'saturation', 'saturated')}",
     ]

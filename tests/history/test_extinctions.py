@@ -1,0 +1,156 @@
+"""Extinctions of founders that never rose, and crashes after a rise, counted again tick by tick."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import primordia
+from primordia.history import extinctions as module
+from primordia.history.extinctions import Extinctions, extinctions
+from primordia.law.world import Cause
+from primordia.runs import loop
+from primordia.runs.archive import Archive
+from primordia.runs.lives import ALIVE, Lives
+from tests.commands import here
+from tests.worlds import CLOCKWORK, MEADOW, config
+
+CELLS = 8
+COHORT = st.tuples(
+    st.integers(1, CELLS),
+    st.integers(2, 12),
+    st.lists(st.tuples(st.integers(0, 20), st.integers(1, 20)), max_size=12),
+)
+"""Founders, ticks until the last has died, and children: birth and lifespan, both cut to these ticks."""
+
+
+def lived(cohorts: list) -> tuple[Lives, list[bool]]:
+    """Return a world of founding cohorts, the last still alive, and whether each but the last rose."""
+    rows, rose, start = [], [], 0
+    for founders, ticks, children in cohorts:
+        born = [(min(1 + at, ticks - 1), at + span) for at, span in children]
+        spans = [(start + at, start + min(at + span, ticks)) for at, span in born]
+        rows += [(start, start + ticks, -1)] * founders
+        rows += [(*span, 0) for span in sorted(spans)]
+        most = max(
+            sum(begin <= tick < end for begin, end in spans) for tick in range(start, start + ticks)
+        )
+        rose.append(2 * most >= CELLS)
+        start += ticks
+    born, ended, parent = (np.array(column) for column in zip(*rows, strict=True))
+    last = ended == start
+    number = np.arange(len(rows))
+    world = Lives(
+        world=np.zeros(len(rows), np.int32),
+        id=number,
+        parent=parent,
+        cell=(number % CELLS).astype(np.int32),
+        birth_cause=np.zeros(len(rows), np.int8),
+        born=born,
+        seen=born,
+        ended=ended,
+        cause=np.where(last, ALIVE, Cause.FATAL).astype(np.int8),
+    )
+    return world, rose[:-1]
+
+
+@given(st.lists(COHORT, min_size=1, max_size=6))
+def test_a_crash_is_an_extinction_after_half_of_the_cells_were_full(cohorts: list) -> None:
+    """Founders do not count, even if they fill the world."""
+    world, rose = lived(cohorts)
+    found = extinctions([world, world], CELLS)
+    assert found.total.tolist() == [len(cohorts) - 1] * 2
+    assert found.crashes.tolist() == [sum(rose)] * 2
+
+
+@given(st.lists(COHORT, min_size=2, max_size=6), st.data())
+def test_a_record_that_begins_later_holds_the_extinctions_since(
+    cohorts: list, data: st.DataObject
+) -> None:
+    world, _ = lived(cohorts)
+    starts = np.cumsum([0, *(ticks for _, ticks, _ in cohorts)])[1:-1]
+    begin = data.draw(st.integers(0, int(world.ended.max()) - 1))
+    later = extinctions([world.recorded_since(begin)], CELLS)
+    assert later.total.tolist() == [(starts > begin).sum()]
+    assert later.crashes[0] <= extinctions([world], CELLS).crashes[0]
+
+
+DYING: dict[str, Any] = {
+    **MEADOW,
+    "cells": 6,
+    "brain": {"hidden": 1},
+    "seeds": 3,
+    "replication": 0.15,
+    "hazard": 0.12,
+    "stop": {"ticks": 1500},
+}
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> primordia.Run:
+    """Make a run whose worlds die out often, some of them after a rise."""
+    folder = tmp_path_factory.mktemp("extinctions") / "run"
+    loop.start(config(DYING), folder)
+    return primordia.load(folder)
+
+
+def test_crashes_of_a_run_are_those_of_its_tables(run: primordia.Run, tmp_path: Path) -> None:
+    born, died = (run.table(name).to_pylist() for name in ("births", "deaths"))
+    seen = Extinctions(*(np.zeros(3, np.int64) for _ in range(2)))
+    for number, world in enumerate(run.info()["worlds"]):
+        children = {
+            row["id"] for row in born if row["world"] == number and row["parent"] is not None
+        }
+        changes: dict[int, int] = {}
+        for rows, by in ((born, 1), (died, -1)):
+            for row in rows:
+                if row["world"] == number and row["id"] in children:
+                    changes[row["tick"]] = changes.get(row["tick"], 0) + by
+        starts = {row["tick"] for row in born if row["world"] == number} - {0}
+        starts &= {row["tick"] for row in born if row["world"] == number and row["parent"] is None}
+        alive = most = crashes = 0
+        for tick in range(world["ticks"] + 1):
+            alive += changes.get(tick, 0)
+            if tick in starts:
+                crashes, most = crashes + (most >= 3), 0
+            most = max(most, alive)
+        assert (world["extinctions"], world["crashes"]) == (len(starts), crashes)
+        seen.total[number], seen.crashes[number] = len(starts), crashes
+    assert 0 < seen.crashes.sum() < seen.total.sum()
+    printed = here("info", run.path).stdout
+    assert "times after half of the cells were full" in printed
+    twin = tmp_path / "twin"
+    loop.start(config({**DYING, "seed": 50}), twin)
+    one, _ = json.loads(here("compare", run.path, twin, "--json", "--out", tmp_path).stdout)["runs"]
+    assert (one["extinctions"], one["crashes"]) == (seen.total.sum(), seen.crashes.sum())
+    assert seen.text in here("compare", run.path, twin, "--out", tmp_path).stdout
+
+
+def test_the_crashes_of_a_fork_are_those_since_it_was_forked(
+    run: primordia.Run, tmp_path: Path
+) -> None:
+    fork = run.fork(1400, tmp_path / "fork")
+    whole = [world["crashes"] for world in run.info()["worlds"]]
+    later = [world["crashes"] for world in fork.info()["worlds"]]
+    assert all(one <= all_ for one, all_ in zip(later, whole, strict=True))
+    assert sum(later) < sum(whole)
+
+
+def test_founders_that_fill_a_world_and_die_out_are_no_crash(tmp_path: Path) -> None:
+    loop.start(config({**CLOCKWORK, "stop": {"ticks": 100}}), tmp_path / "run")
+    worlds = primordia.load(tmp_path / "run").info()["worlds"]
+    assert [(world["extinctions"], world["crashes"]) for world in worlds] == [(3, 0)] * 2
+
+
+def test_lives_are_not_read_where_nothing_died_out(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """To look at many runs must not mean to read all their lives."""
+    loop.start(config({**CLOCKWORK, "stop": {"ticks": 20}}), tmp_path / "run")
+    unread = property(lambda _: pytest.fail("lives are read"))
+    monkeypatch.setattr(Archive, "lives", unread)
+    assert module.crashes(Archive(tmp_path / "run")).tolist() == [0, 0]
