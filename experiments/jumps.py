@@ -8,6 +8,12 @@ Lifespans are in the order of deaths and on a logarithmic scale. A further stret
 the best single cut gains in 19 of 20 shuffles of the same deaths. Where order means nothing, a world has
 no change point 19 times of 20.
 
+A smooth rise is parted too: its stretches are a staircase along it. So each world is also held against
+smooth rises with its own noise. The rise is the isotonic regression of the series (Barlow, Bartholomew,
+Bremner & Brunk 1972), averaged over a tenth of the deaths. The noise is what the regression leaves,
+drawn in blocks, since neighbours are alike (Kuensch 1989). A jump is sudden if it is larger than the
+largest jump is in 19 of 20 such rises. A rise in less than a tenth of the deaths counts as sudden.
+
 A change to longer lives is a jump; a change to shorter lives is a fall. Where all organisms are founders
 at the start, the first to die have short lives in any case. A control without heredity shows how many
 jumps are due to that. The table goes to `results/` beside the file, as Markdown and CSV, world by world.
@@ -21,6 +27,7 @@ import named
 import numpy as np
 import ruptures
 from games import write_rows
+from scipy.optimize import isotonic_regression
 
 import primordia
 from primordia.experiments.results import table
@@ -31,7 +38,13 @@ SHORTEST = 10
 """the fewest points of a stretch"""
 SHUFFLES = 400
 RARE = 0.05
-COLUMNS = ("late lifespan", "jumps", "falls", "largest jump", "longest plateau", "extinctions")
+SMOOTH = 0.1
+"""the share of a series over which a smooth rise is averaged"""
+SURROGATES = 199
+COLUMNS = (
+    *("late lifespan", "jumps", "jumps if smooth", "sudden jumps", "p of the largest"),
+    *("falls", "largest jump", "longest plateau", "extinctions"),
+)
 
 
 class Steps(NamedTuple):
@@ -45,6 +58,27 @@ class Steps(NamedTuple):
     def factors(self) -> np.ndarray:
         """Ratio of each stretch to the one before, if the series is of logarithms."""
         return np.exp(np.diff(self.means))
+
+    @property
+    def jumps(self) -> int:
+        """Number of changes to a larger mean."""
+        return int((self.factors > 1).sum())
+
+    @property
+    def largest(self) -> float:
+        """The largest factor; 1 if there is no jump."""
+        return float(self.factors.max(initial=1))
+
+
+class Smooth(NamedTuple):
+    """The steps of a series beside those of smooth rises with the same noise."""
+
+    jumps: float
+    """median number of jumps in smooth rises"""
+    sudden: int
+    """jumps larger than the largest of a smooth rise is in 19 of 20"""
+    p: float
+    """share of smooth rises whose largest jump is no smaller, with the series among them"""
 
 
 def report(file: Path) -> None:
@@ -71,13 +105,18 @@ def steps_of(run: Path) -> list[dict[str, Any]]:
 
 def described(series: np.ndarray) -> dict[str, Any]:
     """Describe the steps in a series (N,) of logarithms of lifespans."""
-    steps = parted(series)
+    gain = penalty(series)
+    steps = cut(series, gain)
+    smooth = beside_smooth(series, steps, gain)
     sizes = np.diff([0, *steps.ends])
     return {
         "late lifespan": round(float(np.exp(steps.means[-1])), 1),
-        "jumps": int((steps.factors > 1).sum()),
+        "jumps": steps.jumps,
+        "jumps if smooth": smooth.jumps,
+        "sudden jumps": smooth.sudden,
+        "p of the largest": smooth.p,
         "falls": int((steps.factors < 1).sum()),
-        "largest jump": round(float(steps.factors.max(initial=1)), 2),
+        "largest jump": round(steps.largest, 2),
         "longest plateau": round(float(sizes.max() / len(series)), 3),
     }
 
@@ -88,15 +127,44 @@ def pooled(values: np.ndarray) -> np.ndarray:
     return values[: len(values) // size * size].reshape(-1, size).mean(axis=1)
 
 
-def parted(series: np.ndarray) -> Steps:
-    """Part a series (N,) into stretches; into one if its order means nothing or it is too short."""
+def penalty(series: np.ndarray) -> float:
+    """Return what a further stretch must gain; infinity for a series too short to be parted."""
+    if len(series) < 2 * SHORTEST:
+        return np.inf
+    noise = np.random.default_rng(0)
+    gains = [best_cut(noise.permutation(series)) for _ in range(SHUFFLES)]
+    return float(np.quantile(gains, 1 - RARE))
+
+
+def cut(series: np.ndarray, gain: float) -> Steps:
+    """Part a series (N,) into stretches, each of which gains so much; into one if it is too short."""
     ends = [len(series)]
-    if len(series) >= 2 * SHORTEST:
-        noise = np.random.default_rng(0)
-        gains = [best_cut(noise.permutation(series)) for _ in range(SHUFFLES)]
+    if np.isfinite(gain):
         search = ruptures.KernelCPD(kernel="linear", min_size=SHORTEST).fit(series[:, None])
-        ends = search.predict(pen=np.quantile(gains, 1 - RARE))
+        ends = search.predict(pen=gain)
     return Steps(ends, np.array([part.mean() for part in np.split(series, ends[:-1])]))
+
+
+def beside_smooth(series: np.ndarray, steps: Steps, gain: float) -> Smooth:
+    """Hold the steps of a series (N,), cut at a gain, against those of smooth rises with its noise."""
+    if not steps.jumps:
+        return Smooth(0, 0, 1)
+    rises = [cut(each, gain) for each in smooth_rises(series)]
+    largest = np.array([rise.largest for rise in rises])
+    sudden = int((steps.factors > np.quantile(largest, 1 - RARE)).sum())
+    p = (1 + int((largest >= steps.largest).sum())) / (1 + SURROGATES)
+    return Smooth(float(np.median([rise.jumps for rise in rises])), sudden, p)
+
+
+def smooth_rises(series: np.ndarray) -> list[np.ndarray]:
+    """Return smooth rises like a series (N,), with its noise in blocks of SHORTEST points."""
+    fit, draw = isotonic_regression(series).x, np.random.default_rng(1)
+    half = max(int(len(series) * SMOOTH / 2), 1)
+    beyond = np.pad(fit, half, mode="reflect", reflect_type="odd")
+    rise = np.convolve(beyond, np.full(2 * half + 1, 1 / (2 * half + 1)), mode="valid")
+    starts = draw.integers(len(series), size=(SURROGATES, -(-len(series) // SHORTEST)))
+    rows = (starts[:, :, None] + np.arange(SHORTEST)).reshape(SURROGATES, -1)[:, : len(series)]
+    return list(rise + (series - fit)[rows % len(series)])
 
 
 def best_cut(series: np.ndarray) -> float:
@@ -117,6 +185,9 @@ def summary(rows: list[dict[str, Any]]) -> str:
         )
     note = (
         "Medians over worlds (quartiles). Lifespan: geometric mean of the last stretch, in ticks."
+        " Jumps if smooth: those that a smooth rise with the same noise is parted into. Sudden jumps:"
+        " those larger than the largest of such a rise is in 19 of 20. P of the largest: the share of"
+        " smooth rises that have one as large."
         " Largest jump: the factor by which lives become longer from one stretch to the next. Longest"
         " plateau: the longest stretch, as a share of all deaths."
     )
