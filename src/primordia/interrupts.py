@@ -10,6 +10,7 @@ noted here, and take effect in one of two ways:
   system wakes whatever the main thread does, ends the process (`end_commands_at_once`).
 """
 
+import atexit
 import os
 import signal
 import threading
@@ -37,6 +38,7 @@ _last_words: list[Callable[[], str]] = [lambda: "Stopped"]
 def end_commands_at_once() -> None:
     """Let signals end this process from now on, with a line on stderr, except in blocks of `deferred`."""
     _handle(_note)
+    atexit.register(_ignore)  # it is called last, since nothing else has been imported yet
     woken, waker = os.pipe()
     os.set_blocking(waker, False)
     signal.set_wakeup_fd(waker, warn_on_full_buffer=False)
@@ -115,7 +117,7 @@ def _note(number: int, _: object) -> None:
     _noted.append(number)
 
 
-def _handle(handler: Callable[[int, object], None]) -> list:
+def _handle(handler: Callable[[int, object], None] | signal.Handlers) -> list:
     """Handle the signals -> each with its handler before. SIGHUP stays ignored, as `nohup` asks."""
     before = [(each, signal.getsignal(each)) for each in SIGNALS]
     before = [(each, own) for each, own in before if own is not None]  # set by other than Python
@@ -124,6 +126,11 @@ def _handle(handler: Callable[[int, object], None]) -> list:
     for each, _ in before:
         signal.signal(each, handler)
     return before
+
+
+def _ignore() -> None:
+    """Ignore signals while the interpreter ends: it hands them to the system, which would kill it."""
+    _handle(signal.SIG_IGN)
 
 
 def _wait_and_end(woken: int) -> None:

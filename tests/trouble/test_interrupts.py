@@ -201,3 +201,27 @@ with patch.object(commands, "commands", fail):
 def test_a_command_that_a_signal_ends_says_nothing_of_what_failed_meanwhile() -> None:
     done = process(OVERTAKEN)
     assert (done.returncode, done.stdout, done.stderr) == (interrupts.STATUS, "", "Stopped\n")
+
+
+LAST = """
+import os
+from primordia import interrupts
+
+class Last:
+    def __init__(self):
+        self.kill, self.process = os.kill, os.getpid()
+
+    def __del__(self):
+        self.kill(self.process, {number})
+
+interrupts.end_commands_at_once()
+last = Last()
+"""
+"""A program to which a signal comes when the interpreter clears its modules, long after `atexit`."""
+
+
+@pytest.mark.parametrize("how", interrupts.SIGNALS)
+def test_a_signal_in_the_last_instant_changes_nothing(how: signal.Signals) -> None:
+    code = LAST.format(number=int(how))
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (0, b"", b"")
