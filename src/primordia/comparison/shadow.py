@@ -107,29 +107,39 @@ def shadow(run: Records, organisms: int = ORGANISMS, ticks: int | None = None) -
 
     Args:
         run: the run, or an arm.
-        organisms: how many of each world, evenly spaced over its births; all if there are fewer.
+        organisms: most of each world, evenly spaced over its births but the last.
         ticks: age at which lives are cut; by default that without a death which saturates a world.
 
     Raises:
-        InputError: a number below one, or nothing was born since the fork.
+        InputError: a number below one, or no world has two births since the fork.
     """
     cut = run.config.saturation_ticks if ticks is None else ticks
     if organisms < 1 or cut < 1:
         raise InputError("shadow needs at least one organism and one tick")
     own = np.flatnonzero(run.lives.entered == 0)
-    if not len(own):
-        raise InputError(f"{run.path}: nothing has been born since the fork")
-    rows = _sample(run.lives.world[own], own, organisms)
+    rows = _sample(run.lives.world[own], own, organisms) if len(own) else own
+    if not len(rows):
+        raise InputError(
+            f"{run.path}: shadow needs two births in a world, since the fork if it is one"
+        )
     original, redrawn = (_lifespans(run, rows, each, cut) for each in (False, True))
     return Shadow(run.path.name, len(own), run.lives.world[rows], original, redrawn, cut)
 
 
 def _sample(worlds: np.ndarray, rows: np.ndarray, most: int) -> np.ndarray:
-    """Return at most so many rows of each world, evenly spaced."""
-    each = (rows[worlds == world] for world in np.unique(worlds))
-    return np.concatenate(
-        [own[np.linspace(0, len(own) - 1, min(most, len(own))).round().astype(int)] for own in each]
-    )
+    """Return at most so many rows of each world, evenly spaced, without the last birth of a world.
+
+    A saturated world stopped because its last-born lived long. That birth would tell of the limit, not of
+    selection; without it, births up to such a limit are a fair sample (Haldane 1945).
+    """
+    each = (rows[worlds == world][:-1] for world in np.unique(worlds))
+    return np.concatenate([own[_spaced(len(own), most)] for own in each])
+
+
+def _spaced(count: int, most: int) -> np.ndarray:
+    """Return at most so many places among `count`, in the middle of equal parts."""
+    parts = min(most, count)
+    return ((np.arange(parts) + 0.5) * count / parts).astype(int)
 
 
 def _lifespans(run: Records, rows: np.ndarray, redrawn: bool, cut: int) -> np.ndarray:
