@@ -1,4 +1,4 @@
-"""Let the longest-lived organism of every world of an experiment play, in its own game and in others.
+"""Let the champion of every world of an experiment play, in its own game and in others.
 
     python experiments/games.py experiments/atari/*.toml experiments/robots/*.toml
 

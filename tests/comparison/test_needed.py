@@ -64,7 +64,7 @@ def test_so_many_worlds_tell_the_effect_from_none_four_times_in_five(
     worlds = needed.of_each_run(2 * stats.norm.cdf(shift / np.sqrt(2)) - 1, level)
     run, reference = draws.standard_normal((2, 1000, worlds))
     found = stats.mannwhitneyu(run + shift, reference, axis=1).pvalue <= level
-    assert 0.77 <= found.mean() <= 0.88  # large effects are told somewhat more often
+    assert 0.77 <= found.mean() <= 0.88  # large effects are found a little more often
 
 
 @given(

@@ -257,7 +257,7 @@ def test_a_job_whose_process_alone_is_stopped_goes_on(tmp_path: Path) -> None:
 def test_code_of_a_folder_from_elsewhere_is_not_executed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Its author has begun the job. Where its module is not found, nobody has trusted it."""
+    """A job of somewhere else may hold any code: it is not run where its module is not installed."""
     (tmp_path / "author").mkdir()
     monkeypatch.chdir(tmp_path / "author")
     source = (Path(toys.__file__)).read_text(encoding="utf-8")

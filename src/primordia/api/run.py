@@ -80,7 +80,7 @@ class Run:
         """Return the organism that lived longest, in one world or in all.
 
         Only those count that were born after a share `after` of their world's births, and never before a
-        fork. So founders, which no evolution has made, are not among them. Of equals it is the last-born.
+        fork. So the founders that a world begins with are not among them. Of equals it is the last-born.
         """
         run = self.opened()
         return Organism(run, run.lives.oldest(world, after))

@@ -47,10 +47,10 @@ class Contrast:
 
     @property
     def needed(self) -> int | None:
-        """Worlds of each run with which an effect of this size would be told from none; see `needed`.
+        """Worlds of each run at which 80 % of experiments find an effect of this size; see `needed`.
 
-        The level is that of the interval, the power 80 %. It is None where there is no effect, or one of
-        the runs has fewer than LEAST worlds.
+        The level is that of the interval. It is None where there is no effect, or one of the runs has
+        fewer than LEAST worlds.
         """
         if self.worlds < LEAST:
             return None

@@ -23,8 +23,8 @@ class Gathering:
 def gathering(run: Records, worlds: int, begin: int, end: int, span: float) -> Gathering:
     """Return the food gathered in the worlds of a run, in a span of `span` ticks.
 
-    All worlds must be on record between the ticks `begin` and `end`. If there was no food
-    at all, the metrics are not read.
+    All worlds must be on record between the ticks `begin` and `end`. If the food of each world adds up
+    to nothing, there was none, and the metrics are not read.
     """
     if not run.count("world.worlds.food").any():
         return Gathering(np.full((worlds, WINDOWS), np.nan), _known(np.zeros(worlds), False))

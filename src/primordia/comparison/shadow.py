@@ -36,7 +36,7 @@ class Shadow:
 
     name: str
     births: int
-    """births that the organisms were taken from"""
+    """births on record, of which the organisms are a sample"""
     world: np.ndarray
     """world of each organism, int32 (K,), not falling"""
     original: np.ndarray
@@ -127,7 +127,7 @@ def shadow(run: Records, organisms: int = ORGANISMS, ticks: int | None = None) -
 
 
 def _sample(worlds: np.ndarray, rows: np.ndarray, most: int) -> np.ndarray:
-    """Return at most so many rows of each world, evenly spaced, without the last birth of a world.
+    """Return at most `most` rows of each world, evenly spaced, without the last birth of a world.
 
     A saturated world stopped because its last-born lived long. That birth would tell of the limit, not of
     selection; without it, births up to such a limit are a fair sample (Haldane 1945).
@@ -137,7 +137,7 @@ def _sample(worlds: np.ndarray, rows: np.ndarray, most: int) -> np.ndarray:
 
 
 def _spaced(count: int, most: int) -> np.ndarray:
-    """Return at most so many places among `count`, in the middle of equal parts."""
+    """Return at most `most` places among `count`, in the middle of equal parts."""
     parts = min(most, count)
     return ((np.arange(parts) + 0.5) * count / parts).astype(int)
 

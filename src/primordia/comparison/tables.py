@@ -155,8 +155,8 @@ def evidence_notes(compared: Comparison) -> list[str]:
     if any(each.worlds >= LEAST for each in against):
         level = f"{100 * (1 - against[0].coverage):.3g} %"
         notes.append(
-            "Needs: worlds of each arm with which an effect of this size is told from none in 80 % of"
-            f" cases, at a level of {level} (Noether 1987)."
+            "Needs: the number of worlds in each arm at which 80 % of experiments find an effect of this"
+            f" size, at a level of {level} (Noether 1987)."
         )
     return notes
 

@@ -35,8 +35,6 @@ NOTE = (
     " extinctions after half of the cells were full of founders' descendants."
 )
 
-SATURATED = {"saturated_births": "saturated_births", "saturated_tick": "saturated"}
-
 
 def write(stem: Path, question: str, arms: Sequence[Records]) -> list[Path]:
     """Write STEM.md, STEM.csv and STEM.png; the first arm is the reference.
@@ -63,12 +61,20 @@ def write(stem: Path, question: str, arms: Sequence[Records]) -> list[Path]:
 
 def counts(arm: Records) -> dict[str, np.ndarray]:
     """Return the numbers of each world of an arm, (W,) each; NEVER where a world is not saturated."""
-    names = {"ticks": "tick", "births": "births", "extinctions": "extinctions"}
-    own = {name: arm.count(f"world.worlds.{stored}") for name, stored in names.items()}
-    alive = arm.state["world.organisms.alive"].reshape(len(arm.world_seeds), -1).sum(axis=1)
-    moments = {name: arm.count(f"world.worlds.{stored}") for name, stored in SATURATED.items()}
-    own["crashes"] = crashes(arm)
-    return {"seed": arm.world_seeds, **own, "alive": alive, **moments}
+
+    def counted(name: str) -> np.ndarray:
+        return arm.count(f"world.worlds.{name}")
+
+    return {
+        "seed": arm.world_seeds,
+        "ticks": counted("tick"),
+        "births": counted("births"),
+        "extinctions": counted("extinctions"),
+        "crashes": crashes(arm),
+        "alive": arm.state["world.organisms.alive"].reshape(len(arm.world_seeds), -1).sum(axis=1),
+        "saturated_births": counted("saturated_births"),
+        "saturated_tick": counted("saturated"),
+    }
 
 
 def summary(compared: Comparison, counted: list[dict[str, np.ndarray]]) -> str:

@@ -95,6 +95,20 @@ def place_in(state: Mapping[str, np.ndarray], organism: int, world: int) -> int:
     return int(places[0])
 
 
+def recorded(heredity: Heredity, counts: tuple, marks: tuple, climate: Climate) -> Birth:
+    """Return recorded births (K,) as heredity sees them.
+
+    Args:
+        heredity: the heredity of the run.
+        counts: seed of the world, birth number and tick of each birth, Wide.
+        marks: cell within the world; whether it is a founder.
+        climate: values of the settings at each birth.
+    """
+    (seed, number, tick), (cell, founder) = counts, marks
+    draws = Draws(streams(seed, tick, *PURPOSES), cell)
+    return Birth(seed, number, draws, founder, heredity.rates(climate))
+
+
 def _starting_point(run: Records, lineage: Lives) -> tuple[np.ndarray, Lives]:
     """Return the genome (P,) to start a lineage from, and the births to replay from there.
 
@@ -159,8 +173,7 @@ def _replay_births(
         (seed, number, tick), (cell, founder, real), climate, notes = jax.tree.map(
             jnp.atleast_1d, given
         )
-        draws = Draws(streams(seed, tick, *PURPOSES), cell)
-        birth = Birth(seed, number, draws, founder, heredity.rates(climate))
+        birth = recorded(heredity, (seed, number, tick), (cell, founder), climate)
         child = heredity.rebuild_genomes(birth, genome[None], notes.reshape(1, -1))[0]
         return jnp.where(real, child, genome), None
 

@@ -5,20 +5,16 @@ genomes, as in `lineage`. Redrawn they give those of the neutral shadow: the sam
 birth, but founders and mutations that no life has ever tried (Bedau & Packard 1992).
 """
 
-from collections.abc import Mapping
-
-import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
 from primordia import device
 from primordia.compiled import shared
 from primordia.history.climate import PastClimate
-from primordia.history.lineage import genome_in
-from primordia.law.heredity import Birth, Heredity
-from primordia.law.world import BirthCause
-from primordia.mutations.contract import PURPOSES, Draws
-from primordia.random.keys import Purpose, stream, streams
+from primordia.history.lineage import genome_in, recorded
+from primordia.law.heredity import Heredity
+from primordia.law.world import BirthCause, Climate
+from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
 from primordia.runs.records import Records
 
@@ -120,7 +116,7 @@ def _repeat(
     redrawn: bool,
     counts: tuple,
     marks: tuple,
-    climate: Mapping,
+    climate: Climate,
     parents: Array,
     notes: Array,
 ) -> tuple[Array, Array]:
@@ -135,9 +131,7 @@ def _repeat(
         parents: the parents' genomes, float32 (K, P).
         notes: notes of the newborn as recorded, or of their parents, int32 (K, n).
     """
-    (seed, number, tick), (cell, founder) = counts, map(jnp.asarray, marks)
-    draws = Draws(streams(seed, tick, *PURPOSES), cell)
-    birth = Birth(seed, number, draws, founder, heredity.rates(climate))
+    birth = recorded(heredity, counts, marks, climate)
     if not redrawn:
         return heredity.rebuild_genomes(birth, parents, notes), notes
     newborn = heredity.make_newborn(birth, parents, notes)

@@ -163,10 +163,9 @@ class _Joined(Mapping[str, np.ndarray]):
         for name in self._names:
             if name.startswith(WORLDS):
                 own = stored[name]
-                whole = self._worlds.setdefault(
-                    name, np.empty((self._count, *own.shape[1:]), own.dtype)
-                )
-                whole[first : first + len(own)] = own
+                if name not in self._worlds:
+                    self._worlds[name] = np.empty((self._count, *own.shape[1:]), own.dtype)
+                self._worlds[name][first : first + len(own)] = own
         self._kept[number] = True
 
     def __getitem__(self, name: str) -> np.ndarray:
