@@ -137,3 +137,25 @@ def test_an_array_that_no_run_has_is_refused(run: Path, name: str) -> None:
     rewrite(newest(run), lambda arrays: arrays.update({name: np.zeros((CELLS, 2), np.float32)}))
     for command in ("info", "resume", "verify"):
         complains(here(command, run), 1, f"there is an array {name}, which no run has")
+
+
+class _Pickled:
+    """What executes code where it is unpickled."""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Path.touch, (Path("executed"),)
+
+
+def test_a_pickled_array_is_damage_and_is_not_executed(
+    run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    folder, name = newest(run), "world.worlds.tick.hi"
+    with np.load(folder / "state.npz") as stored:
+        arrays = dict(stored)
+    arrays[name] = np.array([_Pickled()], object)
+    np.savez(folder / "state.npz", allow_pickle=True, **arrays)
+    reseal(folder)
+    with pytest.raises(Trouble, match="damaged"):
+        Archive(run).count("world.worlds.tick")
+    assert not Path("executed").exists()
