@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
+from primordia.comparison import resample
 from primordia.comparison.contrast import contrast
 from primordia.comparison.measured import Measured
 from primordia.comparison.resample import LEAST, resamples
@@ -114,12 +115,24 @@ def test_the_fewest_worlds_are_those_whose_range_holds_the_median_nine_times_in_
 
 
 def test_resamples_are_even_and_independent() -> None:
-    drawn = resamples(20)
+    (drawn,) = resamples(20)
+    (again,), (other,) = resamples(20), resamples(20, stream=1)
     assert drawn.shape == (1000, 20)
     counts = np.bincount(drawn.ravel(), minlength=20)
     assert stats.chisquare(counts).pvalue > 0.001
-    assert (drawn == resamples(20)).all()
-    assert (drawn == resamples(20, stream=1)).mean() == pytest.approx(0.05, abs=0.01)
+    assert (drawn == again).all()
+    assert (drawn == other).mean() == pytest.approx(0.05, abs=0.01)
+
+
+@pytest.mark.parametrize("numbers", [1, 2_000, 19_999])
+def test_resamples_do_not_depend_on_their_parts(
+    numbers: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (whole,) = resamples(20)
+    monkeypatch.setattr(resample, "NUMBERS", numbers)
+    parts = list(resamples(20))
+    assert len(parts) > 1
+    np.testing.assert_array_equal(np.concatenate(parts), whole)
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,7 @@
 """Survival of lives by Kaplan and Meier, also in forks, with a band from resampled worlds."""
 
+from itertools import chain
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -80,7 +82,7 @@ def test_the_band_is_that_of_resampled_worlds() -> None:
     ]
     estimate = survival(made(worlds), 4, 20)
     curves = []
-    for drawn in resamples(4):
+    for drawn in chain.from_iterable(resamples(4)):
         lifespans = np.array([life for world in drawn for life, _ in worlds[world]])
         curves.append([(lifespans > age).mean() for age in estimate.ages])
     low, high = interval(np.array(curves))

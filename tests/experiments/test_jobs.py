@@ -269,14 +269,20 @@ def test_code_of_a_folder_from_elsewhere_is_not_executed(
     loop.start(config.model_copy(update={"stop": stop}), chosen.path / job.folder)
     (tmp_path / "reader").mkdir()
     Path("strange_toys.py").unlink()
-    script = (
-        "import sys; from primordia.cli import main;"
-        f"sys.argv = ['primordia', 'experiment', {str(chosen.path)!r}, '--job', '0']; main()"
-    )
     here_ = {**commands.environment(commands.CACHE), "XDG_STATE_HOME": str(tmp_path / "state")}
-    done = subprocess.run(
-        [sys.executable, "-P", "-c", script], cwd=tmp_path / "reader", env=here_,
-        capture_output=True, text=True,
-    )  # fmt: skip
+
+    def lived(*options: str) -> subprocess.CompletedProcess[str]:
+        words = ["primordia", "experiment", str(chosen.path), "--job", "0", *options]
+        script = f"import sys; from primordia.cli import main; sys.argv = {words}; main()"
+        return subprocess.run(
+            [sys.executable, "-P", "-c", script],
+            cwd=tmp_path / "reader",
+            env=here_,
+            capture_output=True,
+            text=True,
+        )
+
+    done = lived()
     assert done.returncode == 1
     assert "executes code that is not of an installed package" in done.stderr
+    assert lived("--trust").returncode == 0

@@ -8,7 +8,7 @@ import click
 
 from primordia import cores, interrupts
 from primordia.cli.cache import cache_option
-from primordia.cli.flags import checkpoint_option, device_option, quiet_option
+from primordia.cli.flags import checkpoint_option, device_option, quiet_option, trust_option
 from primordia.cli.streams import report
 from primordia.errors import InputError
 
@@ -39,10 +39,17 @@ if TYPE_CHECKING:
 )
 @checkpoint_option
 @device_option
+@trust_option
 @cache_option
 @quiet_option
 def experiment(
-    file: Path, out: Path | None, job: int | None, status: bool, as_json: bool, **options: Any
+    file: Path,
+    out: Path | None,
+    job: int | None,
+    status: bool,
+    as_json: bool,
+    trust: bool,
+    **options: Any,
 ) -> None:
     """Run the arms of an experiment, and write its results.
 
@@ -60,9 +67,17 @@ def experiment(
     if status:
         return _show(planned(file, out), as_json)
     chosen = begin(file, out)
+    if trust:
+        _trust(chosen.path)
     if job is not None:
         return _live_one(chosen, job, options["checkpoint_every"], options["device"])
     return _live_all(chosen, **options)
+
+
+def _trust(path: Path) -> None:
+    from primordia.api import load  # which imports all that looks at runs
+
+    load(path, trust=True)
 
 
 def _show(chosen: "Campaign", as_json: bool) -> None:

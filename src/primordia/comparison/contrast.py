@@ -115,12 +115,17 @@ def plain(bounds: Bounds) -> list[float | None]:
 
 def _interval(runs: tuple[Measured, Measured], streams: tuple[int, int], missed: float) -> Bounds:
     """Return the interval of the ratio of medians; runs that share a stream are resampled together."""
-    medians = []
-    for each, stream in zip(runs, streams, strict=True):
-        drawn = each.take(resamples(len(each.value), stream, enough(missed)))
-        medians.append((quantile(drawn.value, 0.5), quantile(drawn.high, 0.5)))
-    low, high = _ratio(*medians)
+    one, other = (_medians(*each, enough(missed)) for each in zip(runs, streams, strict=True))
+    low, high = _ratio(one, other)
     return float(interval(low, missed)[0]), float(interval(high, missed)[1])
+
+
+def _medians(run: Measured, stream: int, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return bounds of the median in each resample of the worlds, float64 (count,) each."""
+    parts = map(run.take, resamples(len(run.value), stream, count))
+    bounds = [(quantile(part.value, 0.5), quantile(part.high, 0.5)) for part in parts]
+    low, high = map(np.concatenate, zip(*bounds, strict=True))
+    return low, high
 
 
 def _pairs(small: np.ndarray, large: np.ndarray) -> int:

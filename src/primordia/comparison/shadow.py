@@ -77,7 +77,8 @@ class Shadow:
         ratios = np.divide(*self.means)
         if len(ratios) < LEAST:
             return None
-        low, high = interval(np.median(ratios[resamples(len(ratios))], axis=1))
+        medians = [np.median(ratios[rows], axis=1) for rows in resamples(len(ratios))]
+        low, high = interval(np.concatenate(medians))
         return float(low), float(high)
 
     def to_dict(self) -> dict[str, Any]:

@@ -6,10 +6,11 @@ Organisms alive at a fork count from their age at the fork on (delayed entry: Ka
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import chain
 
 import numpy as np
 
-from primordia.comparison.resample import interval, resamples
+from primordia.comparison.resample import RESAMPLES, interval, resamples
 from primordia.runs.lives import Lives
 
 
@@ -49,9 +50,9 @@ class Survival:
     def band(self) -> tuple[np.ndarray, np.ndarray]:
         """Pointwise 95 % interval of the pooled curve over resamples of whole worlds, (A,) each."""
         worlds = len(self.deaths)
-        curves = np.empty((len(drawn := resamples(worlds)), len(self.ages)), np.float32)
+        curves = np.empty((RESAMPLES, len(self.ages)), np.float32)
         deaths, at_risk = self.deaths.astype(float), self.at_risk.astype(float)
-        for row, resample in enumerate(drawn):
+        for row, resample in enumerate(chain.from_iterable(resamples(worlds))):
             times = np.bincount(resample, minlength=worlds).astype(float)
             curves[row] = _alive(times @ deaths, times @ at_risk)
         return interval(curves)

@@ -40,9 +40,8 @@ class Purpose(IntEnum):
     REBIRTH = 12
 
 
-@jax.jit
-def threefry(key: Wide, counter: Wide) -> Wide:
-    """Encrypt counters (two words each) under keys (two words each)."""
+def encrypt(key: Wide, counter: Wide) -> Wide:
+    """Encrypt counters (two words each) under keys (two words each), in NumPy or in JAX."""
     k = (key.hi, key.lo, key.hi ^ key.lo ^ np.uint32(PARITY))
     a, b = counter.hi + k[0], counter.lo + k[1]
     for block in range(5):
@@ -53,6 +52,10 @@ def threefry(key: Wide, counter: Wide) -> Wide:
         a = a + k[(block + 1) % 3]
         b = b + k[(block + 2) % 3] + np.uint32(block + 1)
     return Wide(a, b)
+
+
+threefry = jax.jit(encrypt)
+"""`encrypt`, compiled."""
 
 
 @register_dataclass

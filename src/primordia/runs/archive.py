@@ -186,11 +186,19 @@ class Archive(Records):
         Raises:
             Trouble: they are damaged.
         """
-        stored = checkpoint.origin(self.path, self.fault_in)
-        return None if stored is None else self.arrays_of(stored)
+        return None if self._first is None else self.arrays_of(self._first)
+
+    @cached_property
+    def _first(self) -> Checkpoint | None:
+        """The checkpoint that a fork began with."""
+        return checkpoint.origin(self.path, self.fault_in)
 
     def release(self) -> None:
-        """Forget the arrays and the lives, which are read again at their next use."""
+        """Forget the arrays and the lives, which are read again at their next use.
+
+        The newest checkpoint is remembered and not checked again. Which files were checked is not.
+        """
+        self.fault_in.cache_clear()
         for name in ("state", "origin", "lives", "count", "ends", "metrics"):
             self.__dict__.pop(name, None)
 

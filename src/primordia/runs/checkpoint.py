@@ -104,17 +104,14 @@ def _fill(
     state, manifest = folder / STATE, folder / MANIFEST
     np.savez(state, allow_pickle=False, **arrays, **recorder.tails())
     files.sync(state)
-    content = Manifest.model_validate(
-        {
-            "progress": progress,
-            "inputs": {name: files.seal(run / name) for name in _inputs(run)},
-            "state": files.seal(state),
-            "segments": {table.name: table.segments for table in recorder.tables},
-            "digests": {
-                table.name: [tuple(each) for each in table.digest.tolist()]
-                for table in recorder.tables
-            },
-        }
+    content = Manifest(
+        progress=progress,
+        inputs={name: Seal(**files.seal(run / name)) for name in _inputs(run)},
+        state=Seal(**files.seal(state)),
+        segments={table.name: table.segments for table in recorder.tables},
+        digests={
+            table.name: [tuple(each) for each in table.digest.tolist()] for table in recorder.tables
+        },
     )
     manifest.write_text(content.text(), encoding="utf-8")
     files.sync(manifest)

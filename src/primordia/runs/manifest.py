@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic.dataclasses import dataclass
 
 from primordia import files
 from primordia.brains.genomes import FOUNDERS
@@ -42,13 +43,18 @@ class Part(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True)
 
 
-class Seal(Part):
-    """Size and checksum of a file; see `files.seal`."""
+@dataclass(slots=True, config=Part.model_config)
+class Seal:
+    """Size and checksum of a file; see `files.seal`.
+
+    It has slots, since an arm of 10,000 runs holds 100,000 of them.
+    """
 
     bytes: int = Field(ge=0)
     sha256: str = Field(pattern="^[0-9a-f]{64}$")
 
 
+@dataclass(slots=True, config=Part.model_config)
 class Segment(Seal):
     """A closed segment of a table."""
 
