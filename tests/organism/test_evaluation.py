@@ -119,24 +119,28 @@ def test_an_organism_starves_by_the_metabolism_of_its_task(tmp_path: Path) -> No
 
 
 def test_the_command_prints_figures_and_json(pong: Path) -> None:
-    one = here("evaluate", pong).stdout
+    organism = "--organism", str(primordia.load(pong).oldest().id)
+    one = here("evaluate", pong, *organism).stdout
     assert "1 distinct game; nothing is drawn at random" in one
-    many = here("evaluate", pong, "--games", "3", "--sticky", "0.25", "--ticks", "300").stdout
+    sticky = "--games", "3", "--sticky", "0.25", "--ticks", "300"
+    many = here("evaluate", pong, *organism, *sticky).stdout
     assert "3 games, sticky 0.25" in many
     assert "3 still going on when cut" in many
-    printed = json.loads(here("evaluate", pong, "--freeze-senses", "--json").stdout)
+    printed = json.loads(here("evaluate", pong, *organism, "--freeze-senses", "--json").stdout)
     assert (printed["games"], printed["senses"]) == (1, "frozen")
     assert set(printed["score"]) == {"q1", "median", "q3", "maximum"}
 
 
 def test_any_setting_of_the_habitat_is_a_flag(poles: Path) -> None:
     """This holds also for a setting with the name of an argument of `evaluate` in Python."""
-    wide = here("evaluate", poles, "--ticks", "50", "--angle_limit", "180", "--track_limit", "1e9")
+    organism = "--organism", str(primordia.load(poles).oldest().id)
+    changes = "--angle_limit", "180", "--track_limit", "1e9"
+    wide = here("evaluate", poles, *organism, "--ticks", "50", *changes)
     assert "30 games, angle_limit 180, track_limit 1000000000.0" in wide.stdout
     assert "30 still alive when cut" in wide.stdout
     same = '["x", "x_dot", "theta", "theta_dot"]'
-    done = here("evaluate", poles, "--games", "2", "--senses", same, "--json")
-    plain = here("evaluate", poles, "--games", "2", "--json")
+    done = here("evaluate", poles, *organism, "--games", "2", "--senses", same, "--json")
+    plain = here("evaluate", poles, *organism, "--games", "2", "--json")
     assert json.loads(done.stdout)["lifespan"] == json.loads(plain.stdout)["lifespan"]
 
 

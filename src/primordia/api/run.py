@@ -10,6 +10,7 @@ import numpy as np
 import pyarrow as pa
 
 from primordia import device as devices
+from primordia.comparison.controls import FOUNDERS, Standing, groups
 from primordia.comparison.shadow import ORGANISMS, Shadow, shadow
 from primordia.history.info import info
 from primordia.history.lineage import rebuild
@@ -88,6 +89,16 @@ class Run:
     def evaluate(self, organisms: Iterable[Organism], **options: Any) -> list[Evaluation]:
         """Let organisms play games side by side; see `evaluation.evaluate`."""
         return evaluate(self.opened(), [(each.id, each.world) for each in organisms], **options)
+
+    def standings(
+        self, founders: int | None = FOUNDERS, world: int | None = None, **options: Any
+    ) -> list[Standing]:
+        """Evaluate champions, all that are alive, the best of as many founders, and founders.
+
+        See `controls.groups` for `founders` and `world`, and `controls.Group.evaluate` for the options.
+        """
+        found = groups(self.opened(), founders, world)
+        return [group.evaluate(**options) for group in found]
 
     def shadow(self, organisms: int = ORGANISMS, ticks: int | None = None) -> Shadow:
         """Let organisms and their unselected shadows live once more; see `shadow.shadow`."""

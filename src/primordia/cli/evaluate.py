@@ -1,4 +1,4 @@
-"""The command `primordia evaluate`, which lets an organism play whole games."""
+"""The command `primordia evaluate`, which lets organisms play whole games."""
 
 import json
 from pathlib import Path
@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from primordia.cli.cache import cache_option
-from primordia.cli.flags import CHAMPION, HabitatCommand, run_argument, trust_option
+from primordia.cli.flags import HabitatCommand, run_argument, trust_option
 from primordia.errors import InputError
 
 if TYPE_CHECKING:
+    from primordia.comparison.controls import Standing
     from primordia.organism.evaluation import Evaluation
 
 SENSES = {
@@ -20,11 +21,17 @@ SENSES = {
 }
 
 
-@click.command(cls=HabitatCommand, short_help="Measure an organism in whole games.")
+@click.command(cls=HabitatCommand, short_help="Measure champions, or one organism, in whole games.")
 @run_argument
-@click.option("--organism", type=int, help=f"Birth number [{CHAMPION}].")
-@click.option("--world", type=int, help="The organism's world [0, or that of the champion].")
+@click.option("--organism", type=int, help="Measure this organism alone, by its birth number.")
+@click.option("--world", type=int, help="The organism's world [0]; or this world alone [all].")
 @click.option("--games", default=30, show_default=True, help="Number of games.")
+@click.option(
+    "--founders",
+    default=500,
+    show_default=True,
+    help="Choose the best founder among as many as there were births, but no more than this.",
+)
 @click.option("--ticks", default=100_000, show_default=True, help="Cut games at this length.")
 @click.option("--freeze-senses", is_flag=True, help="Keep senses as they are at the start.")
 @click.option(
@@ -41,37 +48,51 @@ def evaluate(
     organism: int | None,
     world: int | None,
     games: int,
+    founders: int,
     ticks: int,
     freeze_senses: bool,
     open_loop: bool,
     trust: bool,
     as_json: bool,
 ) -> None:
-    """Let an organism play the game that its task is made of, from fresh starts, and print its results.
+    """Let organisms play the game that their task is made of, from fresh starts, and print their results.
 
-    The lifespan is counted by the rules of its task; score and length are those of the whole game. Any
+    The champion of each world plays, the longest-lived of the later half of the births. Its controls play
+    too: all organisms that are alive, the longest-lived of many founders, and founders as they come.
+
+    The lifespan is counted by the rules of the task; score and length are those of the whole game. Any
     setting of the habitat can be changed by a flag, such as --sticky 0.25; `primordia evaluate RUN
     --help` lists them.
     """
-    from primordia.cli.inspect import chosen_organism
+    from primordia.api import load
 
     if freeze_senses and open_loop:
         raise InputError("--freeze-senses and --open-loop exclude each other; give one of them")
     senses: Any = "frozen" if freeze_senses else "ignored" if open_loop else "live"
-    chosen = chosen_organism(run, organism, world, trust)
-    result = chosen.evaluate(games=games, ticks=ticks, senses=senses, habitat=habitat)
-    click.echo(json.dumps(result.to_dict()) if as_json else evaluation_text(result, habitat))
+    opened = load(run, trust)
+    options: Any = {"games": games, "ticks": ticks, "senses": senses, "habitat": habitat}
+    if organism is not None:
+        result = opened.organism(organism, world or 0).evaluate(**options)
+        click.echo(json.dumps(result.to_dict()) if as_json else evaluation_text(result, habitat))
+        return
+    found = opened.standings(founders, world, **options)
+    if as_json:
+        click.echo(json.dumps({"rows": [each.to_dict() for each in found]}))
+    else:
+        show_standings(
+            found,
+            f"{run}: games cut at {ticks:,} ticks{_changed(habitat)}{SENSES[senses]}",
+        )
 
 
 def evaluation_text(result: "Evaluation", changes: dict[str, Any]) -> str:
     """Return the results in a few lines."""
     values = result.to_dict()
-    changed = "".join(f", {name} {value}" for name, value in changes.items())
     distinct = f"{_games(result.distinct, 'distinct ')}"
     if result.games == 1:
         distinct += "; nothing is drawn at random, so all are the same"
     lines = [
-        f"organism {result.organism} of world {result.world}: {_games(result.games)}{changed}"
+        f"organism {result.organism} of world {result.world}: {_games(result.games)}{_changed(changes)}"
         f"{SENSES[result.senses]}",
         f"  {distinct}",
         f"  lifespan  {_quartiles(values['lifespan'])}{_cut(values['alive_when_cut'], 'alive')}",
@@ -80,6 +101,54 @@ def evaluation_text(result: "Evaluation", changes: dict[str, Any]) -> str:
         lines.append(f"  score     {_quartiles(values['score'])}")
         lines.append(f"  length    {_quartiles(values['length'])}{_cut(values['cut'], 'going on')}")
     return "\n".join(lines)
+
+
+def show_standings(standings: "list[Standing]", title: str) -> None:
+    """Print a row for each group of organisms, and how to read it."""
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+
+    from primordia.comparison.controls import OUTCOMES
+
+    outcomes = [name for name in OUTCOMES if standings[0].over_worlds(name)]
+    shown = Table("", box=box.SIMPLE_HEAD, pad_edge=False)
+    for name in ("organisms", "chosen from", "games each", *outcomes):
+        shown.add_column(name, justify="right")
+    for each in standings:
+        values = each.to_dict()
+        chosen = f"{each.chosen_from:,}" if each.chosen_from > 1 else "-"
+        numbers = f"{values['organisms']:,}", chosen, f"{values['games']:,}"
+        shown.add_row(each.name, *numbers, *(_range(values[name]) for name in outcomes))
+    console = Console(highlight=False, soft_wrap=True)
+    console.print(title, shown, *_notes(standings), sep="\n")
+
+
+def _range(values: dict[str, float]) -> str:
+    from primordia.comparison.tables import number_text
+
+    median, least, most = (number_text(each) for each in values.values())
+    return median if least == most else f"{median} ({least} to {most})"
+
+
+def _notes(standings: "list[Standing]") -> list[str]:
+    """Say how the rows are to be read."""
+    worlds = standings[0].to_dict()["worlds"]
+    notes = [
+        "The best founder is the longest-lived of as many founders, which have had no evolution."
+    ]
+    if worlds > 1:
+        notes.append("Medians over worlds (least to most), of the median organism of each world.")
+    if all(each.evaluations[0].distinct == 1 for each in standings):
+        notes.append(
+            "All games of an organism are the same, so champions are judged by the game that chose them,"
+            " unless a setting is changed, such as --sticky 0.25."
+        )
+    return notes
+
+
+def _changed(habitat: dict[str, Any]) -> str:
+    return "".join(f", {name} {value}" for name, value in habitat.items())
 
 
 def _games(count: int, kind: str = "") -> str:

@@ -19,15 +19,13 @@ from primordia.errors import InputError
 from primordia.history import pedigree
 from primordia.history.climate import PastClimate
 from primordia.law.metabolism import Rates
-from primordia.organism.games import AT_ONCE, Players, play
+from primordia.organism.games import Players, lifespans
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
 from primordia.runs.records import Records
 
 ORGANISMS = 500
 """Largest number of organisms of a world that are born again, if not told otherwise."""
-AT_ONCE_IN_JAX = 1024
-"""Lives side by side in a habitat of arrays, where each costs little more memory than its genome."""
 
 
 @dataclass(frozen=True)
@@ -149,10 +147,5 @@ def _lifespans(run: Records, rows: np.ndarray, redrawn: bool, cut: int) -> np.nd
     climate = PastClimate(run).of_lives(lives, lives.born)
     keys = stream(wide(run.world_seeds[lives.world]), Purpose.REBIRTH, wide(lives.id))
     rates = Rates.of(jax.tree.map(jnp.asarray, climate))
-    habitat = run.config.build_habitat()
-    at_once = AT_ONCE if habitat.kind == "host" else AT_ONCE_IN_JAX
     genomes = pedigree.genomes(run, rows, redrawn)
-    players = Players(run.law, habitat, genomes, keys, rates)
-    parts = (players.take(slice(k, k + at_once)) for k in range(0, len(rows), at_once))
-    # Part by part, since games keep all actions of their players.
-    return np.concatenate([play(part, 1, cut, at_once=at_once).ticks[:, 0] for part in parts])
+    return lifespans(Players(run.law, run.config.build_habitat(), genomes, keys, rates), cut)

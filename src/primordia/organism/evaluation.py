@@ -111,13 +111,26 @@ def evaluate(
         InputError: no such organism was born, the habitat has no such setting, or the brain does not fit
             the changed habitat.
     """
-    if games < 1 or ticks < 1:
-        raise InputError("evaluate needs at least one game of at least one tick")
     if not organisms:
         return []
-    own = players_of(run, organisms)
-    wanted = {**(habitat or {}), **changes}
-    players = own._replace(habitat=_changed(run.config, own.habitat, wanted))
+    wanted, own = {**(habitat or {}), **changes}, players_of(run, organisms)
+    return judged(run, own, organisms, games=games, ticks=ticks, senses=senses, habitat=wanted)
+
+
+def judged(
+    run: Records,
+    own: Players,
+    numbers: Sequence[tuple[int, int]],
+    *,
+    games: int,
+    ticks: int,
+    senses: Senses,
+    habitat: Mapping[str, Any],
+) -> list[Evaluation]:
+    """Let players of a run play games side by side, called by these numbers; see `evaluate`."""
+    if games < 1 or ticks < 1:
+        raise InputError("evaluate needs at least one game of at least one tick")
+    players = own._replace(habitat=_changed(run.config, own.habitat, habitat))
     script = play(own, 1, ticks) if senses == "ignored" else None
     count = 1 if players.deterministic else games
     play_all = partial(play, games=count, frozen=senses == "frozen", script=script)
@@ -127,7 +140,7 @@ def evaluate(
         whole = play_all(original, ticks=min(ticks, episode))
     return [
         Evaluation(organism, world, senses, lived.of_player(k), original and whole.of_player(k))
-        for k, (organism, world) in enumerate(organisms)
+        for k, (organism, world) in enumerate(numbers)
     ]
 
 
@@ -145,14 +158,14 @@ def players_of(run: Records, organisms: Sequence[tuple[int, int]]) -> Players:
     return Players(run.law, run.config.build_habitat(), genomes, keys, rates)
 
 
-def _changed(config: Config, before: AnyHabitat, changes: dict[str, Any]) -> AnyHabitat:
+def _changed(config: Config, before: AnyHabitat, changes: Mapping[str, Any]) -> AnyHabitat:
     """Return a run's habitat with some settings changed."""
     known = list(setting_fields(type(before)))
     for name in changes:
         if known and name not in {each.partition(".")[0] for each in known}:
             hint = did_you_mean(name, known)
             raise InputError(f"evaluate: this run's habitat has no setting {name!r}{hint}")
-    values = replaced(merged(config.habitat, changes), NONE, None)
+    values = replaced(merged(config.habitat, dict(changes)), NONE, None)
     habitat = config.model_copy(update={"habitat": values}).build_habitat()
     if (habitat.senses_size, habitat.action) != (before.senses_size, before.action):
         raise InputError(

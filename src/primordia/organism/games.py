@@ -22,6 +22,8 @@ from primordia.random.wide import Wide, wide
 
 AT_ONCE = 128
 """Games played side by side, if not told otherwise; the games of one player are never separated."""
+AT_ONCE_IN_JAX = 1024
+"""The same in a habitat of arrays, where each game costs little more memory than a genome."""
 MIX = np.uint64(0x9E3779B97F4A7C15)
 """An odd number, which mixes the bits of courses."""
 
@@ -99,6 +101,14 @@ def play(
         parts.append(_play_at_once(players.take(some), games, ticks, frozen, part_of_script))
     *arrays, actions = zip(*parts, strict=True)
     return Games._make([*map(np.concatenate, arrays), list(chain.from_iterable(actions))])
+
+
+def lifespans(players: Players, ticks: int) -> np.ndarray:
+    """Return the ticks that each player lives in one game, int64 (K,), cut at a length."""
+    at_once = AT_ONCE if players.habitat.kind == "host" else AT_ONCE_IN_JAX
+    parts = (players.take(slice(k, k + at_once)) for k in range(0, len(players.genomes), at_once))
+    # Part by part, since games keep all actions of their players.
+    return np.concatenate([play(part, 1, ticks, at_once=at_once).ticks[:, 0] for part in parts])
 
 
 def _play_at_once(

@@ -38,6 +38,7 @@ class Purpose(IntEnum):
     EVALUATION = 10
     SHADOW = 11
     REBIRTH = 12
+    CONTROL = 13
 
 
 def encrypt(key: Wide, counter: Wide) -> Wide:

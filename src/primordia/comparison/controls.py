@@ -1,0 +1,171 @@
+"""Evaluation with controls: champions, all that are alive, the best of as many founders, and founders.
+
+A champion is the longest-lived of many, by luck as well as by descent. So as many founders as its world
+had births live one life each, and the longest-lived of them is judged as the champion is. No game in
+which an organism was chosen is among those that judge it, unless all games of the task are the same.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from primordia.errors import InputError
+from primordia.history.climate import PastClimate
+from primordia.history.founders import founders
+from primordia.law.metabolism import Rates
+from primordia.organism.evaluation import GAMES, TICKS, Evaluation, Senses, judged, players_of
+from primordia.organism.games import Players, lifespans
+from primordia.random.keys import Purpose, stream
+from primordia.random.wide import wide
+from primordia.runs.records import Records
+
+FOUNDERS = 500
+"""Largest number of founders of a world of which the best is chosen, if not told otherwise."""
+TYPICAL = 20
+"""Founders of a world that are judged without being chosen."""
+OUTCOMES = ("lifespan", "score", "length")
+
+
+class Range(NamedTuple):
+    """A value of each world: median over worlds, the least and the most."""
+
+    median: float
+    least: float
+    most: float
+
+
+@dataclass(frozen=True)
+class Standing:
+    """How a group of organisms did."""
+
+    name: str
+    chosen_from: int
+    """largest number, over worlds, of organisms that each was chosen from; 1: these were not chosen"""
+    evaluations: list[Evaluation]
+
+    def over_worlds(self, outcome: str) -> Range | None:
+        """Return the range over worlds of the median organism's median game; None if there is none.
+
+        Args:
+            outcome: `lifespan`, or `score` or `length` of the whole game.
+        """
+        medians: dict[int, list[float]] = {}
+        for each in self.evaluations:
+            if (spread := each.to_dict().get(outcome)) is None:
+                return None
+            medians.setdefault(each.world, []).append(spread["median"])
+        values = [float(np.median(of_world)) for of_world in medians.values()]
+        return Range(float(np.median(values)), min(values), max(values))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain values for JSON."""
+        ranges = {name: self.over_worlds(name) for name in OUTCOMES}
+        return {
+            "who": self.name,
+            "chosen_from": self.chosen_from,
+            "organisms": len(self.evaluations),
+            "worlds": len({each.world for each in self.evaluations}),
+            "games": self.evaluations[0].games,
+            **{name: found._asdict() for name, found in ranges.items() if found is not None},
+        }
+
+
+@dataclass(frozen=True)
+class Group:
+    """Organisms of some worlds of a run, all chosen in one way."""
+
+    run: Records
+    name: str
+    chosen_from: int
+    """see `Standing`"""
+    numbers: list[tuple[int, int]]
+    """birth number, or number among the founders, and world of each organism"""
+    players: Players
+
+    def evaluate(
+        self,
+        games: int = GAMES,
+        ticks: int = TICKS,
+        senses: Senses = "live",
+        habitat: Mapping[str, Any] | None = None,
+    ) -> Standing:
+        """Let each organism play; those that were not chosen play one game. See `evaluation.evaluate`."""
+        each = games if self.chosen_from > 1 else min(games, 1)
+        evaluations = judged(
+            self.run,
+            self.players,
+            self.numbers,
+            games=each,
+            ticks=ticks,
+            senses=senses,
+            habitat=habitat or {},
+        )
+        return Standing(self.name, self.chosen_from, evaluations)
+
+
+def groups(run: Records, most: int | None = FOUNDERS, world: int | None = None) -> list[Group]:
+    """Return champions, all that are alive, the best of as many founders, and founders.
+
+    Args:
+        run: the run, or an arm.
+        most: largest number of founders of a world of which the best is chosen; None: as many as births.
+        world: this world alone; by default all worlds in which anything was born since the run began.
+
+    Raises:
+        InputError: nothing was born there, or `most` is below one.
+    """
+    if most is not None and most < 1:
+        raise InputError("evaluate needs at least one founder to choose from")
+    lives = run.lives
+    worlds = np.unique(lives.world[lives.late()]) if world is None else np.array([world])
+    oldest = np.array([lives.oldest(each) for each in worlds.tolist()], np.int64)
+    if not len(oldest):
+        raise InputError(f"{run.path}: nothing has been born since the fork")
+    alive = np.flatnonzero(~lives.died & np.isin(lives.world, worlds))
+    births = np.bincount(lives.world[lives.entered == 0], minlength=lives.worlds)[worlds]
+    counts = births if most is None else np.minimum(births, most)
+    found = [_evolved(run, "champion", int(births.max()), oldest)]
+    found += [_evolved(run, "all alive", 1, alive)] if len(alive) else []
+    return [*found, *_founders(run, worlds, counts)]
+
+
+def _evolved(run: Records, name: str, chosen_from: int, rows: np.ndarray) -> Group:
+    """Return a group of organisms by their rows in the run's lives."""
+    lives = run.lives.take(rows)
+    numbers = list(zip(lives.id.tolist(), lives.world.tolist(), strict=True))
+    return Group(run, name, chosen_from, numbers, players_of(run, numbers))
+
+
+def _founders(run: Records, worlds: np.ndarray, counts: np.ndarray) -> list[Group]:
+    """Return the longest-lived of a number of founders for each world, and some founders as they come.
+
+    To choose, each lives once, up to the age without a death that saturates a world. Of equals the last
+    counts, as with champions.
+    """
+    world, number = np.repeat(worlds, counts), np.concatenate([np.arange(n) for n in counts])
+    genomes = [founders(run, *each) for each in zip(worlds.tolist(), counts.tolist(), strict=True)]
+    climate = PastClimate(run).of_worlds(world, run.ends[world])
+    everyone = Players(
+        run.law,
+        run.config.build_habitat(),
+        np.concatenate(genomes),
+        stream(wide(run.world_seeds[world]), Purpose.CONTROL, wide(number)),
+        Rates.of(jax.tree.map(jnp.asarray, climate)),
+    )
+    lived = lifespans(everyone, run.config.saturation_ticks)
+    places = [np.flatnonzero(world == each) for each in worlds]
+    longest = [here[len(here) - 1 - np.argmax(lived[here][::-1])] for here in places]
+    keys = stream(wide(run.world_seeds[world]), Purpose.EVALUATION, wide(number))
+
+    def group(name: str, chosen_from: int, rows: np.ndarray) -> Group:
+        numbers = list(zip(number[rows].tolist(), world[rows].tolist(), strict=True))
+        return Group(run, name, chosen_from, numbers, everyone._replace(keys=keys).take(rows))
+
+    return [
+        group("best founder", int(counts.max()), np.array(longest)),
+        group("founder", 1, np.flatnonzero(number < TYPICAL)),
+    ]
