@@ -1,4 +1,4 @@
-"""Let the champion of every world of an experiment play, in its own game and in others.
+"""Let the champion of every world of an experiment play, in its own game and in others, with controls.
 
     python experiments/games.py experiments/atari/*.toml experiments/robots/*.toml
 
@@ -6,17 +6,15 @@ The experiments must have been run (`primordia experiment`). An Atari player pla
 of its task; games with sticky buttons and no-ops at the start; the game of its task with frozen senses;
 and the games with sticky buttons blindly, with the buttons that it pressed in the game of its task. The
 games of robots all begin differently. A robot plays fresh games in three ways: seeing, with frozen
-senses, and blindly. The first founder of each world of the reference plays too, as a control without
-selection.
+senses, and blindly.
 
-The longest-lived of many may be as good by luck as by descent. Therefore all organisms that are alive at
-the end play one unknown game. The best of them in each world then play as the longest-lived did; their
-unknown games are that one, and others. The table goes to `results/` beside the file, as Markdown and
-CSV.
+The longest-lived of many may be as good by luck as by descent. So all organisms that are alive at the
+end play one unknown game each. As many founders as each world of the reference had births live one life;
+the longest-lived of them plays as champions do. Founders as they come play one unknown game each. The
+table goes to `results/` beside the file, as Markdown and CSV.
 """
 
 import csv
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -24,11 +22,10 @@ import named
 import numpy as np
 
 import primordia
-from primordia.api import Run
+from primordia.comparison.controls import OUTCOMES, Group, Standing, evolved, unevolved
 from primordia.comparison.tables import number_text
 from primordia.experiments.results import table
-from primordia.organism.organism import Organism
-from primordia.runs.directory import read_config
+from primordia.runs.records import Records
 
 GAMES = 5
 TICKS = 20_000
@@ -36,9 +33,9 @@ NOISE = {"sticky": 0.25, "noops": 30}
 WAYS: dict[str, dict[str, dict[str, Any]]] = {
     "atari": {
         "own game": {},
-        "sticky, no-ops": NOISE,
+        "sticky, no-ops": {"habitat": NOISE},
         "senses frozen": {"senses": "frozen"},
-        "blindly, sticky, no-ops": {"senses": "ignored", **NOISE},
+        "blindly, sticky, no-ops": {"senses": "ignored", "habitat": NOISE},
     },
     "mujoco": {
         "fresh starts": {},
@@ -47,26 +44,46 @@ WAYS: dict[str, dict[str, dict[str, Any]]] = {
     },
 }
 UNKNOWN = {"atari": "sticky, no-ops", "mujoco": "fresh starts"}
-"""the way in which all organisms that are alive play"""
-BEST = "{}, best of these"
-"""label of the rows of the organisms that scored most among all that are alive"""
-COLUMNS = ("lifespan", "score", "length")
+"""the way in which organisms that were not chosen play"""
 
 
 def report(file: Path) -> None:
     """Let the organisms of an experiment play and write the table."""
-    runs = named.arms(file)
-    habitat = str(primordia.load(runs[0]).opened().config.habitat["name"])
-    ways, unknown = WAYS[habitat], UNKNOWN[habitat]
-    first = unforked([runs[0]])
-    rows = played("a founder", first, founders(first), ways, GAMES)
-    for run in runs:
-        arm = primordia.load(run)
-        rows += played(run.name, arm, longest_lived(run), ways, GAMES)
-        one_game = played(f"{run.name}, all alive", arm, alive(run), {unknown: ways[unknown]}, 1)
-        rows += one_game
-        rows += played(BEST.format(run.name), arm, best(run, one_game), ways, GAMES)
+    rows = []
+    for number, folder in enumerate(named.arms(file)):
+        run = primordia.load(folder).opened()
+        players = [*evolved(run), *(unevolved(run, most=None) if number == 0 else [])]
+        for group in players:
+            evolution = group.name in ("champion", "all alive")
+            name = f"{folder.name}: {group.name}" if evolution else group.name
+            rows += played(name, run, group)
         write_rows(file.parent / "results" / f"{file.stem}-games", rows, summary(rows))
+
+
+def played(name: str, run: Records, group: Group) -> list[dict[str, Any]]:
+    """Let organisms play and return a row for each world and way."""
+    habitat, rows = str(run.config.habitat["name"]), []
+    ways = WAYS[habitat]
+    if group.chosen_from == 1:
+        ways = {UNKNOWN[habitat]: ways[UNKNOWN[habitat]]}
+    for way, options in ways.items():
+        standing = group.evaluate(games=GAMES, ticks=TICKS, **options)
+        rows += [{"who": name, "way": way, **row} for row in worlds_of(standing, run)]
+        print(f"{name}: {way} is done", flush=True)
+    return rows
+
+
+def worlds_of(standing: Standing, run: Records) -> list[dict[str, Any]]:
+    """Return a row for each world: its seed, and the median organism's median game."""
+    outcomes = {name: standing.by_world(name) for name in OUTCOMES}
+    rows = []
+    for world in outcomes["lifespan"]:
+        each = [one for one in standing.evaluations if one.world == world]
+        row = {"seed": int(run.world_seeds[world]), "organisms": len(each)}
+        row |= {"organism": each[0].organism if standing.chosen_from > 1 else ""}
+        row |= {"games": each[0].games, "distinct": max(one.distinct for one in each)}
+        rows.append(row | {name: round(of[world], 2) for name, of in outcomes.items()})
+    return rows
 
 
 def write_rows(stem: Path, rows: list[dict[str, Any]], summary_text: str) -> None:
@@ -80,89 +97,26 @@ def write_rows(stem: Path, rows: list[dict[str, Any]], summary_text: str) -> Non
     print(f"{stem}: .md .csv")
 
 
-def longest_lived(run: Path) -> list[Organism]:
-    """Return the champion of each world in which anything was born since the run began."""
-    opened = primordia.load(run).opened()
-    lives = opened.lives
-    worlds = np.unique(lives.world[lives.late()]).tolist()
-    return [Organism(opened, lives.oldest(world)) for world in worlds]
-
-
-def unforked(runs: Sequence[Path]) -> Run:
-    """Return the runs that forks go back to; runs that are no forks are returned themselves."""
-    arm = primordia.load(runs)
-    forks = [read_config(path).fork for path in arm.directories()]
-    sources = [Path(fork.run) for fork in forks if fork is not None]
-    return unforked(sources) if sources else arm
-
-
-def founders(run: Run) -> list[Organism]:
-    """Return the first organism that lived in each world."""
-    opened = run.opened()
-    lives = opened.lives
-    return [Organism(opened, lives.row(0, world)) for world in range(lives.worlds)]
-
-
-def alive(run: Path) -> list[Organism]:
-    """Return the organisms of all worlds that are alive at the end."""
-    opened = primordia.load(run).opened()
-    return [Organism(opened, int(row)) for row in np.flatnonzero(~opened.lives.died)]
-
-
-def best(run: Path, rows: list[dict[str, Any]]) -> list[Organism]:
-    """Return the organism of each world that scored most in its one game."""
-    opened = primordia.load(run).opened()
-    rising = sorted(rows, key=lambda row: (row["score"], row["lifespan"]))
-    last = {row["world"]: row["organism"] for row in rising}
-    return [Organism(opened, opened.lives.row(last[world], world)) for world in sorted(last)]
-
-
-def played(
-    name: str,
-    run: Run,
-    organisms: list[Organism],
-    ways: dict[str, dict[str, Any]],
-    games: int,
-) -> list[dict[str, Any]]:
-    """Let organisms play in some ways and return a row for each organism and way."""
-    rows = []
-    for way, options in ways.items():
-        evaluations = run.evaluate(organisms, games=games, ticks=TICKS, **options)
-        for organism, evaluation in zip(organisms, evaluations, strict=True):
-            outcome = evaluation.to_dict()
-            row = {"who": name, "world": organism.world, "organism": organism.id}
-            row |= {"age": organism.age, "way": way}
-            row |= {count: outcome[count] for count in ("games", "distinct")}
-            row |= {column: round(outcome[column]["median"], 2) for column in COLUMNS}
-            row |= {f"best_{column}": round(outcome[column]["maximum"], 2) for column in COLUMNS}
-            rows.append(row)
-        print(f"{name}: {way} is done", flush=True)
-    return rows
-
-
 def summary(rows: list[dict[str, Any]]) -> str:
-    """Return a table of medians over worlds of each world's median, with the least and the most."""
+    """Return a table of medians and quartiles over worlds of the median organism's median game."""
     lines = []
     for name, way in dict.fromkeys((row["who"], row["way"]) for row in rows):
-        plays = [row for row in rows if (row["who"], row["way"]) == (name, way)]
-        worlds = sorted({row["world"] for row in plays})
-        cells = [
-            spread([np.median([r[column] for r in plays if r["world"] == w]) for w in worlds])
-            for column in COLUMNS
-        ]
-        lines.append([name, way, len(plays), *cells])
+        worlds = [row for row in rows if (row["who"], row["way"]) == (name, way)]
+        cells = [spread([row[column] for row in worlds]) for column in OUTCOMES]
+        lines.append([name, way, len(worlds), sum(row["organisms"] for row in worlds), *cells])
     note = (
-        f"Medians over worlds (least to most) of the median in each world, and of each organism's over"
-        f" {GAMES} games; all alive play one each. One is enough where nothing is drawn at random. Games"
-        f" were cut after {TICKS:,} ticks."
+        f"Medians over worlds (quartiles) of the median organism's median game. Champions and best"
+        f" founders play {GAMES} games; one is enough where nothing is drawn at random. The others play"
+        " one each. The best founder of a world is the longest-lived of as many founders as the reference"
+        f" had births there. Games were cut after {TICKS:,} ticks."
     )
-    return f"{table(['who', 'plays', 'organisms', *COLUMNS], lines)}\n\n{note}"
+    return f"{table(['who', 'plays', 'worlds', 'organisms', *OUTCOMES], lines)}\n\n{note}"
 
 
 def spread(values: list[float]) -> str:
-    """Return the median, the least and the most as text."""
-    middle, least, most = (number_text(float(of(values))) for of in (np.median, min, max))
-    return f"{middle} ({least} to {most})"
+    """Return the median and the quartiles as text."""
+    middle, q1, q3 = (number_text(float(value)) for value in np.percentile(values, (50, 25, 75)))
+    return f"{middle} ({q1} to {q3})"
 
 
 if __name__ == "__main__":

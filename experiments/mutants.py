@@ -1,11 +1,11 @@
-"""How large may a mutation be? Lives of mutants of the longest-lived organism of every world.
+"""How large may a mutation be? Lives of mutants of the champion of every world.
 
     python experiments/mutants.py experiments/atari/*.toml
 
 The experiments must have been run (`primordia experiment`), in tasks that draw nothing at random, so that
-a genome has one lifespan. The organism that lived longest in each world of the reference gets mutants of
-several scales, with noise on every weight. Each mutant lives once. The table goes to `results/` beside
-the file, as Markdown and CSV.
+a genome has one lifespan. The champion of each world of the reference gets mutants of several scales,
+with noise on every weight. Each mutant lives once. The table goes to `results/` beside the file, as
+Markdown and CSV.
 """
 
 from pathlib import Path
@@ -14,8 +14,9 @@ from typing import Any
 import named
 import numpy as np
 from founders import per_weight
-from games import longest_lived, write_rows
+from games import write_rows
 
+import primordia
 from primordia.experiments.results import table
 from primordia.organism.evaluation import players_of
 from primordia.organism.games import play
@@ -32,8 +33,8 @@ SHARES = ("as long", "longer", "longer by a tenth", "shorter by a third")
 
 def report(file: Path) -> None:
     """Let mutants live and write the table."""
-    reference = named.arms(file)[0]
-    rows = [row for organism in longest_lived(reference) for row in mutants_of(organism)]
+    reference = primordia.load(named.arms(file)[0])
+    rows = [row for organism in reference.champions() for row in mutants_of(organism)]
     write_rows(file.parent / "results" / f"{file.stem}-mutants", rows, summary(rows))
 
 

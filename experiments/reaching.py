@@ -15,7 +15,7 @@ from typing import Any
 
 import named
 import numpy as np
-from games import founders, spread, write_rows
+from games import spread, write_rows
 
 import primordia
 from primordia.experiments.results import table
@@ -46,11 +46,15 @@ def report(names: list[Path]) -> None:
     for file in names:
         for run in named.arms(file):
             name = f"{file.stem}, {run.name}"
-            rows += [
-                watched(f"{name}: founders", organism) for organism in founders(primordia.load(run))
-            ]
+            rows += [watched(f"{name}: founders", organism) for organism in founders(run)]
             rows += [watched(name, organism) for organism in some_alive(run)]
     write_rows(names[0].parent / "results" / "reaching", rows, summary(rows))
+
+
+def founders(run: Path) -> list[Organism]:
+    """Return the first organism that lived in each world."""
+    opened = primordia.load(run).opened()
+    return [Organism(opened, opened.lives.row(0, world)) for world in range(opened.lives.worlds)]
 
 
 def some_alive(run: Path) -> list[Organism]:
@@ -96,7 +100,7 @@ def measured(senses: np.ndarray) -> dict[str, float]:
 
 
 def summary(rows: list[dict[str, Any]]) -> str:
-    """Return a table of medians over worlds of each world's median, with the least and the most."""
+    """Return a table of medians over worlds of each world's median, with quartiles."""
     lines = []
     for name in dict.fromkeys(row["who"] for row in rows):
         of_name = [row for row in rows if row["who"] == name]
@@ -105,7 +109,7 @@ def summary(rows: list[dict[str, Any]]) -> str:
         cells = [medians_of([known(rows, column) for rows in by_world]) for column in COLUMNS]
         lines.append([name, len(of_name), *cells])
     note = (
-        f"Medians over worlds (least to most) of the median in each world, of the last {TICKS:,} ticks of"
+        f"Medians over worlds (quartiles) of the median in each world, of the last {TICKS:,} ticks of"
         f" the {EACH} oldest alive at the end, and of the first founder. Effort: squares of the joints'"
         " speeds, summed over ticks."
     )

@@ -10,7 +10,7 @@ import pytest
 import primordia
 from primordia.brains import genomes
 from primordia.comparison import controls
-from primordia.comparison.controls import groups
+from primordia.comparison.controls import evolved, unevolved
 from primordia.errors import InputError
 from primordia.history.founders import founders
 from primordia.organism.evaluation import Evaluation
@@ -33,7 +33,8 @@ def poles(tmp_path_factory: pytest.TempPathFactory) -> primordia.Run:
 
 def test_each_world_has_a_champion_and_as_many_founders_as_births(poles: primordia.Run) -> None:
     run, lives = poles.opened(), poles.lives()
-    champion, alive, best, some = groups(run)
+    champion, alive = evolved(run)
+    best, some = unevolved(run)
     births = np.bincount(lives.world)
     assert champion.numbers == [(poles.oldest(world).id, world) for world in (0, 1)]
     living = np.flatnonzero(~lives.died)
@@ -47,7 +48,7 @@ def test_each_world_has_a_champion_and_as_many_founders_as_births(poles: primord
 
 def test_the_best_founder_is_the_last_of_the_longest_lived(poles: primordia.Run) -> None:
     run, most = poles.opened(), 20
-    _, _, best, some = groups(run, most)
+    best, some = unevolved(run, most)
     for (number, world), chosen in zip(best.numbers, range(2), strict=True):
         keys = stream(
             wide(np.full(most, run.world_seeds[world])), Purpose.CONTROL, wide(np.arange(most))
@@ -63,7 +64,7 @@ def test_the_best_founder_is_the_last_of_the_longest_lived(poles: primordia.Run)
 
 def test_no_game_that_chose_an_organism_judges_it(poles: primordia.Run) -> None:
     run = poles.opened()
-    _, _, best, _ = groups(run, 30)
+    best, _ = unevolved(run, 30)
     numbers = np.array([number for number, _ in best.numbers])
     keys = stream(wide(run.world_seeds), Purpose.CONTROL, wide(numbers))
     choosing = play(best.players._replace(keys=keys), 1, LONG)
@@ -96,16 +97,17 @@ def test_founders_of_given_genomes_take_these(poles: primordia.Run, tmp_path: Pa
     assert {each.tobytes() for each in made} == {each.tobytes() for each in given}
 
 
-def test_a_range_is_that_of_each_worlds_median_organism(poles: primordia.Run) -> None:
+def test_quartiles_are_of_each_worlds_median_organism(poles: primordia.Run) -> None:
     _, alive, _, _ = poles.standings(10, games=3, ticks=60)
     median: dict[int, list[float]] = {}
     for each in alive.evaluations:
         assert isinstance(each, Evaluation)
         assert each.games == 1
         median.setdefault(each.world, []).append(float(each.lived.ticks[0]))
-    values = [np.median(of_world) for of_world in median.values()]
-    assert alive.over_worlds("lifespan") == (np.median(values), min(values), max(values))
-    assert alive.over_worlds("score") is None
+    values = [np.median(median[world]) for world in sorted(median)]
+    assert alive.by_world("lifespan") == dict(zip(sorted(median), values, strict=True))
+    assert alive.over_worlds("lifespan") == tuple(np.percentile(values, (50, 25, 75)))
+    assert (alive.by_world("score"), alive.over_worlds("score")) == ({}, None)
 
 
 def test_the_command_prints_what_python_gives(poles: primordia.Run) -> None:
@@ -125,4 +127,4 @@ def test_a_fork_has_no_champion_before_a_birth(poles: primordia.Run, tmp_path: P
     last = int(poles.lives().ended.max())
     fork = poles.fork(last, tmp_path / "fork", stop={"ticks": last})
     with pytest.raises(InputError, match="nothing has been born since the fork"):
-        groups(fork.opened())
+        fork.standings()

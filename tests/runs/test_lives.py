@@ -94,6 +94,8 @@ def test_the_oldest_is_the_last_of_the_longest_late_lives(
         else:
             with pytest.raises(InputError, match="nothing has been born since the fork"):
                 lives.oldest(world, after)
+    worlds_late = np.unique(lives.world[lives.late()]).tolist()
+    assert lives.champions().tolist() == [lives.oldest(world) for world in worlds_late]
     assert np.flatnonzero(lives.late(after)).tolist() == late
     if late:
         longest = max(lives.lifespan[late])

@@ -10,7 +10,7 @@ import numpy as np
 import pyarrow as pa
 
 from primordia import device as devices
-from primordia.comparison.controls import FOUNDERS, Standing, groups
+from primordia.comparison.controls import FOUNDERS, Standing, evolved, unevolved
 from primordia.comparison.shadow import ORGANISMS, Shadow, shadow
 from primordia.history.info import info
 from primordia.history.lineage import rebuild
@@ -86,6 +86,11 @@ class Run:
         run = self.opened()
         return Organism(run, run.lives.oldest(world, after))
 
+    def champions(self) -> list[Organism]:
+        """Return the `oldest` organism of each world in which anything was born since the run began."""
+        run = self.opened()
+        return [Organism(run, row) for row in run.lives.champions().tolist()]
+
     def evaluate(self, organisms: Iterable[Organism], **options: Any) -> list[Evaluation]:
         """Let organisms play games side by side; see `evaluation.evaluate`."""
         return evaluate(self.opened(), [(each.id, each.world) for each in organisms], **options)
@@ -95,9 +100,10 @@ class Run:
     ) -> list[Standing]:
         """Evaluate champions, all that are alive, the best of as many founders, and founders.
 
-        See `controls.groups` for `founders` and `world`, and `controls.Group.evaluate` for the options.
+        `founders` and `world` are those of `controls.unevolved`; options are those of `Group.evaluate`.
         """
-        found = groups(self.opened(), founders, world)
+        run = self.opened()
+        found = [*evolved(run, world), *unevolved(run, founders, world)]
         return [group.evaluate(**options) for group in found]
 
     def shadow(self, organisms: int = ORGANISMS, ticks: int | None = None) -> Shadow:

@@ -119,16 +119,16 @@ def show_standings(standings: "list[Standing]", title: str) -> None:
         values = each.to_dict()
         chosen = f"{each.chosen_from:,}" if each.chosen_from > 1 else "-"
         numbers = f"{values['organisms']:,}", chosen, f"{values['games']:,}"
-        shown.add_row(each.name, *numbers, *(_range(values[name]) for name in outcomes))
+        shown.add_row(each.name, *numbers, *(_spread(values[name]) for name in outcomes))
     console = Console(highlight=False, soft_wrap=True)
     console.print(title, shown, *_notes(standings), sep="\n")
 
 
-def _range(values: dict[str, float]) -> str:
+def _spread(values: dict[str, float]) -> str:
     from primordia.comparison.tables import number_text
 
-    median, least, most = (number_text(each) for each in values.values())
-    return median if least == most else f"{median} ({least} to {most})"
+    median, q1, q3 = (number_text(each) for each in values.values())
+    return median if q1 == q3 else f"{median} ({q1} to {q3})"
 
 
 def _notes(standings: "list[Standing]") -> list[str]:
@@ -138,7 +138,7 @@ def _notes(standings: "list[Standing]") -> list[str]:
         "The best founder is the longest-lived of as many founders, which have had no evolution."
     ]
     if worlds > 1:
-        notes.append("Medians over worlds (least to most), of the median organism of each world.")
+        notes.append("Medians over worlds (quartiles) of the median organism of each world.")
     if all(each.evaluations[0].distinct == 1 for each in standings):
         notes.append(
             "All games of an organism are the same, so champions are judged by the game that chose them,"

@@ -30,12 +30,12 @@ TYPICAL = 20
 OUTCOMES = ("lifespan", "score", "length")
 
 
-class Range(NamedTuple):
-    """A value of each world: median over worlds, the least and the most."""
+class Quartiles(NamedTuple):
+    """The median over worlds of a value of each, and the quartiles."""
 
     median: float
-    least: float
-    most: float
+    q1: float
+    q3: float
 
 
 @dataclass(frozen=True)
@@ -47,8 +47,8 @@ class Standing:
     """largest number, over worlds, of organisms that each was chosen from; 1: these were not chosen"""
     evaluations: list[Evaluation]
 
-    def over_worlds(self, outcome: str) -> Range | None:
-        """Return the range over worlds of the median organism's median game; None if there is none.
+    def by_world(self, outcome: str) -> dict[int, float]:
+        """Return the median organism's median game in each world; nothing if there is no such outcome.
 
         Args:
             outcome: `lifespan`, or `score` or `length` of the whole game.
@@ -56,21 +56,25 @@ class Standing:
         medians: dict[int, list[float]] = {}
         for each in self.evaluations:
             if (spread := each.to_dict().get(outcome)) is None:
-                return None
+                return {}
             medians.setdefault(each.world, []).append(spread["median"])
-        values = [float(np.median(of_world)) for of_world in medians.values()]
-        return Range(float(np.median(values)), min(values), max(values))
+        return {world: float(np.median(values)) for world, values in sorted(medians.items())}
+
+    def over_worlds(self, outcome: str) -> Quartiles | None:
+        """Return the median and the quartiles of `by_world`; None if there is no such outcome."""
+        values = list(self.by_world(outcome).values())
+        return Quartiles(*np.percentile(values, (50, 25, 75)).tolist()) if values else None
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain values for JSON."""
-        ranges = {name: self.over_worlds(name) for name in OUTCOMES}
+        spreads = {name: self.over_worlds(name) for name in OUTCOMES}
         return {
             "who": self.name,
             "chosen_from": self.chosen_from,
             "organisms": len(self.evaluations),
             "worlds": len({each.world for each in self.evaluations}),
             "games": self.evaluations[0].games,
-            **{name: found._asdict() for name, found in ranges.items() if found is not None},
+            **{name: found._asdict() for name, found in spreads.items() if found is not None},
         }
 
 
@@ -107,33 +111,59 @@ class Group:
         return Standing(self.name, self.chosen_from, evaluations)
 
 
-def groups(run: Records, most: int | None = FOUNDERS, world: int | None = None) -> list[Group]:
-    """Return champions, all that are alive, the best of as many founders, and founders.
+def evolved(run: Records, world: int | None = None) -> list[Group]:
+    """Return the champions of a run or an arm, and all that are alive if there are any.
 
     Args:
-        run: the run, or an arm.
-        most: largest number of founders of a world of which the best is chosen; None: as many as births.
+        run: the run, or the arm.
         world: this world alone; by default all worlds in which anything was born since the run began.
+
+    Raises:
+        InputError: nothing was born there.
+    """
+    lives, champions = run.lives, _champions(run, world)
+    alive = np.flatnonzero(~lives.died & np.isin(lives.world, lives.world[champions]))
+    most = int(_births(run, lives.world[champions]).max())
+    found = [_recorded(run, "champion", most, champions)]
+    return found + ([_recorded(run, "all alive", 1, alive)] if len(alive) else [])
+
+
+def unevolved(run: Records, most: int | None = FOUNDERS, world: int | None = None) -> list[Group]:
+    """Return the longest-lived of a number of founders for each world, and some founders as they come.
+
+    To choose, each founder lives once, up to the age without a death that saturates a world. Of equals
+    the last counts, as with champions.
+
+    Args:
+        run: the run, or the arm.
+        most: largest number of founders of a world of which the best is chosen; None: as many as births.
+        world: as of `evolved`.
 
     Raises:
         InputError: nothing was born there, or `most` is below one.
     """
     if most is not None and most < 1:
         raise InputError("evaluate needs at least one founder to choose from")
-    lives = run.lives
-    worlds = np.unique(lives.world[lives.late()]) if world is None else np.array([world])
-    oldest = np.array([lives.oldest(each) for each in worlds.tolist()], np.int64)
-    if not len(oldest):
+    worlds = run.lives.world[_champions(run, world)]
+    births = _births(run, worlds)
+    return _founders(run, worlds, births if most is None else np.minimum(births, most))
+
+
+def _champions(run: Records, world: int | None) -> np.ndarray:
+    """Return the row of the champion of one world, or of each."""
+    rows = run.lives.champions() if world is None else np.array([run.lives.oldest(world)])
+    if not len(rows):
         raise InputError(f"{run.path}: nothing has been born since the fork")
-    alive = np.flatnonzero(~lives.died & np.isin(lives.world, worlds))
-    births = np.bincount(lives.world[lives.entered == 0], minlength=lives.worlds)[worlds]
-    counts = births if most is None else np.minimum(births, most)
-    found = [_evolved(run, "champion", int(births.max()), oldest)]
-    found += [_evolved(run, "all alive", 1, alive)] if len(alive) else []
-    return [*found, *_founders(run, worlds, counts)]
+    return rows
 
 
-def _evolved(run: Records, name: str, chosen_from: int, rows: np.ndarray) -> Group:
+def _births(run: Records, worlds: np.ndarray) -> np.ndarray:
+    """Return the number of births in each of these worlds since the run began."""
+    lives = run.lives
+    return np.bincount(lives.world[lives.entered == 0], minlength=lives.worlds)[worlds]
+
+
+def _recorded(run: Records, name: str, chosen_from: int, rows: np.ndarray) -> Group:
     """Return a group of organisms by their rows in the run's lives."""
     lives = run.lives.take(rows)
     numbers = list(zip(lives.id.tolist(), lives.world.tolist(), strict=True))
@@ -141,11 +171,7 @@ def _evolved(run: Records, name: str, chosen_from: int, rows: np.ndarray) -> Gro
 
 
 def _founders(run: Records, worlds: np.ndarray, counts: np.ndarray) -> list[Group]:
-    """Return the longest-lived of a number of founders for each world, and some founders as they come.
-
-    To choose, each lives once, up to the age without a death that saturates a world. Of equals the last
-    counts, as with champions.
-    """
+    """Return the longest-lived of `counts` founders for each of these worlds, and some as they come."""
     world, number = np.repeat(worlds, counts), np.concatenate([np.arange(n) for n in counts])
     genomes = [founders(run, *each) for each in zip(worlds.tolist(), counts.tolist(), strict=True)]
     climate = PastClimate(run).of_worlds(world, run.ends[world])

@@ -130,6 +130,12 @@ class Lives:
         lifespan = self.lifespan[rows]
         return int(rows[len(rows) - 1 - np.argmax(lifespan[::-1])])
 
+    def champions(self) -> np.ndarray:
+        """Return the row of the `oldest` of each world in which anything was born since the run began."""
+        rows = np.flatnonzero(self.late())
+        ranked = rows[np.lexsort((self.lifespan[rows], self.world[rows]))]
+        return ranked[np.flatnonzero(np.diff(self.world[ranked], append=-1))]
+
     def row(self, organism: int, world: int = 0) -> int:
         """Return the row of an organism.
 
