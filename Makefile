@@ -4,7 +4,7 @@ BIN := .venv/bin
 # These versions are tested. `make CONSTRAINTS= demo` takes the newest releases instead.
 CONSTRAINTS ?= --constraint constraints.txt --build-constraint constraints.txt
 
-.PHONY: demo test quick slow check format bench mutants constraints clean
+.PHONY: demo test quick slow check format figures bench mutants constraints clean
 
 demo: .venv/installed  ## evolve pole balancers, draw figures of the run, and film the longest life
 	rm -rf runs/demo
@@ -31,11 +31,14 @@ format: .venv/installed-dev
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .
 
+figures: .venv/installed-dev  ## fill the figures of committed tables into the pages; a test compares them
+	$(BIN)/python docs/templates/fill.py
+
 bench: .venv/installed-dev  ## measure every figure; `make bench JSON=file.json` writes them to a file
 	$(BIN)/python benchmarks/bench.py $(if $(JSON),--json $(JSON))
 
-mutants: .venv/installed-mutants  ## plant faults and count those noticed, hours; `make mutants FILES="law/tick.py"`
-	$(BIN)/python benchmarks/mutants.py $(FILES) $(if $(JSON),--json $(JSON))
+mutants: .venv/installed-mutants  ## plant faults and count those noticed, hours; `make mutants FILES="law/tick.py" SAMPLE=10`
+	$(BIN)/python benchmarks/mutants.py $(FILES) $(if $(SAMPLE),--sample $(SAMPLE)) $(if $(JSON),--json $(JSON))
 
 constraints:  ## write the newest releases into constraints.txt; run `make check` before you commit it
 	rm -rf .venv

@@ -1,15 +1,17 @@
 """Plant small faults in the source, one at a time, and count how many the tests notice (`make mutants`).
 
-    python benchmarks/mutants.py [FILE ...] [--json FILE]
+    python benchmarks/mutants.py [FILE ...] [--sample N] [--json FILE]
 
 FILE is a file or a folder below `src/primordia`; by default all that `[tool.mutants]` of `pyproject.toml`
 names. That table says which tests are run for each. Cosmic Ray plants the faults, in a copy of the tree.
+With --sample, only N faults of each FILE are planted, drawn at random and the same each time.
 A fault that is not noticed is printed: it needs a test, or a reason in `benchmarks/results/mutants.md`.
 """
 
 import argparse
 import json
 import os
+import random
 import shlex
 import shutil
 import subprocess
@@ -20,7 +22,7 @@ from pathlib import Path
 from typing import Any
 
 from cosmic_ray.work_db import WorkDB, use_db
-from cosmic_ray.work_item import TestOutcome
+from cosmic_ray.work_item import TestOutcome, WorkerOutcome, WorkItem, WorkResult
 
 ROOT = Path(__file__).parent.parent
 COPIED = "src", "tests", "examples"
@@ -31,6 +33,7 @@ def main() -> None:
     """Plant the faults of each file, and print the score."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("files", nargs="*", help="files or folders below src/primordia")
+    parser.add_argument("--sample", type=int, help="plant this many faults of each file, not all")
     parser.add_argument("--json", type=Path, help="write the score of each file to this file")
     chosen = parser.parse_args()
     table = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["mutants"]
@@ -41,8 +44,12 @@ def main() -> None:
         for name in COPIED:
             shutil.copytree(ROOT / name, tree / name)
         for name in chosen.files or table["tests"]:
-            scores[name] = score(tree, name, tests_of(name, table["tests"]), table)
-            print(f"{name}: {scores[name]['noticed']} of {scores[name]['planted']} noticed")
+            tests = tests_of(name, table["tests"])
+            scores[name] = score(tree, name, tests, table, chosen.sample)
+            print(
+                f"{name}: {scores[name]['noticed']} of {scores[name]['planted']} noticed",
+                flush=True,
+            )
     if chosen.json is not None:
         chosen.json.write_text(json.dumps(scores, indent=1) + "\n", encoding="utf-8")
 
@@ -55,8 +62,10 @@ def tests_of(name: str, tests: dict[str, str]) -> str:
     sys.exit(f"no entry of [tool.mutants.tests] in pyproject.toml is for {name}")
 
 
-def score(tree: Path, name: str, tests: str, table: dict[str, Any]) -> dict[str, Any]:
-    """Plant all faults in one file or folder -> how many were planted and noticed, and the others."""
+def score(
+    tree: Path, name: str, tests: str, table: dict[str, Any], sample: int | None
+) -> dict[str, Any]:
+    """Plant faults in one file or folder -> how many were planted and noticed, and the others."""
     config, session = tree / "mutants.toml", tree / "mutants.sqlite"
     session.unlink(missing_ok=True)
     command = f"{shlex.quote(sys.executable)} {PYTEST} {tests}"
@@ -69,6 +78,8 @@ def score(tree: Path, name: str, tests: str, table: dict[str, Any]) -> dict[str,
     )
     run("cosmic_ray.cli", "init", config.name, session.name, where=tree)
     run("cosmic_ray.tools.filters.operators_filter", session.name, config.name, where=tree)
+    if sample is not None:
+        draw(session, sample)
     run("cosmic_ray.cli", "baseline", config.name, where=tree)
     run("cosmic_ray.cli", "exec", config.name, session.name, where=tree)
     with use_db(str(session), WorkDB.Mode.open) as db:
@@ -84,9 +95,26 @@ def score(tree: Path, name: str, tests: str, table: dict[str, Any]) -> dict[str,
     }
 
 
+def draw(session: Path, sample: int) -> None:
+    """Leave some of the faults that a session is to plant, drawn with a fixed seed."""
+    with use_db(str(session), WorkDB.Mode.open) as db:
+        pending = {item.job_id: item for item in db.pending_work_items}
+        ordered = sorted(pending, key=lambda job: place(pending[job]))
+        kept = random.Random(0).sample(ordered, min(sample, len(ordered)))
+        skipped = WorkResult(WorkerOutcome.SKIPPED, output="not drawn")
+        db.set_multiple_results(set(pending) - set(kept), skipped)
+
+
+def place(item: WorkItem) -> tuple[str, tuple[int, int], str, int]:
+    """Return where a fault stands in the source, and which it is."""
+    fault = item.mutations[0]
+    return str(fault.module_path), fault.start_pos, fault.operator_name, fault.occurrence
+
+
 def run(module: str, *words: str, where: Path) -> None:
     """Run a command of Cosmic Ray in a copy of the tree, and stop if it fails."""
     variables = {**os.environ, "PYTHONPATH": os.pathsep.join([str(where / "src"), str(where)])}
+    variables.setdefault("JAX_COMPILATION_CACHE_DIR", str(where / "compiled"))
     command = [sys.executable, "-m", module, *words]
     done = subprocess.run(command, cwd=where, env=variables, check=False)
     if done.returncode != 0:

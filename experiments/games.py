@@ -19,11 +19,10 @@ from pathlib import Path
 from typing import Any
 
 import named
-import numpy as np
 
 import primordia
 from primordia.comparison.controls import OUTCOMES, Group, Standing, evolved, unevolved
-from primordia.comparison.tables import number_text
+from primordia.comparison.tables import spread_text
 from primordia.experiments.results import table
 from primordia.runs.records import Records
 
@@ -102,7 +101,7 @@ def summary(rows: list[dict[str, Any]]) -> str:
     lines = []
     for name, way in dict.fromkeys((row["who"], row["way"]) for row in rows):
         worlds = [row for row in rows if (row["who"], row["way"]) == (name, way)]
-        cells = [spread([row[column] for row in worlds]) for column in OUTCOMES]
+        cells = [spread_text([row[column] for row in worlds]) for column in OUTCOMES]
         lines.append([name, way, len(worlds), sum(row["organisms"] for row in worlds), *cells])
     note = (
         f"Medians over worlds (quartiles) of the median organism's median game. Champions and best"
@@ -111,12 +110,6 @@ def summary(rows: list[dict[str, Any]]) -> str:
         f" had births there. Games were cut after {TICKS:,} ticks."
     )
     return f"{table(['who', 'plays', 'worlds', 'organisms', *OUTCOMES], lines)}\n\n{note}"
-
-
-def spread(values: list[float]) -> str:
-    """Return the median and the quartiles as text."""
-    middle, q1, q3 = (number_text(float(value)) for value in np.percentile(values, (50, 25, 75)))
-    return f"{middle} ({q1} to {q3})"
 
 
 if __name__ == "__main__":

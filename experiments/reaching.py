@@ -15,9 +15,10 @@ from typing import Any
 
 import named
 import numpy as np
-from games import spread, write_rows
+from games import write_rows
 
 import primordia
+from primordia.comparison.tables import spread_text
 from primordia.experiments.results import table
 from primordia.organism.organism import Organism
 from primordia.organism.reliving.relived import RelivedLife
@@ -127,8 +128,8 @@ def medians_of(worlds: list[list[float]]) -> str:
     if not medians:
         return "-"
     if len(medians) == len(worlds):
-        return spread(medians)
-    return f"{spread(medians)}, {len(medians)} worlds"
+        return spread_text(medians)
+    return f"{spread_text(medians)}, {len(medians)} worlds"
 
 
 if __name__ == "__main__":

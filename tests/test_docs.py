@@ -6,6 +6,7 @@ import runpy
 import shlex
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -86,6 +87,15 @@ def test_every_command_and_block_of_a_page_works(
     for kind, text in blocks(page):
         assert kind in {"sh", "python", "toml", "text"}, f"{page}: what is a block of {kind}?"
         try_out(kind, text, tmp_path)
+
+
+def test_figures_of_pages_are_those_of_the_tables(monkeypatch: pytest.MonkeyPatch) -> None:
+    """`make figures` fills them in."""
+    monkeypatch.syspath_prepend(str(HERE / "docs" / "templates"))
+    fill = import_module("fill")
+
+    for page, text in fill.pages().items():
+        assert page.read_text(encoding="utf-8") == text, f"{page.name} differs; run `make figures`"
 
 
 def test_links_of_pages_lead_to_files_that_exist() -> None:

@@ -1,8 +1,10 @@
 """A comparison as text: tables, and notes that explain them."""
 
 import math
+from collections.abc import Iterable
 from typing import Any
 
+import numpy as np
 from rich import box
 from rich.console import Console
 from rich.table import Table
@@ -43,6 +45,15 @@ def quartiles_text(arm: ComparedArm, outcome: str) -> str:
     """Write the median, and the quartiles in brackets if they differ."""
     quartiles = (bounds_text(arm.measured[outcome].quantile(q)) for q in (0.25, 0.5, 0.75))
     q1, median, q3 = quartiles
+    return f"{median} ({q1} to {q3})" if q1 != q3 else median
+
+
+def spread_text(values: Iterable[float]) -> str:
+    """Write the median and the quartiles of the values that are known; a dash if none is."""
+    known = [value for value in values if not math.isnan(value)]
+    if not known:
+        return "-"
+    median, q1, q3 = (number_text(float(each)) for each in np.percentile(known, (50, 25, 75)))
     return f"{median} ({q1} to {q3})" if q1 != q3 else median
 
 

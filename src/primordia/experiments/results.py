@@ -13,6 +13,7 @@ from primordia import files
 from primordia.comparison import late
 from primordia.comparison.comparison import Comparison, compare
 from primordia.comparison.contrast import Contrast
+from primordia.comparison.measured import Measured
 from primordia.comparison.tables import (
     effect_text,
     evidence_notes,
@@ -21,6 +22,7 @@ from primordia.comparison.tables import (
     quartiles_text,
     ratio_text,
     setting_text,
+    spread_text,
 )
 from primordia.figures import style
 from primordia.figures.comparison import draw
@@ -34,6 +36,15 @@ NOTE = (
     " so late. Effects: Cliff's delta; ratio of medians (95 % interval over worlds). Crashes:"
     " extinctions after half of the cells were full of founders' descendants."
 )
+
+COLUMNS = {
+    "first": "first_long_birth",
+    "lifespan": "mean_lifespan",
+    "longest": "longest_life",
+    "pace": "late_ticks_per_death",
+    "food": "late_food",
+}
+"""Outcomes of a comparison that stand in the CSV, with their names there."""
 
 
 def write(stem: Path, question: str, arms: Sequence[Records]) -> list[Path]:
@@ -106,13 +117,13 @@ def summary(compared: Comparison, counted: list[dict[str, np.ndarray]]) -> str:
 
 
 def dying(compared: Comparison, ends: list[list[dict[str, float]]]) -> str:
-    """Return a table with a row for each arm: the figures of late deaths, world by world."""
+    """Return a table with a row for each arm: the figures of late deaths, of worlds that have any."""
     names = [name for name in late.COLUMNS if name in ends[0][0]]
     rows = [
-        [arm.name, *("; ".join(f"{world[name]:,.0f}" for world in worlds) for name in names)]
+        [arm.name, *(spread_text([world[name] for world in worlds]) for name in names)]
         for arm, worlds in zip(compared.arms, ends, strict=True)
     ]
-    return table(["world by world", *(late.COLUMNS[name] for name in names)], rows)
+    return table(["", *(late.COLUMNS[name] for name in names)], rows)
 
 
 def effects(compared: Comparison) -> str:
@@ -155,15 +166,22 @@ def made(arm: Records) -> str:
 def world_rows(
     compared: Comparison, counted: list[dict[str, np.ndarray]], ends: list[list[dict[str, float]]]
 ) -> str:
-    """Return CSV with a row for each world of each arm; an empty moment of saturation: there was none."""
+    """Return CSV with a row for each world of each arm; a cell is empty where its value is not known."""
+    arms = compared.arms
+    known = [name for name in COLUMNS if any(arm.measured[name].known.any() for arm in arms)]
     text = io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
-    rows.writerow(["arm", *counted[0], "mean_lifespan", *(ends[0][0] if ends else ())])
-    for number, (arm, numbers) in enumerate(zip(compared.arms, counted, strict=True)):
+    titles = [COLUMNS[name] for name in known]
+    rows.writerow(["arm", *counted[0], *titles, *(ends[0][0] if ends else ())])
+    for number, (arm, numbers) in enumerate(zip(arms, counted, strict=True)):
         columns = [column.tolist() for column in numbers.values()]
-        for w, row in enumerate(zip(*columns, strict=True)):
-            mean = f"{arm.measured['lifespan'].value[w]:.1f}"
-            last = ends[number][w].values() if ends else ()
-            shown = ("" if value == NEVER else value for value in row)
-            rows.writerow([arm.name, *shown, mean, *last])
+        columns += [_cells(arm.measured[name]) for name in known]
+        for world, row in enumerate(zip(*columns, strict=True)):
+            last = ends[number][world].values() if ends else ()
+            rows.writerow([arm.name, *("" if cell == NEVER else cell for cell in row), *last])
     return text.getvalue()
+
+
+def _cells(measured: Measured) -> list[str]:
+    values = zip(measured.value.tolist(), measured.known.tolist(), strict=True)
+    return [f"{round(value, 2):.10g}" if known else "" for value, known in values]

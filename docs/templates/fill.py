@@ -1,0 +1,124 @@
+"""Fill the pages of the documents with figures from committed tables (`make figures`).
+
+    python docs/templates/fill.py
+
+Each page with measured figures has a template of its name beside this file, in Jinja2. In a template, a
+figure is an expression over a table, such as `{{ cell("cartpole/heredity", "no-heredity", "births to
+saturation").median }}`. So no sentence can say another figure than its table. A table is named by its
+folder below `experiments` and its name in `results/` there. A test fills all templates and compares them
+with the pages.
+"""
+
+import re
+from collections.abc import Iterable
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+import pandas as pd
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from primordia.comparison.tables import number_text, spread_text
+
+HERE = Path(__file__).parent
+ROOT = HERE.parent.parent
+HEAD = "<!-- `make figures` makes this page from docs/templates/{}; edit that file. -->\n\n"
+SPREAD = re.compile(r"(.+?) \((.+?) to (.+?)\)")
+SIZES = "negligible", "small", "medium", "large"
+
+
+class Cell(str):
+    """A cell of a table, such as `392 (330 to 470)`: the text, with its parts."""
+
+    @property
+    def median(self) -> str:
+        """The text before the brackets; all of it if there are none."""
+        return found[1] if (found := SPREAD.fullmatch(self)) else str(self)
+
+    @property
+    def interval(self) -> str:
+        """The text in the brackets."""
+        found = SPREAD.fullmatch(self)
+        if found is None:
+            raise ValueError(f"no interval in {self!r}")
+        return f"{found[2]} to {found[3]}"
+
+
+class Effect(NamedTuple):
+    """An arm against the reference: Cliff's delta, its size in words, and the ratio of medians."""
+
+    delta: str
+    size: str
+    ratio: Cell
+
+
+@cache
+def rows(name: str) -> pd.DataFrame:
+    """Return a table's CSV: a row for each world, or for each world and way to play."""
+    return pd.read_csv(_path(name, "csv"))
+
+
+@cache
+def table(name: str, number: int = 0) -> str:
+    """Return a table of a Markdown file as it stands, counted from 0."""
+    text = _path(name, "md").read_text(encoding="utf-8")
+    found = re.findall(r"(?:^\|.*\|\n?)+", text, re.MULTILINE)
+    return str(found[number]).rstrip("\n")
+
+
+def cell(name: str, row: str, column: str, number: int = 0) -> Cell:
+    """Return the cell of a Markdown table at a column, in the row that begins with `row`."""
+    head, _, *body = [
+        [text.strip() for text in line.strip("|").split("|")]
+        for line in table(name, number).splitlines()
+    ]
+    return Cell(next(cells for cells in body if cells[0] == row)[head.index(column)])
+
+
+def effect(name: str, arm: str, column: str) -> Effect:
+    """Return the effect of an arm on an outcome, from the last table of a file of results."""
+    whole, *others = cell(name, arm, column, -1).split("; ")
+    delta, size, *_ = [*whole.split(), ""]
+    ratio = next(part for part in others if SPREAD.fullmatch(part) and part[0].isdigit())
+    return Effect(delta, size if size in SIZES else "", Cell(ratio))
+
+
+def played(name: str, who: str, way: str, outcome: str = "lifespan") -> Cell:
+    """Return the median and quartiles over worlds of an outcome of games."""
+    games = rows(f"{name}-games")
+    return spread(games[(games.who == who) & (games.way == way)][outcome])
+
+
+def spread(values: Iterable[float]) -> Cell:
+    """Return the median and quartiles of values."""
+    return Cell(spread_text(values))
+
+
+def pages() -> dict[Path, str]:
+    """Return the text of each page that has a template."""
+    filler = Environment(
+        loader=FileSystemLoader(HERE),
+        undefined=StrictUndefined,
+        keep_trailing_newline=True,
+        autoescape=False,
+    )
+    filler.globals.update(
+        rows=rows, table=table, cell=cell, effect=effect, played=played, spread=spread
+    )
+    filler.filters.update(spread=spread, number=number_text)
+    return {
+        (ROOT if path.name == "README.md" else HERE.parent) / path.name: HEAD.format(path.name)
+        + filler.get_template(path.name).render()
+        for path in sorted(HERE.glob("*.md"))
+    }
+
+
+def _path(name: str, kind: str) -> Path:
+    folder, _, stem = name.partition("/")
+    return ROOT / "experiments" / folder / "results" / f"{stem}.{kind}"
+
+
+if __name__ == "__main__":
+    for page, text in pages().items():
+        page.write_text(text, encoding="utf-8")
+        print(page.relative_to(ROOT))
