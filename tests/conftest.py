@@ -15,9 +15,11 @@ from tests import commands
 # slower. Its bits are usually the same, since LLVM's usual selector of instructions contracts products
 # and sums; tests of bits take the fixture `optimised`.
 EMITTERS, SELECTOR = "--xla_cpu_use_fusion_emitters", "--xla_backend_extra_options"
+SPLITS = "--xla_cpu_parallel_codegen_split_count"  # into one part: a tenth less work
 flags = os.environ.get("XLA_FLAGS", "")
 if EMITTERS not in flags:
-    os.environ["XLA_FLAGS"] = f"{flags} {EMITTERS}=false {SELECTOR}=-fast-isel=false".strip()
+    own = f"{EMITTERS}=false {SELECTOR}=-fast-isel=false {SPLITS}=1"
+    os.environ["XLA_FLAGS"] = f"{flags} {own}".strip()
 device.prepare()
 
 

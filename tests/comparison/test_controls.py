@@ -119,7 +119,9 @@ def test_the_command_prints_what_python_gives(poles: primordia.Run) -> None:
     text = here(*words, "--world", 1).stdout
     names = [line.split()[0] for line in text.splitlines()[4:8]]
     assert names == ["champion", "all", "best", "founder"]
-    complains(here(*words[:2], "--founders", 0), 2, "at least one founder")
+    complains(here(*words[:2], "--founders", 0), 2, "--founders")
+    with pytest.raises(InputError, match="at least one founder"):
+        poles.standings(0)
     complains(here(*words[:2], "--world", 2), 2, "there is no world 2")
 
 

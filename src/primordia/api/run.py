@@ -103,8 +103,9 @@ class Run:
         `founders` and `world` are those of `controls.unevolved`; options are those of `Group.evaluate`.
         """
         run = self.opened()
-        found = [*evolved(run, world), *unevolved(run, founders, world)]
-        return [group.evaluate(**options) for group in found]
+        # Champions first, so that wrong options are found before many founders have lived.
+        found = [group.evaluate(**options) for group in evolved(run, world)]
+        return found + [group.evaluate(**options) for group in unevolved(run, founders, world)]
 
     def shadow(self, organisms: int = ORGANISMS, ticks: int | None = None) -> Shadow:
         """Let organisms and their unselected shadows live once more; see `shadow.shadow`."""

@@ -28,6 +28,7 @@ SENSES = {
 @click.option("--games", default=30, show_default=True, help="Number of games.")
 @click.option(
     "--founders",
+    type=click.IntRange(min=1),
     default=500,
     show_default=True,
     help="Choose the best founder among as many as there were births, but no more than this.",

@@ -1,24 +1,18 @@
 """Games: organisms play side by side, each many times, without neighbours or children."""
 
 from collections.abc import Iterator
-from contextlib import contextmanager
-from functools import partial
 from itertools import chain
 from typing import NamedTuple
 
-import jax.numpy as jnp
+import jax
 import numpy as np
 
-from primordia.compiled import shared
-from primordia.habitats.contract import AnyHabitat, HostHabitat, Outcome
-from primordia.habitats.on_host import OnHost
-from primordia.law.genesis import body_words
+from primordia.habitats.contract import AnyHabitat
 from primordia.law.law import Law
-from primordia.law.life import Vitals, judge
-from primordia.law.metabolism import Rates, to_fixed_point
-from primordia.organism.mind import Mind, think
-from primordia.random.keys import Purpose, stream
-from primordia.random.wide import Wide, wide
+from primordia.law.metabolism import Rates
+from primordia.organism.playing import in_jax, on_host
+from primordia.organism.playing.seats import Seats, Stretch
+from primordia.random.wide import Wide
 
 AT_ONCE = 128
 """Games played side by side, if not told otherwise; the games of one player are never separated."""
@@ -47,8 +41,9 @@ class Players(NamedTuple):
 
     def take(self, index: slice | np.ndarray) -> "Players":
         """Return the players at an index."""
-        rates = Rates(*(rate[index] for rate in self.rates))
-        return self._replace(genomes=self.genomes[index], keys=self.keys.take(index), rates=rates)
+        own = self.genomes, self.keys, self.rates
+        genomes, keys, rates = jax.tree.map(lambda leaf: np.asarray(leaf)[index], own)
+        return self._replace(genomes=genomes, keys=keys, rates=rates)
 
 
 class Games(NamedTuple):
@@ -115,76 +110,48 @@ def _play_at_once(
     players: Players, games: int, ticks: int, frozen: bool, script: Games | None
 ) -> Games:
     """Play all games at once; the games of one player are adjacent."""
-    boards, count = _Boards(players, games), len(players.genomes) * games
-    playing, course = np.ones(count, bool), np.zeros(count, np.uint64)
-    length, food, actions = np.zeros(count, np.int64), np.zeros(count), []
-    with _opened(players.habitat, count) as table:
-        senses = first = np.array(table.reset(np.arange(count), boards.words()))
-        for tick in range(1, ticks + 1):
-            if script is None:
-                action = boards.think(first if frozen else senses, tick)
-            else:
-                action = np.repeat(script.actions_at(tick), games, axis=0)
-            actions.append(action[::games].copy())
-            senses, outcome = table.step(action, playing)
-            dies = boards.judge(outcome, senses)
-            length += playing
-            if outcome.food is not None:
-                food += np.where(playing, outcome.food, 0)
-            course = np.where(playing, _next_course(course, senses, food), course)
-            playing = playing & ~dies
-            if not playing.any():
-                break
-    results = [array.reshape(-1, games) for array in (length, ~playing, food, course)]
-    taken = zip(np.stack(actions, axis=1), length[::games], strict=True)
+    count = len(players.genomes) * games
+    length, food = np.zeros(count, np.int64), np.zeros(count)
+    course, factor = np.zeros(count, np.uint64), np.uint64(1)
+    over, actions = np.zeros(count, bool), []
+    for stretch in _stretches(players, games, ticks, frozen, script):
+        playing = stretch.playing
+        length += playing.sum(axis=0)
+        if stretch.food is not None:
+            # Added tick by tick, since sums of floats depend on their order.
+            food = np.cumsum([food, *np.where(playing, stretch.food, 0)], axis=0)[-1]
+        factors = np.cumprod(np.full(len(playing), MIX)) * factor
+        course += (np.where(playing, _marks(stretch), 0) * factors[:, None]).sum(axis=0)
+        factor = factors[-1]
+        actions.append(stretch.action[:, ::games])
+        over = ~stretch.alive
+        if over.all():
+            break
+    results = [array.reshape(-1, games) for array in (length, over, food, course)]
+    taken = zip(np.concatenate(actions).swapaxes(0, 1), length[::games], strict=True)
     return Games._make([*results, [each[:ticks] for each, ticks in taken]])
 
 
-def _next_course(course: np.ndarray, senses: np.ndarray, food: np.ndarray) -> np.ndarray:
-    """Return the hash of each game's course after one more tick."""
-    place = np.arange(1, senses.shape[1] + 1, dtype=np.uint64) * MIX
-    words = np.ascontiguousarray(senses, np.float32).view(np.uint32).astype(np.uint64)
-    return (course * MIX ^ food.view(np.uint64)) * MIX + words @ place
+def _stretches(
+    players: Players, games: int, ticks: int, frozen: bool, script: Games | None
+) -> Iterator[Stretch]:
+    """Seat each player for each of its games, and play."""
+    law, habitat = players.law, players.habitat
+    player = np.repeat(np.arange(len(players.genomes)), games)
+    genomes, keys, rates = players.take(player)[2:]
+    game = np.tile(np.arange(games, dtype=np.int32), len(players.genomes))
+    seated = Seats(genomes, keys, game, rates)
+    repeated = None if script is None else lambda tick: script.actions_at(tick)[player]
+    if habitat.kind == "host":
+        return on_host.stretches(law, habitat, seated, ticks, frozen, repeated)
+    return in_jax.stretches(law, habitat, seated, ticks, frozen, repeated)
 
 
-class _Boards:
-    """Brains and energy stores, one of each for each game."""
-
-    def __init__(self, players: Players, games: int) -> None:
-        law, self._words = players.law, players.habitat.words
-        per_game = partial(jnp.repeat, repeats=games, axis=0)
-        cells = jnp.asarray(np.tile(np.arange(games), len(players.genomes)), jnp.int32)
-        genome = law.heredity.layout.split(per_game(jnp.asarray(players.genomes)))
-        self._mind = Mind(genome, players.keys.map(per_game), cells)
-        self._memory = jnp.zeros((len(cells), law.memory), jnp.float32)
-        self._rates = Rates(*map(per_game, players.rates))
-        self._vitals = Vitals(to_fixed_point(self._rates.store), jnp.zeros(len(cells), jnp.int32))
-        self._faulty = jnp.zeros(len(cells), bool)
-        self._think, self._judge = shared(think, law), shared(judge, law)
-
-    def words(self) -> np.ndarray:
-        """Return the random words that bodies begin with, uint32 (K E, words)."""
-        key = stream(self._mind.key, Purpose.BODY, wide([0]))
-        return np.asarray(body_words(key, self._mind.cell, self._words))
-
-    def think(self, senses: np.ndarray, tick: int) -> np.ndarray:
-        """Return the actions for senses (K E, S), int32 (K E,) or float32 (K E, A)."""
-        thought = self._think(self._mind, self._memory, senses, wide([tick]))
-        self._memory, self._faulty = thought.memory, thought.faulty
-        return np.asarray(thought.action)
-
-    def judge(self, outcome: Outcome, senses: np.ndarray) -> np.ndarray:
-        """Return which organisms have died at the end of a tick, bool (K E,)."""
-        self._vitals, cause = self._judge(self._vitals, self._faulty, senses, outcome, self._rates)
-        return np.asarray(cause) >= 0
-
-
-@contextmanager
-def _opened(habitat: AnyHabitat, games: int) -> Iterator[HostHabitat]:
-    """Yield a habitat that is stepped on the host, opened with a body for each game."""
-    table = habitat if habitat.kind == "host" else OnHost(habitat)
-    table.open(games)
-    try:
-        yield table
-    finally:
-        table.close()
+def _marks(stretch: Stretch) -> np.ndarray:
+    """Return a hash of the senses and the food of each tick, uint64 (T, N)."""
+    high, low = stretch.mark[..., 0].astype(np.uint64), stretch.mark[..., 1].astype(np.uint64)
+    marks = high << np.uint64(32) | low
+    if stretch.food is None:
+        return marks
+    gained = np.ascontiguousarray(stretch.food, np.float32).view(np.uint32).astype(np.uint64)
+    return marks + gained * MIX

@@ -4,7 +4,6 @@ import math
 from typing import Any
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 
 from primordia.random.gaussian import quantiles
@@ -14,11 +13,13 @@ from primordia.random.wide import wide
 ALL, COUNTS = 32, (1, 2, 31)
 """Organisms of a whole batch, and numbers of them that must come out the same by themselves."""
 
+_DRAWN = jax.jit(bits)
+
 
 def words(name: int, *shape: int) -> np.ndarray:
     """Return random words, uint32 of a shape; those of another name are others."""
     count = math.prod(shape)
-    return np.asarray(bits(wide(name), jnp.arange(count)).hi).reshape(shape)
+    return np.asarray(_DRAWN(wide(name), np.arange(count)).hi).reshape(shape)
 
 
 def normal(name: int, *shape: int) -> np.ndarray:
@@ -28,4 +29,4 @@ def normal(name: int, *shape: int) -> np.ndarray:
 
 def last(tree: Any, count: int) -> Any:
     """Return the last rows of a tree of arrays (N, ...)."""
-    return jax.tree.map(lambda leaf: leaf[len(leaf) - count :], tree)
+    return jax.tree.map(lambda leaf: np.asarray(leaf)[len(leaf) - count :], tree)

@@ -1,0 +1,128 @@
+"""Games in a habitat in JAX, played many ticks at a time in one compiled loop."""
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array, lax
+
+from primordia.compiled import shared
+from primordia.habitats.bodies import fresh
+from primordia.habitats.contract import Bodies, JaxHabitat
+from primordia.law.law import Law
+from primordia.law.life import Vitals, judge
+from primordia.law.metabolism import Rates
+from primordia.organism.mind import Mind, think
+from primordia.organism.playing.seats import Script, Seats, Stretch, begun, mark
+from primordia.random.wide import Wide, wide
+
+STRETCH = 64
+"""Ticks of one compiled loop."""
+FEWEST = 16
+"""The fewest games of a loop. Their number is padded, since JAX compiles for every new shape."""
+FEWER = 8
+"""Once this many times fewer games go on, the others leave the loop."""
+
+
+class _Table(NamedTuple):
+    """All that the loop needs of N games."""
+
+    mind: Mind
+    rates: Rates
+    first: Array | None
+    """the senses at the start, float32 (N, S), if senses stay as they are then"""
+    bodies: Bodies
+    memory: Array
+    vitals: Vitals
+    alive: Array
+    """bool (N,)"""
+
+
+def stretches(
+    law: Law,
+    habitat: JaxHabitat,
+    seated: Seats,
+    ticks: int,
+    frozen: bool,
+    script: Script | None,
+) -> Iterator[Stretch]:
+    """Play games, STRETCH ticks at a time; see `games.play`."""
+    count = len(seated.genomes)
+    rows = np.arange(count)
+    table = _opened(law, habitat, _padded(seated, 1 << (count - 1).bit_length()), count, frozen)
+    advance = shared(_advance, law, habitat)
+    for begin in range(0, ticks, STRETCH):
+        numbers, size = np.arange(begin + 1, begin + STRETCH + 1), len(table.alive)
+        actions = script and np.stack([_padded(script(int(tick))[rows], size) for tick in numbers])
+        table, lived = advance(table, (wide(numbers[:, None]), numbers <= ticks, actions))
+        alive = np.asarray(table.alive)[: len(rows)]
+        shown = [each if each is None else _in_full(each, rows, count) for each in lived]
+        yield Stretch._make([*shown, np.isin(np.arange(count), rows[alive])])
+        if 0 < FEWER * alive.sum() <= size > FEWEST:
+            rows = rows[alive]
+            table = _left(table, _padded(np.flatnonzero(alive), size // FEWER), len(rows))
+
+
+def _opened(law: Law, habitat: JaxHabitat, seated: Seats, count: int, frozen: bool) -> _Table:
+    """Return the table at the start of `count` games; further ones are padding."""
+    mind, memory, vitals, words = shared(begun, law, habitat.words)(seated)
+    bodies = shared(fresh, habitat)(words)
+    first = shared(_sense, habitat)(bodies) if frozen else None
+    alive = np.arange(len(seated.genomes)) < count
+    return _Table(mind, seated.rates, first, bodies, memory, vitals, jnp.asarray(alive))
+
+
+def _padded(tree: Any, size: int) -> Any:
+    """Repeat the last row of each leaf (N, ...) up to `size` rows, or FEWEST."""
+
+    def longer(leaf: np.ndarray) -> np.ndarray:
+        more = max(size, FEWEST) - len(leaf)
+        return np.pad(leaf, [(0, more)] + [(0, 0)] * (leaf.ndim - 1), mode="edge")
+
+    return jax.tree.map(longer, tree)
+
+
+def _in_full(part: Array, rows: np.ndarray, count: int) -> np.ndarray:
+    """Return T ticks of all games: those of the first rows of a part (T, N, ...), and zeros."""
+    whole = np.zeros((len(part), count, *part.shape[2:]), part.dtype)
+    whole[:, rows] = np.asarray(part)[:, : len(rows)]
+    return whole
+
+
+@jax.jit
+def _left(table: _Table, index: Array, count: int) -> _Table:
+    """Return the table with the games at an index (N,), of which the first `count` go on."""
+    table = jax.tree.map(lambda leaf: leaf[index], table)
+    return table._replace(alive=table.alive & (jnp.arange(len(index)) < count))
+
+
+def _sense(habitat: JaxHabitat, bodies: Bodies) -> Array:
+    return habitat.sense(bodies)
+
+
+def _advance(
+    law: Law,
+    habitat: JaxHabitat,
+    table: _Table,
+    ticks: tuple[Wide, Array, Array | None],
+) -> tuple[_Table, tuple]:
+    """Play ticks, T in a loop: their numbers (T, 1), whether they count (T,), and actions if given."""
+    mind, rates, first, *own = table
+
+    def play(own: tuple, now: tuple[Wide, Array, Array | None]) -> tuple[tuple, tuple]:
+        bodies, memory, vitals, alive = own
+        tick, counts, action = now
+        senses, faulty = habitat.sense(bodies), jnp.zeros_like(alive)
+        if action is None:
+            seen = senses if first is None else first
+            memory, action, faulty = think(law, mind, memory, seen, tick)
+        bodies, outcome = habitat.step(bodies, action)
+        vitals, cause = judge(law, vitals, faulty, bodies, outcome, rates)
+        playing = alive & counts
+        lived = playing, action, outcome.food, mark(senses)
+        return (bodies, memory, vitals, alive & ~(playing & (cause >= 0))), lived
+
+    own_after, lived = lax.scan(play, tuple(own), ticks)
+    return _Table(mind, rates, first, *own_after), lived

@@ -1,0 +1,55 @@
+"""Games in a habitat on the host, played tick by tick."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import jax.numpy as jnp
+import numpy as np
+
+from primordia.compiled import shared
+from primordia.habitats.contract import HostHabitat
+from primordia.law.law import Law
+from primordia.law.life import judge
+from primordia.organism.mind import think
+from primordia.organism.playing.seats import Script, Seats, Stretch, begun, mark
+from primordia.random.wide import wide
+
+
+def stretches(
+    law: Law,
+    habitat: HostHabitat,
+    seated: Seats,
+    ticks: int,
+    frozen: bool,
+    script: Script | None,
+) -> Iterator[Stretch]:
+    """Play games, a tick at a time; see `games.play`."""
+    mind, memory, vitals, words = shared(begun, law, habitat.words)(seated)
+    rates, count = seated.rates, len(words)
+    think_tick, judge_tick = shared(think, law), shared(judge, law)
+    alive, faulty = np.ones(count, bool), jnp.zeros(count, bool)
+    with _opened(habitat, count):
+        senses = first = np.array(habitat.reset(np.arange(count), np.asarray(words)))
+        for tick in range(1, ticks + 1):
+            if script is None:
+                memory, chosen, faulty = think_tick(
+                    mind, memory, first if frozen else senses, wide([tick])
+                )
+                action = np.asarray(chosen)
+            else:
+                action = script(tick)
+            playing, marked = alive, mark(np.ascontiguousarray(senses, np.float32))
+            senses, outcome = habitat.step(action, playing)
+            vitals, cause = judge_tick(vitals, faulty, senses, outcome, rates)
+            alive = playing & (np.asarray(cause) < 0)
+            food = None if outcome.food is None else np.array(outcome.food)[None]
+            yield Stretch(playing[None], action[None].copy(), food, marked[None], alive)
+
+
+@contextmanager
+def _opened(habitat: HostHabitat, games: int) -> Iterator[None]:
+    habitat.open(games)
+    try:
+        yield
+    finally:
+        habitat.close()

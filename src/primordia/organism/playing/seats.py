@@ -1,0 +1,76 @@
+"""Seats of games: what a game begins with, and what is known of a stretch of its ticks."""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from primordia.law.genesis import body_words
+from primordia.law.law import Law
+from primordia.law.life import Vitals
+from primordia.law.metabolism import Rates, to_fixed_point
+from primordia.organism.mind import Mind
+from primordia.random.keys import Purpose, stream
+from primordia.random.wide import Wide, wide
+
+ODD = np.array([0x9E3779B1, 0x85EBCA77], np.uint32)
+"""Odd numbers, which mix the bits of senses."""
+
+Script = Callable[[int], np.ndarray]
+"""The actions of all games at a tick: int32 (N,) or float32 (N, A)"""
+
+
+class Stretch(NamedTuple):
+    """T ticks of N games."""
+
+    playing: np.ndarray
+    """bool (T, N): whether a game goes on when a tick begins"""
+    action: np.ndarray
+    """int32 (T, N) or float32 (T, N, A)"""
+    food: np.ndarray | None
+    """float32 (T, N)"""
+    mark: np.ndarray
+    """uint32 (T, N, 2): a hash of the senses when a tick begins"""
+    alive: np.ndarray
+    """bool (N,): which games go on after the last tick"""
+
+
+class Seats(NamedTuple):
+    """N players of one game each, as NumPy arrays."""
+
+    genomes: np.ndarray
+    """float32 (N, P)"""
+    keys: Wide
+    """(N,), key of everything random in a game"""
+    cells: np.ndarray
+    """int32 (N,): number that tells games of one key apart"""
+    rates: Rates
+    """metabolism, float32 (N,) each"""
+
+
+class Begun(NamedTuple):
+    """Games at their start."""
+
+    mind: Mind
+    memory: Array
+    vitals: Vitals
+    words: Array
+    """random words of bodies, uint32 (N, words)"""
+
+
+def mark(senses: Any) -> Any:
+    """Return a hash of senses float32 (N, S), on the host or in JAX: uint32 (N, 2)."""
+    places = np.arange(1, senses.shape[1] + 1, dtype=np.uint32)
+    factors = (2 * places[:, None] + 1) * ODD
+    return (senses.view(np.uint32)[:, :, None] * factors).sum(axis=1, dtype=np.uint32)
+
+
+def begun(law: Law, words: int, seated: Seats) -> Begun:
+    """Return games at their start, with `words` random words for each body."""
+    cells, store = jnp.asarray(seated.cells), to_fixed_point(seated.rates.store)
+    drawn = body_words(stream(seated.keys, Purpose.BODY, wide([0])), cells, words)
+    mind = Mind(law.heredity.layout.split(jnp.asarray(seated.genomes)), seated.keys, cells)
+    memory = jnp.zeros((len(store), law.memory), jnp.float32)
+    return Begun(mind, memory, Vitals(store, jnp.zeros_like(store)), drawn)

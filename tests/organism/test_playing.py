@@ -1,0 +1,75 @@
+"""Games in one compiled loop, and the same games tick by tick on the host."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import primordia
+from primordia.habitats.contract import JaxHabitat
+from primordia.habitats.on_host import OnHost
+from primordia.organism.evaluation import players_of
+from primordia.organism.games import Games, Players, play
+from primordia.organism.playing import in_jax
+from primordia.runs import loop
+from tests.worlds import MILL, config
+
+BASES: dict[str, str | dict[str, Any]] = {"poles": "CartPole-survival", "mill": MILL}
+
+
+@pytest.fixture(scope="module", params=BASES)
+def players(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Players:
+    """Return a few organisms of a world, the last of which lives long."""
+    folder = tmp_path_factory.mktemp("run") / "run"
+    settings = config(BASES[request.param], seeds=2, cells=16, stop={"ticks": 400})
+    loop.start(settings, folder)
+    run = primordia.load(folder)
+    lives = run.lives()
+    some = [*range(0, min(len(lives), 60), 3), int(np.argmax(lives.lifespan))]
+    return players_of(run.opened(), [(int(lives.id[row]), int(lives.world[row])) for row in some])
+
+
+def same(one: Games, other: Games) -> None:
+    for name in ("ticks", "over", "food", "course"):
+        np.testing.assert_array_equal(getattr(one, name), getattr(other, name), name)
+    for ours, theirs in zip(one.actions, other.actions, strict=True):
+        np.testing.assert_array_equal(ours, theirs)
+
+
+def on_host(players: Players) -> Players:
+    assert isinstance(players.habitat, JaxHabitat)
+    return players._replace(habitat=OnHost(players.habitat))
+
+
+@pytest.mark.parametrize("frozen", [False, True])
+def test_games_are_the_same_in_both(players: Players, frozen: bool) -> None:
+    """Few games last; the others leave the loop on the way."""
+    fused = play(players, 3, 150, frozen=frozen)
+    same(fused, play(on_host(players), 3, 150, frozen=frozen))
+    assert len(np.unique(fused.ticks)) > 3
+    script = play(players, 1, 40)
+    same(
+        play(players, 3, 150, script=script),
+        play(on_host(players), 3, 150, script=script),
+    )
+
+
+def test_no_game_depends_on_those_that_leave_the_loop(
+    players: Players, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(in_jax, "FEWEST", 1)
+    sizes: list[int] = []
+    left = in_jax._left
+
+    def leave(table: Any, index: Any, count: int) -> Any:
+        sizes.append(len(index))
+        return left(table, index, count)
+
+    monkeypatch.setattr(in_jax, "_left", leave)
+    for factor in (2, 8, 10**6):
+        monkeypatch.setattr(in_jax, "FEWER", factor)
+        games = play(players, 4, 300)
+        if factor == 2:
+            expected = games
+        same(games, expected)
+    assert len(set(sizes)) > 1
