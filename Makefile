@@ -12,7 +12,7 @@ demo: .venv/installed  ## evolve pole balancers, draw figures of the run, and fi
 	$(BIN)/primordia plot runs/demo
 	$(BIN)/primordia replay runs/demo
 
-test: .venv/installed-dev  ## run all tests: fourteen minutes on two cores
+test: .venv/installed-dev  ## run all tests: ten minutes on two cores
 	$(BIN)/python -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder
 
 quick: .venv/installed-dev  ## test each promise once, with the tests in tests/quick.txt: a minute on two cores

@@ -79,7 +79,7 @@ def effect(name: str, arm: str, column: str) -> Effect:
     """Return the effect of an arm on an outcome, from the last table of a file of results."""
     whole, *others = cell(name, arm, column, -1).split("; ")
     delta, size, *_ = [*whole.split(), ""]
-    ratio = next(part for part in others if SPREAD.fullmatch(part) and part[0].isdigit())
+    ratio = next(part for part in others if SPREAD.fullmatch(part) and part[0] in ">0123456789")
     return Effect(delta, size if size in SIZES else "", Cell(ratio))
 
 

@@ -19,6 +19,7 @@ ISA_FLAG = "--xla_cpu_max_isa"
 SAME_BITS = (
     "--xla_dump",
     "--xla_force_host_platform_device_count",
+    "--xla_cpu_parallel_codegen_split_count",
     "--xla_cpu_use_fusion_emitters",
     "--xla_backend_extra_options=-fast-isel=false",
 )

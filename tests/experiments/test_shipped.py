@@ -164,12 +164,28 @@ def test_the_csv_holds_the_outcomes_of_each_world(ponged: Path) -> None:
         assert row["arm"] == arm.name
         for outcome, column in COLUMNS.items():
             measured = arm.measured[outcome]
-            assert (column in row) == any(
-                each.measured[outcome].known.any() for each in compared.arms
-            )
-            if measured.known[0]:
+            assert (column in row) == (outcome in compared.outcomes)
+            if column in row and measured.known[0]:
                 assert float(row[column]) == pytest.approx(measured.value[0], abs=0.006)
     assert float(rows[0]["longest_life"]) == primordia.load(arms[0]).lives().lifespan.max()
+
+
+def test_shadows_are_reported(ponged: Path) -> None:
+    shadows = import_module("shadows")
+    shadows.report(ponged)
+    results = ponged.parent / "results"
+    found = [
+        primordia.load(arm).shadow(shadows.ORGANISMS) for arm in import_module("named").arms(ponged)
+    ]
+    text = (results / "pong-shadow.md").read_text().splitlines()
+    for line, shadow in zip(text[2:], found, strict=False):
+        cells = line.strip("| ").split(" | ")
+        assert cells[0] == shadow.name
+        assert int(cells[3]) == len(shadow.world)
+        assert [int(cell) for cell in cells[8:10]] == list(shadow.longer)
+    rows = list(csv.DictReader((results / "pong-shadow.csv").read_text().splitlines()))
+    means = [round(float(mean), 2) for shadow in found for mean in shadow.means[0]]
+    assert [float(row["mean_life"]) for row in rows] == means
 
 
 def test_the_way_of_an_arm_to_its_targets_is_measured(monkeypatch: pytest.MonkeyPatch) -> None:

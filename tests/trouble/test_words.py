@@ -191,3 +191,24 @@ def test_the_python_interface_raises_input_errors(run: Path, tmp_path: Path) -> 
         if name != "format"
     }  # fmt: skip
     assert commands.CACHE is not None
+
+
+LONG = "9" * 300
+"""A name that no file can have."""
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("run", TASK, "--ancestor", LONG), ("run", TASK, "--out", LONG), ("info", LONG),
+        ("plot", LONG), ("compare", LONG, "."), ("resume", LONG), ("verify", LONG),
+        ("evaluate", LONG), ("shadow", LONG), ("experiment", LONG), ("track", LONG),
+    ],
+    ids=lambda words: words[0] if isinstance(words, tuple) else None,
+)  # fmt: skip
+def test_a_name_too_long_for_a_file_is_refused(
+    words: tuple[str, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    complains(here(*words), 2, "file name 999", "is too long")
+    assert not os.listdir(tmp_path)

@@ -1,5 +1,7 @@
 """All commands. A user's error is one line on stderr with exit status 2; trouble has status 1."""
 
+import errno
+
 import click
 
 from primordia import interrupts
@@ -61,6 +63,12 @@ def _outcome() -> int:
     except InputError as error:
         report(error)
         return 2
-    except (Trouble, OSError) as error:
+    except Trouble as error:
+        report(error)
+        return 1
+    except OSError as error:
+        if error.errno == errno.ENAMETOOLONG:
+            report(f"the file name {str(error.filename)[:40]}... is too long; give a shorter one")
+            return 2
         report(error)
         return 1

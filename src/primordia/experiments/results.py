@@ -44,7 +44,7 @@ COLUMNS = {
     "pace": "late_ticks_per_death",
     "food": "late_food",
 }
-"""Outcomes of a comparison that stand in the CSV, with their names there."""
+"""Names in the CSV of outcomes that a comparison shows; of saturation, both counts are there anyway."""
 
 
 def write(stem: Path, question: str, arms: Sequence[Records]) -> list[Path]:
@@ -168,7 +168,7 @@ def world_rows(
 ) -> str:
     """Return CSV with a row for each world of each arm; a cell is empty where its value is not known."""
     arms = compared.arms
-    known = [name for name in COLUMNS if any(arm.measured[name].known.any() for arm in arms)]
+    known = [name for name in COLUMNS if name in compared.outcomes]
     text = io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
     titles = [COLUMNS[name] for name in known]
