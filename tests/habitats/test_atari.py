@@ -1,5 +1,7 @@
 """Atari games as habitats: exact states, senses, fatal events, food, and bad input."""
 
+import gc
+from collections import defaultdict
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +11,7 @@ import pytest
 import primordia
 from primordia.config import load
 from primordia.habitats.atari import games as atari_games
+from primordia.habitats.atari import simulator
 from primordia.habitats.atari.games import games
 from primordia.habitats.atari.habitat import Atari
 from primordia.habitats.atari.simulator import FIELDS, NOOP, Arcade, console
@@ -38,6 +41,35 @@ def test_a_cloned_game_continues_as_the_original(game: str) -> None:
         assert np.array_equal(one.getRAM(), other.getRAM()), frame
         assert one.lives() == other.lives()
     assert one.cloneState().serialize() == other.cloneState().serialize()
+
+
+def test_emulators_that_are_free_are_used_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A run in them is the same to the last byte of its checkpoints, and makes no new ones."""
+    monkeypatch.setattr(simulator, "_SPARE", defaultdict(list))
+    simulator._start.cache_clear()
+    made: list[str] = []
+
+    def counted(game: str, *settings: Any) -> Any:
+        made.append(game)
+        return console(game, *settings)
+
+    monkeypatch.setattr(simulator, "console", counted)
+    settings: Any = {"cells": 4, "brain": {"hidden": 2}, "habitat": {"workers": 0, "noops": 5}}
+    settings["stop"] = {"ticks": 300, "until": "none"}
+    digests = []
+    for name in ("first", "second"):
+        run = primordia.run("Pong-survival", tmp_path / name, **settings)
+        digests.append(run.info()["digest"])
+        del run
+        gc.collect()
+    assert made == ["pong"] * 4
+    assert digests[0] == digests[1]
+    stored = [Archive(tmp_path / name).state for name in ("first", "second")]
+    for name, array in stored[0].items():
+        np.testing.assert_array_equal(array, stored[1][name], name)
+    simulator._start.cache_clear()
 
 
 def arcade(cells: int = 2, **options: Any) -> tuple[Arcade, dict[str, np.ndarray]]:

@@ -6,6 +6,9 @@ itself draws no random numbers: sticky actions are drawn here, from dice that be
 random words.
 """
 
+import weakref
+from collections import defaultdict
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,7 +16,7 @@ import numpy as np
 from primordia.random import dice
 
 if TYPE_CHECKING:
-    from ale_py import ALEInterface
+    from ale_py import ALEInterface, ALEState
 
 RAM = 128
 """bytes of an Atari 2600"""
@@ -62,6 +65,20 @@ def console(
     return ale
 
 
+Game = tuple[str, int | None, int | None]
+"""A game, its mode and its difficulty."""
+_SPARE: "defaultdict[Game, list[ALEInterface]]" = defaultdict(list)
+"""Emulators that no cell needs any more. To make one takes as long as thousands of frames."""
+
+
+@cache
+def _start(game: Game) -> "ALEState":
+    """Return the state at the start of a game."""
+    ale = console(*game)
+    _SPARE[game].append(ale)
+    return ale.cloneState()
+
+
 class Arcade:
     """The emulators of some cells, in one process."""
 
@@ -78,18 +95,21 @@ class Arcade:
     ) -> None:
         self._arrays, self._buttons = arrays, np.array(actions)
         self._skip, self._sticky, self._noops = frame_skip, round(sticky * 2**32), noops
-        self._game = (game, mode, difficulty)
+        self._game: Game = (game, mode, difficulty)
+        self._start = _start(self._game)
         self._consoles: dict[int, tuple[ALEInterface, np.ndarray]] = {}
         """an emulator and its row of RAM, by cell"""
+        weakref.finalize(self, _spare, self._game, self._consoles)
         self._screen: dict[int, np.ndarray] = {}
         self._dice: dict[int, int] = {}
         self._held: dict[int, int] = {}
 
     def make(self, cell: int) -> None:
         """Make the emulator of one more cell."""
-        ale = console(*self._game)
-        if not self._consoles:
-            self._start = ale.cloneState()
+        # A screen is not part of a state, so an emulator that has played before is not watched.
+        spare = [] if SCREEN in self._arrays else _SPARE[self._game]
+        ale = spare.pop() if spare else console(*self._game)
+        ale.restoreState(self._start)
         self._consoles[cell] = ale, self._arrays["ram"][cell]
         if SCREEN in self._arrays:
             self._screen[cell] = self._arrays[SCREEN][cell]
@@ -160,3 +180,8 @@ class Arcade:
         self._dice[cell], self._held[cell] = int.from_bytes(state[:8], "little"), state[8]
         self._consoles[cell][0].restoreState(ALEState(state[9:]))
         self._fill_row(cell)
+
+
+def _spare(game: Game, consoles: "dict[int, tuple[ALEInterface, np.ndarray]]") -> None:
+    """Keep the emulators of an arcade that is no longer needed."""
+    _SPARE[game] += [ale for ale, _ in consoles.values()]
