@@ -127,7 +127,8 @@ def test_what_is_no_arm_is_refused(runs: Path, tmp_path: Path) -> None:
         opened([f"{tmp_path}/none-*"])
     with pytest.raises(InputError, match="given twice"):
         primordia.compare(runs / "arm", one)
-    complains(here("resume", runs / "arm"), 2, "is an arm of 2 runs, and this takes a single one")
+    single = f"is an arm of 2 runs, and this takes a single one, such as {one}"
+    complains(here("resume", runs / "arm"), 2, single)
     complains(here("verify", runs / "arm"), 2, "is an arm of 2 runs")
     complains(here("fork", runs / "arm", "--at", "9"), 2, "is an arm of 2 runs")
 

@@ -1,0 +1,66 @@
+"""Files: what is read, removed and made, and the lines that say why not."""
+
+import errno
+import os
+from pathlib import Path
+
+import pytest
+
+from primordia import files
+from primordia.errors import InputError, Trouble
+
+
+def test_only_regular_files_up_to_a_size_are_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A pipe that nobody writes to would be read for ever."""
+    pipe, file = tmp_path / "pipe", tmp_path / "file"
+    os.mkfifo(pipe)
+    file.write_bytes(b"123")
+    monkeypatch.setattr(files, "READABLE", 3)
+    assert files.read(file) == b"123"
+    monkeypatch.setattr(files, "READABLE", 2)
+    for path, code in ((pipe, errno.EINVAL), (file, errno.EFBIG), (tmp_path / "no", errno.ENOENT)):
+        with pytest.raises(OSError, match=r"\w") as raised:
+            files.read(path)
+        assert raised.value.errno == code
+
+
+def test_a_link_is_removed_without_what_it_leads_to(tmp_path: Path) -> None:
+    folder, link = tmp_path / "folder", tmp_path / "link"
+    folder.mkdir()
+    (folder / "file").write_text("kept")
+    link.symlink_to(folder)
+    files.remove(link)
+    assert (folder / "file").read_text() == "kept"
+    files.remove(folder)
+    assert os.listdir(tmp_path) == []
+    with pytest.raises(Trouble) as raised:
+        files.remove(link)
+    assert str(raised.value) == f"{link} cannot be removed: No such file or directory"
+
+
+def test_a_folder_is_made_with_its_parents_or_a_line_says_why_not(tmp_path: Path) -> None:
+    files.make_folder(tmp_path / "a" / "b")
+    files.make_folder(tmp_path / "a" / "b")
+    assert (tmp_path / "a" / "b").is_dir()
+    (tmp_path / "file").touch()
+    with pytest.raises(Trouble) as raised:
+        files.make_folder(tmp_path / "file" / "b")
+    assert str(raised.value) == f"{tmp_path / 'file' / 'b'} cannot be written: Not a directory"
+    for name in ("a\0b", "a\udcff"):
+        with pytest.raises(InputError, match="choose another name"):
+            files.make_folder(tmp_path / name)
+
+
+def test_each_fault_of_a_sealed_file_is_named(tmp_path: Path) -> None:
+    file = tmp_path / "file"
+    file.write_bytes(b"abc")
+    sealed = files.seal(file)
+    assert files.fault_in(file, sealed["bytes"], sealed["sha256"]) is None
+    file.write_bytes(b"abd")
+    assert "checksum" in str(files.fault_in(file, sealed["bytes"], sealed["sha256"]))
+    file.write_bytes(b"ab")
+    assert "2 bytes instead of 3" in str(files.fault_in(file, sealed["bytes"], sealed["sha256"]))
+    file.unlink()
+    assert "is missing" in str(files.fault_in(file, sealed["bytes"], sealed["sha256"]))
