@@ -287,3 +287,15 @@ def test_everything_that_is_drawn_is_within_the_page(
         for text in (axes.title, axes.xaxis.label, axes.yaxis.label):
             box = text.get_window_extent()
             assert drawn.bbox.count_contains([box.min, box.max]) == 2, text
+
+
+def test_food_is_counted_by_ticks_where_a_habitat_has_no_seconds(tmp_path: Path) -> None:
+    for name, food in (("much", 0.5), ("little", 0.25)):
+        habitat = {**MEADOW["habitat"], "food": food}
+        settings = {**MEADOW, "habitat": habitat, "replication": 0.2, "hazard": 0.02}
+        settings |= {"sample_every": 20, "stop": {"ticks": 400}}
+        loop.start(config(settings), tmp_path / name)
+    compared = primordia.compare(tmp_path / "much", tmp_path / "little")
+    assert compared.span == "tick"
+    eaten = [arm.measured["food"].value.tolist() for arm in compared.arms]
+    assert eaten == [pytest.approx([0.5]), pytest.approx([0.25])]

@@ -58,6 +58,8 @@ def test_the_summary_says_what_food_keeps_an_organism_alive() -> None:
 
 def test_the_summary_says_why_worlds_die_out() -> None:
     dying = world(births=300, extinctions=7, tries_per_life=0.2)
+    for tries, said in ((0.99, True), (1.0, False), (1.5, False)):
+        assert ("tries to copy" in summarised([{**dying, "tries_per_life": tries}])) == said
     line = summarised([dying]).splitlines()[1]
     assert line.startswith("  an organism tries to copy itself 0.2 times in its life; raise")
     thriving = world(births=100, extinctions=1, tries_per_life=1.8)

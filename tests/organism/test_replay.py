@@ -1,0 +1,37 @@
+"""What a film of a life shows, and for how long."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from PIL import Image
+
+from primordia.organism import replay
+
+RATE = 50.0
+
+
+def test_a_life_is_shown_in_two_parts_once_it_is_longer_than_both() -> None:
+    both = 2 * int(replay.PART * RATE)
+    for ticks, parts in ((both + 1, 1), (both + 2, 2)):
+        life: Any = SimpleNamespace(record=SimpleNamespace(born=[70]), begins=70, ends=70 + ticks)
+        shown = replay._parts(life, RATE, (None, None))
+        assert len(shown) == parts
+        assert (shown[0][0], shown[-1][-1]) == (1, ticks)
+        assert sum(map(len, shown)) == (ticks if parts == 1 else both)
+
+
+@pytest.mark.parametrize("rate", [RATE, 0.1])
+def test_cards_and_the_last_picture_stay_at_least_one_frame(
+    rate: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    picture = Image.new("RGB", (64, 36))
+    moments = [(0, None, 0), (0, None, 1), (1, None, 0)]
+    monkeypatch.setattr(replay, "_moments", lambda *given: iter(moments))
+    monkeypatch.setattr(replay, "_picture", lambda *given: picture)
+    life: Any = None
+    frames = list(replay._pictures(life, [range(1, 3), range(9, 10)], 1, rate))
+    still = max(1, round(replay.STILL * rate))
+    assert len(frames) == len(moments) + 2 * still
+    assert [frame is picture for frame in frames[:3]] == [True, True, False]
+    assert frames[-1] is picture
