@@ -189,6 +189,17 @@ def test_a_class_that_breaks_the_contract_is_an_error_that_says_why(
         assert part in str(error.value)
 
 
+@pytest.mark.parametrize(
+    ("kind", "names"),
+    [(JaxHabitat, {"reset", "sense", "step"}), (HostHabitat, {"open", "reset", "step"})],
+)
+def test_no_habitat_lacks_what_has_no_default(kind: type, names: set[str]) -> None:
+    for lacking in names:
+        methods = {name: lambda *given: None for name in names - {lacking}}
+        with pytest.raises(TypeError, match=f"abstract method '?{lacking}'?$"):
+            type("Partly", (kind,), {"senses_size": 1, **methods})()
+
+
 def test_bodies_that_cannot_be_saved_start_again_after_a_resume(tmp_path: Path) -> None:
     """A resumed run continues with bodies as they were at birth, and says that it is not exact."""
     habitat, run = {"name": f"{__name__}:Forgetful"}, tmp_path / "run"
