@@ -15,6 +15,7 @@ from primordia.habitats.atari import simulator
 from primordia.habitats.atari.games import games
 from primordia.habitats.atari.habitat import Atari
 from primordia.habitats.atari.simulator import FIELDS, NOOP, Arcade, console
+from primordia.habitats.contract import Discrete
 from primordia.runs.archive import Archive
 from primordia.runs.verify import verify
 from tests.commands import complains, here
@@ -41,6 +42,23 @@ def test_a_cloned_game_continues_as_the_original(game: str) -> None:
         assert np.array_equal(one.getRAM(), other.getRAM()), frame
         assert one.lives() == other.lives()
     assert one.cloneState().serialize() == other.cloneState().serialize()
+
+
+@pytest.mark.parametrize(
+    ("actions", "count", "names"),
+    [
+        ("minimal", 6, ("NOOP", "FIRE", "RIGHT")),
+        ("full", 18, ("NOOP", "FIRE", "UP")),
+        ("UP NOOP", 2, ("UP", "NOOP")),
+    ],
+)
+def test_actions_are_those_that_the_settings_name(
+    actions: str, count: int, names: tuple[str, ...]
+) -> None:
+    """Pong has six buttons of its own; every game has eighteen."""
+    habitat = Atari(game="pong", actions=actions)
+    assert habitat.action == Discrete(count)
+    assert tuple(habitat._action_names[: len(names)]) == names
 
 
 def test_emulators_that_are_free_are_used_again(

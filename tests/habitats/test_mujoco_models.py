@@ -4,12 +4,14 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import primordia
 from primordia.habitats.mujoco import simulator as mujoco_model
 from tests import commands
 from tests.commands import complains, here
+from tests.robots import born, opened
 
 mujoco = pytest.importorskip("mujoco")
 
@@ -62,6 +64,25 @@ def test_a_model_named_by_a_flag_is_found_from_elsewhere(
     run = primordia.load(tmp_path / run.path)
     assert run.resume(ticks=8) == []
     assert run.oldest().evaluate(ticks=3).whole is not None
+
+
+def test_sites_are_perceived_in_three_coordinates(tmp_path: Path) -> None:
+    """A hinge of the y axis turns the arm's tip from x to -z."""
+    file = tmp_path / "arm.xml"
+    file.write_text(
+        '<mujoco><worldbody><body><joint name="hinge" type="hinge" axis="0 1 0"/><geom size="0.1"/>'
+        '<site name="tip" pos="1 0.25 0.5"/></body></worldbody>'
+        '<actuator><motor joint="hinge"/></actuator></mujoco>'
+    )
+    arm = opened(2, file=str(file), senses=('site["tip"]', "qpos"), position_noise=1.0, substeps=1)
+    senses = born(arm, 2)
+    arm.close()
+    cosine, sine = np.cos(senses[:, 3]), np.sin(senses[:, 3])
+    expected = [cosine + 0.5 * sine, np.full(2, 0.25), 0.5 * cosine - sine]
+    np.testing.assert_allclose(senses[:, :3], np.stack(expected, axis=1), atol=1e-6)
+    assert senses[0, 3] != senses[1, 3]
+    with pytest.raises(ValueError, match=r"from site\['tip'\]\[0\] to site\['tip'\]\[2\]"):
+        opened(2, file=str(file), senses=('site["tip"][3]',))
 
 
 @pytest.mark.parametrize(
