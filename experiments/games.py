@@ -51,11 +51,10 @@ def report(file: Path) -> None:
     rows = []
     for number, folder in enumerate(named.arms(file)):
         run = primordia.load(folder).opened()
-        players = [*evolved(run), *(unevolved(run, most=None) if number == 0 else [])]
-        for group in players:
-            evolution = group.name in ("champion", "all alive")
-            name = f"{folder.name}: {group.name}" if evolution else group.name
-            rows += played(name, run, group)
+        for group in evolved(run):
+            rows += played(f"{folder.name}: {group.name}", run, group)
+        for group in unevolved(run, most=None) if number == 0 else ():
+            rows += played(group.name, run, group)
         write_rows(file.parent / "results" / f"{file.stem}-games", rows, summary(rows))
 
 
@@ -107,7 +106,8 @@ def summary(rows: list[dict[str, Any]]) -> str:
         f"Medians over worlds (quartiles) of the median organism's median game. Champions and best"
         f" founders play {GAMES} games; one is enough where nothing is drawn at random. The others play"
         " one each. The best founder of a world is the longest-lived of as many founders as the reference"
-        f" had births there. Games were cut after {TICKS:,} ticks."
+        " had births there. Where nothing is drawn at random, the own game of a champion or best founder is"
+        f" the one that chose it; the others are not. Games were cut after {TICKS:,} ticks."
     )
     return f"{table(['who', 'plays', 'worlds', 'organisms', *OUTCOMES], lines)}\n\n{note}"
 

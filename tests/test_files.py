@@ -13,7 +13,7 @@ from primordia.errors import InputError, Trouble
 def test_only_regular_files_up_to_a_size_are_read(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A pipe that nobody writes to would be read for ever."""
+    """A pipe without a writer would be read for ever."""
     pipe, file = tmp_path / "pipe", tmp_path / "file"
     os.mkfifo(pipe)
     file.write_bytes(b"123")
@@ -51,6 +51,11 @@ def test_a_folder_is_made_with_its_parents_or_a_line_says_why_not(tmp_path: Path
     for name in ("a\0b", "a\udcff"):
         with pytest.raises(InputError, match="choose another name"):
             files.make_folder(tmp_path / name)
+    longest = "é" * (files.LONGEST_NAME // 2)
+    files.make_folder(tmp_path / longest)
+    files.write_text(tmp_path / longest / longest, "short enough")
+    with pytest.raises(InputError, match="is too long; give a shorter one"):
+        files.make_folder(tmp_path / (longest + "e"))
 
 
 def test_each_fault_of_a_sealed_file_is_named(tmp_path: Path) -> None:

@@ -10,7 +10,6 @@ with the pages.
 """
 
 import re
-from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
@@ -24,7 +23,6 @@ HERE = Path(__file__).parent
 ROOT = HERE.parent.parent
 HEAD = "<!-- `make figures` makes this page from docs/templates/{}; edit that file. -->\n\n"
 SPREAD = re.compile(r"(.+?) \((.+?) to (.+?)\)")
-SIZES = "negligible", "small", "medium", "large"
 
 
 class Cell(str):
@@ -45,10 +43,9 @@ class Cell(str):
 
 
 class Effect(NamedTuple):
-    """An arm against the reference: Cliff's delta, its size in words, and the ratio of medians."""
+    """An arm against the reference: Cliff's delta, and the ratio of medians."""
 
     delta: str
-    size: str
     ratio: Cell
 
 
@@ -78,20 +75,14 @@ def cell(name: str, row: str, column: str, number: int = 0) -> Cell:
 def effect(name: str, arm: str, column: str) -> Effect:
     """Return the effect of an arm on an outcome, from the last table of a file of results."""
     whole, *others = cell(name, arm, column, -1).split("; ")
-    delta, size, *_ = [*whole.split(), ""]
     ratio = next(part for part in others if SPREAD.fullmatch(part) and part[0] in ">0123456789")
-    return Effect(delta, size if size in SIZES else "", Cell(ratio))
+    return Effect(whole.split()[0], Cell(ratio))
 
 
 def played(name: str, who: str, way: str, outcome: str = "lifespan") -> Cell:
     """Return the median and quartiles over worlds of an outcome of games."""
     games = rows(f"{name}-games")
-    return spread(games[(games.who == who) & (games.way == way)][outcome])
-
-
-def spread(values: Iterable[float]) -> Cell:
-    """Return the median and quartiles of values."""
-    return Cell(spread_text(values))
+    return Cell(spread_text(games[(games.who == who) & (games.way == way)][outcome]))
 
 
 def pages() -> dict[Path, str]:
@@ -102,13 +93,10 @@ def pages() -> dict[Path, str]:
         keep_trailing_newline=True,
         autoescape=False,
     )
-    filler.globals.update(
-        rows=rows, table=table, cell=cell, effect=effect, played=played, spread=spread
-    )
-    filler.filters.update(spread=spread, number=number_text)
+    filler.globals.update(rows=rows, table=table, cell=cell, effect=effect, played=played)
+    filler.filters.update(number=number_text)
     return {
-        (ROOT if path.name == "README.md" else HERE.parent) / path.name: HEAD.format(path.name)
-        + filler.get_template(path.name).render()
+        HERE.parent / path.name: HEAD.format(path.name) + filler.get_template(path.name).render()
         for path in sorted(HERE.glob("*.md"))
     }
 

@@ -19,6 +19,8 @@ from primordia.errors import InputError, Trouble
 
 READABLE = 2**26
 """Largest size, in bytes, of a file of settings or of a manifest."""
+LONGEST_NAME = 240
+"""Largest length of a name, in bytes. A disk allows 255; while a file is written its name is longer."""
 TEMPORARY = ".writing-"
 """Prefix of the names of unfinished files."""
 
@@ -148,13 +150,15 @@ def _kind(path: Path) -> str | None:
 
 
 def check_name(path: Path) -> None:
-    """Raise InputError unless a path is UTF-8, as libraries want it, and holds no NUL.
+    """Raise InputError unless a path is UTF-8, as libraries want it, without a NUL, and short enough.
 
     Python represents bytes that are no UTF-8 by halves of surrogate pairs.
     """
     name = str(path)
     if "\0" in name or name != name.encode(errors="replace").decode():
         raise InputError(f"{name!r} is not in UTF-8 or holds a NUL; choose another name")
+    if too_long := [part for part in path.parts if len(part.encode()) > LONGEST_NAME]:
+        raise InputError(f"the file name {too_long[0][:40]}... is too long; give a shorter one")
 
 
 def sync(path: Path) -> None:

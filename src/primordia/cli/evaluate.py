@@ -111,6 +111,7 @@ def show_standings(standings: "list[Standing]", title: str) -> None:
     from rich.table import Table
 
     from primordia.comparison.controls import OUTCOMES
+    from primordia.comparison.tables import spread_text
 
     outcomes = [name for name in OUTCOMES if standings[0].over_worlds(name)]
     shown = Table("", box=box.SIMPLE_HEAD, pad_edge=False)
@@ -120,16 +121,10 @@ def show_standings(standings: "list[Standing]", title: str) -> None:
         values = each.to_dict()
         chosen = f"{each.chosen_from:,}" if each.chosen_from > 1 else "-"
         numbers = f"{values['organisms']:,}", chosen, f"{values['games']:,}"
-        shown.add_row(each.name, *numbers, *(_spread(values[name]) for name in outcomes))
+        spreads = (spread_text(each.by_world(name).values()) for name in outcomes)
+        shown.add_row(each.name, *numbers, *spreads)
     console = Console(highlight=False, soft_wrap=True)
     console.print(title, shown, *_notes(standings), sep="\n")
-
-
-def _spread(values: dict[str, float]) -> str:
-    from primordia.comparison.tables import number_text
-
-    median, q1, q3 = (number_text(each) for each in values.values())
-    return median if q1 == q3 else f"{median} ({q1} to {q3})"
 
 
 def _notes(standings: "list[Standing]") -> list[str]:

@@ -43,7 +43,8 @@ class OnHost(HostHabitat):
         self.senses_size, self.action, self.words = inner.senses_size, inner.action, inner.words
         self.rate, self.versions = inner.rate, inner.versions
         self._embody, self._step = shared(_embody, inner), shared(_step, inner)
-        self._sense = shared(_sense, inner)
+        # In a call of their own: compiled together with a step, senses might be rounded otherwise.
+        self._sense = shared(type(inner).sense, inner)
 
     def open(self, cells: int, watched: bool = False) -> None:
         """Allocate the bodies."""
@@ -97,11 +98,6 @@ def _embody(
     """Insert fresh bodies into cells (K,), except those out of range; return all, and the fresh ones."""
     newborn = fresh(habitat, words)
     return insert_bodies(bodies, cells, newborn), newborn
-
-
-# Senses are computed by a separate call: compiled together with a step, they might be rounded otherwise.
-def _sense(habitat: JaxHabitat, bodies: Bodies) -> Array:
-    return habitat.sense(bodies)
 
 
 def _step(

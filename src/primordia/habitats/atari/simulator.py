@@ -69,6 +69,8 @@ Game = tuple[str, int | None, int | None]
 """A game, its mode and its difficulty."""
 _SPARE: "defaultdict[Game, list[ALEInterface]]" = defaultdict(list)
 """Emulators that no cell needs any more. To make one takes as long as thousands of frames."""
+SPARES = 512
+"""the most of a game that are kept; each takes about a megabyte"""
 
 
 @cache
@@ -183,5 +185,6 @@ class Arcade:
 
 
 def _spare(game: Game, consoles: "dict[int, tuple[ALEInterface, np.ndarray]]") -> None:
-    """Keep the emulators of an arcade that is no longer needed."""
-    _SPARE[game] += [ale for ale, _ in consoles.values()]
+    """Keep the emulators of an arcade that is no longer needed, up to SPARES."""
+    spare = _SPARE[game]
+    spare += [ale for ale, _ in consoles.values()][: SPARES - len(spare)]

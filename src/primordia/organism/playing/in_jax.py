@@ -69,7 +69,7 @@ def _opened(law: Law, habitat: JaxHabitat, seated: Seats, count: int, frozen: bo
     """Return the table at the start of `count` games; further ones are padding."""
     mind, memory, vitals, words = shared(begun, law, habitat.words)(seated)
     bodies = shared(fresh, habitat)(words)
-    first = shared(_sense, habitat)(bodies) if frozen else None
+    first = shared(type(habitat).sense, habitat)(bodies) if frozen else None
     alive = np.arange(len(seated.genomes)) < count
     return _Table(mind, seated.rates, first, bodies, memory, vitals, jnp.asarray(alive))
 
@@ -96,10 +96,6 @@ def _left(table: _Table, index: Array, count: int) -> _Table:
     """Return the table with the games at an index (N,), of which the first `count` go on."""
     table = jax.tree.map(lambda leaf: leaf[index], table)
     return table._replace(alive=table.alive & (jnp.arange(len(index)) < count))
-
-
-def _sense(habitat: JaxHabitat, bodies: Bodies) -> Array:
-    return habitat.sense(bodies)
 
 
 def _advance(

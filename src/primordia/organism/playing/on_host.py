@@ -1,7 +1,7 @@
 """Games in a habitat on the host, played tick by tick."""
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing
 
 import jax.numpy as jnp
 import numpy as np
@@ -28,7 +28,8 @@ def stretches(
     rates, count = seated.rates, len(words)
     think_tick, judge_tick = shared(think, law), shared(judge, law)
     alive, faulty = np.ones(count, bool), jnp.zeros(count, bool)
-    with _opened(habitat, count):
+    habitat.open(count)
+    with closing(habitat):
         senses = first = np.array(habitat.reset(np.arange(count), np.asarray(words)))
         for tick in range(1, ticks + 1):
             if script is None:
@@ -44,12 +45,3 @@ def stretches(
             alive = playing & (np.asarray(cause) < 0)
             food = None if outcome.food is None else np.array(outcome.food)[None]
             yield Stretch(playing[None], action[None].copy(), food, marked[None], alive)
-
-
-@contextmanager
-def _opened(habitat: HostHabitat, games: int) -> Iterator[None]:
-    habitat.open(games)
-    try:
-        yield
-    finally:
-        habitat.close()
