@@ -106,8 +106,8 @@ def summary(rows: list[dict[str, Any]]) -> str:
         f"Medians over worlds (quartiles) of the median organism's median game. Champions and best"
         f" founders play {GAMES} games; one is enough where nothing is drawn at random. The others play"
         " one each. The best founder of a world is the longest-lived of as many founders as the reference"
-        " had births there. Where nothing is drawn at random, the own game of a champion or best founder is"
-        f" the one that chose it; the others are not. Games were cut after {TICKS:,} ticks."
+        " had births there. Where nothing is drawn at random, the own game of a champion or best founder"
+        f" is the one that chose it; the others are not. Games were cut after {TICKS:,} ticks."
     )
     return f"{table(['who', 'plays', 'worlds', 'organisms', *OUTCOMES], lines)}\n\n{note}"
 
