@@ -14,7 +14,7 @@ from primordia.organism.playing import in_jax, on_host
 from primordia.organism.playing.seats import Seats, Stretch
 from primordia.random.wide import Wide
 
-AT_ONCE = 512
+AT_ONCE = 128
 """Games played side by side, if not told otherwise; the games of one player are never separated."""
 AT_ONCE_IN_JAX = 1024
 """The same in a habitat of arrays, where each game costs little more memory than a genome."""

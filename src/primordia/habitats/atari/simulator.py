@@ -69,7 +69,7 @@ Game = tuple[str, int | None, int | None]
 """A game, its mode and its difficulty."""
 _SPARE: "defaultdict[Game, list[ALEInterface]]" = defaultdict(list)
 """Emulators that no cell needs any more. To make one takes as long as thousands of frames."""
-SPARES = 512
+SPARES = 256
 """the most of a game that are kept; each takes about a megabyte"""
 
 
