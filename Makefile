@@ -37,8 +37,8 @@ figures: .venv/installed-dev  ## fill the figures of committed tables into the p
 bench: .venv/installed-dev  ## measure every figure; `make bench JSON=file.json` writes them to a file
 	$(BIN)/python benchmarks/bench.py $(if $(JSON),--json $(JSON))
 
-mutants: .venv/installed-mutants  ## plant faults and count those noticed, hours; `make mutants FILES="law/tick.py" SAMPLE=10`
-	$(BIN)/python benchmarks/mutants.py $(FILES) $(if $(SAMPLE),--sample $(SAMPLE)) $(if $(JSON),--json $(JSON))
+mutants: .venv/installed-mutants  ## plant faults and count those noticed, hours; `make mutants FILES="law/tick.py" SAMPLE=10 SEED=1`
+	$(BIN)/python benchmarks/mutants.py $(FILES) $(if $(SAMPLE),--sample $(SAMPLE)) $(if $(SEED),--seed $(SEED)) $(if $(JSON),--json $(JSON))
 
 constraints:  ## write the newest releases into constraints.txt; run `make check` before you commit it
 	rm -rf .venv

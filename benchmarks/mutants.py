@@ -1,10 +1,10 @@
 """Plant small faults in the source, one at a time, and count how many the tests notice (`make mutants`).
 
-    python benchmarks/mutants.py [FILE ...] [--sample N] [--json FILE]
+    python benchmarks/mutants.py [FILE ...] [--sample N] [--seed N] [--json FILE]
 
 FILE is a file or a folder below `src/primordia`; by default all that `[tool.mutants]` of `pyproject.toml`
 names. That table says which tests are run for each. Cosmic Ray plants the faults, in a copy of the tree.
-With --sample, only N faults of each FILE are planted, drawn at random and the same each time.
+With --sample, only N faults of each FILE are planted, drawn at random: the same for the same --seed.
 A fault that is not noticed is printed: it needs a test, or a reason in `benchmarks/results/mutants.md`.
 """
 
@@ -34,6 +34,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("files", nargs="*", help="files or folders below src/primordia")
     parser.add_argument("--sample", type=int, help="plant this many faults of each file, not all")
+    parser.add_argument("--seed", type=int, default=0, help="draw the sample with this seed")
     parser.add_argument("--json", type=Path, help="write the score of each file to this file")
     chosen = parser.parse_args()
     table = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["mutants"]
@@ -45,7 +46,8 @@ def main() -> None:
             shutil.copytree(ROOT / name, tree / name)
         for name in chosen.files or table["tests"]:
             tests = tests_of(name, table["tests"])
-            scores[name] = score(tree, name, tests, table, chosen.sample)
+            drawn = None if chosen.sample is None else (chosen.sample, chosen.seed)
+            scores[name] = score(tree, name, tests, table, drawn)
             print(
                 f"{name}: {scores[name]['noticed']} of {scores[name]['planted']} noticed",
                 flush=True,
@@ -63,9 +65,12 @@ def tests_of(name: str, tests: dict[str, str]) -> str:
 
 
 def score(
-    tree: Path, name: str, tests: str, table: dict[str, Any], sample: int | None
+    tree: Path, name: str, tests: str, table: dict[str, Any], drawn: tuple[int, int] | None
 ) -> dict[str, Any]:
-    """Plant faults in one file or folder -> how many were planted and noticed, and the others."""
+    """Plant faults in one file or folder -> how many were planted and noticed, and the others.
+
+    `drawn` is the size of the sample and its seed; None plants all.
+    """
     config, session = tree / "mutants.toml", tree / "mutants.sqlite"
     session.unlink(missing_ok=True)
     command = f"{shlex.quote(sys.executable)} {PYTEST} {tests}"
@@ -78,8 +83,8 @@ def score(
     )
     run("cosmic_ray.cli", "init", config.name, session.name, where=tree)
     run("cosmic_ray.tools.filters.operators_filter", session.name, config.name, where=tree)
-    if sample is not None:
-        draw(session, sample)
+    if drawn is not None:
+        draw(session, *drawn)
     run("cosmic_ray.cli", "baseline", config.name, where=tree)
     run("cosmic_ray.cli", "exec", config.name, session.name, where=tree)
     with use_db(str(session), WorkDB.Mode.open) as db:
@@ -95,12 +100,12 @@ def score(
     }
 
 
-def draw(session: Path, sample: int) -> None:
-    """Leave some of the faults that a session is to plant, drawn with a fixed seed."""
+def draw(session: Path, sample: int, seed: int) -> None:
+    """Leave `sample` of the faults that a session is to plant, drawn at random."""
     with use_db(str(session), WorkDB.Mode.open) as db:
         pending = {item.job_id: item for item in db.pending_work_items}
         ordered = sorted(pending, key=lambda job: place(pending[job]))
-        kept = random.Random(0).sample(ordered, min(sample, len(ordered)))
+        kept = random.Random(seed).sample(ordered, min(sample, len(ordered)))
         skipped = WorkResult(WorkerOutcome.SKIPPED, output="not drawn")
         db.set_multiple_results(set(pending) - set(kept), skipped)
 

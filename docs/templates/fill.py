@@ -17,7 +17,9 @@ from typing import NamedTuple
 import pandas as pd
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+from primordia import config
 from primordia.comparison.tables import number_text, spread_text
+from primordia.settings.tables import tasks
 
 HERE = Path(__file__).parent
 ROOT = HERE.parent.parent
@@ -85,6 +87,12 @@ def played(name: str, who: str, way: str, outcome: str = "lifespan") -> Cell:
     return Cell(spread_text(games[(games.who == who) & (games.way == way)][outcome]))
 
 
+def chosen(habitat: str) -> dict[str, config.Config]:
+    """Return the settings of the tasks that come with the package in a habitat, by task."""
+    every = {task: config.load(task) for task in tasks()}
+    return {task: each for task, each in every.items() if each.habitat["name"] == habitat}
+
+
 def pages() -> dict[Path, str]:
     """Return the text of each page that has a template."""
     filler = Environment(
@@ -93,7 +101,7 @@ def pages() -> dict[Path, str]:
         keep_trailing_newline=True,
         autoescape=False,
     )
-    filler.globals.update(rows=rows, table=table, cell=cell, effect=effect, played=played)
+    filler.globals.update(rows=rows, table=table, cell=cell, effect=effect, played=played, chosen=chosen)
     filler.filters.update(number=number_text)
     return {
         HERE.parent / path.name: HEAD.format(path.name) + filler.get_template(path.name).render()
