@@ -15,7 +15,7 @@ from jax import Array
 from pydantic import Field
 
 from primordia.brains.layout import Layout
-from primordia.mutations.contract import Draws, Mutation
+from primordia.mutations.contract import Change, Draws, Family, Mutation
 from primordia.mutations.noise import standard_noise
 from primordia.random.keys import Purpose, below, chance
 from primordia.rounding import rounded_product
@@ -47,28 +47,16 @@ class SelfAdaptive(Mutation):
         0.01, ge=0, description="standard deviation of a founder's weights around zero"
     )
 
-    def note(
-        self,
-        layout: Layout,
-        parents: Array,
-        notes: Array,
-        rates: Mapping[str, Array],
-        draws: Draws,
-    ) -> Array:
+    def note(self, layout: Layout, family: Family, change: Change | None) -> Array:
         """Return the children's exponents, int32 (K, 1)."""
-        change = below(draws.bits(Purpose.MUTATE, 1).hi, 2 * self.stride + 1) - self.stride
-        change = jnp.where(_mutates(rates, draws), change, 0)
-        return jnp.clip(notes + change[:, None], FLOOR, CEILING)
+        _, notes, rates, draws = family
+        step = below(draws.bits(Purpose.MUTATE, 1).hi, 2 * self.stride + 1) - self.stride
+        step = jnp.where(_mutates(rates, draws), step, 0)
+        return jnp.clip(notes + step[:, None], FLOOR, CEILING)
 
-    def inherit(
-        self,
-        layout: Layout,
-        parents: Array,
-        notes: Array,
-        rates: Mapping[str, Array],
-        draws: Draws,
-    ) -> tuple[Array, Array]:
+    def inherit(self, layout: Layout, family: Family) -> tuple[Array, Array]:
         """Add noise of the children's own scale to the mutants' weights."""
+        parents, notes, rates, draws = family
         mutates = _mutates(rates, draws)
         scale = rates["scale"] * jnp.asarray(FACTORS)[notes[:, 0] - FLOOR]
         noise = standard_noise(draws.streams[Purpose.NOISE], draws.cell, layout.length)

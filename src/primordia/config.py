@@ -137,6 +137,7 @@ class Config(Settings):
             cells=self.cells,
             brain=brain,
             heredity=heredity,
+            senses=habitat.senses_size,
             memory=brain.memory(habitat.senses_size, habitat.action.size),
             action=habitat.action,
             motor=self.motor,

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from primordia.brains.layout import Layout
-from primordia.mutations.contract import Draws
+from primordia.mutations.contract import Draws, Family
 from primordia.mutations.gaussian import Block, Gaussian
 from primordia.mutations.noise import noise_index
 from primordia.random.gaussian import quantiles
@@ -116,9 +116,8 @@ def children(
     count = len(parents)
     draws = Draws(drawn(count=count), jnp.arange(count))
     notes = jnp.zeros((count, 0), jnp.int32)
-    made = Gaussian().inherit(
-        layout, jnp.asarray(parents), notes, rates(layout, probability, scale, count), draws
-    )
+    table = rates(layout, probability, scale, count)
+    made = Gaussian().inherit(layout, Family(jnp.asarray(parents), notes, table, draws))
     return np.asarray(made[0]), np.asarray(made[1])
 
 
@@ -197,8 +196,8 @@ def test_children_are_those_of_numpy_bit_for_bit(
 def test_children_made_in_a_compiled_function_have_the_same_bits() -> None:
     parents = np.random.default_rng(1).normal(size=(K, P)).astype(np.float32)
     draws, notes = Draws(drawn(), jnp.arange(K)), jnp.zeros((K, 0), jnp.int32)
-    inherit = jax.jit(lambda *given: Gaussian().inherit(LAYOUT, *given))
-    made, _ = inherit(jnp.asarray(parents), notes, rates(LAYOUT, 0.5, 0.3, K), draws)
+    inherit = jax.jit(lambda family: Gaussian().inherit(LAYOUT, family))
+    made, _ = inherit(Family(jnp.asarray(parents), notes, rates(LAYOUT, 0.5, 0.3, K), draws))
     same_bits(np.asarray(made), children(LAYOUT, parents, 0.5, 0.3)[0])
 
 

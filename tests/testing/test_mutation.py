@@ -10,7 +10,7 @@ from jax import Array
 
 from primordia.brains.layout import Layout
 from primordia.mutations import contract as mutations
-from primordia.mutations.contract import Draws, Mutation
+from primordia.mutations.contract import Change, Draws, Family, Mutation
 from primordia.mutations.gaussian import Block, Gaussian
 from primordia.mutations.noise import standard_noise
 from primordia.random.keys import Purpose
@@ -39,14 +39,8 @@ class Steady(Mutation):
 
     scale: Rate = 0.5
 
-    def inherit(
-        self,
-        layout: Layout,
-        parents: Array,
-        notes: Array,
-        rates: Mapping[str, Array],
-        draws: Draws,
-    ) -> tuple[Array, Array]:
+    def inherit(self, layout: Layout, family: Family) -> tuple[Array, Array]:
+        parents, _, rates, draws = family
         noise = standard_noise(draws.streams[Purpose.NOISE], draws.cell, layout.length)
         change = rounded_product(noise, self.size(rates)[:, None])
         return self.added(parents, change), jnp.ones(len(parents), bool)
@@ -95,9 +89,9 @@ class Liar(Steady):
 class Cleaner(Steady):
     """Its copies are of what is finite only."""
 
-    def inherit(self, layout: Layout, parents: Array, *rest: Any) -> tuple[Array, Array]:
-        finite = jnp.nan_to_num(parents) + 0 * rest[1]["scale"][:, None]
-        return finite, jnp.zeros(len(parents), bool)
+    def inherit(self, layout: Layout, family: Family) -> tuple[Array, Array]:
+        finite = jnp.nan_to_num(family.parents) + 0 * family.rates["scale"][:, None]
+        return finite, jnp.zeros(len(finite), bool)
 
 
 class Counted(Steady):
@@ -105,15 +99,8 @@ class Counted(Steady):
 
     notes: ClassVar = ("steps",)
 
-    def note(
-        self,
-        layout: Layout,
-        parents: Array,
-        notes: Array,
-        rates: Mapping[str, Array],
-        draws: Draws,
-    ) -> Array:
-        return notes + 1
+    def note(self, layout: Layout, family: Family, change: Change | None) -> Array:
+        return family.notes + 1
 
 
 class Timed(Counted):
@@ -131,8 +118,8 @@ class Ranked(Counted):
 
 
 class Neighbourly(Counted):
-    def note(self, layout: Layout, parents: Array, notes: Array, *rest: Any) -> Array:
-        return jnp.cumsum(notes, axis=0) + 1
+    def note(self, layout: Layout, family: Family, change: Change | None) -> Array:
+        return jnp.cumsum(family.notes, axis=0) + 1
 
 
 class Open(Steady):

@@ -8,7 +8,7 @@ from jax import Array
 
 from primordia.brains.contract import Genome
 from primordia.compiled import shared
-from primordia.engine.held import Form, Held
+from primordia.engine.held import Bulk, Form, Held
 from primordia.engine.state import Limits, running, ticks_left
 from primordia.habitats.contract import Outcome
 from primordia.law import events as log
@@ -16,6 +16,7 @@ from primordia.law.events import Events
 from primordia.law.genesis import birth_words
 from primordia.law.law import Law
 from primordia.law.life import Thought
+from primordia.law.moments import moment_due, remember
 from primordia.law.population import settle
 from primordia.law.tick import Fates, judge, keys_of, rest, think
 from primordia.law.world import World
@@ -34,6 +35,10 @@ class Decision(NamedTuple):
     """bool (C,): cells whose organism was born in the tick, and needs a body"""
     words: Array
     """uint32 (C, words): random words of the bodies of the newborn"""
+    ran: Array
+    """bool (W,): worlds that ran in the tick"""
+    remembered: Array
+    """bool (): the tick ends with a moment that organisms remember"""
     go_on: Array
     """bool (): some world runs, and the lists have room"""
     due: Array
@@ -51,6 +56,7 @@ class Calls:
         self.live = shared(_Steps.live, steps)
         self.survey = shared(_Steps.survey, steps)
         self.settle = shared(_Steps.settle, steps, donate=(0, 1))
+        self.remember = shared(_Steps.remember, steps, donate=(0,))
 
 
 class Unsettled(NamedTuple):
@@ -72,7 +78,7 @@ class _Steps:
 
     def think(self, genome: Genome, held: Held, senses: Array) -> Thought:
         """Think the first tick after a settled one."""
-        world = self.form.release(held, genome)
+        world = self.form.release(held, Bulk(genome, None))
         return think(self.law, world, senses, keys_of(world.worlds, jnp.int32(1)))
 
     def live(
@@ -86,7 +92,7 @@ class _Steps:
         passed: Array,
     ) -> tuple[Held, Thought, Fates]:
         """Judge the tick `passed` ticks after the last settled one, and think the next one."""
-        world = self.form.release(now, genome)
+        world = self.form.release(now, Bulk(genome, None))
         keys = keys_of(world.worlds, passed)
         world, fates = judge(self.law, world, thought, senses, outcome, keys, active)
         thought = think(self.law, world, senses, keys_of(world.worlds, passed + 1))
@@ -94,16 +100,16 @@ class _Steps:
 
     def survey(self, genome: Genome, held: Held, events: Events, limits: Limits) -> Decision:
         """Return the decision for a world in its present state, without deaths or births."""
-        world = self.form.release(held, genome)
+        world = self.form.release(held, Bulk(genome, None))
         none = jnp.zeros_like(world.organisms.alive)
-        return self._decide(world, events, none, none, limits)
+        return self._decide(world, events, none, none, jnp.zeros(self.law.worlds, bool), limits)
 
     def settle(
-        self, genome: Genome, events: Events, held: Held, unsettled: Unsettled, limits: Limits
-    ) -> tuple[Genome, Events, Held, Decision]:
+        self, bulk: Bulk, events: Events, held: Held, unsettled: Unsettled, limits: Limits
+    ) -> tuple[Bulk, Events, Held, Decision]:
         """Settle the ticks since `held`, which is the world after the last settled tick."""
-        law, before = self.law, self.form.release(held, genome)
-        after = self.form.release(unsettled.held, genome)
+        law, before = self.law, self.form.release(held, bulk)
+        after = self.form.release(unsettled.held, bulk)
         live_worlds = running(before.worlds, limits)
         active = before.organisms.alive & law.per_cell(live_worlds)
         world = World(rest(before.organisms, after.organisms, active), after.worlds)
@@ -111,11 +117,21 @@ class _Steps:
             law, world, events, unsettled.fates, unsettled.ticks, live_worlds
         )
         died = before.organisms.alive & (~world.organisms.alive | newborn)
-        decision = self._decide(world, events, died, newborn, limits)
-        return world.organisms.genome, events, self.form.hold(world), decision
+        decision = self._decide(world, events, died, newborn, live_worlds, limits)
+        return Bulk.of(world), events, self.form.hold(world), decision
+
+    def remember(self, bulk: Bulk, held: Held, senses: Array, ran: Array) -> Bulk:
+        """Let organisms remember at the end of a settled tick, whose newborn have senses."""
+        return Bulk.of(remember(self.law, self.form.release(held, bulk), senses, ran))
 
     def _decide(
-        self, world: World, events: Events, died: Array, newborn: Array, limits: Limits
+        self,
+        world: World,
+        events: Events,
+        died: Array,
+        newborn: Array,
+        ran: Array,
+        limits: Limits,
     ) -> Decision:
         law, alive = self.law, world.organisms.alive
         live_worlds = running(world.worlds, limits)
@@ -126,6 +142,8 @@ class _Steps:
             died=died,
             newborn=newborn,
             words=birth_words(law, world.worlds, newborn.any(), self.words),
+            ran=ran,
+            remembered=moment_due(law, world.worlds, ran).any(),
             go_on=live_worlds.any() & room,
             due=ticks_left(law, world, limits, live_worlds),
         )

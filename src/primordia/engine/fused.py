@@ -12,6 +12,7 @@ from primordia.law import events as log
 from primordia.law.events import Events
 from primordia.law.genesis import begin, body_words
 from primordia.law.law import Law
+from primordia.law.moments import remember
 from primordia.law.population import settle
 from primordia.law.tick import Fates, judge, keys_of, no_fates, rest, think
 from primordia.law.world import World
@@ -67,7 +68,8 @@ def advance(
         at_most = jnp.minimum(ticks - done, ticks_left(law, state.world, limits, live_worlds))
         state, fates, passed = _quiet(law, habitat, state, live_worlds, at_most)
         world, events, newborn = settle(law, state.world, events, fates, passed, live_worlds)
-        state = State(world, _embody(law, habitat, world, state.bodies, newborn))
+        bodies = _embody(law, habitat, world, state.bodies, newborn)
+        state = State(remember(law, world, habitat.sense(bodies), live_worlds), bodies)
         return state, events, running(world.worlds, limits), done + passed
 
     carry = (state, log.emptied(events), running(state.world.worlds, limits), jnp.int32(0))

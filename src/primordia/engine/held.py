@@ -13,16 +13,31 @@ import numpy as np
 from jax import Array, lax
 
 from primordia.brains.contract import Genome
-from primordia.law.world import Organisms, World
+from primordia.law.world import Organisms, Remembered, World
 
 
 class Held(NamedTuple):
-    """A world without its genomes."""
+    """A world without what is bulky."""
 
     organisms: Array
     """uint32 (C, K)"""
     worlds: Array
     """uint32 (W, L)"""
+
+
+class Bulk(NamedTuple):
+    """What is too large to be packed for every call; see `Organisms`."""
+
+    genome: Genome
+    moments: Remembered | None
+
+    @classmethod
+    def of(cls, world: World) -> "Bulk":
+        """Return the bulk of a world."""
+        return cls(world.organisms.genome, world.organisms.moments)
+
+
+NO_BULK = Bulk({}, None)
 
 
 @dataclass(frozen=True)
@@ -35,21 +50,21 @@ class Form:
     @classmethod
     def of(cls, world: World) -> "Form":
         """Return the form of a world."""
-        return cls(Packing.of(_without_genome(world.organisms)), Packing.of(world.worlds))
+        return cls(Packing.of(_without_bulk(world.organisms)), Packing.of(world.worlds))
 
     def hold(self, world: World) -> Held:
-        """Pack a world, except its genomes."""
-        organisms = self.organisms.pack(_without_genome(world.organisms))
+        """Pack a world, except its bulk."""
+        organisms = self.organisms.pack(_without_bulk(world.organisms))
         return Held(organisms, self.worlds.pack(world.worlds))
 
-    def release(self, held: Held, genome: Genome) -> World:
-        """Return the world that was packed, with the genomes given."""
-        organisms = self.organisms.unpack(held.organisms)._replace(genome=genome)
+    def release(self, held: Held, bulk: Bulk) -> World:
+        """Return the world that was packed, with the bulk given."""
+        organisms = self.organisms.unpack(held.organisms)._replace(**bulk._asdict())
         return World(organisms, self.worlds.unpack(held.worlds))
 
 
-def _without_genome(organisms: Organisms) -> Organisms:
-    return organisms._replace(genome={})
+def _without_bulk(organisms: Organisms) -> Organisms:
+    return organisms._replace(**NO_BULK._asdict())
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from jax import Array
 
 from primordia.brains.contract import Genome
 from primordia.engine.calls import Calls, Decision, Unsettled
-from primordia.engine.held import Form, Held
+from primordia.engine.held import NO_BULK, Bulk, Form, Held
 from primordia.engine.state import Limits, State, filled, named_leaves
 from primordia.engine.tallies import Tallies
 from primordia.errors import Trouble
@@ -52,31 +52,31 @@ class HostedChunks:
             state; the number of ticks advanced.
         """
         self._tallies.begin()
-        genome, held = state.world.organisms.genome, self._calls.hold(state.world)
+        bulk, held = Bulk.of(state.world), self._calls.hold(state.world)
         events, senses, done = log.emptied(self._lists), np.array(state.bodies), 0
-        decision = self._calls.survey(genome, held, events, limits)
-        thought = self._calls.think(genome, held, senses)
+        decision = self._calls.survey(bulk.genome, held, events, limits)
+        thought = self._calls.think(bulk.genome, held, senses)
         while done < ticks and decision.go_on:
             most = min(int(decision.due), ticks - done)
             unsettled, thought, senses = self._quiet(
-                genome, held, thought, senses, decision.active, most
+                bulk.genome, held, thought, senses, decision.active, most
             )
             done += int(unsettled.ticks)
-            genome, events, held, decision = self._calls.settle(
-                genome, events, held, unsettled, limits
-            )
+            bulk, events, held, decision = self._calls.settle(bulk, events, held, unsettled, limits)
             self._tallies.note_deaths(np.asarray(decision.died))
             if np.asarray(decision.newborn).any():
                 senses = self._embody(senses, decision)
-                thought = self._calls.think(genome, held, senses)
+                thought = self._calls.think(bulk.genome, held, senses)
+            if np.asarray(decision.remembered):
+                bulk = self._calls.remember(bulk, held, senses, decision.ran)
             self._tallies.note_samples(decision.alive, events.samples)
         self._lists, self.events = events, self._tallies.added_to(events)
-        return State(self._release(genome, held), senses), done
+        return State(self._release(bulk, held), senses), done
 
-    def _release(self, genome: Genome, held: Held) -> World:
-        """Return the world; its genomes do not pass through a call, which would copy them."""
-        world = self._calls.release(held, {})
-        return world._replace(organisms=world.organisms._replace(genome=genome))
+    def _release(self, bulk: Bulk, held: Held) -> World:
+        """Return the world; its bulk does not pass through a call, which would copy it."""
+        world = self._calls.release(held, NO_BULK)
+        return world._replace(organisms=world.organisms._replace(**bulk._asdict()))
 
     def _quiet(
         self,

@@ -42,4 +42,4 @@ def _made(heredity: Heredity, seed: Wide, numbers: Wide, climate: Climate) -> Ar
     birth = recorded(heredity, (seeds, numbers, numbers), marks, climate)
     parents = jnp.zeros((count, heredity.layout.length), jnp.float32)
     notes = jnp.zeros((count, len(heredity.mutation.notes)), jnp.int32)
-    return heredity.make_newborn(birth, parents, notes).genome
+    return heredity.rebuild_genomes(birth, parents, notes)

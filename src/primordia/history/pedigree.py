@@ -14,6 +14,7 @@ from primordia.history.climate import PastClimate
 from primordia.history.lineage import genome_in, recorded
 from primordia.law.heredity import Heredity
 from primordia.law.world import BirthCause, Climate
+from primordia.mutations.contract import Mutation
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
 from primordia.runs.records import Records
@@ -29,7 +30,7 @@ def genomes(run: Records, rows: np.ndarray, redrawn: bool = False) -> np.ndarray
         run: the organisms' run.
         rows: their rows in the run's lives, int64 (K,).
         redrawn: draw founders and mutations again, under keys that no run uses. Organisms that were alive
-            at a fork keep their genomes.
+            at a fork keep their genomes. Notes that depend on lives or on cells stay as recorded.
     """
     device.prepare()
     pedigree, worlds = _Pedigree(run, redrawn), run.lives.world[rows]
@@ -44,8 +45,8 @@ class _Pedigree:
 
     def __init__(self, run: Records, redrawn: bool) -> None:
         self._run, self._lives, self._past = run, run.lives, PastClimate(run)
-        self._redrawn = redrawn
-        self._repeat = shared(_repeat, run.heredity, redrawn)
+        self._redraws_notes = redrawn and _inherits_notes(run.heredity.mutation)
+        self._repeat = shared(_repeat, run.heredity, self._redraws_notes)
         seeds = wide(run.world_seeds)
         self._seeds = stream(seeds, Purpose.SHADOW, wide(0)) if redrawn else seeds
 
@@ -106,14 +107,19 @@ class _Pedigree:
             (births.cell, births.birth_cause == BirthCause.FOUNDER),
             climate,
             made[before],
-            notes[before] if self._redrawn else notes[places[fill]],
+            notes[before] if self._redraws_notes else notes[places[fill]],
         )
         made[places], notes[places] = (np.asarray(each)[: len(rows)] for each in (genome, own))
 
 
+def _inherits_notes(mutation: Mutation) -> bool:
+    """Return whether notes depend on parents' notes and chance alone, so that they can be drawn again."""
+    return mutation.moments is None and mutation.notes_from == "parent"
+
+
 def _repeat(
     heredity: Heredity,
-    redrawn: bool,
+    redraws_notes: bool,
     counts: tuple,
     marks: tuple,
     climate: Climate,
@@ -124,7 +130,7 @@ def _repeat(
 
     Args:
         heredity: the heredity of the run.
-        redrawn: whether the notes are the parents', and those of the newborn are drawn too.
+        redraws_notes: whether the notes are the parents', and those of the newborn are drawn too.
         counts: seed of the world, birth number and tick of each birth, Wide.
         marks: cell within the world; whether it is a founder.
         climate: values of the settings at each birth.
@@ -132,7 +138,7 @@ def _repeat(
         notes: notes of the newborn as recorded, or of their parents, int32 (K, n).
     """
     birth = recorded(heredity, counts, marks, climate)
-    if not redrawn:
+    if not redraws_notes:
         return heredity.rebuild_genomes(birth, parents, notes), notes
-    newborn = heredity.make_newborn(birth, parents, notes)
+    newborn = heredity.make_newborn(birth, parents, notes, None)
     return newborn.genome, newborn.notes

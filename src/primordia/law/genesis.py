@@ -5,6 +5,7 @@ import numpy as np
 from jax import Array, lax
 
 from primordia.compiled import shared
+from primordia.law import moments
 from primordia.law.law import Law
 from primordia.law.seasons import ratchets
 from primordia.law.world import Cause, Climate, Looks, Organisms, World, Worlds
@@ -26,7 +27,7 @@ def begin(law: Law, seeds: np.ndarray, tick: int = 0, births: int = 0) -> World:
 
 def empty_worlds(law: Law, tick: int, births: int, seed: Wide) -> World:
     """Return the worlds of `begin`. Callers compile it: single operations take three times as long."""
-    count, cells = len(seed.lo), law.worlds * law.cells
+    count, cells, mutation = len(seed.lo), law.worlds * law.cells, law.heredity.mutation
     worlds = Worlds(
         seed=seed,
         tick=wide(np.full(count, tick, np.uint64)),
@@ -50,13 +51,14 @@ def empty_worlds(law: Law, tick: int, births: int, seed: Wide) -> World:
     organisms = Organisms(
         alive=jnp.zeros(cells, bool),
         genome=genome,
-        notes=jnp.zeros((cells, len(law.heredity.mutation.notes)), jnp.int32),
+        notes=jnp.broadcast_to(mutation.founders_notes(1), (cells, len(mutation.notes))),
         memory=jnp.zeros((cells, law.memory), jnp.float32),
         energy=jnp.zeros(cells, jnp.int32),
         eaten=jnp.zeros(cells, jnp.int32),
         born=zero((cells,)),
         number=zero((cells,)),
         branch=zero((cells,)),
+        moments=moments.none(cells, mutation.moments, law.senses, law.memory),
     )
     return World(organisms, worlds)
 

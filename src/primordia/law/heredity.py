@@ -14,7 +14,7 @@ import numpy as np
 from jax import Array, lax
 
 from primordia.brains.layout import Layout
-from primordia.mutations.contract import Draws, Mutation
+from primordia.mutations.contract import Change, Draws, Family, Mutation
 from primordia.random.keys import Purpose
 from primordia.random.wide import Wide, modulo, select
 
@@ -73,11 +73,17 @@ class Heredity:
         """Return the mutation's rates in a climate, by the names that `Mutation.rates` gives them."""
         return {name: climate[f"mutation.{name}"] for name in self.mutation.rates(self.layout)}
 
-    def make_newborn(self, birth: Birth, parents: Array, notes: Array) -> Newborn:
-        """Make K newborn from their parents' genomes float32 (K, P) and notes int32 (K, n)."""
+    def make_newborn(
+        self, birth: Birth, parents: Array, notes: Array, change: Change | None
+    ) -> Newborn:
+        """Make K newborn from their parents' genomes float32 (K, P) and notes int32 (K, n).
+
+        `change` is what `Mutation.note` gets, None if the mutation needs no moments.
+        """
         mutation = self.mutation
         if mutation.notes:
-            children = mutation.note(self.layout, parents, notes, birth.rates, birth.draws)
+            family = Family(parents, notes, birth.rates, birth.draws)
+            children = mutation.note(self.layout, family, change)
             founders = mutation.founders_notes(len(notes))
             notes = jnp.where(birth.founder[:, None], founders, children)
         genome, mutated = self._genomes(birth, parents, notes)
@@ -91,9 +97,8 @@ class Heredity:
         if self.inheritance == "founder":
             return self._founders(birth), jnp.zeros_like(birth.founder)
         birth = birth._replace(draws=_one_noise(birth))
-        children, mutated = self.mutation.inherit(
-            self.layout, parents, notes, birth.rates, birth.draws
-        )
+        family = Family(parents, notes, birth.rates, birth.draws)
+        children, mutated = self.mutation.inherit(self.layout, family)
 
         def with_founders() -> Array:
             return jnp.where(birth.founder[:, None], self._founders(birth), children)

@@ -26,6 +26,8 @@ class Law:
     """cells of one world"""
     brain: Brain
     heredity: Heredity
+    senses: int
+    """S, the numbers that an organism perceives"""
     memory: int
     """M, the length of an organism's memory"""
     action: Discrete | Continuous

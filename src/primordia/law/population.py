@@ -6,6 +6,7 @@ from jax import Array, lax
 from primordia.law import turnover
 from primordia.law.events import Events
 from primordia.law.law import Law
+from primordia.law.moments import until_due
 from primordia.law.sample import note_samples
 from primordia.law.seasons import Schedule, apply_seasons
 from primordia.law.tick import Fates
@@ -65,6 +66,8 @@ def quiet_ticks(law: Law, world: World, running: Array) -> Array:
     """
     worlds, far = world.worlds, 2**31 - 1
     due = [worlds.sample_wait, *worlds.looks.wait.T]
+    if law.heredity.mutation.moments is not None:
+        due.append(until_due(law.heredity.mutation.moments, worlds))
     due.append(
         jnp.where(worlds.calm < law.saturation_ticks, law.saturation_ticks - worlds.calm, far)
     )

@@ -6,16 +6,19 @@ birth. All other work is cheap enough to be done for all cells at once.
 
 from typing import NamedTuple
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
+from primordia.brains.contract import Genome
 from primordia.law import events as log
 from primordia.law.events import Events, Rows
 from primordia.law.heredity import Birth, Newborn
 from primordia.law.law import Law
 from primordia.law.metabolism import to_fixed_point
-from primordia.law.world import BirthCause, Cause, Organisms, World, Worlds
+from primordia.law.moments import change_in
+from primordia.law.world import BirthCause, Cause, Organisms, Remembered, World, Worlds
 from primordia.mutations.contract import PURPOSES, Draws
 from primordia.random.keys import Purpose, Streams, below, bits, bits_if, streams
 from primordia.random.wide import Wide, happened, largest, never, select, zero
@@ -32,6 +35,14 @@ class Births(NamedTuple):
     """int32, cell of the parent (on the axis of all worlds); it has no meaning where founded"""
     number: Wide
     """birth number within the world"""
+
+
+class _Inherited(NamedTuple):
+    """What organisms have from their parents, as in `Organisms`; first axis C, or the newborn."""
+
+    genome: Genome
+    notes: Array
+    moments: Remembered | None
 
 
 def birth_keys(worlds: Worlds) -> Streams:
@@ -128,27 +139,38 @@ def _inherit(
 ) -> tuple[Organisms, Rows]:
     """Write the genomes and notes of the newborn, and list their births."""
     organisms, worlds = world
-    before = (organisms.genome, organisms.notes)
+    before = _Inherited(organisms.genome, organisms.notes, organisms.moments)
 
     def one_batch(cells: Array, valid: Array, carry: tuple) -> tuple:
-        genome, notes, listed = carry
+        now, listed = carry
         # An earlier batch may have overwritten the genome of a replaced parent. Under other rules parents
         # outlive births, and reading the arrays that are written saves a copy of all genomes.
-        genomes, parents_notes = before if law.placement.rule == "replacing" else (genome, notes)
+        past = before if law.placement.rule == "replacing" else now
         birth, parent = _birth(law, worlds, births, keys, cells), births.parent[cells]
-        parents = law.heredity.layout.flat(genomes, parent)
-        newborn = law.heredity.make_newborn(birth, parents, parents_notes[parent])
+        parents = law.heredity.layout.flat(past.genome, parent)
+        of = cells if law.heredity.mutation.notes_from == "cell" else parent
+        moments = jax.tree.map(lambda leaf: leaf[parent], past.moments)
+        change = None if moments is None else change_in(law, moments, parents)
+        newborn = law.heredity.make_newborn(birth, parents, past.notes[of], change)
+        own = _Inherited(
+            law.heredity.layout.split(newborn.genome),
+            newborn.notes,
+            _of_children(moments, birth.founder),
+        )
         where = jnp.where(valid, cells, len(births.newborn))
-        genome = {
-            name: genome[name].at[where].set(block, mode="drop")
-            for name, block in law.heredity.layout.split(newborn.genome).items()
-        }
-        notes = notes.at[where].set(newborn.notes, mode="drop")
+        now = jax.tree.map(lambda all_, new: all_.at[where].set(new, mode="drop"), now, own)
         rows = _birth_rows(law, world, births, cells, birth.founder, newborn)
-        return genome, notes, log.append(listed, rows, valid)
+        return now, log.append(listed, rows, valid)
 
-    genome, notes, listed = log.for_each(births.newborn, (*before, listed), one_batch)
-    return organisms._replace(genome=genome, notes=notes), listed
+    inherited, listed = log.for_each(births.newborn, (before, listed), one_batch)
+    return organisms._replace(**inherited._asdict()), listed
+
+
+def _of_children(moments: Remembered | None, founder: Array) -> Remembered | None:
+    """Return the first moments of newborn (K,): those of their parents, and none for founders."""
+    if moments is None:
+        return None
+    return moments._replace(known=moments.known & ~founder[:, None])
 
 
 def _birth(law: Law, worlds: Worlds, births: Births, keys: Streams, cells: Array) -> Birth:

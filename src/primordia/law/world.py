@@ -43,6 +43,17 @@ class BirthCause(Named):
     MUTANT = 2
 
 
+class Remembered(NamedTuple):
+    """The latest moments that organisms and their lines of descent remember, R each; first axis C."""
+
+    senses: Array
+    """float32 (C, R, S)"""
+    memory: Array
+    """the memory that these senses met, float32 (C, R, M)"""
+    known: Array
+    """bool (C, R): a moment is kept in this place"""
+
+
 class Organisms(NamedTuple):
     """The organisms in the cells; first axis C."""
 
@@ -65,6 +76,8 @@ class Organisms(NamedTuple):
     branch: Wide
     """1 + birth number of the founder's child from which it descends; 0 for a founder. Once a population
     has fixed, it is equal, and not 0, in all the living"""
+    moments: Remembered | None
+    """None if the mutation needs none; see `Mutation.moments`"""
 
 
 Climate: TypeAlias = dict[str, Array]

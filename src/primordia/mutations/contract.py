@@ -9,8 +9,8 @@ The other keys of the table are the class's own settings.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
-from typing import ClassVar, NamedTuple
+from collections.abc import Callable, Mapping
+from typing import Any, ClassVar, Literal, NamedTuple, TypeAlias
 
 import jax.numpy as jnp
 from jax import Array
@@ -22,7 +22,11 @@ from primordia.settings import parts
 from primordia.settings.base import Settings
 from primordia.settings.fields import rates_of
 
-KNOWN = {"gaussian": "primordia.mutations.gaussian:Gaussian"}
+KNOWN = {
+    "gaussian": "primordia.mutations.gaussian:Gaussian",
+    "calibrated": "primordia.mutations.calibrated:Calibrated",
+    "heritable": "primordia.mutations.heritable:Heritable",
+}
 
 PURPOSES = Purpose.MUTATE, Purpose.NOISE, Purpose.FOUNDER
 """The purposes for which a mutation may draw random bits."""
@@ -41,6 +45,39 @@ class Draws(NamedTuple):
         return bits(self.streams[purpose], self.cell, index)
 
 
+class Family(NamedTuple):
+    """What the genomes of K children are made of."""
+
+    parents: Array
+    """genomes of the parents, float32 (K, P)"""
+    notes: Array
+    """int32 (K, n): notes of the parents for `Mutation.note`, of the children for `Mutation.inherit`"""
+    rates: Mapping[str, Array]
+    """present values of the mutation's rates, float32 (K,) each"""
+    draws: Draws
+    """random words of the births"""
+
+    def take(self, rows: Any) -> "Family":
+        """Return those in some rows."""
+        rates = {name: values[rows] for name, values in self.rates.items()}
+        draws = Draws(self.draws.streams.take(rows), self.draws.cell[rows])
+        return Family(self.parents[rows], self.notes[rows], rates, draws)
+
+
+class Moments(NamedTuple):
+    """Which moments of their lives organisms remember: senses, and the memory that they met."""
+
+    kept: int
+    """number of moments, the latest of a line of descent: a child begins with those of its parent"""
+    every: int
+    """ticks from one to the next; kept x every is at most 2^16"""
+
+
+Change: TypeAlias = Callable[[Array], Array]
+"""How far K genomes (K, P) act otherwise than the parents would in what these remember, float32 (K,);
+see `Mutation.moments`."""
+
+
 class Mutation(Settings, ABC):
     """A mutation's settings and its behaviour.
 
@@ -53,6 +90,16 @@ class Mutation(Settings, ABC):
     """Names of the small integers that belong to an organism beside its genome, such as a heritable rate.
     `note` makes them from those of the parent. They are columns of the births table."""
 
+    @property
+    def moments(self) -> Moments | None:
+        """Return which moments of their lives organisms remember for `note`; None: they need none."""
+        return None
+
+    @property
+    def notes_from(self) -> Literal["parent", "cell"]:
+        """Return whose notes `note` gets: the parent's, or those of the last one born in the cell."""
+        return "parent"
+
     def rates(self, layout: Layout) -> dict[str, float]:
         """Return the numbers that seasons may change, by name, with their values at the beginning."""
         return rates_of(self)
@@ -64,42 +111,23 @@ class Mutation(Settings, ABC):
     def check(self, layout: Layout) -> None:
         """Raise ValueError if the settings do not fit genomes of this layout."""
 
-    def note(
-        self,
-        layout: Layout,
-        parents: Array,
-        notes: Array,
-        rates: Mapping[str, Array],
-        draws: Draws,
-    ) -> Array:
+    def note(self, layout: Layout, family: Family, change: Change | None) -> Array:
         """Return the notes of K children, int32 (K, n), before their genomes are made.
 
         Args:
             layout: layout of the genomes.
-            parents: the parents' genomes, float32 (K, P).
-            notes: the parents' notes, int32 (K, n).
-            rates: present values, float32 (K,) each.
-            draws: random words of the births.
+            family: the parents, with their notes.
+            change: None unless organisms remember `moments`.
         """
-        return notes
+        return family.notes
 
     @abstractmethod
-    def inherit(
-        self,
-        layout: Layout,
-        parents: Array,
-        notes: Array,
-        rates: Mapping[str, Array],
-        draws: Draws,
-    ) -> tuple[Array, Array]:
+    def inherit(self, layout: Layout, family: Family) -> tuple[Array, Array]:
         """Make the genomes of K children.
 
         Args:
             layout: layout of the genomes.
-            parents: the parents' genomes, float32 (K, P).
-            notes: the children's notes, int32 (K, n).
-            rates: present values, float32 (K,) each.
-            draws: random words of the births.
+            family: the parents, with the notes of the children.
 
         Returns:
             genomes, float32 (K, P); mutants, bool (K,): false for an exact copy.

@@ -1,6 +1,5 @@
 """Gaussian mutation: noise on every weight of a block, in a share of the births."""
 
-from collections.abc import Mapping
 from typing import Literal, TypeAlias
 
 import jax.numpy as jnp
@@ -9,26 +8,24 @@ from jax import Array
 from pydantic import Field
 
 from primordia.brains.layout import Layout
-from primordia.mutations.contract import Draws, Mutation
+from primordia.mutations.blocks import FounderBlock, check_blocks, per_block
+from primordia.mutations.contract import Draws, Family, Mutation
 from primordia.mutations.noise import standard_noise
 from primordia.random.keys import Purpose, chance
 from primordia.rounding import rounded_product
-from primordia.settings.base import Rate, Settings
+from primordia.settings.base import Rate
 
 BlockField: TypeAlias = Literal["probability", "scale", "founder_scale"]
 SEASONAL_FIELDS: tuple[BlockField, ...] = ("probability", "scale")
 
 
-class Block(Settings):
+class Block(FounderBlock):
     """Mutation of one block of weights; a setting of None has the whole genome's value."""
 
     probability: float | None = Field(
         None, ge=0, le=1, description="chance that a child's block mutates"
     )
     scale: float | None = Field(None, ge=0, description="standard deviation of the block's noise")
-    founder_scale: float | None = Field(
-        None, ge=0, description="standard deviation of a founder's weights in the block"
-    )
 
 
 class Gaussian(Mutation):
@@ -53,10 +50,7 @@ class Gaussian(Mutation):
 
     def check(self, layout: Layout) -> None:
         """Raise ValueError if `blocks` names a block that genomes of this layout do not have."""
-        for name in self.blocks:
-            if name not in layout.names:
-                known = ", ".join(layout.names)
-                raise ValueError(f"blocks: this brain has no block {name!r}; it has {known}")
+        check_blocks(self.blocks, layout)
 
     def rates(self, layout: Layout) -> dict[str, float]:
         """Return probability and scale of each block, such as `blocks.input.scale`."""
@@ -77,24 +71,22 @@ class Gaussian(Mutation):
                 ]
         return super().governed(setting, layout)
 
-    def inherit(
-        self,
-        layout: Layout,
-        parents: Array,
-        notes: Array,
-        rates: Mapping[str, Array],
-        draws: Draws,
-    ) -> tuple[Array, Array]:
+    def inherit(self, layout: Layout, family: Family) -> tuple[Array, Array]:
         """Add noise to the blocks that mutate; see `Mutation.inherit`."""
-        probability, scale = (
-            jnp.stack([rates[_rate(block, field)] for block in layout.names], axis=1)
-            for field in SEASONAL_FIELDS
-        )
-        mutates = chance(draws.bits(Purpose.MUTATE).hi[:, None], probability)
+        parents, draws, mutates = family.parents, family.draws, self.mutating(layout, family)
         noise = standard_noise(draws.streams[Purpose.NOISE], draws.cell, layout.length)
-        noise = rounded_product(noise, layout.per_weight(scale))
+        noise = rounded_product(noise, layout.per_weight(self.noise_scale(layout, family)))
         children = jnp.where(layout.per_weight(mutates), parents + noise, parents)
         return children, mutates.any(axis=1)
+
+    def mutating(self, layout: Layout, family: Family) -> Array:
+        """Return which blocks mutate, bool (K, B)."""
+        probability = _of_blocks("probability", layout, family)
+        return chance(family.draws.bits(Purpose.MUTATE).hi[:, None], probability)
+
+    def noise_scale(self, layout: Layout, family: Family) -> Array:
+        """Return the standard deviation of the noise in each block, float32 (K, B)."""
+        return _of_blocks("scale", layout, family)
 
     def founders(self, layout: Layout, draws: Draws) -> Array:
         """Make the genomes of founders: Gaussian weights around zero."""
@@ -104,8 +96,12 @@ class Gaussian(Mutation):
 
     def per_block(self, field: BlockField, layout: Layout) -> list[float]:
         """Return a setting's value for each block: the block's, or else the whole genome's."""
-        own = [getattr(self.blocks.get(block), field, None) for block in layout.names]
-        return [getattr(self, field) if value is None else value for value in own]
+        return per_block(self, self.blocks, field, layout)
+
+
+def _of_blocks(field: BlockField, layout: Layout, family: Family) -> Array:
+    """Return the present values of a rate, float32 (K, B)."""
+    return jnp.stack([family.rates[_rate(block, field)] for block in layout.names], axis=1)
 
 
 def _rate(block: str, field: BlockField) -> str:

@@ -27,6 +27,8 @@ class Description(BaseModel):
     """names of the habitat's counts"""
     notes: tuple[str, ...]
     """names of the mutation's notes"""
+    moments: int = Field(0, ge=0, le=2**16)
+    """number of moments that an organism remembers for the mutation"""
     beginning: dict[str, Annotated[float, Field(allow_inf_nan=False)]]
     """the settings that seasons may change, with their values at the beginning"""
     blocks: dict[str, tuple[Annotated[int, Field(ge=1, lt=2**31)], ...]]
@@ -41,6 +43,9 @@ class Description(BaseModel):
             rate=habitat.rate,
             tallies=habitat.tallies,
             notes=law.heredity.mutation.notes,
+            moments=0
+            if law.heredity.mutation.moments is None
+            else law.heredity.mutation.moments.kept,
             beginning=dict(law.beginning),
             blocks=dict(law.heredity.layout.blocks),
             code=code,

@@ -30,6 +30,10 @@ from primordia.settings.tables import from_toml, merged
 
 HARMLESS = {"stop", "fork", "about", "sample_every"}
 """Settings that do not change what happens in a world."""
+OF_MUTATION = (".notes", ".moments.")
+"""Parts of the names of arrays that begin empty under another kind of mutation."""
+RENEWED = (*OF_MUTATION, ".looks.", ".climate.")
+"""Parts of the names of arrays that a fork may begin with others."""
 
 
 def fork(
@@ -140,12 +144,11 @@ def _transplant(before: Engine, old: Config, new: Config, at: int) -> Engine:
     after = Engine(new)
     arrays, own = before.arrays(), after.arrays()
     fitting = {name for name, array in own.items() if np.shape(arrays.get(name, 0)) == array.shape}
-    lasting = {name for name in own if ".looks." not in name and ".climate." not in name}
+    lasting = {name for name in own if not any(part in name for part in RENEWED)}
     if new.brain != old.brain or not lasting <= fitting:
-        raise InputError(
-            "a fork cannot change cells, seeds, senses, the brain, the habitat or what the mutation"
-            " notes"
-        )
+        raise InputError("a fork cannot change cells, seeds, senses, the brain or the habitat")
+    if new.mutation["kind"] != old.mutation["kind"]:
+        fitting = {name for name in fitting if not any(part in name for part in OF_MUTATION)}
     after.load(own | {name: arrays[name] for name in fitting})
     world, bodies = after.state
     after.state = State(_adapt(world, before, after, old, new, at), bodies)

@@ -33,7 +33,8 @@ class Expected:
         self._schema = Schema.described(config.cells, about)
         self._worlds, self._cells = config.seeds, config.seeds * config.cells
         looks = len(ratchets(config.seasons))
-        self._kinds = _kinds(self._schema, tuple(about.blocks.items()), config.seeds, looks)
+        blocks = tuple(about.blocks.items())
+        self._kinds = _kinds(self._schema, blocks, about.moments, config.seeds, looks)
         self._tally: Kind = "int32", (self._cells, len(about.tallies))
 
     def fault(self, arrays: Mapping[str, np.ndarray]) -> str | None:
@@ -88,12 +89,15 @@ def _count(name: str, *shape: int) -> Iterator[tuple[str, Kind]]:
 
 
 @lru_cache(maxsize=64)
-def _kinds(schema: Schema, blocks: Blocks, worlds: int, looks: int) -> dict[str, Kind]:
+def _kinds(
+    schema: Schema, blocks: Blocks, moments: int, worlds: int, looks: int
+) -> dict[str, Kind]:
     """Return the kind of each array but the habitat's, by name; runs of one arm share it.
 
     Args:
         schema: the columns of the tables.
         blocks: name and shape of each block of weights in a genome.
+        moments: number of moments that an organism remembers.
         worlds: number of worlds.
         looks: number of ratchets, which look at the world from time to time.
     """
@@ -101,6 +105,7 @@ def _kinds(schema: Schema, blocks: Blocks, worlds: int, looks: int) -> dict[str,
     return {
         **dict(_of_worlds(schema, worlds, looks)),
         **dict(_of_organisms(schema, blocks, worlds * schema.cells)),
+        **dict(_of_moments(moments, worlds * schema.cells)),
         **{name: ("uint32", (None, width)) for name, width in tails.items()},
     }
 
@@ -128,3 +133,10 @@ def _of_organisms(schema: Schema, blocks: Blocks, cells: int) -> Iterator[tuple[
         yield f"world.organisms.{name}", ("int32", (cells,))
     for name in ("born", "number", "branch"):
         yield from _count(f"world.organisms.{name}", cells)
+
+
+def _of_moments(count: int, cells: int) -> Iterator[tuple[str, Kind]]:
+    if count:
+        for name in ("senses", "memory"):
+            yield f"world.organisms.moments.{name}", ("float32", (cells, count, None))
+        yield "world.organisms.moments.known", ("bool", (cells, count))

@@ -1,6 +1,6 @@
 """The check of mutations."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -11,7 +11,7 @@ from jax import Array, lax
 
 from primordia.brains.layout import Layout
 from primordia.law.events import BIRTHS
-from primordia.mutations.contract import PURPOSES, Draws, Mutation
+from primordia.mutations.contract import PURPOSES, Change, Draws, Family, Mutation
 from primordia.random.keys import streams
 from primordia.random.wide import wide
 from primordia.settings.fields import rates_of
@@ -23,23 +23,6 @@ LAYOUT = Layout((("input", (3, 7)), ("recurrent", (7, 7)), ("output", (2, 7))))
 GENERATIONS = 8
 TAKEN = {"world", *BIRTHS.names}
 """Columns that every births table has."""
-
-
-class Family(NamedTuple):
-    """What the births of K children depend on."""
-
-    parents: Array
-    """float32 (K, P)"""
-    notes: Array
-    """of the parents, int32 (K, n)"""
-    rates: Mapping[str, Array]
-    draws: Draws
-
-    def take(self, rows: Any) -> "Family":
-        """Return those in some rows."""
-        rates = {name: values[rows] for name, values in self.rates.items()}
-        draws = Draws(self.draws.streams.take(rows), self.draws.cell[rows])
-        return Family(self.parents[rows], self.notes[rows], rates, draws)
 
 
 class Made(NamedTuple):
@@ -135,15 +118,19 @@ def _family(mutation: Mutation, layout: Layout) -> Family:
     for birth in range(GENERATIONS):
         elsewhere = draws._replace(cell=draws.cell + ALL * (birth + 1))
         typed(mutation, "notes", notes, (ALL, len(mutation.notes)), np.int32)
-        notes = mutation.note(layout, parents, notes, rates, elsewhere)
+        notes = mutation.note(layout, Family(parents, notes, rates, elsewhere), _change(parents))
     return Family(parents, notes, rates, draws)
 
 
 def _births(mutation: Mutation, layout: Layout, family: Family) -> Made:
-    parents, notes, rates, draws = family
-    notes = mutation.note(layout, parents, notes, rates, draws)
-    genome, mutated = mutation.inherit(layout, parents, notes, rates, draws)
-    return Made(notes, genome, mutated, mutation.founders(layout, draws))
+    notes = mutation.note(layout, family, _change(family.parents))
+    genome, mutated = mutation.inherit(layout, family._replace(notes=notes))
+    return Made(notes, genome, mutated, mutation.founders(layout, family.draws))
+
+
+def _change(parents: Array) -> Change:
+    """Return what stands for a change of behaviour here: the largest change of a weight."""
+    return lambda children: jnp.abs(children - parents).max(axis=1)
 
 
 def _one_by_one(births: Callable[[Family], Made], family: Family) -> Made:
@@ -164,9 +151,10 @@ def _types(mutation: Mutation, layout: Layout, family: Family) -> None:
         mutation,
         "gives founders different notes; those of all founders must be the same",
     )
-    notes = jax.eval_shape(partial(mutation.note, layout), *family)
+    change = _change(family.parents)
+    notes = jax.eval_shape(lambda each: mutation.note(layout, each, change), family)
     typed(mutation, "notes", notes, (ALL, count), np.int32)
-    pair: Any = jax.eval_shape(partial(mutation.inherit, layout), *family)
+    pair: Any = jax.eval_shape(partial(mutation.inherit, layout), family)
     need(
         isinstance(pair, tuple) and len(pair) == 2,
         mutation,

@@ -1,0 +1,124 @@
+"""Moments that organisms remember, by which a mutation can tell how far a child would act otherwise.
+
+A moment is what a brain thinks from: senses, and the memory that they meet. Each world remembers at the
+ticks that are multiples of `every`. A child begins with the moments of its parent. A moment is kept in
+the same place whatever happens between, so chunks, interruptions and other worlds change nothing.
+"""
+
+import jax.numpy as jnp
+import numpy as np
+from jax import Array, lax
+
+from primordia.habitats.contract import Discrete
+from primordia.law.law import Law
+from primordia.law.motor import argmax
+from primordia.law.world import Remembered, World, Worlds
+from primordia.mutations.contract import Change, Moments
+from primordia.random.wide import modulo
+
+FINEST = 2**20
+"""Squares of changes are counted in whole numbers of 1 / FINEST, so that no order of a sum matters."""
+LARGEST = 2**31 // FINEST - 1
+"""The most numbers whose squares, up to 1 each, have a sum that is counted exactly."""
+
+
+def none(cells: int, rule: Moments | None, senses: int, memory: int) -> Remembered | None:
+    """Return the moments of cells without organisms; None if nothing is remembered."""
+    if rule is None:
+        return None
+    return Remembered(
+        senses=jnp.zeros((cells, rule.kept, senses), jnp.float32),
+        memory=jnp.zeros((cells, rule.kept, memory), jnp.float32),
+        known=jnp.zeros((cells, rule.kept), bool),
+    )
+
+
+def until_due(rule: Moments, worlds: Worlds) -> Array:
+    """Return the ticks until each world remembers next, int32 (W,), at least 1."""
+    return rule.every - modulo(worlds.tick, rule.every)
+
+
+def moment_due(law: Law, worlds: Worlds, live_worlds: Array) -> Array:
+    """Return which of the worlds that ran in a tick remember at its end, bool (W,)."""
+    rule = law.heredity.mutation.moments
+    if rule is None:
+        return jnp.zeros_like(live_worlds)
+    return live_worlds & (modulo(worlds.tick, rule.every) == 0)
+
+
+def remember(law: Law, world: World, senses: Array, live_worlds: Array) -> World:
+    """Let organisms remember, in running worlds where a moment is due.
+
+    Args:
+        law: the law.
+        world: the world at the end of a tick, with its newborn.
+        senses: of all cells, for the next tick, float32 (C, S).
+        live_worlds: worlds that were running in the tick, bool (W,).
+    """
+    organisms, rule = world.organisms, law.heredity.mutation.moments
+    if rule is None or organisms.moments is None:
+        return world
+    due = moment_due(law, world.worlds, live_worlds)
+    place = modulo(world.worlds.tick, rule.every * rule.kept) // rule.every
+
+    def add(moments: Remembered) -> Remembered:
+        cells = jnp.arange(len(organisms.alive))
+        where = law.per_cell(jnp.where(due, place, rule.kept))  # beyond the end: dropped
+        return Remembered(
+            senses=moments.senses.at[cells, where].set(senses, mode="drop"),
+            memory=moments.memory.at[cells, where].set(organisms.memory, mode="drop"),
+            known=moments.known.at[cells, where].set(organisms.alive, mode="drop"),
+        )
+
+    moments = lax.cond(due.any(), add, lambda moments: moments, organisms.moments)
+    return world._replace(organisms=organisms._replace(moments=moments))
+
+
+def change_in(law: Law, moments: Remembered, parents: Array) -> Change:
+    """Return how far genomes act otherwise than parents do, in what these remember.
+
+    Where actions are discrete it is the share of moments in which another is chosen. Where they are
+    continuous it is the root mean square change of the outputs, each by 1 at most. A parent that
+    remembers nothing yet has infinite changes, since nothing is known of its children.
+
+    Args:
+        law: the law.
+        moments: moments of K parents.
+        parents: their genomes, float32 (K, P).
+    """
+    before = _outputs(law, moments, parents)
+
+    def change(genomes: Array) -> Array:
+        after = _outputs(law, moments, genomes)
+        if isinstance(law.action, Discrete):
+            other = (argmax(_flat(after)) != argmax(_flat(before))).reshape(moments.known.shape)
+            return _share(jnp.where(moments.known, other, 0).sum(axis=1), moments.known)
+        square = jnp.minimum(jnp.square(after - before), 1) * np.float32(FINEST)
+        counted = jnp.where(moments.known[..., None], square, 0).astype(jnp.int32)
+        mean = _share(counted.sum(axis=(1, 2)), moments.known) / np.float32(
+            FINEST * law.action.size
+        )
+        return jnp.sqrt(mean)
+
+    return change
+
+
+def _share(count: Array, known: Array) -> Array:
+    """Return counts (K,) for each known moment, float32."""
+    of = known.sum(axis=1)
+    return jnp.where(of > 0, count.astype(jnp.float32) / jnp.maximum(of, 1), jnp.inf)
+
+
+def _flat(values: Array) -> Array:
+    return values.reshape(-1, values.shape[-1])
+
+
+def _outputs(law: Law, moments: Remembered, genomes: Array) -> Array:
+    """Return the outputs of K brains (K, P) in R moments each: float32 (K, R, A)."""
+    count, each = moments.known.shape
+    blocks = {
+        name: jnp.repeat(block, each, axis=0)
+        for name, block in law.heredity.layout.split(genomes).items()
+    }
+    _, output = law.brain(blocks, _flat(moments.memory), _flat(moments.senses))
+    return output.reshape(count, each, -1)

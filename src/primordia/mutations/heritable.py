@@ -1,0 +1,47 @@
+"""Heritable mutation: the size of the mutations of its children is inherited, and mutates itself."""
+
+from typing import ClassVar, Literal
+
+import jax.numpy as jnp
+from jax import Array
+from pydantic import Field
+
+from primordia.brains.layout import Layout
+from primordia.mutations.contract import Change, Family
+from primordia.mutations.gaussian import Gaussian
+from primordia.mutations.lengths import LONGEST, SHORTEST, length
+from primordia.random.keys import Purpose, below
+
+
+class Heritable(Gaussian):
+    """Gaussian noise of a scale times 2^(q / 4), where q is a whole number that is inherited.
+
+    A mutant's q is its parent's plus a number from -stride to stride, all equally likely, within finest
+    and coarsest. Then its weights get noise of its own scale (Schwefel 1981; in steps as in Dang & Lehre
+    2016). The control `belongs = "cell"` has the same q wander by cell: a mutant takes that of the
+    organism that was last born in its cell, so that q is selected with no genome.
+    """
+
+    notes: ClassVar = ("quarters",)
+
+    stride: int = Field(4, ge=1, le=16, description="most quarters of an octave in one birth")
+    finest: int = Field(-48, ge=SHORTEST, le=0, description="smallest q")
+    coarsest: int = Field(16, ge=0, le=LONGEST, description="largest q")
+    belongs: Literal["line", "cell"] = Field(
+        "line", description="line: q is inherited; cell: it stays where it is (the control)"
+    )
+
+    @property
+    def notes_from(self) -> Literal["parent", "cell"]:
+        """Return whose q is the first of a child's; see `Mutation.notes_from`."""
+        return "cell" if self.belongs == "cell" else "parent"
+
+    def note(self, layout: Layout, family: Family, change: Change | None) -> Array:
+        """Return the children's q, int32 (K, 1)."""
+        step = below(family.draws.bits(Purpose.MUTATE, 1).hi, 2 * self.stride + 1) - self.stride
+        step = jnp.where(self.mutating(layout, family).any(axis=1), step, 0)
+        return jnp.clip(family.notes + step[:, None], self.finest, self.coarsest)
+
+    def noise_scale(self, layout: Layout, family: Family) -> Array:
+        """Return the standard deviation of the noise in each block, float32 (K, B)."""
+        return super().noise_scale(layout, family) * length(family.notes)
