@@ -22,6 +22,7 @@ from primordia.law.law import Law
 from primordia.law.metabolism import Metabolism
 from primordia.law.motor import Motor
 from primordia.law.placement import Placement
+from primordia.law.recombination import Recombination
 from primordia.law.seasons import Season
 from primordia.mutations import contract as mutations
 from primordia.settings.base import Rate, Settings
@@ -77,6 +78,7 @@ class Config(Settings):
         0.05, ge=0, le=1, description="probability that an organism replicates in a tick"
     )
     mutation: dict[str, Any] = Field({}, description="`kind` of the mutation, and its own settings")
+    recombination: Recombination | None = Field(None, description="none: children have one parent")
     ancestors: tuple[str, ...] = Field(
         (),
         strict=False,
@@ -155,6 +157,7 @@ class Config(Settings):
         return Heredity(
             layout=layout,
             mutation=make("mutation", self.mutation, mutations.find),
+            recombination=self.recombination,
             inheritance=self.inheritance,
             ancestors=genomes.read(self.ancestors, layout) if self.ancestors else None,
             worlds=self.seeds,

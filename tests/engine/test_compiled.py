@@ -87,7 +87,7 @@ def test_equal_ancestors_share_code_and_others_do_not() -> None:
     genomes = np.ones((2, layout.length), np.float32)
 
     def code(ancestors: np.ndarray | None) -> Any:
-        return shared(_grown, Heredity(layout, Gaussian(), "parent", ancestors, 1))
+        return shared(_grown, Heredity(layout, Gaussian(), None, "parent", ancestors, 1))
 
     assert code(genomes) is code(genomes.copy())
     others = [code(each) for each in (2 * genomes, genomes[:1], None)]

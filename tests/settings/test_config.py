@@ -193,9 +193,9 @@ def test_help_lists_every_setting_with_its_value_and_meaning(tmp_path: Path) -> 
 
 
 def test_help_names_the_values_of_every_choice() -> None:
-    squeezed = " ".join(help_text(TASK).split())
+    squeezed = " ".join(help_text(TASK).split()).replace("- ", "-")  # a word may be broken there
     for listed in (
-        "(ring, torus4, torus8, well- mixed)",
+        "(ring, torus4, torus8, well-mixed)",
         "(blind, empty-only, replacing)",
         "(direct, gaussian)",
         "(parent, founder)",

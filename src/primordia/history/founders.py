@@ -6,8 +6,8 @@ from jax import Array
 
 from primordia import device
 from primordia.compiled import shared
+from primordia.history.births import recorded
 from primordia.history.climate import PastClimate
-from primordia.history.lineage import recorded
 from primordia.law.heredity import Heredity
 from primordia.law.world import Climate
 from primordia.random.keys import Purpose, stream

@@ -12,16 +12,13 @@ import numpy as np
 from jax import Array, lax
 
 from primordia import device
-from primordia.brains.layout import Layout
 from primordia.compiled import shared
-from primordia.errors import Trouble
+from primordia.history import pedigree
+from primordia.history.births import genome_in, recorded
 from primordia.history.climate import PastClimate
-from primordia.law.heredity import Birth, Heredity
+from primordia.law.heredity import Heredity
 from primordia.law.world import BirthCause, Climate
-from primordia.mutations.contract import PURPOSES, Draws
-from primordia.random.keys import streams
 from primordia.random.wide import wide
-from primordia.runs.arrays import read_count, world_ticks
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 
@@ -45,6 +42,8 @@ def rebuild(run: Records, organism: int, world: int = 0) -> np.ndarray:
 
 def rebuild_all(run: Records, organisms: Sequence[tuple[int, int]]) -> np.ndarray:
     """Return the genomes of K organisms, by birth number and world, float32 (K, P); see `rebuild`."""
+    if run.schema.mates:  # a line of descent has two parents at each step
+        return pedigree.genomes(run, np.array([run.lives.row(*each) for each in organisms]))
     device.prepare()
     lineages = [run.lives.take(descent(run.lives, *each)) for each in organisms]
     past, genomes = PastClimate(run), []
@@ -69,44 +68,6 @@ def descent(lives: Lives, organism: int, world: int) -> np.ndarray:
             break
         rows.append(parent)
     return np.array(rows[::-1])
-
-
-def genome_in(
-    state: Mapping[str, np.ndarray], layout: Layout, organism: int, world: int
-) -> np.ndarray:
-    """Return the genome of an organism that is alive in a state, float32 (P,)."""
-    cell = place_in(state, organism, world)
-    blocks = {name: state[f"world.organisms.genome.{name}"][[cell]] for name in layout.names}
-    return layout.join(blocks)[0]
-
-
-def place_in(state: Mapping[str, np.ndarray], organism: int, world: int) -> int:
-    """Return the cell, on the axis of all worlds, of an organism that is alive in a state.
-
-    Raises:
-        Trouble: it is not there.
-    """
-    number = read_count(state, "world.organisms.number")
-    cells = len(number) // len(world_ticks(state))
-    here = np.arange(len(number)) // cells == world
-    places = np.flatnonzero(here & state["world.organisms.alive"] & (number == organism))
-    if len(places) != 1:
-        raise Trouble(f"organism {organism} of world {world} is not in the state where it lived")
-    return int(places[0])
-
-
-def recorded(heredity: Heredity, counts: tuple, marks: tuple, climate: Climate) -> Birth:
-    """Return recorded births (K,) as heredity sees them.
-
-    Args:
-        heredity: the heredity of the run.
-        counts: seed of the world, birth number and tick of each birth, Wide.
-        marks: cell within the world; whether it is a founder.
-        climate: values of the settings at each birth.
-    """
-    (seed, number, tick), (cell, founder) = counts, marks
-    draws = Draws(streams(seed, tick, *PURPOSES), cell)
-    return Birth(seed, number, draws, founder, heredity.rates(climate))
 
 
 def _starting_point(run: Records, lineage: Lives) -> tuple[np.ndarray, Lives]:

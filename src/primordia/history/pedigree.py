@@ -5,13 +5,16 @@ genomes, as in `lineage`. Redrawn they give those of the neutral shadow: the sam
 birth, but founders and mutations that no life has ever tried (Bedau & Packard 1992).
 """
 
+from collections import Counter
+
 import numpy as np
 from jax import Array
 
 from primordia import device
 from primordia.compiled import shared
+from primordia.errors import Trouble
+from primordia.history.births import genome_in, recorded
 from primordia.history.climate import PastClimate
-from primordia.history.lineage import genome_in, recorded
 from primordia.law.heredity import Heredity
 from primordia.law.world import BirthCause, Climate
 from primordia.mutations.contract import Mutation
@@ -52,51 +55,72 @@ class _Pedigree:
 
     def genomes(self, rows: np.ndarray) -> np.ndarray:
         """Return the genomes of organisms of one world, (K, P)."""
-        members, parents, generation = self._ancestry(rows)
-        made = np.zeros((len(members), self._run.layout.length), np.float32)
+        members, parents, mates, generation = self._ancestry(rows)
+        wanted = np.searchsorted(members, rows)
+        made = _Made(self._run.layout.length, wanted, parents, mates)
         notes = self._run.notes_of(self._lives.take(members))
         for place in np.flatnonzero(generation < 0):
-            made[place] = self._at_the_fork(members[place])
+            made.put(np.array([place]), self._at_the_fork(members[place])[None])
         for number in range(int(generation.max()) + 1):
             now = np.flatnonzero(generation == number)
             for first in range(0, len(now), AT_ONCE):
                 some = now[first : first + AT_ONCE]
-                self._make(made, notes, members[some], some, parents[some])
-        return made[np.searchsorted(members, rows)]
+                self._make(made, notes, members[some], some, parents[some], mates[some])
+        return np.stack([made.genomes[place] for place in wanted])
 
     def _at_the_fork(self, row: int) -> np.ndarray:
         assert self._run.origin is not None
         number, world = int(self._lives.id[row]), int(self._lives.world[row])
         return genome_in(self._run.origin, self._run.layout, number, world)
 
-    def _ancestry(self, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def _ancestry(self, rows: np.ndarray) -> tuple[np.ndarray, ...]:
         """Return the rows of organisms and all their ancestors, rising, (A,) each.
 
-        With them go the place of each one's parent among them, -1 without one, and its generation: 0 for
-        founders, -1 for organisms that were alive at a fork.
+        With them go the places of each one's parent and mate among them, -1 without one, and its
+        generation: 0 for founders, -1 for organisms that were alive at a fork.
         """
         lives, known = self._lives, np.zeros(len(self._lives), bool)
-        root = (lives.birth_cause == BirthCause.FOUNDER) | (lives.entered > 0)
+        inherited = lives.born <= self._run.config.begins  # alive at the fork; at tick 0, founders
+        root = (lives.birth_cause == BirthCause.FOUNDER) | inherited
+        mate_row = self._mate_rows()
         new = np.unique(rows)
         while len(new):
             known[new] = True
-            older = np.unique(lives.parent_row[new[~root[new]]])
-            new = older[~known[older]]
+            inner = new[~root[new]]
+            older = np.unique([lives.parent_row[inner], mate_row[inner]])
+            new = older[(older >= 0) & ~known[older]]
         members = np.flatnonzero(known)
-        parent_row = np.where(root[members], -1, lives.parent_row[members])
-        parents = np.where(parent_row < 0, -1, np.searchsorted(members, parent_row))
-        generation = np.where(lives.entered[members] > 0, -1, 0)
-        for place in np.flatnonzero(parents >= 0):  # parents have lower rows than their children
-            generation[place] = max(generation[parents[place]], 0) + 1
-        return members, parents, generation
+        parents, mates = (
+            _places(members, np.where(root[members], -1, of[members]))
+            for of in (lives.parent_row, mate_row)
+        )
+        in_origin = inherited if self._run.origin is not None else np.zeros(len(lives), bool)
+        generation = np.where(in_origin[members], -1, 0)
+        for place in np.flatnonzero(parents >= 0):  # both have lower rows than their children
+            both = generation[parents[place]], generation[mates[place]] if mates[place] >= 0 else 0
+            generation[place] = max(*both, 0) + 1
+        return members, parents, mates, generation
+
+    def _mate_rows(self) -> np.ndarray:
+        """Return the row of each organism's mate, int64 (L,); -1 without one."""
+        lives = self._lives
+        number = self._run.mates_of(lives)
+        rows = lives.rows_of(lives.world, number)
+        odd = (number >= 0) & ((rows < 0) | (number >= lives.id))
+        if odd.any():
+            raise Trouble(
+                f"the births are damaged: the mate of organism {lives.id[odd][0]} was not born before it"
+            )
+        return rows
 
     def _make(
         self,
-        made: np.ndarray,
+        made: "_Made",
         notes: np.ndarray,
         rows: np.ndarray,
         places: np.ndarray,
         parents: np.ndarray,
+        mates: np.ndarray,
     ) -> None:
         """Repeat births, and put the genomes and notes of the newborn into their places."""
         fill = np.arange(AT_ONCE) % len(rows)
@@ -106,10 +130,45 @@ class _Pedigree:
             (self._seeds.take(births.world), wide(births.id), wide(births.born)),
             (births.cell, births.birth_cause == BirthCause.FOUNDER),
             climate,
-            made[before],
+            (made.take(parents[fill]), made.take(mates[fill]), mates[fill] >= 0),
             notes[before] if self._redraws_notes else notes[places[fill]],
         )
-        made[places], notes[places] = (np.asarray(each)[: len(rows)] for each in (genome, own))
+        made.put(places, np.asarray(genome)[: len(rows)])
+        notes[places] = np.asarray(own)[: len(rows)]
+        made.release(parents)
+        made.release(mates)
+
+
+class _Made:
+    """Genomes that have been made, each until its last child has been made too."""
+
+    def __init__(self, length: int, wanted: np.ndarray, *parents: np.ndarray) -> None:
+        """`wanted`: places that are kept to the end; `parents`: places of all parents, -1 for none."""
+        self.genomes: dict[int, np.ndarray] = {}
+        self._none = np.zeros(length, np.float32)
+        self._uses = Counter(wanted.tolist())
+        for each in parents:
+            self._uses.update(each[each >= 0].tolist())
+
+    def put(self, places: np.ndarray, genomes: np.ndarray) -> None:
+        """Keep genomes (K, P)."""
+        self.genomes.update(zip(places.tolist(), genomes.copy(), strict=True))
+
+    def take(self, places: np.ndarray) -> np.ndarray:
+        """Return genomes (K, P); those of place -1 are zero."""
+        return np.stack([self.genomes.get(place, self._none) for place in places.tolist()])
+
+    def release(self, places: np.ndarray) -> None:
+        """Forget genomes of which this was the last use."""
+        for place in places[places >= 0].tolist():
+            self._uses[place] -= 1
+            if not self._uses[place]:
+                del self.genomes[place]
+
+
+def _places(members: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """Return the places of rows among the members, rising; -1 for row -1."""
+    return np.where(rows < 0, -1, np.searchsorted(members, rows))
 
 
 def _inherits_notes(mutation: Mutation) -> bool:
@@ -123,7 +182,7 @@ def _repeat(
     counts: tuple,
     marks: tuple,
     climate: Climate,
-    parents: Array,
+    of: tuple[Array, Array, Array],
     notes: Array,
 ) -> tuple[Array, Array]:
     """Repeat K births -> genomes float32 (K, P) and notes int32 (K, n) of the newborn.
@@ -134,10 +193,11 @@ def _repeat(
         counts: seed of the world, birth number and tick of each birth, Wide.
         marks: cell within the world; whether it is a founder.
         climate: values of the settings at each birth.
-        parents: the parents' genomes, float32 (K, P).
+        of: genomes of parents and mates, float32 (K, P) each; which newborn have a mate, bool (K,).
         notes: notes of the newborn as recorded, or of their parents, int32 (K, n).
     """
     birth = recorded(heredity, counts, marks, climate)
+    parents = heredity.recombined(birth, *of)
     if not redraws_notes:
         return heredity.rebuild_genomes(birth, parents, notes), notes
     newborn = heredity.make_newborn(birth, parents, notes, None)

@@ -59,9 +59,9 @@ class Columns:
                 word += 1
         return columns
 
-    def plus(self, *names: str) -> "Columns":
-        """Return these columns, followed by more columns of 32 bits."""
-        return Columns((*self.names, *names), self.pairs)
+    def plus(self, *names: str, pairs: tuple[str, ...] = ()) -> "Columns":
+        """Return these columns, followed by more, of which `pairs` have 64 bits."""
+        return Columns((*self.names, *names), self.pairs.union(pairs))
 
 
 def _word(value: Array) -> Array:

@@ -11,11 +11,12 @@ import jax.numpy as jnp
 from jax import Array, lax
 
 from primordia.law.columns import Columns
+from primordia.law.heredity import Heredity
 from primordia.law.law import Law
 from primordia.law.world import Cause
 
 BIRTHS = Columns(("cell", "id", "parent", "tick", "cause"), frozenset({"id", "parent", "tick"}))
-"""Columns of a birth. The mutation's notes follow them. The parent of a founder is 2^64 - 1."""
+"""Columns of all births. The parent of a founder, and a mate that there is not, are 2^64 - 1."""
 DEATHS = Columns(("cell", "id", "tick", "cause", "energy", "food"), frozenset({"id", "tick"}))
 """Columns of a death."""
 TOTALS = (
@@ -31,6 +32,17 @@ TOTALS = (
 )
 """Numbers of 64 bits in a sample. Totals are over the living, except that of food, which is over all
 organisms that ever lived. Energy and food are in 1/1024 units, two's complement."""
+
+
+def birth_columns(mates: bool, notes: tuple[str, ...]) -> Columns:
+    """Return the columns of a birth: those of all births, the mate if there are mates, and the notes."""
+    own = ("mate",) if mates else ()
+    return BIRTHS.plus(*own, *notes, pairs=own)
+
+
+def births_of(heredity: Heredity) -> Columns:
+    """Return the columns of the births that a heredity brings about."""
+    return birth_columns(heredity.recombination is not None, heredity.mutation.notes)
 
 
 def sample_columns(rates: tuple[str, ...]) -> Columns:
@@ -68,7 +80,7 @@ def empty(law: Law) -> Events:
         return Rows(jnp.zeros((capacity, columns.width), jnp.uint32), jnp.int32(0))
 
     return Events(
-        births=empty_list(cells, 1 << 15, BIRTHS.plus(*law.heredity.mutation.notes)),
+        births=empty_list(cells, 1 << 15, births_of(law.heredity)),
         deaths=empty_list(cells, 1 << 15, DEATHS),
         samples=empty_list(law.worlds, 1 << 10, sample_columns(law.rates)),
     )

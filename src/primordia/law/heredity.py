@@ -14,7 +14,8 @@ import numpy as np
 from jax import Array, lax
 
 from primordia.brains.layout import Layout
-from primordia.mutations.contract import Change, Draws, Family, Mutation
+from primordia.law.recombination import Recombination
+from primordia.mutations.contract import PURPOSES, Change, Draws, Family, Mutation
 from primordia.random.keys import Purpose
 from primordia.random.wide import Wide, modulo, select
 
@@ -51,6 +52,7 @@ class Heredity:
     layout: Layout
     """layout of genomes"""
     mutation: Mutation
+    recombination: Recombination | None
     inheritance: Literal["parent", "founder"]
     ancestors: np.ndarray | None
     """genomes that founders take in turn, float32 (K, P); None: founders are random"""
@@ -67,11 +69,31 @@ class Heredity:
         """Return what decides whether two are equal: of ancestors, which have no hash, their bytes."""
         of = self.ancestors
         ancestors = None if of is None else (of.shape, of.dtype.str, of.tobytes())
-        return self.layout, self.mutation, self.inheritance, ancestors, self.worlds
+        parts = self.layout, self.mutation, self.recombination
+        return *parts, self.inheritance, ancestors, self.worlds
+
+    @property
+    def purposes(self) -> tuple[Purpose, ...]:
+        """The purposes for which births draw random bits."""
+        return PURPOSES if self.recombination is None else (*PURPOSES, Purpose.CROSS)
 
     def rates(self, climate: Mapping[str, Array]) -> dict[str, Array]:
         """Return the mutation's rates in a climate, by the names that `Mutation.rates` gives them."""
         return {name: climate[f"mutation.{name}"] for name in self.mutation.rates(self.layout)}
+
+    def recombined(self, birth: Birth, parents: Array, mates: Array, mated: Array) -> Array:
+        """Return what K newborn inherit from both parents, float32 (K, P).
+
+        Args:
+            birth: the births.
+            parents: genomes of the parents, float32 (K, P).
+            mates: genomes of the mates, float32 (K, P).
+            mated: which newborn have a mate, bool (K,).
+        """
+        if self.recombination is None:
+            return parents
+        both = self.recombination.recombined(self.layout, birth.draws, parents, mates)
+        return jnp.where(mated[:, None], both, parents)
 
     def make_newborn(
         self, birth: Birth, parents: Array, notes: Array, change: Change | None

@@ -74,6 +74,17 @@ class Placement(Settings):
             return jnp.broadcast_to(~occupied.all(axis=1, keepdims=True), occupied.shape)
         return jnp.stack(self._neighbours(~occupied)).any(axis=0)
 
+    def near(self, cells: Array, count: int) -> Array:
+        """Return which of a world's `count` cells are neighbours of some cells (K,), bool (K, count)."""
+        every = jnp.arange(count)
+        if self.topology == "well-mixed":
+            return every != cells[:, None]
+        offsets = np.array(OFFSETS[self.topology], np.int32)
+        directions = jnp.broadcast_to(jnp.arange(len(offsets)), (len(cells), len(offsets)))
+        numbered = jnp.broadcast_to(cells[:, None], directions.shape)
+        around = self._neighbour(numbered, directions, offsets, count)
+        return (around[:, :, None] == every).any(axis=1)
+
     def parents(self, draw: Draw, wants: Array, occupied: Array) -> Array:
         """Return, for each cell, the cell of its newborn's parent, or -1: int32 (W, N).
 
@@ -120,7 +131,7 @@ class Placement(Settings):
             drawn = below(word, word.shape[1] - 1)
             return drawn + (drawn >= cells)  # skip the cell itself
         offsets = np.array(OFFSETS[self.topology], np.int32)
-        return self._neighbour(cells, below(word, len(offsets)), offsets)
+        return self._neighbour(cells, below(word, len(offsets)), offsets, word.shape[1])
 
     def _empty_target(self, word: Array, empty: Array) -> Array:
         """Return a random empty neighbour of each cell, all equally likely: int32 (W, N).
@@ -138,10 +149,10 @@ class Placement(Settings):
         is_empty = jnp.stack(self._neighbours(empty))
         nth = below(word, is_empty.sum(axis=0))
         chosen = (jnp.cumsum(is_empty, axis=0) > nth).argmax(axis=0)
-        return self._neighbour(cells, chosen, offsets)
+        return self._neighbour(cells, chosen, offsets, word.shape[1])
 
-    def _neighbour(self, cells: Array, direction: Array, offsets: np.ndarray) -> Array:
-        rows, columns = self.shape(cells.shape[1])
+    def _neighbour(self, cells: Array, direction: Array, offsets: np.ndarray, count: int) -> Array:
+        rows, columns = self.shape(count)
         step = jnp.asarray(offsets)[direction]
         row, column = cells // columns + step[..., 0], cells % columns + step[..., 1]
         return row % rows * columns + column % columns

@@ -46,7 +46,7 @@ def settle(
         looks=worlds.looks._replace(wait=worlds.looks.wait - passed[:, None]),
     )
     none_born = jnp.zeros_like(organisms.alive)
-    keys = turnover.birth_keys(worlds)
+    keys = turnover.birth_keys(law, worlds)
     world, events, newborn = lax.cond(
         fates.eventful | lifeless(law, world, running).any(),
         lambda world, events: turnover.turnover(

@@ -19,7 +19,7 @@ from primordia.law.law import Law
 from primordia.law.metabolism import to_fixed_point
 from primordia.law.moments import change_in
 from primordia.law.world import BirthCause, Cause, Organisms, Remembered, World, Worlds
-from primordia.mutations.contract import PURPOSES, Draws
+from primordia.mutations.contract import Draws
 from primordia.random.keys import Purpose, Streams, below, bits, bits_if, streams
 from primordia.random.wide import Wide, happened, largest, never, select, zero
 
@@ -35,6 +35,8 @@ class Births(NamedTuple):
     """int32, cell of the parent (on the axis of all worlds); it has no meaning where founded"""
     number: Wide
     """birth number within the world"""
+    survives: Array
+    """bool: an organism that was alive before the tick lives on in this cell"""
 
 
 class _Inherited(NamedTuple):
@@ -45,9 +47,11 @@ class _Inherited(NamedTuple):
     moments: Remembered | None
 
 
-def birth_keys(worlds: Worlds) -> Streams:
+def birth_keys(law: Law, worlds: Worlds) -> Streams:
     """Return the keys of the turnover at the end of the present tick, (W,)."""
-    return streams(worlds.seed, worlds.tick, Purpose.PLACE, Purpose.GENESIS, *PURPOSES)
+    own = () if law.heredity.recombination is None else (Purpose.MATE,)
+    purposes = (Purpose.PLACE, Purpose.GENESIS, *own, *law.heredity.purposes)
+    return streams(worlds.seed, worlds.tick, *purposes)
 
 
 def turnover(
@@ -79,7 +83,8 @@ def turnover(
     alive = (organisms.alive & (cause < 0)) | (parent >= 0)
     extinct = running & ~law.by_world(alive).any(axis=1)
     founded = _genesis(law, keys[Purpose.GENESIS], extinct).ravel()
-    births = _births(law, worlds, parent, founded)
+    survives = organisms.alive & (cause < 0)
+    births = _births(law, worlds, parent, founded, survives)
 
     events = events._replace(deaths=_note_deaths(law, organisms, worlds, cause, events.deaths))
     organisms, listed = _inherit(law, world, births, keys, events.births)
@@ -108,11 +113,11 @@ def _genesis(law: Law, key: Wide, extinct: Array) -> Array:
     return extinct[:, None] & (jnp.arange(law.cells)[None] == chosen[:, None])
 
 
-def _births(law: Law, worlds: Worlds, parent: Array, founded: Array) -> Births:
+def _births(law: Law, worlds: Worlds, parent: Array, founded: Array, survives: Array) -> Births:
     newborn = (parent >= 0) | founded
     rank = jnp.cumsum(law.by_world(newborn), axis=1, dtype=jnp.int32).ravel() - 1
     number = worlds.births.map(law.per_cell).plus(jnp.maximum(rank, 0))
-    return Births(newborn, founded, jnp.maximum(parent, 0), number)
+    return Births(newborn, founded, jnp.maximum(parent, 0), number, survives)
 
 
 def _note_deaths(
@@ -148,6 +153,10 @@ def _inherit(
         past = before if law.placement.rule == "replacing" else now
         birth, parent = _birth(law, worlds, births, keys, cells), births.parent[cells]
         parents = law.heredity.layout.flat(past.genome, parent)
+        mate = _mates(law, births, keys, cells, birth.founder)
+        if mate is not None:
+            mates = law.heredity.layout.flat(past.genome, jnp.maximum(mate, 0))
+            parents = law.heredity.recombined(birth, parents, mates, mate >= 0)
         of = cells if law.heredity.mutation.notes_from == "cell" else parent
         moments = jax.tree.map(lambda leaf: leaf[parent], past.moments)
         change = None if moments is None else change_in(law, moments, parents)
@@ -159,7 +168,7 @@ def _inherit(
         )
         where = jnp.where(valid, cells, len(births.newborn))
         now = jax.tree.map(lambda all_, new: all_.at[where].set(new, mode="drop"), now, own)
-        rows = _birth_rows(law, world, births, cells, birth.founder, newborn)
+        rows = _birth_rows(law, world, births, cells, mate, birth.founder, newborn)
         return now, log.append(listed, rows, valid)
 
     inherited, listed = log.for_each(births.newborn, (before, listed), one_batch)
@@ -185,18 +194,40 @@ def _birth(law: Law, worlds: Worlds, births: Births, keys: Streams, cells: Array
     )
 
 
+def _mates(law: Law, births: Births, keys: Streams, cells: Array, founder: Array) -> Array | None:
+    """Return the cell of each newborn's mate, (K,), on all worlds' axis, or -1; None without mates."""
+    if law.heredity.recombination is None:
+        return None
+    world, cell = cells // law.cells, cells % law.cells
+    near = law.placement.near(cell, law.cells) & law.by_world(births.survives)[world]
+    is_parent = jnp.arange(law.cells) == (births.parent[cells] % law.cells)[:, None]
+    word = bits(keys[Purpose.MATE].take(world), cell)
+    chosen = law.heredity.recombination.mates(word, near & ~is_parent & ~founder[:, None])
+    return jnp.where(chosen >= 0, chosen + law.cells * world, -1)
+
+
 def _birth_rows(
-    law: Law, world: World, births: Births, cells: Array, founder: Array, newborn: Newborn
+    law: Law,
+    world: World,
+    births: Births,
+    cells: Array,
+    mate: Array | None,
+    founder: Array,
+    newborn: Newborn,
 ) -> Array:
     organisms, worlds = world
     parent = organisms.number.take(births.parent[cells])
     cause = jnp.where(newborn.mutated, BirthCause.MUTANT, BirthCause.COPY)
-    return log.BIRTHS.plus(*law.heredity.mutation.notes).words(
+    none, own = never(cells.shape), {}
+    if mate is not None:
+        own["mate"] = select(mate >= 0, organisms.number.take(jnp.maximum(mate, 0)), none)
+    return log.births_of(law.heredity).words(
         cell=cells,
         id=births.number.take(cells),
-        parent=select(births.founded[cells], never(cells.shape), parent),
+        parent=select(births.founded[cells], none, parent),
         tick=worlds.tick.take(cells // law.cells),
         cause=jnp.where(founder, BirthCause.FOUNDER, cause),
+        **own,
         **dict(zip(law.heredity.mutation.notes, newborn.notes.T, strict=True)),
     )
 

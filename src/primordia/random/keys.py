@@ -39,6 +39,8 @@ class Purpose(IntEnum):
     SHADOW = 11
     REBIRTH = 12
     CONTROL = 13
+    MATE = 14
+    CROSS = 15
 
 
 def encrypt(key: Wide, counter: Wide) -> Wide:

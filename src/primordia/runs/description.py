@@ -27,6 +27,8 @@ class Description(BaseModel):
     """names of the habitat's counts"""
     notes: tuple[str, ...]
     """names of the mutation's notes"""
+    mates: bool = False
+    """whether children may have a second parent"""
     moments: int = Field(0, ge=0, le=2**16)
     """number of moments that an organism remembers for the mutation"""
     beginning: dict[str, Annotated[float, Field(allow_inf_nan=False)]]
@@ -43,6 +45,7 @@ class Description(BaseModel):
             rate=habitat.rate,
             tallies=habitat.tallies,
             notes=law.heredity.mutation.notes,
+            mates=law.heredity.recombination is not None,
             moments=0
             if law.heredity.mutation.moments is None
             else law.heredity.mutation.moments.kept,

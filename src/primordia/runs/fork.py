@@ -15,7 +15,7 @@ from primordia.config import Config, ForkedFrom, validated
 from primordia.engine.engine import Engine
 from primordia.engine.state import State
 from primordia.errors import InputError, Trouble
-from primordia.law.events import BIRTHS
+from primordia.law.events import births_of
 from primordia.law.genesis import initial_looks
 from primordia.law.metabolism import to_fixed_point
 from primordia.law.world import Climate, Looks, World, Worlds
@@ -128,14 +128,16 @@ def _birth_rows(living: Lives, engine: Engine) -> np.ndarray:
     """Return the births of the living as the law lists them, uint32 (n, words), in order of events."""
     living = living.take(np.lexsort((living.cell, living.world, living.born)))
     cell = living.world.astype(np.int64) * engine.law.cells + living.cell
-    names, notes = engine.law.heredity.mutation.notes, engine.state.world.organisms.notes
-    return BIRTHS.plus(*names).rows(
+    heredity, notes = engine.law.heredity, engine.state.world.organisms.notes
+    own = {"mate": np.full(len(living), -1)} if heredity.recombination is not None else {}
+    return births_of(heredity).rows(
         cell=cell,
         id=living.id,
         parent=living.parent,
         tick=living.born,
         cause=living.birth_cause,
-        **dict(zip(names, np.asarray(notes)[cell].T, strict=True)),
+        **own,  # those who were alive at the fork are the roots of what follows
+        **dict(zip(heredity.mutation.notes, np.asarray(notes)[cell].T, strict=True)),
     )
 
 

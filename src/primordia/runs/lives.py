@@ -155,7 +155,11 @@ class Lives:
     @cached_property
     def parent_row(self) -> np.ndarray:
         """Row of each organism's parent, int64 (L,); -1 where the parent is not among these lives."""
-        return _rows(self.world, self.id, self.world, self.parent)
+        return self.rows_of(self.world, self.parent)
+
+    def rows_of(self, world: np.ndarray, number: np.ndarray) -> np.ndarray:
+        """Return the rows of organisms by world and birth number, int64 (n,); -1 where there is none."""
+        return _rows(self.world, self.id, world, number)
 
     def rows_in(self, worlds: np.ndarray, numbers: np.ndarray) -> np.ndarray:
         """Return the row of each of these lives among births sorted by world and number, int64 (L,)."""

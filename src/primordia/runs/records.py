@@ -150,8 +150,16 @@ class Records(ABC):
         """Return what the mutation noted at the births of some lives, int32 (L, n)."""
         if not self.schema.notes:
             return np.zeros((len(lives), 0), np.int32)
-        births = self.table("births", ("world", "id", *self.schema.notes))
+        return np.stack(self._of_births(lives, *self.schema.notes), axis=1)
+
+    def mates_of(self, lives: Lives) -> np.ndarray:
+        """Return the birth number of the mate of each of some lives, int64 (L,); -1 without one."""
+        return self._of_births(lives, "mate")[0] if self.schema.mates else np.full(len(lives), -1)
+
+    def _of_births(self, lives: Lives, *columns: str) -> list[np.ndarray]:
+        """Return columns of the births of some lives, (L,) each; no value is -1."""
+        births = self.table("births", ("world", "id", *columns))
         world, number = births["world"].to_numpy(), births["id"].to_numpy()
         order = np.lexsort((number, world))
         rows = order[lives.rows_in(world[order], number[order])]
-        return np.stack([births[name].to_numpy()[rows] for name in self.schema.notes], axis=1)
+        return [births[name].fill_null(-1).to_numpy()[rows] for name in columns]

@@ -8,7 +8,7 @@ import pyarrow as pa
 
 from primordia.engine.tallies import tally_columns
 from primordia.law.columns import Columns
-from primordia.law.events import BIRTHS, DEATHS, sample_columns
+from primordia.law.events import DEATHS, birth_columns, sample_columns
 from primordia.law.law import Law
 from primordia.law.metabolism import ONE
 from primordia.law.world import BirthCause, Cause
@@ -23,6 +23,8 @@ class Schema:
 
     cells: int
     """cells of one world"""
+    mates: bool
+    """whether births have a mate"""
     notes: tuple[str, ...]
     """names of the mutation's notes at births"""
     rates: tuple[str, ...]
@@ -33,17 +35,18 @@ class Schema:
     @classmethod
     def of(cls, law: Law, tallies: tuple[str, ...]) -> "Schema":
         """Return the schema for a law and a habitat's tallies."""
-        return cls(law.cells, law.heredity.mutation.notes, law.rates, tallies)
+        mates = law.heredity.recombination is not None
+        return cls(law.cells, mates, law.heredity.mutation.notes, law.rates, tallies)
 
     @classmethod
     def described(cls, cells: int, about: Description) -> "Schema":
         """Return the schema for the description of a run."""
-        return cls(cells, about.notes, tuple(about.beginning), about.tallies)
+        return cls(cells, about.mates, about.notes, tuple(about.beginning), about.tallies)
 
     def columns(self, table: str) -> Columns:
         """Return the columns of a table's rows, as the law and the tallies write them."""
         if table == "births":
-            return BIRTHS.plus(*self.notes)
+            return birth_columns(self.mates, self.notes)
         if table == "deaths":
             return DEATHS.plus(*self.tallies)
         return sample_columns(self.rates).plus(*tally_columns(self.tallies))
@@ -70,13 +73,14 @@ class Schema:
         return pa.table({"world": world, **self._deaths(words, cell)})
 
     def _births(self, words: dict[str, np.ndarray], cell: np.ndarray) -> dict[str, Any]:
-        parent = words["parent"]
+        parent, mate = words["parent"], words.get("mate")
         return {
             "id": words["id"],
             "parent": pa.array(parent, mask=parent == -1),
             "tick": words["tick"],
             "cell": cell,
             "cause": _named(words["cause"], BirthCause),
+            **({} if mate is None else {"mate": pa.array(mate, mask=mate == -1)}),
             **{name: words[name].view(np.int32) for name in self.notes},
         }
 

@@ -8,8 +8,8 @@ import pyarrow.parquet as pq
 
 from primordia.errors import Trouble
 
-NULLABLE = ("parent",)
-"""Columns that may have no value: that of a founder."""
+NULLABLE = ("parent", "mate")
+"""Columns that may have no value: those of a founder, and of a child without a mate."""
 MANY = 2**16
 """Number of rows from which several threads read a segment sooner than one."""
 

@@ -19,8 +19,9 @@ from primordia.brains.contract import Genome
 from primordia.config import Config
 from primordia.errors import InputError, Trouble
 from primordia.habitats.contract import AnyHabitat
+from primordia.history.births import place_in
 from primordia.history.climate import PastClimate
-from primordia.history.lineage import place_in, rebuild
+from primordia.history.lineage import rebuild
 from primordia.law.genesis import body_words
 from primordia.law.law import Law
 from primordia.law.life import BODILY, Vitals

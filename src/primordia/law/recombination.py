@@ -1,0 +1,72 @@
+"""Recombination: a child takes some of its weights from a second parent, the mate.
+
+The mate is drawn among the living neighbours of the child's cell, without the parent. On a ring that is
+the neighbour on the other side. A child without such a neighbour has one parent. The mate is recorded
+with the birth, so that genomes are rebuilt through both lines.
+"""
+
+from typing import Literal
+
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+from pydantic import Field
+
+from primordia.brains.layout import Layout
+from primordia.mutations.contract import Draws
+from primordia.random.keys import Purpose, below, bits, chance
+from primordia.random.wide import Wide
+from primordia.settings.base import Settings
+
+
+class Recombination(Settings):
+    """What a child takes from its mate. It happens before mutation."""
+
+    probability: float = Field(
+        1.0,
+        ge=0,
+        le=1,
+        description="chance that a child whose cell has another neighbour recombines",
+    )
+    unit: Literal["block", "row"] = Field(
+        "row", description="what comes from one parent as a whole: a block of weights, or each row"
+    )
+
+    def recombined(self, layout: Layout, draws: Draws, parents: Array, mates: Array) -> Array:
+        """Return genomes float32 (K, P), each unit with the same chance from either parent.
+
+        A row is what a block holds at one index of its first axis: the weights into one neuron, where a
+        layer has no fewer inputs than neurons. Blocks with the same number of rows take each row from the
+        same parent, so that a neuron keeps all of its weights.
+        """
+        units = self.units(layout)
+        count = int(units.max()) + 1
+        key = draws.streams[Purpose.CROSS]
+        words = bits(key.take(np.s_[:, None]), draws.cell[:, None], jnp.arange(count)).hi
+        from_mate = words >> np.uint32(31) == 1
+        return jnp.where(from_mate[:, units], mates, parents)
+
+    def units(self, layout: Layout) -> np.ndarray:
+        """Return the number of the unit that each weight belongs to, int64 (P,)."""
+        if self.unit == "block":
+            return np.repeat(np.arange(len(layout.blocks)), layout.sizes)
+        heights = list(dict.fromkeys(shape[0] for _, shape in layout.blocks))
+        first = dict(zip(heights, np.cumsum([0, *heights]).tolist(), strict=False))
+        return np.concatenate(
+            [
+                first[shape[0]] + np.repeat(np.arange(shape[0]), size // shape[0])
+                for (_, shape), size in zip(layout.blocks, layout.sizes.tolist(), strict=True)
+            ]
+        )
+
+    def mates(self, word: Wide, candidates: Array) -> Array:
+        """Return the cell of each of K children's mates, or -1: int32 (K,).
+
+        Args:
+            word: two random words for each child, (K,).
+            candidates: cells whose organisms may be its mate, bool (K, N).
+        """
+        rank = jnp.cumsum(candidates, axis=1, dtype=jnp.int32)
+        chosen = (rank > below(word.hi, rank[:, -1])[:, None]).argmax(axis=1)
+        there = (rank[:, -1] > 0) & chance(word.lo, jnp.float32(self.probability))
+        return jnp.where(there, chosen, -1)

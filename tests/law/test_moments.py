@@ -1,0 +1,110 @@
+"""Moments: organisms remember what they sensed, children what their parents did, founders nothing."""
+
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from primordia.law.moments import change_in
+from primordia.law.world import Remembered
+from tests.toys import Mill
+from tests.worlds import MEADOW, MILL, Lived, config
+
+KEPT, EVERY = 4, 3
+MUTATION = {"kind": "calibrated", "remembered": KEPT, "every": EVERY, "founder_scale": 0.5}
+SETTINGS: dict[str, Any] = {
+    **MILL,
+    "brain": {"hidden": 3},
+    "mutation": MUTATION,
+    "replication": 0.3,
+    "hazard": 0.1,
+    "seasons": [],
+}
+
+
+def test_a_world_remembers_what_it_senses_at_its_ticks() -> None:
+    lived, habitat = Lived(config(SETTINGS), 1), Mill()
+    before: Any = None
+    inherited = 0
+    for tick in range(2, 60):
+        lived.advance_to(tick)
+        (organisms, _), bodies = lived.engine.state
+        senses = np.asarray(habitat.sense(bodies))
+        now = jax.tree.map(np.asarray, organisms.moments)
+        alive, born = np.asarray(organisms.alive), np.asarray(organisms.born.lo) == tick
+        place = tick // EVERY % KEPT
+        due = tick % EVERY == 0
+        if due:
+            assert now.known[alive, place].all()
+            np.testing.assert_array_equal(now.senses[alive, place], senses[alive])
+            np.testing.assert_array_equal(
+                now.memory[alive, place], np.asarray(organisms.memory)[alive]
+            )
+        if before is not None:
+            places = [each for each in range(KEPT) if not (due and each == place)]
+            older = alive & ~born
+            for name in Remembered._fields:
+                one, other = getattr(now, name), getattr(before, name)
+                np.testing.assert_array_equal(one[older][:, places], other[older][:, places])
+            inherited += assert_of_parents(lived, tick, before, now, places)
+        before = now
+    assert inherited > 20
+
+
+def assert_of_parents(lived: Lived, tick: int, before: Any, now: Any, places: list[int]) -> int:
+    """Compare the newborn of a tick with their parents; return how many there are."""
+    births, number = lived.table("births"), np.asarray(lived.engine.state.world.organisms.number.lo)
+    newborn = np.flatnonzero(births["tick"] == tick)
+    for row in newborn:
+        cell = births["cell"][row]
+        if births["cause"][row] == "founder":
+            assert not now.known[cell][places].any()
+            continue
+        first = np.flatnonzero(births["id"] == births["parent"][row])[0]
+        parent = births["cell"][first]
+        if number[parent] != births["parent"][row]:  # replaced by now
+            continue
+        np.testing.assert_array_equal(now.known[cell][places], before.known[parent][places])
+        np.testing.assert_array_equal(now.senses[cell][places], before.senses[parent][places])
+    return len(newborn)
+
+
+@pytest.mark.parametrize("base", [MILL, MEADOW])
+def test_a_change_is_measured_in_the_moments_that_are_known(base: dict[str, Any]) -> None:
+    """Continuous: the root mean square of outputs' changes. Discrete: the share of other choices."""
+    wide = base is MEADOW
+    law = Lived(config({**base, "mutation": MUTATION, "seasons": []}), 1).engine.law
+    random = np.random.default_rng(1)
+    known = random.random((5, KEPT)) < 0.6
+    known[0], known[1] = True, False
+    moments = Remembered(
+        jnp.asarray(random.normal(size=(5, KEPT, law.senses)), jnp.float32),
+        jnp.asarray(random.normal(size=(5, KEPT, law.memory)), jnp.float32),
+        jnp.asarray(known),
+    )
+    length = law.heredity.layout.length
+    parents = random.normal(size=(5, length)).astype(np.float32)
+    children = (parents + 0.2 * random.normal(size=(5, length))).astype(np.float32)
+    measured = np.asarray(change_in(law, moments, jnp.asarray(parents))(jnp.asarray(children)))
+    for row in range(5):
+        outputs = [
+            np.array([output(law, genome[row], moments, row, each) for each in range(KEPT)])
+            for genome in (parents, children)
+        ]
+        of = known[row]
+        if not of.any():
+            assert measured[row] == np.inf
+        elif wide:
+            other = outputs[0].argmax(axis=1) != outputs[1].argmax(axis=1)
+            assert measured[row] == pytest.approx(other[of].mean())
+        else:
+            square = np.minimum((outputs[0] - outputs[1]) ** 2, 1)
+            assert measured[row] == pytest.approx(square[of].mean() ** 0.5, rel=1e-3)
+
+
+def output(law: Any, genome: np.ndarray, moments: Remembered, row: int, place: int) -> np.ndarray:
+    blocks = law.heredity.layout.split(jnp.asarray(genome)[None])
+    memory, senses = moments.memory[row, place], moments.senses[row, place]
+    return np.asarray(law.brain(blocks, memory[None], senses[None])[1][0])

@@ -1,0 +1,58 @@
+"""Heritable mutation: the size of mutations is inherited, and mutates in whole steps."""
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from primordia.mutations.contract import PURPOSES, Draws, Family
+from primordia.mutations.gaussian import Gaussian
+from primordia.mutations.heritable import Heritable
+from primordia.mutations.lengths import length
+from primordia.random.keys import streams
+from primordia.random.wide import wide
+from primordia.testing import check_mutation
+from tests.mutations.test_gaussian import LAYOUT
+
+K = 4_000
+
+
+def family(mutation: Gaussian, quarters: int = 0) -> Family:
+    draws = Draws(streams(wide(np.arange(K)), wide(np.zeros(K)), *PURPOSES), jnp.arange(K))
+    rates = {name: jnp.full(K, each) for name, each in mutation.rates(LAYOUT).items()}
+    parents = jnp.zeros((K, LAYOUT.length))
+    return Family(parents, jnp.full((K, 1), quarters, jnp.int32), rates, draws)
+
+
+@pytest.mark.parametrize("stride", [1, 4])
+def test_the_exponent_of_a_mutant_takes_any_step_up_to_the_stride(stride: int) -> None:
+    mutation = Heritable(stride=stride, probability=0.5)
+    notes = np.asarray(mutation.note(LAYOUT, family(mutation, 5), None))[:, 0]
+    mutants = np.asarray(mutation.inherit(LAYOUT, family(mutation))[1])
+    assert (notes[~mutants] == 5).all()
+    steps, counts = np.unique(notes[mutants] - 5, return_counts=True)
+    assert steps.tolist() == list(range(-stride, stride + 1))
+    expected = mutants.sum() / len(steps)
+    assert (abs(counts - expected) < 5 * expected**0.5).all()
+
+
+@pytest.mark.parametrize(("quarters", "bound"), [(16, "coarsest"), (-48, "finest")])
+def test_the_exponent_stays_within_its_bounds(quarters: int, bound: str) -> None:
+    mutation = Heritable(probability=1.0)
+    notes = np.asarray(mutation.note(LAYOUT, family(mutation, quarters), None))
+    inside = notes <= quarters if bound == "coarsest" else notes >= quarters
+    assert inside.all()
+    assert (notes == quarters).mean() == pytest.approx(5 / 9, abs=0.05)
+    assert getattr(mutation, bound) == quarters
+
+
+def test_noise_is_that_of_the_gaussian_times_its_length() -> None:
+    fixed, mutation = Gaussian(probability=1.0, scale=0.5), Heritable(probability=1.0, scale=0.5)
+    base = np.asarray(fixed.inherit(LAYOUT, family(fixed))[0])
+    for quarters in (-4, 0, 3):
+        noise = np.asarray(mutation.inherit(LAYOUT, family(mutation, quarters))[0])
+        np.testing.assert_allclose(noise, base * np.asarray(length(jnp.int32(quarters))), rtol=1e-6)
+
+
+@pytest.mark.parametrize("belongs", ["line", "cell"])
+def test_it_keeps_the_contract(belongs: str) -> None:
+    check_mutation(Heritable(belongs=belongs))
