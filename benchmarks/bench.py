@@ -2,8 +2,8 @@
 
     python benchmarks/bench.py [--json FILE] [--only SECTION,...]
 
-Sections: paper, speed, plain, live, cells, atari, robots, jobs, campaign, cores, bookkeeping,
-shell, records.
+Sections: paper, speed, plain, live, cells, operators, atari, robots, jobs, campaign, cores,
+bookkeeping, shell, records.
 
 Compare speeds within one run only. Machines differ, and one machine differs from hour to hour.
 """
@@ -18,6 +18,7 @@ from pathlib import Path
 import campaigns
 import hosted
 import jobs
+import operators
 import paper
 import scale
 import show
@@ -30,6 +31,7 @@ SECTIONS = {
     "plain": speed.against_the_plain_loop,
     "live": show.cost_of_the_live_view,
     "cells": scale.cost_by_cells,
+    "operators": operators.against_fixed_mutation,
     "atari": hosted.against_the_emulator,
     "robots": hosted.against_the_batch,
     "jobs": jobs.against_bare_simulators,
