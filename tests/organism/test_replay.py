@@ -35,3 +35,12 @@ def test_cards_and_the_last_picture_stay_at_least_one_frame(
     assert len(frames) == len(moments) + 2 * still
     assert [frame is picture for frame in frames[:3]] == [True, True, False]
     assert frames[-1] is picture
+
+
+def test_the_words_of_a_card_are_in_its_middle() -> None:
+    card = replay._card((400, 100), "1 min later").convert("L")
+    ink = card.point(lambda value: 255 * (value < 128)).getbbox()
+    assert ink is not None
+    left, top, right, bottom = ink
+    assert (left + right) / 2 == pytest.approx(200, abs=5)
+    assert (top + bottom) / 2 == pytest.approx(50, abs=5)
