@@ -21,7 +21,7 @@ LAYERS = [
     {"engine"},
     {"runs"},
     {"history"},
-    {"organism"},
+    {"assays", "organism"},
     {"comparison"},
     {"figures", "live", "tracking"},
     {"experiments"},

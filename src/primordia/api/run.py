@@ -10,6 +10,8 @@ import numpy as np
 import pyarrow as pa
 
 from primordia import device as devices
+from primordia.assays.heredity import Inherited, heredity
+from primordia.assays.threshold import Threshold, threshold
 from primordia.comparison.controls import FOUNDERS, Standing, evolved, unevolved
 from primordia.comparison.shadow import ORGANISMS, Shadow, shadow
 from primordia.history.info import info
@@ -110,6 +112,14 @@ class Run:
     def shadow(self, organisms: int = ORGANISMS, ticks: int | None = None) -> Shadow:
         """Let organisms and their unselected shadows live once more; see `shadow.shadow`."""
         return shadow(self.opened(), organisms, ticks)
+
+    def heredity(self, after: float = LATE) -> list[Inherited]:
+        """Measure how length of life is inherited in each world; see `assays.heredity`."""
+        return heredity(self.opened(), after)
+
+    def threshold(self, after: float = LATE) -> list[Threshold]:
+        """Measure whether a good line keeps its ground in each world; see `assays.threshold`."""
+        return threshold(self.opened(), after)
 
     def policy(self) -> Policy:
         """Return the brain of the champion, see `oldest`, as `policy(senses) -> action`."""

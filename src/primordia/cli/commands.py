@@ -5,7 +5,7 @@ import errno
 import click
 
 from primordia import interrupts
-from primordia.cli import evaluate, evolve, experiment, inspect, shadow, track
+from primordia.cli import assay, evaluate, evolve, experiment, inspect, shadow, track
 from primordia.cli.cache import keep_compiled_code
 from primordia.cli.streams import flush, report
 from primordia.errors import InputError, Trouble
@@ -32,7 +32,7 @@ def commands() -> None:
     """
 
 
-PARTS = (evolve, experiment, inspect, track, evaluate, shadow)
+PARTS = (evolve, experiment, inspect, track, evaluate, shadow, assay)
 for command in (each for part in PARTS for each in part.COMMANDS):
     commands.add_command(command)
 

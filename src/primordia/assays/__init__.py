@@ -1,0 +1,1 @@
+"""Assays: what is inherited in a run, and what limits its evolution."""

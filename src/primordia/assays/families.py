@@ -1,0 +1,54 @@
+"""Children beside their parents, from the records of one world."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from primordia.law.world import BirthCause
+from primordia.runs.lives import LATE, Lives
+
+
+@dataclass(frozen=True)
+class Families:
+    """Children of a world with their parents, (K,) each; founders are left out."""
+
+    lives: Lives
+    """all lives of the world"""
+    born: np.ndarray
+    """row of each organism that was born late, founders too, int64"""
+    child: np.ndarray
+    """row of each child in `lives`, int64"""
+    parent: np.ndarray
+    """row of its parent, int64"""
+    mutant: np.ndarray
+    """bool: the child is a mutant, otherwise a copy"""
+
+    @property
+    def lifespans(self) -> tuple[np.ndarray, np.ndarray]:
+        """Ticks lived so far by child and parent, int64 (K,) each."""
+        return self.lives.lifespan[self.child], self.lives.lifespan[self.parent]
+
+    @property
+    def complete(self) -> np.ndarray:
+        """Whether child and parent are both dead, so that both lifespans are known, bool (K,)."""
+        return self.lives.died[self.child] & self.lives.died[self.parent]
+
+    def as_long(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return which children live at least as long as their parents, and for which that is known.
+
+        A living child that is as old as its dead parent became lives as long. A dead child that was
+        younger than its living parent is does not. The other pairs with a living organism are unknown.
+        """
+        child, parent = self.lifespans
+        longer = (child >= parent) & self.lives.died[self.parent]
+        shorter = (child < parent) & self.lives.died[self.child]
+        return longer, longer | shorter
+
+
+def families(lives: Lives, after: float = LATE) -> Families:
+    """Return the families of one world whose children were born late; see `Lives.late`."""
+    born = np.flatnonzero(lives.late(after))
+    has_parent = (lives.birth_cause != BirthCause.FOUNDER) & (lives.parent_row >= 0)
+    child = born[has_parent[born]]
+    mutant = lives.birth_cause[child] == BirthCause.MUTANT
+    return Families(lives, born, child, lives.parent_row[child], mutant)

@@ -1,0 +1,124 @@
+"""Is length of life inherited? Parents and offspring, and the two terms of the Price equation.
+
+Lifespans are compared as natural logarithms, since they differ by factors. The slope of the offspring's
+on the parent's is the realised heritability of an organism with one parent (Falconer & Mackay 1996,
+ch. 10). The Price equation (Price 1970) divides the change from parents to offspring in two: selection,
+by which the long-lived have more children, and transmission, by which children differ from their parents.
+"""
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from primordia.assays.families import Families, families
+from primordia.runs.lives import LATE
+from primordia.runs.records import Records
+
+PAIRS = 10
+"""Fewest pairs of parent and child for a slope."""
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """Children of one kind beside their parents, both dead."""
+
+    pairs: int
+    slope: float | None
+    """of the child's log lifespan on the parent's; None with fewer than PAIRS, or equal parents"""
+    as_long: float | None
+    """share that live exactly as long as the parent"""
+    longer: float | None
+    """share that live longer by a tenth or more"""
+    shorter: float | None
+    """share that live shorter by a third or more"""
+
+
+@dataclass(frozen=True)
+class Inherited:
+    """The inheritance of lifespan in one world."""
+
+    world: int
+    copies: Pairs
+    mutants: Pairs
+    both: Pairs
+    selection: float | None
+    """Cov(w, z) / mean w: change of the mean log lifespan z by the numbers of children w"""
+    transmission: float | None
+    """E(w (z' - z)) / mean w: change by differences between children z' and parents"""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain values for JSON."""
+        return asdict(self)
+
+
+def heredity(run: Records, after: float = LATE) -> list[Inherited]:
+    """Measure the inheritance of lifespan in each world of a run, among children born late.
+
+    Args:
+        run: the run, or an arm.
+        after: share of a world's births after which a birth is late.
+    """
+    return [
+        _of_world(world, families(run.lives.of_world(world), after))
+        for world in range(run.lives.worlds)
+    ]
+
+
+def _of_world(world: int, found: Families) -> Inherited:
+    selection, transmission = price(found)
+    copies, mutants = found.complete & ~found.mutant, found.complete & found.mutant
+    return Inherited(
+        world,
+        _pairs(found, copies),
+        _pairs(found, mutants),
+        _pairs(found, found.complete),
+        selection,
+        transmission,
+    )
+
+
+def _pairs(found: Families, which: np.ndarray) -> Pairs:
+    child, parent = (each[which] for each in found.lifespans)
+    if not len(child):
+        return Pairs(0, None, None, None, None)
+    return Pairs(
+        pairs=len(child),
+        slope=slope(_log(parent), _log(child)),
+        as_long=float((child == parent).mean()),
+        longer=float((child >= 1.1 * parent).mean()),
+        shorter=float((child <= parent * 2 / 3).mean()),
+    )
+
+
+def slope(x: np.ndarray, y: np.ndarray) -> float | None:
+    """Return the slope of y on x by least squares; None for few points, or all of one x."""
+    if len(x) < PAIRS or np.ptp(x) == 0:
+        return None
+    return float(np.cov(x, y)[0, 1] / np.var(x, ddof=1))
+
+
+def price(found: Families) -> tuple[float | None, float | None]:
+    """Return selection and transmission from complete families: parent and all late children are dead.
+
+    Organisms that were born late and have no children count as parents of none. The sum of both terms is
+    the mean log lifespan of the children minus that of these parents. Both are None without children.
+    """
+    lives, z = found.lives, _log(found.lives.lifespan)
+    counted = np.zeros(len(lives), bool)
+    counted[found.born], counted[found.parent] = True, True
+    counted &= lives.died
+    counted[found.parent[~lives.died[found.child]]] = False
+    children = found.child[counted[found.parent]]
+    parents = found.parent[counted[found.parent]]
+    if not len(children):
+        return None, None
+    w = np.bincount(parents, minlength=len(lives)).astype(float)[counted]
+    change = np.bincount(parents, z[children] - z[parents], len(lives))[counted]
+    mean = w.mean()
+    selection = (w * z[counted]).mean() / mean - z[counted].mean()
+    return float(selection), float(change.mean() / mean)
+
+
+def _log(lifespans: np.ndarray) -> np.ndarray:
+    return np.log(np.maximum(lifespans, 1))

@@ -1,0 +1,103 @@
+"""Inheritance of lifespan: slopes that are known, and the Price equation, which is an identity."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from primordia.assays.families import families
+from primordia.assays.heredity import PAIRS, heredity, price, slope
+from primordia.runs.lives import Lives
+from tests.assays.lives import COPY, FOUNDER, MUTANT, lives
+
+
+def measured(world: Lives, after: float = 0.0) -> Any:
+    return heredity(SimpleNamespace(lives=world), after)[0]
+
+
+def test_copies_inherit_all_and_mutants_what_is_left() -> None:
+    """Copies live as long as their parents; mutants the square root of it, half on the log scale."""
+    parents = [(-1, FOUNDER, 4**n) for n in range(1, 6)] * 3
+    copies = [(n, COPY, 4 ** (n % 5 + 1)) for n in range(15)]
+    mutants = [(n, MUTANT, 2 ** (n % 5 + 1)) for n in range(15)]
+    found = measured(lives(*parents, *copies, *mutants))
+    assert found.copies.slope == pytest.approx(1)
+    assert found.mutants.slope == pytest.approx(0.5)
+    assert found.both.slope == pytest.approx(0.75)
+    assert (found.copies.as_long, found.copies.longer, found.copies.shorter) == (1, 0, 0)
+    assert (found.mutants.as_long, found.mutants.longer, found.mutants.shorter) == (0, 0, 1)
+    assert (found.copies.pairs, found.mutants.pairs, found.both.pairs) == (15, 15, 30)
+
+
+def test_pairs_with_a_living_organism_have_no_slope_yet() -> None:
+    rows: list = [
+        (-1, FOUNDER, 100),
+        (0, COPY, 50, "alive"),
+        (-1, FOUNDER, 100, "alive"),
+        (2, COPY, 9),
+    ]
+    found = measured(lives(*rows))
+    assert found.both.pairs == 0
+    assert found.both.slope is None
+    assert found.selection is None
+
+
+def test_shares_have_their_bounds_at_a_tenth_and_a_third() -> None:
+    spans = [111, 109, 100, 67, 66, 60]
+    found = measured(lives((-1, FOUNDER, 100), *((0, MUTANT, span) for span in spans)))
+    assert found.mutants.longer == pytest.approx(1 / 6)
+    assert found.mutants.as_long == pytest.approx(1 / 6)
+    assert found.mutants.shorter == pytest.approx(2 / 6)
+
+
+def test_only_late_children_count() -> None:
+    rows = [(-1, FOUNDER, 10), *((0, COPY, 10) for _ in range(9))]
+    assert measured(lives(*rows), 0.5).both.pairs == 5
+    assert measured(lives(*rows), 0.0).both.pairs == 9
+
+
+def test_a_slope_needs_points_of_different_x() -> None:
+    x = np.linspace(0, 1, PAIRS)
+    assert slope(x, 3 * x + 1) == pytest.approx(3)
+    assert slope(x[1:], x[1:]) is None
+    assert slope(np.ones(PAIRS), x) is None
+
+
+@st.composite
+def pedigrees(draw: st.DrawFn) -> Lives:
+    rows: list = []
+    for number in range(draw(st.integers(2, 25))):
+        parent = draw(st.integers(-1, number - 1))
+        cause = FOUNDER if parent < 0 else draw(st.sampled_from([COPY, MUTANT]))
+        row = (parent, cause, draw(st.integers(1, 50)))
+        rows.append((*row, "alive") if draw(st.integers(0, 9)) == 0 else row)
+    return lives(*rows)
+
+
+@given(pedigrees(), st.sampled_from([0.0, 0.5]))
+def test_selection_and_transmission_add_up_to_the_change(world: Lives, after: float) -> None:
+    found = families(world, after)
+    selection, transmission = price(found)
+    late = set(np.flatnonzero(world.late(after)).tolist()) | set(found.parent.tolist())
+    spoilt = set(found.parent[~world.died[found.child]].tolist())
+    counted = [row for row in late if world.died[row] and row not in spoilt]
+    children = [int(c) for c, p in zip(found.child, found.parent, strict=True) if p in counted]
+    if not children:
+        assert selection is None
+        assert transmission is None
+        return
+    assert selection is not None
+    assert transmission is not None
+    z = np.log(world.lifespan)
+    change = z[children].mean() - z[counted].mean()
+    assert selection + transmission == pytest.approx(change, abs=1e-9)
+
+
+def test_where_the_long_lived_have_more_children_selection_is_above_zero() -> None:
+    rows = [(-1, FOUNDER, 10), (-1, FOUNDER, 1000), *((1, COPY, 1000) for _ in range(4))]
+    found = measured(lives(*rows, *((2, MUTANT, 10) for _ in range(3))))
+    assert found.selection > 0.5
+    assert found.transmission < 0
