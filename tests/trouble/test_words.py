@@ -203,6 +203,7 @@ LONG = "9" * 300
         ("run", TASK, "--ancestor", LONG), ("run", TASK, "--out", LONG), ("info", LONG),
         ("plot", LONG), ("compare", LONG, "."), ("resume", LONG), ("verify", LONG),
         ("evaluate", LONG), ("shadow", LONG), ("experiment", LONG), ("track", LONG),
+        ("assay", "heredity", LONG),
     ],
     ids=lambda words: words[0] if isinstance(words, tuple) else None,
 )  # fmt: skip
