@@ -78,7 +78,7 @@ def test_a_change_is_measured_in_the_moments_that_are_known(base: dict[str, Any]
     law = Lived(config({**base, "mutation": MUTATION, "seasons": []}), 1).engine.law
     random = np.random.default_rng(1)
     known = random.random((5, KEPT)) < 0.6
-    known[0], known[1] = True, False
+    known[0], known[1], known[4] = True, False, True
     moments = Remembered(
         jnp.asarray(random.normal(size=(5, KEPT, law.senses)), jnp.float32),
         jnp.asarray(random.normal(size=(5, KEPT, law.memory)), jnp.float32),
@@ -87,6 +87,7 @@ def test_a_change_is_measured_in_the_moments_that_are_known(base: dict[str, Any]
     length = law.heredity.layout.length
     parents = random.normal(size=(5, length)).astype(np.float32)
     children = (parents + 0.2 * random.normal(size=(5, length))).astype(np.float32)
+    children[4] = np.nan
     measured = np.asarray(change_in(law, moments, jnp.asarray(parents))(jnp.asarray(children)))
     for row in range(5):
         outputs = [
@@ -100,7 +101,7 @@ def test_a_change_is_measured_in_the_moments_that_are_known(base: dict[str, Any]
             other = outputs[0].argmax(axis=1) != outputs[1].argmax(axis=1)
             assert measured[row] == pytest.approx(other[of].mean())
         else:
-            square = np.minimum((outputs[0] - outputs[1]) ** 2, 1)
+            square = np.nan_to_num(np.minimum((outputs[0] - outputs[1]) ** 2, 1), nan=1)
             assert measured[row] == pytest.approx(square[of].mean() ** 0.5, rel=1e-3)
 
 

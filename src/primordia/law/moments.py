@@ -16,11 +16,6 @@ from primordia.law.world import Remembered, World, Worlds
 from primordia.mutations.contract import Change, Moments
 from primordia.random.wide import modulo
 
-FINEST = 2**20
-"""Squares of changes are counted in whole numbers of 1 / FINEST, so that no order of a sum matters."""
-LARGEST = 2**31 // FINEST - 1
-"""The most numbers whose squares, up to 1 each, have a sum that is counted exactly."""
-
 
 def none(cells: int, rule: Moments | None, senses: int, memory: int) -> Remembered | None:
     """Return the moments of cells without organisms; None if nothing is remembered."""
@@ -93,12 +88,13 @@ def change_in(law: Law, moments: Remembered, parents: Array) -> Change:
         if isinstance(law.action, Discrete):
             other = (argmax(_flat(after)) != argmax(_flat(before))).reshape(moments.known.shape)
             return _share(jnp.where(moments.known, other, 0).sum(axis=1), moments.known)
-        square = jnp.minimum(jnp.square(after - before), 1) * np.float32(FINEST)
+        # Squares, at most 1 each, are summed as whole numbers, so that no order of the sum matters.
+        finest = 2 ** (30 - (moments.known.shape[1] * law.action.size - 1).bit_length())
+        square = jnp.square(after - before)
+        square = jnp.where(square < 1, square, 1) * np.float32(finest)  # what is no number too is 1
         counted = jnp.where(moments.known[..., None], square, 0).astype(jnp.int32)
-        mean = _share(counted.sum(axis=(1, 2)), moments.known) / np.float32(
-            FINEST * law.action.size
-        )
-        return jnp.sqrt(mean)
+        total = _share(counted.sum(axis=(1, 2)), moments.known)
+        return jnp.sqrt(total / np.float32(finest * law.action.size))
 
     return change
 
