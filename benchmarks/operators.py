@@ -10,7 +10,7 @@ from primordia.random.wide import to_host
 from worlds import median, organism_ticks
 
 TASKS = {
-    "CartPole-survival": ({"genesis": "fill"}, 2_000),
+    "CartPole-survival": ({"genesis": "fill"}, 20_000),
     "Pong-survival": ({}, 1_500),
     "Boxing-survival-fight": ({"seasons": []}, 1_500),
 }
