@@ -101,7 +101,9 @@ def pages() -> dict[Path, str]:
         keep_trailing_newline=True,
         autoescape=False,
     )
-    filler.globals.update(rows=rows, table=table, cell=cell, effect=effect, played=played, chosen=chosen)
+    filler.globals.update(
+        rows=rows, table=table, cell=cell, effect=effect, played=played, chosen=chosen
+    )
     filler.filters.update(number=number_text)
     return {
         HERE.parent / path.name: HEAD.format(path.name) + filler.get_template(path.name).render()
