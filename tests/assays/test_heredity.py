@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from primordia.assays.families import families
-from primordia.assays.heredity import PAIRS, heredity, price, slope
+from primordia.assays.families import LEAST, families
+from primordia.assays.heredity import heredity, price, slope
 from primordia.runs.lives import Lives
 from tests.assays.lives import COPY, FOUNDER, MUTANT, lives
 
@@ -60,10 +60,10 @@ def test_only_late_children_count() -> None:
 
 
 def test_a_slope_needs_points_of_different_x() -> None:
-    x = np.linspace(0, 1, PAIRS)
+    x = np.linspace(0, 1, LEAST)
     assert slope(x, 3 * x + 1) == pytest.approx(3)
     assert slope(x[1:], x[1:]) is None
-    assert slope(np.ones(PAIRS), x) is None
+    assert slope(np.ones(LEAST), x) is None
 
 
 @st.composite

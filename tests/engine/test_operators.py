@@ -8,6 +8,7 @@ import pytest
 
 import primordia
 from primordia.history.lineage import descent
+from primordia.history.pedigree import genomes
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests.history.test_lineage import assert_rebuilt
@@ -96,6 +97,16 @@ def test_a_fork_keeps_what_lived(run: Path, tmp_path: Path) -> None:
     assert_rebuilt(other.path)
     ages = [Archive(each).state["world.organisms.born.lo"] for each in (run, same.path)]
     np.testing.assert_array_equal(*ages)
+
+
+def test_a_shadow_has_the_recorded_notes_and_other_weights(run: Path) -> None:
+    """Notes that depend on lives or cells cannot be drawn again."""
+    opened = Archive(run)
+    rows = np.arange(len(opened.lives))[-40:]
+    recorded, redrawn = genomes(opened, rows), genomes(opened, rows, redrawn=True)
+    assert (recorded != redrawn).any(axis=1).all()
+    assert np.isfinite(redrawn).all()
+    assert redrawn.tobytes() == genomes(opened, rows, redrawn=True).tobytes()
 
 
 def test_the_host_lives_the_same(settings: dict[str, Any], whole: Lived) -> None:

@@ -7,6 +7,9 @@ import numpy as np
 from primordia.law.world import BirthCause
 from primordia.runs.lives import LATE, Lives
 
+LEAST = 10
+"""Fewest pairs of parent and child for a slope or a share."""
+
 
 @dataclass(frozen=True)
 class Families:

@@ -11,12 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from primordia.assays.families import Families, families
+from primordia.assays.families import LEAST, Families, families
 from primordia.runs.lives import LATE
 from primordia.runs.records import Records
-
-PAIRS = 10
-"""Fewest pairs of parent and child for a slope."""
 
 
 @dataclass(frozen=True)
@@ -25,7 +22,7 @@ class Pairs:
 
     pairs: int
     slope: float | None
-    """of the child's log lifespan on the parent's; None with fewer than PAIRS, or equal parents"""
+    """of the child's log lifespan on the parent's; None with fewer than LEAST, or equal parents"""
     as_long: float | None
     """share that live exactly as long as the parent"""
     longer: float | None
@@ -93,7 +90,7 @@ def _pairs(found: Families, which: np.ndarray) -> Pairs:
 
 def slope(x: np.ndarray, y: np.ndarray) -> float | None:
     """Return the slope of y on x by least squares; None for few points, or all of one x."""
-    if len(x) < PAIRS or np.ptp(x) == 0:
+    if len(x) < LEAST or np.ptp(x) == 0:
         return None
     return float(np.cov(x, y)[0, 1] / np.var(x, ddof=1))
 

@@ -10,14 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from primordia.assays.families import Families, families
+from primordia.assays.families import LEAST, Families, families
 from primordia.runs.lives import LATE, Lives
 from primordia.runs.records import Records
 
 BEST = 0.9
 """Quantile of lifespans from which a parent counts as good."""
-PAIRS = 10
-"""Fewest mutants, and fewest copies, for a share."""
 
 
 @dataclass(frozen=True)
@@ -79,7 +77,7 @@ def _of_world(world: int, lives: Lives, after: float) -> Threshold:
 def _share_as_long(found: Families, which: np.ndarray) -> float | None:
     as_long, known = found.as_long()
     count = int((known & which).sum())
-    return int((as_long & which).sum()) / count if count >= PAIRS else None
+    return int((as_long & which).sum()) / count if count >= LEAST else None
 
 
 def _ticks_per_death(lives: Lives, rows: np.ndarray) -> float | None:
