@@ -75,24 +75,23 @@ def _each(
 
 
 def _heredity_table(found: list[Any]) -> list[tuple[str, ...]]:
-    head = ("", "pairs", "slope", "exactly as long", "a tenth longer", "a third shorter")
+    kinds = ("copies", "mutants", "both")
+    words = {
+        "slope": "slope",
+        "as_long": "exactly as long",
+        "longer": "a tenth longer",
+        "shorter": "a third shorter",
+    }
+    counts = (f"{sum(getattr(each, kind).pairs for each in found):,}" for kind in kinds)
     rows = [
-        (
-            name,
-            f"{sum(each.pairs for each in pairs):,}",
-            *(
-                _spread(getattr(each, measure) for each in pairs)
-                for measure in ("slope", "as_long", "longer", "shorter")
-            ),
-        )
-        for name in ("copies", "mutants", "both")
-        for pairs in [[getattr(each, name) for each in found]]
+        (text, *(_spread(getattr(getattr(each, kind), name) for each in found) for kind in kinds))
+        for name, text in words.items()
     ]
     terms = [
-        (name, "", _spread(getattr(each, name) for each in found), "", "", "")
+        (name, "", "", _spread(getattr(each, name) for each in found))
         for name in ("selection", "transmission")
     ]
-    return [head, *rows, *terms]
+    return [("", *kinds), ("pairs", *counts), *rows, *terms]
 
 
 def _threshold_table(found: list[Any]) -> list[tuple[str, ...]]:
