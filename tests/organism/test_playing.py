@@ -9,8 +9,9 @@ import primordia
 from primordia.habitats.contract import JaxHabitat
 from primordia.habitats.on_host import OnHost
 from primordia.organism.evaluation import players_of
-from primordia.organism.games import Games, Players, play
+from primordia.organism.games import Games, Players, lifespans_in_games, play, stretches
 from primordia.organism.playing import in_jax
+from primordia.organism.playing.seats import Frozen, Manner
 from primordia.runs import loop
 from tests.worlds import MILL, config
 
@@ -41,9 +42,41 @@ def on_host(players: Players) -> Players:
     return players._replace(habitat=OnHost(players.habitat))
 
 
-@pytest.mark.parametrize("frozen", [False, True])
-def test_games_are_the_same_in_both(players: Players, frozen: bool) -> None:
+def some_frozen(players: Players) -> Frozen:
+    """Return that each third player keeps all its senses, and each fourth its memory."""
+    number = np.arange(len(players.genomes))[:, None]
+    return Frozen(np.tile(number % 3 == 0, (1, players.law.senses)), number % 4 == 0)
+
+
+def test_only_what_is_frozen_changes_a_game(players: Players) -> None:
+    frozen = some_frozen(players)
+    free, held = play(players, 2, 150), play(players, 2, 150, frozen=frozen)
+    whole = ~(frozen.senses.any(axis=1) | frozen.memory[:, 0])
+    np.testing.assert_array_equal(free.course[whole], held.course[whole])
+    assert (free.course[~whole] != held.course[~whole]).any()
+    spans = lifespans_in_games(players, 2, 150, frozen)
+    np.testing.assert_array_equal(spans, held.ticks)
+
+
+def test_watched_games_tell_what_brains_think_from(players: Players) -> None:
+    """The same in both habitats; memory is zero at the start, and the games are the same."""
+    watched = Manner(100, watched=True)
+    told = [list(stretches(each, 1, watched)) for each in (players, on_host(players))]
+    ours, theirs = (
+        [np.concatenate(part) for part in zip(*((s.playing, *s.met) for s in each), strict=True)]
+        for each in told
+    )
+    playing = ours[0][: len(theirs[0])]
+    np.testing.assert_array_equal(playing, theirs[0])
+    for mine, other in zip(ours[1:], theirs[1:], strict=True):
+        np.testing.assert_array_equal(mine[: len(playing)][playing], other[playing])
+    assert not ours[2][0].any()
+
+
+@pytest.mark.parametrize("freezes", [False, True])
+def test_games_are_the_same_in_both(players: Players, freezes: bool) -> None:
     """Few games last; the others leave the loop on the way."""
+    frozen = some_frozen(players) if freezes else None
     fused = play(players, 3, 150, frozen=frozen)
     same(fused, play(on_host(players), 3, 150, frozen=frozen))
     assert len(np.unique(fused.ticks)) > 3

@@ -20,6 +20,7 @@ from primordia.history.climate import PastClimate
 from primordia.history.lineage import rebuild_all
 from primordia.law.metabolism import Rates
 from primordia.organism.games import Games, Players, play
+from primordia.organism.playing.seats import Frozen
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
 from primordia.runs.records import Records
@@ -130,10 +131,11 @@ def judged(
     """Let players of a run play games side by side, called by these numbers; see `evaluate`."""
     if games < 1 or ticks < 1:
         raise InputError("evaluate needs at least one game of at least one tick")
-    players = own._replace(habitat=_changed(run.config, own.habitat, habitat))
+    players = own._replace(habitat=changed(run.config, own.habitat, habitat))
     script = play(own, 1, ticks) if senses == "ignored" else None
     count = 1 if players.deterministic else games
-    play_all = partial(play, games=count, frozen=senses == "frozen", script=script)
+    frozen = all_senses(players) if senses == "frozen" else None
+    play_all = partial(play, games=count, frozen=frozen, script=script)
     lived, original = play_all(players, ticks=ticks), _in_the_original(players)
     if original is not None:
         episode = original.habitat.episode or ticks
@@ -158,18 +160,28 @@ def players_of(run: Records, organisms: Sequence[tuple[int, int]]) -> Players:
     return Players(run.law, run.config.build_habitat(), genomes, keys, rates)
 
 
-def _changed(config: Config, before: AnyHabitat, changes: Mapping[str, Any]) -> AnyHabitat:
-    """Return a run's habitat with some settings changed."""
+def all_senses(players: Players) -> Frozen:
+    """Return that all senses of players stay as they are at the start, and no memory does."""
+    count = len(players.genomes)
+    return Frozen(np.ones((count, players.law.senses), bool), np.zeros((count, 1), bool))
+
+
+def changed(config: Config, before: AnyHabitat, changes: Mapping[str, Any]) -> AnyHabitat:
+    """Return a run's habitat with some settings changed.
+
+    Raises:
+        InputError: the habitat has no such setting, or brains do not fit the changed habitat.
+    """
     known = list(setting_fields(type(before)))
     for name in changes:
         if known and name not in {each.partition(".")[0] for each in known}:
             hint = did_you_mean(name, known)
-            raise InputError(f"evaluate: this run's habitat has no setting {name!r}{hint}")
+            raise InputError(f"this run's habitat has no setting {name!r}{hint}")
     values = replaced(merged(config.habitat, dict(changes)), NONE, None)
     habitat = config.model_copy(update={"habitat": values}).build_habitat()
     if (habitat.senses_size, habitat.action) != (before.senses_size, before.action):
         raise InputError(
-            f"evaluate: with changed {', '.join(changes)} the habitat has {habitat.senses_size} senses"
+            f"with changed {', '.join(changes)} the habitat has {habitat.senses_size} senses"
             f" and {habitat.action.size} actions; the brain is made for {before.senses_size} senses and"
             f" {before.action.size} actions"
         )

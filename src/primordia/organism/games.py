@@ -11,7 +11,7 @@ from primordia.habitats.contract import AnyHabitat
 from primordia.law.law import Law
 from primordia.law.metabolism import Rates
 from primordia.organism.playing import in_jax, on_host
-from primordia.organism.playing.seats import Seats, Stretch
+from primordia.organism.playing.seats import Frozen, Manner, Seats, Stretch
 from primordia.random.wide import Wide
 
 AT_ONCE = 128
@@ -75,7 +75,7 @@ def play(
     games: int,
     ticks: int,
     *,
-    frozen: bool = False,
+    frozen: Frozen | None = None,
     script: Games | None = None,
     at_once: int | None = None,
 ) -> Games:
@@ -85,7 +85,7 @@ def play(
         players: the organisms.
         games: number of games of each player.
         ticks: length at which a game is cut.
-        frozen: whether senses stay as they are at the start.
+        frozen: what of each player stays as it is at the start of a game.
         script: earlier games of the same players; their actions are repeated, whatever is perceived.
         at_once: games played side by side.
     """
@@ -93,28 +93,43 @@ def play(
     for first in range(0, len(players.genomes), size):
         some = slice(first, first + size)
         part_of_script = script and script._replace(actions=script.actions[some])
-        parts.append(_play_at_once(players.take(some), games, ticks, frozen, part_of_script))
+        part_of_frozen = frozen and frozen.take(some)
+        parts.append(
+            _play_at_once(players.take(some), games, ticks, part_of_frozen, part_of_script)
+        )
     *arrays, actions = zip(*parts, strict=True)
     return Games._make([*map(np.concatenate, arrays), list(chain.from_iterable(actions))])
 
 
 def lifespans(players: Players, ticks: int) -> np.ndarray:
     """Return the ticks that each player lives in one game, int64 (K,), cut at a length."""
+    return lifespans_in_games(players, 1, ticks)[:, 0]
+
+
+def lifespans_in_games(
+    players: Players, games: int, ticks: int, frozen: Frozen | None = None
+) -> np.ndarray:
+    """Return the ticks that each player lives in a number of games, int64 (K, E), cut at a length."""
     at_once = AT_ONCE if players.habitat.kind == "host" else AT_ONCE_IN_JAX
-    parts = (players.take(slice(k, k + at_once)) for k in range(0, len(players.genomes), at_once))
-    # Part by part, since games keep all actions of their players.
-    return np.concatenate([play(part, 1, ticks, at_once=at_once).ticks[:, 0] for part in parts])
+    size, lived = max(at_once // games, 1), []
+    for first in range(0, len(players.genomes), size):
+        # Part by part, since games keep all actions of their players.
+        some = slice(first, first + size)
+        part = frozen and frozen.take(some)
+        found = play(players.take(some), games, ticks, frozen=part, at_once=at_once)
+        lived.append(found.ticks)
+    return np.concatenate(lived)
 
 
 def _play_at_once(
-    players: Players, games: int, ticks: int, frozen: bool, script: Games | None
+    players: Players, games: int, ticks: int, frozen: Frozen | None, script: Games | None
 ) -> Games:
     """Play all games at once; the games of one player are adjacent."""
     count = len(players.genomes) * games
     length, food = np.zeros(count, np.int64), np.zeros(count)
     course, factor = np.zeros(count, np.uint64), np.uint64(1)
     over, actions = np.zeros(count, bool), []
-    for stretch in _stretches(players, games, ticks, frozen, script):
+    for stretch in stretches(players, games, Manner(ticks, frozen), script):
         playing = stretch.playing
         length += playing.sum(axis=0)
         if stretch.food is not None:
@@ -132,19 +147,20 @@ def _play_at_once(
     return Games._make([*results, [each[:ticks] for each, ticks in taken]])
 
 
-def _stretches(
-    players: Players, games: int, ticks: int, frozen: bool, script: Games | None
+def stretches(
+    players: Players, games: int, manner: Manner, script: Games | None = None
 ) -> Iterator[Stretch]:
-    """Seat each player for each of its games, and play."""
+    """Seat each of K players for each of its games, and play them in the manner given for each player."""
     law, habitat = players.law, players.habitat
     player = np.repeat(np.arange(len(players.genomes)), games)
     genomes, keys, rates = players.take(player)[2:]
     game = np.tile(np.arange(games, dtype=np.int32), len(players.genomes))
     seated = Seats(genomes, keys, game, rates)
     repeated = None if script is None else lambda tick: script.actions_at(tick)[player]
+    manner = manner._replace(frozen=manner.frozen and manner.frozen.take(player), script=repeated)
     if habitat.kind == "host":
-        return on_host.stretches(law, habitat, seated, ticks, frozen, repeated)
-    return in_jax.stretches(law, habitat, seated, ticks, frozen, repeated)
+        return on_host.stretches(law, habitat, seated, manner)
+    return in_jax.stretches(law, habitat, seated, manner)
 
 
 def _marks(stretch: Stretch) -> np.ndarray:

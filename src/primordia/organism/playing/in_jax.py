@@ -1,6 +1,7 @@
 """Games in a habitat in JAX, played many ticks at a time in one compiled loop."""
 
 from collections.abc import Iterator
+from functools import partial
 from typing import Any, NamedTuple
 
 import jax
@@ -15,7 +16,15 @@ from primordia.law.law import Law
 from primordia.law.life import Vitals, judge
 from primordia.law.metabolism import Rates
 from primordia.organism.mind import Mind, think
-from primordia.organism.playing.seats import Script, Seats, Stretch, begun, mark
+from primordia.organism.playing.seats import (
+    Frozen,
+    Manner,
+    Seats,
+    Stretch,
+    Thinking,
+    begun,
+    mark,
+)
 from primordia.random.wide import Wide, wide
 
 STRETCH = 64
@@ -31,8 +40,9 @@ class _Table(NamedTuple):
 
     mind: Mind
     rates: Rates
+    frozen: Frozen | None
     first: Array | None
-    """the senses at the start, float32 (N, S), if senses stay as they are then"""
+    """the senses at the start, float32 (N, S), if any stays as it is then"""
     bodies: Bodies
     memory: Array
     vitals: Vitals
@@ -44,34 +54,38 @@ def stretches(
     law: Law,
     habitat: JaxHabitat,
     seated: Seats,
-    ticks: int,
-    frozen: bool,
-    script: Script | None,
+    manner: Manner,
 ) -> Iterator[Stretch]:
     """Play games, STRETCH ticks at a time; see `games.play`."""
     count = len(seated.genomes)
     rows = np.arange(count)
-    table = _opened(law, habitat, _padded(seated, 1 << (count - 1).bit_length()), count, frozen)
-    advance = shared(_advance, law, habitat)
-    for begin in range(0, ticks, STRETCH):
+    seats, frozen = _padded((seated, manner.frozen), 1 << (count - 1).bit_length())
+    table = _opened(law, habitat, seats, frozen, count)
+    advance, script = shared(_advance, law, habitat, manner.watched), manner.script
+    for begin in range(0, manner.ticks, STRETCH):
         numbers, size = np.arange(begin + 1, begin + STRETCH + 1), len(table.alive)
         actions = script and np.stack([_padded(script(int(tick))[rows], size) for tick in numbers])
-        table, lived = advance(table, (wide(numbers[:, None]), numbers <= ticks, actions))
+        now = wide(numbers[:, None]), numbers <= manner.ticks, actions
+        table, lived = advance(table, now)
         alive = np.asarray(table.alive)[: len(rows)]
-        shown = [each if each is None else _in_full(each, rows, count) for each in lived]
-        yield Stretch._make([*shown, np.isin(np.arange(count), rows[alive])])
+        shown = jax.tree.map(partial(_in_full, rows=rows, count=count), lived)
+        playing, action, food, marks, met = shown
+        goes_on = np.isin(np.arange(count), rows[alive])
+        yield Stretch(playing, action, food, marks, goes_on, met)
         if 0 < FEWER * alive.sum() <= size > FEWEST:
             rows = rows[alive]
             table = _left(table, _padded(np.flatnonzero(alive), size // FEWER), len(rows))
 
 
-def _opened(law: Law, habitat: JaxHabitat, seated: Seats, count: int, frozen: bool) -> _Table:
+def _opened(
+    law: Law, habitat: JaxHabitat, seated: Seats, frozen: Frozen | None, count: int
+) -> _Table:
     """Return the table at the start of `count` games; further ones are padding."""
     mind, memory, vitals, words = shared(begun, law, habitat.words)(seated)
     bodies = shared(fresh, habitat)(words)
-    first = shared(type(habitat).sense, habitat)(bodies) if frozen else None
+    first = None if frozen is None else shared(type(habitat).sense, habitat)(bodies)
     alive = np.arange(len(seated.genomes)) < count
-    return _Table(mind, seated.rates, first, bodies, memory, vitals, jnp.asarray(alive))
+    return _Table(mind, seated.rates, frozen, first, bodies, memory, vitals, jnp.asarray(alive))
 
 
 def _padded(tree: Any, size: int) -> Any:
@@ -101,24 +115,29 @@ def _left(table: _Table, index: Array, count: int) -> _Table:
 def _advance(
     law: Law,
     habitat: JaxHabitat,
+    watched: bool,
     table: _Table,
     ticks: tuple[Wide, Array, Array | None],
 ) -> tuple[_Table, tuple]:
     """Play ticks, T in a loop: their numbers (T, 1), whether they count (T,), and actions if given."""
-    mind, rates, first, *own = table
+    mind, rates, frozen, first, *own = table
 
     def play(own: tuple, now: tuple[Wide, Array, Array | None]) -> tuple[tuple, tuple]:
         bodies, memory, vitals, alive = own
         tick, counts, action = now
         senses, faulty = habitat.sense(bodies), jnp.zeros_like(alive)
+        met = Thinking(senses, memory) if watched else None
         if action is None:
-            seen = senses if first is None else first
-            memory, action, faulty = think(law, mind, memory, seen, tick)
+            seen, kept = senses, memory
+            if frozen is not None and first is not None:
+                seen = jnp.where(frozen.senses, first, senses)
+                kept = jnp.where(frozen.memory, 0, memory)
+            memory, action, faulty = think(law, mind, kept, seen, tick)
         bodies, outcome = habitat.step(bodies, action)
         vitals, cause = judge(law, vitals, faulty, bodies, outcome, rates)
         playing = alive & counts
-        lived = playing, action, outcome.food, mark(senses)
+        lived = playing, action, outcome.food, mark(senses), met
         return (bodies, memory, vitals, alive & ~(playing & (cause >= 0))), lived
 
     own_after, lived = lax.scan(play, tuple(own), ticks)
-    return _Table(mind, rates, first, *own_after), lived
+    return _Table(mind, rates, frozen, first, *own_after), lived

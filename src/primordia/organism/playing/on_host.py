@@ -11,7 +11,7 @@ from primordia.habitats.contract import HostHabitat
 from primordia.law.law import Law
 from primordia.law.life import judge
 from primordia.organism.mind import think
-from primordia.organism.playing.seats import Script, Seats, Stretch, begun, mark
+from primordia.organism.playing.seats import Manner, Seats, Stretch, Thinking, begun, mark
 from primordia.random.wide import wide
 
 
@@ -19,29 +19,32 @@ def stretches(
     law: Law,
     habitat: HostHabitat,
     seated: Seats,
-    ticks: int,
-    frozen: bool,
-    script: Script | None,
+    manner: Manner,
 ) -> Iterator[Stretch]:
     """Play games, a tick at a time; see `games.play`."""
     mind, memory, vitals, words = shared(begun, law, habitat.words)(seated)
-    rates, count = seated.rates, len(words)
+    rates, count, frozen = seated.rates, len(words), manner.frozen
     think_tick, judge_tick = shared(think, law), shared(judge, law)
     alive, faulty = np.ones(count, bool), jnp.zeros(count, bool)
     habitat.open(count)
     with closing(habitat):
         senses = first = np.array(habitat.reset(np.arange(count), np.asarray(words)))
-        for tick in range(1, ticks + 1):
-            if script is None:
-                memory, chosen, faulty = think_tick(
-                    mind, memory, first if frozen else senses, wide([tick])
-                )
+        for tick in range(1, manner.ticks + 1):
+            met = (
+                Thinking(np.array(senses)[None], np.asarray(memory)[None])
+                if manner.watched
+                else None
+            )
+            if manner.script is None:
+                seen = senses if frozen is None else np.where(frozen.senses, first, senses)
+                kept = memory if frozen is None else np.where(frozen.memory, 0, memory)
+                memory, chosen, faulty = think_tick(mind, kept, seen, wide([tick]))
                 action = np.asarray(chosen)
             else:
-                action = script(tick)
+                action = manner.script(tick)
             playing, marked = alive, mark(np.ascontiguousarray(senses, np.float32))
             senses, outcome = habitat.step(action, playing)
             vitals, cause = judge_tick(vitals, faulty, senses, outcome, rates)
             alive = playing & (np.asarray(cause) < 0)
             food = None if outcome.food is None else np.array(outcome.food)[None]
-            yield Stretch(playing[None], action[None].copy(), food, marked[None], alive)
+            yield Stretch(playing[None], action[None].copy(), food, marked[None], alive, met)

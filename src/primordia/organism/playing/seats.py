@@ -22,6 +22,31 @@ Script = Callable[[int], np.ndarray]
 """The actions of all games at a tick: int32 (N,) or float32 (N, A)"""
 
 
+class Frozen(NamedTuple):
+    """What of N players stays as it is when a game begins."""
+
+    senses: np.ndarray
+    """bool (N, S)"""
+    memory: np.ndarray
+    """bool (N, 1): of a brain that remembers, all zeros"""
+
+    def take(self, index: Any) -> "Frozen":
+        """Return the rows at an index."""
+        return Frozen(self.senses[index], self.memory[index])
+
+
+class Manner(NamedTuple):
+    """How N games are played."""
+
+    ticks: int
+    """length at which they are cut"""
+    frozen: Frozen | None = None
+    script: Script | None = None
+    """actions that are repeated, whatever is perceived"""
+    watched: bool = False
+    """whether stretches tell what brains think from"""
+
+
 class Stretch(NamedTuple):
     """T ticks of N games."""
 
@@ -35,6 +60,17 @@ class Stretch(NamedTuple):
     """uint32 (T, N, 2): a hash of the senses when a tick begins"""
     alive: np.ndarray
     """bool (N,): which games go on after the last tick"""
+    met: "Thinking | None" = None
+    """if the games are watched"""
+
+
+class Thinking(NamedTuple):
+    """What N brains think from in T ticks, before anything is frozen."""
+
+    senses: Any
+    """float32 (T, N, S)"""
+    memory: Any
+    """float32 (T, N, M)"""
 
 
 class Seats(NamedTuple):
