@@ -1,10 +1,16 @@
 """The commands `primordia assay ...`, on a run that lived."""
 
 import json
+from pathlib import Path
 
 import pytest
 
 import primordia
+from primordia.assays.ablate import ablate
+from primordia.assays.effects import effects
+from primordia.assays.garden import garden
+from primordia.assays.line import line
+from primordia.assays.subjects import of_run
 from primordia.runs import loop
 from tests.commands import here
 from tests.worlds import MEADOW, config
@@ -44,3 +50,52 @@ def test_the_table_names_its_rows(name: str, words: str, run: primordia.Run) -> 
     assert done.returncode == 0
     assert words in done.stdout
     assert "3 worlds" in done.stdout
+
+
+@pytest.mark.parametrize("name", ["effects", "ablate", "garden", "line"])
+def test_assays_of_lives_tell_what_python_returns(
+    name: str, poles: primordia.Run, tmp_path: Path
+) -> None:
+    options = ["--games", 1, "--ticks", 60, "--out", tmp_path]
+    options += {"effects": ["--mutants", 2, "--scale", 0.1], "garden": ["--each", 2]}.get(name, [])
+    told = here("assay", name, poles.path, *options, "--json")
+    assert told.returncode == 0, told.stderr
+    run, subjects = poles.opened(), of_run(poles.opened())
+    champion = poles.oldest()
+    expected = {
+        "effects": lambda: effects(subjects, (0.1,), count=2, games=1, ticks=60),
+        "ablate": lambda: ablate(subjects, games=1, ticks=60),
+        "garden": lambda: garden(run, each=2, games=1, ticks=60),
+        "line": lambda: [line(run, champion.id, champion.world, games=1, ticks=60)],
+    }[name]()
+    assert json.loads(told.stdout) == {str(poles.path): [each.to_dict() for each in expected]}
+    assert (tmp_path / f"{name}.png").stat().st_size > 5000
+    table = here("assay", name, poles.path, *options[:4])
+    assert str(poles.path) in table.stdout
+
+
+def test_any_genome_file_can_be_assayed(poles: primordia.Run, tmp_path: Path) -> None:
+    file = tmp_path / "some.safetensors"
+    poles.export(file, 3, 4)
+    options = ("--games", 1, "--ticks", 60, "--json")
+    told = here("assay", "ablate", file, 1, "--angle_limit", 5.0, *options)
+    found = json.loads(told.stdout)[str(file)]
+    assert {(each["organism"], each["world"]) for each in found} == {(1, 0)}
+    whole = json.loads(here("assay", "ablate", file, *options).stdout)[str(file)]
+    assert {each["organism"] for each in whole} == {0, 1}
+
+
+def test_wrong_words_are_one_line(poles: primordia.Run, tmp_path: Path) -> None:
+    file = tmp_path / "some.safetensors"
+    poles.export(file, 3)
+    for words, message in (
+        (("effects", file, "--world", 1), "a genome file has no worlds"),
+        (("effects", poles.path, "--task", "CartPole-survival"), "leave out --task"),
+        (("effects", poles.path, 10**6), "no organism"),
+        (("line", file), "a genome file holds no ancestors"),
+        (("ablate", poles.path, "--wind", 3), "this run's habitat has no setting 'wind'"),
+    ):
+        done = here("assay", *words)
+        assert done.returncode == 2
+        assert message in done.stderr
+        assert done.stderr.count("\n") == 1

@@ -10,8 +10,9 @@ import pytest
 from primordia.errors import Trouble
 from primordia.law.metabolism import ONE
 from primordia.law.world import Cause
-from primordia.organism.evaluation import evaluate, players_of
+from primordia.organism.evaluation import evaluate
 from primordia.organism.games import play
+from primordia.organism.players import players_of
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import loop
 from primordia.runs.archive import Archive

@@ -8,8 +8,8 @@ import pytest
 import primordia
 from primordia.habitats.contract import JaxHabitat
 from primordia.habitats.on_host import OnHost
-from primordia.organism.evaluation import players_of
 from primordia.organism.games import Games, Players, lifespans_in_games, play, stretches
+from primordia.organism.players import players_of
 from primordia.organism.playing import in_jax
 from primordia.organism.playing.seats import Frozen, Manner
 from primordia.runs import loop

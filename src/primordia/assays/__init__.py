@@ -1,1 +1,1 @@
-"""Assays: what is inherited in a run, and what limits its evolution."""
+"""Assays: what is inherited in a run, what limits its evolution, and what a genome is worth."""

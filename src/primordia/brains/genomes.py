@@ -3,11 +3,12 @@
 A file holds one float32 tensor (K, *shape) for each block of the brain, in the blocks' order.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
-from safetensors import SafetensorError
+from safetensors import SafetensorError, safe_open
 from safetensors.numpy import load_file, save
 
 from primordia import files
@@ -46,15 +47,32 @@ def read(paths: Sequence[str], layout: Layout) -> np.ndarray:
     return genomes
 
 
-def _read(path: Path, layout: Layout) -> np.ndarray:
+def about(path: Path) -> dict[str, str]:
+    """Return what a file says of its genomes, such as their `task`; see `write`.
+
+    Raises:
+        InputError: the file cannot be read, or is no genome file.
+    """
+    with _opening(path), safe_open(path, "numpy") as opened:
+        return opened.metadata() or {}
+
+
+@contextmanager
+def _opening(path: Path) -> Iterator[None]:
+    """Raise InputError instead of what goes wrong while a file is read."""
     if not path.is_file():  # to open a pipe might take for ever
         raise InputError(f"there is no genome file {path}")
     try:
-        blocks = load_file(path)
+        yield
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror or error}") from None
     except (SafetensorError, KeyError, TypeError, ValueError) as error:
         raise InputError(f"{path} is not a safetensors file: {error}") from None
+
+
+def _read(path: Path, layout: Layout) -> np.ndarray:
+    with _opening(path):
+        blocks = load_file(path)
     shapes = {name: block.shape[1:] for name, block in blocks.items()}
     if shapes != dict(layout.blocks):
         raise InputError(

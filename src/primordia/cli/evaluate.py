@@ -8,6 +8,7 @@ import click
 
 from primordia.cli.cache import cache_option
 from primordia.cli.flags import HabitatCommand, run_argument, trust_option
+from primordia.cli.table import show_table, spread
 from primordia.errors import InputError
 
 if TYPE_CHECKING:
@@ -106,25 +107,19 @@ def evaluation_text(result: "Evaluation", changes: dict[str, Any]) -> str:
 
 def show_standings(standings: "list[Standing]", title: str) -> None:
     """Print a row for each group of organisms, and how to read it."""
-    from rich import box
-    from rich.console import Console
-    from rich.table import Table
-
     from primordia.comparison.controls import OUTCOMES
-    from primordia.comparison.tables import spread_text
 
     outcomes = [name for name in OUTCOMES if standings[0].over_worlds(name)]
-    shown = Table("", box=box.SIMPLE_HEAD, pad_edge=False)
-    for name in ("organisms", "chosen from", "games each", *outcomes):
-        shown.add_column(name, justify="right")
+    rows = []
     for each in standings:
         values = each.to_dict()
         chosen = f"{each.chosen_from:,}" if each.chosen_from > 1 else "-"
         numbers = f"{values['organisms']:,}", chosen, f"{values['games']:,}"
-        spreads = (spread_text(each.by_world(name).values()) for name in outcomes)
-        shown.add_row(each.name, *numbers, *spreads)
-    console = Console(highlight=False, soft_wrap=True)
-    console.print(title, shown, *_notes(standings), sep="\n")
+        rows.append(
+            (each.name, *numbers, *(spread(each.by_world(name).values()) for name in outcomes))
+        )
+    head = ("", "organisms", "chosen from", "games each", *outcomes)
+    show_table(title, head, rows, _notes(standings))
 
 
 def _notes(standings: "list[Standing]") -> list[str]:

@@ -9,18 +9,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-import jax
-import jax.numpy as jnp
 import numpy as np
 
 from primordia.errors import InputError
-from primordia.history.climate import PastClimate
-from primordia.history.founders import founders
-from primordia.law.metabolism import Rates
-from primordia.organism.evaluation import GAMES, TICKS, Evaluation, Senses, judged, players_of
+from primordia.organism.evaluation import GAMES, TICKS, Evaluation, Senses, judged
 from primordia.organism.games import Players, lifespans
-from primordia.random.keys import Purpose, stream
-from primordia.random.wide import wide
+from primordia.organism.players import evaluation_keys, founders_of, players_of
 from primordia.runs.records import Records
 
 FOUNDERS = 500
@@ -172,20 +166,12 @@ def _recorded(run: Records, name: str, chosen_from: int, rows: np.ndarray) -> Gr
 
 def _founders(run: Records, worlds: np.ndarray, counts: np.ndarray) -> list[Group]:
     """Return the longest-lived of `counts` founders for each of these worlds, and some as they come."""
-    world, number = np.repeat(worlds, counts), np.concatenate([np.arange(n) for n in counts])
-    genomes = [founders(run, *each) for each in zip(worlds.tolist(), counts.tolist(), strict=True)]
-    climate = PastClimate(run).of_worlds(world, run.ends[world])
-    everyone = Players(
-        run.law,
-        run.config.build_habitat(),
-        np.concatenate(genomes),
-        stream(wide(run.world_seeds[world]), Purpose.CONTROL, wide(number)),
-        Rates.of(jax.tree.map(jnp.asarray, climate)),
-    )
+    world, everyone = founders_of(run, worlds, counts)
+    number = np.concatenate([np.arange(count) for count in counts])
     lived = lifespans(everyone, run.config.saturation_ticks)
     places = [np.flatnonzero(world == each) for each in worlds]
     longest = [here[len(here) - 1 - np.argmax(lived[here][::-1])] for here in places]
-    keys = stream(wide(run.world_seeds[world]), Purpose.EVALUATION, wide(number))
+    keys = evaluation_keys(run, world, number)
 
     def group(name: str, chosen_from: int, rows: np.ndarray) -> Group:
         numbers = list(zip(number[rows].tolist(), world[rows].tolist(), strict=True))

@@ -9,20 +9,14 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Literal, NamedTuple
 
-import jax
-import jax.numpy as jnp
 import numpy as np
 
 from primordia.config import Config
 from primordia.errors import InputError
 from primordia.habitats.contract import AnyHabitat
-from primordia.history.climate import PastClimate
-from primordia.history.lineage import rebuild_all
-from primordia.law.metabolism import Rates
 from primordia.organism.games import Games, Players, play
+from primordia.organism.players import players_of
 from primordia.organism.playing.seats import Frozen
-from primordia.random.keys import Purpose, stream
-from primordia.random.wide import wide
 from primordia.runs.records import Records
 from primordia.settings.fields import setting_fields
 from primordia.settings.tables import NONE, did_you_mean, merged, replaced
@@ -144,20 +138,6 @@ def judged(
         Evaluation(organism, world, senses, lived.of_player(k), original and whole.of_player(k))
         for k, (organism, world) in enumerate(numbers)
     ]
-
-
-def players_of(run: Records, organisms: Sequence[tuple[int, int]]) -> Players:
-    """Return organisms, by birth number and world, as players in the habitat of their own task.
-
-    Raises:
-        InputError: no such organism was born.
-    """
-    genomes = rebuild_all(run, organisms)
-    lives = run.lives.take(np.array([run.lives.row(*each) for each in organisms]))
-    climate = PastClimate(run).of_lives(lives, run.ends[lives.world])
-    rates = Rates.of(jax.tree.map(jnp.asarray, climate))
-    keys = stream(wide(run.world_seeds[lives.world]), Purpose.EVALUATION, wide(lives.id))
-    return Players(run.law, run.config.build_habitat(), genomes, keys, rates)
 
 
 def all_senses(players: Players) -> Frozen:

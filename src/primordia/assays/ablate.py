@@ -1,0 +1,84 @@
+"""What an organism needs: it plays its games again without senses, memory, or a block of its weights."""
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from primordia.assays.subjects import GAMES, TICKS, Subjects
+from primordia.organism.games import lifespans_in_games
+from primordia.organism.playing.seats import Frozen
+
+
+@dataclass(frozen=True)
+class Ablation:
+    """An organism's life without one thing."""
+
+    without: str
+    organism: int
+    world: int
+    intact: float
+    """mean ticks that the whole organism lived in its games"""
+    lifespan: float
+    """mean ticks that it lived in the same games without the thing"""
+
+    @property
+    def kept(self) -> float:
+        """Share of the intact life."""
+        return self.lifespan / self.intact
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain values for JSON."""
+        return {**asdict(self), "kept": self.kept}
+
+
+class _Loss(NamedTuple):
+    """What K organisms lose."""
+
+    name: str
+    frozen: Frozen
+    genomes: np.ndarray
+    """float32 (K, P)"""
+
+
+def ablate(
+    subjects: Subjects, each_sense: bool = False, games: int = GAMES, ticks: int = TICKS
+) -> list[Ablation]:
+    """Let each subject live without its senses, its memory, and each block of its weights.
+
+    Senses without change are those at the start of each game. A memory that is lost is zero in each tick.
+    Weights that are lost are zero.
+
+    Args:
+        subjects: the organisms.
+        each_sense: whether each sense is also frozen alone.
+        games: games of each; one where nothing is drawn at random.
+        ticks: length at which a game is cut.
+    """
+    number = subjects.games(games)
+    intact = lifespans_in_games(subjects.players, number, ticks).mean(axis=1)
+    found = []
+    for loss in _losses(subjects, each_sense):
+        players = subjects.players._replace(genomes=loss.genomes)
+        spans = lifespans_in_games(players, number, ticks, loss.frozen).mean(axis=1)
+        columns = (subjects.organism, subjects.world, intact, spans)
+        rows = zip(*(column.tolist() for column in columns), strict=True)
+        found += [Ablation(loss.name, *row) for row in rows]
+    return found
+
+
+def _losses(subjects: Subjects, each_sense: bool) -> Iterator[_Loss]:
+    genomes, law = subjects.players.genomes, subjects.law
+    count, layout = len(genomes), law.heredity.layout
+    nothing = Frozen(np.zeros((count, law.senses), bool), np.zeros((count, 1), bool))
+    yield _Loss("senses", nothing._replace(senses=~nothing.senses), genomes)
+    if law.memory:
+        yield _Loss("memory", nothing._replace(memory=~nothing.memory), genomes)
+    for block in layout.names:
+        kept = layout.split(genomes)
+        kept[block] = np.zeros_like(kept[block])
+        yield _Loss(f"{block} weights", nothing, layout.join(kept))
+    for sense in range(law.senses if each_sense else 0):
+        senses = np.tile(np.arange(law.senses) == sense, (count, 1))
+        yield _Loss(f"sense {sense}", nothing._replace(senses=senses), genomes)

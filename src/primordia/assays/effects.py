@@ -1,0 +1,164 @@
+"""What mutations do: mutants of an organism live the parent's own games, by each mutation.
+
+A mutant plays the games that its parent plays, with the same random numbers. In a game without chance a
+genome has one lifespan, so `as long` then means that the mutation changed nothing that mattered.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+
+from primordia.assays.mutants import Operator, moments_of, mutants, own_operator
+from primordia.assays.subjects import GAMES, TICKS, Subjects
+from primordia.mutations.blocks import FounderBlock
+from primordia.mutations.calibrated import Calibrated
+from primordia.mutations.contract import PURPOSES, Draws
+from primordia.mutations.gaussian import Block, Gaussian
+from primordia.organism.games import lifespans_in_games
+from primordia.random.keys import Purpose, stream, streams
+from primordia.random.wide import wide
+
+MUTANTS = 24
+"""Mutants of an organism by each mutation, if not told otherwise."""
+SCALES = (0.001, 0.003, 0.01, 0.03, 0.1, 0.3)
+"""Standard deviations of noise, as shares of that of founders' weights, if not told otherwise."""
+FOUNDERS = 256
+"""Founders whose weights tell their standard deviation."""
+
+
+@dataclass(frozen=True)
+class Effect:
+    """What one mutation does to one organism."""
+
+    mutation: str
+    organism: int
+    world: int
+    lifespan: float
+    """mean ticks that the organism lived in its games"""
+    mutants: np.ndarray
+    """mean ticks that each mutant lived in the same games, float64 (M,)"""
+
+    @property
+    def as_long(self) -> float:
+        """Share of the mutants that lived exactly as long."""
+        return float((self.mutants == self.lifespan).mean())
+
+    @property
+    def longer(self) -> float:
+        """Share that lived longer."""
+        return float((self.mutants > self.lifespan).mean())
+
+    @property
+    def tenth_longer(self) -> float:
+        """Share that lived longer by a tenth or more."""
+        return float((self.mutants >= 1.1 * self.lifespan).mean())
+
+    @property
+    def third_shorter(self) -> float:
+        """Share that lived shorter by a third or more."""
+        return float((self.mutants <= self.lifespan * 2 / 3).mean())
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain values for JSON."""
+        return {
+            "mutation": self.mutation,
+            "organism": self.organism,
+            "world": self.world,
+            "lifespan": self.lifespan,
+            "mutants": len(self.mutants),
+            "as_long": self.as_long,
+            "longer": self.longer,
+            "tenth_longer": self.tenth_longer,
+            "third_shorter": self.third_shorter,
+            "median": float(np.median(self.mutants)),
+            "longest": float(self.mutants.max()),
+        }
+
+
+def effects(
+    subjects: Subjects,
+    scales: Sequence[float] = SCALES,
+    differs: Sequence[float] = (),
+    count: int = MUTANTS,
+    games: int = GAMES,
+    ticks: int = TICKS,
+) -> list[Effect]:
+    """Let mutants of each subject live, by its run's own mutation and by others.
+
+    Args:
+        subjects: the parents.
+        scales: of Gaussian noise on all weights, as shares of the standard deviation of founders' weights
+            in each block.
+        differs: of calibrated mutations; see `mutations.calibrated`. A parent remembers one game.
+        count: mutants of each parent by each mutation.
+        games: games of each genome; one where nothing is drawn at random.
+        ticks: length at which a game is cut.
+
+    Raises:
+        InputError: the run's own mutation leaves children as they are.
+    """
+    operators = [own_operator(subjects), *_gaussian(subjects, scales)]
+    operators += _calibrated(subjects, differs)
+    number = subjects.games(games)
+    lived = lifespans_in_games(subjects.players, number, ticks).mean(axis=1)
+    return [
+        effect
+        for operator in operators
+        for effect in _of_operator(subjects, operator, lived, count, number, ticks)
+    ]
+
+
+def _of_operator(
+    subjects: Subjects, operator: Operator, lived: np.ndarray, count: int, games: int, ticks: int
+) -> Iterable[Effect]:
+    rule, parents = operator.mutation.moments, len(lived)
+    remembered = None if rule is None else moments_of(subjects.players, rule, ticks)
+    genomes = mutants(subjects, operator, count, remembered)
+    same = subjects.players.take(np.repeat(np.arange(parents), count))
+    spans = lifespans_in_games(
+        same._replace(genomes=genomes.reshape(parents * count, -1)), games, ticks
+    )
+    of_each = spans.mean(axis=1).reshape(parents, count)
+    numbers = zip(subjects.organism.tolist(), subjects.world.tolist(), strict=True)
+    for (organism, world), own, theirs in zip(numbers, lived.tolist(), of_each, strict=True):
+        yield Effect(operator.name, organism, world, own, theirs)
+
+
+def _gaussian(subjects: Subjects, scales: Sequence[float]) -> list[Operator]:
+    deviations = founder_deviations(subjects)
+    return [
+        Operator.of(
+            f"scale {scale:g}",
+            Gaussian(
+                probability=1.0,
+                blocks={name: Block(scale=scale * own) for name, own in deviations.items()},
+            ),
+            subjects,
+        )
+        for scale in scales
+    ]
+
+
+def _calibrated(subjects: Subjects, differs: Sequence[float]) -> list[Operator]:
+    deviations = founder_deviations(subjects)
+    blocks = {name: FounderBlock(founder_scale=own) for name, own in deviations.items()}
+    return [
+        Operator.of(
+            f"differs {value:g}",
+            Calibrated(probability=1.0, differs=value, blocks=blocks),
+            subjects,
+        )
+        for value in differs
+    ]
+
+
+def founder_deviations(subjects: Subjects) -> dict[str, float]:
+    """Return the standard deviation of founders' weights in each block, measured from founders."""
+    heredity, numbers = subjects.law.heredity, jnp.arange(FOUNDERS, dtype=jnp.int32)
+    seed = stream(wide(np.full(FOUNDERS, subjects.config.seed)), Purpose.CONTROL, wide([0]))
+    draws = Draws(streams(seed, wide([0]), *PURPOSES), numbers)
+    made = np.asarray(heredity.mutation.founders(heredity.layout, draws))
+    return {name: float(part.std()) for name, part in heredity.layout.split(made).items()}

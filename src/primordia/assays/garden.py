@@ -1,0 +1,116 @@
+"""The common garden: the oldest organisms are born again under fresh keys, beside others.
+
+The oldest of many lived long by luck too. Born again, they live as long as their genomes deserve.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from primordia.assays.subjects import GAMES, TICKS, Subjects, of_run
+from primordia.organism.games import lifespans_in_games
+from primordia.organism.players import founders_of
+from primordia.runs.lives import LATE
+from primordia.runs.records import Records
+
+EACH = 20
+"""Organisms of a world in each group, if not told otherwise."""
+
+
+@dataclass(frozen=True)
+class Bed:
+    """K organisms of one group in one world, born again."""
+
+    group: str
+    world: int
+    organism: np.ndarray
+    """birth numbers, int64 (K,); founders are numbered from 0, and have no record"""
+    recorded: np.ndarray | None
+    """ticks that each lived in its world so far, int64 (K,)"""
+    reborn: np.ndarray
+    """mean ticks that each lived in its games, float64 (K,)"""
+
+    @property
+    def kept(self) -> float | None:
+        """Mean life when born again, as a share of the recorded one."""
+        return None if self.recorded is None else float(self.reborn.mean() / self.recorded.mean())
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain values for JSON."""
+        return {
+            "group": self.group,
+            "world": self.world,
+            "organism": self.organism.tolist(),
+            "recorded": None if self.recorded is None else self.recorded.tolist(),
+            "reborn": self.reborn.tolist(),
+            "kept": self.kept,
+        }
+
+
+def garden(
+    run: Records,
+    each: int = EACH,
+    after: float = LATE,
+    games: int = GAMES,
+    ticks: int = TICKS,
+    habitat: Mapping[str, Any] | None = None,
+) -> list[Bed]:
+    """Let the oldest, other late-born organisms and founders of each world live in fresh games.
+
+    Args:
+        run: the run, or an arm.
+        each: organisms of each group in each world, or as many as there are. The oldest are those of the
+            late-born. The others are evenly spaced over the late births, the last of a world left out.
+        after: share of a world's births after which a birth is late.
+        games: games of each organism; one where nothing is drawn at random.
+        ticks: length at which a game is cut.
+        habitat: changed settings of the habitat.
+
+    Raises:
+        InputError: nothing was born, or the habitat has no such setting.
+    """
+    lives, late = run.lives, np.flatnonzero(run.lives.late(after))
+    found, worlds = [], np.unique(lives.world[late])
+    groups = {"oldest": _oldest, "late-born": _spaced}
+    for group, choose in groups.items():
+        rows = [choose(late[lives.world[late] == w], lives.lifespan, each) for w in worlds]
+        chosen = np.concatenate(rows) if rows else late
+        numbers = list(zip(lives.id[chosen].tolist(), lives.world[chosen].tolist(), strict=True))
+        subjects = of_run(run, numbers, habitat)
+        found += _beds(group, subjects, lives.lifespan[chosen], games, ticks)
+    world, players = founders_of(run, worlds, np.full(len(worlds), each))
+    number = np.tile(np.arange(each), len(worlds))
+    players = players._replace(habitat=subjects.players.habitat)
+    fresh = subjects._replace(players=players, organism=number, world=world)
+    return found + _beds("founders", fresh, None, games, ticks)
+
+
+def _beds(
+    group: str, subjects: Subjects, recorded: np.ndarray | None, games: int, ticks: int
+) -> list[Bed]:
+    lived = lifespans_in_games(subjects.players, subjects.games(games), ticks).mean(axis=1)
+    places = ((int(w), subjects.world == w) for w in np.unique(subjects.world))
+    return [
+        Bed(
+            group,
+            world,
+            subjects.organism[here],
+            None if recorded is None else recorded[here],
+            lived[here],
+        )
+        for world, here in places
+    ]
+
+
+def _oldest(rows: np.ndarray, lifespan: np.ndarray, count: int) -> np.ndarray:
+    """Return the rows of the longest-lived; of equals the last-born, as with champions."""
+    return rows[np.argsort(lifespan[rows], kind="stable")[::-1][:count]]
+
+
+def _spaced(rows: np.ndarray, lifespan: np.ndarray, count: int) -> np.ndarray:
+    """Return rows in the middle of equal parts of the births, without the last; see `shadow`."""
+    births = rows[:-1] if len(rows) > 1 else rows
+    parts = min(count, len(births))
+    return births[((np.arange(parts) + 0.5) * len(births) / parts).astype(int)]

@@ -1,0 +1,123 @@
+"""When a line of descent became good: each genome on the way to an organism lives again."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from primordia.assays.subjects import GAMES, TICKS, of_run
+from primordia.history import pedigree
+from primordia.history.lineage import descent
+from primordia.law.world import BirthCause
+from primordia.organism.games import lifespans_in_games
+from primordia.runs.records import Records
+
+MOST = 200
+"""Genomes of a line that live again, if not told otherwise."""
+GOOD = 0.9
+"""Share of the last genome's life from which a genome counts as good."""
+
+
+@dataclass(frozen=True)
+class Step:
+    """A genome on the line, and the life that it gives."""
+
+    generation: int
+    """births since the first of the line"""
+    organism: int
+    born: int
+    """tick of birth"""
+    birth_cause: str
+    recorded: int
+    """ticks that the organism lived in its world so far"""
+    reborn: float
+    """mean ticks that it lived in the games of the line's last organism"""
+
+
+@dataclass(frozen=True)
+class Line:
+    """The genomes of a line, oldest first."""
+
+    organism: int
+    world: int
+    generations: int
+    genomes: int
+    """different genomes of the line, of which the steps are a sample"""
+    steps: list[Step]
+
+    @property
+    def good(self) -> Step:
+        """The first step from which no later one lives less than GOOD of the last."""
+        enough = GOOD * self.steps[-1].reborn
+        below = [k for k, step in enumerate(self.steps) if step.reborn < enough]
+        return self.steps[below[-1] + 1 if below else 0]
+
+    @property
+    def largest(self) -> tuple[Step, Step] | None:
+        """The two neighbours between which life grew most, as a ratio; None if it never grew."""
+        pairs = list(zip(self.steps, self.steps[1:], strict=False))
+        grown = [pair for pair in pairs if pair[1].reborn > pair[0].reborn]
+        return max(grown, key=lambda pair: pair[1].reborn / pair[0].reborn, default=None)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain values for JSON."""
+        largest = None if self.largest is None else [step.organism for step in self.largest]
+        return {**asdict(self), "good_from": self.good.organism, "largest_step": largest}
+
+
+def line(
+    run: Records,
+    organism: int,
+    world: int = 0,
+    most: int = MOST,
+    games: int = GAMES,
+    ticks: int = TICKS,
+    habitat: Mapping[str, Any] | None = None,
+) -> Line:
+    """Let the ancestors of an organism live again, all in the same games.
+
+    Copies have their parent's genome, so only founders, mutants and children of two parents live. A line
+    that begins at a fork begins with the oldest organism of the line that the fork's records know.
+
+    Args:
+        run: the organism's run, or its arm.
+        organism: birth number.
+        world: the organism's world.
+        most: most genomes that live, evenly spaced over those of the line, the first and last among them.
+        games: games of each; one where nothing is drawn at random.
+        ticks: length at which a game is cut.
+        habitat: changed settings of the habitat.
+
+    Raises:
+        InputError: no such organism was born, or the habitat has no such setting.
+    """
+    rows = descent(run.lives, organism, world)
+    changed = _changed(run, rows)
+    places = np.unique(np.linspace(0, len(changed) - 1, min(most, len(changed))).astype(int))
+    chosen = changed[places]
+    subject = of_run(run, [(organism, world)], habitat)
+    same = subject.players.take(np.zeros(len(chosen), int))
+    genomes = pedigree.genomes(run, rows[chosen])
+    spans = lifespans_in_games(same._replace(genomes=genomes), subject.games(games), ticks)
+    lives = run.lives.take(rows[chosen])
+    steps = [
+        Step(
+            generation=int(chosen[k]),
+            organism=int(lives.id[k]),
+            born=int(lives.born[k]),
+            birth_cause=BirthCause(lives.birth_cause[k]).label,
+            recorded=int(lives.lifespan[k]),
+            reborn=float(span),
+        )
+        for k, span in enumerate(spans.mean(axis=1))
+    ]
+    return Line(organism, world, len(rows) - 1, len(changed), steps)
+
+
+def _changed(run: Records, rows: np.ndarray) -> np.ndarray:
+    """Return the places in a line of descent (D,) where the genome changed, the first among them."""
+    lives = run.lives.take(rows)
+    changed = (lives.birth_cause != BirthCause.COPY) | (run.mates_of(lives) >= 0)
+    changed[0] = True
+    return np.flatnonzero(changed)

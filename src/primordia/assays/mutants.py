@@ -1,0 +1,131 @@
+"""Mutants of living genomes, made by any mutation as a run would make them."""
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from primordia.assays.subjects import Subjects
+from primordia.compiled import shared
+from primordia.errors import InputError
+from primordia.law.law import Law
+from primordia.law.moments import change_in
+from primordia.law.world import Remembered
+from primordia.mutations.contract import PURPOSES, Draws, Family, Moments, Mutation
+from primordia.organism.games import Players, stretches
+from primordia.organism.playing.seats import Manner
+from primordia.random.keys import streams
+from primordia.random.wide import wide
+
+MOST_CHILDREN = 1000
+"""Children of a genome for each mutant wanted, before a mutation counts as one that never happens."""
+
+
+class Operator(NamedTuple):
+    """A mutation, and what it needs to know of K parents."""
+
+    name: str
+    mutation: Mutation
+    rates: Mapping[str, np.ndarray]
+    """present values of the mutation's rates, float32 (K,) each"""
+    notes: np.ndarray
+    """the parents' notes, int32 (K, n)"""
+
+    @classmethod
+    def of(cls, name: str, mutation: Mutation, subjects: Subjects) -> "Operator":
+        """Return an operator with its rates as set, for parents without notes."""
+        count = len(subjects.organism)
+        rates = mutation.rates(subjects.law.heredity.layout).items()
+        values = {rate: np.full(count, value, np.float32) for rate, value in rates}
+        return cls(name, mutation, values, np.asarray(mutation.founders_notes(count)))
+
+
+def own_operator(subjects: Subjects) -> Operator:
+    """Return the mutation of the subjects' own run, with its present rates."""
+    heredity = subjects.law.heredity
+    climate = {name: np.asarray(values) for name, values in subjects.climate.items()}
+    names = heredity.mutation.rates(heredity.layout)
+    rates = {name: climate[f"mutation.{name}"] for name in names}
+    return Operator("as set", heredity.mutation, rates, subjects.notes)
+
+
+def mutants(
+    subjects: Subjects, operator: Operator, count: int, remembered: Remembered | None
+) -> np.ndarray:
+    """Return mutants of each of K subjects, float32 (K, count, P); copies are not among them.
+
+    Args:
+        subjects: the parents.
+        operator: the mutation.
+        count: number of mutants of each.
+        remembered: moments of the parents; see `moments_of`.
+
+    Raises:
+        InputError: the mutation leaves children as they are.
+    """
+    return np.stack(
+        [_of_one(subjects, operator, count, remembered, k) for k in range(len(subjects.organism))]
+    )
+
+
+def _of_one(
+    subjects: Subjects,
+    operator: Operator,
+    count: int,
+    remembered: Remembered | None,
+    parent: int,
+) -> np.ndarray:
+    same, found = np.full(count, parent), np.zeros((0, subjects.players.genomes.shape[1]))
+    rates = {name: jnp.asarray(values[same]) for name, values in operator.rates.items()}
+    moments = None if remembered is None else Remembered(*(each[same] for each in remembered))
+    breed = shared(_children, subjects.law, operator.mutation)
+    for brood in range(MOST_CHILDREN):
+        key = streams(subjects.players.keys.take(same), wide([brood]), *PURPOSES)
+        draws = Draws(key, jnp.arange(count, dtype=jnp.int32))
+        parents = jnp.asarray(subjects.players.genomes[same])
+        children, mutated = breed(
+            Family(parents, jnp.asarray(operator.notes[same]), rates, draws), moments
+        )
+        found = np.concatenate([found, np.asarray(children)[np.asarray(mutated)]])
+        if len(found) >= count:
+            return found[:count].astype(np.float32)
+    raise InputError(
+        f"{subjects.source}: its mutation leaves children as they are, as it is now set"
+    )
+
+
+def _children(
+    law: Law, mutation: Mutation, family: Family, moments: Remembered | None
+) -> tuple[Array, Array]:
+    """Return the genomes (K, P) of children, and which are mutants (K,)."""
+    change = None if moments is None else change_in(law, moments, family.parents)
+    notes = mutation.note(law.heredity.layout, family, change)
+    return mutation.inherit(law.heredity.layout, family._replace(notes=notes))
+
+
+def moments_of(players: Players, rule: Moments, ticks: int) -> Remembered:
+    """Return the last moments that players remember of one game: every so many ticks from its start.
+
+    Args:
+        players: the organisms, K.
+        rule: how many moments are kept, and how often.
+        ticks: length at which the game is cut.
+    """
+    count, law = len(players.genomes), players.law
+    senses = np.zeros((count, rule.kept, law.senses), np.float32)
+    memory = np.zeros((count, rule.kept, law.memory), np.float32)
+    known, tick = np.zeros((count, rule.kept), bool), 0
+    for stretch in stretches(players, 1, Manner(ticks, watched=True)):
+        assert stretch.met is not None
+        for row, playing in enumerate(stretch.playing):
+            if (tick + row) % rule.every == 0:
+                place = (tick + row) // rule.every % rule.kept
+                senses[playing, place] = stretch.met.senses[row][playing]
+                memory[playing, place] = stretch.met.memory[row][playing]
+                known[playing, place] = True
+        tick += len(stretch.playing)
+        if not stretch.alive.any():
+            break
+    return Remembered(*map(jnp.asarray, (senses, memory, known)))

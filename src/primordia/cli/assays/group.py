@@ -1,0 +1,24 @@
+"""The group `primordia assay`."""
+
+import click
+
+from primordia.cli.assays import of_lives, of_records, of_runs
+
+
+@click.group()
+def assay() -> None:
+    """Measure what is inherited in a run, and what limits its evolution."""
+
+
+for command in (
+    of_records.heredity,
+    of_records.threshold,
+    of_lives.effects,
+    of_runs.garden,
+    of_runs.line,
+    of_lives.ablate,
+):
+    assay.add_command(command)
+
+COMMANDS = (assay,)
+"""The commands of this module."""

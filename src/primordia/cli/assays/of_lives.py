@@ -1,0 +1,145 @@
+"""Assays in which organisms live again."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from primordia.cli.assays import tables
+from primordia.cli.assays.options import (
+    games_option,
+    json_option,
+    out_option,
+    tell,
+    ticks_option,
+)
+from primordia.cli.cache import cache_option
+from primordia.cli.flags import HabitatCommand, trust_option
+
+if TYPE_CHECKING:
+    from primordia.assays.subjects import Subjects
+
+SUFFIX = ".safetensors"
+"""The end of the name of a genome file."""
+
+source_argument = click.argument("run", type=click.Path(path_type=Path))
+organisms_argument = click.argument("organisms", type=int, nargs=-1, metavar="[ID]...")
+world_option = click.option("--world", type=int, help="The organisms' world [0].")
+task_option = click.option("--task", help="Task of a genome file [the one that it names].")
+
+
+def assay_of_lives(short_help: str) -> Callable:
+    """Return a decorator for commands whose subjects live again; habitat settings are flags too."""
+    options = (
+        click.command(cls=HabitatCommand, short_help=short_help),
+        source_argument,
+        organisms_argument,
+        world_option,
+        task_option,
+        games_option,
+        ticks_option,
+        out_option,
+        trust_option,
+        cache_option,
+        json_option,
+        click.pass_obj,
+    )
+
+    def decorated(function: Any) -> Any:
+        for option in reversed(options):
+            function = option(function)
+        return function
+
+    return decorated
+
+
+@click.option(
+    "--mutants", type=click.IntRange(min=1), default=24, show_default=True,
+    help="Mutants of an organism by each mutation.",
+)  # fmt: skip
+@click.option(
+    "--scale", "scales", type=click.FloatRange(min=0, min_open=True), multiple=True,
+    help="Noise of this share of the founders' standard deviation; may be repeated"
+    " [0.001 0.003 0.01 0.03 0.1 0.3].",
+)  # fmt: skip
+@click.option(
+    "--differs", type=click.FloatRange(min=0), multiple=True,
+    help="A calibrated mutation of this change of behaviour; may be repeated.",
+)  # fmt: skip
+@assay_of_lives("What mutations of several sizes do to an organism's life.")
+def effects(
+    habitat: dict[str, Any],
+    /,
+    mutants: int,
+    scales: tuple[float, ...],
+    differs: tuple[float, ...],
+    games: int,
+    ticks: int,
+    out: Path | None,
+    as_json: bool,
+    **chosen: Any,
+) -> None:
+    """Let mutants of organisms live in the games of their parents, by several mutations.
+
+    RUN is a run, or a genome file. Without an ID the champion of each world has mutants; of a file, each
+    genome. The run's own mutation is the first of the table. Any setting of the habitat can be changed by
+    a flag, such as --sticky 0.25 --noops 30.
+    """
+    from primordia.assays.effects import SCALES
+    from primordia.assays.effects import effects as measure
+
+    subjects = subjects_of(habitat, **chosen)
+    found = measure(subjects, scales or SCALES, differs, mutants, games, ticks)
+    tell("effects", {subjects.source: found}, as_json, out, tables.effects)
+
+
+@click.option("--each-sense", is_flag=True, help="Freeze each sense alone, too.")
+@assay_of_lives("What an organism needs of its senses, memory and weights.")
+def ablate(
+    habitat: dict[str, Any],
+    /,
+    each_sense: bool,
+    games: int,
+    ticks: int,
+    out: Path | None,
+    as_json: bool,
+    **chosen: Any,
+) -> None:
+    """Let organisms live with frozen senses, without memory, and without each block of weights.
+
+    RUN is a run, or a genome file. Without an ID the champion of each world is measured; of a file, each
+    genome. Any setting of the habitat can be changed by a flag, such as --sticky 0.25 --noops 30.
+    """
+    from primordia.assays.ablate import ablate as measure
+
+    subjects = subjects_of(habitat, **chosen)
+    found = measure(subjects, each_sense, games, ticks)
+    tell("ablate", {subjects.source: found}, as_json, out, tables.ablate)
+
+
+def subjects_of(
+    habitat: dict[str, Any],
+    run: Path,
+    organisms: tuple[int, ...],
+    world: int | None,
+    task: str | None,
+    trust: bool,
+) -> "Subjects":
+    """Return the subjects that a command names: organisms of a run, or genomes of a file."""
+    from primordia.api import load
+    from primordia.assays.subjects import of_file, of_run
+    from primordia.errors import InputError
+
+    if run.suffix == SUFFIX:
+        if world is not None:
+            raise InputError("a genome file has no worlds; leave out --world")
+        return of_file(run, organisms, task, habitat)
+    if task is not None:
+        raise InputError("the task of a run is known; leave out --task")
+    opened = load(run, trust).opened()
+    numbers = [(each, world or 0) for each in organisms]
+    if not numbers and world is not None:
+        row = opened.lives.oldest(world)
+        numbers = [(int(opened.lives.id[row]), world)]
+    return of_run(opened, numbers, habitat)

@@ -1,0 +1,94 @@
+"""Assays in which many organisms of a run live again: its oldest, and lines of descent."""
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from primordia.cli.assays import tables
+from primordia.cli.assays.of_lives import SUFFIX, assay_of_lives, source_argument
+from primordia.cli.assays.options import (
+    after_option,
+    arms_of,
+    games_option,
+    json_option,
+    out_option,
+    tell,
+    ticks_option,
+)
+from primordia.cli.cache import cache_option
+from primordia.cli.flags import HabitatCommand, trust_option
+
+
+@click.command(cls=HabitatCommand, short_help="Are the oldest good, or were they lucky?")
+@source_argument
+@click.option(
+    "--each", type=click.IntRange(min=1), default=20, show_default=True,
+    help="Organisms of each group in each world.",
+)  # fmt: skip
+@after_option
+@games_option
+@ticks_option
+@out_option
+@trust_option
+@cache_option
+@json_option
+@click.pass_obj
+def garden(
+    habitat: dict[str, Any],
+    /,
+    run: Path,
+    trust: bool,
+    out: Path | None,
+    as_json: bool,
+    **options: Any,
+) -> None:
+    """Let the oldest organisms of each world be born again, beside other late-born ones and founders.
+
+    The oldest of many lived long by luck too. In fresh games they live as long as their genomes deserve.
+    Of an experiment each arm is measured. Any setting of the habitat can be changed by a flag, such as
+    --sticky 0.25 --noops 30.
+    """
+    from primordia.assays.garden import garden as measure
+
+    found = {
+        str(arm.path): measure(arm.opened(), habitat=habitat, **options)
+        for arm in arms_of((run,), trust)
+    }
+    tell("garden", found, as_json, out, tables.garden)
+
+
+@click.option(
+    "--most", type=click.IntRange(min=2), default=200, show_default=True,
+    help="Let at most this number of the line's genomes live.",
+)  # fmt: skip
+@assay_of_lives("When did a line of descent become good?")
+def line(
+    habitat: dict[str, Any],
+    /,
+    run: Path,
+    organisms: tuple[int, ...],
+    world: int | None,
+    task: str | None,
+    trust: bool,
+    out: Path | None,
+    as_json: bool,
+    **options: Any,
+) -> None:
+    """Let the ancestors of organisms live again, all in the same games.
+
+    Without an ID it is the line of the champion of the world, or of the whole run. Any setting of the
+    habitat can be changed by a flag, such as --sticky 0.25 --noops 30.
+    """
+    from primordia.api import load
+    from primordia.assays.line import line as measure
+    from primordia.errors import InputError
+
+    if task is not None or run.suffix == SUFFIX:
+        raise InputError("a genome file holds no ancestors; give the run that its genomes are from")
+    opened = load(run, trust).opened()
+    row = opened.lives.oldest(world)
+    own = opened.lives.world[row] if world is None and not organisms else world or 0
+    chosen = organisms or (int(opened.lives.id[row]),)
+    found = [measure(opened, each, int(own), habitat=habitat, **options) for each in chosen]
+    tell("line", {str(run): found}, as_json, out, tables.line)

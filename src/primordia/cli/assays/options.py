@@ -1,0 +1,90 @@
+"""Options that assays share, and how they tell what they found."""
+
+import json
+from collections.abc import Callable, Mapping
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from primordia import files
+from primordia.cli.assays.tables import Told
+from primordia.cli.table import show_table
+
+if TYPE_CHECKING:
+    from primordia.api import Run
+
+after_option = click.option(
+    "--after",
+    type=click.FloatRange(0, 1, max_open=True),
+    default=0.5,
+    show_default=True,
+    help="Share of a world's births after which a birth counts.",
+)
+json_option = click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+out_option = click.option(
+    "--out",
+    type=click.Path(path_type=Path, file_okay=False),
+    help="Draw a figure into this folder, as PNG and SVG.",
+)
+games_option = click.option(
+    "--games",
+    type=click.IntRange(min=1),
+    default=5,
+    show_default=True,
+    help="Games of each genome; one is enough where nothing is drawn at random.",
+)
+ticks_option = click.option(
+    "--ticks",
+    type=click.IntRange(min=1),
+    default=20_000,
+    show_default=True,
+    help="Cut games at this length.",
+)
+
+
+def arms_of(paths: tuple[Path, ...], trust: bool = False) -> "list[Run]":
+    """Return each arm of an experiment, or the runs named as one arm."""
+    from primordia.api import Experiment, load
+
+    loaded = load(paths, trust)
+    return list(loaded.arms.values()) if isinstance(loaded, Experiment) else [loaded]
+
+
+def tell(
+    name: str,
+    found: Mapping[str, list[Any]],
+    as_json: bool,
+    out: Path | None,
+    table: Callable[[str, list[Any]], Told],
+) -> None:
+    """Print a table for each arm or one JSON object for all, and draw figures if a folder is named.
+
+    Args:
+        name: name of the assay, of the module of `figures.assays` that draws it, and of the files.
+        found: results of each arm, by its path.
+        as_json: whether JSON is printed.
+        out: folder for figures; of several arms, each has a folder of its name in it.
+        table: makes a table of an arm's results.
+    """
+    if as_json:
+        plain = {arm: [each.to_dict() for each in of] for arm, of in found.items()}
+        click.echo(json.dumps(plain))
+    else:
+        for arm, of in found.items():
+            show_table(*table(arm, of))
+    if out is not None:
+        for arm, of in found.items():
+            folder = out if len(found) == 1 else out / Path(arm).name
+            pictures = _drawn(name, of, folder)
+            click.echo(f"Figure: {' and '.join(map(str, pictures))}", err=as_json)
+
+
+def _drawn(name: str, found: list[Any], folder: Path) -> list[Path]:
+    from primordia.figures import style
+
+    draw = import_module(f"primordia.figures.assays.{name}").draw
+    files.make_folder(folder)
+    with style.applied():
+        return style.save(draw(found), folder / name)

@@ -1,0 +1,162 @@
+"""What assays found, as tables for people."""
+
+from collections import Counter
+from collections.abc import Sequence
+from statistics import mean
+from typing import Any, NamedTuple
+
+from primordia.cli.table import spread
+
+
+class Told(NamedTuple):
+    """A table, its title, and what it says beside."""
+
+    title: str
+    head: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    notes: Sequence[str] = ()
+
+
+def heredity(name: str, found: list[Any]) -> Told:
+    """Return the table of the inheritance of lifespan in each world, `assays.heredity`."""
+    kinds = ("copies", "mutants", "both")
+    words = {
+        "slope": "slope",
+        "as_long": "exactly as long",
+        "longer": "a tenth longer",
+        "shorter": "a third shorter",
+    }
+    counts = (f"{sum(getattr(each, kind).pairs for each in found):,}" for kind in kinds)
+    rows = [
+        (text, *(spread(getattr(getattr(each, kind), field) for each in found) for kind in kinds))
+        for field, text in words.items()
+    ]
+    terms = [
+        (field, "", "", spread(getattr(each, field) for each in found))
+        for field in ("selection", "transmission")
+    ]
+    return Told(_title(name, found), ("", *kinds), [("pairs", *counts), *rows, *terms])
+
+
+def threshold(name: str, found: list[Any]) -> Told:
+    """Return the table of the error threshold in each world, `assays.threshold`."""
+    held = [each.held for each in found if each.held is not None]
+    words = {
+        "mutated": "p, children that mutate",
+        "as_good": "v, mutants of good parents that are as good",
+        "advantage": "s, life of good parents' copies over all",
+        "held": "s (1 - p (1 - v))",
+    }
+    rows = [(text, spread(getattr(each, field) for each in found)) for field, text in words.items()]
+    above = f"{sum(value > 1 for value in held)} of {len(held)}"
+    last = ("worlds above 1, where a good line keeps its ground", above)
+    return Told(_title(name, found), ("", "median"), [*rows, last])
+
+
+def effects(name: str, found: list[Any]) -> Told:
+    """Return the table of what mutations do, `assays.effects`."""
+    words = {
+        "as_long": "as long",
+        "longer": "longer",
+        "tenth_longer": "a tenth longer",
+        "third_shorter": "a third shorter",
+    }
+    mutations = list(dict.fromkeys(each.mutation for each in found))
+    rows = []
+    for mutation in mutations:
+        own = [each for each in found if each.mutation == mutation]
+        shares = (f"{mean(getattr(each, field) for each in own):.3f}" for field in words)
+        medians = spread(each.to_dict()["median"] for each in own)
+        rows.append((mutation, *shares, medians))
+    lived = spread(each.lifespan for each in found if each.mutation == mutations[0])
+    count = len(found) // len(mutations)
+    return Told(
+        f"{name}: {_count(count, 'organism')}, {len(found[0].mutants)} mutants of each by each mutation",
+        ("", *words.values(), "median life"),
+        rows,
+        (
+            f"The organisms lived {lived} ticks. Shares are means over organisms; lives are medians"
+            " (quartiles).",
+        ),
+    )
+
+
+def ablate(name: str, found: list[Any]) -> Told:
+    """Return the table of what organisms live without, `assays.ablate`."""
+    losses = list(dict.fromkeys(each.without for each in found))
+    rows = []
+    for loss in losses:
+        own = [each for each in found if each.without == loss]
+        rows.append((loss, spread(e.lifespan for e in own), spread(e.kept for e in own)))
+    first = [each for each in found if each.without == losses[0]]
+    return Told(
+        f"{name}: {_count(len(first), 'organism')}, medians (quartiles)",
+        ("without", "ticks lived", "of the intact life"),
+        [("nothing", spread(each.intact for each in first), "1"), *rows],
+    )
+
+
+def garden(name: str, found: list[Any]) -> Told:
+    """Return the table of lives when born again, `assays.garden`."""
+    rows = []
+    for group, count in Counter(each.group for each in found).items():
+        own = [each for each in found if each.group == group]
+        recorded = [None if each.recorded is None else each.recorded.mean() for each in own]
+        rows.append(
+            (
+                group,
+                f"{count:,}",
+                f"{sum(len(each.organism) for each in own):,}",
+                spread(recorded),
+                spread(each.reborn.mean() for each in own),
+                spread(each.kept for each in own),
+            )
+        )
+    return Told(
+        f"{name}: mean ticks lived in a world, medians over worlds (quartiles)",
+        ("", "worlds", "organisms", "in their world", "born again", "share kept"),
+        rows,
+    )
+
+
+def line(name: str, found: list[Any]) -> Told:
+    """Return the table of lines of descent, `assays.line`."""
+    columns = [
+        (
+            f"organism {each.organism} of world {each.world}",
+            f"{each.generations:,}",
+            f"{each.genomes:,}",
+            f"{len(each.steps):,}",
+            f"{each.steps[0].reborn:,.0f}",
+            f"{each.steps[-1].reborn:,.0f}",
+            _birth_text(each.good),
+            _step_text(each.largest),
+        )
+        for each in found
+    ]
+    names = (
+        *("", "generations", "different genomes", "born again", "ticks that the first lives"),
+        *("ticks that the last lives", "as good from", "largest step"),
+    )
+    head, *rows = zip(names, *columns, strict=True)
+    note = "As good: this and all later genomes live nine tenths of the last one's life, or more."
+    return Told(f"{name}: genomes of a line, born again in the same games", head, rows, (note,))
+
+
+def _birth_text(step: Any) -> str:
+    return f"{step.organism:,} (generation {step.generation:,}, tick {step.born:,})"
+
+
+def _step_text(pair: Any) -> str:
+    if pair is None:
+        return "-"
+    before, after = pair
+    return f"{after.organism:,}: {before.reborn:,.0f} to {after.reborn:,.0f}"
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number:,} {noun}{'s' * (number != 1)}"
+
+
+def _title(name: str, found: list[Any]) -> str:
+    return f"{name}: {len(found)} world{'s' * (len(found) > 1)}, medians (quartiles)"

@@ -1,0 +1,26 @@
+"""Tables on the terminal."""
+
+from collections.abc import Iterable, Sequence
+
+
+def show_table(
+    title: str, head: Sequence[str], rows: Iterable[Sequence[str]], notes: Iterable[str] = ()
+) -> None:
+    """Print a title, a table whose first column holds names and the others numbers, and notes."""
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+
+    shown = Table(head[0], box=box.SIMPLE_HEAD, pad_edge=False)
+    for name in head[1:]:
+        shown.add_column(name, justify="right")
+    for row in rows:
+        shown.add_row(*row)
+    Console(highlight=False, soft_wrap=True).print(title, shown, *notes, sep="\n")
+
+
+def spread(values: Iterable[float | None]) -> str:
+    """Write the median and the quartiles of the values that are known; a dash if none is."""
+    from primordia.comparison.tables import spread_text
+
+    return spread_text(float("nan") if value is None else value for value in values)

@@ -1,0 +1,23 @@
+"""The lives that the genomes of lines of descent give."""
+
+from matplotlib.figure import Figure
+
+from primordia.assays.line import Line
+from primordia.figures import style
+
+
+def draw(found: list[Line]) -> Figure:
+    """Draw the life of each genome on each line over generations: as recorded, and born again."""
+    figure = Figure(figsize=(style.PAGE, 2.4 * len(found)))
+    for axes, line in zip(figure.subplots(len(found), squeeze=False).flat, found, strict=True):
+        generation = [step.generation for step in line.steps]
+        recorded = [max(step.recorded, 1) for step in line.steps]
+        axes.plot(generation, recorded, ".", color=style.ORANGE, markersize=3, markeredgewidth=0)
+        reborn = [max(step.reborn, 1) for step in line.steps]
+        axes.step(generation, reborn, where="post", color=style.BLUE)
+        axes.axvline(line.good.generation, color=style.FAINT, zorder=0)
+        style.logarithmic(axes.yaxis)
+        axes.set(xlabel="generation", ylabel="ticks lived")
+        key = {"born again": style.BLUE, "in its world": style.ORANGE, "as good from": style.SOFT}
+        style.title(axes, f"The line of organism {line.organism} of world {line.world}", key)
+    return figure

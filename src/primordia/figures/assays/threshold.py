@@ -1,0 +1,34 @@
+"""The error threshold in each world."""
+
+from matplotlib.figure import Figure
+
+from primordia.assays.threshold import Threshold
+from primordia.figures import style
+from primordia.figures.assays.strips import strips
+
+
+def draw(found: list[Threshold]) -> Figure:
+    """Draw p, v and s of each world, and whether a good line keeps its ground."""
+    figure = Figure(figsize=(style.PAGE, 2.6))
+    shares, factors = figure.subplots(1, 2)
+    key = {"worlds": style.SKY, "median": style.BLUE}
+    strips(
+        shares,
+        {
+            "p: children\nthat mutate": [each.mutated for each in found],
+            "v: mutants\nas good": [each.as_good for each in found],
+        },
+    )
+    shares.set_ylim(-0.02, 1.02)
+    style.title(shares, "Shares", key)
+    strips(
+        factors,
+        {
+            "s: advantage of\ngood lines": [each.advantage for each in found],
+            "s (1 - p (1 - v))": [each.held for each in found],
+        },
+    )
+    style.logarithmic(factors.yaxis)
+    factors.axhline(1, color=style.VERMILION, zorder=0)
+    style.title(factors, "Does a good line keep its ground?", {**key, "threshold": style.VERMILION})
+    return figure

@@ -1,0 +1,57 @@
+"""Players of a run: recorded organisms and fresh founders, in the habitat of their task."""
+
+from collections.abc import Mapping, Sequence
+
+import jax.numpy as jnp
+import numpy as np
+
+from primordia.history.climate import PastClimate
+from primordia.history.founders import founders
+from primordia.history.lineage import rebuild_all
+from primordia.law.metabolism import Rates
+from primordia.organism.games import Players
+from primordia.random.keys import Purpose, stream
+from primordia.random.wide import Wide, wide
+from primordia.runs.records import Records
+
+
+def players_of(run: Records, organisms: Sequence[tuple[int, int]]) -> Players:
+    """Return organisms, by birth number and world, as players.
+
+    Raises:
+        InputError: no such organism was born.
+    """
+    genomes = rebuild_all(run, organisms)
+    lives = run.lives.take(np.array([run.lives.row(*each) for each in organisms]))
+    climate = PastClimate(run).of_lives(lives, run.ends[lives.world])
+    return _players(run, genomes, evaluation_keys(run, lives.world, lives.id), climate)
+
+
+def founders_of(run: Records, worlds: np.ndarray, counts: np.ndarray) -> tuple[np.ndarray, Players]:
+    """Return founders that a world might have had, each with a key of its own.
+
+    Args:
+        run: the run, or an arm.
+        worlds: some worlds, int (V,).
+        counts: number of founders of each, int (V,).
+
+    Returns:
+        the world of each, int (K,), and the players; they are numbered from 0 in each world.
+    """
+    world, number = np.repeat(worlds, counts), np.concatenate([np.arange(n) for n in counts])
+    genomes = [founders(run, *each) for each in zip(worlds.tolist(), counts.tolist(), strict=True)]
+    climate = PastClimate(run).of_worlds(world, run.ends[world])
+    keys = stream(wide(run.world_seeds[world]), Purpose.CONTROL, wide(number))
+    return world, _players(run, np.concatenate(genomes), keys, climate)
+
+
+def evaluation_keys(run: Records, world: np.ndarray, number: np.ndarray) -> Wide:
+    """Return the keys under which organisms are evaluated, by world and birth number, (K,)."""
+    return stream(wide(run.world_seeds[world]), Purpose.EVALUATION, wide(number))
+
+
+def _players(
+    run: Records, genomes: np.ndarray, keys: Wide, climate: Mapping[str, np.ndarray]
+) -> Players:
+    rates = Rates.of({name: jnp.asarray(values) for name, values in climate.items()})
+    return Players(run.law, run.config.build_habitat(), genomes, keys, rates)

@@ -1,0 +1,133 @@
+"""Mutants of living genomes, and what mutations do to lives."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+import primordia
+from primordia.assays.effects import Effect, effects, founder_deviations
+from primordia.assays.mutants import Operator, moments_of, mutants, own_operator
+from primordia.assays.subjects import Subjects, of_run
+from primordia.errors import InputError
+from primordia.law.moments import change_in
+from primordia.law.world import Remembered
+from primordia.mutations.calibrated import Calibrated
+from primordia.mutations.contract import Moments
+from primordia.mutations.gaussian import Gaussian
+from primordia.organism.games import lifespans_in_games
+from primordia.runs import loop
+from tests.worlds import config
+
+GAMES = 2
+
+
+@pytest.fixture(scope="module")
+def subjects(poles: primordia.Run) -> Subjects:
+    return of_run(poles.opened())
+
+
+def steps(subjects: Subjects, genomes: np.ndarray) -> np.ndarray:
+    return genomes - subjects.players.genomes[:, None]
+
+
+def test_mutants_are_made_as_in_the_run_and_no_copy_is_among_them(subjects: Subjects) -> None:
+    """Half of this run's children are copies."""
+    own = own_operator(subjects)
+    made = mutants(subjects, own, 50, None)
+    assert made.shape == (2, 50, subjects.players.genomes.shape[1])
+    moved = steps(subjects, made)
+    assert (moved != 0).any(axis=2).all()
+    scale = subjects.law.heredity.mutation.per_block("scale", subjects.law.heredity.layout)
+    for name, part in subjects.law.heredity.layout.split(moved).items():
+        expected = scale[subjects.law.heredity.layout.names.index(name)]
+        assert part.std() == pytest.approx(expected, rel=0.1)
+    assert len(np.unique(made.reshape(100, -1), axis=0)) == 100
+
+
+def test_a_mutation_that_never_happens_is_refused(subjects: Subjects) -> None:
+    never = Operator.of("never", Gaussian(probability=0.0), subjects)
+    with pytest.raises(InputError, match="leaves children as they are"):
+        mutants(subjects, never, 3, None)
+
+
+def test_a_scale_is_a_share_of_the_founders_deviation(subjects: Subjects) -> None:
+    mutation = subjects.law.heredity.mutation
+    layout = subjects.law.heredity.layout
+    scales = dict(zip(layout.names, mutation.per_block("founder_scale", layout), strict=True))
+    for name, deviation in founder_deviations(subjects).items():
+        assert deviation == pytest.approx(scales[name], rel=0.1)
+
+
+def test_calibrated_mutants_act_otherwise_in_no_more_moments(subjects: Subjects) -> None:
+    rule = Moments(kept=32, every=2)
+    calibrated = Calibrated(probability=1.0, differs=0.1, remembered=32, every=2)
+    remembered = moments_of(subjects.players, rule, 200)
+    operator = Operator.of("calibrated", calibrated, subjects)
+    made = mutants(subjects, operator, 20, remembered)
+    for parent, children in enumerate(made):
+        moments = Remembered(*(each[np.full(20, parent)] for each in remembered))
+        parents = jnp.asarray(np.repeat(subjects.players.genomes[[parent]], 20, axis=0))
+        change = np.asarray(change_in(subjects.law, moments, parents)(jnp.asarray(children)))
+        assert (change <= 0.1).all()
+        assert (change > 0).any()
+
+
+def test_players_remember_the_last_moments_of_a_game(subjects: Subjects) -> None:
+    lived = lifespans_in_games(subjects.players, 1, 300)[:, 0]
+    for kept, every in ((8, 4), (256, 3)):
+        known = np.asarray(moments_of(subjects.players, Moments(kept, every), 300).known)
+        due = -(-lived // every)
+        np.testing.assert_array_equal(known.sum(axis=1), np.minimum(due, kept))
+
+
+def test_tiny_mutations_change_nothing_and_huge_ones_kill(subjects: Subjects) -> None:
+    found = effects(subjects, (1e-7, 30.0), count=30, games=GAMES, ticks=300)
+    own, tiny, huge = found[:2], found[2:4], found[4:]
+    assert [each.mutation for each in (own[0], tiny[0], huge[0])] == [
+        "as set",
+        "scale 1e-07",
+        "scale 30",
+    ]
+    for each in tiny:
+        assert each.as_long == 1
+        assert (each.longer, each.third_shorter) == (0, 0)
+    assert np.mean([each.third_shorter for each in huge]) > 0.6
+    spans = lifespans_in_games(subjects.players, GAMES, 300).mean(axis=1)
+    assert [each.lifespan for each in own] == spans.tolist()
+
+
+def test_an_organism_has_the_same_mutants_alone(poles: primordia.Run, subjects: Subjects) -> None:
+    second = of_run(poles.opened(), [(int(subjects.organism[1]), 1)])
+    together = effects(subjects, (0.1,), (0.05,), count=5, games=1, ticks=100)
+    alone = effects(second, (0.1,), (0.05,), count=5, games=1, ticks=100)
+    assert [each.to_dict() for each in together if each.world == 1] == [
+        each.to_dict() for each in alone
+    ]
+
+
+def test_shares_have_their_bounds() -> None:
+    lives = np.array([111.0, 110.0, 105.0, 100.0, 100.0, 70.0, 66.0, 1.0])
+    found = Effect("any", 0, 0, 100.0, lives)
+    assert found.as_long == 2 / 8
+    assert found.longer == 3 / 8
+    assert found.tenth_longer == 1 / 8 or found.tenth_longer == 2 / 8
+    assert found.third_shorter == 2 / 8
+    assert replace(found, lifespan=0.5).longer == 1
+
+
+def test_notes_are_the_parents(tmp_path: Path) -> None:
+    """A heritable scale is the parent's, so late mutants of different organisms differ in size."""
+    settings = {"kind": "heritable", "probability": 1.0, "scale": 0.1, "founder_scale": 0.1}
+    loop.start(config(cells=16, mutation=settings, stop={"ticks": 300}), tmp_path / "run")
+    run = primordia.load(tmp_path / "run").opened()
+    notes = run.notes_of(run.lives)[:, 0]
+    extremes = [int(np.argmin(notes)), int(np.argmax(notes))]
+    subjects = of_run(run, [(int(run.lives.id[row]), 0) for row in extremes])
+    np.testing.assert_array_equal(subjects.notes[:, 0], notes[extremes])
+    made = mutants(subjects, own_operator(subjects), 60, None)
+    finest, coarsest = steps(subjects, made).std(axis=(1, 2))
+    ratio = 2 ** ((notes[extremes[1]] - notes[extremes[0]]) / 4)
+    assert coarsest / finest == pytest.approx(ratio, rel=0.2)

@@ -1,0 +1,52 @@
+"""Organisms that live again: from a run, or from a genome file."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import primordia
+from primordia.assays.subjects import of_file, of_run
+from primordia.brains import genomes
+from primordia.errors import InputError
+
+
+def test_without_numbers_the_champions_live(poles: primordia.Run) -> None:
+    subjects = of_run(poles.opened())
+    champions = poles.champions()
+    assert subjects.organism.tolist() == [each.id for each in champions]
+    assert subjects.world.tolist() == [0, 1]
+    for genome, champion in zip(subjects.players.genomes, champions, strict=True):
+        np.testing.assert_array_equal(genome, champion.genome())
+
+
+def test_a_file_gives_the_genomes_that_were_exported(poles: primordia.Run, tmp_path: Path) -> None:
+    file, chosen = tmp_path / "some.safetensors", (0, 5, 9)
+    poles.export(file, *chosen)
+    subjects = of_file(file, (2, 0))
+    assert subjects.config.task == "CartPole-survival"
+    assert subjects.names == ["2 of world 0", "0 of world 0"]
+    expected = of_run(poles.opened(), [(9, 0), (0, 0)]).players.genomes
+    np.testing.assert_array_equal(subjects.players.genomes, expected)
+    assert len(of_file(file).organism) == 3
+
+
+def test_a_file_must_hold_the_genome_and_say_its_task(poles: primordia.Run, tmp_path: Path) -> None:
+    file = tmp_path / "one.safetensors"
+    poles.export(file, 0)
+    with pytest.raises(InputError, match="has no genome 1; they count from 0 to 0"):
+        of_file(file, (1,))
+    with pytest.raises(InputError, match="there is no genome file"):
+        of_file(tmp_path / "none.safetensors")
+    layout = poles.opened().layout
+    genomes.write(file, layout, np.zeros((1, layout.length), np.float32), {})
+    with pytest.raises(InputError, match="does not say which task"):
+        of_file(file)
+    assert of_file(file, task="CartPole-survival").organism.tolist() == [0]
+    with pytest.raises(InputError, match="another brain"):
+        of_file(file, task="Hopper-survival")
+
+
+def test_a_changed_habitat_must_have_the_setting(poles: primordia.Run) -> None:
+    with pytest.raises(InputError, match="no setting 'gravity'"):
+        of_run(poles.opened(), habitat={"gravity": 1.0})
