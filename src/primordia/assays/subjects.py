@@ -35,6 +35,7 @@ class Subjects(NamedTuple):
     source: str
     """the run, or the genome file"""
     config: Config
+    """settings of the run, or of the task; the habitat may be changed"""
     players: Players
     organism: np.ndarray
     """birth number of each, or its number in the file, int64 (K,)"""
@@ -82,11 +83,11 @@ def of_run(
         raise InputError(f"{run.path}: nothing has been born since the fork")
     chosen = lives.take(rows)
     numbers = list(zip(chosen.id.tolist(), chosen.world.tolist(), strict=True))
-    players = players_of(run, numbers)
+    where = changed(run.config, habitat or {})
     return Subjects(
         source=str(run.path),
-        config=run.config,
-        players=players._replace(habitat=changed(run.config, players.habitat, habitat or {})),
+        config=where,
+        players=players_of(run, numbers)._replace(habitat=where.build_habitat()),
         organism=chosen.id,
         world=chosen.world.astype(np.int64),
         notes=run.notes_of(chosen),
@@ -116,7 +117,7 @@ def of_file(
     if named is None:
         raise InputError(f"{file} does not say which task its genomes live in; name it: --task")
     device.prepare()
-    chosen = config.load(named)
+    chosen = changed(config.load(named), habitat or {})
     own = chosen.build_habitat()
     law = chosen.build_law(own)
     everyone = genomes.read([str(file)], law.heredity.layout)
@@ -129,6 +130,6 @@ def of_file(
     climate = {name: np.asarray(each) for name, each in initial_climate(law, len(which)).items()}
     keys = stream(wide(np.full(len(which), chosen.seed)), Purpose.EVALUATION, wide(which))
     rates = Rates.of(jax.tree.map(jnp.asarray, climate))
-    players = Players(law, changed(chosen, own, habitat or {}), everyone[which], keys, rates)
+    players = Players(law, own, everyone[which], keys, rates)
     notes = np.asarray(law.heredity.mutation.founders_notes(len(which)))
     return Subjects(str(file), chosen, players, which, np.zeros_like(which), notes, climate)

@@ -7,13 +7,13 @@ originals live longer is due to selection (Bedau & Packard 1992).
 """
 
 from dataclasses import dataclass
-from math import comb
 from typing import Any
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 
+from primordia.assays.signs import sign_test
 from primordia.comparison.resample import LEAST, interval, resamples
 from primordia.errors import InputError
 from primordia.history import pedigree
@@ -60,9 +60,7 @@ class Shadow:
     @property
     def p(self) -> float:
         """The probability of a split of the worlds at least as uneven, without selection (sign test)."""
-        most, least = max(self.longer), min(self.longer)
-        tail = sum(comb(most + least, k) for k in range(least + 1)) / 2 ** (most + least)
-        return min(2 * tail, 1.0)
+        return sign_test(*self.longer)
 
     @property
     def ratio(self) -> float:

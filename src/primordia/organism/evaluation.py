@@ -13,7 +13,6 @@ import numpy as np
 
 from primordia.config import Config
 from primordia.errors import InputError
-from primordia.habitats.contract import AnyHabitat
 from primordia.organism.games import Games, Players, play
 from primordia.organism.players import players_of
 from primordia.organism.playing.seats import Frozen
@@ -125,7 +124,7 @@ def judged(
     """Let players of a run play games side by side, called by these numbers; see `evaluate`."""
     if games < 1 or ticks < 1:
         raise InputError("evaluate needs at least one game of at least one tick")
-    players = own._replace(habitat=changed(run.config, own.habitat, habitat))
+    players = own._replace(habitat=changed(run.config, habitat).build_habitat())
     script = play(own, 1, ticks) if senses == "ignored" else None
     count = 1 if players.deterministic else games
     frozen = all_senses(players) if senses == "frozen" else None
@@ -146,26 +145,28 @@ def all_senses(players: Players) -> Frozen:
     return Frozen(np.ones((count, players.law.senses), bool), np.zeros((count, 1), bool))
 
 
-def changed(config: Config, before: AnyHabitat, changes: Mapping[str, Any]) -> AnyHabitat:
-    """Return a run's habitat with some settings changed.
+def changed(config: Config, changes: Mapping[str, Any]) -> Config:
+    """Return a run's settings with some settings of its habitat changed.
 
     Raises:
         InputError: the habitat has no such setting, or brains do not fit the changed habitat.
     """
+    before = config.build_habitat()
     known = list(setting_fields(type(before)))
     for name in changes:
         if known and name not in {each.partition(".")[0] for each in known}:
             hint = did_you_mean(name, known)
             raise InputError(f"this run's habitat has no setting {name!r}{hint}")
     values = replaced(merged(config.habitat, dict(changes)), NONE, None)
-    habitat = config.model_copy(update={"habitat": values}).build_habitat()
+    after = config.model_copy(update={"habitat": values})
+    habitat = after.build_habitat()
     if (habitat.senses_size, habitat.action) != (before.senses_size, before.action):
         raise InputError(
             f"with changed {', '.join(changes)} the habitat has {habitat.senses_size} senses"
             f" and {habitat.action.size} actions; the brain is made for {before.senses_size} senses and"
             f" {before.action.size} actions"
         )
-    return habitat
+    return after
 
 
 def _in_the_original(players: Players) -> Players | None:

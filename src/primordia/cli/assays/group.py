@@ -2,7 +2,7 @@
 
 import click
 
-from primordia.cli.assays import of_lives, of_records, of_runs
+from primordia.cli.assays import of_lives, of_pairs, of_records, of_runs
 
 
 @click.group()
@@ -17,6 +17,7 @@ for command in (
     of_runs.garden,
     of_runs.line,
     of_lives.ablate,
+    of_pairs.compete,
 ):
     assay.add_command(command)
 

@@ -143,6 +143,25 @@ def line(name: str, found: list[Any]) -> Told:
     return Told(f"{name}: genomes of a line, born again in the same games", head, rows, (note,))
 
 
+def compete(name: str, found: list[Any]) -> Told:
+    """Return the table of two genomes in one world, `assays.compete`."""
+    rows = []
+    for each in found:
+        won, lost = each.won
+        late = each.late_share.tolist()
+        worlds = f"{len(each.share):,}"
+        rows.append((each.one, worlds, f"{won:,}", f"{spread(late)}"))
+        rows.append((each.other, worlds, f"{lost:,}", f"{spread(1 - share for share in late)}"))
+    head = ("", "worlds", "won", "share of the late living")
+    notes = [
+        "Late: mean over the later half of the ticks. Won: worlds in which it is above one half."
+        f" Sign test over worlds: p = {each.p:.2g}."
+        for each in found
+    ]
+    ticks = f"{found[0].tick[-1]:,} ticks"
+    return Told(f"{name}: both fill half of each world, {ticks}, no mutation", head, rows, notes)
+
+
 def _birth_text(step: Any) -> str:
     return f"{step.organism:,} (generation {step.generation:,}, tick {step.born:,})"
 

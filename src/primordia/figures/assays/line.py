@@ -12,12 +12,13 @@ def draw(found: list[Line]) -> Figure:
     for axes, line in zip(figure.subplots(len(found), squeeze=False).flat, found, strict=True):
         generation = [step.generation for step in line.steps]
         recorded = [max(step.recorded, 1) for step in line.steps]
-        axes.plot(generation, recorded, ".", color=style.ORANGE, markersize=3, markeredgewidth=0)
         reborn = [max(step.reborn, 1) for step in line.steps]
-        axes.step(generation, reborn, where="post", color=style.BLUE)
+        to_the_end = [*generation, line.generations], [*reborn, reborn[-1]]
+        axes.step(*to_the_end, where="post", color=style.BLUE)
+        axes.plot(generation, recorded, ".", color=style.ORANGE, markersize=4, markeredgewidth=0)
         axes.axvline(line.good.generation, color=style.FAINT, zorder=0)
         style.logarithmic(axes.yaxis)
-        axes.set(xlabel="generation", ylabel="ticks lived")
+        axes.set(xlabel="generation", ylabel="ticks lived", xlim=(0, max(line.generations, 1)))
         key = {"born again": style.BLUE, "in its world": style.ORANGE, "as good from": style.SOFT}
         style.title(axes, f"The line of organism {line.organism} of world {line.world}", key)
     return figure

@@ -1,0 +1,157 @@
+"""Two genomes in one empty world: whose descendants take over?
+
+Half of the cells begin with either genome, and children are exact copies. So only life and death decide.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+
+from primordia.assays.signs import sign_test
+from primordia.assays.subjects import Subjects
+from primordia.brains import genomes
+from primordia.config import Config, checked
+from primordia.errors import InputError
+from primordia.law.world import BirthCause
+from primordia.runs import loop
+from primordia.runs.archive import Archive
+from primordia.runs.lives import Lives
+
+WORLDS = 10
+"""Worlds, if not told otherwise."""
+TICKS = 5_000
+"""Ticks of each world, if not told otherwise."""
+MOMENTS = 101
+"""Ticks at which shares are counted, the first and the last among them."""
+
+
+@dataclass(frozen=True)
+class Competition:
+    """The descendants of two genomes in W worlds."""
+
+    one: str
+    other: str
+    tick: np.ndarray
+    """int64 (T,)"""
+    share: np.ndarray
+    """share of the living that descend from `one` at the end of each tick, float64 (W, T); NaN if
+    nothing lives"""
+
+    @property
+    def late_share(self) -> np.ndarray:
+        """Mean of `share` over the later half of the ticks, float64 (W,); NaN if nothing lives then."""
+        late = self.share[:, self.share.shape[1] // 2 :]
+        known = np.isfinite(late)
+        total = np.where(known, late, 0).sum(axis=1)
+        return np.where(known.any(axis=1), total / np.maximum(known.sum(axis=1), 1), np.nan)
+
+    @property
+    def won(self) -> tuple[int, int]:
+        """Worlds in which most of the late living descend from `one`, and from `other`."""
+        late = self.late_share
+        return int((late > 0.5).sum()), int((late < 0.5).sum())
+
+    @property
+    def p(self) -> float:
+        """The probability of a split of the worlds at least as uneven, of equal genomes (sign test)."""
+        return sign_test(*self.won)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain values for JSON."""
+        share = [[None if np.isnan(each) else each for each in row] for row in self.share.tolist()]
+        return {
+            "one": self.one,
+            "other": self.other,
+            "worlds": len(share),
+            "late_share": [None if np.isnan(each) else each for each in self.late_share.tolist()],
+            "won": list(self.won),
+            "p": self.p,
+            "tick": self.tick.tolist(),
+            "share": share,
+        }
+
+
+def compete(
+    one: Subjects, other: Subjects, worlds: int = WORLDS, ticks: int = TICKS
+) -> Competition:
+    """Let two genomes share empty worlds.
+
+    Cells are filled with either genome in turn, and again if all die. There is no mutation and no second
+    parent; all else is the law of `one`.
+
+    Args:
+        one: a single organism or genome, and the law.
+        other: a single organism or genome of the same brain.
+        worlds: number of worlds; their seeds begin with that of `one`.
+        ticks: ticks of each world.
+
+    Raises:
+        InputError: there are several genomes on a side, or the brains differ.
+    """
+    for side in (one, other):
+        if len(side.organism) != 1:
+            raise InputError(
+                f"{side.source}: name one organism to compete; these are {len(side.organism)}"
+            )
+    layout = one.law.heredity.layout
+    if layout != other.law.heredity.layout:
+        raise InputError(f"{one.source} and {other.source} have different brains, so none can win")
+    with TemporaryDirectory() as folder:
+        file = Path(folder, "both.safetensors")
+        both = np.concatenate([one.players.genomes, other.players.genomes])
+        genomes.write(file, layout, both, {})
+        run = Path(folder, "run")
+        loop.start(_settings(one.config, file, worlds, ticks), run)
+        archive = Archive(run)
+        lives, seeds = archive.lives, archive.world_seeds
+    tick = np.linspace(0, ticks, MOMENTS).astype(np.int64)
+    shares = [_shares(lives.of_world(w), seed, tick) for w, seed in enumerate(seeds)]
+    first, second = (f"{Path(side.source).name}: {side.names[0]}" for side in (one, other))
+    return Competition(first, second, tick, np.stack(shares))
+
+
+def _settings(config: Config, file: Path, worlds: int, ticks: int) -> Config:
+    """Return the settings of worlds that two ancestors share, without mutation."""
+    changes: dict[str, Any] = {
+        "ancestors": (str(file),),
+        "genesis": "fill",
+        "inheritance": "parent",
+        "mutation": {"kind": "gaussian", "probability": 0.0},
+        "recombination": None,
+        "seasons": tuple(s for s in config.seasons if not s.setting.startswith("mutation.")),
+        "seeds": worlds,
+        "stop": {"ticks": ticks},
+        "fork": None,
+    }
+    values = config.model_dump(exclude=set(changes)) | changes
+    return checked(Config.model_validate(values), source="compete")
+
+
+def _shares(lives: Lives, seed: np.uint64, tick: np.ndarray) -> np.ndarray:
+    """Return the share of one world's living that descend from the first genome, float64 (T,)."""
+    first = _of_first(lives, seed)
+    alive = np.stack([_alive(lives.take(np.flatnonzero(side)), tick) for side in (first, ~first)])
+    total = alive.sum(axis=0)
+    return np.where(total > 0, alive[0] / np.maximum(total, 1), np.nan)
+
+
+def _of_first(lives: Lives, seed: np.uint64) -> np.ndarray:
+    """Return which organisms descend from founders with the first genome, bool (L,).
+
+    Founders take the genomes in turn by seed and birth number; see `law.heredity`.
+    """
+    founder = lives.birth_cause == BirthCause.FOUNDER
+    above = np.where(founder, np.arange(len(lives)), lives.parent_row)
+    while (above != above[above]).any():  # twice as many generations each time
+        above = above[above]
+    return (lives.id[above].astype(np.uint64) + seed) % np.uint64(2) == 0
+
+
+def _alive(lives: Lives, tick: np.ndarray) -> np.ndarray:
+    """Return how many of some lives go on at the end of each tick, int64 (T,)."""
+    ended = np.sort(lives.ended[lives.died])
+    born = np.searchsorted(np.sort(lives.born), tick, side="right")
+    return born - np.searchsorted(ended, tick, side="right")

@@ -1,0 +1,76 @@
+"""The assay of two genomes in one world."""
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from primordia.cli.assays import tables
+from primordia.cli.assays.of_lives import SUFFIX, subjects_of
+from primordia.cli.assays.options import json_option, out_option, tell
+from primordia.cli.cache import cache_option
+from primordia.cli.flags import HabitatCommand, trust_option
+
+if TYPE_CHECKING:
+    from primordia.assays.subjects import Subjects
+
+NUMBERED = re.compile(r"(?P<place>.+):(?P<organism>\d+)(@(?P<world>\d+))?")
+"""A run or genome file, an organism of it, and its world."""
+
+
+@click.command(cls=HabitatCommand, short_help="Two genomes in one world: which takes over?")
+@click.argument("one")
+@click.argument("other")
+@click.option("--task", help="Task of a genome file [the one that it names].")
+@click.option("--worlds", type=click.IntRange(min=1), default=10, show_default=True, help="Worlds.")
+@click.option(
+    "--ticks", type=click.IntRange(min=1), default=5_000, show_default=True,
+    help="Ticks of each world.",
+)  # fmt: skip
+@out_option
+@trust_option
+@cache_option
+@json_option
+@click.pass_obj
+def compete(
+    habitat: dict[str, Any],
+    /,
+    one: str,
+    other: str,
+    task: str | None,
+    worlds: int,
+    ticks: int,
+    trust: bool,
+    out: Path | None,
+    as_json: bool,
+) -> None:
+    """Let two genomes share empty worlds, without mutation, and tell whose descendants take over.
+
+    ONE and OTHER are runs, for their champions, or genome files, for their first genome. `runs/a:17` is
+    organism 17 of world 0, `runs/a:17@2` of world 2, `some.safetensors:3` the fourth genome of a file.
+    The law is that of ONE. Any setting of the habitat can be changed by a flag.
+    """
+    from primordia.assays.compete import compete as measure
+
+    sides = [_side(each, habitat, task, trust) for each in (one, other)]
+    found = measure(sides[0], sides[1], worlds, ticks)
+    tell("compete", {f"{one} and {other}": [found]}, as_json, out, tables.compete)
+
+
+def _side(words: str, habitat: dict[str, Any], task: str | None, trust: bool) -> "Subjects":
+    """Return the one subject that some words name."""
+    from primordia.api import load
+
+    numbered = NUMBERED.fullmatch(words)
+    place = Path(numbered["place"] if numbered else words)
+    world = int(numbered["world"]) if numbered and numbered["world"] else None
+    if numbered:
+        organism = int(numbered["organism"])
+    elif place.suffix == SUFFIX:
+        organism = 0
+    else:
+        champion = load(place, trust).oldest()
+        organism, world = champion.id, champion.world
+    of_task = task if place.suffix == SUFFIX else None
+    return subjects_of(habitat, place, (organism,), world, of_task, trust)
