@@ -89,7 +89,7 @@ def test_wrong_words_are_one_line(poles: primordia.Run, tmp_path: Path) -> None:
     file = tmp_path / "some.safetensors"
     poles.export(file, 3)
     for words, message in (
-        (("effects", file, "--world", 1), "a genome file has no worlds"),
+        (("effects", file, "--world", 1), "has no worlds; leave out --world"),
         (("effects", poles.path, "--task", "CartPole-survival"), "leave out --task"),
         (("effects", poles.path, 10**6), "no organism"),
         (("line", file), "a genome file holds no ancestors"),

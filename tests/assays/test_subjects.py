@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 import primordia
-from primordia.assays.subjects import of_file, of_run
+from primordia.assays.subjects import BEST, FOUNDERS, of_file, of_run, of_task
 from primordia.brains import genomes
 from primordia.errors import InputError
+from primordia.organism.games import lifespans
 
 
 def test_without_numbers_the_champions_live(poles: primordia.Run) -> None:
@@ -50,3 +51,16 @@ def test_a_file_must_hold_the_genome_and_say_its_task(poles: primordia.Run, tmp_
 def test_a_changed_habitat_must_have_the_setting(poles: primordia.Run) -> None:
     with pytest.raises(InputError, match="no setting 'gravity'"):
         of_run(poles.opened(), habitat={"gravity": 1.0})
+
+
+def test_of_a_task_the_longest_lived_founders_live() -> None:
+    best = of_task("CartPole-survival")
+    everyone = of_task("CartPole-survival", range(FOUNDERS))
+    assert len(np.unique(everyone.players.genomes, axis=0)) == FOUNDERS
+    lived = lifespans(everyone.players, 20_000)
+    assert len(best.organism) == BEST
+    assert lived[best.organism].min() >= np.sort(lived)[-BEST]
+    np.testing.assert_array_equal(best.players.genomes, everyone.players.genomes[best.organism])
+    np.testing.assert_array_equal(lifespans(best.players, 20_000), lived[best.organism])
+    with pytest.raises(InputError, match="has no genome 512; they count from 0 to 511"):
+        of_task("CartPole-survival", [512])

@@ -8,25 +8,19 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import jax.numpy as jnp
 import numpy as np
 
 from primordia.assays.mutants import Operator, moments_of, mutants, own_operator
-from primordia.assays.subjects import GAMES, TICKS, Subjects
+from primordia.assays.subjects import FOUNDERS, GAMES, TICKS, Subjects, founders
 from primordia.mutations.blocks import FounderBlock
 from primordia.mutations.calibrated import Calibrated
-from primordia.mutations.contract import PURPOSES, Draws
 from primordia.mutations.gaussian import Block, Gaussian
 from primordia.organism.games import lifespans_in_games
-from primordia.random.keys import Purpose, stream, streams
-from primordia.random.wide import wide
 
 MUTANTS = 24
 """Mutants of an organism by each mutation, if not told otherwise."""
 SCALES = (0.001, 0.003, 0.01, 0.03, 0.1, 0.3)
 """Standard deviations of noise, as shares of that of founders' weights, if not told otherwise."""
-FOUNDERS = 256
-"""Founders whose weights tell their standard deviation."""
 
 
 @dataclass(frozen=True)
@@ -157,8 +151,5 @@ def _calibrated(subjects: Subjects, differs: Sequence[float]) -> list[Operator]:
 
 def founder_deviations(subjects: Subjects) -> dict[str, float]:
     """Return the standard deviation of founders' weights in each block, measured from founders."""
-    heredity, numbers = subjects.law.heredity, jnp.arange(FOUNDERS, dtype=jnp.int32)
-    seed = stream(wide(np.full(FOUNDERS, subjects.config.seed)), Purpose.CONTROL, wide([0]))
-    draws = Draws(streams(seed, wide([0]), *PURPOSES), numbers)
-    made = np.asarray(heredity.mutation.founders(heredity.layout, draws))
-    return {name: float(part.std()) for name, part in heredity.layout.split(made).items()}
+    parts = subjects.law.heredity.layout.split(founders(subjects.config, FOUNDERS))
+    return {name: float(part.std()) for name, part in parts.items()}

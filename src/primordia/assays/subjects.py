@@ -1,4 +1,4 @@
-"""The subjects of an assay: organisms of a run, or genomes of a file, that live again."""
+"""The subjects of assays, which live again: organisms of a run, genomes of a file, founders of a task."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -16,10 +16,11 @@ from primordia.history.climate import PastClimate
 from primordia.law.genesis import initial_climate
 from primordia.law.law import Law
 from primordia.law.metabolism import Rates
+from primordia.mutations.contract import PURPOSES, Draws
 from primordia.organism.evaluation import changed
-from primordia.organism.games import Players
+from primordia.organism.games import Players, lifespans
 from primordia.organism.players import players_of
-from primordia.random.keys import Purpose, stream
+from primordia.random.keys import Purpose, stream, streams
 from primordia.random.wide import wide
 from primordia.runs.records import Records
 
@@ -27,20 +28,22 @@ GAMES = 5
 """Games of each genome, if not told otherwise; one where nothing is drawn at random."""
 TICKS = 20_000
 """Length at which games are cut, if not told otherwise."""
+FOUNDERS, BEST = 512, 16
+"""Founders of a task that live once, and the longest-lived of them, which are its subjects."""
 
 
 class Subjects(NamedTuple):
     """K organisms that an assay lets live again, all in one habitat."""
 
     source: str
-    """the run, or the genome file"""
+    """the run, the genome file or the task"""
     config: Config
     """settings of the run, or of the task; the habitat may be changed"""
     players: Players
     organism: np.ndarray
-    """birth number of each, or its number in the file, int64 (K,)"""
+    """birth number of each, or its number in the file or among the founders, int64 (K,)"""
     world: np.ndarray
-    """world of each, int64 (K,); 0 in a file"""
+    """world of each, int64 (K,); 0 outside a run"""
     notes: np.ndarray
     """the mutation's notes, int32 (K, n)"""
     climate: Mapping[str, np.ndarray]
@@ -118,18 +121,60 @@ def of_file(
         raise InputError(f"{file} does not say which task its genomes live in; name it: --task")
     device.prepare()
     chosen = changed(config.load(named), habitat or {})
-    own = chosen.build_habitat()
-    law = chosen.build_law(own)
-    everyone = genomes.read([str(file)], law.heredity.layout)
+    everyone = genomes.read([str(file)], chosen.build_layout(chosen.build_habitat()))
     for number in numbers:
-        if not 0 <= number < len(everyone):
-            raise InputError(
-                f"{file} has no genome {number}; they count from 0 to {len(everyone) - 1}"
-            )
+        _check_number(file, number, len(everyone))
     which = np.array(numbers or range(len(everyone)), np.int64)
-    climate = {name: np.asarray(each) for name, each in initial_climate(law, len(which)).items()}
-    keys = stream(wide(np.full(len(which), chosen.seed)), Purpose.EVALUATION, wide(which))
+    return _fresh(str(file), chosen, which, everyone[which])
+
+
+def of_task(
+    task: str, numbers: Sequence[int] = (), habitat: Mapping[str, Any] | None = None
+) -> Subjects:
+    """Return founders of a task, in which nothing has evolved yet: the longest-lived of many.
+
+    Args:
+        task: name of a task, or a TOML file.
+        numbers: some of the FOUNDERS founders, counted from 0; by default the BEST that live longest.
+        habitat: as in `of_run`.
+
+    Raises:
+        InputError: there is no such task or founder, or a setting is wrong.
+    """
+    device.prepare()
+    chosen = changed(config.load(task), habitat or {})
+    for number in numbers:
+        _check_number(task, number, FOUNDERS)
+    made = founders(chosen, FOUNDERS)
+    everyone = _fresh(task, chosen, np.arange(FOUNDERS), made)
+    if numbers:
+        best = np.array(numbers)
+    else:
+        lived = lifespans(everyone.players, TICKS)
+        best = np.argsort(-lived, kind="stable")[:BEST]
+    return _fresh(task, chosen, best, made[best])
+
+
+def founders(chosen: Config, count: int) -> np.ndarray:
+    """Return genomes of founders as the mutation of a task makes them, float32 (count, P)."""
+    heredity = chosen.build_heredity(chosen.build_layout(chosen.build_habitat()))
+    seed = stream(wide(np.full(count, chosen.seed)), Purpose.CONTROL, wide([0]))
+    draws = Draws(streams(seed, wide([0]), *PURPOSES), jnp.arange(count, dtype=jnp.int32))
+    return np.asarray(heredity.mutation.founders(heredity.layout, draws))
+
+
+def _fresh(source: str, chosen: Config, number: np.ndarray, own: np.ndarray) -> Subjects:
+    """Return genomes (K, P) that are no organisms of a run, by their numbers (K,)."""
+    habitat, count = chosen.build_habitat(), len(number)
+    law = chosen.build_law(habitat)
+    climate = {name: np.asarray(each) for name, each in initial_climate(law, count).items()}
+    keys = stream(wide(np.full(count, chosen.seed)), Purpose.EVALUATION, wide(number))
     rates = Rates.of(jax.tree.map(jnp.asarray, climate))
-    players = Players(law, own, everyone[which], keys, rates)
-    notes = np.asarray(law.heredity.mutation.founders_notes(len(which)))
-    return Subjects(str(file), chosen, players, which, np.zeros_like(which), notes, climate)
+    players = Players(law, habitat, own, keys, rates)
+    notes = np.asarray(law.heredity.mutation.founders_notes(count))
+    return Subjects(source, chosen, players, number, np.zeros_like(number), notes, climate)
+
+
+def _check_number(source: str | Path, number: int, count: int) -> None:
+    if not 0 <= number < count:
+        raise InputError(f"{source} has no genome {number}; they count from 0 to {count - 1}")

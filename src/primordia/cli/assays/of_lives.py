@@ -82,9 +82,9 @@ def effects(
 ) -> None:
     """Let mutants of organisms live in the games of their parents, by several mutations.
 
-    RUN is a run, or a genome file. Without an ID the champion of each world has mutants; of a file, each
-    genome. The run's own mutation is the first of the table. Any setting of the habitat can be changed by
-    a flag, such as --sticky 0.25 --noops 30.
+    RUN is a run, a genome file or a task. Without an ID the champion of each world has mutants; of a
+    file, each genome; of a task, the longest-lived 16 of 512 founders. The run's own mutation is the
+    first of the table. Any setting of the habitat can be changed by a flag, such as --sticky 0.25.
     """
     from primordia.assays.effects import SCALES
     from primordia.assays.effects import effects as measure
@@ -108,8 +108,9 @@ def ablate(
 ) -> None:
     """Let organisms live with frozen senses, without memory, and without each block of weights.
 
-    RUN is a run, or a genome file. Without an ID the champion of each world is measured; of a file, each
-    genome. Any setting of the habitat can be changed by a flag, such as --sticky 0.25 --noops 30.
+    RUN is a run, a genome file or a task. Without an ID the champion of each world is measured; of a
+    file, each genome; of a task, the longest-lived 16 of 512 founders. Any setting of the habitat can be
+    changed by a flag, such as --sticky 0.25.
     """
     from primordia.assays.ablate import ablate as measure
 
@@ -126,17 +127,21 @@ def subjects_of(
     task: str | None,
     trust: bool,
 ) -> "Subjects":
-    """Return the subjects that a command names: organisms of a run, or genomes of a file."""
+    """Return the subjects that a command names: organisms of a run, genomes of a file, or founders."""
     from primordia.api import load
-    from primordia.assays.subjects import of_file, of_run
+    from primordia.assays.subjects import of_file, of_run, of_task
     from primordia.errors import InputError
+    from primordia.settings.tables import tasks
 
+    of_a_task = run.suffix == ".toml" or (str(run) in tasks() and not run.exists())
+    if world is not None and (of_a_task or run.suffix == SUFFIX):
+        raise InputError(f"{run} has no worlds; leave out --world")
     if run.suffix == SUFFIX:
-        if world is not None:
-            raise InputError("a genome file has no worlds; leave out --world")
         return of_file(run, organisms, task, habitat)
     if task is not None:
-        raise InputError("the task of a run is known; leave out --task")
+        raise InputError(f"the task of {run} is known; leave out --task")
+    if of_a_task:
+        return of_task(str(run), organisms, habitat)
     opened = load(run, trust).opened()
     numbers = [(each, world or 0) for each in organisms]
     if not numbers and world is not None:
