@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from primordia.assays.families import LEAST, families
 from primordia.assays.heredity import heredity, price, slope
+from primordia.history.families import LEAST, families
 from primordia.runs.lives import Lives
 from tests.assays.lives import COPY, FOUNDER, MUTANT, lives
 

@@ -117,20 +117,14 @@ def champion(file: Path) -> int:
     return named.id
 
 
-def test_games_mutants_and_champions_are_reported(
-    ponged: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_games_and_champions_are_reported(ponged: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     results = ponged.parent / "results"
     assert "deaths in the last quarter" in Path("runs/pong/results.md").read_text()
-    games, mutants, runs = (
-        import_module("games"), import_module("mutants"), import_module("named").arms)  # fmt: skip
-    for script in (games, mutants):
-        monkeypatch.setattr(script, "TICKS", 400)
+    games, runs = import_module("games"), import_module("named").arms
+    monkeypatch.setattr(games, "TICKS", 400)
     monkeypatch.setattr(games, "GAMES", 2)
     ways = {"own game": {}, "sticky, no-ops": {"habitat": {"sticky": 0.5}}}
     monkeypatch.setattr(games, "WAYS", {"atari": ways})
-    monkeypatch.setattr(mutants, "MUTANTS", 4)
-    monkeypatch.setattr(mutants, "SCALES", (0.0, 0.3))
     reference = primordia.load(runs(ponged)[0])
     assert champion(ponged) == reference.oldest().id
     games.report(ponged)
@@ -150,10 +144,22 @@ def test_games_mutants_and_champions_are_reported(
         reference.info()["alive"]
     )
     assert of["founder", "sticky, no-ops"]["games"] == "1"
-    mutants.report(ponged)
-    rows = list(csv.DictReader((results / "pong-mutants.csv").read_text().splitlines()))
-    copies = [float(row["as long"]) for row in rows if row["scale"] == "0.0"]
-    assert copies == [1.0]
+
+
+def test_effects_of_mutations_are_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(EXPERIMENTS))
+    script = import_module("effects")
+    values = {"RESULTS": tmp_path / "results", "SCALES": (1e-7, 30.0), "DIFFERS": (), "TICKS": 100}
+    for name, value in values.items():
+        monkeypatch.setattr(script, name, value)
+    script.report("CartPole-survival")
+    results = tmp_path / "results" / "cartpole-survival.csv"
+    rows = list(csv.DictReader(results.read_text().splitlines()))
+    assert {float(row["as_long"]) for row in rows if row["mutation"] == "scale 1e-07"} == {1.0}
+    text = results.with_suffix(".md").read_text()
+    assert "| scale 1e-07 | 1.000 (1.000 to 1.000) |" in text
+    huge = [float(row["as_long"]) for row in rows if row["mutation"] == "scale 30"]
+    assert f"| scale 30 | {np.mean(huge):.3f} (" in text
 
 
 def test_the_csv_holds_the_outcomes_of_each_world(ponged: Path) -> None:

@@ -14,12 +14,15 @@ from primordia.comparison.gathering import Gathering
 from primordia.comparison.measured import Measured
 from primordia.comparison.pace import WINDOWS, Pace
 from primordia.comparison.survival import survival as survived
-from primordia.figures import ages, comparison, foraging, population, style, survival
+from primordia.figures import ages, comparison, foraging, population, style, survival, threshold
 from primordia.history import series
 from primordia.history.extinctions import Extinctions
 from primordia.history.foraging import Foraging
+from primordia.history.threshold import over_births
 from primordia.law.world import Cause
 from primordia.runs.lives import ALIVE, Lives
+from tests.assays.lives import COPY, FOUNDER, MUTANT
+from tests.assays.lives import lives as lives_of
 from tests.synthetic import alive, worlds_of
 from tests.worlds import MEADOW, config
 
@@ -200,6 +203,28 @@ def test_food_is_drawn_in_the_unit_of_its_title(
     for (x, y), values in zip(lines(axes, foraging.BREAK_EVEN), enough, strict=False):
         np.testing.assert_array_equal(x, measured.middle)
         np.testing.assert_allclose(y, values * (rate or 1))
+
+
+def test_the_threshold_is_drawn_stretch_by_stretch() -> None:
+    """Two worlds of the same 800 births: 4 stretches of 200 each."""
+    rows: list = [(-1, FOUNDER, 100), *((-1, FOUNDER, 1) for _ in range(99))]
+    for good in (2, 5, 8, 10):
+        rows += [(0, COPY, 100)] * 20 + [(0, MUTANT, 100)] * good + [(0, MUTANT, 1)] * (20 - good)
+        rows += [(-1, FOUNDER, 1)] * 135
+    world = lives_of(*rows)
+    run: Any = SimpleNamespace(lives=world)
+    with style.applied():
+        figure = threshold.draw(run, 0)
+    assert figure is not None
+    edges = np.linspace(0, len(world), len(world) // threshold.ENOUGH + 1).astype(int)
+    expected = over_births(0, world, edges)
+    assert len(expected) == 4
+    for axes, name in zip(figure.axes, ("mutated", "as_good", "held"), strict=True):
+        ((x, y),) = lines(axes, style.BLUE)
+        np.testing.assert_allclose(x, (edges[1:] + edges[:-1]) / 2)
+        np.testing.assert_allclose(y, [getattr(each, name) for each in expected])
+    few: Any = SimpleNamespace(lives=lives_of(*rows[:300]))
+    assert threshold.draw(few, 0) is None
 
 
 SEEDS = np.arange(3)

@@ -4,13 +4,19 @@ from typing import Any
 
 from primordia.history.summary import summary
 
+UNKNOWN = {"mutated": 0.5, "as_good": None, "advantage": 2.0, "held": None}
+
+
+def held(value: float) -> dict[str, Any]:
+    return {"mutated": 0.5, "as_good": 0.25, "advantage": 2.0, "held": value}
+
 
 def world(**changed: Any) -> dict[str, Any]:
     return {
         "seed": 0, "ticks": 5000, "births": 900, "alive": 8, "mean_age": 70.0, "oldest_age": 300,
         "deaths_by_cause": {"fatal": 890, "hazard": 2, "fault": 0}, "extinctions": 0, "crashes": 0,
         "saturation": {"tick": 4000, "births": 800}, "fixation": None, "tries_per_life": 3.0,
-        **changed,
+        "threshold": UNKNOWN, **changed,
     }  # fmt: skip
 
 
@@ -39,6 +45,17 @@ def test_the_summary_of_one_world_names_its_moments() -> None:
     assert empty.endswith("    0 alive\n    not saturated")
     assert "no heredity" in summarised([world()], inheritance="founder")
     assert "cannot be repeated" in summarised([world()], exact=False)
+
+
+def test_the_summary_says_whether_good_lines_keep_their_ground() -> None:
+    numbers = "p 0.5, v 0.25, s 2: s (1 - p (1 - v)) is"
+    assert f"    good lines keep their ground: {numbers} 1.3\n" in summarised(
+        [world(threshold=held(1.26))]
+    )
+    assert f"lose their ground: {numbers} 0.9\n" in summarised([world(threshold=held(0.9))])
+    assert "ground" not in summarised([world()])
+    some = [world(threshold=held(value)) for value in (0.5, 0.9, 2.0)] + [world()] * 3
+    assert f"    good lines keep their ground in 1 of 3; medians {numbers} 0.9" in summarised(some)
 
 
 def test_the_summary_says_what_food_keeps_an_organism_alive() -> None:

@@ -11,11 +11,11 @@ import pyarrow as pa
 
 from primordia import device as devices
 from primordia.assays.heredity import Inherited, heredity
-from primordia.assays.threshold import Threshold, threshold
 from primordia.comparison.controls import FOUNDERS, Standing, evolved, unevolved
 from primordia.comparison.shadow import ORGANISMS, Shadow, shadow
 from primordia.history.info import info
 from primordia.history.lineage import rebuild
+from primordia.history.threshold import Threshold, threshold
 from primordia.organism.evaluation import Evaluation, evaluate
 from primordia.organism.export import export
 from primordia.organism.organism import Organism
@@ -118,7 +118,7 @@ class Run:
         return heredity(self.opened(), after)
 
     def threshold(self, after: float = LATE) -> list[Threshold]:
-        """Measure whether a good line keeps its ground in each world; see `assays.threshold`."""
+        """Measure whether a good line keeps its ground in each world; see `history.threshold`."""
         return threshold(self.opened(), after)
 
     def policy(self) -> Policy:

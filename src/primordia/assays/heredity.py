@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from primordia.assays.families import LEAST, Families, families
+from primordia.history.families import LEAST, Families, families
 from primordia.runs.lives import LATE
 from primordia.runs.records import Records
 

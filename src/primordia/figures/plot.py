@@ -22,6 +22,7 @@ KNOWN = {
     "population": "primordia.figures.population:draw",
     "space-time": "primordia.figures.spacetime:draw",
     "foraging": "primordia.figures.foraging:draw",
+    "threshold": "primordia.figures.threshold:draw",
 }
 Draw: TypeAlias = Callable[[Records, int], Figure | None]
 

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from primordia.history.extinctions import crashes
+from primordia.history.threshold import Threshold, threshold
 from primordia.law.metabolism import break_even
 from primordia.law.world import Cause
 from primordia.runs.arrays import NEVER
@@ -18,7 +19,8 @@ TALLY = "bodies.tally"
 def info(run: Records) -> dict[str, Any]:
     """Return a run in numbers, as one dictionary that JSON can hold.
 
-    `crashes` are the extinctions after a rise; see `extinctions`.
+    `crashes` are the extinctions after a rise; see `extinctions`. `threshold` is the error threshold
+    among the later half of the births; see `threshold`.
     `saturation` and `fixation` are None, or their tick and number of births (founders included).
     Ages, in ticks, and the habitat's counts (`tallies`) are those of the living.
     `break_even` is the food in a tick, and in a second, that keeps energy constant under the present
@@ -49,10 +51,18 @@ def info(run: Records) -> dict[str, Any]:
 
 
 def _worlds(run: Records) -> list[dict[str, Any]]:
-    return [_world(run, world, crashed) for world, crashed in enumerate(crashes(run).tolist())]
+    each = zip(crashes(run).tolist(), _thresholds(run), strict=True)
+    return [_world(run, world, *of_records) for world, of_records in enumerate(each)]
 
 
-def _world(run: Records, world: int, crashed: int) -> dict[str, Any]:
+def _thresholds(run: Records) -> list[dict[str, Any]]:
+    """Return the error threshold of each world, without the number of the world."""
+    unknown = Threshold(0, None, None, None)
+    found = threshold(run) + [unknown] * (run.config.seeds - run.lives.worlds)
+    return [{k: value for k, value in each.to_dict().items() if k != "world"} for each in found]
+
+
+def _world(run: Records, world: int, crashed: int, limit: dict[str, Any]) -> dict[str, Any]:
     config, arrays = run.config, run.state
 
     def counted(name: str) -> Any:
@@ -79,6 +89,7 @@ def _world(run: Records, world: int, crashed: int) -> dict[str, Any]:
         "tries_per_life": _tries(_climate(arrays, world)["replication"], counted),
         "saturation": _moment(counted("saturated"), counted("saturated_births")),
         "fixation": _moment(counted("fixed"), counted("fixed_births")),
+        "threshold": limit,
     }
     if (tally := arrays.get(TALLY)) is not None and alive.any():
         numbers["tallies"] = _tallies(run.description.tallies, tally[here][alive])

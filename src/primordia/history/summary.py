@@ -38,6 +38,7 @@ def _one_world(world: dict[str, Any]) -> list[str]:
         lines.append(f"    of the living: {_tallies(world['tallies'])}")
     if world["fixation"]:
         lines.append(f"    one common ancestor since {_when(world['fixation'])}")
+    lines += _threshold([world])
     if world["saturation"]:
         return [*lines, f"    saturated at {_when(world['saturation'])}"]
     return [*lines, "    not saturated"]
@@ -100,7 +101,24 @@ def _all_worlds(worlds: list[dict[str, Any]]) -> list[str]:
         f"    {total('alive'):,} alive, oldest {oldest:,}; extinctions: {total('extinctions'):,}{risen}",
         f"    {_share(worlds, 'fixation', 'with one common ancestor')}",
         f"    {_share(worlds, 'saturation', 'saturated')}",
+        *_threshold(worlds),
     ]
+
+
+def _threshold(worlds: list[dict[str, Any]]) -> list[str]:
+    """Return a line that says whether good lines keep their ground; none where it is not known."""
+    known = [each["threshold"] for each in worlds if each["threshold"]["held"] is not None]
+    if not known:
+        return []
+    p, v, s, held = (
+        f"{np.median([each[name] for each in known]):.2g}"
+        for name in ("mutated", "as_good", "advantage", "held")
+    )
+    above = sum(each["held"] > 1 for each in known)
+    numbers = f"p {p}, v {v}, s {s}: s (1 - p (1 - v)) is {held}"
+    if len(worlds) == 1:
+        return [f"    good lines {'keep' if above else 'lose'} their ground: {numbers}"]
+    return [f"    good lines keep their ground in {above:,} of {len(known):,}; medians {numbers}"]
 
 
 def _causes(worlds: list[dict[str, Any]]) -> str:

@@ -39,7 +39,7 @@ def heredity(name: str, found: list[Any]) -> Told:
 
 
 def threshold(name: str, found: list[Any]) -> Told:
-    """Return the table of the error threshold in each world, `assays.threshold`."""
+    """Return the table of the error threshold in each world, `history.threshold`."""
     held = [each.held for each in found if each.held is not None]
     words = {
         "mutated": "p, children that mutate",

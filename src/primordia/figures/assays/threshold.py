@@ -2,9 +2,9 @@
 
 from matplotlib.figure import Figure
 
-from primordia.assays.threshold import Threshold
 from primordia.figures import style
 from primordia.figures.assays.strips import strips
+from primordia.history.threshold import Threshold
 
 
 def draw(found: list[Threshold]) -> Figure:

@@ -18,7 +18,7 @@ class Families:
     lives: Lives
     """all lives of the world"""
     born: np.ndarray
-    """row of each organism that was born late, founders too, int64"""
+    """row of each organism whose birth counts, founders too, int64"""
     child: np.ndarray
     """row of each child in `lives`, int64"""
     parent: np.ndarray
@@ -50,7 +50,11 @@ class Families:
 
 def families(lives: Lives, after: float = LATE) -> Families:
     """Return the families of one world whose children were born late; see `Lives.late`."""
-    born = np.flatnonzero(lives.late(after))
+    return families_of(lives, np.flatnonzero(lives.late(after)))
+
+
+def families_of(lives: Lives, born: np.ndarray) -> Families:
+    """Return the families of one world whose children are among the rows `born`, int64."""
     has_parent = (lives.birth_cause != BirthCause.FOUNDER) & (lives.parent_row >= 0)
     child = born[has_parent[born]]
     mutant = lives.birth_cause[child] == BirthCause.MUTANT

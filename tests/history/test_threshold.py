@@ -3,10 +3,11 @@
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
-from primordia.assays.families import families
-from primordia.assays.threshold import Threshold, threshold
+from primordia.history.families import families
+from primordia.history.threshold import Threshold, over_births, threshold
 from primordia.runs.lives import Lives
 from tests.assays.lives import COPY, FOUNDER, MUTANT, lives
 
@@ -66,3 +67,18 @@ def test_a_world_in_which_nothing_is_known_says_so() -> None:
 )
 def test_the_threshold_is_eigens(p: float, v: float, s: float, held: float) -> None:
     assert Threshold(0, p, v, s).held == pytest.approx(held)
+
+
+def test_stretches_of_births_are_measured_one_by_one() -> None:
+    """A half of the first family's mutants are as good, all of the second's."""
+    first: list = [(-1, FOUNDER, 100), *((-1, FOUNDER, 1) for _ in range(100))]
+    first += [(0, COPY, 100)] * 10 + [(0, MUTANT, 100)] * 10 + [(0, MUTANT, 1)] * 10
+    second = [(0, COPY, 100)] * 10 + [(0, MUTANT, 100)] * 20 + [(-1, FOUNDER, 1)] * 100
+    world = lives(*first, *second)
+    edges = np.array([0, len(first), len(world), len(world) + 50])
+    early, late, none = over_births(3, world, edges)
+    assert (early.world, early.as_good, late.as_good) == (3, 0.5, 1)
+    assert early.mutated == pytest.approx(2 / 3)
+    assert none == Threshold(3, None, None, None)
+    whole = over_births(0, world, np.array([0, len(world)]))
+    assert whole == threshold(SimpleNamespace(lives=world), 0.0)  # type: ignore[arg-type]

@@ -6,11 +6,12 @@ organisms that all replicate at one rate, so that a lifespan is what a line gain
 """
 
 from dataclasses import asdict, dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from primordia.assays.families import LEAST, Families, families
+from primordia.history.families import LEAST, Families, families, families_of
 from primordia.runs.lives import LATE, Lives
 from primordia.runs.records import Records
 
@@ -53,11 +54,27 @@ def threshold(run: Records, after: float = LATE) -> list[Threshold]:
         run: the run, or an arm.
         after: share of a world's births after which a birth is late.
     """
-    return [_of_world(world, run.lives.of_world(world), after) for world in range(run.lives.worlds)]
+    worlds = (run.lives.of_world(world) for world in range(run.lives.worlds))
+    return [_measured(world, families(lives, after)) for world, lives in enumerate(worlds)]
 
 
-def _of_world(world: int, lives: Lives, after: float) -> Threshold:
-    found = families(lives, after)
+def over_births(world: int, lives: Lives, edges: np.ndarray) -> list[Threshold]:
+    """Measure the error threshold of one world as it went on.
+
+    Args:
+        world: number of the world.
+        lives: its lives.
+        edges: places in the order of birth, int64 (B + 1,), rising. Children born between two of them
+            count together.
+    """
+    return [
+        _measured(world, families_of(lives, np.arange(low, min(high, len(lives)))))
+        for low, high in pairwise(edges.tolist())
+    ]
+
+
+def _measured(world: int, found: Families) -> Threshold:
+    lives = found.lives
     if not len(found.child):
         return Threshold(world, None, None, None)
     good = found.lifespans[1] >= np.quantile(lives.lifespan[found.born], BEST)

@@ -1,0 +1,49 @@
+"""Whether good lines keep their ground against their mutants, as a run goes on."""
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from primordia.figures import style
+from primordia.history.threshold import Threshold, over_births
+from primordia.runs.records import Records
+
+WINDOWS, ENOUGH = 20, 200
+"""Most stretches of birth order, and births that each needs: a tenth of the parents are good."""
+
+
+def draw(run: Records, world: int) -> Figure | None:
+    """Draw p, v and s (1 - p (1 - v)) over births; None if too few births tell v."""
+    lives = run.lives.since_fork()
+    worlds = [lives.of_world(each) for each in range(lives.worlds)]
+    longest = max(map(len, worlds))
+    windows = int(np.clip(longest // ENOUGH, 1, WINDOWS))
+    edges = np.linspace(0, longest, windows + 1).astype(np.int64)
+    found = [over_births(number, each, edges) for number, each in enumerate(worlds)]
+    if windows < 2 or all(each.held is None for of_world in found for each in of_world):
+        return None
+    middle = (edges[:-1] + edges[1:]) / 2
+    figure = Figure(figsize=(style.PAGE, 2.4))
+    panels = {
+        "mutated": "Children that mutate, p",
+        "as_good": "Mutants as good, v",
+        "held": "Does a good line keep its ground?",
+    }
+    for axes, (name, title) in zip(figure.subplots(1, 3), panels.items(), strict=True):
+        values = np.array([[_value(each, name) for each in of_world] for of_world in found])
+        style.curves(axes, middle, values)
+        style.linear(axes.xaxis)
+        axes.set(xlabel="organisms born so far", xlim=(0, longest))
+        if name == "held":
+            style.logarithmic(axes.yaxis)
+            axes.axhline(1, color=style.VERMILION, zorder=0)
+            axes.set_ylabel("s (1 - p (1 - v))")
+        else:
+            axes.set_ylim(-0.02, 1.02)
+        threshold = {"threshold": style.VERMILION} if name == "held" else {}
+        style.title(axes, title, {**style.worlds_key(len(worlds)), **threshold})
+    return figure
+
+
+def _value(found: Threshold, name: str) -> float:
+    value = getattr(found, name)
+    return np.nan if value is None else value
