@@ -4,7 +4,7 @@
 
 Nothing has to be run before. Of each task 512 founders live once. Mutants of the 16 longest-lived
 live in the games of their parents (`primordia assay effects TASK`). The tables go to `results/` of the
-folder `effects` beside this file: all organisms as CSV, a summary as Markdown.
+folder `mutation` beside this file: all organisms as CSV, a summary as Markdown.
 """
 
 import sys
@@ -19,7 +19,7 @@ from primordia.assays.subjects import of_task
 from primordia.comparison.resample import interval, resamples
 from primordia.experiments.results import table
 
-RESULTS = Path(__file__).parent / "effects" / "results"
+RESULTS = Path(__file__).parent / "mutation" / "results"
 DIFFERS = (0.0, 0.02, 0.05, 0.1)
 TICKS = 5_000
 SHARES = {

@@ -86,7 +86,7 @@ def worlds_of(standing: Standing, run: Records) -> list[dict[str, Any]]:
 
 def write_rows(stem: Path, rows: list[dict[str, Any]], summary_text: str) -> None:
     """Write all rows to STEM.csv and their summary to STEM.md."""
-    stem.parent.mkdir(exist_ok=True)
+    stem.parent.mkdir(parents=True, exist_ok=True)
     with stem.with_suffix(".csv").open("w", newline="", encoding="utf-8") as out:
         sheet = csv.DictWriter(out, list(rows[0]), lineterminator="\n")
         sheet.writeheader()

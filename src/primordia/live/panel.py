@@ -9,6 +9,7 @@ from rich.style import Style
 from primordia.config import Config
 from primordia.law.world import Cause
 from primordia.live.census import Census
+from primordia.live.ground import Medians
 from primordia.live.paint import FAINT, Row
 
 STRONG = Style(bold=True)
@@ -42,7 +43,12 @@ def heading(config: Config, seconds: float, width: int) -> Row:
 
 
 def numbers(
-    census: Census, cells: int, outlook: Outlook, takeovers: int | None, width: int
+    census: Census,
+    cells: int,
+    outlook: Outlook,
+    takeovers: int | None,
+    ground: Medians | None,
+    width: int,
 ) -> list[Row]:
     """Return counts in columns, and causes of death.
 
@@ -51,6 +57,7 @@ def numbers(
         cells: number of cells of one world.
         outlook: speed and remaining time.
         takeovers: number of takeovers in all worlds; None if lines of descent are not followed.
+        ground: whether good lines keep their ground; None if unknown.
         width: columns of the terminal.
     """
     worlds = len(census.tick)
@@ -63,6 +70,9 @@ def numbers(
         "oldest": f"{census.oldest:,}",
         "extinctions": f"{census.extinctions.sum():,}",
         "takeovers": "" if takeovers is None else f"{takeovers:,}",
+        "children mutate": f"{ground.mutated:.0%}" if ground else "",
+        "mutants as good": f"{ground.as_good:.0%}" if ground else "",
+        "good lines hold": f"{ground.held:.2f}" if ground else "",
         "organism-ticks/s": with_prefix(outlook.organism_ticks_per_s),
         "time left": duration(outlook.seconds_left) if outlook.seconds_left else "",
     }

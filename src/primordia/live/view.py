@@ -15,6 +15,7 @@ from rich.segment import Segment
 from primordia import interrupts
 from primordia.history.lines import CROWD, Lines, Turnover, turnovers
 from primordia.live.census import Census, Speed
+from primordia.live.ground import Ground, medians
 from primordia.live.paint import FAINT, Row
 from primordia.live.panel import Outlook, heading, numbers, saturation, with_prefix
 from primordia.live.scene import Room, scene
@@ -84,6 +85,7 @@ class View:
         self._letters = console.no_color or console.color_system in (None, "standard")
         self._live = Live(console=console, auto_refresh=False, redirect_stderr=sys.stderr.isatty())
         self._speed, self._lines = Speed(), list[Lines]()
+        self._ground: Ground | None = None
         self._followed, self._missed = 0, False
         self._size, self._due = console.size, 0.0
         self._status: Status | None = None
@@ -114,6 +116,8 @@ class View:
             self._console.clear()  # a terminal reflows its lines when its width changes
             self._size, self._due = self._console.size, 0.0
         self._follow(status)
+        self._ground = self._ground or Ground(status.engine.law.cells, status.engine.law.worlds)
+        self._ground.follow(status.engine.events)
         began = time.perf_counter()
         if began >= self._due:
             self._draw(status)
@@ -151,7 +155,8 @@ class View:
         outlook = Outlook(self._speed.organism_ticks_per_s(), left)
         known = len(self._lines) == law.worlds and not self._missed
         takeovers = sum(len(lines.takeovers) for lines in self._lines) if known else None
-        below = numbers(census, law.cells, outlook, takeovers, width)
+        ground = medians(self._ground.measured(census.tick)) if self._ground else None
+        below = numbers(census, law.cells, outlook, takeovers, ground, width)
         below.append(saturation(census, law.cells, law.saturation_ticks, width))
         spare = height - len(below) - 3
         space: list[Row] = [[]] if spare > 4 else []
