@@ -87,8 +87,9 @@ def line(
     if task is not None or run.suffix == SUFFIX:
         raise InputError("a genome file holds no ancestors; give the run that its genomes are from")
     opened = load(run, trust).opened()
-    row = opened.lives.oldest(world)
-    own = opened.lives.world[row] if world is None and not organisms else world or 0
-    chosen = organisms or (int(opened.lives.id[row]),)
-    found = [measure(opened, each, int(own), habitat=habitat, **options) for each in chosen]
+    numbers = [(each, world or 0) for each in organisms]
+    if not numbers:
+        row = opened.lives.oldest(world)
+        numbers = [(int(opened.lives.id[row]), int(opened.lives.world[row]))]
+    found = [measure(opened, *each, habitat=habitat, **options) for each in numbers]
     tell("line", {str(run): found}, as_json, out, tables.line)
