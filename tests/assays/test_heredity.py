@@ -46,7 +46,7 @@ def test_pairs_with_a_living_organism_have_no_slope_yet() -> None:
 
 
 def test_shares_have_their_bounds_at_a_tenth_and_a_third() -> None:
-    spans = [111, 109, 100, 67, 66, 60]
+    spans = [110, 109, 100, 67, 66, 60]
     found = measured(lives((-1, FOUNDER, 100), *((0, MUTANT, span) for span in spans)))
     assert found.mutants.longer == pytest.approx(1 / 6)
     assert found.mutants.as_long == pytest.approx(1 / 6)

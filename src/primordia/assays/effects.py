@@ -48,12 +48,12 @@ class Effect:
     @property
     def tenth_longer(self) -> float:
         """Share that lived longer by a tenth or more."""
-        return float((self.mutants >= 1.1 * self.lifespan).mean())
+        return float((10 * self.mutants >= 11 * self.lifespan).mean())
 
     @property
     def third_shorter(self) -> float:
         """Share that lived shorter by a third or more."""
-        return float((self.mutants <= self.lifespan * 2 / 3).mean())
+        return float((3 * self.mutants <= 2 * self.lifespan).mean())
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain values for JSON."""

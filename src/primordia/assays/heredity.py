@@ -83,8 +83,8 @@ def _pairs(found: Families, which: np.ndarray) -> Pairs:
         pairs=len(child),
         slope=slope(_log(parent), _log(child)),
         as_long=float((child == parent).mean()),
-        longer=float((child >= 1.1 * parent).mean()),
-        shorter=float((child <= parent * 2 / 3).mean()),
+        longer=float((10 * child >= 11 * parent).mean()),
+        shorter=float((3 * child <= 2 * parent).mean()),
     )
 
 
