@@ -18,6 +18,7 @@ import pandas as pd
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from primordia import config
+from primordia.comparison.resample import least
 from primordia.comparison.tables import number_text, spread_text
 from primordia.settings.tables import tasks
 
@@ -65,13 +66,14 @@ def table(name: str, number: int = 0) -> str:
     return str(found[number]).rstrip("\n")
 
 
-def cell(name: str, row: str, column: str, number: int = 0) -> Cell:
-    """Return the cell of a Markdown table at a column, in the row that begins with `row`."""
+def cell(name: str, row: str, column: str, number: int = 0, way: str | None = None) -> Cell:
+    """Return the cell of a Markdown table at a column, in the row that begins with `row`, and `way`."""
     head, _, *body = [
         [text.strip() for text in line.strip("|").split("|")]
         for line in table(name, number).splitlines()
     ]
-    return Cell(next(cells for cells in body if cells[0] == row)[head.index(column)])
+    wanted = [row] if way is None else [row, way]
+    return Cell(next(each for each in body if each[: len(wanted)] == wanted)[head.index(column)])
 
 
 def effect(name: str, arm: str, column: str) -> Effect:
@@ -79,6 +81,11 @@ def effect(name: str, arm: str, column: str) -> Effect:
     whole, *others = cell(name, arm, column, -1).split("; ")
     ratio = next(part for part in others if SPREAD.fullmatch(part) and part[0] in ">0123456789")
     return Effect(whole.split()[0], Cell(ratio))
+
+
+def largest(values: str) -> str:
+    """Return the largest of some numbers that are parted by semicolons, as it stands."""
+    return max(values.split("; "), key=lambda value: float(value.replace(",", "")))
 
 
 def played(name: str, who: str, way: str, outcome: str = "lifespan") -> Cell:
@@ -102,7 +109,14 @@ def pages() -> dict[Path, str]:
         autoescape=False,
     )
     filler.globals.update(
-        rows=rows, table=table, cell=cell, effect=effect, played=played, chosen=chosen
+        rows=rows,
+        table=table,
+        cell=cell,
+        effect=effect,
+        largest=largest,
+        least_worlds=least,
+        played=played,
+        chosen=chosen,
     )
     filler.filters.update(number=number_text)
     return {
