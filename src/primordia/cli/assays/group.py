@@ -7,7 +7,7 @@ from primordia.cli.assays import of_lives, of_pairs, of_records, of_runs
 
 @click.group()
 def assay() -> None:
-    """Measure what is inherited in a run, and what limits its evolution."""
+    """Measure what is inherited, what limits evolution, and what a genome is worth."""
 
 
 for command in (

@@ -48,8 +48,8 @@ def compete(
     """Let two genomes share empty worlds, without mutation, and tell whose descendants take over.
 
     ONE and OTHER are runs, for their champions, or genome files, for their first genome. `runs/a:17` is
-    organism 17 of world 0, `runs/a:17@2` of world 2, `some.safetensors:3` the fourth genome of a file.
-    The law is that of ONE. Any setting of the habitat can be changed by a flag.
+    organism 17 of world 0, `runs/a:17@2` of world 2, `some.safetensors:3` the fourth genome of a file,
+    `Pong-survival:5` a founder of a task. The law is that of ONE. Any setting of the habitat can be changed by a flag.
     """
     from primordia.assays.compete import compete as measure
 
