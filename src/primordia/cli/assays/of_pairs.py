@@ -49,7 +49,8 @@ def compete(
 
     ONE and OTHER are runs, for their champions, or genome files, for their first genome. `runs/a:17` is
     organism 17 of world 0, `runs/a:17@2` of world 2, `some.safetensors:3` the fourth genome of a file,
-    `Pong-survival:5` a founder of a task. The law is that of ONE. Any setting of the habitat can be changed by a flag.
+    `Pong-survival:5` a founder of a task. The law is that of ONE. Any setting of the habitat can be
+    changed by a flag.
     """
     from primordia.assays.compete import compete as measure
 
