@@ -8,13 +8,13 @@ folder `mutation` beside this file: all organisms as CSV, a summary as Markdown.
 """
 
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 from games import write_rows
 
-from primordia.assays.effects import SCALES, Effect, effects
+from primordia.assays.effects import SCALES, effects
 from primordia.assays.subjects import of_task
 from primordia.comparison.resample import interval, resamples
 from primordia.experiments.results import table
@@ -33,37 +33,66 @@ SHARES = {
 def report(task: str) -> None:
     """Let mutants of a task's founders live and write the tables."""
     found = effects(of_task(task), SCALES, DIFFERS, ticks=TICKS)
-    rows = [each.to_dict() for each in found]
-    write_rows(RESULTS / task.lower(), rows, summary(task, found))
+    rows = pd.DataFrame([each.to_dict() for each in found])
+    write_rows(RESULTS / task.lower(), rows.to_dict("records"), summary(task, rows))
 
 
-def summary(task: str, found: list[Effect]) -> str:
+def summary(task: str, rows: pd.DataFrame) -> str:
     """Return a table of mean shares over founders, with intervals over resampled founders."""
-    mutations = list(dict.fromkeys(each.mutation for each in found))
-    of_each = {
-        mutation: [each for each in found if each.mutation == mutation] for mutation in mutations
+    mutations = list(dict.fromkeys(rows.mutation))
+    shares = {
+        name: np.array([rows[rows.mutation == each][name] for each in mutations]) for name in SHARES
     }
     lines = [
-        [mutation, *(mean_text([getattr(each, name) for each in own]) for name in SHARES)]
-        for mutation, own in of_each.items()
+        [mutation, *(mean_text(shares[name][place]) for name in SHARES), ""]
+        for place, mutation in enumerate(mutations)
     ]
-    own = of_each[mutations[0]]
-    lived = sorted(each.lifespan for each in own)
+    for place, mutation in enumerate(mutations):
+        if mutation.startswith("differs"):
+            lines[place][-1] = against_scales(shares, mutations, place)
+    lived = rows[rows.mutation == mutations[0]].lifespan
     note = (
-        f"{task}: {len(own[0].mutants)} mutants of each of {len(own)} founders, the longest-lived of 512"
-        f" ({lived[0]:,.0f} to {lived[-1]:,.0f} ticks; games were cut at {TICKS:,}). Mean shares over"
-        " founders (95 % interval over resampled founders). Scales are of the standard deviation of"
-        " founders' weights; differs is that of a calibrated mutation."
+        f"{task}: {rows.mutants[0]} mutants of each of {len(lived)} founders, the longest-lived of 512"
+        f" ({lived.min():,.0f} to {lived.max():,.0f} ticks; games were cut at {TICKS:,}). Mean shares"
+        " over founders (95 % interval over resampled founders). Scales are of the standard deviation of"
+        " founders' weights; differs is that of a calibrated mutation. The last column holds its share of"
+        " a tenth longer against that of the scale, between those tried, at which as many live as long."
     )
-    return f"{table(['mutation', *SHARES.values()], lines)}\n\n{note}"
+    head = ["mutation", *SHARES.values(), "a tenth longer, against a scale"]
+    return f"{table(head, lines)}\n\n{note}"
 
 
-def mean_text(shares: Sequence[float]) -> str:
+def against_scales(shares: dict[str, np.ndarray], mutations: list[str], place: int) -> str:
+    """Return how many more mutants live a tenth longer than by a scale at which as many live as long."""
+    scales = [k for k, mutation in enumerate(mutations) if mutation.startswith("scale")]
+
+    def difference(rows: np.ndarray) -> np.ndarray:
+        same, more = (shares[name][:, rows].mean(axis=-1) for name in ("as_long", "tenth_longer"))
+        return np.array(
+            [
+                above[place]
+                - np.interp(unchanged[place], *ordered(unchanged[scales], above[scales]))
+                for unchanged, above in zip(same.T, more.T, strict=True)
+            ]
+        )
+
+    count = shares["as_long"].shape[1]
+    own = difference(np.arange(count)[None])[0]
+    low, high = interval(np.concatenate([difference(rows) for rows in resamples(count)]))
+    return f"{own:+.3f} ({low:+.3f} to {high:+.3f})"
+
+
+def ordered(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return points in the order of x; of equal x, the largest y comes last and counts."""
+    order = np.lexsort((y, x))
+    return x[order], y[order]
+
+
+def mean_text(shares: np.ndarray) -> str:
     """Return the mean, and its interval over resampled organisms."""
-    values = np.array(shares)
-    means = np.concatenate([values[rows].mean(axis=1) for rows in resamples(len(values))])
+    means = np.concatenate([shares[rows].mean(axis=1) for rows in resamples(len(shares))])
     low, high = interval(means)
-    return f"{values.mean():.3f} ({low:.3f} to {high:.3f})"
+    return f"{shares.mean():.3f} ({low:.3f} to {high:.3f})"
 
 
 if __name__ == "__main__":

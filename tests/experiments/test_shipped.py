@@ -162,6 +162,22 @@ def test_effects_of_mutations_are_reported(tmp_path: Path, monkeypatch: pytest.M
     assert f"| scale 30 | {np.mean(huge):.3f} (" in text
 
 
+def test_a_calibrated_mutation_is_held_against_scales_at_an_equal_share(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Two scales leave 0 and 0.8 as they are, and improve 0.1 and 0.5: at 0.4 a scale improves 0.3."""
+    monkeypatch.syspath_prepend(str(EXPERIMENTS))
+    script = import_module("effects")
+    mutations = ["as set", "scale 0.1", "scale 0.01", "differs 0.02", "differs 0.1"]
+    shares = {
+        "as_long": np.tile([[0.0], [0.0], [0.8], [0.4], [0.4]], 16),
+        "tenth_longer": np.tile([[0.0], [0.1], [0.5], [0.3], [0.2]], 16),
+    }
+    same, worse = (script.against_scales(shares, mutations, place) for place in (3, 4))
+    assert same in {"+0.000 (+0.000 to +0.000)", "-0.000 (-0.000 to -0.000)"}
+    assert worse == "-0.100 (-0.100 to -0.100)"
+
+
 def test_the_csv_holds_the_outcomes_of_each_world(ponged: Path) -> None:
     arms = import_module("named").arms(ponged)
     compared = primordia.compare(*arms)
