@@ -10,6 +10,7 @@ with the pages.
 """
 
 import re
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
@@ -88,6 +89,25 @@ def largest(values: str) -> str:
     return max(values.split("; "), key=lambda value: float(value.replace(",", "")))
 
 
+class Against(NamedTuple):
+    """How many calibrated mutations improve more or fewer mutants than scales do."""
+
+    as_many: int
+    """the interval of the difference includes zero"""
+    more: int
+    fewer: int
+
+
+def against(tasks: Sequence[str]) -> Against:
+    """Count the calibrated mutations in the tables of some tasks' founders."""
+    column, signs = "a tenth longer, against a scale", []
+    for task in tasks:
+        for differs in ("differs 0", "differs 0.02", "differs 0.05", "differs 0.1"):
+            low, high = map(float, cell(f"mutation/{task}", differs, column).interval.split(" to "))
+            signs.append((low > 0) - (high < 0))
+    return Against(signs.count(0), signs.count(1), signs.count(-1))
+
+
 def played(name: str, who: str, way: str, outcome: str = "lifespan") -> Cell:
     """Return the median and quartiles over worlds of an outcome of games."""
     games = rows(f"{name}-games")
@@ -116,6 +136,7 @@ def pages() -> dict[Path, str]:
         largest=largest,
         least_worlds=least,
         played=played,
+        against=against,
         chosen=chosen,
     )
     filler.filters.update(number=number_text)
