@@ -108,6 +108,16 @@ def against(tasks: Sequence[str]) -> Against:
     return Against(signs.count(0), signs.count(1), signs.count(-1))
 
 
+def least_of_best(mutation: str, tasks: Sequence[str]) -> float:
+    """Return the share a tenth longer, of the best scale's, in the task where that is least."""
+
+    def share(task: str, row: str) -> float:
+        return float(cell(f"mutation/{task}", row, "a tenth longer").median)
+
+    scales = [f"scale {each}" for each in ("0.001", "0.003", "0.01", "0.03", "0.1", "0.3")]
+    return min(share(task, mutation) / max(share(task, s) for s in scales) for task in tasks)
+
+
 def played(name: str, who: str, way: str, outcome: str = "lifespan") -> Cell:
     """Return the median and quartiles over worlds of an outcome of games."""
     games = rows(f"{name}-games")
@@ -137,6 +147,7 @@ def pages() -> dict[Path, str]:
         least_worlds=least,
         played=played,
         against=against,
+        least_of_best=least_of_best,
         chosen=chosen,
     )
     filler.filters.update(number=number_text)
