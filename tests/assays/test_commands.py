@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -62,7 +63,7 @@ def test_assays_of_lives_tell_what_python_returns(
     assert told.returncode == 0, told.stderr
     run, subjects = poles.opened(), of_run(poles.opened())
     champion = poles.oldest()
-    expected = {
+    expected: list[Any] = {
         "effects": lambda: effects(subjects, (0.1,), count=2, games=1, ticks=60),
         "ablate": lambda: ablate(subjects, games=1, ticks=60),
         "garden": lambda: garden(run, each=2, games=1, ticks=60),

@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from typing import Any
 from unittest.mock import patch
 
 import numpy as np
@@ -58,9 +59,9 @@ def test_children_are_exact_copies(sides: tuple[Subjects, Subjects], tmp_path: P
     lived: list[Lives] = []
     shares = module._shares
 
-    def kept(lives: Lives, *rest: object) -> np.ndarray:
+    def kept(lives: Lives, *rest: Any) -> np.ndarray:
         lived.append(lives)
-        return shares(lives, *rest)  # type: ignore[arg-type]
+        return shares(lives, *rest)
 
     with patch.object(module, "_shares", kept):
         compete(sides[1], sides[1], worlds=2, ticks=200)

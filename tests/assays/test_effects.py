@@ -40,7 +40,9 @@ def test_mutants_are_made_as_in_the_run_and_no_copy_is_among_them(subjects: Subj
     assert made.shape == (2, 50, subjects.players.genomes.shape[1])
     moved = steps(subjects, made)
     assert (moved != 0).any(axis=2).all()
-    scale = subjects.law.heredity.mutation.per_block("scale", subjects.law.heredity.layout)
+    mutation = subjects.law.heredity.mutation
+    assert isinstance(mutation, Gaussian)
+    scale = mutation.per_block("scale", subjects.law.heredity.layout)
     for name, part in subjects.law.heredity.layout.split(moved).items():
         expected = scale[subjects.law.heredity.layout.names.index(name)]
         assert part.std() == pytest.approx(expected, rel=0.1)
@@ -54,8 +56,8 @@ def test_a_mutation_that_never_happens_is_refused(subjects: Subjects) -> None:
 
 
 def test_a_scale_is_a_share_of_the_founders_deviation(subjects: Subjects) -> None:
-    mutation = subjects.law.heredity.mutation
-    layout = subjects.law.heredity.layout
+    mutation, layout = subjects.law.heredity.mutation, subjects.law.heredity.layout
+    assert isinstance(mutation, Gaussian)
     scales = dict(zip(layout.names, mutation.per_block("founder_scale", layout), strict=True))
     for name, deviation in founder_deviations(subjects).items():
         assert deviation == pytest.approx(scales[name], rel=0.1)

@@ -81,4 +81,4 @@ def test_stretches_of_births_are_measured_one_by_one() -> None:
     assert early.mutated == pytest.approx(2 / 3)
     assert none == Threshold(3, None, None, None)
     whole = over_births(0, world, np.array([0, len(world)]))
-    assert whole == threshold(SimpleNamespace(lives=world), 0.0)  # type: ignore[arg-type]
+    assert whole == [measured(world)]

@@ -45,7 +45,7 @@ def test_it_is_measured_as_from_the_records(tmp_path: Path) -> None:
     assert followed[0].measured(ticks) == expected
     middle = medians(expected)
     assert middle is not None
-    assert middle.held == np.median([each.held for each in expected])  # type: ignore[arg-type]
+    assert middle.held == np.median([each.held for each in expected])
 
 
 def test_only_the_latest_births_are_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -63,7 +63,10 @@ def test_watched_games_tell_what_brains_think_from(players: Players) -> None:
     watched = Manner(100, watched=True)
     told = [list(stretches(each, 1, watched)) for each in (players, on_host(players))]
     ours, theirs = (
-        [np.concatenate(part) for part in zip(*((s.playing, *s.met) for s in each), strict=True)]
+        [
+            np.concatenate(part)
+            for part in zip(*((s.playing, *(s.met or ())) for s in each), strict=True)
+        ]
         for each in told
     )
     playing = ours[0][: len(theirs[0])]
