@@ -10,7 +10,7 @@ from pydantic import Field
 from primordia.brains.contract import Brain, Genome
 from primordia.brains.layout import Shape
 from primordia.brains.recurrent import Recurrent
-from primordia.habitats import Continuous, Discrete, HostHabitat, JaxHabitat, Outcome
+from primordia.habitats import Compound, Continuous, Discrete, HostHabitat, JaxHabitat, Outcome
 from primordia.habitats.cartpole.habitat import COORDINATES, CartPole
 from primordia.habitats.on_host import OnHost
 from primordia.settings.base import Settings
@@ -224,3 +224,29 @@ class Twin(Recurrent):
 def _dot(a: Array, b: Array, of_a: tuple[int, ...], of_b: tuple[int, ...]) -> Array:
     """Return the products of each organism's a and b, summed over axes of both."""
     return lax.dot_general(a, b, ((of_a, of_b), ((0,), (0,))), precision=lax.Precision.HIGHEST)
+
+
+class Organ(Mill):
+    """A mill with a brake beside its wheel, and a time limit after which bodies expire."""
+
+    limit: int = 2**30
+    action: Any = Compound((Discrete(3), Continuous(2)))
+
+    def reset(self, words: Array) -> Any:
+        return super().reset(words), jnp.zeros(len(words), jnp.int32)
+
+    def sense(self, bodies: Any) -> Array:
+        return super().sense(bodies[0])
+
+    def step(self, bodies: Any, action: Array) -> tuple[Any, Outcome]:
+        released = (action[:, :1] != 1).astype(jnp.float32)
+        wheel, outcome = super().step(bodies[0], action[:, 1:] * released)
+        clock = bodies[1] + 1
+        return (wheel, clock), outcome._replace(expired=clock >= self.limit)
+
+
+class OrganOnHost(OnHost):
+    """The same habitat on the host."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(Organ(**options))

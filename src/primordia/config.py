@@ -306,7 +306,8 @@ def _check(config: Config) -> None:
         habitat.check(config.cells * config.seeds)
     except ValueError as error:
         raise InputError(f"habitat: {error}") from None
-    if config.motor.kind == "gaussian" and not isinstance(habitat.action, Continuous):
+    continuous = any(isinstance(part, Continuous) for part in habitat.action.parts)
+    if config.motor.kind == "gaussian" and not continuous:
         raise InputError(
             "motor.kind: this habitat's actions are discrete, so a gaussian motor has no use; set direct"
         )

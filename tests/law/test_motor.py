@@ -5,7 +5,8 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from primordia.law.motor import argmax
+from primordia.habitats import Compound, Continuous, Discrete
+from primordia.law.motor import argmax, chosen
 
 ARGMAX = jax.jit(argmax)
 SIZES = range(2, 19)
@@ -33,3 +34,25 @@ def test_a_nan_is_not_chosen_over_a_number_in_the_first_place(size: int) -> None
     np.testing.assert_array_equal(chosen, np.nanmax(output, axis=1))
     output[:, 0] = np.nan
     assert (np.asarray(ARGMAX(output)) == 0).all()
+
+
+PEDALS = Compound((Discrete(3), Continuous(2), Discrete(2)))
+
+
+def test_each_part_of_an_action_has_its_own_outputs() -> None:
+    rng = np.random.default_rng(0)
+    output, moved = rng.normal(size=(2, 100, 7)).astype(np.float32)
+    action = np.asarray(jax.jit(chosen, static_argnums=0)(PEDALS, output, moved))
+    assert action.shape == (100, PEDALS.columns) == (100, 4)
+    assert action.dtype == np.float32
+    np.testing.assert_array_equal(action[:, 0], output[:, :3].argmax(axis=1))
+    np.testing.assert_array_equal(action[:, 1:3], moved[:, 3:5])
+    np.testing.assert_array_equal(action[:, 3], output[:, 5:].argmax(axis=1))
+    assert PEDALS.size == 7
+
+
+def test_an_action_of_one_part_is_that_part() -> None:
+    output = np.random.default_rng(1).normal(size=(9, 3)).astype(np.float32)
+    moved = output + 1
+    np.testing.assert_array_equal(chosen(Discrete(3), output, moved), output.argmax(axis=1))
+    np.testing.assert_array_equal(chosen(Continuous(3), output, moved), moved)

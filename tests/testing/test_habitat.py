@@ -13,7 +13,7 @@ from primordia.habitats.cartpole.habitat import CartPole
 from primordia.settings.base import Settings
 from primordia.testing import ContractError, check_habitat
 from tests.testing.impure import counted
-from tests.toys import Clocked, HostCartPole, Mill
+from tests.toys import Clocked, HostCartPole, Mill, Organ
 
 
 @pytest.mark.parametrize("habitat", [CartPole(senses=("x", "theta")), Mill(), HostCartPole()])
@@ -248,3 +248,7 @@ def test_the_habitats_without_these_faults(part: Any) -> None:
 def test_a_habitat_with_a_fault(habitat: Any, says: str) -> None:
     with pytest.raises(ContractError, match=says):
         check_habitat(habitat)
+
+
+def test_a_habitat_with_an_action_of_several_parts_passes() -> None:
+    check_habitat(Organ(limit=8))

@@ -2,6 +2,7 @@
 
 from primordia.habitats.contract import (
     Ability,
+    Compound,
     Continuous,
     Discrete,
     HostHabitat,
@@ -9,4 +10,4 @@ from primordia.habitats.contract import (
     Outcome,
 )
 
-__all__ = ["Ability", "Continuous", "Discrete", "HostHabitat", "JaxHabitat", "Outcome"]
+__all__ = ["Ability", "Compound", "Continuous", "Discrete", "HostHabitat", "JaxHabitat", "Outcome"]

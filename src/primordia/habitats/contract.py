@@ -43,12 +43,45 @@ class Discrete:
 
     size: int
 
+    @property
+    def parts(self) -> "tuple[Discrete]":
+        """Return the action as the only part of itself."""
+        return (self,)
+
 
 @dataclass(frozen=True)
 class Continuous:
     """An action is a vector: float32 (N, size). The habitat keeps it within bounds."""
 
     size: int
+
+    @property
+    def parts(self) -> "tuple[Continuous]":
+        """Return the action as the only part of itself."""
+        return (self,)
+
+
+@dataclass(frozen=True)
+class Compound:
+    """An action has several parts: float32 (N, K), the columns of its parts side by side.
+
+    A discrete part has one column, the number of the choice; a continuous part has `size`.
+    """
+
+    parts: tuple[Discrete | Continuous, ...]
+
+    @property
+    def size(self) -> int:
+        """Return the number of outputs that a brain needs."""
+        return sum(part.size for part in self.parts)
+
+    @property
+    def columns(self) -> int:
+        """Return the number K of columns."""
+        return sum(1 if isinstance(part, Discrete) else part.size for part in self.parts)
+
+
+Action: TypeAlias = Discrete | Continuous | Compound
 
 
 class Outcome(NamedTuple):
@@ -60,6 +93,8 @@ class Outcome(NamedTuple):
     """float32 (N,): food gathered, in the task's unit (metres, points, targets)"""
     effort: "Array | None" = None
     """float32 (N,): effort exerted, in the habitat's unit"""
+    expired: "Array | None" = None
+    """bool (N,): a time limit of the habitat's own ends the life"""
     fault: "Array | None" = None
     """bool (N,): the body's simulation has failed; the law itself detects NaN and infinity"""
 
@@ -105,7 +140,7 @@ class Habitat(ABC):
         raise _missing(self, "senses_size")
 
     @default
-    def action(self) -> Discrete | Continuous:
+    def action(self) -> Action:
         """Return the kind of actions. A habitat must state it."""
         raise _missing(self, "action")
 

@@ -17,9 +17,8 @@ from primordia.habitats.bodies import (
 )
 from primordia.habitats.contract import (
     Ability,
+    Action,
     Bodies,
-    Continuous,
-    Discrete,
     HostHabitat,
     JaxHabitat,
     Outcome,
@@ -33,7 +32,7 @@ class OnHost(HostHabitat):
     """A JAX habitat that keeps the contract of habitats on the host, with the same bits."""
 
     senses_size: int
-    action: Discrete | Continuous
+    action: Action
     words: int
     rate: float | None
     versions: dict[str, str]

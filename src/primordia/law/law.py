@@ -9,7 +9,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from primordia.brains.contract import Brain
-from primordia.habitats.contract import Continuous, Discrete
+from primordia.habitats.contract import Action
 from primordia.law.heredity import Heredity
 from primordia.law.metabolism import Metabolism
 from primordia.law.motor import Motor
@@ -30,7 +30,7 @@ class Law:
     """S, the numbers that an organism perceives"""
     memory: int
     """M, the length of an organism's memory"""
-    action: Discrete | Continuous
+    action: Action
     motor: Motor
     placement: Placement
     metabolism: Metabolism | None

@@ -12,16 +12,16 @@ from jax import Array
 
 from primordia.brains.contract import Genome
 from primordia.habitats.bodies import not_finite
-from primordia.habitats.contract import Bodies, Discrete, Outcome
+from primordia.habitats.contract import Bodies, Outcome
 from primordia.law.law import Law
 from primordia.law.metabolism import Rates, add, metabolise, to_fixed_point
-from primordia.law.motor import argmax
+from primordia.law.motor import chosen
 from primordia.law.world import Cause
 from primordia.mutations.noise import noise_index
 from primordia.random.gaussian import quantiles
 from primordia.random.wide import Wide
 
-BODILY = (Cause.STARVED, Cause.FATAL, Cause.FAULT)
+BODILY = (Cause.TIME_LIMIT, Cause.STARVED, Cause.FATAL, Cause.FAULT)
 """Causes of death by brain, body and store. If several hold, the last one is recorded."""
 
 
@@ -31,7 +31,7 @@ class Thought(NamedTuple):
     memory: Array
     """float32 (N, M)"""
     action: Array
-    """int32 (N,) or float32 (N, A)"""
+    """int32 (N,) or float32 (N, K); see `habitats.contract.Action`"""
     faulty: Array
     """bool (N,): an output of the brain is not finite"""
 
@@ -63,12 +63,10 @@ def think(
 
 def act(law: Law, key: Wide, cell: Array, output: Array) -> Array:
     """Return the actions for outputs float32 (N, A) of brains; see `think`."""
-    if isinstance(law.action, Discrete):
-        return argmax(output)
     if law.motor.kind == "direct":
-        return output
+        return chosen(law.action, output, output)
     table = jnp.asarray(quantiles() * np.float32(law.motor.sd))
-    return output + table[noise_index(key, cell, law.action.size)]
+    return chosen(law.action, output, output + table[noise_index(key, cell, law.action.size)])
 
 
 def judge(
@@ -93,6 +91,8 @@ def judge(
     if outcome.food is not None:
         eaten = add(eaten, to_fixed_point(outcome.food))
     cause = jnp.full(faulty.shape, -1, jnp.int32)
+    if outcome.expired is not None:
+        cause = jnp.where(outcome.expired, Cause.TIME_LIMIT, cause)
     if law.metabolism is not None:
         cause = jnp.where(energy <= 0, Cause.STARVED, cause)
     cause = jnp.where(outcome.fatal, Cause.FATAL, cause)

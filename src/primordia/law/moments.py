@@ -5,13 +5,16 @@ ticks that are multiples of `every`. A child begins with the moments of its pare
 the same place whatever happens between, so chunks, interruptions and other worlds change nothing.
 """
 
+import operator
+from functools import reduce
+
 import jax.numpy as jnp
 import numpy as np
 from jax import Array, lax
 
-from primordia.habitats.contract import Discrete
+from primordia.habitats.contract import Continuous, Discrete
 from primordia.law.law import Law
-from primordia.law.motor import argmax
+from primordia.law.motor import argmax, outputs_of
 from primordia.law.world import Remembered, World, Worlds
 from primordia.mutations.contract import Change, Moments
 from primordia.random.wide import modulo
@@ -73,8 +76,9 @@ def change_in(law: Law, moments: Remembered, parents: Array) -> Change:
     """Return how far genomes act otherwise than parents do, in what these remember.
 
     Where actions are discrete it is the share of moments in which another is chosen. Where they are
-    continuous it is the root mean square change of the outputs, each by 1 at most. A parent that
-    remembers nothing yet has infinite changes, since nothing is known of its children.
+    continuous it is the root mean square change of the outputs, each by 1 at most. Of an action with
+    parts of both kinds it is the larger of the two. A parent that remembers nothing yet has infinite
+    changes, since nothing is known of its children.
 
     Args:
         law: the law.
@@ -85,18 +89,40 @@ def change_in(law: Law, moments: Remembered, parents: Array) -> Change:
 
     def change(genomes: Array) -> Array:
         after = _outputs(law, moments, genomes)
-        if isinstance(law.action, Discrete):
-            other = (argmax(_flat(after)) != argmax(_flat(before))).reshape(moments.known.shape)
-            return _share(jnp.where(moments.known, other, 0).sum(axis=1), moments.known)
-        # Squares, at most 1 each, are summed as whole numbers, so that no order of the sum matters.
-        finest = 2 ** (30 - (moments.known.shape[1] * law.action.size - 1).bit_length())
-        square = jnp.square(after - before)
-        square = jnp.where(square < 1, square, 1) * np.float32(finest)  # what is no number too is 1
-        counted = jnp.where(moments.known[..., None], square, 0).astype(jnp.int32)
-        total = _share(counted.sum(axis=(1, 2)), moments.known)
-        return jnp.sqrt(total / np.float32(finest * law.action.size))
+        choices = [own for part, own in outputs_of(law.action) if isinstance(part, Discrete)]
+        vectors = [own for part, own in outputs_of(law.action) if isinstance(part, Continuous)]
+        changes = []
+        if choices:
+            changes.append(_chosen_otherwise(moments.known, before, after, choices))
+        if vectors:
+            old, new = (
+                jnp.concatenate([each[..., own] for own in vectors], axis=-1)
+                for each in (before, after)
+            )
+            changes.append(_moved(moments.known, old, new))
+        return reduce(jnp.maximum, changes)
 
     return change
+
+
+def _chosen_otherwise(known: Array, before: Array, after: Array, choices: list[slice]) -> Array:
+    """Return the share of known moments (K, R) in which a discrete part is chosen otherwise, (K,)."""
+    other = [argmax(_flat(after)[:, own]) != argmax(_flat(before)[:, own]) for own in choices]
+    return _share(
+        jnp.where(known, reduce(operator.or_, other).reshape(known.shape), 0).sum(1), known
+    )
+
+
+def _moved(known: Array, before: Array, after: Array) -> Array:
+    """Return the root mean square change of outputs (K, R, A) in known moments (K, R), (K,)."""
+    size = before.shape[-1]
+    # Squares, at most 1 each, are summed as whole numbers, so that no order of the sum matters.
+    finest = 2 ** (30 - (known.shape[1] * size - 1).bit_length())
+    square = jnp.square(after - before)
+    square = jnp.where(square < 1, square, 1) * np.float32(finest)  # what is no number too is 1
+    counted = jnp.where(known[..., None], square, 0).astype(jnp.int32)
+    total = _share(counted.sum(axis=(1, 2)), known)
+    return jnp.sqrt(total / np.float32(finest * size))
 
 
 def _share(count: Array, known: Array) -> Array:

@@ -1,16 +1,18 @@
 """Motors, which turn the output of a brain into an action."""
 
+from collections.abc import Iterator
 from typing import Literal
 
 import jax.numpy as jnp
 from jax import Array
 from pydantic import Field
 
+from primordia.habitats.contract import Action, Compound, Continuous, Discrete
 from primordia.settings.base import Settings
 
 
 class Motor(Settings):
-    """The motor of continuous actions; a discrete action is always the output's argmax.
+    """The motor of continuous actions; a discrete action, or part of one, is always the outputs' argmax.
 
     `gaussian` is the paper's Walker policy: the output is the mean of a Gaussian with a constant standard
     deviation (Schmidgall & Hays 2021, "Walker-survival-forager").
@@ -20,6 +22,26 @@ class Motor(Settings):
         "direct", description="direct: the action is the output; gaussian: noise of sd is added"
     )
     sd: float = Field(0.0, ge=0, le=100, description="standard deviation of the gaussian motor")
+
+
+def outputs_of(action: Action) -> Iterator[tuple[Discrete | Continuous, slice]]:
+    """Yield each part of an action with its outputs."""
+    first = 0
+    for part in action.parts:
+        yield part, slice(first, first + part.size)
+        first += part.size
+
+
+def chosen(action: Action, output: Array, moved: Array) -> Array:
+    """Return the action of outputs float32 (N, A): of a discrete part the argmax, else `moved` (N, A)."""
+    parts = [
+        argmax(output[:, own]) if isinstance(part, Discrete) else moved[:, own]
+        for part, own in outputs_of(action)
+    ]
+    if not isinstance(action, Compound):
+        return parts[0]
+    columns = [each if each.ndim == 2 else each.astype(jnp.float32)[:, None] for each in parts]
+    return jnp.concatenate(columns, axis=1)
 
 
 def argmax(output: Array) -> Array:

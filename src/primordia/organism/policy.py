@@ -6,7 +6,7 @@ import numpy as np
 from primordia.compiled import shared
 from primordia.habitats.contract import Discrete
 from primordia.law.law import Law
-from primordia.law.motor import argmax
+from primordia.law.motor import chosen
 
 
 class Policy:
@@ -30,10 +30,9 @@ class Policy:
             senses: senses as the habitat gives them, (S,).
 
         Returns:
-            The chosen number if actions are discrete; else float32 (A,), without the motor's noise.
+            The chosen number if actions are discrete; else float32 (K,), without the motor's noise.
         """
         row = jnp.asarray(senses, jnp.float32).reshape(1, -1)
         self._memory, output = self._think(self._genome, self._memory, row)
-        if isinstance(self._law.action, Discrete):
-            return int(argmax(output)[0])
-        return np.asarray(output[0])
+        action = chosen(self._law.action, output, output)[0]
+        return int(action) if isinstance(self._law.action, Discrete) else np.asarray(action)

@@ -11,6 +11,7 @@ from primordia.habitats.contract import (
     Ability,
     AnyHabitat,
     Bodies,
+    Compound,
     Continuous,
     Discrete,
     JaxHabitat,
@@ -18,7 +19,7 @@ from primordia.habitats.contract import (
     complete,
 )
 from primordia.law.events import DEATHS
-from primordia.testing.lives import TICKS, Lives, Past, judged
+from primordia.testing.lives import TICKS, Lives, Past, actions, judged
 from primordia.testing.report import ROUNDED, ContractError, advise, need, typed
 from primordia.testing.trial import ALL, COUNTS
 
@@ -80,9 +81,12 @@ def _stated(habitat: AnyHabitat) -> None:
         )
     action = habitat.action
     need(
-        isinstance(action, Discrete | Continuous) and action.size > isinstance(action, Discrete),
+        isinstance(action, Discrete | Continuous | Compound)
+        and all(part.size > isinstance(part, Discrete) for part in action.parts)
+        and action.size > 0,
         habitat,
-        f"has action = {action!r}; it must be Discrete(2) or more, or Continuous(1) or more",
+        f"has action = {action!r}; it must be Discrete(2) or more, Continuous(1) or more, or a Compound"
+        " of such parts",
     )
     _abilities(habitat)
 
@@ -114,10 +118,7 @@ def _abilities(habitat: AnyHabitat) -> None:
 def _types(habitat: JaxHabitat) -> None:
     """Check shapes and dtypes without computing anything."""
     words = jax.ShapeDtypeStruct((ALL, habitat.words), np.uint32)
-    action = habitat.action
-    shape, dtype = (
-        ((ALL,), np.int32) if isinstance(action, Discrete) else ((ALL, action.size), np.float32)
-    )
+    acted = actions(habitat.action)[0]
     bodies = jax.eval_shape(habitat.reset, words)
     for leaf in jax.tree.leaves(bodies):
         need(
@@ -127,7 +128,9 @@ def _types(habitat: JaxHabitat) -> None:
         )
     senses = jax.eval_shape(habitat.sense, bodies)
     typed(habitat, "senses", senses, (ALL, habitat.senses_size), np.float32)
-    stepped: Any = jax.eval_shape(habitat.step, bodies, jax.ShapeDtypeStruct(shape, dtype))
+    stepped: Any = jax.eval_shape(
+        habitat.step, bodies, jax.ShapeDtypeStruct(acted.shape, acted.dtype)
+    )
     need(
         isinstance(stepped, tuple) and len(stepped) == 2,
         habitat,
@@ -173,7 +176,7 @@ def _pasts(looped: tuple[Array, Array, Outcome]) -> list[Past]:
     for body in range(ALL):
         past: Past = [(first[body],)]
         for tick in range(TICKS):
-            reported = outcomes[:3]  # without faults, which the law finds in a loop
+            reported = outcomes[:4]  # without faults, which the law finds in a loop
             outcome = [None if each is None else each[tick, body] for each in reported]
             past.append((senses[tick, body], *outcome))
         pasts.append(past)

@@ -11,7 +11,9 @@ from PIL.Image import Image
 
 from primordia.habitats.contract import (
     Ability,
+    Action,
     AnyHabitat,
+    Continuous,
     Discrete,
     HostHabitat,
     JaxHabitat,
@@ -33,8 +35,22 @@ def judged(habitat: object, outcome: Any, count: int) -> None:
     need(isinstance(outcome, Outcome), habitat, f"reports {outcome!r}; return an Outcome from step")
     for name, each in outcome._asdict().items():
         if each is not None or name == "fatal":
-            dtype = np.bool_ if name in ("fatal", "fault") else np.float32
+            dtype = np.bool_ if name in ("fatal", "fault", "expired") else np.float32
             typed(habitat, f"outcome.{name}", each, (count,), dtype)
+
+
+def actions(kind: Action) -> np.ndarray:
+    """Return actions of a kind that look random, for TICKS ticks of ALL bodies."""
+    if isinstance(kind, Discrete):
+        return (words(1, TICKS, ALL) % np.uint32(kind.size)).astype(np.int32)
+    if isinstance(kind, Continuous):
+        return normal(1, TICKS, ALL, kind.size)
+    drawn, at, columns = normal(1, TICKS, ALL, kind.columns), 0, words(2, TICKS, ALL, kind.columns)
+    for part in kind.parts:
+        if isinstance(part, Discrete):
+            drawn[..., at] = columns[..., at] % np.uint32(part.size)
+        at += 1 if isinstance(part, Discrete) else part.size
+    return drawn
 
 
 class Lives:
@@ -43,11 +59,7 @@ class Lives:
     def __init__(self, habitat: AnyHabitat) -> None:
         self.habitat = habitat
         self.words = words(0, ALL, habitat.words)
-        if isinstance(habitat.action, Discrete):
-            drawn = words(1, TICKS, ALL) % np.uint32(habitat.action.size)
-            self.actions = drawn.astype(np.int32)
-        else:
-            self.actions = normal(1, TICKS, ALL, habitat.action.size)
+        self.actions = actions(habitat.action)
 
     @contextmanager
     def opened(self, who: np.ndarray, cells: int, watched: bool = False) -> Iterator["Stage"]:
@@ -166,9 +178,9 @@ class Stage:
             row = tuple(None if each is None else each[cell] for each in told)
             self.pasts[self.who[cell]].append(row)
         self.age[active] += 1
-        self.alive &= ~np.asarray(outcome.fatal)
-        if outcome.fault is not None:
-            self.alive &= ~np.asarray(outcome.fault)
+        for ended in (outcome.fatal, outcome.fault, outcome.expired):
+            if ended is not None:
+                self.alive &= ~np.asarray(ended)
 
     def play(self, ticks: int) -> None:
         """Give all bodies their births, and live some ticks."""

@@ -181,7 +181,7 @@ class MuJoCo(HostHabitat, Settings):
         fatal = condition.of_all(values, count, bool) if condition else none
         food = self._food_amount.of_all(values, count, np.float32)
         effort = self._effort_amount.of_all(values, count, np.float32)
-        return Outcome(fatal, food, effort, fault)
+        return Outcome(fatal, food, effort, fault=fault)
 
     def _observe(self, before: dict[str, np.ndarray]) -> dict[str, Any]:
         """Return the present values of the observables, given the positions before the tick."""
