@@ -34,6 +34,7 @@ from primordia.settings.tables import (
     PARTS,
     did_you_mean,
     merged,
+    modules_of,
     replaced,
     values_of,
     with_full_paths,
@@ -172,12 +173,14 @@ class Config(Settings):
             **rates_of(self.metabolism or Metabolism(), "metabolism."),
         }
 
+    def modules_of(self, part: str) -> list[str]:
+        """Return the dotted names of the modules that a part's settings name."""
+        return modules_of(getattr(self, part), PARTS[part])
+
     @property
-    def own_modules(self) -> dict[str, str]:
-        """Return the modules of the parts that do not come with the package: part -> dotted name."""
-        names = {part: getattr(self, part).get(key) for part, key in PARTS.items()}
-        modules = {part: str(name).partition(":") for part, name in names.items()}
-        return {part: module for part, (module, colon, _) in modules.items() if colon}
+    def own_modules(self) -> list[str]:
+        """Return the dotted names of the modules that the settings of all parts name."""
+        return [module for part in PARTS for module in self.modules_of(part)]
 
     @property
     def world_seeds(self) -> np.ndarray:

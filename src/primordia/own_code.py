@@ -124,6 +124,14 @@ def admit(code: Sources) -> None:
             _admitted.folders[".".join(folders[:depth])] = str(folder)
 
 
+def admitted() -> Sources:
+    """Return the files that have been admitted, for another process to admit."""
+    return {
+        module.replace(".", "/") + (f"/{INIT}" if source.file.name == INIT else ".py"): source
+        for module, source in _admitted.sources.items()
+    }
+
+
 def is_loaded(code: Sources) -> bool:
     """Return whether the process has imported all of these files already."""
     loaded = {name: _loaded(_module(name)) for name in code}

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 @click.command(cls=SettingsCommand)
-@click.argument("task", metavar="TASK|FILE.toml")
+@click.argument("task", metavar="TASK|FILE.toml|gym:NAME")
 @out_option
 @click.option(
     "--ancestor",
@@ -56,8 +56,9 @@ def run(
 ) -> None:
     """Evolve in a new run directory.
 
-    TASK is one of `primordia tasks`; a FILE.toml names a `task` and the settings that differ from it. Any
-    setting below can be given as a flag, such as --seed 3, --cells 64 or --mutation.scale 0.02.
+    TASK is one of `primordia tasks`; a FILE.toml names a `task` and the settings that differ from it;
+    gym:NAME is an environment of Gymnasium. Any setting below can be given as a flag, such as --seed 3,
+    --cells 64 or --mutation.scale 0.02.
     """
     from primordia import api, config
 

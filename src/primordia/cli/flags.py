@@ -109,6 +109,7 @@ class SettingsCommand(click.Command):
     def settings(self, ctx: click.Context) -> tuple[str, list[tuple[str, str]]]:
         """Return a title and rows for --help: all settings of the task, file or run that is named."""
         from primordia.cli.help import run_rows, setting_rows
+        from primordia.settings.doors import is_door
         from primordia.settings.tables import tasks
 
         known = tasks()
@@ -116,7 +117,7 @@ class SettingsCommand(click.Command):
             title = f"Settings, as in TOML (values of {word})"
             if isfile(Path(word, "config.toml")):
                 return title, run_rows(Path(word), ctx.obj)
-            if word in known or word.endswith(".toml"):
+            if word in known or word.endswith(".toml") or is_door(word):
                 return title, setting_rows(word, ctx.obj)
         argument = " ".join(self.collect_usage_pieces(ctx)[1:])
         more = f"`{ctx.command_path} {argument} --help` shows those of its habitat too"

@@ -46,6 +46,11 @@ class Engine:
         """The events of the latest chunk; the next chunk overwrites them."""
         return self.chunks.events
 
+    @property
+    def faults(self) -> list[str]:
+        """A line for each organism whose body failed in the latest chunk, if the habitat says why."""
+        return self.chunks.faults if isinstance(self.chunks, HostedChunks) else []
+
     def advance(self, limits: Limits) -> Events:
         """Advance by a chunk of about CHUNK_SECONDS, and return its events."""
         start = time.perf_counter()

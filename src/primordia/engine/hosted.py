@@ -12,6 +12,7 @@ from jax import Array
 from primordia.brains.contract import Genome
 from primordia.engine.calls import Calls, Decision, Unsettled
 from primordia.engine.held import NO_BULK, Bulk, Form, Held
+from primordia.engine.messages import Messages
 from primordia.engine.state import Limits, State, filled, named_leaves
 from primordia.engine.tallies import Tallies
 from primordia.errors import Trouble
@@ -31,7 +32,7 @@ class HostedChunks:
     def __init__(self, law: Law, habitat: HostHabitat) -> None:
         self.exact = habitat.exact
         self._law, self._habitat = law, habitat
-        self._tallies = Tallies(habitat, law.worlds)
+        self._tallies, self._messages = Tallies(habitat, law.worlds), Messages(habitat, law.cells)
         self._lists = log.empty(law)
         self.events = self._lists
         """events of the latest chunk"""
@@ -52,6 +53,7 @@ class HostedChunks:
             state; the number of ticks advanced.
         """
         self._tallies.begin()
+        self._messages.begin()
         bulk, held = Bulk.of(state.world), self._calls.hold(state.world)
         events, senses, done = log.emptied(self._lists), np.array(state.bodies), 0
         decision = self._calls.survey(bulk.genome, held, events, limits)
@@ -64,6 +66,7 @@ class HostedChunks:
             done += int(unsettled.ticks)
             bulk, events, held, decision = self._calls.settle(bulk, events, held, unsettled, limits)
             self._tallies.note_deaths(np.asarray(decision.died))
+            self._messages.note_deaths(np.asarray(decision.died))
             if np.asarray(decision.newborn).any():
                 senses = self._embody(senses, decision)
                 thought = self._calls.think(bulk.genome, held, senses)
@@ -72,6 +75,11 @@ class HostedChunks:
             self._tallies.note_samples(decision.alive, events.samples)
         self._lists, self.events = events, self._tallies.added_to(events)
         return State(self._release(bulk, held), senses), done
+
+    @property
+    def faults(self) -> list[str]:
+        """A line for each organism whose body failed in the latest chunk, if the habitat says why."""
+        return self._messages.of(self.events.deaths)
 
     def _release(self, bulk: Bulk, held: Held) -> World:
         """Return the world; its bulk does not pass through a call, which would copy it."""

@@ -103,7 +103,7 @@ def _changes(config: Config) -> dict[str, object]:
 def _go_on(run: Path, config: Config, checkpoint_every: float, watch: "_Watch") -> None:
     archive = Archive(run)
     held = archive.code()
-    here = {source.sha256 for source in code.found(config.own_modules.values()).values()}
+    here = {source.sha256 for source in code.found(config.own_modules).values()}
     if {source.sha256 for source in held.values()} <= here:
         code.trust(held)  # the user's own files; a folder from elsewhere may hold others
     limits = config.stop.model_dump()

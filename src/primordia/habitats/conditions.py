@@ -23,8 +23,8 @@ from primordia.settings.values import LARGEST, shown
 
 Kind: TypeAlias = Literal["condition", "amount"] | int
 """A condition, an amount (one number), or the length of a list of numbers."""
-Names: TypeAlias = Mapping[str, Kind | Mapping[str, int]]
-"""The kind of each quantity that expressions can name; of one with parts, the length of each part."""
+Names: TypeAlias = Mapping[str, Kind | Mapping[str, Kind]]
+"""The kind of each quantity that expressions can name; of one with parts, the kind of each part."""
 Values: TypeAlias = Mapping[str, Any]
 """Arrays by name: (N,) for a condition or an amount, (N, K) for a list; with parts, arrays by part."""
 Compute: TypeAlias = Callable[[Values], Any]
@@ -200,7 +200,7 @@ class _Reader:
         raise self._error(node, "only a list of numbers, or a name with parts, can be indexed")
 
     def _part(
-        self, node: ast.Subscript, name: str, known: Mapping[str, int]
+        self, node: ast.Subscript, name: str, known: Mapping[str, Kind]
     ) -> tuple[Kind, Compute]:
         part = node.slice.value if isinstance(node.slice, ast.Constant) else None
         if not isinstance(part, str) or part not in known:

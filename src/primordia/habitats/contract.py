@@ -31,6 +31,7 @@ KNOWN = {
     "cartpole": "primordia.habitats.cartpole.habitat:CartPole",
     "atari": "primordia.habitats.atari.habitat:Atari",
     "mujoco": "primordia.habitats.mujoco.habitat:MuJoCo",
+    "gymnasium": "primordia.habitats.gymnasium.habitat:Gymnasium",
 }
 
 Bodies: TypeAlias = Any
@@ -262,6 +263,10 @@ class HostHabitat(Habitat):
     def tally(self) -> np.ndarray:
         """Return the counts of the present lives, int32 (N, K); `save` stores them as `tally`."""
         raise NotImplementedError
+
+    def message(self, cell: int) -> str:
+        """Return why the body in a cell failed in the latest tick, in one line; "" if that is unknown."""
+        return ""
 
     def save(self) -> dict[str, np.ndarray]:
         """Return the whole state of the bodies as arrays (N, ...), from which they go on exactly."""

@@ -14,11 +14,13 @@ import signal
 import sys
 import time
 from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from primordia import own_code
+from primordia.own_code import Source
 from primordia.pool import board
 from primordia.pool.board import LOAD, READY, RESET, SAVE, STEP
 from primordia.pool.contract import Simulator
@@ -37,6 +39,9 @@ def main() -> None:
     cells = range(setup["first"], setup["cells"], setup["every"])
     memory = mmap.mmap(setup["memory"], setup["size"])
     arrays = board.arrays(memory, setup["fields"], setup["cells"])
+    own_code.admit(
+        {name: Source(Path(file), text.encode("latin-1")) for name, file, text in setup["code"]}
+    )
     module, _, name = setup["simulator"].partition(":")
     simulator = getattr(own_code.load(module), name)(arrays, **setup["settings"])
     for cell in cells:

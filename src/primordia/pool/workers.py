@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from primordia import own_code
 from primordia.errors import Trouble
 from primordia.pool import board
 from primordia.pool.board import LOAD, READY, RESET, SAVE, STEP
@@ -54,6 +55,10 @@ class Workers(Pool):
             "every": self._count,
             "memory": file.fileno(),
             "size": size,
+            "code": [
+                (name, str(source.file), source.text.decode("latin-1"))
+                for name, source in own_code.admitted().items()
+            ],
         }
         self._workers = [_spawn(file.fileno()) for _ in range(self._count)]
         self._finalizer = weakref.finalize(self, _stop, self._workers)
@@ -96,7 +101,8 @@ class Workers(Pool):
             _send(worker, LOAD)
             for cell in range(first, self._cells, self._count):
                 _send(worker, len(states[cell]).to_bytes(4, "little") + states[cell])
-        self._await_all()
+        for worker in self._workers:
+            _await_ready(worker, patience=None)  # whole lives may have to be lived again
 
     def close(self) -> None:
         """Stop the workers."""
@@ -134,23 +140,26 @@ def _send(worker: subprocess.Popen, data: bytes) -> None:
         raise _has_ended(worker) from None
 
 
-def _await_ready(worker: subprocess.Popen, times: int = 1) -> None:
-    """Wait until a worker has answered `times` times that it is ready."""
-    if _receive(worker, times * len(READY)) != times * READY:
+def _await_ready(
+    worker: subprocess.Popen, times: int = 1, patience: float | None = PATIENCE
+) -> None:
+    """Wait until a worker has answered `times` times that it is ready; see `_receive`."""
+    if _receive(worker, times * len(READY), patience) != times * READY:
         raise Trouble(
             f"worker process {worker.pid} gave an answer that is not part of the protocol; resume the"
             " run from its last checkpoint"
         )
 
 
-def _receive(worker: subprocess.Popen, count: int) -> bytes:
+def _receive(worker: subprocess.Popen, count: int, patience: float | None = PATIENCE) -> bytes:
+    """Return `count` bytes; without `patience`, seconds, wait as long as the worker lives."""
     assert worker.stdout is not None
     parts, left = [], count
     while left:
-        ready, _, _ = select.select([worker.stdout], [], [], PATIENCE)
+        ready, _, _ = select.select([worker.stdout], [], [], patience)
         if not ready:
             raise Trouble(
-                f"worker process {worker.pid} has not answered for {PATIENCE:.0f} s; resume the run"
+                f"worker process {worker.pid} has not answered for {patience:.0f} s; resume the run"
                 " from its last checkpoint"
             )
         part = os.read(worker.stdout.fileno(), left)

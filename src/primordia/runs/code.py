@@ -29,7 +29,7 @@ def copy(config: Config, run: Path) -> dict[str, str]:
     Raises:
         Trouble: a file cannot be written.
     """
-    code = found(config.own_modules.values())
+    code = found(config.own_modules)
     for name, source in code.items():
         path = run / FOLDER / name
         files.make_folder(path.parent)
@@ -62,8 +62,8 @@ def of_run(
     if held != set(about.code):
         odd = min(held ^ set(about.code))
         raise Trouble(f"{folder / odd} is missing, or was not there when the run began")
-    for part, module in config.own_modules.items():
-        if part in parts:
+    for part in parts:
+        for module in config.modules_of(part):
             ways = [partial(own_code.below, folder, module), partial(own_code.found, module)]
             code |= next(filter(None, (way() for way in (ways[::-1] if edited else ways))), {})
     for name, source in code.items():
@@ -97,7 +97,7 @@ def changes(config: Config, recorded: dict[str, str]) -> list[str]:
     """
     return [
         f"{source.file} has changed" if name in recorded else f"{source.file} is new"
-        for name, source in sorted(found(config.own_modules.values()).items())
+        for name, source in sorted(found(config.own_modules).items())
         if recorded.get(name) != source.sha256
     ]
 

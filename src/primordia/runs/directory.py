@@ -171,7 +171,7 @@ def read_config(run: Path) -> Config:
 
 def versions_here(config: Config, habitat: AnyHabitat) -> dict[str, str]:
     """Return the versions that a run begun here would depend on, by name."""
-    packages = own_code.packages(config.own_modules.values())
+    packages = own_code.packages(config.own_modules)
     return {**device.versions(), **habitat.versions, **packages}
 
 

@@ -30,6 +30,8 @@ from primordia.settings.tables import from_toml, merged
 
 HARMLESS = {"stop", "fork", "about", "sample_every"}
 """Settings that do not change what happens in a world."""
+OF_ANY_LENGTH = "bodies.states"
+"""The array whose rows are as long as the longest state in it (`habitats.states`)."""
 OF_MUTATION = (".notes", ".moments.")
 """Parts of the names of arrays that begin empty under another kind of mutation."""
 RENEWED = (*OF_MUTATION, ".looks.", ".climate.")
@@ -145,7 +147,7 @@ def _transplant(before: Engine, old: Config, new: Config, at: int) -> Engine:
     """Return an engine of the new configuration with the organisms and bodies of another engine."""
     after = Engine(new)
     arrays, own = before.arrays(), after.arrays()
-    fitting = {name for name, array in own.items() if np.shape(arrays.get(name, 0)) == array.shape}
+    fitting = {name for name in own if _form(name, arrays) == _form(name, own)}
     lasting = {name for name in own if not any(part in name for part in RENEWED)}
     if new.brain != old.brain or not lasting <= fitting:
         raise InputError("a fork cannot change cells, seeds, senses, the brain or the habitat")
@@ -155,6 +157,12 @@ def _transplant(before: Engine, old: Config, new: Config, at: int) -> Engine:
     world, bodies = after.state
     after.state = State(_adapt(world, before, after, old, new, at), bodies)
     return after
+
+
+def _form(name: str, arrays: dict[str, np.ndarray]) -> tuple[int, ...]:
+    """Return the part of an array's shape that settings fix; () if there is no such array."""
+    shape = np.shape(arrays.get(name, 0))
+    return shape[:1] if name == OF_ANY_LENGTH else shape
 
 
 def _adapt(world: World, before: Engine, after: Engine, old: Config, new: Config, at: int) -> World:

@@ -20,7 +20,7 @@ from primordia.engine.engine import Engine
 from primordia.engine.state import Limits
 from primordia.errors import InputError
 from primordia.law.events import Events
-from primordia.runs import checkpoint, directory
+from primordia.runs import checkpoint, directory, faults
 from primordia.runs.archive import Archive
 from primordia.runs.checkpoint import Checkpoint
 from primordia.runs.manifest import Progress
@@ -120,9 +120,9 @@ def resume(
     differ = archive.other_versions
     _check_same(run, differ, inexact)
     with interrupts.noting(), directory.locked(run):
-        last, faults = archive.newest  # read under the lock, since another writer could change it
-        if last is None and faults:
-            raise checkpoint.no_whole_checkpoint(run, faults)
+        last, damaged = archive.newest  # read under the lock, since another writer could change it
+        if last is None and damaged:
+            raise checkpoint.no_whole_checkpoint(run, damaged)
         if last is None and config.fork is not None:
             raise InputError(
                 f"{run} is a fork that was cut off before it began; remove it and fork again"
@@ -137,7 +137,7 @@ def resume(
             progress = last.manifest.progress
         progress.limits = progress.limits.model_copy(update=given)
         progress.exact &= not differ and engine.chunks.exact
-        notes = [f"a damaged checkpoint was not used: {fault}" for fault in faults]
+        notes = [f"a damaged checkpoint was not used: {fault}" for fault in damaged]
         if not engine.any_running(engine.limits(progress.limits.model_dump())):
             notes.append(_nothing_to_do(run, progress))
         drive(engine, recorder, run, progress, checkpoint_every, listen)
@@ -192,6 +192,7 @@ def drive(
             for events in chain(first, chunks):
                 check()
                 recorder.append(events)
+                faults.note(run, engine.faults)
                 if listen is not None:
                     with saver.saving_on_error():
                         listen(Status(engine, saver.seconds, limits))

@@ -9,6 +9,7 @@ from typing import Any
 
 from primordia import files
 from primordia.errors import InputError
+from primordia.settings import doors
 from primordia.settings.values import check_values
 
 NONE = "none"
@@ -18,6 +19,12 @@ PARTS = {"habitat": "name", "brain": "kind", "mutation": "kind"}
 """Tables of replaceable parts, and the setting of each that names the part."""
 DEFAULTS = {"brain": "recurrent", "mutation": "gaussian"}
 """Parts of tables that name none: those of the paper."""
+
+
+CODE = ("env", "food")
+"""Settings of a part, beside its own name, that may be `module:name`."""
+IMPORTS = "imports"
+"""The setting of a part that lists modules."""
 
 
 def tasks() -> dict[str, dict[str, Any]]:
@@ -31,20 +38,22 @@ def tasks() -> dict[str, dict[str, Any]]:
 
 
 def values_of(task: str) -> dict[str, Any]:
-    """Return the settings of a built-in task or of a TOML file.
+    """Return the settings of a built-in task, a TOML file, or an environment such as gym:CartPole-v1.
 
     Raises:
-        InputError: there is no such task or file, or the file cannot be read.
+        InputError: there is no such task, file or environment, or the file cannot be read.
     """
     known = tasks()
     if task in known:
         return known[task]
+    if doors.is_door(task):
+        return doors.values(task)
     if task.endswith(".toml") or isfile(task):
         values = from_toml(Path(task))
         return merged(known.get(str(values.get("task")), {}), values)
     raise InputError(
         f"there is no task {task!r}{did_you_mean(task, list(known))}; `primordia tasks` lists them,"
-        " or give a file FILE.toml"
+        " or give a file FILE.toml, or an environment gym:NAME"
     )
 
 
@@ -92,6 +101,19 @@ def merged(base: dict[str, Any], change: dict[str, Any]) -> dict[str, Any]:
             value = value if exchanged else merged(old, value)
         result[name] = value
     return result
+
+
+def modules_of(table: dict[str, Any], key: str) -> list[str]:
+    """Return the modules that a part's table names: its class, what it calls, and what it imports."""
+    named = [str(table.get(each, "")).partition(":") for each in (key, *CODE)]
+    modules = [module for module, colon, name in named if colon and name and _is_dotted(module)]
+    imports = table.get(IMPORTS, ())
+    listed = [str(each) for each in imports] if isinstance(imports, list | tuple) else []
+    return [*modules, *(each for each in listed if _is_dotted(each))]
+
+
+def _is_dotted(text: str) -> bool:
+    return all(each.isidentifier() for each in text.split("."))
 
 
 def with_full_paths(folder: Path, values: dict[str, Any]) -> dict[str, Any]:

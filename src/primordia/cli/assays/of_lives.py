@@ -131,9 +131,11 @@ def subjects_of(
     from primordia.api import load
     from primordia.assays.subjects import of_file, of_run, of_task
     from primordia.errors import InputError
+    from primordia.settings.doors import is_door
     from primordia.settings.tables import tasks
 
-    of_a_task = run.suffix == ".toml" or (str(run) in tasks() and not run.exists())
+    named = str(run) in tasks() or is_door(str(run))
+    of_a_task = run.suffix == ".toml" or (named and not run.exists())
     if world is not None and (of_a_task or run.suffix == SUFFIX):
         raise InputError(f"{run} has no worlds; leave out --world")
     if run.suffix == SUFFIX:

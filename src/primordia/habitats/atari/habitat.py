@@ -22,6 +22,7 @@ from primordia.habitats.atari.games import (
 from primordia.habitats.atari.simulator import FIELDS, RAM, SCREEN
 from primordia.habitats.conditions import Expression, Names
 from primordia.habitats.contract import Discrete, HostHabitat, Outcome
+from primordia.habitats.states import packed, unpacked
 from primordia.pool.contract import Pool
 from primordia.pool.opening import open_pool
 from primordia.settings.base import Settings
@@ -248,16 +249,10 @@ class Atari(HostHabitat, Settings):
         return SCALED.take(ram[:, self._addresses] if self.senses else ram)
 
     def save(self) -> dict[str, np.ndarray]:
-        """Return the serialised states, padded to one length, uint8 (N, L), with lengths and tally."""
-        states = self._pool.save()
-        lengths = np.array([len(state) for state in states])
-        padded = np.zeros((len(states), lengths.max()), np.uint8)
-        for row, state in zip(padded, states, strict=True):
-            row[: len(state)] = np.frombuffer(state, np.uint8)
-        return {"states": padded, "lengths": lengths, "tally": self._tally.copy()}
+        """Return the serialised states (`states.packed`), and the tally."""
+        return {**packed(self._pool.save()), "tally": self._tally.copy()}
 
     def load(self, arrays: dict[str, np.ndarray]) -> None:
         """Restore the states that `save` returned."""
-        pairs = zip(arrays["states"], arrays["lengths"], strict=True)
-        self._pool.load([row[:length].tobytes() for row, length in pairs])
+        self._pool.load(unpacked(arrays))
         self._tally[:] = arrays["tally"]

@@ -1,0 +1,228 @@
+"""What can be relied upon in an environment, measured: whether lives repeat, and how they can go on.
+
+Some lives of random actions are lived several times, and compared bit for bit: in one environment after
+the other, in environments that are new, and from states that were saved on the way.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import Any, Literal
+
+import numpy as np
+from gymnasium import Env
+
+from primordia.habitats.gymnasium import environment, state
+from primordia.habitats.gymnasium.spaces import Acting, Observation
+
+TICKS, LIVES = 1000, 8
+"""Steps that are compared, and the least number of lives among which they are divided."""
+SAVED = 4
+"""States of each life that are saved and gone on from."""
+
+
+ENDED, GOING_ON = b"\1", b"\0"
+"""The last byte of what is seen at an age."""
+
+
+@dataclass
+class Measured:
+    """What was found out about an environment."""
+
+    saving: Literal["snapshot", "replay", "none"] = "replay"
+    """how lives go on after an interruption"""
+    fresh: bool = False
+    """whether a life repeats in a new environment only"""
+    lifespan: float = 0.0
+    """mean ticks of the lives of random actions; those that did not end count as they are"""
+    ended: int = 0
+    """lives that the environment ended"""
+    faults: list[str] = field(default_factory=list)
+    """what is wrong, a sentence each"""
+    why: str = ""
+    """why states cannot be saved, if so"""
+
+
+@dataclass
+class _Life:
+    """A life of random actions, and what was seen in it."""
+
+    seed: int
+    rows: np.ndarray
+    """actions as rows, float64 (T, K)"""
+    seen: list[bytes] = field(default_factory=list)
+    """observation, reward and ends at each age, from birth on"""
+    ended: bool = False
+
+
+class _Trial:
+    """Environments of one kind, and the lives that are lived in them."""
+
+    def __init__(self, env: str, options: Mapping[str, Any], imports: Sequence[str]) -> None:
+        self._making = env, options, imports
+        self.first = self.new()
+        self._observation = Observation(self.first.observation_space)
+        self._acting = Acting(self.first.action_space)
+        self.faults: list[str] = []
+
+    def new(self) -> Env:
+        return environment.make(*self._making)
+
+    def lives(self) -> list[_Life]:
+        """Live the lives that the others are compared with."""
+        lives: list[_Life] = []
+        self.first.action_space.seed(0)
+        while len(lives) < LIVES:
+            rows = self._random_rows(TICKS // LIVES)
+            lives.append(_Life(2 * len(lives) + 1, rows))
+            lives[-1].seen = self.live(self.first, lives[-1], watched=True)
+            lives[-1].ended = lives[-1].seen[-1].endswith(ENDED)
+        return lives
+
+    def _random_rows(self, count: int) -> np.ndarray:
+        """Return rows of actions that cover the action space, float64 (count, K)."""
+        space = self.first.action_space
+        outputs = [np.asarray(space.np_random.random(self._acting.kind.size)) for _ in range(count)]
+        kind, drawn = self._acting.kind, np.array(outputs)
+        columns, at = [], 0
+        for part in kind.parts:
+            own = drawn[:, at : at + part.size]
+            choice = (
+                own.argmax(axis=1)[:, None] if type(part).__name__ == "Discrete" else 2 * own - 1
+            )
+            columns.append(choice)
+            at += part.size
+        return self._acting.rows(np.concatenate(columns, axis=1))
+
+    def live(self, env: Env, life: _Life, watched: bool = False) -> list[bytes]:
+        """Live a life to its end -> what was seen at each age; an error ends it too."""
+        try:
+            observation, _ = env.reset(seed=life.seed)
+        except Exception as error:
+            self._note(f"reset raises an error: {environment.line(error)}")
+            return [ENDED]
+        return [self._seen(observation, 0.0, False, False), *self.steps(env, life.rows, watched)]
+
+    def steps(self, env: Env, rows: np.ndarray, watched: bool = False) -> list[bytes]:
+        """Step an environment until a life ends -> what was seen."""
+        seen: list[bytes] = []
+        for row in rows:
+            try:
+                seen.append(self._step(env, row, watched))
+            except Exception as error:
+                self._note(f"step raises an error: {environment.line(error)}")
+                seen.append(ENDED)
+            if seen[-1].endswith(ENDED):
+                break
+        return seen
+
+    def _step(self, env: Env, row: np.ndarray, watched: bool) -> bytes:
+        """Step an environment -> what was seen; note what is wrong if it is watched."""
+        action = self._acting.build(row)
+        before = repr(action)
+        observation, reward, terminated, truncated, _ = env.step(action)
+        if watched:
+            self._watch(env, observation, reward, repr(action) != before)
+        return self._seen(observation, float(reward), terminated, truncated)
+
+    def _watch(self, env: Env, observation: Any, reward: Any, changed: bool) -> None:
+        row, space = np.zeros(self._observation.width), env.observation_space
+        self._observation.fill(row, observation)
+        wrong = {
+            "step changes the action that it is given": changed,
+            "an observation is not finite": not np.isfinite(row).all(),
+            "an observation is outside the declared space": not space.contains(observation),
+            "a reward is not finite": not np.isfinite(reward),
+        }  # fmt: skip
+        for line, holds in wrong.items():
+            if holds:
+                self._note(line)
+
+    def _note(self, fault: str) -> None:
+        if fault not in self.faults:
+            self.faults.append(fault)
+
+    def _seen(self, observation: Any, reward: float, terminated: Any, truncated: Any) -> bytes:
+        row = np.zeros(self._observation.width, self._observation.dtype)
+        self._observation.fill(row, observation)
+        ends = ENDED if terminated or truncated else GOING_ON
+        return row.tobytes() + np.float64(reward).tobytes() + ends
+
+
+def measure(env: str, options: Mapping[str, Any], imports: Sequence[str]) -> Measured:
+    """Return what was found out about an environment.
+
+    Raises:
+        ValueError: it cannot be made, or raises an error; the message says which.
+    """
+    trial = _Trial(env, options, imports)
+    try:
+        with environment.quiet():
+            lives = trial.lives()
+            spans = [len(life.seen) - 1 for life in lives]
+            found = Measured(
+                lifespan=float(np.mean(spans)), ended=sum(life.ended for life in lives)
+            )
+            _repeat(trial, lives, found)
+            if found.saving != "none":
+                found.why = _go_on(trial, lives, found.fresh)
+                found.saving = "replay" if found.why else "snapshot"
+    except Exception as error:
+        raise ValueError(f"env: {env} fails in random play: {environment.line(error)}") from None
+    found.faults += trial.faults
+    return found
+
+
+def _repeat(trial: _Trial, lives: list[_Life], found: Measured) -> None:
+    """Live the lives again, in new environments and in one that has been used."""
+    used, again, new = trial.new(), [], []
+    for life in reversed(lives):
+        again.append(trial.live(used, life) == life.seen)
+        new.append(trial.live(trial.new(), life))
+    twice = [trial.live(trial.new(), life) for life in reversed(lives)]
+    if new != twice:
+        begins = all(a[0] == b[0] for a, b in zip(new, twice, strict=True))
+        found.saving = "none"
+        found.faults.append(
+            "the same seed and actions give another life: it draws from outside, or keeps something"
+            " between environments"
+            if begins
+            else "a reset with the same seed gives another beginning: it ignores its seed, or keeps"
+            " something between environments"
+        )
+    elif not all(again) or new != [life.seen for life in reversed(lives)]:
+        found.fresh = True
+        for life, seen in zip(reversed(lives), new, strict=True):
+            life.seen = seen
+        found.faults.append(
+            "a life depends on earlier lives in the same environment, since reset does not restore all;"
+            " so each life needs a new environment (fresh = true)"
+        )
+
+
+def _go_on(trial: _Trial, lives: list[_Life], fresh: bool) -> str:
+    """Save states on the way and go on from them elsewhere -> why that is not exact, or ""."""
+    elsewhere = trial.new()
+    for life in lives:
+        if len(life.seen) == 1:
+            continue
+        env = trial.new() if fresh else trial.first
+        env.reset(seed=life.seed)
+        ages = np.linspace(0, len(life.seen) - 1, SAVED, endpoint=False).astype(int).tolist()
+        for age, until in pairwise([*ages, len(life.seen) - 1]):
+            try:
+                elsewhere = _restored(trial, elsewhere, state.encode(env), fresh)
+            except state.UnknownStateError as error:
+                return str(error)
+            if trial.steps(elsewhere, life.rows[age:]) != life.seen[age + 1 :]:
+                return "a state that was saved does not go on bit for bit"
+            trial.steps(env, life.rows[age:until])
+    return ""
+
+
+def _restored(trial: _Trial, elsewhere: Env, saved: bytes, fresh: bool) -> Env:
+    """Return an environment with a saved state."""
+    env = trial.new() if fresh else elsewhere
+    env.reset(seed=0)
+    state.decode(env, saved)
+    return env

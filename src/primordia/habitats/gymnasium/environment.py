@@ -1,0 +1,123 @@
+"""Environments of Gymnasium: made by name, without time limit, and kept quiet."""
+
+import io
+import os
+import sys
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
+from functools import cache
+from importlib.metadata import PackageNotFoundError, packages_distributions, version
+from typing import Any
+
+import gymnasium
+from gymnasium import Env
+from gymnasium.envs.registration import EnvSpec
+
+from primordia import own_code
+
+PICTURES = "rgb_array"
+"""The render mode of an environment that is watched."""
+
+
+@contextmanager
+def quiet() -> Iterator[None]:
+    """Keep what an environment prints and warns of out of the terminal."""
+    with warnings.catch_warnings(), redirect_stdout(io.StringIO()), redirect_stderr(io.StringIO()):
+        warnings.simplefilter("ignore")
+        yield
+
+
+@contextmanager
+def _silent() -> Iterator[None]:
+    """Keep what libraries in C print while an environment is made out of the terminal."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    kept = [os.dup(1), os.dup(2)]
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    try:
+        for number in (1, 2):
+            os.dup2(nowhere, number)
+        yield
+    finally:
+        for number, own in zip((1, 2), kept, strict=True):
+            os.dup2(own, number)
+        for each in (*kept, nowhere):
+            os.close(each)
+
+
+def make(
+    env: str, options: Mapping[str, Any], imports: Sequence[str], watched: bool = False
+) -> Env:
+    """Return an environment without its time limit.
+
+    Args:
+        env: its registered name, or `module:NAME`, whose module registers it.
+        options: keyword arguments.
+        imports: modules that are imported before, such as those that register it.
+        watched: whether it must be able to draw pictures.
+
+    Raises:
+        ValueError: it cannot be made; the message says why, in one line.
+    """
+    module, colon, _ = env.partition(":")
+    drawing = {"render_mode": PICTURES} if watched else {}
+    try:
+        with quiet(), _silent():
+            for each in (*imports, *([module] if colon else [])):
+                own_code.load(each)
+            made = gymnasium.make(
+                env, max_episode_steps=-1, disable_env_checker=True, **options, **drawing
+            )
+    except (Exception, SystemExit) as error:  # modules and environments are anyone's
+        raise ValueError(f"env: {env} cannot be made: {line(error)}") from None
+    return made
+
+
+def spec(env: str) -> EnvSpec:
+    """Return what is registered of an environment that has been made."""
+    return gymnasium.spec(env.rpartition(":")[2])
+
+
+def line(error: BaseException) -> str:
+    """Return an error in one line."""
+    text = " ".join(str(error).split())
+    known = isinstance(error, gymnasium.error.Error) and text
+    return text if known else f"{type(error).__name__}: {text}".removesuffix(": ")
+
+
+def food_function(name: str) -> Callable[..., float]:
+    """Return the function `module:function` of (observation, reward, terminated, truncated, info).
+
+    Raises:
+        ValueError: there is none.
+    """
+    module, _, attribute = name.partition(":")
+    try:
+        found = getattr(own_code.load(module), attribute)
+    except (Exception, SystemExit) as error:  # the module is the user's
+        raise ValueError(f"food: {name} cannot be loaded: {line(error)}") from None
+    if not callable(found):
+        raise ValueError(f"food: {name} is no function")
+    return found
+
+
+def versions(env: str) -> dict[str, str]:
+    """Return the versions of the packages that an environment comes from, as far as they are known."""
+    entry = spec(env).entry_point
+    path = str(entry).split(":")[0] if isinstance(entry, str) else getattr(entry, "__module__", "")
+    engines = {"gymnasium.envs.box2d": ["box2d"], "gymnasium.envs.mujoco": ["mujoco"]}
+    own = next((each for start, each in engines.items() if path.startswith(start)), [])
+    names = {"gymnasium", "numpy", *own, *_distributions().get(path.partition(".")[0], [])}
+    found = {}
+    for name in sorted(names):
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            continue
+    return found
+
+
+@cache
+def _distributions() -> Mapping[str, list[str]]:
+    return packages_distributions()

@@ -1,0 +1,159 @@
+"""What an environment says of itself before a run: its spaces, info, time limit and pictures."""
+
+import json
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from primordia.habitats.gymnasium import environment
+from primordia.habitats.gymnasium.spaces import Acting, Observation
+
+TICKS = 200
+"""Random steps in which keys of `info` are looked for."""
+LONGEST = 64
+"""Most numbers of a value of `info` that settings can name."""
+
+
+PICTURES_S = 30.0
+"""Steps in a second of an environment that draws and does not say how many."""
+
+
+class Probe(NamedTuple):
+    """An environment's description."""
+
+    observation: Observation
+    acting: Acting
+    limit: int | None
+    """its registered time limit in steps"""
+    rate: float | None
+    """steps in a second, as it states them"""
+    pictures: bool
+    """whether it says that it can draw"""
+
+
+def probe(env: str, options: Mapping[str, Any], imports: Sequence[str]) -> Probe:
+    """Return the description of an environment.
+
+    Raises:
+        ValueError: it cannot be made, perceived or acted upon; the message says why.
+    """
+    return _probe(env, json.dumps(options, sort_keys=True), tuple(imports))
+
+
+@lru_cache(maxsize=64)
+def _probe(env: str, options: str, imports: tuple[str, ...]) -> Probe:
+    made = environment.make(env, json.loads(options), imports)
+    try:
+        observation, acting = Observation(made.observation_space), Acting(made.action_space)
+    except ValueError as error:
+        raise ValueError(f"env: {env}: {error}") from None
+    rate = made.metadata.get("render_fps")
+    draws = environment.PICTURES in (made.metadata.get("render_modes") or ())
+    found = Probe(
+        observation,
+        acting,
+        environment.spec(env).max_episode_steps,
+        float(rate)
+        if isinstance(rate, int | float) and rate > 0
+        else PICTURES_S
+        if draws
+        else None,
+        draws,
+    )
+    made.close()
+    return found
+
+
+def info_of(env: str, options: Mapping[str, Any], imports: Sequence[str]) -> dict[str, int]:
+    """Return the keys of an environment's `info` whose values are numbers, with how many they are.
+
+    They are those seen at a reset and in random play.
+    """
+    return dict(_info(env, json.dumps(options, sort_keys=True), tuple(imports)))
+
+
+@lru_cache(maxsize=64)
+def _info(env: str, options: str, imports: tuple[str, ...]) -> dict[str, int]:
+    found: dict[str, int] = {}
+    for _, info in random_play(env, json.loads(options), imports):
+        found |= _numbers(info)
+    return found
+
+
+def random_play(
+    env: str, options: Mapping[str, Any], imports: Sequence[str]
+) -> list[tuple[np.ndarray, Mapping[str, Any]]]:
+    """Return observations, as rows, and infos of TICKS random steps and resets; an error ends a life."""
+    made = environment.make(env, options, imports)
+    observation = Observation(made.observation_space)
+    seen: list[tuple[np.ndarray, Mapping[str, Any]]] = []
+
+    def note(given: Any, info: Mapping[str, Any]) -> None:
+        seen.append((np.zeros(observation.width), dict(info)))
+        observation.fill(seen[-1][0], given)
+
+    with environment.quiet():
+        made.action_space.seed(0)
+        over = True
+        for tick in range(TICKS):
+            try:
+                if over:
+                    note(*made.reset(seed=tick))
+                given, _, terminated, truncated, info = made.step(made.action_space.sample())
+                over = terminated or truncated
+                note(given, info)
+            except Exception:  # `check` reports it
+                over = True
+        made.close()
+    return seen
+
+
+def _numbers(info: Mapping[str, Any]) -> dict[str, int]:
+    sizes = {}
+    for key, value in info.items():
+        array = (
+            np.asarray(value) if isinstance(value, int | float | np.generic | np.ndarray) else None
+        )
+        if array is not None and array.dtype.kind in "biuf" and array.size <= LONGEST:
+            sizes[key] = array.size if array.ndim else 0
+    return sizes
+
+
+def screen_shape(env: str, options: Mapping[str, Any], imports: Sequence[str]) -> tuple[int, ...]:
+    """Return the shape of an environment's pictures, (height, width, 3).
+
+    Raises:
+        ValueError: it cannot draw; the message says why.
+    """
+    made = environment.make(env, options, imports, watched=True)
+    try:
+        with environment.quiet():
+            made.reset(seed=0)
+            picture: Any = made.render()
+            return np.shape(picture)
+    except Exception as error:
+        raise ValueError(f"{env} cannot draw: {environment.line(error)}") from None
+    finally:
+        made.close()
+
+
+def check_food(env: str, options: Mapping[str, Any], imports: Sequence[str], function: str) -> None:
+    """Call a function that measures food once.
+
+    Raises:
+        ValueError: there is no such function, or it gives no number.
+    """
+    food, made = environment.food_function(function), environment.make(env, options, imports)
+    with environment.quiet():
+        made.action_space.seed(0)
+        made.reset(seed=0)
+        given = made.step(made.action_space.sample())
+        made.close()
+        try:
+            amount = food(*given)
+        except Exception as error:
+            raise ValueError(f"food: {function} fails: {environment.line(error)}") from None
+    if not isinstance(amount, int | float | np.number):
+        raise ValueError(f"food: {function} gives {amount!r}, which is no number")

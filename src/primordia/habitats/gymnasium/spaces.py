@@ -1,0 +1,246 @@
+"""Spaces of Gymnasium as numbers: observations become a row, and rows of actions become actions.
+
+Dict and Tuple spaces are walked in their own order, so a row holds their parts one after the other. Of an
+observation a row holds one number for a Discrete part, and all numbers of any other.
+"""
+
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+from gymnasium import spaces
+from gymnasium.spaces import Box, MultiBinary, MultiDiscrete, Space
+
+from primordia.habitats.contract import Action, Compound, Continuous, Discrete
+
+UNBOUNDED = 1e6
+"""A bound of a box at or beyond this counts as none."""
+
+
+Block = tuple[slice, int | None]
+"""Numbers of a row that become as many senses, or one number that is one of n choices."""
+
+
+class Leaf(NamedTuple):
+    """A part of a space that holds numbers, and the keys that lead to it."""
+
+    space: Space
+    path: tuple[Any, ...] = ()
+
+    @property
+    def width(self) -> int:
+        """The numbers that it has in a row."""
+        if isinstance(self.space, spaces.Discrete):
+            return 1
+        return int(np.prod(self.space.shape or ()))
+
+    @property
+    def first(self) -> Any:
+        """The least values of whole numbers that are choices, so that a row counts from 0."""
+        return self.space.start if isinstance(self.space, spaces.Discrete | MultiDiscrete) else 0
+
+
+def leaves(space: Space, what: str, path: tuple[Any, ...] = ()) -> Iterator[Leaf]:
+    """Yield the parts of a space that hold numbers; `what` names the space in messages.
+
+    Raises:
+        ValueError: a part has no fixed number of numbers; the message says which.
+    """
+    if isinstance(space, spaces.Dict):
+        for key, inner in space.spaces.items():
+            yield from leaves(inner, what, (*path, key))
+    elif isinstance(space, spaces.Tuple):
+        for number, inner in enumerate(space.spaces):
+            yield from leaves(inner, what, (*path, number))
+    elif isinstance(space, Box | spaces.Discrete | MultiDiscrete | MultiBinary):
+        yield Leaf(space, path)
+    else:
+        place = "".join(f"[{key!r}]" for key in path)
+        raise ValueError(
+            f"its {what} space{place} is a {type(space).__name__}, which has no fixed number of values;"
+            " wrap the environment so that it is a Box, Discrete, MultiDiscrete, MultiBinary, or a"
+            " Dict or Tuple of these"
+        )
+
+
+class Observation:
+    """How observations become rows, and rows become senses."""
+
+    def __init__(self, space: Space) -> None:
+        """Raise ValueError if the space cannot be perceived."""
+        self._leaves = list(leaves(space, "observation"))
+        self._slices = _slices(self._leaves)
+        self.width = sum(leaf.width for leaf in self._leaves)
+        kinds = [leaf.space.dtype or np.dtype(np.int64) for leaf in self._leaves]
+        exact = np.result_type(np.float32, *kinds) == np.float32
+        self.dtype = "float32" if exact else "float64"
+        """dtype of a row: float32 if that holds all values exactly"""
+        if not self.width:
+            raise ValueError("its observation space is empty, so there is nothing to perceive")
+
+    def fill(self, row: np.ndarray, observation: Any) -> None:
+        """Write an observation into a row (R,)."""
+        for leaf, own in zip(self._leaves, self._slices, strict=True):
+            value = observation
+            for key in leaf.path:
+                value = value[key]
+            row[own] = (np.asarray(value) - leaf.first).reshape(-1)
+
+    def unbounded(self) -> np.ndarray:
+        """Return which numbers of a row have no bounds, bool (R,)."""
+        return ~np.isfinite(self._bounds()).all(axis=0)
+
+    def senses(self, scale: np.ndarray, squash: bool) -> "Senses":
+        """Return how rows become senses; see `Senses`."""
+        low, high = self._bounds()
+        bounded = np.isfinite(low) & np.isfinite(high) & (high > low)
+        low, high = np.where(bounded, low, -scale), np.where(bounded, high, scale)
+        blocks: list[Block] = []
+        for leaf, own in zip(self._leaves, self._slices, strict=True):
+            blocks += [(own, None)] if isinstance(leaf.space, Box) else _choices(leaf, own)
+        return Senses((low + high) / 2, (high - low) / 2, squash & ~bounded, blocks)
+
+    def _bounds(self) -> np.ndarray:
+        """Return the least and largest value of each number, infinite where there is none: (2, R)."""
+        rows = []
+        for leaf in self._leaves:
+            space = leaf.space
+            low, high = (space.low, space.high) if isinstance(space, Box) else (0, 1)
+            both = [np.broadcast_to(each, leaf.space.shape or (1,)).ravel() for each in (low, high)]
+            rows.append(np.array(both, float))
+        bounds = np.concatenate(rows, axis=1)
+        return np.where(np.abs(bounds) < UNBOUNDED, bounds, np.copysign(np.inf, bounds))
+
+
+class Senses:
+    """The senses of rows of observations.
+
+    A number x of a box from a to b becomes 2 (x - a) / (b - a) - 1. One without bounds is divided by its
+    scale s; with `squash`, x / s becomes (x / s) / (1 + |x / s|). One of n choices becomes n senses, 1
+    for the choice and 0 for the others. A binary number becomes -1 or 1.
+    """
+
+    def __init__(
+        self, middle: np.ndarray, half: np.ndarray, squashed: np.ndarray, blocks: "list[Block]"
+    ) -> None:
+        self._middle, self._half, self._squashed, self._blocks = middle, half, squashed, blocks
+        self.size = sum(n or own.stop - own.start for own, n in blocks)
+        self._plain = len(blocks) == 1 and blocks[0][1] is None
+
+    def __call__(self, rows: np.ndarray) -> np.ndarray:
+        """Return the senses (N, S), float32, of rows (N, R)."""
+        scaled = (rows - self._middle) / self._half
+        if self._squashed.any():
+            small = scaled / (1 + np.abs(scaled))
+            scaled = np.where(self._squashed, small, scaled)
+        if self._plain:
+            return scaled.astype(np.float32)
+        parts = [
+            scaled[:, own] if n is None else rows[:, own] == np.arange(n) for own, n in self._blocks
+        ]
+        return np.concatenate(parts, axis=1, dtype=np.float32)
+
+
+class Acting:
+    """How the law's actions become the environment's."""
+
+    def __init__(self, space: Space) -> None:
+        """Raise ValueError if the environment cannot be acted upon."""
+        self._leaves = list(leaves(space, "action"))
+        self._parts = [part for leaf in self._leaves for part in _motors(leaf)]
+        single = [part for part in self._parts if part.size > isinstance(part, Discrete)]
+        if not single:
+            raise ValueError("its action space has no choice, so a brain could do nothing")
+        if len(single) < len(self._parts):
+            raise ValueError("a part of its action space has a single choice; wrap the environment")
+        self.kind: Action = single[0] if len(single) == 1 else Compound(tuple(single))
+        self.columns = 1 if isinstance(self.kind, Discrete) else _columns(self.kind)
+        self._low, self._high = bounds = self._bounds()
+        self._bounded = np.isfinite(bounds).all(axis=0)
+        low, high = np.where(self._bounded, bounds, [[-1], [1]])
+        self._middle, self._half = (low + high) / 2, (high - low) / 2
+        self.build = _builder(space, self._leaves)
+        """a function of a row (K,) that returns the environment's action"""
+
+    def rows(self, action: np.ndarray) -> np.ndarray:
+        """Return rows float64 (N, K) of actions of the law, int32 (N,) or float32 (N, K).
+
+        Outputs from -1 to 1 cover a number with bounds. Choices and other numbers are as they are.
+        """
+        values = np.asarray(action, float).reshape(len(action), -1)
+        inside = np.where(self._bounded, np.clip(values, -1, 1), values)
+        return np.clip(self._middle + self._half * inside, self._low, self._high)
+
+    def _bounds(self) -> np.ndarray:
+        """Return the bounds of each column, infinite where there is none or it is a choice: (2, K)."""
+        rows = []
+        for leaf in self._leaves:
+            low, high = (
+                (leaf.space.low, leaf.space.high)
+                if isinstance(leaf.space, Box)
+                else [np.full(leaf.width, -np.inf), np.full(leaf.width, np.inf)]
+            )
+            rows.append(np.array([np.ravel(low), np.ravel(high)], float))
+        bounds = np.concatenate(rows, axis=1)
+        return np.where(np.abs(bounds) < UNBOUNDED, bounds, np.copysign(np.inf, bounds))
+
+
+def _slices(parts: list[Leaf]) -> list[slice]:
+    ends = np.cumsum([leaf.width for leaf in parts]).tolist()
+    return [slice(end - leaf.width, end) for leaf, end in zip(parts, ends, strict=True)]
+
+
+def _sizes(leaf: Leaf) -> list[int]:
+    """Return the number of choices of each number of a part that is no Box."""
+    space = leaf.space
+    if isinstance(space, spaces.Discrete):
+        return [int(space.n)]
+    return np.ravel(space.nvec).tolist() if isinstance(space, MultiDiscrete) else [2] * leaf.width
+
+
+def _choices(leaf: Leaf, own: slice) -> "list[Block]":
+    """Return the blocks of senses of a part that is no Box; a binary number is a sense itself."""
+    blocks: list[Block] = []
+    for place, size in enumerate(_sizes(leaf), own.start):
+        one = slice(place, place + 1)
+        blocks.append((one, None) if isinstance(leaf.space, MultiBinary) else (one, size))
+    return blocks
+
+
+def _motors(leaf: Leaf) -> list[Discrete | Continuous]:
+    if isinstance(leaf.space, Box):
+        return [Continuous(leaf.width)]
+    return [Discrete(size) for size in _sizes(leaf)]
+
+
+def _columns(kind: Action) -> int:
+    return kind.columns if isinstance(kind, Compound) else kind.size
+
+
+def _builder(space: Space, parts: list[Leaf]) -> Callable[[np.ndarray], Any]:
+    """Return a function that builds an action of a space from a row."""
+    own = dict(zip((leaf.path for leaf in parts), _slices(parts), strict=True))
+
+    def build(space: Space, path: tuple[Any, ...], row: np.ndarray) -> Any:
+        if isinstance(space, spaces.Dict):
+            return {key: build(each, (*path, key), row) for key, each in space.spaces.items()}
+        if isinstance(space, spaces.Tuple):
+            return tuple(build(each, (*path, n), row) for n, each in enumerate(space.spaces))
+        values = row[own[path]]
+        if isinstance(space, spaces.Discrete):
+            return space.dtype.type(int(values[0]) + int(space.start))
+        if np.issubdtype(space.dtype, np.integer):
+            values = np.rint(values)
+        first = space.start if isinstance(space, MultiDiscrete) else 0
+        return (values.reshape(space.shape) + first).astype(space.dtype)
+
+    return lambda row: build(space, (), row)
+
+
+def described(space: Space) -> str:
+    """Return a space in one line."""
+    if isinstance(space, Box):
+        return (
+            f"Box {space.shape} of {space.dtype}, from {space.low.min():g} to {space.high.max():g}"
+        )
+    return " ".join(str(space).split())

@@ -1,0 +1,126 @@
+"""A task made from an environment alone, for `primordia run gym:NAME` and `primordia new`."""
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from primordia.errors import InputError
+
+PLAIN = 5.0
+"""Observations without bounds that stay below this in random play are perceived as they are."""
+SAVING = {
+    "snapshot": "After an interruption lives go on exactly from their state",
+    "replay": "After an interruption lives are lived again from their seed and actions, exactly",
+    "none": "After an interruption lives cannot go on exactly",
+}
+LEAST, MOST = 0.001, 0.05
+"""Bounds of the probability to replicate that is chosen."""
+
+
+def values(env: str) -> dict[str, Any]:
+    """Return the settings of a task in an environment, as nested tables.
+
+    An organism replicates about once in the mean life of random actions, since the paper makes the
+    probability "loosely proportional to the average lifespan of the initial organisms".
+
+    Raises:
+        InputError: Gymnasium is not installed, or the environment cannot be used; the message says why.
+    """
+    return _measured(env)[0]
+
+
+def text(env: str) -> str:
+    """Return a commented TOML file of the task; see `values`."""
+    import tomli_w
+
+    table, facts, faults = _measured(env)
+    lines = [
+        f"Gymnasium's {env}. `primordia run FILE` lives in it; change what you like.",
+        *facts,
+        *(f"Found: {fault}." for fault in faults),
+        "fatal is a condition that ends a life, such as: terminated or obs[0] < -1.",
+        "food is an amount, such as: max(reward, 0); it needs a [metabolism] with store, drain and gain.",
+    ]
+    return "".join(f"# {line}\n" for line in lines) + "\n" + tomli_w.dumps(table)
+
+
+def report(env: str) -> tuple[list[str], list[str]]:
+    """Return what is known of an environment, and what was found to be wrong with it, a line each.
+
+    Raises:
+        InputError: see `values`.
+    """
+    _, facts, faults = _measured(env)
+    return facts, faults
+
+
+@cache
+def _measured(env: str) -> tuple[dict[str, Any], list[str], list[str]]:
+    """Return the settings of a task, what is known of its environment, and what is wrong with it."""
+    try:
+        from primordia.habitats.gymnasium.check import measure
+        from primordia.habitats.gymnasium.probe import info_of, probe
+    except ImportError:
+        from primordia.habitats.gymnasium.habitat import NOT_INSTALLED
+
+        raise InputError(NOT_INSTALLED) from None
+    try:
+        about, found = probe(env, {}, ()), measure(env, {}, ())
+        scale = _scale(env) if about.observation.unbounded().any() else []
+        keys = info_of(env, {}, ())
+    except ValueError as error:
+        raise InputError(str(error)) from None
+    name = env.rpartition(":")[2].replace("/", "-")
+    table = {
+        "task": name,
+        "about": f"Gymnasium's {env}: live until it terminates",
+        "genesis": "fill",
+        "replication": round(float(np.clip(1 / max(found.lifespan, 1), LEAST, MOST)), 4),
+        "habitat": {
+            "name": "gymnasium",
+            "env": env,
+            "fatal": "terminated",
+            "saving": found.saving,
+            **({"fresh": True} if found.fresh else {}),
+            **({"scale": scale} if scale else {}),
+        },
+        "mutation": {"probability": 0.5, "scale": 0.02, "founder_scale": 0.3},
+    }
+    return table, _facts(env, about, found, keys), found.faults
+
+
+def _scale(env: str) -> list[float]:
+    """Return a number for each of the observation's by which random play is brought within about 1.
+
+    It is 1 where there are bounds, or where observations stay small. All ones are given as none.
+    """
+    from primordia.habitats.gymnasium.probe import probe, random_play
+
+    observation = probe(env, {}, ()).observation
+    largest = np.abs([row for row, _ in random_play(env, {}, ())]).max(axis=0)
+    large = observation.unbounded() & (largest > PLAIN)
+    scale = [float(f"{each:.1g}") if own else 1.0 for each, own in zip(largest, large, strict=True)]
+    return scale if large.any() else []
+
+
+def _facts(env: str, about: Any, found: Any, keys: dict[str, int]) -> list[str]:
+    """Return what a task can build on, a line each."""
+    from primordia.habitats.gymnasium.environment import make
+    from primordia.habitats.gymnasium.spaces import described
+
+    made = make(env, {}, ())
+    one_line = [described(each) for each in (made.observation_space, made.action_space)]
+    named = ", ".join(f'info["{key}"]' for key in keys) or "none"
+    return [
+        f"Observation: {one_line[0]}; obs[0] to obs[{about.observation.width - 1}] in conditions.",
+        f"Action: {one_line[1]}.",
+        f"Numbers in info: {named}.",
+        f"Its own limit of {about.limit} steps is off; time_limit = {about.limit} keeps it."
+        if about.limit
+        else "It has no time limit of its own.",
+        SAVING[found.saving] + (f" ({found.why})." if found.why else "."),
+        f"Random actions live {found.lifespan:,.0f} ticks on average."
+        if found.ended
+        else "No life ended in random play: name a condition for fatal, or add a metabolism.",
+    ]

@@ -1,0 +1,121 @@
+"""Environments of other libraries by name: `run gym:NAME`, `new` and `check`."""
+
+import json
+import shutil
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("gymnasium")
+
+from tests import commands
+from tests.commands import complains, environment, here
+
+SHORT = ["--quiet", "--cells", "6", "--habitat.workers", "0"]
+POND = "gym:tests.ponds:Pond-v0"
+SWAMP = """
+import gymnasium
+from swamp_depth import DEPTH
+from tests.ponds import Pond
+
+
+class Swamp(Pond):
+    def __init__(self, **options):
+        super().__init__(edge=DEPTH, **options)
+
+
+gymnasium.register("Swamp-v0", entry_point=Swamp)
+"""
+
+
+def test_an_environment_is_lived_in_by_its_name_alone(tmp_path: Path) -> None:
+    run = tmp_path / "run"
+    assert here("run", POND, "--out", run, *SHORT, "--ticks", "60").returncode == 0
+    settings = tomllib.loads((run / "config.toml").read_text())
+    assert settings["task"] == "Pond-v0"
+    assert settings["habitat"]["saving"] == "snapshot"
+    assert here("resume", run, "--ticks", "120", "--quiet").returncode == 0
+    whole = tmp_path / "whole"
+    assert here("run", POND, "--out", whole, *SHORT, "--ticks", "120").returncode == 0
+    digests = [digest_of(each) for each in (run, whole)]
+    assert digests[0] == digests[1]
+    assert here("verify", run).returncode == 0
+    fork = tmp_path / "fork"
+    assert here("fork", run, "--at", "50", "--out", fork, "--quiet").returncode == 0
+    assert here("verify", fork).returncode == 0
+    assert here("replay", run, "--out", tmp_path / "life.gif").returncode == 0
+    assert (tmp_path / "life.gif").stat().st_size > 1000
+
+
+def digest_of(run: Path) -> str:
+    return json.loads(here("info", run, "--json").stdout)["digest"]
+
+
+def test_a_new_task_file_says_what_can_be_changed_and_is_lived_by(tmp_path: Path) -> None:
+    file = tmp_path / "pond.toml"
+    assert here("new", file, "--env", POND).returncode == 0
+    text = file.read_text()
+    for part in ("obs[0] to obs[1]", 'info["age"]', "time_limit = 50", "exactly from their state"):
+        assert part in text
+    assert here("run", file, "--out", tmp_path / "run", *SHORT, "--ticks", "20").returncode == 0
+    complains(here("new", file, "--env", POND), 2, f"{file} exists")
+    assert file.read_text() == text
+    unknown = tmp_path / "unknown.toml"
+    complains(here("new", unknown, "--env", "gym:CartPoll-v1"), 2, "Did you mean: `CartPole`")
+    assert not unknown.exists()
+
+
+def test_check_says_what_is_wrong_by_its_status() -> None:
+    sound, worn = here("check", POND), here("check", "tests.ponds:Worn-v0")
+    assert (sound.returncode, worn.returncode) == (0, 1)
+    assert "lives go on exactly from their state" in sound.stdout
+    assert "Found: a life depends on earlier lives" in worn.stdout
+    complains(here("check", "gym:tests.ponds:Talking-v0"), 2, "space['says'] is a Text")
+
+
+def test_an_environment_of_the_users_own_is_part_of_the_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its code is copied, asks for trust elsewhere, and is what workers execute, wherever they start."""
+    mine, other = tmp_path / "mine", tmp_path / "other"
+    mine.mkdir()
+    other.mkdir()
+    (mine / "swamp.py").write_text(SWAMP)
+    (mine / "swamp_depth.py").write_text("DEPTH = 2.0\n")
+    run = [
+        *commands.COMMAND,
+        "run",
+        "gym:swamp:Swamp-v0",
+        "--out",
+        "run",
+        "--quiet",
+        "--cells",
+        "6",
+    ]
+    done = execute([*run, "--ticks", "60", "--habitat.workers", "2"], mine)
+    assert (done.returncode, done.stderr) == (0, "")
+    held = {path.name for path in (mine / "run" / "code").rglob("*.py")}
+    assert {"swamp.py", "swamp_depth.py"} <= held
+    shutil.copytree(mine / "run", other / "run")
+    monkeypatch.setenv("XDG_STATE_HOME", str(other))
+    resume = [*commands.COMMAND, "resume", "run", "--ticks", "90", "--quiet"]
+    complains(execute(resume, other), 2, "executes code", "--trust")
+    done = execute([*resume, "--trust"], other)
+    assert (done.returncode, done.stderr) == (0, "")
+    (mine / "swamp_depth.py").write_text("DEPTH = 1.0\n")
+    complains(execute(resume, mine), 2, "swamp_depth.py has changed")
+
+
+def execute(words: list[str], folder: Path) -> "subprocess.CompletedProcess[str]":
+    assert words[0] == sys.executable
+    return subprocess.run(
+        words,
+        cwd=folder,
+        env=environment(commands.CACHE),
+        capture_output=True,
+        text=True,
+        check=False,
+    )

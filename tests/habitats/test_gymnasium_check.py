@@ -1,0 +1,64 @@
+"""The check of Gymnasium environments finds what is wrong, and how lives can go on."""
+
+import pytest
+
+pytest.importorskip("gymnasium")
+
+from primordia.habitats.gymnasium import state
+from primordia.habitats.gymnasium.check import measure
+from primordia.habitats.gymnasium.environment import make
+
+FAULTS = {
+    "Unseeded": ("none", False, "another beginning: it ignores its seed"),
+    "Hidden": ("none", False, "the same seed and actions give another life"),
+    "Worn": ("snapshot", True, "reset does not restore all"),
+    "Grasping": ("snapshot", False, "step changes the action"),
+    "Outside": ("snapshot", False, "outside the declared space"),
+    "Broken": ("snapshot", False, "an observation is not finite"),
+    "Crashing": ("snapshot", False, "step raises an error: ZeroDivisionError: the pond is empty"),
+    "Unborn": ("snapshot", False, "reset raises an error: RuntimeError: no water"),
+}
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_each_fault_is_found(name: str) -> None:
+    saving, fresh, says = FAULTS[name]
+    found = measure(f"tests.ponds:{name}-v0", {}, ())
+    assert (found.saving, found.fresh) == (saving, fresh)
+    assert any(says in fault for fault in found.faults)
+
+
+@pytest.mark.parametrize(
+    ("name", "saving"), [("Pond", "snapshot"), ("Odd", "snapshot"), ("Closed", "replay")]
+)
+def test_sound_environments_have_no_fault(name: str, saving: str) -> None:
+    found = measure(f"tests.ponds:{name}-v0", {}, ())
+    assert (found.saving, found.fresh, found.faults) == (saving, False, [])
+    assert found.ended
+
+
+@pytest.mark.parametrize("name", ["CartPole-v1", "Acrobot-v1", "Blackjack-v1", "FrozenLake-v1"])
+def test_environments_that_come_with_gymnasium_go_on_from_their_state(name: str) -> None:
+    assert measure(name, {}, ()).saving == "snapshot"
+
+
+@pytest.mark.parametrize("name", ["Hopper-v5", "Reacher-v5"])
+def test_robots_go_on_from_their_state(name: str) -> None:
+    pytest.importorskip("mujoco")
+    assert measure(name, {}, ()).saving == "snapshot"
+
+
+def test_what_has_no_plain_state_is_lived_again() -> None:
+    pytest.importorskip("Box2D")
+    assert measure("LunarLander-v3", {}, ()).saving == "replay"
+    found = measure("BipedalWalker-v3", {}, ())
+    assert (found.saving, found.fresh) == ("replay", True)
+
+
+def test_a_state_names_no_class_to_be_made() -> None:
+    """A state of another environment is refused, and what it names is not looked for."""
+    pond, cart = make("tests.ponds:Pond-v0", {}, ()), make("CartPole-v1", {}, ())
+    for env in (pond, cart):
+        env.reset(seed=1)
+    with pytest.raises(state.UnknownStateError, match="is a Pond here, not a CartPoleEnv"):
+        state.decode(pond, state.encode(cart))

@@ -1,0 +1,139 @@
+"""Lives in Gymnasium environments are exact whatever interrupts them; an error kills one organism."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from pyarrow.parquet import read_table
+
+pytest.importorskip("gymnasium")
+
+import primordia
+from primordia.errors import InputError, Trouble
+from primordia.habitats.gymnasium.habitat import Gymnasium
+from primordia.testing import check_habitat
+from tests.worlds import Lived, config
+
+POND: dict[str, Any] = {
+    "task": "pond",
+    "habitat": {
+        "name": "gymnasium",
+        "env": "tests.ponds:Pond-v0",
+        "saving": "snapshot",
+        "workers": 0,
+    },
+    "cells": 6,
+    "genesis": "fill",
+    "brain": {"hidden": 2},
+}
+
+
+def pond(name: str = "Pond", **habitat: Any) -> dict[str, Any]:
+    own = {**POND["habitat"], "env": f"tests.ponds:{name}-v0", **habitat}
+    return {**POND, "habitat": own}
+
+
+@pytest.mark.parametrize(
+    ("name", "settings"),
+    [
+        ("Pond", {"saving": "snapshot", "workers": 0}),
+        ("Pond", {"saving": "replay", "workers": 2}),
+        ("Pond", {"saving": "none", "time_limit": 7, "workers": 0}),
+        ("Odd", {"saving": "snapshot", "squash": True, "scale": (50.0,), "workers": 0}),
+        ("Closed", {"saving": "replay", "workers": 0}),
+        ("Worn", {"saving": "replay", "fresh": True, "workers": 0}),
+    ],
+)
+def test_lives_keep_the_contract(name: str, settings: dict[str, Any]) -> None:
+    check_habitat(Gymnasium(env=f"tests.ponds:{name}-v0", **settings))
+
+
+@pytest.mark.parametrize("saving", ["snapshot", "replay"])
+def test_a_run_goes_on_from_its_arrays(saving: str) -> None:
+    """An engine with another pool of simulators takes the arrays of the first, and ends alike."""
+    values = pond(saving=saving)
+    whole = Lived(config(values), 160)
+    half = Lived(config(values), 80)
+    half.advance_to(80)
+    other = Lived(config(pond(saving=saving, workers=2)), 0 + 1)
+    other.engine.load(half.engine.arrays())
+    half.advance_to(160)
+    assert half.digests() == whole.digests()
+    while other.engine.any_running(other.engine.limits({"ticks": 160})):
+        other.engine.advance(other.engine.limits({"ticks": 160}))
+    one, two = whole.engine.arrays(), other.engine.arrays()
+    for name in one:
+        if not name.startswith("bodies."):
+            np.testing.assert_array_equal(one[name], two[name], err_msg=name)
+    np.testing.assert_array_equal(one["bodies.senses"], two["bodies.senses"])
+
+
+def test_death_food_effort_and_time_limit_are_settings() -> None:
+    """Food by age: 2 + 4 + 6 + 8 until the limit at 4 ticks; effort is 1 a tick."""
+    for food in ('2 * info["age"]', "tests.ponds:food"):
+        habitat = pond(food=food, effort="1", time_limit=4, fatal="obs[0] > 100")
+        hunger = {"store": 9.0, "drain": 0.0, "gain": 1.0, "effort_cost": 1.0, "cap": 100.0}
+        lived = Lived(config(habitat, metabolism=hunger, replication=0.0), 4)
+        deaths = lived.table("deaths")
+        assert set(deaths["cause"]) == {"time-limit"}
+        np.testing.assert_array_equal(deaths["food"], 20.0)
+        np.testing.assert_array_equal(deaths["energy"], 9 + 20 - 4)
+
+
+def test_an_error_kills_its_organism_and_leaves_its_last_line(tmp_path: Path, capfd: Any) -> None:
+    settings = {"cells": 6, "habitat": {"workers": 2}, "stop": {"ticks": 150}}
+    run = primordia.run("gym:tests.ponds:Crashing-v0", tmp_path / "run", settings)
+    lines = (tmp_path / "run" / "faults.txt").read_text().splitlines()
+    deaths = read_table(run.path / "deaths").to_pandas()
+    failed = deaths[deaths.cause == "fault"]
+    assert len(failed) == len(lines) > 3
+    for line, (_, row) in zip(lines, failed.iterrows(), strict=True):
+        who = f"world 0, organism {row['id']}, tick {row['tick']}"
+        assert line == f"{who}: ZeroDivisionError: the pond is empty"
+    assert "splash" not in "".join(capfd.readouterr())
+
+
+def test_a_life_that_cannot_begin_is_a_fault() -> None:
+    lived = Lived(config(pond("Unborn")), 40)
+    births, deaths = lived.table("births"), lived.table("deaths")
+    born = dict(zip(births["id"], births["tick"], strict=True))
+    failed = [k for k, cause in enumerate(deaths["cause"]) if cause == "fault"]
+    assert failed
+    assert all(deaths["tick"][k] == born[deaths["id"][k]] + 1 for k in failed)
+
+
+def test_too_many_errors_stop_the_run() -> None:
+    says = r"\d organisms died of errors in tests.ponds:Crashing-v0, the last of: ZeroDivisionError"
+    with pytest.raises(Trouble, match=says):
+        Lived(config(pond("Crashing", faults=2)), 200)
+
+
+def test_a_life_that_does_not_repeat_is_noticed_when_it_is_needed() -> None:
+    lived = Lived(config(pond("Hidden", saving="replay")), 20)
+    arrays = lived.engine.arrays()
+    with pytest.raises(Trouble, match=r"did not repeat its life of \d+ ticks"):
+        Lived(config(pond("Hidden", saving="replay")), 1).engine.load(arrays)
+
+
+@pytest.mark.parametrize(
+    ("habitat", "says"),
+    [
+        (
+            {"env": "CartPoll-v1"},
+            "cannot be made: Environment `CartPoll` doesn't exist. Did you mean",
+        ),
+        ({"env": "no_such_module:Env-v0"}, "No module named 'no_such_module'"),
+        ({"env": "tests.ponds:Talking-v0"}, r"observation space\['says'\] is a Text"),
+        ({"env": "tests.ponds:Still-v0"}, "its action space has no choice"),
+        ({"fatal": "obs[2] > 1"}, r"obs goes from obs\[0\] to obs\[1\]"),
+        ({"food": 'info["wage"]'}, "info has the parts age"),
+        ({"food": "tests.ponds:drink"}, "food: tests.ponds:drink cannot be loaded"),
+        ({"scale": [1.0, 2.0, 3.0]}, "scale: give 1 number or 2"),
+        ({"options": {"depth": 3}}, "unexpected keyword argument 'depth'"),
+    ],
+)
+def test_wrong_settings_are_one_line(habitat: dict[str, Any], says: str) -> None:
+    with pytest.raises(InputError, match=says) as caught:
+        config(pond(**habitat))
+    assert "\n" not in str(caught.value)
