@@ -1,0 +1,155 @@
+"""Which Gymnasium environments can be lived in, how fast, how exactly, and does anything evolve?
+
+    python experiments/environments.py [ENV ...]
+
+Nothing has to be run before. Of each environment, by default all classic-control, toy-text, Box2D and
+MuJoCo ones of their newest version, a task file is written (`primordia new`) and not edited. A run of it
+is killed and resumed, and must end as one that was not killed; the life of its champion is filmed. Then
+WORLDS worlds live with heredity, and as many without. The table goes to `results/` of the folder
+`environments` beside this file, as CSV and Markdown; rows of other environments stay.
+"""
+
+import json
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+import gymnasium
+import numpy as np
+import pandas as pd
+from games import write_rows
+
+from primordia.api import Run
+from primordia.comparison.pace import pace
+from primordia.comparison.resample import interval, resamples
+from primordia.experiments.results import table
+from primordia.habitats.gymnasium.check import measure
+
+RESULTS = Path(__file__).parent / "environments" / "results" / "environments"
+WORLDS, CELLS, TICKS = 10, 16, 2_000
+SMALL = ["--cells", "8", "--ticks", "600", "--quiet"]
+PATIENCE = 600
+"""Seconds that one command may take; an environment that needs more is reported as too slow."""
+FAMILIES = ("classic_control", "toy_text", "box2d", "mujoco")
+COLUMNS = {
+    "env": "environment",
+    "saving": "goes on by",
+    "resumed": "killed and resumed",
+    "filmed": "filmed",
+    "rate": "ticks a second",
+    "late": "late, ticks for each death",
+    "without": "without heredity",
+    "ratio": "ratio (95 %)",
+    "note": "note",
+}
+
+
+def environments() -> list[str]:
+    """Return the environments of FAMILIES, each in its newest version."""
+    newest: dict[str, Any] = {}
+    for spec in gymnasium.registry.values():
+        family = str(spec.entry_point).removeprefix("gymnasium.envs.").partition(".")[0]
+        of_older = newest.get(spec.name)
+        if family in FAMILIES and (of_older is None or spec.version > of_older.version):
+            newest[spec.name] = spec
+    return [spec.id for spec in newest.values()]
+
+
+def report(env: str, folder: Path) -> dict[str, Any]:
+    """Try an environment -> its row of the table."""
+    row: dict[str, Any] = dict.fromkeys(COLUMNS, "") | {"env": env}
+    file = folder / "task.toml"
+    done = command("new", file, "--env", f"gym:{env}")
+    if done.returncode:
+        return row | {"note": done.stderr.strip().removeprefix("primordia: ")}
+    found = measure(env, {}, ())
+    row |= {"saving": found.saving, "note": "; ".join(found.faults)}
+    try:
+        row["resumed"] = "equal" if same_after_a_kill(file, folder) else "NOT EQUAL"
+        filmed = command("replay", folder / "whole", "--out", folder / "life.mp4", "--to", 100)
+        row["filmed"] = "yes" if filmed.returncode == 0 else filmed.stderr.strip()
+        if not found.ended:
+            return row | {"note": "no life ends in random play, so its task needs another `fatal`"}
+        return row | evolved(file, folder)
+    except subprocess.TimeoutExpired:
+        return row | {"note": f"a command takes more than {PATIENCE} s"}
+
+
+def command(*words: object) -> "subprocess.CompletedProcess[str]":
+    """Run a command of primordia."""
+    line = [sys.executable, "-m", "primordia", *map(str, words)]
+    return subprocess.run(line, capture_output=True, text=True, timeout=PATIENCE, check=False)
+
+
+def same_after_a_kill(file: Path, folder: Path) -> bool:
+    """Return whether a run that is killed and resumed ends with the digest of one that is not."""
+    command("run", file, "--out", folder / "whole", *SMALL)
+    killed = folder / "killed"
+    words = ["run", file, "--out", killed, "--checkpoint-every", "0.1", *SMALL]
+    process = subprocess.Popen([sys.executable, "-m", "primordia", *map(str, words)])
+    while process.poll() is None and not list(killed.glob("checkpoints/*/manifest.json")):
+        time.sleep(0.01)
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    command("resume", killed, "--ticks", "600", "--quiet")
+    digests = [
+        json.loads(command("info", each, "--json").stdout)["digest"]
+        for each in (folder / "whole", killed)
+    ]
+    return digests[0] == digests[1]
+
+
+def evolved(file: Path, folder: Path) -> dict[str, Any]:
+    """Return the rate of a run, and late life with heredity beside that without, over worlds."""
+    late, rates = {}, []
+    for arm in ("parent", "founder"):
+        words = ["--seed", 1000, "--seeds", WORLDS, "--cells", CELLS, "--ticks", TICKS, "--quiet"]
+        run = folder / arm
+        command("run", file, "--out", run, "--inheritance", arm, *words, "--until", "none")
+        info = json.loads(command("info", run, "--json").stdout)
+        lived = sum(world["organism_ticks"] for world in info["worlds"])
+        rates.append(lived / info["wall_s"])
+        lives = Run(run).opened().lives
+        worlds = [lives.of_world(number) for number in range(WORLDS)]
+        late[arm] = pace(worlds, 0, TICKS).late.value
+    one, other = late["parent"], late["founder"]
+    ratios = np.concatenate(
+        [
+            np.median(one[rows], axis=-1) / np.median(other[rows], axis=-1)
+            for rows in resamples(WORLDS)
+        ]
+    )
+    low, high = interval(ratios)
+    return {
+        "rate": f"{np.mean(rates):,.0f}",
+        "late": f"{np.median(one):,.0f}",
+        "without": f"{np.median(other):,.0f}",
+        "ratio": f"{np.median(one) / np.median(other):.2f} ({low:.2f} to {high:.2f})",
+    }
+
+
+def main() -> None:
+    """Try the environments that the command line names, or all, and write the table."""
+    rows: dict[str, dict[str, Any]] = {}
+    if RESULTS.with_suffix(".csv").exists():
+        before = pd.read_csv(RESULTS.with_suffix(".csv"), keep_default_na=False, dtype=str)
+        rows = {row["env"]: row for row in before.to_dict("records")}
+    for env in sys.argv[1:] or environments():
+        with tempfile.TemporaryDirectory() as folder:
+            rows[env] = report(env, Path(folder))
+        lines = [[row[name] for name in COLUMNS] for row in rows.values()]
+        note = (
+            f"{WORLDS} worlds of {CELLS} cells, {TICKS:,} ticks each, seeds from 1,000 on. Medians over worlds"
+            " of the last quarter; the ratio of medians with its interval over resampled worlds."
+        )
+        text = f"{table(list(COLUMNS.values()), lines)}\n\n{note}"
+        write_rows(RESULTS, list(rows.values()), text)
+        print(rows[env], flush=True)
+
+
+if __name__ == "__main__":
+    main()
