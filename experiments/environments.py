@@ -143,8 +143,8 @@ def main() -> None:
             rows[env] = report(env, Path(folder))
         lines = [[row[name] for name in COLUMNS] for row in rows.values()]
         note = (
-            f"{WORLDS} worlds of {CELLS} cells, {TICKS:,} ticks each, seeds from 1,000 on. Medians over worlds"
-            " of the last quarter; the ratio of medians with its interval over resampled worlds."
+            f"{WORLDS} worlds of {CELLS} cells, {TICKS:,} ticks each, seeds from 1,000 on. Medians over"
+            " worlds of the last quarter; the ratio of medians with its interval over resampled worlds."
         )
         text = f"{table(list(COLUMNS.values()), lines)}\n\n{note}"
         write_rows(RESULTS, list(rows.values()), text)
