@@ -109,13 +109,17 @@ def against(tasks: Sequence[str]) -> Against:
 
 
 def least_of_best(mutation: str, tasks: Sequence[str]) -> float:
-    """Return the share a tenth longer, of the best scale's, in the task where that is least."""
+    """Return the share a tenth longer, of the best scale's, in the task where that is least.
+
+    Tasks in which no scale makes any mutant a tenth longer are left out.
+    """
 
     def share(task: str, row: str) -> float:
         return float(cell(f"mutation/{task}", row, "a tenth longer").median)
 
     scales = [f"scale {each}" for each in ("0.001", "0.003", "0.01", "0.03", "0.1", "0.3")]
-    return min(share(task, mutation) / max(share(task, s) for s in scales) for task in tasks)
+    best = {task: max(share(task, each) for each in scales) for task in tasks}
+    return min(share(task, mutation) / most for task, most in best.items() if most > 0.003)
 
 
 def played(name: str, who: str, way: str, outcome: str = "lifespan") -> Cell:
