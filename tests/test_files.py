@@ -17,6 +17,11 @@ def test_only_regular_files_up_to_a_size_are_read(
     pipe, file = tmp_path / "pipe", tmp_path / "file"
     os.mkfifo(pipe)
     file.write_bytes(b"123")
+    huge = tmp_path / "huge"
+    with huge.open("wb") as out:
+        out.truncate(2**26 + 1)
+    with pytest.raises(OSError, match="too large"):
+        files.read(huge)
     monkeypatch.setattr(files, "READABLE", 3)
     assert files.read(file) == b"123"
     monkeypatch.setattr(files, "READABLE", 2)
@@ -24,6 +29,13 @@ def test_only_regular_files_up_to_a_size_are_read(
         with pytest.raises(OSError, match=r"\w") as raised:
             files.read(path)
         assert raised.value.errno == code
+
+
+def test_a_file_that_cannot_be_written_is_one_line(tmp_path: Path) -> None:
+    path = tmp_path / "no" / "file"
+    with pytest.raises(Trouble) as raised:
+        files.write_bytes(path, b"")
+    assert str(raised.value) == f"{path} cannot be written: No such file or directory"
 
 
 def test_a_link_is_removed_without_what_it_leads_to(tmp_path: Path) -> None:

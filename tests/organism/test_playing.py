@@ -11,9 +11,15 @@ from primordia.habitats.on_host import OnHost
 from primordia.organism.games import Games, Players, lifespans_in_games, play, stretches
 from primordia.organism.players import players_of
 from primordia.organism.playing import in_jax
-from primordia.organism.playing.seats import Frozen, Manner
+from primordia.organism.playing.seats import ODD, Frozen, Manner
 from primordia.runs import loop
 from tests.worlds import MILL, config
+
+
+def test_marks_of_senses_lose_no_bit() -> None:
+    """A product with an odd number can be undone; with an even one the highest bit would be lost."""
+    assert (ODD % 2 == 1).all()
+
 
 BASES: dict[str, str | dict[str, Any]] = {"poles": "CartPole-survival", "mill": MILL}
 

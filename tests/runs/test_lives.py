@@ -65,6 +65,7 @@ def test_every_birth_with_its_death(worlds: list[list[bool]], cuts: int) -> None
         assert lives.birth_cause[row] == min(number, 2)
         assert (lives.born[row], lives.seen[row]) == (10 * number, max(10 * number, 40))
         assert lives.row(number, world) == row
+        assert lives.rank[row] == sum(w == world for w, _ in expected[:row])
 
 
 @given(WORLDS, st.integers(0, 2**30))
