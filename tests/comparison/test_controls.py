@@ -130,3 +130,9 @@ def test_a_fork_has_no_champion_before_a_birth(poles: primordia.Run, tmp_path: P
     fork = poles.fork(last, tmp_path / "fork", stop={"ticks": last})
     with pytest.raises(InputError, match="nothing has been born since the fork"):
         fork.standings()
+
+
+def test_quartiles_are_those_over_worlds(monkeypatch: pytest.MonkeyPatch) -> None:
+    values = {world: float(value) for world, value in enumerate((7, 1, 100, 3, 4))}
+    monkeypatch.setattr(controls.Standing, "by_world", lambda self, outcome: values)
+    assert controls.Standing("some", 1, []).over_worlds("lifespan") == (4.0, 3.0, 7.0)
