@@ -2,7 +2,7 @@
 
     python benchmarks/bench.py [--json FILE] [--only SECTION,...]
 
-Sections: paper, speed, plain, live, cells, operators, atari, robots, jobs, campaign, cores,
+Sections: paper, speed, plain, live, cells, operators, atari, robots, gymnasium, jobs, campaign, cores,
 bookkeeping, shell, records.
 
 Compare speeds within one run only. Machines differ, and one machine differs from hour to hour.
@@ -34,6 +34,7 @@ SECTIONS = {
     "operators": operators.against_fixed_mutation,
     "atari": hosted.against_the_emulator,
     "robots": hosted.against_the_batch,
+    "gymnasium": hosted.against_gymnasium,
     "jobs": jobs.against_bare_simulators,
     "campaign": campaigns.jobs_against_runs,
     "cores": campaigns.all_cores_against_one,

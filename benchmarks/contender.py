@@ -14,8 +14,8 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from contenders import arcade, robots
-from contenders.loop import NO_DEATH, ROBOTS, TASKS, Lacking, Loop
+from contenders import arcade, environments, robots
+from contenders.loop import ENVIRONMENTS, NO_DEATH, ROBOTS, TASKS, Lacking, Loop
 
 
 def _ours(game: str, cells: int, worlds: int) -> Any:
@@ -25,6 +25,8 @@ def _ours(game: str, cells: int, worlds: int) -> Any:
 
 
 def _gymnasium(mode: str, game: str, cells: int) -> Loop:
+    if game in ENVIRONMENTS:
+        return environments.Gymnasium(mode, game, cells)
     return (robots if game in ROBOTS else arcade).Gymnasium(mode, game, cells)
 
 

@@ -10,7 +10,7 @@ import time
 from contextlib import ExitStack
 from typing import Any
 
-from contenders.loop import ROBOTS, TASKS
+from contenders.loop import ENVIRONMENTS, ROBOTS, TASKS
 from primordia.config import load
 from processes import Contender
 from worlds import median
@@ -22,10 +22,11 @@ SIZES = {
 }
 """The ways that are compared, by the number of cells; the first is the upper bound."""
 ROBOT_SIZES = {32: ("batch", "ours", "async", "sync", "envpool"), 256: ("batch", "ours")}
+ENVIRONMENT_WAYS = "sync", "ours", "async"
 ROUNDS = 5
 STARTS = 3
 SECONDS = 1.0
-FULL = 0.95
+FULL = 0.9
 """the least share of occupied cells for which a figure counts"""
 
 
@@ -39,6 +40,11 @@ def against_the_emulator() -> dict:
 def against_the_batch() -> list[dict]:
     """Measure the rates of all ways for each robot and size, in turn."""
     return [_measured(robot, n, ways) for robot in ROBOTS for n, ways in ROBOT_SIZES.items()]
+
+
+def against_gymnasium() -> list[dict]:
+    """Measure the rates of all ways for Gymnasium's environments of pure Python, in turn."""
+    return [_measured(env, 128, ENVIRONMENT_WAYS) for env in ENVIRONMENTS]
 
 
 def _start_up(game: str) -> float:
@@ -99,7 +105,7 @@ def _compared(played: dict[str, list[list[dict]]]) -> dict:
     others = [way for way in rates if way not in (bare, "ours")]
     figures: dict[str, Any] = {
         "frames per s": {way: median(values) for way, values in rates.items()},
-        "of bare": {way: ratio(way, bare) for way in rates if way != bare},
+        f"of {bare}": {way: ratio(way, bare) for way in rates if way != bare},
     }
     if others:
         figures["ours over"] = {way: ratio("ours", way) for way in others}

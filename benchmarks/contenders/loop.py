@@ -12,12 +12,17 @@ TASKS = {
     "HalfCheetah-v5": "HalfCheetah-forager",
     "Walker2d-v5": "Walker-survival-forager",
     "Reacher-v5": "Reacher-forager",
+    "CartPole-v1": "gym:CartPole-v1",
+    "Acrobot-v1": "gym:Acrobot-v1",
 }
-"""the task that is measured, by game or by Gymnasium's name of a robot"""
+"""the task that is measured, by game or by Gymnasium's name of a robot or another environment"""
 ROBOTS = [game for game in TASKS if game.endswith("-v5")]
+ENVIRONMENTS = [game for game, task in TASKS.items() if task.startswith("gym:")]
 NO_DEATH: dict[str, dict] = {
     game: {"metabolism": "none", "habitat": {"fatal": ""}}
     if game in ROBOTS
+    else {}
+    if game in ENVIRONMENTS
     else {"habitat": {"fatal": "game_over"}}
     for game in TASKS
 }

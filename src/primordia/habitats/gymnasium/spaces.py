@@ -17,6 +17,7 @@ UNBOUNDED = 1e6
 """A bound of a box at or beyond this counts as none."""
 
 
+Builder = Callable[[np.ndarray], Any]
 Block = tuple[slice, int | None]
 """Numbers of a row that become as many senses, or one number that is one of n choices."""
 
@@ -70,6 +71,7 @@ class Observation:
         """Raise ValueError if the space cannot be perceived."""
         self._leaves = list(leaves(space, "observation"))
         self._slices = _slices(self._leaves)
+        self._is_vector = isinstance(space, Box) and len(space.shape) == 1
         self.width = sum(leaf.width for leaf in self._leaves)
         kinds = [leaf.space.dtype or np.dtype(np.int64) for leaf in self._leaves]
         exact = np.result_type(np.float32, *kinds) == np.float32
@@ -80,6 +82,9 @@ class Observation:
 
     def fill(self, row: np.ndarray, observation: Any) -> None:
         """Write an observation into a row (R,)."""
+        if self._is_vector:
+            row[:] = observation
+            return
         for leaf, own in zip(self._leaves, self._slices, strict=True):
             value = observation
             for key in leaf.path:
@@ -159,7 +164,8 @@ class Acting:
         self._bounded = np.isfinite(bounds).all(axis=0)
         low, high = np.where(self._bounded, bounds, [[-1], [1]])
         self._middle, self._half = (low + high) / 2, (high - low) / 2
-        self.build = _builder(space, self._leaves)
+        own = zip((leaf.path for leaf in self._leaves), _slices(self._leaves), strict=True)
+        self.build = _builder(space, dict(own))
         """a function of a row (K,) that returns the environment's action"""
 
     def rows(self, action: np.ndarray) -> np.ndarray:
@@ -217,24 +223,24 @@ def _columns(kind: Action) -> int:
     return kind.columns if isinstance(kind, Compound) else kind.size
 
 
-def _builder(space: Space, parts: list[Leaf]) -> Callable[[np.ndarray], Any]:
-    """Return a function that builds an action of a space from a row."""
-    own = dict(zip((leaf.path for leaf in parts), _slices(parts), strict=True))
-
-    def build(space: Space, path: tuple[Any, ...], row: np.ndarray) -> Any:
-        if isinstance(space, spaces.Dict):
-            return {key: build(each, (*path, key), row) for key, each in space.spaces.items()}
-        if isinstance(space, spaces.Tuple):
-            return tuple(build(each, (*path, n), row) for n, each in enumerate(space.spaces))
-        values = row[own[path]]
-        if isinstance(space, spaces.Discrete):
-            return space.dtype.type(int(values[0]) + int(space.start))
-        if np.issubdtype(space.dtype, np.integer):
-            values = np.rint(values)
-        first = space.start if isinstance(space, MultiDiscrete) else 0
-        return (values.reshape(space.shape) + first).astype(space.dtype)
-
-    return lambda row: build(space, (), row)
+def _builder(
+    space: Space, own: dict[tuple[Any, ...], slice], path: tuple[Any, ...] = ()
+) -> Builder:
+    """Return a function that builds an action of a space from a row; `own` are the parts' columns."""
+    if isinstance(space, spaces.Dict):
+        named = {key: _builder(each, own, (*path, key)) for key, each in space.spaces.items()}
+        return lambda row: {key: build(row) for key, build in named.items()}
+    if isinstance(space, spaces.Tuple):
+        listed = [_builder(each, own, (*path, n)) for n, each in enumerate(space.spaces)]
+        return lambda row: tuple(build(row) for build in listed)
+    columns, shape, dtype = own[path], space.shape, space.dtype
+    if isinstance(space, spaces.Discrete):
+        column, start = columns.start, int(space.start)
+        return lambda row: int(row[column]) + start
+    first = space.start if isinstance(space, MultiDiscrete) else 0
+    if np.issubdtype(dtype, np.integer):
+        return lambda row: (np.rint(row[columns]).reshape(shape) + first).astype(dtype)
+    return lambda row: row[columns].reshape(shape).astype(dtype)
 
 
 def described(space: Space) -> str:
