@@ -26,7 +26,7 @@ LAYERS = [
     {"comparison"},
     {"figures", "live", "tracking"},
     {"experiments"},
-    {"api", "testing"},
+    {"api", "envs", "testing"},
     {"cli"},
     {"__main__"},
 ]

@@ -55,6 +55,8 @@ class Continuous:
     """An action is a vector: float32 (N, size). The habitat keeps it within bounds."""
 
     size: int
+    bounds: tuple[tuple[float, ...], tuple[float, ...]] | None = None
+    """least and largest numbers, `size` each, beyond which a change makes no difference; None: unknown"""
 
     @property
     def parts(self) -> "tuple[Continuous]":

@@ -122,7 +122,8 @@ class MuJoCo(HostHabitat, Settings):
     @property
     def action(self) -> Continuous:
         """Controls of the model."""
-        return Continuous(self._model.nu)
+        low, high = (tuple(each.tolist()) for each in self._range)
+        return Continuous(self._model.nu, (low, high))
 
     @property
     def words(self) -> int:

@@ -1,0 +1,124 @@
+"""Bodies of a task without brains: whoever acts in them lives and dies by the law's own rules."""
+
+from typing import Any, NamedTuple
+
+import jax.numpy as jnp
+import numpy as np
+from gymnasium import Space, spaces
+
+from primordia import device
+from primordia.compiled import shared
+from primordia.config import Config
+from primordia.habitats.contract import Compound, Continuous, Discrete, JaxHabitat
+from primordia.habitats.on_host import OnHost
+from primordia.law import life
+from primordia.law.genesis import body_words
+from primordia.law.life import Vitals
+from primordia.law.metabolism import ONE, Rates, to_fixed_point
+from primordia.law.world import Cause
+from primordia.random.keys import Purpose, stream
+from primordia.random.wide import wide
+
+
+class Births(NamedTuple):
+    """What bodies of K organisms follow from, as in a run: int (K,) each."""
+
+    seeds: np.ndarray
+    """seed of the world"""
+    ticks: np.ndarray
+    """tick of the birth"""
+    cells: np.ndarray
+    """cell of the birth, within the world"""
+
+
+class Bodies:
+    """N bodies and their energy."""
+
+    def __init__(self, config: Config, count: int, watched: bool = False) -> None:
+        device.prepare()
+        habitat = config.build_habitat()
+        self.law = config.build_law(habitat)
+        self.habitat = OnHost(habitat) if isinstance(habitat, JaxHabitat) else habitat
+        self.habitat.open(count, watched)
+        rates = dict(self.law.beginning)
+        self._rates = Rates.of({name: np.full(count, rates[name], np.float32) for name in rates})
+        self._judge = shared(life.judge, self.law)
+        self._sound = jnp.zeros(count, bool)
+        self._store = np.asarray(to_fixed_point(jnp.asarray(self._rates.store)))
+        self._vitals = _vitals(self._store, np.zeros(count, np.int32))
+        self.senses = np.zeros((count, habitat.senses_size), np.float32)
+        """float32 (N, S)"""
+
+    @property
+    def energy(self) -> np.ndarray | None:
+        """Energy, float64 (N,); None if the task has no metabolism."""
+        return None if self.law.metabolism is None else np.asarray(self._vitals.energy) / ONE
+
+    @property
+    def food(self) -> np.ndarray:
+        """Food gathered in the present lives, float64 (N,)."""
+        return np.asarray(self._vitals.eaten) / ONE
+
+    def begin(self, cells: np.ndarray, births: Births) -> None:
+        """Begin lives in cells (K,)."""
+        if not len(cells):
+            return
+        keys = stream(wide(births.seeds.astype(np.uint64)), Purpose.BODY, wide(births.ticks))
+        words = body_words(keys, jnp.asarray(births.cells, jnp.int32), self.habitat.words)
+        self.senses[cells] = self.habitat.reset(cells, np.asarray(words))
+        energy, eaten = (np.array(each) for each in self._vitals)
+        energy[cells], eaten[cells] = self._store[cells], 0
+        self._vitals = _vitals(energy, eaten)
+
+    def step(self, action: np.ndarray, alive: np.ndarray) -> np.ndarray:
+        """Live a tick in the cells alive, bool (N,) -> cause of death or -1, int32 (N,)."""
+        before = [np.asarray(each) for each in self._vitals]
+        senses, outcome = self.habitat.step(action, alive)
+        vitals, cause = self._judge(self._vitals, self._sound, senses, outcome, self._rates)
+        self.senses = np.where(alive[:, None], senses, self.senses).astype(np.float32)
+        kept = (np.where(alive, new, old) for new, old in zip(vitals, before, strict=True))
+        self._vitals = _vitals(*kept)
+        return np.where(alive, np.asarray(cause), -1)
+
+    def close(self) -> None:
+        """Release the habitat."""
+        self.habitat.close()
+
+
+def _vitals(energy: Any, eaten: Any) -> Vitals:
+    """Return energy and food, NumPy arrays, as the law takes them."""
+    return Vitals(energy, eaten)
+
+
+def label(cause: int) -> str:
+    """Return the word for a cause of death."""
+    return Cause(cause).label
+
+
+def observation_space(bodies: Bodies) -> spaces.Box:
+    """Return the space of one body's senses."""
+    return spaces.Box(-np.inf, np.inf, (bodies.habitat.senses_size,), np.float32)
+
+
+def action_space(bodies: Bodies) -> Space:
+    """Return the space of one body's actions."""
+    action = bodies.habitat.action
+    if isinstance(action, Compound):
+        return spaces.Tuple(map(_part_space, action.parts))
+    return _part_space(action)
+
+
+def _part_space(part: Discrete | Continuous) -> Space:
+    if isinstance(part, Discrete):
+        return spaces.Discrete(part.size)
+    low, high = part.bounds or ((-np.inf,) * part.size, (np.inf,) * part.size)
+    return spaces.Box(np.array(low, np.float32), np.array(high, np.float32))
+
+
+def as_row(action: Any, kind: Any) -> np.ndarray:
+    """Return a body's action as the habitat takes it: int32 () or float32 (K,)."""
+    if isinstance(kind, Discrete):
+        return np.array(action, np.int32)
+    if isinstance(kind, Compound):
+        return np.concatenate([np.ravel(part) for part in action]).astype(np.float32)
+    return np.asarray(action, np.float32)

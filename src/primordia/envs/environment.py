@@ -1,0 +1,94 @@
+"""One body of a task as a Gymnasium environment."""
+
+from typing import Any
+
+import gymnasium
+import jax
+import numpy as np
+
+from primordia import config
+from primordia.envs.bodies import Births, Bodies, action_space, as_row, label, observation_space
+from primordia.habitats.contract import Ability
+
+FIRST = np.array([0])
+
+
+class LifeEnv(gymnasium.Env):
+    """A life in a task of ours: `terminated` is death, and there is no time limit.
+
+    Observations are what an organism would perceive, float32 (S,). `info` has `food`, the food gathered
+    so far; `energy`, if the task has a metabolism; and `cause` in the tick of death. All are the numbers
+    that an organism with these actions would have in a run.
+    """
+
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 30}  # noqa: RUF012
+
+    def __init__(
+        self,
+        task: str,
+        settings: dict[str, Any] | None = None,
+        reward: float = 0.0,
+        render_mode: str | None = None,
+    ) -> None:
+        """Make a body.
+
+        Args:
+            task: a task of ours, or a file, as for `primordia run`.
+            settings: settings that differ, as nested tables.
+            reward: the reward of each tick that is lived; death has none.
+            render_mode: `rgb_array`, or None.
+
+        Raises:
+            InputError: there is no such task, or a setting is wrong.
+        """
+        self.render_mode = render_mode
+        self._reward, self._episode = reward, 0
+        self._bodies = Bodies(config.load(task, settings), 1, watched=render_mode is not None)
+        self.observation_space = observation_space(self._bodies)
+        self.action_space = action_space(self._bodies)
+        self._alive = np.zeros(1, bool)
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[np.ndarray, dict[str, Any]]:
+        """Begin a life, which follows from the seed and the number of lives since it was given.
+
+        `options` may have `tick` and `cell`. With these and the seed of a run's world, the body is that
+        of the organism that was born there.
+        """
+        super().reset(seed=seed)
+        self._episode = 0 if seed is not None else self._episode + 1
+        born = options or {}
+        place = born.get("tick", self._episode), born.get("cell", 0)
+        seeds = np.array([(self.np_random_seed or 0) % 2**64], np.uint64)
+        self._bodies.begin(FIRST, Births(seeds, *(np.array([each]) for each in place)))
+        self._alive[:] = True
+        self._action = np.zeros(1)
+        return self._bodies.senses[0].copy(), self._info(-1)
+
+    def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
+        """Live one tick."""
+        self._action = as_row(action, self._bodies.habitat.action)[None]
+        cause = int(self._bodies.step(self._action, self._alive)[0])
+        died = cause >= 0
+        senses = self._bodies.senses[0].copy()
+        return senses, 0.0 if died else self._reward, died, False, self._info(cause)
+
+    def _info(self, cause: int) -> dict[str, Any]:
+        bodies = self._bodies
+        info: dict[str, Any] = {"food": float(bodies.food[0])}
+        if bodies.energy is not None:
+            info["energy"] = float(bodies.energy[0])
+        return info | ({"cause": label(cause)} if cause >= 0 else {})
+
+    def render(self) -> np.ndarray | None:
+        """Return a picture of the body, uint8 (height, width, 3), if there are pictures."""
+        habitat = self._bodies.habitat
+        if self.render_mode is None or not habitat.can(Ability.PICTURE):
+            return None
+        body = jax.tree.map(lambda leaf: np.asarray(leaf)[0], habitat.seen())
+        return np.asarray(habitat.picture(body, self._action[0]).convert("RGB"))
+
+    def close(self) -> None:
+        """Release the body."""
+        self._bodies.close()

@@ -1,0 +1,123 @@
+"""N bodies of a task as a Gymnasium vector environment: one call steps them all."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from gymnasium.vector import AutoresetMode, VectorEnv
+from gymnasium.vector.utils import batch_space, iterate
+
+from primordia import config
+from primordia.envs.bodies import Births, Bodies, action_space, as_row, label, observation_space
+from primordia.habitats.contract import Compound
+
+
+class LifeVectorEnv(VectorEnv):
+    """N lives in a task of ours, with the same numbers as N environments `LifeEnv`.
+
+    Life number n of body i follows from the seed that the body was given and n. See `LifeEnv` for
+    observations and `info`.
+    """
+
+    def __init__(
+        self,
+        task: str,
+        num_envs: int = 1,
+        settings: dict[str, Any] | None = None,
+        reward: float = 0.0,
+        autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
+        render_mode: None = None,
+    ) -> None:
+        """Make the bodies.
+
+        Args:
+            task: a task of ours, or a file, as for `primordia run`.
+            num_envs: number N of bodies.
+            settings: settings that differ, as nested tables.
+            reward: the reward of each tick that is lived; death has none.
+            autoreset_mode: NEXT_STEP: the step after a death begins the next life; DISABLED: `reset` with
+                `options={"reset_mask": mask}` does, with a bool (N,).
+            render_mode: None; a vector environment draws nothing.
+
+        Raises:
+            InputError: there is no such task, or a setting is wrong.
+            ValueError: the autoreset mode is SAME_STEP, which loses the last observation of a life.
+        """
+        mode = AutoresetMode(autoreset_mode)
+        if mode is AutoresetMode.SAME_STEP:
+            raise ValueError("autoreset_mode: use NEXT_STEP or DISABLED")
+        self.num_envs, self.render_mode, self._reward = num_envs, render_mode, reward
+        self.metadata = {"autoreset_mode": mode}
+        self._bodies = Bodies(config.load(task, settings), num_envs)
+        self.single_observation_space = observation_space(self._bodies)
+        self.single_action_space = action_space(self._bodies)
+        self.observation_space = batch_space(self.single_observation_space, num_envs)
+        self.action_space = batch_space(self.single_action_space, num_envs)
+        self._seeds, self._lives = np.zeros(num_envs, np.uint64), np.zeros(num_envs, np.int64)
+        self._alive = np.zeros(num_envs, bool)
+
+    def reset(
+        self,
+        *,
+        seed: int | Sequence[int | None] | None = None,
+        options: dict[str, Any] | None = None,
+    ) -> tuple[np.ndarray, dict[str, Any]]:
+        """Begin lives in all bodies, or in those of `options["reset_mask"]`, bool (N,).
+
+        A seed s is given to body i as s + i.
+        """
+        chosen = np.asarray((options or {}).get("reset_mask", np.ones(self.num_envs, bool)), bool)
+        first = self._seeds_of(seed)
+        self._lives[chosen] += 1
+        for cell, own in enumerate(first):
+            if own is not None and chosen[cell]:
+                self._seeds[cell], self._lives[cell] = own % 2**64, 0
+        self._begin(chosen)
+        return self._bodies.senses.copy(), self._info(np.full(self.num_envs, -1))
+
+    def _seeds_of(self, seed: int | Sequence[int | None] | None) -> list[int | None]:
+        """Return the seed that each body is given, or None."""
+        if seed is None and self._np_random_seed is None:
+            seed = self.np_random_seed
+        elif isinstance(seed, int):
+            self._np_random_seed = seed
+        if isinstance(seed, int):
+            return [seed + cell for cell in range(self.num_envs)]
+        return [None] * self.num_envs if seed is None else list(seed)
+
+    def _begin(self, chosen: np.ndarray) -> None:
+        cells = np.flatnonzero(chosen)
+        births = Births(self._seeds[cells], self._lives[cells], np.zeros(len(cells), np.int32))
+        self._bodies.begin(cells, births)
+        self._alive[chosen] = True
+
+    def step(
+        self, actions: Any
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
+        """Live one tick in the bodies that are alive; the others begin a life, if this is NEXT_STEP."""
+        kind, alive = self._bodies.habitat.action, self._alive.copy()
+        rows = iterate(self.action_space, actions) if isinstance(kind, Compound) else actions
+        cause = self._bodies.step(np.stack([as_row(row, kind) for row in rows]), alive)
+        died = cause >= 0
+        self._alive &= ~died
+        if self.metadata["autoreset_mode"] is AutoresetMode.NEXT_STEP and not alive.all():
+            self._lives[~alive] += 1
+            self._begin(~alive)
+        else:
+            died = ~self._alive
+        rewards = np.where(alive & ~died, self._reward, 0.0)
+        return self._bodies.senses.copy(), rewards, died, np.zeros_like(died), self._info(cause)
+
+    def _info(self, cause: np.ndarray) -> dict[str, Any]:
+        bodies, every = self._bodies, np.ones(self.num_envs, bool)
+        info: dict[str, Any] = {"food": bodies.food.copy(), "_food": every}
+        if bodies.energy is not None:
+            info |= {"energy": bodies.energy.copy(), "_energy": every}
+        if (died := cause >= 0).any():
+            words = np.array([label(each) if each >= 0 else None for each in cause], object)
+            info |= {"cause": words, "_cause": died}
+        return info
+
+    def close_extras(self, **kwargs: Any) -> None:
+        """Release the bodies."""
+        self._bodies.close()

@@ -1,0 +1,166 @@
+"""Our tasks as Gymnasium environments: the same numbers as in a run, alone and side by side."""
+
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("gymnasium")
+
+import gymnasium
+from gymnasium.utils.env_checker import check_env
+from gymnasium.vector import AutoresetMode
+
+import primordia
+import primordia.envs
+from primordia.config import load
+from primordia.envs import Forager, LifeEnv, LifeVectorEnv, Survival
+from primordia.organism.reliving.relived import RelivedLife
+from primordia.settings.tables import tasks
+
+SIMULATORS = {"atari": "ale_py", "mujoco": "mujoco"}
+LIVED = {
+    "CartPole-survival": 300,
+    "Pong-survival-forager": 300,
+    "Reacher-forager-costly": 150,
+}
+
+
+def needed(task: str) -> None:
+    if package := SIMULATORS.get(load(task).habitat["name"]):
+        pytest.importorskip(package)
+
+
+@pytest.mark.parametrize("task", tasks())
+def test_every_task_is_an_environment_that_gymnasium_accepts(task: str) -> None:
+    needed(task)
+    env = gymnasium.make(f"primordia/{task}-v0")
+    with warnings.catch_warnings():  # Gymnasium advises against boxes without bounds
+        warnings.filterwarnings("ignore", message=".*A Box (observation|action) space m.*")
+        warnings.filterwarnings("ignore", message=".*For Box action spaces.*")
+        check_env(env.unwrapped, skip_render_check=True)
+    assert env.spec is not None
+    assert env.spec.max_episode_steps is None
+    env.close()
+
+
+@pytest.mark.parametrize("task", LIVED)
+def test_a_life_has_the_numbers_that_it_has_in_a_run(task: str, tmp_path: Path) -> None:
+    """The actions of an organism of a run, taken in the environment, from its birth to its death."""
+    needed(task)
+    stop = {"ticks": LIVED[task], "until": "none"}
+    run = primordia.run(task, tmp_path / "run", cells=6, stop=stop, seed=7)
+    lives = run.lives()
+    dead = np.flatnonzero(lives.died & (lives.lifespan > 20))
+    assert len(dead)
+    number = int(lives.id[dead[0]])
+    life = RelivedLife.of(run.opened(), number)
+    env = LifeEnv(task)
+    place = {"tick": int(life.record.born[0]), "cell": int(life.record.cell[0])}
+    senses, _ = env.reset(seed=7, options=place)
+    for stretch in life.stretches():
+        for i, action in enumerate(stretch.action):
+            np.testing.assert_array_equal(senses, stretch.senses[i])
+            senses, reward, died, truncated, info = env.step(action)
+            assert info["food"] == stretch.eaten[i] / 1024
+            assert info.get("energy", 0) == (stretch.energy[i] / 1024 if "energy" in info else 0)
+            assert (reward, truncated) == (0, False)
+    assert died
+    assert info["cause"] == life.cause.label
+    env.close()
+
+
+def played(env: Any, seed: int, actions: np.ndarray) -> list[tuple[Any, ...]]:
+    """Return what one environment tells, life after life."""
+    told: list[tuple[Any, ...]] = [(env.reset(seed=seed)[0],)]
+    for action in actions:
+        told.append(env.step(action))
+        if told[-1][2]:
+            told.append((env.reset()[0],))
+    return told
+
+
+@pytest.mark.parametrize("mode", [AutoresetMode.NEXT_STEP, AutoresetMode.DISABLED])
+@pytest.mark.parametrize("task", ["CartPole-survival", "Reacher-forager"])
+def test_environments_side_by_side_are_those_alone(task: str, mode: AutoresetMode) -> None:
+    needed(task)
+    made = gymnasium.make_vec(
+        f"primordia/{task}-v0", num_envs=3, reward=1.0, autoreset_mode=mode.value
+    )
+    many: Any = made.unwrapped
+    assert isinstance(many, LifeVectorEnv)
+    many.action_space.seed(1)
+    alone = [LifeEnv(task, reward=1.0) for _ in range(3)]
+    one = [env.reset(seed=5 + number)[0] for number, env in enumerate(alone)]
+    senses, _ = many.reset(seed=5)
+    over, deaths = np.zeros(3, bool), 0
+    for _ in range(120):
+        np.testing.assert_array_equal(senses, one)
+        if mode is AutoresetMode.DISABLED and over.any():
+            senses, _ = many.reset(options={"reset_mask": over})
+            for number in np.flatnonzero(over):
+                one[number] = alone[number].reset()[0]
+            np.testing.assert_array_equal(senses, one)
+            over = np.zeros(3, bool)
+        actions = many.action_space.sample()
+        senses, rewards, ended, cut, info = many.step(actions)
+        for number, env in enumerate(alone):
+            if over[number]:
+                one[number] = env.reset()[0]
+                assert (rewards[number], ended[number]) == (0, False)
+                continue
+            one[number], reward, died, _, told = env.step(actions[number])
+            assert (rewards[number], ended[number]) == (reward, died)
+            assert info["food"][number] == told["food"]
+            if died:
+                assert info["cause"][number] == told["cause"]
+        assert not cut.any()
+        deaths += ended.sum()
+        over = ended
+    assert deaths
+    many.close()
+
+
+def test_a_seed_gives_the_same_lives_and_another_gives_others() -> None:
+    env, actions = LifeEnv("CartPole-survival"), np.zeros(60, int)
+    one, other = played(env, 3, actions), played(env, 3, actions)
+    for a, b in zip(one, other, strict=True):
+        np.testing.assert_array_equal(a[0], b[0])
+    assert (played(env, 4, actions)[0][0] != one[0][0]).all()
+    begins = [each[0].tobytes() for each in one if len(each) == 1]
+    assert len(set(begins)) == len(begins) > 2
+
+
+def test_a_life_can_be_seen() -> None:
+    env = gymnasium.make("primordia/CartPole-survival-v0", render_mode="rgb_array")
+    env.reset(seed=0)
+    picture = env.render()
+    assert picture.shape[2] == 3
+    assert len(np.unique(picture)) > 1
+
+
+def test_a_forager_starves_as_the_law_says() -> None:
+    """A store of 10 that drains by 1 and gets 0.5 a tick is empty after 20 ticks."""
+    env = Forager(gymnasium.make("tests.ponds:Pond-v0", edge=1e9), lambda *_: 0.5, store=10.0)
+    env.reset(seed=0)
+    energies = []
+    for tick in range(1, 21):
+        _, _, died, _, info = env.step(env.action_space.sample())
+        energies.append(info["energy"])
+        assert died == (tick == 20)
+    assert energies == [10 - 0.5 * tick for tick in range(1, 21)]
+    assert (info["cause"], info["food"]) == ("starved", 10.0)
+
+
+def test_survival_has_no_reward_but_life_and_no_limit() -> None:
+    env = Survival(gymnasium.make("tests.ponds:Pond-v0"), reward=2.0)
+    env.reset(seed=1)
+    rewards, died, tick = [], False, 0
+    while not died:
+        _, reward, died, cut, _ = env.step(np.zeros(1, np.float32))
+        rewards.append(reward)
+        assert not cut
+        tick += 1
+    assert rewards == [2.0] * (tick - 1) + [0.0]
