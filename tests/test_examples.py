@@ -1,5 +1,6 @@
 """Parts as users write them, each one file: they keep their contracts, live, and are lived again."""
 
+import importlib
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -151,3 +152,14 @@ def test_help_shows_the_settings_of_a_part_that_is_named(words: list[str], shown
     done = here("run", TASK, *words, "--help")
     assert (done.returncode, done.stderr) == (0, "")
     assert shown in " ".join(done.stdout.split())
+
+
+def test_a_network_is_trained_in_a_world_of_ours() -> None:
+    """After two improvements it still acts, and it has changed."""
+    pytest.importorskip("optax")
+    ppo = importlib.import_module("examples.ppo")
+    before, after = ppo.network(4, 2), ppo.train(0.001)
+    assert not np.array_equal(before["policy"][0][0], after["policy"][0][0])
+    lived = ppo.lifespans(lambda senses: int(ppo.through(after["policy"], senses).argmax()))
+    assert len(lived) == ppo.LIVES
+    assert 5 < np.median(lived) <= ppo.LONGEST

@@ -47,6 +47,37 @@ def read(paths: Sequence[str], layout: Layout) -> np.ndarray:
     return genomes
 
 
+def of_state(path: Path, layout: Layout) -> np.ndarray:
+    """Return the genome of a state dictionary in a safetensors file, float32 (1, P).
+
+    It has a tensor (*shape) for each block of the brain, in any float type.
+
+    Raises:
+        InputError: the file cannot be read, or a block is missing, unknown or of another shape; the
+            message says which.
+    """
+    with _opening(path):
+        state = load_file(path)
+    wanted = _described(dict(layout.blocks))
+    for name, shape in layout.blocks:
+        found = state[name].shape if name in state else None
+        if found != shape:
+            other = "is missing" if found is None else f"is {_described({name: found})}"
+            turned = found is not None and found == shape[::-1]
+            raise InputError(
+                f"{path}: the block {name} {other}; this task's brain has {wanted}"
+                f"{'; transpose it' if turned else ''}"
+            )
+    if unknown := sorted(set(state) - set(layout.names)):
+        raise InputError(
+            f"{path}: {unknown[0]} is no block of this task's brain, which has {wanted}"
+        )
+    genome = layout.join({name: state[name][None] for name in layout.names}).astype(np.float32)
+    if not np.isfinite(genome).all():
+        raise InputError(f"{path} has weights that are no finite numbers")
+    return genome
+
+
 def about(path: Path) -> dict[str, str]:
     """Return what a file says of its genomes, such as their `task`; see `write`.
 

@@ -102,6 +102,25 @@ def export(run: Path, organisms: tuple[int, ...], world: int, trust: bool, file:
     click.echo(f"{file}: organism {', '.join(map(str, chosen))}")
 
 
+@click.command("import", short_help="Write a state dictionary as a genome file.")
+@click.argument("state", type=click.Path(path_type=Path))
+@click.argument("file", type=click.Path(path_type=Path))
+@click.option("--task", required=True, help="Task, or FILE.toml, whose brain the weights are for.")
+def import_(state: Path, file: Path, task: str) -> None:
+    """Write a genome FILE, which `primordia run --ancestor` takes, from weights that were made elsewhere.
+
+    STATE is a safetensors file with a tensor for each block of the brain, such as PyTorch's save_file of
+    safetensors.torch writes from a state dictionary.
+    """
+    from primordia import config
+    from primordia.brains import genomes
+
+    chosen = config.load(task)
+    layout = chosen.build_layout(chosen.build_habitat())
+    genomes.write(file, layout, genomes.of_state(state, layout), {"task": chosen.task})
+    click.echo(f"{file}: primordia run {task} --ancestor {file}")
+
+
 def chosen_organism(run: Path, organism: int | None, world: int | None, trust: bool) -> "Organism":
     """Return the organism with a birth number, or else the champion."""
     from primordia.api import load
@@ -165,4 +184,4 @@ def compare(runs: tuple[str, ...], out: Path, as_json: bool, **horizons: int | N
         click.echo(f"Figure: {' and '.join(map(str, pictures))}")
 
 
-COMMANDS = (info, plot, replay, compare, export, verify, tasks)
+COMMANDS = (info, plot, replay, compare, export, import_, verify, tasks)

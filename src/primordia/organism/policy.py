@@ -19,6 +19,11 @@ class Policy:
         self._think = shared(type(law.brain).__call__, law.brain)
         self.reset()
 
+    @property
+    def weights(self) -> dict[str, np.ndarray]:
+        """The weights by block, float32 (*shape) each, such as a state dictionary holds them."""
+        return {name: np.asarray(block)[0] for name, block in self._genome.items()}
+
     def reset(self) -> None:
         """Clear the memory, as at birth."""
         self._memory = jnp.zeros((1, self._law.memory), jnp.float32)
