@@ -48,3 +48,20 @@ def test_where_nothing_matters_nothing_is_needed(tmp_path: Path) -> None:
     loop.start(config(settings, brain={"hidden": 3}, stop={"ticks": 200}), tmp_path / "run")
     for each in ablate(of_run(primordia.load(tmp_path / "run").opened()), each_sense=True):
         assert (each.lifespan, each.kept) == (30, 1)
+
+
+def test_a_sense_that_has_no_weight_is_not_missed_and_is_the_only_one_kept(
+    poles: primordia.Run,
+) -> None:
+    """Without weights on all senses but one, only the loss of that one changes a life."""
+    subjects = of_run(poles.opened())
+    layout = subjects.law.heredity.layout
+    parts = layout.split(subjects.players.genomes)
+    of_sense = np.moveaxis(parts["input"], parts["input"].shape[1:].index(4) + 1, -1).copy()
+    of_sense[..., [0, 1, 3]] = 0
+    kept = np.moveaxis(of_sense, -1, parts["input"].shape[1:].index(4) + 1)
+    players = subjects.players._replace(genomes=layout.join({**parts, "input": kept}))
+    found = ablate(subjects._replace(players=players), each_sense=True, games=5, ticks=400)
+    changed = {each.without for each in found if each.lifespan != each.intact}
+    assert "sense 2" in changed
+    assert not changed & {"sense 0", "sense 1", "sense 3"}

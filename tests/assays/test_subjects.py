@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import primordia
-from primordia.assays.subjects import BEST, FOUNDERS, of_file, of_run, of_task
+from primordia.assays.subjects import BEST, FOUNDERS, founders, of_file, of_run, of_task
 from primordia.brains import genomes
+from primordia.config import load
 from primordia.errors import InputError
 from primordia.organism.games import lifespans
 
@@ -64,3 +65,10 @@ def test_of_a_task_the_longest_lived_founders_live() -> None:
     np.testing.assert_array_equal(lifespans(best.players, 20_000), lived[best.organism])
     with pytest.raises(InputError, match="has no genome 512; they count from 0 to 511"):
         of_task("CartPole-survival", [512])
+
+
+def test_founders_of_a_task_are_those_that_they_always_were() -> None:
+    """Tables of experiments name them by their numbers."""
+    first = [[0.00957343, -0.0262672, -0.00436687], [-0.01828807, -0.01208586, -0.01472166]]
+    made = founders(load("CartPole-survival"), 5)
+    np.testing.assert_allclose(made[:2, :3], first, rtol=1e-6)

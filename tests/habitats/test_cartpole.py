@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from primordia.habitats.cartpole.habitat import CartPole
+from primordia.habitats.cartpole.picture import draw
 
 LIMITS = np.array([2.4, np.inf, np.deg2rad(12), np.inf])
 
@@ -48,6 +49,7 @@ def test_one_step_from_the_same_state_agrees_with_gymnasium(gym_cartpole: Any) -
 EPISODES = """
 import gymnasium, jax, numpy as np
 from primordia.habitats.cartpole.habitat import CartPole
+from primordia.habitats.cartpole.picture import draw
 gym, step = gymnasium.make("CartPole-v1").unwrapped, jax.jit(CartPole().step)
 rng, free, forced, lengths = np.random.default_rng(1), 0.0, 0.0, []
 
@@ -122,3 +124,12 @@ def test_hidden_senses_are_positions_only() -> None:
 def test_limits_are_settings(change: dict, state: list, fatal: bool) -> None:
     _, outcome = CartPole(**change).step(jnp.array([state], jnp.float32), jnp.array([0]))
     assert bool(outcome.fatal[0]) is fatal
+
+
+def test_the_cart_is_drawn_where_it_is() -> None:
+    """Its middle moves from 60 pixels before the left edge to 60 before the right one."""
+    cart = np.array([35, 57, 91])
+    for x, middle in ((-2.4, 60), (0.0, 320), (1.2, 450), (2.4, 580)):
+        picture = np.asarray(draw(np.array([x, 0, 0, 0], np.float32), 1, 2.4).convert("RGB"))
+        columns = np.flatnonzero((np.abs(picture.astype(int) - cart).sum(axis=2) < 20).any(axis=0))
+        assert abs((columns[0] + columns[-1]) / 2 - middle) < 4
