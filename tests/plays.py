@@ -54,7 +54,7 @@ def played(file: str) -> dict[str, Any]:
 
 def in_process(settings: config.Config) -> config.Config:
     """Return settings with which simulators are in this process, where the habitat lets one choose."""
-    if settings.habitat["name"] != "atari":
+    if settings.habitat["name"] not in ("atari", "gymnasium"):
         return settings
     return settings.model_copy(update={"habitat": {**settings.habitat, "workers": 0}})
 

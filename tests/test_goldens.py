@@ -48,9 +48,9 @@ def test_each_task_lives_as_it_did(name: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("file", plays.NAMES)
 def test_each_task_is_played_as_it_was(file: str) -> None:
-    package = {"atari": "ale_py", "mujoco": "mujoco"}.get(
-        plays.settings_of(file)["habitat"]["name"]
-    )
+    habitat = plays.settings_of(file)["habitat"]
+    packages = {"atari": "ale_py", "mujoco": "mujoco", "gymnasium": "Box2D"}
+    package = packages.get(habitat["name"])
     if package is not None:
         pytest.importorskip(package)
     if device.instruction_set() != PLAYS["instruction_set"]:

@@ -20,7 +20,7 @@ from primordia.envs import Forager, LifeEnv, LifeVectorEnv, Survival
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.settings.tables import tasks
 
-SIMULATORS = {"atari": "ale_py", "mujoco": "mujoco"}
+SIMULATORS = {"atari": "ale_py", "mujoco": "mujoco", "gymnasium": "Box2D"}
 LIVED = {
     "CartPole-survival": 300,
     "Pong-survival-forager": 300,

@@ -40,7 +40,9 @@ class Gymnasium(HostHabitat, Settings):
         strict=False,
         description="modules that are imported first, such as those that register it",
     )
-    fatal: str = Field("terminated", description="condition that ends a life")
+    fatal: str = Field(
+        "terminated", description="condition that ends a life; none given: nothing does"
+    )
     food: str = Field("0", description="amount gathered in a tick, or module:function")
     effort: str = Field("0", description="amount exerted in a tick")
     time_limit: int | None = Field(None, ge=1, description="ticks after which a life ends")
@@ -96,7 +98,7 @@ class Gymnasium(HostHabitat, Settings):
 
     @cached_property
     def _conditions(self) -> dict[str, Expression]:
-        texts = {"fatal": self.fatal, "effort": self.effort}
+        texts = {"effort": self.effort} | ({"fatal": self.fatal} if self.fatal else {})
         texts |= {} if self._food_function else {"food": self.food}
         return {
             name: conditions.parse(text, "condition" if name == "fatal" else "amount", self._names)
@@ -247,7 +249,11 @@ class Gymnasium(HostHabitat, Settings):
             name: each.of_all(values, count, bool if name == "fatal" else np.float32)
             for name, each in self._conditions.items()
         }
-        return {"food": self._pool.arrays["food"].astype(np.float32), **measured}
+        none = {
+            "fatal": np.zeros(count, bool),
+            "food": self._pool.arrays["food"].astype(np.float32),
+        }
+        return none | measured
 
     def _of_info(self, columns: np.ndarray) -> dict[str, np.ndarray]:
         """Return the values of `info` by key, (N,) or (N, K)."""
