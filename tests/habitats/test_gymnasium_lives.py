@@ -13,6 +13,7 @@ import primordia
 from primordia.errors import InputError, Trouble
 from primordia.habitats.gymnasium.habitat import Gymnasium
 from primordia.testing import check_habitat
+from tests.commands import here
 from tests.worlds import Lived, config
 
 POND: dict[str, Any] = {
@@ -137,3 +138,16 @@ def test_wrong_settings_are_one_line(habitat: dict[str, Any], says: str) -> None
     with pytest.raises(InputError, match=says) as caught:
         config(pond(**habitat))
     assert "\n" not in str(caught.value)
+
+
+def test_where_nothing_can_be_saved_bodies_begin_again_and_that_is_counted(tmp_path: Path) -> None:
+    settings = {"cells": 6, "habitat": {"workers": 0}, "stop": {"ticks": 30}}
+    run = primordia.run("gym:tests.ponds:Hidden-v0", tmp_path / "run", settings)
+    before = run.lives()
+    assert (run.info()["exact"], run.info()["restarts"]) == (False, 0)
+    for times in (1, 2):
+        run.resume(ticks=30 + 30 * times)
+        assert run.info()["restarts"] == times
+    assert "began again 2 times" in here("info", run.path).stdout
+    after = run.lives()
+    np.testing.assert_array_equal(after.born[: len(before)], before.born)

@@ -21,7 +21,7 @@ def world(**changed: Any) -> dict[str, Any]:
 
 
 def summarised(worlds: list[dict[str, Any]], **changed: Any) -> str:
-    base = {"task": "T", "cells": 8, "inheritance": "parent", "exact": True}
+    base = {"task": "T", "cells": 8, "inheritance": "parent", "exact": True, "restarts": 0}
     return summary({**base, "worlds": worlds, **changed})
 
 

@@ -22,6 +22,7 @@ def info(run: Records) -> dict[str, Any]:
     `crashes` are the extinctions after a rise; see `extinctions`. `threshold` is the error threshold
     among the later half of the births; see `threshold`.
     `saturation` and `fixation` are None, or their tick and number of births (founders included).
+    `restarts` is how often the run went on with bodies as at birth, since its habitat cannot save them.
     Ages, in ticks, and the habitat's counts (`tallies`) are those of the living.
     `break_even` is the food in a tick, and in a second, that keeps energy constant under the present
     climate. `tries_per_life` is how often an organism tries to copy itself in a life of mean length, at
@@ -44,6 +45,7 @@ def info(run: Records) -> dict[str, Any]:
         "worlds": worlds,
         "wall_s": progress.wall_s,
         "exact": progress.exact,
+        "restarts": progress.restarts,
         "limits": progress.limits.model_dump(),
         "versions": run.versions,
     }

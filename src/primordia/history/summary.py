@@ -23,6 +23,9 @@ def summary(info: dict[str, Any]) -> str:
         lines += _all_worlds(worlds)
     if not info["exact"]:
         lines.append("  not exact: parts of this run cannot be repeated bit for bit")
+    if times := info["restarts"]:
+        often = "once" if times == 1 else f"{times:,} times"
+        lines.append(f"  the bodies of the living began again {often}, when the run went on")
     return "\n".join(lines)
 
 

@@ -91,7 +91,12 @@ class Arm(Records):
         each = [run.progress for run in self.runs]
         wall_s, exact = sum(one.wall_s for one in each), all(one.exact for one in each)
         common = set.intersection(*(set(one.limits) for one in each))
-        return Progress(limits=Stop(**dict(common)), wall_s=wall_s, exact=exact)
+        return Progress(
+            limits=Stop(**dict(common)),
+            wall_s=wall_s,
+            exact=exact,
+            restarts=sum(one.restarts for one in each),
+        )
 
     @cached_property
     def row_digests(self) -> dict[str, np.ndarray]:

@@ -135,6 +135,7 @@ def resume(
         if last is not None:
             restore(engine, recorder, last, archive.arrays_of(last))
             progress = last.manifest.progress
+            progress.restarts += not engine.chunks.exact
         progress.limits = progress.limits.model_copy(update=given)
         progress.exact &= not differ and engine.chunks.exact
         notes = [f"a damaged checkpoint was not used: {fault}" for fault in damaged]

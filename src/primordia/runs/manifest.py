@@ -71,6 +71,8 @@ class Progress(Part):
     """seconds spent so far"""
     exact: bool
     """whether the whole run can be repeated bit for bit"""
+    restarts: int = Field(0, ge=0)
+    """how often the bodies of the living began again at a resume, since the habitat cannot save them"""
 
 
 class Manifest(Part):
