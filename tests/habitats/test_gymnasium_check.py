@@ -1,5 +1,7 @@
 """The check of Gymnasium environments finds what is wrong, and how lives can go on."""
 
+from typing import Any
+
 import pytest
 
 pytest.importorskip("gymnasium")
@@ -62,3 +64,22 @@ def test_a_state_names_no_class_to_be_made() -> None:
         env.reset(seed=1)
     with pytest.raises(state.UnknownStateError, match="is a Pond here, not a CartPoleEnv"):
         state.decode(pond, state.encode(cart))
+
+
+@pytest.mark.parametrize("name", ["tests.ponds:Odd-v0", "CartPole-v1", "InvertedPendulum-v5"])
+def test_a_restored_environment_has_the_state_that_was_saved(name: str) -> None:
+    """The state of the restored environment, written again, is the same to the last byte."""
+    if name.endswith("v5"):
+        pytest.importorskip("mujoco")
+    one, other = make(name, {}, ()), make(name, {}, ())
+    for env, seed in ((one, 1), (other, 2)):
+        env.action_space.seed(0)
+        env.reset(seed=seed)
+    for _ in range(3):
+        one.step(one.action_space.sample())
+    saved = state.encode(one)
+    state.decode(other, saved)
+    assert state.encode(other) == saved
+    if name.endswith("v5"):
+        inner: Any = other.unwrapped
+        assert inner.mujoco_renderer.data is inner.data

@@ -15,6 +15,7 @@ from gymnasium import Env
 from gymnasium.envs.registration import EnvSpec
 
 from primordia import own_code
+from primordia.habitats import opengl
 
 PICTURES = "rgb_array"
 """The render mode of an environment that is watched."""
@@ -62,6 +63,8 @@ def make(
     """
     module, colon, _ = env.partition(":")
     drawing = {"render_mode": PICTURES} if watched else {}
+    if watched:
+        os.environ.setdefault(opengl.VARIABLE, opengl.backend())
     try:
         with quiet(), _silent():
             for each in (*imports, *([module] if colon else [])):

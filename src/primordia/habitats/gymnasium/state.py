@@ -63,8 +63,8 @@ class _Writer:
         """Return a value as JSON can hold it: a plain value itself, anything else as [kind, ...]."""
         if type(value) in PLAIN:
             return value
-        if isinstance(value, KEPT):
-            return ["kept"]
+        if isinstance(value, KEPT) or _kind(value) == "mujoco.MjModel":
+            return ["kept"]  # and not numbered, neither here nor by the reader
         if id(value) in self._seen:
             return ["same", self._seen[id(value)]]
         self._seen[id(value)] = len(self._seen)
@@ -84,8 +84,6 @@ class _Writer:
             items: Any = value.items() if isinstance(value, dict) else value
             inner = [self.write(each, f"{place}[{n}]") for n, each in enumerate(items)]
             return [kind, inner, getattr(value, "maxlen", None)]
-        if _kind(value) == "mujoco.MjModel":
-            return ["kept"]
         if _kind(value) == "mujoco.MjData":
             return ["fields", self._fields(value, place)]
         # A class that says how it is pickled keeps something that its attributes do not show.

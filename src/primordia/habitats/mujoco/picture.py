@@ -1,9 +1,7 @@
 """Pictures of MuJoCo models, drawn without a screen."""
 
 import atexit
-import os
 import weakref
-from ctypes.util import find_library
 from functools import cache
 from importlib import import_module
 from typing import Any
@@ -14,6 +12,7 @@ from PIL import Image
 from primordia.errors import InputError
 from primordia.habitats.framed import framed
 from primordia.habitats.mujoco.simulator import ROOT, package, root_translates
+from primordia.habitats.opengl import backend
 
 WIDTH, HEIGHT = 640, 360
 OVERSAMPLING = 2
@@ -75,12 +74,10 @@ class Renderer:
 def _gl_context() -> Any:
     """Return an OpenGL context, one for all renderers.
 
-    It is that of MUJOCO_GL if this is set, else OSMesa's, which needs no GPU, or else EGL's.
-
     Raises:
         InputError: the context cannot be made.
     """
-    name = os.environ.get("MUJOCO_GL") or ("osmesa" if find_library("OSMesa") else "egl")
+    name = backend()
     try:
         context = import_module(f"mujoco.{name}").GLContext(LARGE_WIDTH, LARGE_HEIGHT)
         context.make_current()

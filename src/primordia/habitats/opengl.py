@@ -1,0 +1,12 @@
+"""Which OpenGL draws pictures of MuJoCo's robots without a screen."""
+
+import os
+from ctypes.util import find_library
+
+VARIABLE = "MUJOCO_GL"
+"""The environment variable that MuJoCo and Gymnasium read."""
+
+
+def backend() -> str:
+    """Return the variable's value if it is set, else `osmesa`, which needs no GPU, or else `egl`."""
+    return os.environ.get(VARIABLE) or ("osmesa" if find_library("OSMesa") else "egl")
