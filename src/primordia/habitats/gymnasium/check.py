@@ -211,7 +211,10 @@ def _go_on(trial: _Trial, lives: list[_Life], fresh: bool) -> str:
         ages = np.linspace(0, len(life.seen) - 1, SAVED, endpoint=False).astype(int).tolist()
         for age, until in pairwise([*ages, len(life.seen) - 1]):
             try:
-                elsewhere = _restored(trial, elsewhere, state.encode(env), fresh)
+                saved = state.encode(env)
+                elsewhere = _restored(trial, elsewhere, saved, fresh)
+                if state.encode(elsewhere) != saved:
+                    return "a state that was restored is not the one that was saved"
             except state.UnknownStateError as error:
                 return str(error)
             if trial.steps(elsewhere, life.rows[age:]) != life.seen[age + 1 :]:

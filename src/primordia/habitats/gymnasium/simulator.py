@@ -6,6 +6,7 @@ observation (`replay`), or none.
 """
 
 import json
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -87,7 +88,8 @@ class Environments:
     def _begin(self, cell: int, seed: int) -> None:
         life = self._lives[cell]
         if life.failed is not None or (self._fresh and life.seed is not None):
-            life.env.close()
+            with suppress(Exception):  # an environment that has failed may not close either
+                life.env.close()
             life.env = environment.make(*self._making)
         life.seed, life.actions, life.failed = seed, [], None
         arrays = self._arrays
@@ -102,11 +104,12 @@ class Environments:
 
     def _act(self, cell: int, row: np.ndarray) -> None:
         life, arrays = self._lives[cell], self._arrays
+        if life.failed is not None:  # it could not begin
+            self._fail(cell, life.failed)
+            return
         if self._saving == "replay":
             life.actions.append(row.tobytes())
         try:
-            if life.failed is not None:
-                raise _BirthError(life.failed)
             action = self._acting.build(row)
             observation, reward, terminated, truncated, info = life.env.step(action)
             arrays["reward"][cell] = reward
@@ -116,9 +119,7 @@ class Environments:
                 arrays["food"][cell] = self._food(*given)
             self._tell(cell, observation, info)
         except Exception as error:
-            self._fail(
-                cell, str(error) if isinstance(error, _BirthError) else environment.line(error)
-            )
+            self._fail(cell, environment.line(error))
 
     def _tell(self, cell: int, observation: Any, info: dict[str, Any]) -> None:
         """Write down what is perceived, and the numbers of `info` that are needed; a missing one is 0."""
@@ -183,7 +184,3 @@ class Environments:
                 f"the environment of cell {cell} did not repeat its life of {head['ticks']} ticks, which"
                 " depends on more than seed and actions; begin a new run with --habitat.saving none"
             )
-
-
-class _BirthError(Exception):
-    """The line that says why an environment could not begin a life."""

@@ -89,7 +89,7 @@ class _Writer:
         # A class that says how it is pickled keeps something that its attributes do not show.
         pickled = getattr(type(value), "__reduce_ex__")  # noqa: B009
         if hasattr(value, "__dict__") and pickled is object.__reduce_ex__:
-            attributes = vars(value).items()
+            attributes = sorted(vars(value).items())
             return [
                 "object",
                 type(value).__qualname__,
