@@ -11,8 +11,8 @@ from primordia.habitats.gymnasium.check import measure
 from primordia.habitats.gymnasium.environment import make
 
 FAULTS = {
-    "Unseeded": ("none", False, "another beginning: it ignores its seed"),
-    "Hidden": ("none", False, "the same seed and actions give another life"),
+    "Unseeded": ("restart", False, "another beginning: it ignores its seed"),
+    "Hidden": ("restart", False, "the same seed and actions give another life"),
     "Worn": ("snapshot", True, "reset does not restore all"),
     "Grasping": ("snapshot", False, "step changes the action"),
     "Outside": ("snapshot", False, "outside the declared space"),

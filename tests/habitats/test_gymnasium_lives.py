@@ -40,7 +40,7 @@ def pond(name: str = "Pond", **habitat: Any) -> dict[str, Any]:
     [
         ("Pond", {"saving": "snapshot", "workers": 0}),
         ("Pond", {"saving": "replay", "workers": 2}),
-        ("Pond", {"saving": "none", "time_limit": 7, "workers": 0}),
+        ("Pond", {"saving": "restart", "time_limit": 7, "workers": 0}),
         ("Odd", {"saving": "snapshot", "squash": True, "scale": (50.0,), "workers": 0}),
         ("Closed", {"saving": "replay", "workers": 0}),
         ("Worn", {"saving": "replay", "fresh": True, "workers": 0}),

@@ -134,8 +134,7 @@ def resume(
         progress = Progress(limits=config.stop, wall_s=0.0, exact=engine.chunks.exact)
         if last is not None:
             restore(engine, recorder, last, archive.arrays_of(last))
-            progress = last.manifest.progress
-            progress.restarts += not engine.chunks.exact
+            progress = last.manifest.progress.gone_on(engine.chunks.exact)
         progress.limits = progress.limits.model_copy(update=given)
         progress.exact &= not differ and engine.chunks.exact
         notes = [f"a damaged checkpoint was not used: {fault}" for fault in damaged]

@@ -74,6 +74,10 @@ class Progress(Part):
     restarts: int = Field(0, ge=0)
     """how often the bodies of the living began again at a resume, since the habitat cannot save them"""
 
+    def gone_on(self, exact: bool) -> "Progress":
+        """Return the progress of a run that goes on with its bodies as they were, or as at birth."""
+        return self.model_copy(update={"restarts": self.restarts + (not exact)})
+
 
 class Manifest(Part):
     """The content of `manifest.json`, without the checksum of the content."""

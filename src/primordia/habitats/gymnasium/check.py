@@ -29,7 +29,7 @@ ENDED, GOING_ON = b"\1", b"\0"
 class Measured:
     """What was found out about an environment."""
 
-    saving: Literal["snapshot", "replay", "none"] = "replay"
+    saving: Literal["snapshot", "replay", "restart"] = "replay"
     """how lives go on after an interruption"""
     fresh: bool = False
     """whether a life repeats in a new environment only"""
@@ -164,7 +164,7 @@ def measure(env: str, options: Mapping[str, Any], imports: Sequence[str]) -> Mea
                 lifespan=float(np.mean(spans)), ended=sum(life.ended for life in lives)
             )
             _repeat(trial, lives, found)
-            if found.saving != "none":
+            if found.saving != "restart":
                 found.why = _go_on(trial, lives, found.fresh)
                 found.saving = "replay" if found.why else "snapshot"
     except Exception as error:
@@ -182,7 +182,7 @@ def _repeat(trial: _Trial, lives: list[_Life], found: Measured) -> None:
     twice = [trial.live(trial.new(), life) for life in reversed(lives)]
     if new != twice:
         begins = all(a[0] == b[0] for a, b in zip(new, twice, strict=True))
-        found.saving = "none"
+        found.saving = "restart"
         found.faults.append(
             "the same seed and actions give another life: it draws from outside, or keeps something"
             " between environments"

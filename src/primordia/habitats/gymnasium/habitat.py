@@ -55,10 +55,10 @@ class Gymnasium(HostHabitat, Settings):
     squash: bool = Field(
         False, description="x becomes x / (1 + |x|) where observations have no bounds"
     )
-    saving: Literal["snapshot", "replay", "none"] = Field(
+    saving: Literal["snapshot", "replay", "restart"] = Field(
         "replay",
         description="how a life goes on after an interruption: from its state, by living it again, or"
-        " not; `primordia check` measures which",
+        " with a body as at birth; `primordia check` measures which",
     )
     fresh: bool = Field(False, description="make a new environment for each life; slow")
     faults: int = Field(
@@ -173,7 +173,7 @@ class Gymnasium(HostHabitat, Settings):
         """Return the methods that are lacking for an ability."""
         if ability is Ability.PICTURE and not self._probe.pictures:
             return ["picture"]
-        if ability is Ability.SAVE and self.saving == "none":
+        if ability is Ability.SAVE and self.saving == "restart":
             return ["save", "load"]
         return super().lacks(ability)
 

@@ -1,8 +1,8 @@
 """Environments of some cells, in one process. A life begins with a reset whose seed is the birth's word.
 
-Three ways lead back to a state that was saved (`saving`): the environment's attributes as plain data
+Two ways lead back to a state that was saved (`saving`): the environment's attributes as plain data
 (`snapshot`), or the seed and the actions of the life, which is then lived again and must end in the same
-observation (`replay`), or none.
+observation (`replay`).
 """
 
 import json
@@ -182,5 +182,5 @@ class Environments:
         if observed.tobytes() != before:
             raise Trouble(
                 f"the environment of cell {cell} did not repeat its life of {head['ticks']} ticks, which"
-                " depends on more than seed and actions; begin a new run with --habitat.saving none"
+                " depends on more than seed and actions; begin a new run with --habitat.saving restart"
             )

@@ -12,7 +12,7 @@ PLAIN = 5.0
 SAVING = {
     "snapshot": "After an interruption lives go on exactly from their state",
     "replay": "After an interruption lives are lived again from their seed and actions, exactly",
-    "none": "After an interruption lives cannot go on exactly",
+    "restart": "After an interruption lives cannot go on exactly",
 }
 LEAST, MOST = 0.001, 0.05
 """Bounds of the probability to replicate that is chosen."""
