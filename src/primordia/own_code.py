@@ -124,12 +124,22 @@ def admit(code: Sources) -> None:
             _admitted.folders[".".join(folders[:depth])] = str(folder)
 
 
-def admitted() -> Sources:
-    """Return the files that have been admitted, for another process to admit."""
-    return {
-        module.replace(".", "/") + (f"/{INIT}" if source.file.name == INIT else ".py"): source
-        for module, source in _admitted.sources.items()
-    }
+def admitted(modules: Iterable[str]) -> Sources:
+    """Return the admitted files of modules and of what they import, for another process to admit."""
+    code: Sources = {}
+    waiting = list(modules)
+    while waiting:
+        parts = waiting.pop().split(".")
+        for end in range(1, len(parts) + 1):
+            module = ".".join(parts[:end])
+            source = _admitted.sources.get(module)
+            if source is None:
+                continue
+            name = "/".join(parts[:end]) + (f"/{INIT}" if source.file.name == INIT else ".py")
+            if name not in code:
+                code[name] = source
+                waiting += _imports(source.text, name)
+    return code
 
 
 def is_loaded(code: Sources) -> bool:

@@ -310,3 +310,12 @@ def test_parts_of_installed_packages_are_recorded_by_version() -> None:
     assert own_code.packages(["numpy.linalg", "primordia.brains", "no_such"]) == {
         "numpy": np.__version__
     }
+
+
+def test_what_goes_to_another_process_is_what_a_module_imports(folder: Path) -> None:
+    (folder / "lake.py").write_text("DEPTH = 1\n")
+    for module in ("pond", "lake"):
+        own_code.admit(own_code.found(module))
+    assert set(own_code.admitted(["pond"])) == {"pond.py", "pond_depth.py"}
+    assert own_code.admitted(["numpy", "primordia.cores"]) == {}
+    own_code._admitted.sources.pop("lake")

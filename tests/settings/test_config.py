@@ -211,7 +211,7 @@ def test_help_names_the_values_of_every_choice() -> None:
 
 def test_help_without_a_task_shows_what_all_tasks_have() -> None:
     """The settings of simulators differ; help on a task shows those of its own."""
-    for command, named in (("run", "TASK|FILE.toml"), ("fork", "RUN")):
+    for command, named in (("run", "TASK|FILE.toml|gym:NAME"), ("fork", "RUN")):
         done = here(command, "--help")
         assert (done.returncode, done.stderr) == (0, "")
         habitat = [word for word in done.stdout.split() if word.startswith("--habitat.")]

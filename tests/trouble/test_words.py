@@ -64,7 +64,7 @@ WRONG = {
     (TASK, "--checkpoint-every", "-1"): ["--checkpoint-every", "-1"],
     (TASK, "--checkpoint-every", "nan"): ["--checkpoint-every", "nan"],
     (TASK, "--checkpoint-every", "often"): ["--checkpoint-every", "'often'"],
-    (): ["Missing argument 'TASK|FILE.toml'"],
+    (): ["Missing argument 'TASK|FILE.toml|gym:NAME'"],
     ("no/such/file.toml",): ["no/such/file.toml cannot be read", "No such file"],
 }
 

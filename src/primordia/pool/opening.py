@@ -1,5 +1,6 @@
 """Which pool a run gets."""
 
+from collections.abc import Sequence
 from typing import Any
 
 from primordia import cores
@@ -15,6 +16,7 @@ def open_pool(
     fields: dict[str, Field],
     cells: int,
     workers: int | None = None,
+    modules: Sequence[str] = (),
 ) -> Pool:
     """Make the simulators.
 
@@ -25,6 +27,7 @@ def open_pool(
         cells: number of simulators.
         workers: number of worker processes, at most one for each cell; 0: the simulators are in this
             process; None: one for each core, and none if there is one core.
+        modules: modules of the user's own that the simulators import.
 
     Raises:
         Trouble: a simulator cannot be made, or a worker does not start.
@@ -34,4 +37,4 @@ def open_pool(
         workers = among if among > 1 else 0
     if workers == 0:
         return InProcess(simulator, settings, fields, cells)
-    return Workers(simulator, settings, fields, cells, min(workers, cells))
+    return Workers(simulator, settings, fields, cells, min(workers, cells), modules)

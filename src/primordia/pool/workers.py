@@ -11,6 +11,7 @@ import select
 import subprocess
 import sys
 import weakref
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -35,6 +36,7 @@ class Workers(Pool):
         fields: dict[str, board.Field],
         cells: int,
         workers: int,
+        modules: Sequence[str] = (),
     ) -> None:
         """Start the workers, at most one for each cell; the arguments are those of `opening.open_pool`.
 
@@ -57,7 +59,7 @@ class Workers(Pool):
             "size": size,
             "code": [
                 (name, str(source.file), source.text.decode("latin-1"))
-                for name, source in own_code.admitted().items()
+                for name, source in own_code.admitted(modules).items()
             ],
         }
         self._workers = [_spawn(file.fileno()) for _ in range(self._count)]

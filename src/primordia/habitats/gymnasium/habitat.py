@@ -19,6 +19,7 @@ from primordia.habitats.states import packed, unpacked
 from primordia.pool.contract import Pool
 from primordia.pool.opening import open_pool
 from primordia.settings.base import Settings
+from primordia.settings.tables import modules_of
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -215,7 +216,9 @@ class Gymnasium(HostHabitat, Settings):
             except ValueError as error:
                 raise InputError(f"habitat: {error}") from None
             shared[SCREEN] = ("uint8", shape)
-        self._pool = open_pool(f"{SIMULATOR}:Environments", settings, shared, cells, self.workers)
+        own = modules_of(self.model_dump(), "env")
+        simulator = f"{SIMULATOR}:Environments"
+        self._pool = open_pool(simulator, settings, shared, cells, self.workers, own)
         self._age = np.zeros(cells, np.int64)
 
     def reset(self, cells: np.ndarray, words: np.ndarray) -> np.ndarray:
