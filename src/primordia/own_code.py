@@ -125,9 +125,15 @@ def admit(code: Sources) -> None:
 
 
 def admitted(modules: Iterable[str]) -> Sources:
-    """Return the admitted files of modules and of what they import, for another process to admit."""
-    code: Sources = {}
+    """Return the files of modules and of what they import, for another process to admit.
+
+    A module that a script or another module imported in the ordinary way is admitted here.
+    """
     waiting = list(modules)
+    for module in waiting:
+        if module not in _admitted.sources:
+            admit(found(module))
+    code: Sources = {}
     while waiting:
         parts = waiting.pop().split(".")
         for end in range(1, len(parts) + 1):

@@ -1,5 +1,6 @@
 """The user's own code: it is part of a run, is executed only when trusted, and never by looking."""
 
+import importlib
 import importlib.util
 import py_compile
 import shutil
@@ -319,3 +320,12 @@ def test_what_goes_to_another_process_is_what_a_module_imports(folder: Path) -> 
     assert set(own_code.admitted(["pond"])) == {"pond.py", "pond_depth.py"}
     assert own_code.admitted(["numpy", "primordia.cores"]) == {}
     own_code._admitted.sources.pop("lake")
+
+
+def test_a_module_that_was_imported_before_goes_to_another_process_too(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.syspath_prepend(folder)
+    importlib.import_module("pond")
+    assert "pond" not in own_code._admitted.sources
+    assert set(own_code.admitted(["pond"])) == {"pond.py", "pond_depth.py"}
