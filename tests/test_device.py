@@ -101,6 +101,7 @@ def test_flags_that_may_change_bits_are_part_of_the_instruction_set(
     assert device.instruction_set() == f"{platform.machine()} {recorded}"
 
 
+@pytest.mark.slow
 @on_x86
 def test_jax_that_the_user_started_is_left_alone_and_the_run_says_so(
     run: Path, tmp_path: Path

@@ -29,8 +29,8 @@ def blocks(page: Path) -> list[tuple[str, str]]:
 
 
 def with_blocks() -> list[Any]:
-    """Return the pages that have blocks; the tutorial, which lives the longest runs, is slow."""
-    marks = {"tutorial": pytest.mark.slow}
+    """Return the pages that have blocks; those that live the longest runs are slow."""
+    marks = dict.fromkeys(("tutorial", "experiments"), pytest.mark.slow)
     return [
         pytest.param(page, id=page.stem, marks=marks.get(page.stem, ()))
         for page in PAGES

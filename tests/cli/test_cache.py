@@ -14,6 +14,7 @@ CPU = (
 )
 
 
+@pytest.mark.slow
 def test_a_command_keeps_its_compiled_code(tmp_path: Path) -> None:
     home = {"XDG_CACHE_HOME": str(tmp_path / "cache")}
     others = ("JAX_COMPILATION_CACHE", "JAX_PERSISTENT_CACHE")

@@ -119,6 +119,7 @@ def test_the_host_lives_the_same(settings: dict[str, Any], whole: Lived) -> None
     np.testing.assert_array_equal(on_host.genomes(), here.genomes())
 
 
+@pytest.mark.slow
 def test_another_kind_of_mutation_begins_with_a_fork(tmp_path: Path) -> None:
     """Notes and moments of the kind before have no meaning for it."""
     source = tmp_path / "source"
@@ -134,6 +135,7 @@ def test_another_kind_of_mutation_begins_with_a_fork(tmp_path: Path) -> None:
     assert (births.quarters[births.tick > 90] != 0).any()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["calibrated", pytest.param(RECOMBINED, marks=pytest.mark.slow)])
 def test_genomes_are_rebuilt_through_a_thousand_generations(name: str, tmp_path: Path) -> None:
     operator = {"mutation": SOME} if name == "calibrated" else OPERATORS[name]

@@ -22,7 +22,7 @@ USED = {
 """How many of so many devices a run takes: as many as divide its worlds."""
 
 
-pytestmark = pytest.mark.usefixtures("optimised")
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("optimised")]
 
 
 @pytest.fixture(scope="module")

@@ -140,6 +140,7 @@ ENVIRONMENT = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 def test_a_run_does_not_depend_on_the_environment(tmp_path: Path) -> None:
     variables = commands.environment(commands.CACHE) | ENVIRONMENT
     done = subprocess.run(

@@ -39,6 +39,7 @@ def kill_all(out: Path) -> None:
             os.kill(number, signal.SIGKILL)
 
 
+@pytest.mark.slow
 def test_jobs_end_when_their_command_is_killed(tmp_path: Path) -> None:
     """The command alone is killed: its processes write checkpoints and end by themselves."""
     out = tmp_path / "out"

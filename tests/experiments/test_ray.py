@@ -66,6 +66,7 @@ def test_a_node_that_dies_in_the_middle_changes_no_world(tmp_path: Path) -> None
     same_as_alone(out)
 
 
+@pytest.mark.slow
 def test_a_folder_that_a_node_does_not_see_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -117,6 +117,7 @@ def champion(file: Path) -> int:
     return named.id
 
 
+@pytest.mark.slow
 def test_games_and_champions_are_reported(ponged: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     results = ponged.parent / "results"
     assert "deaths in the last quarter" in Path("runs/pong/results.md").read_text()
@@ -230,6 +231,7 @@ def test_the_way_of_an_arm_to_its_targets_is_measured(monkeypatch: pytest.Monkey
     assert np.isnan(reaching.measured(senses[:15])["detour"])
 
 
+@pytest.mark.slow
 def test_robots_in_fresh_games_are_reported(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

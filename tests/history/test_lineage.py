@@ -94,6 +94,7 @@ def deep(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return run
 
 
+@pytest.mark.slow
 def test_genomes_are_rebuilt_over_hundreds_of_generations(deep: Path) -> None:
     info = primordia.Run(deep).info()
     assert info["births"] > 3_000

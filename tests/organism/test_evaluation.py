@@ -35,6 +35,7 @@ def poles(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return primordia.run("CartPole-survival", run, stop={"ticks": 3000, "until": "none"}).path
 
 
+@pytest.mark.slow
 def test_where_nothing_is_random_an_organism_lives_its_life_again(pong: Path) -> None:
     """The life has the same length, and one game is enough to show it."""
     run = Archive(pong)

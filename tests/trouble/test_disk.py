@@ -77,6 +77,7 @@ class Disk:
         return write
 
 
+@pytest.mark.slow
 def test_after_a_full_disk_at_any_write_a_run_can_be_resumed(
     half: Path, through: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

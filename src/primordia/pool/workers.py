@@ -104,7 +104,7 @@ class Workers(Pool):
             for cell in range(first, self._cells, self._count):
                 _send(worker, len(states[cell]).to_bytes(4, "little") + states[cell])
         for worker in self._workers:
-            _await_ready(worker, patience=None)  # whole lives may have to be lived again
+            _await_ready(worker, at_leisure=True)  # whole lives may have to be lived again
 
     def close(self) -> None:
         """Stop the workers."""
@@ -142,26 +142,24 @@ def _send(worker: subprocess.Popen, data: bytes) -> None:
         raise _has_ended(worker) from None
 
 
-def _await_ready(
-    worker: subprocess.Popen, times: int = 1, patience: float | None = PATIENCE
-) -> None:
+def _await_ready(worker: subprocess.Popen, times: int = 1, at_leisure: bool = False) -> None:
     """Wait until a worker has answered `times` times that it is ready; see `_receive`."""
-    if _receive(worker, times * len(READY), patience) != times * READY:
+    if _receive(worker, times * len(READY), at_leisure) != times * READY:
         raise Trouble(
             f"worker process {worker.pid} gave an answer that is not part of the protocol; resume the"
             " run from its last checkpoint"
         )
 
 
-def _receive(worker: subprocess.Popen, count: int, patience: float | None = PATIENCE) -> bytes:
-    """Return `count` bytes; without `patience`, seconds, wait as long as the worker lives."""
+def _receive(worker: subprocess.Popen, count: int, at_leisure: bool = False) -> bytes:
+    """Return `count` bytes; wait PATIENCE seconds for each, or as long as the worker lives."""
     assert worker.stdout is not None
     parts, left = [], count
     while left:
-        ready, _, _ = select.select([worker.stdout], [], [], patience)
+        ready, _, _ = select.select([worker.stdout], [], [], None if at_leisure else PATIENCE)
         if not ready:
             raise Trouble(
-                f"worker process {worker.pid} has not answered for {patience:.0f} s; resume the run"
+                f"worker process {worker.pid} has not answered for {PATIENCE:.0f} s; resume the run"
                 " from its last checkpoint"
             )
         part = os.read(worker.stdout.fileno(), left)
