@@ -2,8 +2,8 @@
 
     python benchmarks/bench.py [--json FILE] [--only SECTION,...]
 
-Sections: paper, speed, plain, live, cells, operators, atari, robots, gymnasium, jobs, campaign, cores,
-bookkeeping, shell, records.
+Sections: paper, speed, plain, live, cells, operators, atari, robots, gymnasium, gymnax, craftax, jobs,
+campaign, cores, bookkeeping, shell, records.
 
 Compare speeds within one run only. Machines differ, and one machine differs from hour to hour.
 """
@@ -16,6 +16,7 @@ import platform
 from pathlib import Path
 
 import campaigns
+import functional
 import hosted
 import jobs
 import operators
@@ -35,6 +36,8 @@ SECTIONS = {
     "atari": hosted.against_the_emulator,
     "robots": hosted.against_the_batch,
     "gymnasium": hosted.against_gymnasium,
+    "gymnax": functional.against_our_cartpole,
+    "craftax": functional.against_the_bare_loop,
     "jobs": jobs.against_bare_simulators,
     "campaign": campaigns.jobs_against_runs,
     "cores": campaigns.all_cores_against_one,

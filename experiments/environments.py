@@ -1,20 +1,23 @@
-"""Which Gymnasium environments can be lived in, how fast, how exactly, and does anything evolve?
+"""Which environments of other libraries can be lived in, how fast, how exactly, and does anything evolve?
 
     python experiments/environments.py [ENV ...]
 
-Nothing has to be run before. Of each environment, by default all classic-control, toy-text, Box2D and
-MuJoCo ones of their newest version, a task file is written (`primordia new`) and not edited. A run of it
-is killed and resumed, and must end as one that was not killed; the life of its champion is filmed. Then
+Nothing has to be run before. ENV is a name that `primordia new` takes, such as gym:Hopper-v5. By default
+all classic-control, toy-text, Box2D and MuJoCo environments of Gymnasium are tried, in their newest
+version, and those IN_JAX. Each gets a task file (`primordia new`), which is not edited. A run of it is
+killed and resumed, and must end as one that was not killed; the life of its champion is filmed. Then
 WORLDS worlds live with heredity, and as many without. The table goes to `results/` of the folder
 `environments` beside this file, as CSV and Markdown; rows of other environments stay.
 """
 
 import json
+import re
 import signal
 import subprocess
 import sys
 import tempfile
 import time
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -27,7 +30,6 @@ from primordia.api import Run
 from primordia.comparison.pace import pace
 from primordia.comparison.resample import interval, resamples
 from primordia.experiments.results import table
-from primordia.habitats.gymnasium.check import measure
 
 RESULTS = Path(__file__).parent / "environments" / "results" / "environments"
 WORLDS, CELLS, TICKS = 10, 16, 2_000
@@ -35,6 +37,19 @@ SMALL = ["--cells", "8", "--ticks", "600", "--quiet"]
 PATIENCE = 600
 """Seconds that one command may take; an environment that needs more is reported as too slow."""
 FAMILIES = ("classic_control", "toy_text", "box2d", "mujoco")
+IN_JAX = (
+    "CartPole-v1",
+    "Acrobot-v1",
+    "MountainCar-v0",
+    "MountainCarContinuous-v0",
+    "Pendulum-v1",
+    "Catch-bsuite",
+    *(
+        f"{name}-MinAtar"
+        for name in ("Asterix", "Breakout", "Freeway", "Seaquest", "SpaceInvaders")
+    ),
+    "Craftax-Classic-Symbolic-v1",
+)
 COLUMNS = {
     "env": "environment",
     "saving": "goes on by",
@@ -49,30 +64,32 @@ COLUMNS = {
 
 
 def environments() -> list[str]:
-    """Return the environments of FAMILIES, each in its newest version."""
+    """Return the environments of FAMILIES, each in its newest version, and those IN_JAX."""
     newest: dict[str, Any] = {}
     for spec in gymnasium.registry.values():
         family = str(spec.entry_point).removeprefix("gymnasium.envs.").partition(".")[0]
         of_older = newest.get(spec.name)
         if family in FAMILIES and (of_older is None or spec.version > of_older.version):
             newest[spec.name] = spec
-    return [spec.id for spec in newest.values()]
+    return [*(f"gym:{spec.id}" for spec in newest.values()), *(f"gymnax:{name}" for name in IN_JAX)]
 
 
 def report(env: str, folder: Path) -> dict[str, Any]:
     """Try an environment -> its row of the table."""
     row: dict[str, Any] = dict.fromkeys(COLUMNS, "") | {"env": env}
     file = folder / "task.toml"
-    done = command("new", file, "--env", f"gym:{env}")
+    done = command("new", file, "--env", env)
     if done.returncode:
         return row | {"note": done.stderr.strip().removeprefix("primordia: ")}
-    found = measure(env, {}, ())
-    row |= {"saving": found.saving, "note": "; ".join(found.faults)}
+    text = file.read_text(encoding="utf-8")
+    faults = re.findall("^# Found: (.*)[.]$", text.replace("\n#   ", " "), re.MULTILINE)
+    saving = tomllib.loads(text)["habitat"].get("saving", "snapshot")
+    row |= {"saving": saving, "note": "; ".join(faults)}
     try:
         row["resumed"] = "equal" if same_after_a_kill(file, folder) else "NOT EQUAL"
         filmed = command("replay", folder / "whole", "--out", folder / "life.mp4", "--to", 100)
         row["filmed"] = "yes" if filmed.returncode == 0 else filmed.stderr.strip()
-        if not found.ended:
+        if "Random actions live" not in text:
             return row | {"note": "no life ends in random play, so its task needs another `fatal`"}
         return row | evolved(file, folder)
     except subprocess.TimeoutExpired:

@@ -49,7 +49,7 @@ def test_each_task_lives_as_it_did(name: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("file", plays.NAMES)
 def test_each_task_is_played_as_it_was(file: str) -> None:
     habitat = plays.settings_of(file)["habitat"]
-    packages = {"atari": "ale_py", "mujoco": "mujoco", "gymnasium": "Box2D"}
+    packages = {"atari": "ale_py", "mujoco": "mujoco", "gymnasium": "Box2D", "gymnax": "craftax"}
     package = packages.get(habitat["name"])
     if package is not None:
         pytest.importorskip(package)

@@ -119,3 +119,28 @@ def execute(words: list[str], folder: Path) -> "subprocess.CompletedProcess[str]
         text=True,
         check=False,
     )
+
+
+def test_an_environment_in_jax_is_lived_in_by_its_name_alone(tmp_path: Path) -> None:
+    walk, run, whole = "gymnax:tests.walks:Choice", tmp_path / "run", tmp_path / "whole"
+    assert (
+        here("run", walk, "--out", run, "--quiet", "--cells", "6", "--ticks", "40").returncode == 0
+    )
+    assert here("resume", run, "--ticks", "90", "--quiet").returncode == 0
+    assert (
+        here("run", walk, "--out", whole, "--quiet", "--cells", "6", "--ticks", "90").returncode
+        == 0
+    )
+    assert digest_of(run) == digest_of(whole)
+    assert here("verify", run).returncode == 0
+    assert here("replay", run, "--out", tmp_path / "life.gif").returncode == 0
+    assert (tmp_path / "life.gif").stat().st_size > 1000
+
+
+def test_what_is_wrong_with_an_environment_in_jax_is_found() -> None:
+    fine = here("check", "gymnax:tests.walks:Choice")
+    assert fine.returncode == 0
+    assert "Random actions live 9 ticks on average." in fine.stdout
+    wrong = here("check", "gymnax:tests.walks:Overwriting")
+    assert wrong.returncode == 1
+    assert "Found: step changes the state that it is given." in wrong.stdout

@@ -17,7 +17,7 @@ def new(file: Path, env: str) -> None:
     """Write FILE.toml, a task in an environment of another library, with comments on what can be changed.
 
     The settings come from the environment's own spaces and from random play. ENV is gym:NAME, or
-    gym:MODULE:NAME if a module must be imported first.
+    gym:MODULE:NAME if a module must be imported first; or gymnax:NAME, or gymnax:MODULE:CLASS.
     """
     from primordia.settings import doors
 
@@ -38,9 +38,31 @@ def check(env: str) -> None:
     from primordia.settings import doors
 
     facts, faults = doors.report(env)
+    faults += _broken_contract(env)
     click.echo("\n".join([*facts, *(f"Found: {fault}." for fault in faults)]))
     if faults:
         raise SystemExit(1)
+
+
+def _broken_contract(env: str) -> list[str]:
+    """Return what an environment in JAX does against the contract of habitats."""
+    import warnings
+
+    from primordia.config import load
+    from primordia.habitats.contract import JaxHabitat
+    from primordia.settings import doors
+    from primordia.testing import ContractError, check_habitat
+
+    habitat = load(doors.full(env)).build_habitat()
+    if not isinstance(habitat, JaxHabitat):
+        return []
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            check_habitat(habitat)
+    except ContractError as error:
+        return [str(error)]
+    return []
 
 
 COMMANDS = (new, check)

@@ -57,8 +57,8 @@ def run(
     """Evolve in a new run directory.
 
     TASK is one of `primordia tasks`; a FILE.toml names a `task` and the settings that differ from it;
-    gym:NAME is an environment of Gymnasium. Any setting below can be given as a flag, such as --seed 3,
-    --cells 64 or --mutation.scale 0.02.
+    gym:NAME is an environment of Gymnasium, and gymnax:NAME one in JAX. Any setting below can be given
+    as a flag, such as --seed 3, --cells 64 or --mutation.scale 0.02.
     """
     from primordia import api, config
 

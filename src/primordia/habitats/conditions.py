@@ -39,16 +39,16 @@ COMPARISONS = {
     ast.NotEq: operator.ne,
 }
 FUNCTIONS = {
-    "abs": (np.abs, 1),
-    "cos": (np.cos, 1),
-    "sin": (np.sin, 1),
-    "min": (np.minimum, 2),
-    "max": (np.maximum, 2),
+    "abs": ("abs", 1),
+    "cos": ("cos", 1),
+    "sin": ("sin", 1),
+    "min": ("minimum", 2),
+    "max": ("maximum", 2),
 }
-"""Elementwise functions of amounts or lists, and their numbers of arguments."""
+"""Elementwise functions of amounts or lists: NumPy's and JAX's name, and the number of arguments."""
 REDUCTIONS = {
     "sum": lambda numbers: numbers.sum(axis=1),
-    "norm": lambda numbers: np.sqrt((numbers * numbers).sum(axis=1)),
+    "norm": lambda numbers: _library(numbers).sqrt((numbers * numbers).sum(axis=1)),
 }
 """Functions of one list that return an amount."""
 LONGEST, DEEPEST = 10_000, 100
@@ -282,7 +282,7 @@ class _Reader:
             unary = ", ".join(f"{function}(a)" for function in (*REDUCTIONS, "abs", "cos", "sin"))
             raise self._error(node, f"the functions are {unary}, min(a, b) and max(a, b)")
         kind, parts = self._read_operands(node.args)
-        return kind, lambda values: act(*(part(values) for part in parts))
+        return kind, _elementwise(act, parts)
 
     def _reduction(self, name: str, node: ast.expr) -> Compute:
         kind, inner = self.read(node)
@@ -295,9 +295,28 @@ class _Reader:
         return ValueError(f"{shown(self._text)}, column {node.col_offset + 1}: {message}")
 
 
-def _as_float(numbers: np.ndarray) -> np.ndarray:
-    """Return integers as float64, in which products of counts do not wrap, and floats unchanged."""
-    return numbers.astype(np.float64) if numbers.dtype.kind in "iu" else numbers
+def _library(*numbers: Any) -> Any:
+    """Return the module whose functions take these numbers: numpy, or jax.numpy for arrays of JAX."""
+    arrays = [each for each in numbers if isinstance(each, np.ndarray) or not np.isscalar(each)]
+    return arrays[0].__array_namespace__() if arrays else np
+
+
+def _elementwise(name: str, parts: list[Compute]) -> Compute:
+    def compute(values: Values) -> Any:
+        numbers = [part(values) for part in parts]
+        return getattr(_library(*numbers), name)(*numbers)
+
+    return compute
+
+
+def _as_float(numbers: Any) -> Any:
+    """Return integers as float64, in which products of counts do not wrap, and floats unchanged.
+
+    JAX has no float64 here: its integers become float32, in which counts are exact up to 2^24.
+    """
+    if numbers.dtype.kind not in "iu":
+        return numbers
+    return numbers.astype(np.float64 if isinstance(numbers, np.ndarray) else np.float32)
 
 
 def _as_column(amount: Compute) -> Compute:

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 KNOWN = {
     "cartpole": "primordia.habitats.cartpole.habitat:CartPole",
     "atari": "primordia.habitats.atari.habitat:Atari",
+    "gymnax": "primordia.habitats.gymnax.habitat:Gymnax",
     "mujoco": "primordia.habitats.mujoco.habitat:MuJoCo",
     "gymnasium": "primordia.habitats.gymnasium.habitat:Gymnasium",
 }

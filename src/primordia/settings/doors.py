@@ -1,11 +1,18 @@
 """Doors: tasks that are made from the name of an environment alone, such as `gym:LunarLander-v3`."""
 
+from textwrap import fill
 from typing import Any
+
+import tomli_w
 
 from primordia.settings import parts
 
-DOORS = {"gym": "primordia.habitats.gymnasium.task"}
-"""Module of each door, by the word before the colon. It has functions `values`, `text` and `report`."""
+DOORS = {"gym": "primordia.habitats.gymnasium.task", "gymnax": "primordia.habitats.gymnax.task"}
+"""Module of each door, by the word before the colon. It has functions `values` and `report`."""
+LEAST, MOST = 0.001, 0.5
+"""Bounds of the probability to replicate that is chosen."""
+WIDTH = 100
+"""Columns of comments."""
 DEFAULT = "gym"
 """The door of a name without one, where a name can be nothing else than an environment's."""
 
@@ -13,6 +20,11 @@ DEFAULT = "gym"
 def is_door(task: str) -> bool:
     """Return whether a task is the name of an environment behind a door."""
     return task.partition(":")[0] in DOORS and ":" in task
+
+
+def full(env: str) -> str:
+    """Return the name of an environment with that of its door."""
+    return env if is_door(env) else f"{DEFAULT}:{env}"
 
 
 def values(task: str) -> dict[str, Any]:
@@ -24,9 +36,28 @@ def values(task: str) -> dict[str, Any]:
     return _through("values", task)
 
 
+def replication(lifespan: float) -> float:
+    """Return a probability to replicate in a tick for a mean life of random actions, in ticks.
+
+    An organism replicates about once in such a life, since the paper makes the probability "loosely
+    proportional to the average lifespan of the initial organisms".
+    """
+    return round(min(max(1 / max(lifespan, 1), LEAST), MOST), 4)
+
+
 def text(env: str) -> str:
     """Return a commented TOML file of a task in an environment; see `values`."""
-    return _through("text", env)
+    (facts, faults), table = report(env), values(full(env))
+    fatal = table["habitat"]["fatal"]
+    lines = [
+        f"{env}: `primordia run FILE` lives in it; change what you like.",
+        *facts,
+        *(f"Found: {fault}." for fault in faults),
+        f"fatal is a condition that ends a life, such as: {fatal} or obs[0] < -1.",
+        "food is an amount, such as: max(reward, 0); it needs a [metabolism] with store, drain and gain.",
+    ]
+    comments = [fill(line, WIDTH, initial_indent="# ", subsequent_indent="#   ") for line in lines]
+    return "\n".join([*comments, "", tomli_w.dumps(table)])
 
 
 def report(env: str) -> tuple[list[str], list[str]]:
@@ -35,5 +66,5 @@ def report(env: str) -> tuple[list[str], list[str]]:
 
 
 def _through(what: str, env: str) -> Any:
-    door, _, name = env.partition(":") if is_door(env) else (DEFAULT, "", env)
+    door, _, name = full(env).partition(":")
     return parts.load("door", f"{DOORS[door]}:{what}", {})(name)

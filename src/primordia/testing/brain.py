@@ -7,8 +7,9 @@ from jax import Array, lax
 
 from primordia.brains.contract import Brain, Genome
 from primordia.errors import InputError
+from primordia.random.trials import normal
 from primordia.testing.report import ROUNDED, ContractError, advise, need, same, typed
-from primordia.testing.trial import ALL, COUNTS, last, normal
+from primordia.testing.trial import ALL, COUNTS, last
 
 TICKS = 6
 

@@ -20,8 +20,9 @@ from primordia.habitats.contract import (
     Outcome,
 )
 from primordia.habitats.on_host import OnHost
+from primordia.random.trials import normal, words
 from primordia.testing.report import ContractError, need, typed
-from primordia.testing.trial import ALL, normal, words
+from primordia.testing.trial import ALL
 
 TICKS = 12
 HALF = TICKS // 2

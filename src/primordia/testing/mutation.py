@@ -13,10 +13,11 @@ from primordia.brains.layout import Layout
 from primordia.law.events import BIRTHS
 from primordia.mutations.contract import PURPOSES, Change, Draws, Family, Mutation
 from primordia.random.keys import streams
+from primordia.random.trials import normal, words
 from primordia.random.wide import wide
 from primordia.settings.fields import rates_of
 from primordia.testing.report import ROUNDED, ContractError, advise, need, same, typed
-from primordia.testing.trial import ALL, COUNTS, last, normal, words
+from primordia.testing.trial import ALL, COUNTS, last
 
 LAYOUT = Layout((("input", (3, 7)), ("recurrent", (7, 7)), ("output", (2, 7))))
 """What mutations are checked with unless another layout is given: the blocks of the default brain."""

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from primordia.errors import InputError
+from primordia.settings.doors import replication
 
 PLAIN = 5.0
 """Observations without bounds that stay below this in random play are perceived as they are."""
@@ -14,35 +15,15 @@ SAVING = {
     "replay": "After an interruption lives are lived again from their seed and actions, exactly",
     "restart": "After an interruption lives cannot go on exactly",
 }
-LEAST, MOST = 0.001, 0.05
-"""Bounds of the probability to replicate that is chosen."""
 
 
 def values(env: str) -> dict[str, Any]:
     """Return the settings of a task in an environment, as nested tables.
 
-    An organism replicates about once in the mean life of random actions, since the paper makes the
-    probability "loosely proportional to the average lifespan of the initial organisms".
-
     Raises:
         InputError: Gymnasium is not installed, or the environment cannot be used; the message says why.
     """
     return _measured(env)[0]
-
-
-def text(env: str) -> str:
-    """Return a commented TOML file of the task; see `values`."""
-    import tomli_w
-
-    table, facts, faults = _measured(env)
-    lines = [
-        f"Gymnasium's {env}. `primordia run FILE` lives in it; change what you like.",
-        *facts,
-        *(f"Found: {fault}." for fault in faults),
-        "fatal is a condition that ends a life, such as: terminated or obs[0] < -1.",
-        "food is an amount, such as: max(reward, 0); it needs a [metabolism] with store, drain and gain.",
-    ]
-    return "".join(f"# {line}\n" for line in lines) + "\n" + tomli_w.dumps(table)
 
 
 def report(env: str) -> tuple[list[str], list[str]]:
@@ -76,7 +57,7 @@ def _measured(env: str) -> tuple[dict[str, Any], list[str], list[str]]:
         "task": name,
         "about": f"Gymnasium's {env}: live until it terminates",
         "genesis": "fill",
-        "replication": round(float(np.clip(1 / max(found.lifespan, 1), LEAST, MOST)), 4),
+        "replication": replication(found.lifespan),
         "habitat": {
             "name": "gymnasium",
             "env": env,

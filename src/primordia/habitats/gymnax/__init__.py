@@ -1,0 +1,1 @@
+"""Environments with the interface of gymnax: gymnax, Craftax, Octax, and your own."""

@@ -1,0 +1,101 @@
+"""What can be relied upon in an environment, measured in lives of random actions."""
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array, lax
+
+from primordia.habitats.contract import Discrete
+from primordia.habitats.gymnax.habitat import Body, Gymnax
+from primordia.random import trials
+
+BODIES, TICKS = 32, 500
+"""Lives, and the ticks of each at most."""
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What was found out about an environment."""
+
+    lifespan: float
+    """mean ticks of the lives; those that did not end count as they are"""
+    ended: int
+    """lives that the environment ended"""
+    largest: np.ndarray
+    """largest size of each number of the observation, float32 (S,)"""
+    faults: list[str]
+    """what is wrong, a sentence each"""
+
+
+class _Seen(NamedTuple):
+    """What was seen in a tick, of the living."""
+
+    alive: Array
+    """before the tick, bool (N,)"""
+    done: Array
+    """bool (N,)"""
+    largest: Array
+    """float32 (S,)"""
+    inside: Array
+    """whether all observations are in their space, bool ()"""
+    finite: Array
+    rewarded: Array
+    """whether all rewards are finite, bool ()"""
+
+
+def measure(habitat: Gymnax) -> Measured:
+    """Let bodies act at random, and trace the environment's functions twice."""
+    words = trials.words(0, BODIES, habitat.words)
+    seen = jax.tree.map(
+        np.asarray, jax.jit(_lived, static_argnums=0)(habitat, words, _actions(habitat))
+    )
+    wrong = {
+        "an observation is not finite": not seen.finite.all(),
+        "an observation is outside the declared space": not seen.inside.all(),
+        "a reward is not finite": not seen.rewarded.all(),
+        "step changes the state that it is given": habitat.simulator.changes_state(),
+        "its functions are others when they are traced again: they draw from outside JAX, or keep"
+        " something between calls": not habitat.simulator.repeats(),
+    }
+    return Measured(
+        lifespan=seen.alive.sum(axis=0).mean(),
+        ended=int((seen.alive & seen.done).any(axis=0).sum()),
+        largest=seen.largest.max(axis=0),
+        faults=[line for line, holds in wrong.items() if holds],
+    )
+
+
+def _lived(habitat: Gymnax, words: Array, actions: Array) -> _Seen:
+    """Return what was seen in each tick of lives from words uint32 (N, 2)."""
+
+    def tick(carry: tuple[Body, Array], action: Array) -> tuple[tuple[Body, Array], _Seen]:
+        bodies, alive = carry
+        bodies, values = habitat.tick(bodies, action)
+        seen = _seen(habitat, values, alive)
+        return (bodies, alive & ~seen.done), seen
+
+    return lax.scan(tick, (habitat.reset(words), jnp.ones(len(words), bool)), actions)[1]
+
+
+def _seen(habitat: Gymnax, values: dict[str, Any], alive: Array) -> _Seen:
+    observed = jnp.where(alive[:, None], values["obs"], 0)
+    reward = jnp.where(alive, values["reward"], 0)
+    return _Seen(
+        alive,
+        values["done"],
+        jnp.abs(observed).max(axis=0),
+        (habitat.senses.declared(values["obs"]) | ~alive).all(),
+        jnp.isfinite(observed).all(),
+        jnp.isfinite(reward).all(),
+    )
+
+
+def _actions(habitat: Gymnax) -> np.ndarray:
+    """Return what brains put out at random, int32 (TICKS, BODIES) or float32 (TICKS, BODIES, size)."""
+    kind = habitat.action
+    if isinstance(kind, Discrete):
+        return (trials.words(1, TICKS, BODIES) % np.uint32(kind.size)).astype(np.int32)
+    return trials.normal(1, TICKS, BODIES, kind.size)

@@ -1,0 +1,221 @@
+"""Any environment with the interface of gymnax as a habitat, fused with the law.
+
+The key of a tick is made of the words of the body's birth and its age, so a life depends on nothing
+else. The environment never resets itself, and its own time limit ends no life unless it is kept.
+"""
+
+import json
+from collections.abc import Callable
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+from pydantic import Field, model_validator
+
+from primordia.habitats import conditions
+from primordia.habitats.conditions import Expression, Names
+from primordia.habitats.contract import Continuous, Discrete, JaxHabitat, Outcome
+from primordia.habitats.gymnax import simulator
+from primordia.habitats.gymnax.packed import Packed, pack
+from primordia.habitats.gymnax.rounded import rounded, uses_first
+from primordia.habitats.gymnax.simulator import Simulator, Step
+from primordia.habitats.gymnax.spaces import Actions, Senses, flattened
+from primordia.random.keys import encrypt
+from primordia.random.wide import Wide, zero
+from primordia.settings.base import Settings
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+
+class Body(NamedTuple):
+    """Bodies: the environment's states, what they sense, the words of their births, and their ages.
+
+    Where nothing is drawn after a birth, ages stay zero.
+    """
+
+    packed: Packed
+    root: Wide
+    age: Wide
+
+
+class Gymnax(JaxHabitat, Settings):
+    """An environment of gymnax, Craftax or Octax, or one of your own, as a habitat."""
+
+    words: ClassVar = 2
+
+    env: str = Field(
+        min_length=1,
+        description="an environment of gymnax or Craftax, octax:NAME, or module:Class",
+    )
+    params: dict[str, Any] = Field(
+        {}, description="parameters of the environment that are replaced"
+    )
+    time_limit: bool = Field(False, description="true: the environment's own time limit ends lives")
+    fatal: str = Field("done", description='condition that ends a life; "": none does')
+    food: str = Field(
+        "", description="amount gathered in a tick, such as reward; left out: none is"
+    )
+    squash: bool = Field(False, description="true: a sense x without bounds is x / (1 + |x|)")
+
+    rate: float = Field(20.0, gt=0, description="ticks in a second of videos")
+
+    def __hash__(self) -> int:
+        return hash(self.model_dump_json())
+
+    @model_validator(mode="after")
+    def _check_settings(self) -> "Gymnax":
+        assert self._actions
+        assert self.senses
+        assert self._fatal_condition or not self.fatal
+        assert self._food_amount or not self.food
+        return self
+
+    @cached_property
+    def simulator(self) -> Simulator:
+        """The environment."""
+        return simulator.simulator(
+            self.env, json.dumps(self.params, sort_keys=True), self.time_limit
+        )
+
+    @cached_property
+    def _actions(self) -> Actions:
+        return Actions(self.simulator.action_space, self.env)
+
+    @cached_property
+    def senses(self) -> Senses:
+        """How observations become senses."""
+        space, example = self.simulator.observation_space, self.simulator.example.observation
+        return Senses(space, example, self.squash)
+
+    @cached_property
+    def names(self) -> Names:
+        """The kinds of all that expressions can name."""
+        return _kind(jax.eval_shape(_values, self.simulator.example))
+
+    @cached_property
+    def _fatal_condition(self) -> Expression | None:
+        return conditions.parse(self.fatal, "condition", self.names) if self.fatal else None
+
+    @cached_property
+    def _food_amount(self) -> Expression | None:
+        return conditions.parse(self.food, "amount", self.names) if self.food else None
+
+    @property
+    def versions(self) -> dict[str, str]:
+        """Versions of the environment's library, and of flax, which it is made with."""
+        return simulator.versions(self.env)
+
+    @property
+    def senses_size(self) -> int:
+        """Number of senses."""
+        return self.senses.size
+
+    @property
+    def action(self) -> Discrete | Continuous:
+        """Actions of the environment."""
+        return self._actions.kind
+
+    def original(self) -> "Gymnax":
+        """Return the environment as it is scored: food is the reward, and its time limit holds."""
+        changed = {"time_limit": True, "fatal": "done", "food": "reward"}
+        return Gymnax(**{**self.model_dump(), **changed})
+
+    def picture(self, body: Body, action: np.ndarray) -> "Image":
+        """Return a picture of what the body senses."""
+        from primordia.habitats.gymnax.picture import draw
+
+        return draw(np.asarray(body.packed.senses(self.senses_size)), self.senses.grid)
+
+    def reset(self, words: Array) -> Body:
+        """Return bodies from words uint32 (N, 2)."""
+        root, age = Wide(words[:, 0], words[:, 1]), zero(words.shape[:1])
+        return Body(self._mapped(self._birth, root, _key(root, age)), root, age)
+
+    def sense(self, bodies: Body) -> Array:
+        """Return what bodies sense, float32 (N, senses_size)."""
+        return bodies.packed.senses(self.senses_size)
+
+    def step(self, bodies: Body, action: Array) -> tuple[Body, Outcome]:
+        """Step bodies by one tick."""
+        bodies, values = self.tick(bodies, action)
+        count, condition, amount = len(action), self._fatal_condition, self._food_amount
+        fatal = condition.of_all(values, count, bool) if condition else jnp.zeros(count, bool)
+        food = amount.of_all(values, count, np.float32) if amount else None
+        return bodies, Outcome(fatal, food)
+
+    def tick(self, bodies: Body, action: Array) -> tuple[Body, dict[str, Any]]:
+        """Return bodies after a tick, and all that expressions can name, of each."""
+        one = Wide(jnp.uint32(0), jnp.uint32(1))
+        age = bodies.age + one if self._draws else bodies.age
+        key = _key(bodies.root, age)
+        packed, values = self._mapped(self._tick, bodies.root, key, bodies.packed, action)
+        return Body(packed, bodies.root, age), values
+
+    @cached_property
+    def _draws(self) -> bool:
+        """Whether a tick draws random numbers."""
+        kind = self.action
+        shape, dtype = (
+            ((), jnp.int32) if isinstance(kind, Discrete) else ((kind.size,), jnp.float32)
+        )
+        output = jax.ShapeDtypeStruct(shape, dtype)
+        with simulator.traced():
+            packed = jax.eval_shape(self._birth, simulator.KEY)
+            return uses_first(self._tick, simulator.KEY, packed, output)
+
+    def _mapped(self, function: Callable, root: Wide, *arguments: Any) -> Any:
+        """Map a function of one body, with each product rounded."""
+        # The product of two neighbours is even, so this is zero; compilers do not know it.
+        unknown_zero = root.lo * (root.lo + np.uint32(1)) & np.uint32(1)
+        with simulator.traced():
+            mapped: Callable = jax.vmap(lambda unknown, *each: rounded(function, unknown)(*each))
+            return mapped(unknown_zero, *arguments)
+
+    def _birth(self, key: Array) -> Packed:
+        """Return one body's senses and state at birth."""
+        observation, state = self.simulator.reset(key)
+        return pack(self.senses.of(observation), state)
+
+    def _tick(self, key: Array, packed: Packed, output: Array) -> tuple[Packed, dict[str, Any]]:
+        """Return one body's senses and state after a tick, and the values of all names."""
+        state = packed.state(self.senses_size, self.simulator.example.state)
+        stepped = self.simulator.step(key, state, self._actions.of(output))
+        return pack(self.senses.of(stepped.observation), stepped.state), _values(stepped)
+
+
+def _values(stepped: Step) -> dict[str, Any]:
+    """Return the quantities that expressions can name, of one body."""
+    return {
+        "obs": flattened(stepped.observation),
+        "reward": stepped.reward,
+        "done": stepped.done,
+        "info": _parts(stepped.info),
+        "state": _parts(stepped.state),
+    }
+
+
+def _kind(value: Any) -> Any:
+    """Return the kind of a quantity of one body; of one with parts, the kind of each."""
+    if isinstance(value, dict):
+        return {name: _kind(each) for name, each in value.items()}
+    if value.shape:
+        return value.shape[0]
+    return "condition" if value.dtype == bool else "amount"
+
+
+def _parts(tree: Any) -> dict[str, Array]:
+    """Return the numbers of a tree by dotted name, arrays as (K,)."""
+    named = jax.tree_util.tree_leaves_with_path(tree)
+    return {
+        jax.tree_util.keystr(path, simple=True, separator="."): leaf.ravel() if leaf.shape else leaf
+        for path, leaf in ((path, jnp.asarray(leaf)) for path, leaf in named)
+    }
+
+
+def _key(root: Wide, age: Wide) -> Array:
+    """Return the keys, uint32 (N, 2), of bodies of an age: those of JAX's `fold_in`."""
+    return jnp.stack(encrypt(root, age), axis=1)

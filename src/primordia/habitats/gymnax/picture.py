@@ -1,0 +1,44 @@
+"""Pictures of what bodies sense: a grid in colours, one for each channel, or a bar for each sense."""
+
+import colorsys
+
+import numpy as np
+from PIL import Image, ImageDraw
+
+from primordia.habitats.framed import PAPER, framed
+
+WIDTH = 400
+"""pixels, at least"""
+GROUND = np.array([24, 26, 32])
+BAR, AXIS = "#23395b", "#8a8a8a"
+
+
+def draw(senses: np.ndarray, grid: tuple[int, ...] | None) -> Image.Image:
+    """Return a picture of senses (S,), which are a grid (height, width, channels) if one is given."""
+    return framed(_coloured(senses.reshape(grid)) if grid else _bars(senses))
+
+
+def _coloured(cells: np.ndarray) -> Image.Image:
+    """Return the grid; the last channel that is not zero in a cell gives its colour."""
+    height, width, channels = cells.shape
+    picture = np.broadcast_to(GROUND, (height, width, 3)).copy()
+    for channel in range(channels):
+        share = np.clip(cells[:, :, channel], 0, 1)[:, :, None]
+        colour = 255 * np.array(colorsys.hsv_to_rgb(channel / channels, 0.65, 0.95))
+        picture = np.where(share > 0, GROUND + share * (colour - GROUND), picture)
+    zoom = max(WIDTH // width, 1)
+    large = Image.fromarray(picture.astype(np.uint8))
+    return large.resize((width * zoom, height * zoom), Image.Resampling.NEAREST)
+
+
+def _bars(senses: np.ndarray) -> Image.Image:
+    """Return a bar from the middle for each sense, up to -1 or 1."""
+    width, half = max(len(senses), WIDTH), WIDTH // 4
+    picture = Image.new("RGB", (width, 2 * half), PAPER)
+    pen, each = ImageDraw.Draw(picture), width / len(senses)
+    for place, sense in enumerate(np.clip(np.nan_to_num(senses), -1, 1)):
+        top, bottom = sorted((half, half - round(float(sense) * (half - 4))))
+        left, right = round(place * each), max(round((place + 0.8) * each) - 1, round(place * each))
+        pen.rectangle((left, top, right, bottom), fill=BAR)
+    pen.line((0, half, width, half), fill=AXIS)
+    return picture

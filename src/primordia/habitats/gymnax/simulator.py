@@ -1,0 +1,297 @@
+"""Environments by name, each as pure functions of one body: reset and step, without resets of their own.
+
+An environment has the interface of gymnax: `default_params`, `reset_env(key, params)`,
+`step_env(key, state, action, params)`, `action_space(params)` and `observation_space(params)`. One of
+your own is named as `module:Class`, or `module:function` that returns it.
+"""
+
+import dataclasses
+import json
+import re
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, redirect_stdout
+from dataclasses import is_dataclass
+from functools import cache, cached_property, lru_cache, partial
+from importlib import import_module
+from importlib.metadata import version
+from io import StringIO
+from pkgutil import iter_modules
+from typing import Any, NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from primordia import device, own_code
+from primordia.settings.tables import did_you_mean
+
+LIBRARIES = ("gymnax", "craftax", "octax")
+CRAFTAX = (
+    "Craftax-Classic-Symbolic-v1",
+    "Craftax-Symbolic-v1",
+    "Craftax-Classic-Pixels-v1",
+    "Craftax-Pixels-v1",
+)
+TIME_LIMITS = ("max_steps_in_episode", "max_timesteps")
+"""Parameters after whose number of steps an environment ends, whatever happens in it."""
+NEVER = 2**31 - 1
+ADDRESS = re.compile("0x[0-9a-f]+")
+"""Where in memory a function is, which JAX shows of some."""
+
+
+class Step(NamedTuple):
+    """What a tick does to a body."""
+
+    observation: Any
+    state: Any
+    reward: Array
+    """float32 ()"""
+    done: Array
+    """bool (): the environment has ended, by its time limit only if that is kept"""
+    info: Any
+
+
+class Simulator:
+    """One environment with its parameters. Its functions are of one body and can be mapped over many."""
+
+    def __init__(self, env: Any, params: Any, time_limit: bool) -> None:
+        self.env, self.params = env, params
+        self._truncates = time_limit and hasattr(env, "is_truncated")
+
+    @property
+    def limits(self) -> list[str]:
+        """The parameters that are the environment's own time limits."""
+        return [each for each in TIME_LIMITS if hasattr(self.params, each)]
+
+    @property
+    def action_space(self) -> Any:
+        """The space of actions."""
+        with jax.ensure_compile_time_eval():
+            return self.env.action_space(self.params)
+
+    @property
+    def observation_space(self) -> Any:
+        """The space of observations; None if the environment does not state it."""
+        try:
+            with jax.ensure_compile_time_eval():
+                return self.env.observation_space(self.params)
+        except (AttributeError, NotImplementedError):
+            return None
+
+    def reset(self, key: Array) -> tuple[Any, Any]:
+        """Return the first observation and state for a key uint32 (2,)."""
+        observation, state = self.env.reset_env(key, self.params)
+        return observation, self._typed(state)
+
+    def step(self, key: Array, state: Any, action: Array) -> Step:
+        """Return what a tick does for a key uint32 (2,) and an action of the environment's space."""
+        observation, state, reward, done, info = self._step(key, state, action)
+        if self._truncates:
+            done = jnp.asarray(done) | self.env.is_truncated(state, self.params)
+        reward, done = jnp.asarray(reward, jnp.float32), jnp.asarray(done, bool)
+        return Step(observation, self._typed(state), reward, done, info)
+
+    @cached_property
+    def example(self) -> Step:
+        """Shapes and types of what `step` returns."""
+        with traced():
+            return jax.eval_shape(self.step, KEY, self._state, self._action)
+
+    @property
+    def _action(self) -> jax.ShapeDtypeStruct:
+        space = self.action_space
+        return jax.ShapeDtypeStruct(getattr(space, "shape", ()), getattr(space, "dtype", jnp.int32))
+
+    @cached_property
+    def _state(self) -> Any:
+        """Shapes of the state, and types that hold it both at birth and later."""
+        with traced():
+            born = jax.eval_shape(lambda key: self.env.reset_env(key, self.params), KEY)[1]
+            later = jax.eval_shape(self._step, KEY, born, self._action)[1]
+        trees: list[Any] = [jax.tree.structure(each) for each in (born, later)]
+        if trees[0] != trees[1] or any(
+            a.shape != b.shape for a, b in zip(*map(jax.tree.leaves, (born, later)), strict=True)
+        ):
+            raise ValueError("env: its state has another form after a step than after a reset")
+        return jax.tree.map(
+            lambda a, b: jax.ShapeDtypeStruct(a.shape, jnp.promote_types(a.dtype, b.dtype)),
+            born,
+            later,
+        )
+
+    def _step(self, key: Any, state: Any, action: Any) -> tuple[Any, Any, Any, Any, Any]:
+        return self.env.step_env(key, state, action, self.params)
+
+    def repeats(self) -> bool:
+        """Return whether its functions are the same when JAX traces them again."""
+        before = self._traced()
+        jax.clear_caches()
+        return self._traced() == before
+
+    def _traced(self) -> tuple[str, list[bytes]]:
+        def both(key: Any, state: Any, action: Any) -> Any:
+            return self.env.reset_env(key, self.params), self._step(key, state, action)
+
+        with traced():
+            found = jax.make_jaxpr(both)(KEY, self._state, self._action)
+        return ADDRESS.sub("", str(found)), [np.asarray(each).tobytes() for each in found.consts]
+
+    def changes_state(self) -> bool:
+        """Return whether a step changes the state that it is given."""
+        held: list[list[Any]] = []
+
+        def step(key: Any, state: Any, action: Any) -> Any:
+            held.append(jax.tree.leaves(state))
+            stepped = self._step(key, state, action)
+            held.append(jax.tree.leaves(state))
+            return stepped
+
+        with traced():
+            jax.eval_shape(step, KEY, self._state, self._action)
+        before, after = held
+        return len(before) != len(after) or any(
+            a is not b for a, b in zip(before, after, strict=True)
+        )
+
+    def _typed(self, state: Any) -> Any:
+        return jax.tree.map(lambda a, to: jnp.asarray(a).astype(to.dtype), state, self._state)
+
+
+KEY = jax.ShapeDtypeStruct((2,), jnp.uint32)
+
+
+@contextmanager
+def traced() -> Iterator[None]:
+    """Let JAX make and split keys in one way, whatever the user has set; and keep warnings to itself."""
+    with (
+        jax.threefry_partitionable(True),
+        jax.default_prng_impl("threefry2x32"),
+        warnings.catch_warnings(),
+    ):
+        warnings.simplefilter("ignore")
+        yield
+
+
+@lru_cache(maxsize=64)
+def simulator(name: str, params: str, time_limit: bool) -> Simulator:
+    """Return the environment of a name, with some parameters replaced (JSON).
+
+    Raises:
+        ValueError: there is no such environment or parameter, or its library is not installed.
+    """
+    device.prepare()
+    env = _make(name, time_limit)
+    return Simulator(env, _params(env, name, json.loads(params), time_limit), time_limit)
+
+
+def package_of(name: str) -> str:
+    """Return the package that an environment's name is looked for in."""
+    package, colon, _ = name.partition(":")
+    if colon:
+        return package
+    return "craftax" if name.startswith("Craftax") else "gymnax"
+
+
+def _make(name: str, time_limit: bool) -> Any:
+    package, wanted = package_of(name), name.rpartition(":")[2]
+    makers: dict[str, Callable[[str], Any]] = {
+        "gymnax": _of_gymnax,
+        "craftax": _of_craftax,
+        "octax": partial(_of_octax, time_limit=time_limit),
+    }
+    if package not in makers:
+        return _own(name)
+    try:
+        with traced(), redirect_stdout(StringIO()):  # Craftax says where its textures are from
+            return makers[package](wanted)
+    except ImportError as error:
+        raise ValueError(
+            f"env: {name} needs {package}: pip install 'primordia[{package}]' ({error})"
+        ) from None
+
+
+def _of_gymnax(name: str) -> Any:
+    gymnax = import_module("gymnax")
+    _check_known(name, gymnax.registered_envs, "gymnax")
+    try:
+        return gymnax.make(name)[0]
+    except OSError as error:
+        raise ValueError(f"env: {name} cannot be made: {error}") from None
+
+
+def _of_craftax(name: str) -> Any:
+    _check_known(name, CRAFTAX, "craftax")
+    return import_module("craftax.craftax_env").make_craftax_env_from_name(name, auto_reset=False)
+
+
+def _of_octax(name: str, time_limit: bool) -> Any:
+    games = import_module("octax.environments")
+    stem = name.replace("-", "_").rstrip("0123456789")
+    known = [each.name for each in iter_modules(games.__path__)]
+    _check_known(stem, known, "octax")
+    limits = {} if time_limit else {"max_num_steps_per_episodes": NEVER}
+    env = games.create_environment(name, **limits)[0]
+    return import_module("octax.wrappers").OctaxGymnaxWrapper(env)
+
+
+def _check_known(name: str, known: Any, package: str) -> None:
+    if name not in known:
+        near = did_you_mean(name, list(known)) or f"; known: {', '.join(known)}"
+        raise ValueError(f"env: {package} has no environment {name!r}{near}")
+
+
+def _own(name: str) -> Any:
+    """Return an environment of the user's own, of `module:Class` or `module:function`."""
+    module, _, attribute = name.partition(":")
+    try:
+        env = getattr(own_code.load(module), attribute)()
+    except (Exception, SystemExit) as error:  # the module is the user's, and may raise anything
+        raise ValueError(f"env: {name!r} cannot be made: {error}") from error
+    lacking = [
+        each
+        for each in ("default_params", "reset_env", "step_env", "action_space")
+        if not hasattr(env, each)
+    ]
+    if lacking:
+        raise ValueError(
+            f"env: {name} has no {', '.join(lacking)}, which gymnax's environments have"
+        )
+    return env
+
+
+def _params(env: Any, name: str, changed: dict[str, Any], time_limit: bool) -> Any:
+    """Return the parameters, some of them replaced, and without a time limit unless it is kept."""
+    params = env.default_params
+    known = [each.name for each in dataclasses.fields(params)] if is_dataclass(params) else []
+    for each in changed:
+        if each not in known:
+            raise ValueError(f"params: {name} has no parameter {each!r}{did_you_mean(each, known)}")
+    # The steps of gymnax's own environments never end by time, and some let time be observed.
+    if not time_limit and not type(env).__module__.startswith("gymnax."):
+        changed = {**dict.fromkeys(set(TIME_LIMITS) & set(known), NEVER), **changed}
+    typed = {each: _as(getattr(params, each), value, each) for each, value in changed.items()}
+    return dataclasses.replace(params, **typed) if typed else params
+
+
+def _as(default: Any, value: Any, name: str) -> Any:
+    """Return a value of a parameter in the type of its default."""
+    if isinstance(default, float) and type(value) is int:
+        return float(value)
+    if isinstance(default, list | tuple) and isinstance(value, list):
+        return type(default)(value)
+    if isinstance(default, jax.Array):
+        array = jnp.asarray(value, default.dtype)
+        if array.shape == default.shape:
+            return array
+    elif type(value) is type(default):
+        return value
+    raise ValueError(f"params: {name} is {default!r} by default, so it cannot be {value!r}")
+
+
+@cache
+def versions(name: str) -> dict[str, str]:
+    """Return the versions of the packages that an environment of a library is computed by."""
+    package = package_of(name)
+    return {each: version(each) for each in (package, "flax")} if package in LIBRARIES else {}

@@ -1,0 +1,112 @@
+"""Spaces of environments: actions made from what a brain puts out, and observations as senses."""
+
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from primordia.habitats.contract import Continuous, Discrete
+
+BOUNDED = 1e6
+"""Bounds from here on are nominal, such as the largest float; what they bound is taken as unbounded."""
+
+
+class Actions:
+    """The actions of a space: one of n choices, or numbers within bounds."""
+
+    def __init__(self, space: Any, env: str) -> None:
+        """Raise ValueError if the space is neither."""
+        self.kind: Discrete | Continuous
+        self._shape: tuple[int, ...] = ()
+        if isinstance(count := getattr(space, "n", None), int) and count > 1:
+            self.kind = Discrete(count)
+            return
+        low, high = (getattr(space, name, None) for name in ("low", "high"))
+        if low is None or high is None:
+            raise ValueError(
+                f"env: the actions of {env} are {space!r}; a brain chooses one of two or more, or puts"
+                " out the numbers of a box"
+            )
+        self._shape = tuple(space.shape)
+        self.kind = Continuous(int(np.prod(self._shape)))
+        self._bounded, middle, half = _bounds(low, high, self._shape)
+        self._middle = np.where(self._bounded, middle, 0).astype(np.float32)
+        self._half = np.where(self._bounded, half, 1).astype(np.float32)
+
+    def of(self, output: Array) -> Array:
+        """Return the action of one body for an output of a brain: int32 (), or float32 (size,).
+
+        Within bounds, -1 is the least number and 1 the largest; without, a number is taken as it is.
+        """
+        if isinstance(self.kind, Discrete):
+            return output
+        kept = jnp.where(self._bounded, jnp.clip(output, -1, 1), output)
+        return (kept * self._half + self._middle).reshape(self._shape)
+
+
+class Senses:
+    """Observations as senses: flat, float32, and scaled to -1 to 1 where their space has bounds."""
+
+    def __init__(self, space: Any, example: Any, squash: bool) -> None:
+        """Take the space, or None, and an observation's shapes and types."""
+        self._choices = count if isinstance(count := getattr(space, "n", None), int) else 0
+        self._squash = squash
+        leaves = jax.tree.leaves(example)
+        self.size = self._choices or sum(int(np.prod(leaf.shape)) for leaf in leaves)
+        self.grid = leaves[0].shape if len(leaves) == 1 and len(leaves[0].shape) == 3 else None
+        """(height, width, channels) of an observation that is a grid"""
+        low, high = (getattr(space, name, None) for name in ("low", "high"))
+        if low is None or high is None or len(leaves) != 1:
+            low, high = -np.inf, np.inf
+        if self._choices:
+            low, high = 0, self._choices - 1
+        self._low, self._high = (np.float32(each).ravel() for each in (low, high))
+        bounded, middle, half = _bounds(low, high, leaves[0].shape)
+        self._unbounded = ~bounded
+        scaled = bounded & (np.abs(middle) + half > 1) & (half > 0)
+        self._middle = np.where(scaled, middle, 0).astype(np.float32)
+        self._scale = np.where(scaled, 1 / np.where(scaled, half, 1), 1).astype(np.float32)
+
+    def of(self, observation: Any) -> Array:
+        """Return the senses of one body, float32 (size,).
+
+        A choice of n is n numbers, of which one is 1. A number without bounds is x, or x / (1 + |x|) if
+        asked for.
+        """
+        flat = flattened(observation)
+        if self._choices:
+            return (jnp.arange(self._choices) == flat[0]).astype(jnp.float32)
+        if (self._scale != 1).any():
+            flat = (flat - self._middle) * self._scale
+        if self._squash:
+            flat = jnp.where(self._unbounded, flat / (1 + jnp.abs(flat)), flat)
+        return flat
+
+    def declared(self, observed: Array) -> Array:
+        """Return whether observations, float32 (N, S), are in their space, bool (N,)."""
+        outside = (observed < self._low) | (observed > self._high)
+        return ~outside.any(axis=1)
+
+    def unbounded(self) -> np.ndarray:
+        """Return which numbers of an observation have no bounds, bool (S,)."""
+        return self._unbounded
+
+
+def flattened(observation: Any) -> Array:
+    """Return all numbers of an observation as float32 (size,)."""
+    leaves = [
+        jnp.asarray(leaf).astype(jnp.float32).ravel() for leaf in jax.tree.leaves(observation)
+    ]
+    return leaves[0] if len(leaves) == 1 else jnp.concatenate(leaves)
+
+
+def _bounds(low: Any, high: Any, shape: tuple[int, ...]) -> tuple[np.ndarray, ...]:
+    """Return which numbers of a box have bounds, and the middle and half the width of each, (size,)."""
+    low, high = (
+        np.broadcast_to(np.asarray(each, np.float64), shape).ravel() for each in (low, high)
+    )
+    bounded = (np.abs(low) < BOUNDED) & (np.abs(high) < BOUNDED)
+    low, high = np.where(bounded, low, 0), np.where(bounded, high, 0)
+    return bounded, (low + high) / 2, (high - low) / 2

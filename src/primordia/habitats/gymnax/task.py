@@ -1,0 +1,76 @@
+"""A task made from an environment alone, for `primordia run gymnax:NAME`, `new` and `check`."""
+
+from functools import cache
+from typing import Any
+
+from primordia.habitats.contract import Discrete, find
+from primordia.habitats.gymnax.check import BODIES, TICKS, Measured, measure
+from primordia.habitats.gymnax.habitat import Gymnax
+from primordia.settings.doors import replication
+from primordia.settings.making import make
+
+PLAIN = 5.0
+"""Observations without bounds that stay below this in random play are perceived as they are."""
+
+
+def values(env: str) -> dict[str, Any]:
+    """Return the settings of a task in an environment, as nested tables.
+
+    Raises:
+        InputError: there is no such environment, or a brain cannot live in it; the message says why.
+    """
+    habitat, found = _measured(env)
+    name = env.rpartition(":")[2]
+    large = bool((habitat.senses.unbounded() & (found.largest > PLAIN)).any())
+    return {
+        "task": name,
+        "about": f"{env}: live until it is done",
+        "genesis": "fill",
+        "replication": replication(found.lifespan),
+        "habitat": {
+            "name": "gymnax",
+            "env": env,
+            "fatal": "done",
+            **({"squash": True} if large else {}),
+        },
+        "mutation": {"probability": 0.5, "scale": 0.02, "founder_scale": 0.3},
+    }
+
+
+def report(env: str) -> tuple[list[str], list[str]]:
+    """Return what is known of an environment, and what was found to be wrong with it, a line each.
+
+    Raises:
+        InputError: see `values`.
+    """
+    habitat, found = _measured(env)
+    action = habitat.action
+    named: dict[str, Any] = dict(habitat.names)
+    what = f"one of {action.size}" if isinstance(action, Discrete) else f"{action.size} numbers"
+    limits = ", ".join(habitat.simulator.limits)
+    facts = [
+        f"Observation: {named['obs']} numbers, obs[0] to obs[{named['obs'] - 1}] in conditions.",
+        f"Action: {what}.",
+        *(f"Numbers in {part}: {_listed(part, named[part])}." for part in ("state", "info")),
+        f"Its own time limit ({limits}) is off; time_limit = true keeps it."
+        if limits
+        else "It has no time limit of its own.",
+        "After an interruption lives go on exactly from their state.",
+        f"Random actions live {found.lifespan:,.0f} ticks on average."
+        if found.ended
+        else f"None of {BODIES} lives ended in {TICKS} ticks of random play: name a condition for fatal,"
+        " or add a metabolism.",
+    ]
+    return facts, found.faults
+
+
+def _listed(part: str, kinds: dict[str, Any]) -> str:
+    return ", ".join(f'{part}["{name}"]' for name in kinds) or "none"
+
+
+@cache
+def _measured(env: str) -> tuple[Gymnax, Measured]:
+    """Return the habitat of an environment, and what was found out about it."""
+    habitat = make("habitat", {"name": "gymnax", "env": env}, find)
+    assert isinstance(habitat, Gymnax)
+    return habitat, measure(habitat)

@@ -1,0 +1,189 @@
+"""Environments in JAX: lives from words and age, senses, actions, death, food, and errors."""
+
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from jax import lax
+
+from primordia.config import validated
+from primordia.errors import InputError
+from primordia.habitats.contract import Ability, Continuous, Discrete
+from primordia.habitats.gymnax.habitat import Gymnax
+from primordia.habitats.gymnax.rounded import rounded, uses_first
+from primordia.testing import check_habitat
+
+WORDS = np.arange(8, dtype=np.uint32).reshape(4, 2)
+STILL = np.zeros((4, 2), np.float32)
+
+
+def walk(**settings: Any) -> Gymnax:
+    return Gymnax(env="tests.walks:Walk", **settings)
+
+
+def state_of(habitat: Gymnax, bodies: Any) -> Any:
+    """Return the states of bodies as the environment has them."""
+    template = habitat.simulator.example.state
+    return jax.vmap(lambda packed: packed.state(habitat.senses_size, template))(bodies.packed)
+
+
+def lived(habitat: Gymnax, ticks: int, action: Any = STILL) -> tuple[Any, list[Any]]:
+    """Return the bodies after some ticks, and the outcome of each tick."""
+    bodies, outcomes = habitat.reset(WORDS), []
+    for _ in range(ticks):
+        bodies, outcome = habitat.step(bodies, action)
+        outcomes.append(outcome)
+    return bodies, outcomes
+
+
+@pytest.mark.parametrize("name", ["Walk", pytest.param("Choice", marks=pytest.mark.slow)])
+def test_an_environment_of_ones_own_keeps_the_contract(name: str, optimised: None) -> None:
+    check_habitat(Gymnax(env=f"tests.walks:{name}", food="reward", squash=True))
+
+
+def test_the_key_of_a_tick_is_that_of_the_birth_folded_with_the_age() -> None:
+    bodies, _ = lived(walk(), 3)
+    with jax.threefry_partitionable(True):
+        keys = [jax.random.wrap_key_data(word, impl="threefry2x32") for word in WORDS]
+        drawn = [jax.random.uniform(jax.random.fold_in(key, 3)) for key in keys]
+    np.testing.assert_array_equal(state_of(walk(), bodies)["gust"], np.array(drawn))
+
+
+def test_the_environments_time_limit_ends_a_life_only_if_it_is_kept() -> None:
+    def ends(**settings: Any) -> list[bool]:
+        return [bool(outcome.fatal.all()) for outcome in lived(walk(**settings), 9)[1]]
+
+    assert ends() == [False] * 8 + [True]
+    assert ends(time_limit=True) == [False] * 4 + [True] * 5
+    assert ends(params={"max_steps_in_episode": 7}).index(True) == 6
+    assert ends(params={"energy": 4}).index(True) == 3
+
+
+def test_death_and_food_can_speak_of_all_that_the_environment_says() -> None:
+    _, outcomes = lived(walk(fatal='state["energy"] < 7 or obs[2] > 8.5'), 4)
+    assert [bool(each.fatal[0]) for each in outcomes] == [False, False, True, True]
+    _, outcomes = lived(walk(fatal='state["tired"] and not done', food='sum(info["crossed"])'), 8)
+    assert [bool(each.fatal[0]) for each in outcomes] == [False] * 6 + [True, True]
+    crossed = (np.asarray(state_of(walk(), lived(walk(), 1)[0])["place"]) > 0).sum(axis=1)
+    np.testing.assert_array_equal(outcomes[0].food, crossed.astype(np.float32))
+
+
+def test_food_may_use_functions_and_is_not_reported_unless_asked_for() -> None:
+    bodies, (outcome,) = lived(walk(food="max(reward - 0.2, 0) + min(abs(obs[0]), 1)"), 1)
+    place = np.abs(np.asarray(state_of(walk(), bodies)["place"])[:, 0])
+    np.testing.assert_allclose(
+        outcome.food, np.maximum(place - 0.2, 0) + np.minimum(place, 1), 1e-6
+    )
+    assert lived(walk(), 1)[1][0].food is None
+
+
+def test_outputs_within_one_fill_the_bounds_of_actions() -> None:
+    def moved(output: float) -> np.ndarray:
+        habitat = walk(params={"gusts": 1.0})
+        born = np.asarray(state_of(habitat, habitat.reset(WORDS))["place"])
+        bodies, _ = lived(habitat, 1, np.full((4, 2), output, np.float32))
+        return np.asarray(state_of(habitat, bodies)["place"]) - np.float32(0.9) * born
+
+    for output, action in [(-1, -2), (0, 1), (1, 4), (7, 4), (-7, -2)]:
+        np.testing.assert_allclose(moved(output), action, atol=1e-6)
+    assert walk().action == Continuous(2)
+
+
+def test_senses_are_scaled_where_their_space_has_bounds() -> None:
+    habitat = walk()
+    bodies, _ = lived(habitat, 3, np.ones((4, 2), np.float32))
+    place = np.asarray(state_of(habitat, bodies)["place"])
+    np.testing.assert_array_equal(habitat.sense(bodies)[:, :2], place)
+    np.testing.assert_allclose(habitat.sense(bodies)[:, 2], (6 - 4.5) / 4.5, 1e-6)
+    squashing = walk(squash=True)
+    squashed = squashing.sense(lived(squashing, 3, np.ones((4, 2), np.float32))[0])
+    np.testing.assert_allclose(squashed[:, 0], place[:, 0] / (1 + np.abs(place[:, 0])), 1e-6)
+    np.testing.assert_array_equal(squashed[:, 1], place[:, 1])
+
+
+def test_a_choice_is_an_action_and_rooms_are_senses_of_which_one_is_one() -> None:
+    habitat = Gymnax(env="tests.walks:Choice")
+    assert (habitat.action, habitat.senses_size) == (Discrete(3), 4)
+    bodies, _ = lived(habitat, 2, np.zeros(4, np.int32))
+    np.testing.assert_array_equal(habitat.sense(bodies)[0], np.eye(4)[7 % 4])
+
+
+def test_what_is_scored_has_the_reward_and_the_time_limit() -> None:
+    original = walk(fatal="obs[0] > 9", food="2").original()
+    _, outcomes = lived(original, 5)
+    assert outcomes[4].fatal.all()
+    assert (outcomes[0].food > 0).all()
+
+
+def test_equal_settings_share_compiled_code() -> None:
+    assert hash(walk(params={"energy": 4})) == hash(walk(params={"energy": 4}))
+    assert walk(params={"energy": 4}) != walk(params={"energy": 5})
+
+
+def test_a_picture_is_drawn_of_what_is_sensed() -> None:
+    habitat = walk()
+    assert habitat.can(Ability.PICTURE)
+    body = jax.tree.map(lambda leaf: np.asarray(leaf)[0], habitat.reset(WORDS))
+    assert len(habitat.picture(body, STILL[0]).getcolors()) > 2
+
+
+WRONG: list[tuple[dict[str, Any], str]] = [
+    ({"env": "tests.walks:Mute"}, "a brain chooses one of two or more"),
+    ({"env": "tests.walks:Growing"}, "its state has another form"),
+    ({"env": "tests.walks:Nothing"}, "has no default_params, reset_env, step_env"),
+    ({"env": "tests.walks:Missing"}, "cannot be made"),
+    ({"env": "tests.walks:Walk", "params": {"gust": 1.0}}, "did you mean 'gusts'"),
+    ({"env": "tests.walks:Walk", "params": {"gusts": "strong"}}, "gusts is 0.5 by default"),
+    ({"env": "tests.walks:Walk", "fatal": "state"}, "'state' has parts"),
+    ({"env": "tests.walks:Walk", "fatal": "obs[3] > 0"}, "obs goes from obs[0] to obs[2]"),
+    ({"env": "tests.walks:Walk", "food": "lives"}, "known: done, info, obs, reward, state"),
+]
+
+
+@pytest.mark.parametrize(("table", "says"), WRONG)
+def test_what_cannot_be_lived_in_is_refused_in_one_line(table: dict[str, Any], says: str) -> None:
+    with pytest.raises(InputError) as refused:
+        validated({"task": "T", "habitat": {"name": "gymnax", **table}}, source="test")
+    assert says in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_the_module_of_an_environment_is_code_of_the_run() -> None:
+    table = {"name": "gymnax", "env": "tests.walks:Walk"}
+    config = validated({"task": "T", "habitat": table}, source="test")
+    assert "tests.walks" in config.own_modules
+
+
+def test_a_library_that_is_missing_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(__import__("sys").modules, "octax.environments", None)
+    with pytest.raises(ValueError, match=r"pip install 'primordia\[octax\]'"):
+        Gymnax(env="octax:never")
+
+
+def test_every_product_is_rounded_before_it_is_added(optimised: None) -> None:
+    rng = np.random.default_rng(0)
+    a, b, c = (rng.normal(size=500).astype(np.float32) for _ in range(3))
+
+    def sums(a: Any, b: Any, c: Any) -> Any:
+        branch = lax.cond(c[0] > 9, lambda: a, lambda: a * b + c)
+        loop = lax.fori_loop(0, 3, lambda i, x: x * b + c, a)
+        scanned = lax.scan(lambda x, y: (x * y + c, None), a, jnp.stack([b, a]))[0]
+        return branch, loop, scanned, a**3 + c, jax.jit(jnp.square)(a) - c
+
+    found = jax.jit(lambda zero, *each: rounded(sums, zero)(*each))(np.uint32(0), a, b, c)
+    thrice = ((a * b + c) * b + c) * b + c
+    expected = a * b + c, thrice, (a * b + c) * a + c, a * (a * a) + c, a * a - c
+    for one, other in zip(found, expected, strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
+def test_it_is_known_whether_a_function_uses_its_first_argument() -> None:
+    assert uses_first(lambda a, b: (a + b, b), 1.0, 2.0)
+    assert uses_first(lambda a, b: (b, a), 1.0, 2.0)
+    assert not uses_first(lambda a, b: b + 1, 1.0, 2.0)
+
+
+def test_ages_are_counted_only_where_a_tick_draws() -> None:
+    assert (np.asarray(lived(walk(), 3)[0].age.lo) == 3).all()

@@ -1,0 +1,95 @@
+"""The environments of gymnax and Craftax: the same as in their own libraries, and exact."""
+
+from typing import Any
+
+import jax
+import numpy as np
+import pytest
+
+from primordia.config import load, validated
+from primordia.errors import InputError
+from primordia.habitats.gymnax.habitat import Gymnax
+from primordia.habitats.gymnax.task import report, values
+from primordia.testing import check_habitat
+
+gymnax = pytest.importorskip("gymnax", reason="pip install --no-deps --group environments")
+
+CLASSIC = ["CartPole-v1", "Acrobot-v1", "MountainCar-v0", "MountainCarContinuous-v0", "Pendulum-v1",
+           "Catch-bsuite"]  # fmt: skip
+MINATAR = [
+    f"{name}-MinAtar" for name in ("Asterix", "Breakout", "Freeway", "Seaquest", "SpaceInvaders")
+]
+WORDS = np.random.default_rng(5).integers(2**32, size=(6, 2), dtype=np.uint32)
+
+
+@pytest.mark.parametrize("name", ["Asterix-MinAtar", "Breakout-MinAtar"])
+def test_a_life_is_what_the_library_computes(name: str) -> None:
+    habitat, (env, params) = Gymnax(env=name, food="reward"), gymnax.make(name)
+    with jax.threefry_partitionable(True):
+        folded = jax.vmap(jax.random.fold_in, (0, None))
+        seen, state = jax.vmap(env.reset_env, (0, None))(folded(WORDS, 0), params)
+        bodies = habitat.reset(WORDS)
+        for age in range(1, 12):
+            action = np.full(6, age % habitat.action.size, np.int32)
+            step = jax.vmap(env.step_env, (0, 0, 0, None))
+            seen, state, reward, done, _ = step(folded(WORDS, age), state, action, params)
+            bodies, outcome = habitat.step(bodies, action)
+            np.testing.assert_array_equal(habitat.sense(bodies), seen.reshape(6, -1))
+            np.testing.assert_array_equal(outcome.fatal, done)
+            np.testing.assert_array_equal(outcome.food, reward)
+
+
+def test_a_body_in_pendulum_has_the_same_bits_in_all_programs(optimised: None) -> None:
+    check_habitat(Gymnax(env="Pendulum-v1", food="reward"))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [*CLASSIC, *MINATAR])
+def test_bits_depend_on_words_and_actions_alone(name: str, optimised: None) -> None:
+    check_habitat(Gymnax(env=name, food="reward"))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["Craftax-Classic-Symbolic-v1"])
+def test_craftax_keeps_the_contract(name: str, optimised: None) -> None:
+    pytest.importorskip("craftax")
+    check_habitat(Gymnax(env=name, food="reward"))
+
+
+def test_a_task_is_made_from_lives_at_random() -> None:
+    task = values("CartPole-v1")
+    assert 1 / 40 < task["replication"] < 1 / 15
+    endless = values("Pendulum-v1")
+    assert endless["replication"] == 0.002
+    assert endless["habitat"] == {"name": "gymnax", "env": "Pendulum-v1", "fatal": "done"}
+    for table in (task, endless):
+        assert validated(table, source="test").build_habitat().env in table["about"]
+
+
+def test_what_is_known_of_an_environment_is_said() -> None:
+    facts, faults = report("CartPole-v1")
+    assert faults == []
+    for line in (
+        "Observation: 4 numbers, obs[0] to obs[3] in conditions.",
+        "Action: one of 2.",
+        'Numbers in info: info["discount"].',
+        "Its own time limit (max_steps_in_episode) is off; time_limit = true keeps it.",
+    ):
+        assert line in facts
+
+
+def test_a_name_that_is_not_known_suggests_one() -> None:
+    with pytest.raises(InputError, match="did you mean 'Breakout-MinAtar'"):
+        values("Breakout-minatar")
+    pytest.importorskip("craftax")
+    with pytest.raises(InputError, match="did you mean 'Craftax-Symbolic-v1'"):
+        values("Craftax-Symbolik-v1")
+
+
+@pytest.mark.parametrize("task", ["MinAtar-Breakout-survival", "MinAtar-Asterix-survival"])
+def test_players_act_and_perceive_the_grid(task: str) -> None:
+    habitat: Any = load(task).build_habitat()
+    assert habitat.senses_size == 400
+    assert set(habitat.versions) == {"gymnax", "flax"}
+    body = jax.tree.map(lambda leaf: np.asarray(leaf)[0], habitat.reset(WORDS))
+    assert len(habitat.picture(body, np.int32(0)).getcolors()) >= 3
