@@ -8,6 +8,7 @@ import pytest
 
 from primordia.config import load, validated
 from primordia.errors import InputError
+from primordia.habitats.framed import MARGIN
 from primordia.habitats.gymnax.habitat import Gymnax
 from primordia.habitats.gymnax.task import report, values
 from primordia.testing import check_habitat
@@ -93,3 +94,22 @@ def test_players_act_and_perceive_the_grid(task: str) -> None:
     assert set(habitat.versions) == {"gymnax", "flax"}
     body = jax.tree.map(lambda leaf: np.asarray(leaf)[0], habitat.reset(WORDS))
     assert len(habitat.picture(body, np.int32(0)).getcolors()) >= 3
+
+
+@pytest.mark.parametrize(
+    ("name", "size"),
+    [
+        ("CartPole-v1", (600, 400)),
+        ("Breakout-MinAtar", (400, 400)),
+        pytest.param("Craftax-Classic-Symbolic-v1", (576, 576), marks=pytest.mark.slow),
+    ],
+)
+def test_a_life_is_drawn_by_its_library_or_as_it_is_sensed(
+    name: str, size: tuple[int, int], capfd: pytest.CaptureFixture[str]
+) -> None:
+    habitat = Gymnax(env=name)
+    body = jax.tree.map(lambda leaf: np.asarray(leaf)[0], habitat.reset(WORDS))
+    picture = habitat.picture(body, np.int32(0))
+    assert picture.size == (size[0], size[1] + MARGIN)
+    assert len(picture.getcolors(maxcolors=100_000)) >= 3
+    assert capfd.readouterr() == ("", "")

@@ -14,6 +14,7 @@ from gymnasium import Env
 
 from primordia.habitats.gymnasium import environment, state
 from primordia.habitats.gymnasium.spaces import Acting, Observation
+from primordia.habitats.silence import quiet
 
 TICKS, LIVES = 1000, 8
 """Steps that are compared, and the least number of lives among which they are divided."""
@@ -157,7 +158,7 @@ def measure(env: str, options: Mapping[str, Any], imports: Sequence[str]) -> Mea
     """
     trial = _Trial(env, options, imports)
     try:
-        with environment.quiet():
+        with quiet():
             lives = trial.lives()
             spans = [len(life.seen) - 1 for life in lives]
             found = Measured(

@@ -1,11 +1,7 @@
-"""Environments of Gymnasium: made by name, without time limit, and kept quiet."""
+"""Environments of Gymnasium: made by name, without time limit."""
 
-import io
 import os
-import sys
-import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, redirect_stderr, redirect_stdout
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from importlib.metadata import PackageNotFoundError, packages_distributions, version
 from typing import Any
@@ -16,35 +12,10 @@ from gymnasium.envs.registration import EnvSpec
 
 from primordia import own_code
 from primordia.habitats import opengl
+from primordia.habitats.silence import quiet, silent
 
 PICTURES = "rgb_array"
 """The render mode of an environment that is watched."""
-
-
-@contextmanager
-def quiet() -> Iterator[None]:
-    """Keep what an environment prints and warns of out of the terminal."""
-    with warnings.catch_warnings(), redirect_stdout(io.StringIO()), redirect_stderr(io.StringIO()):
-        warnings.simplefilter("ignore")
-        yield
-
-
-@contextmanager
-def _silent() -> Iterator[None]:
-    """Keep what libraries in C print while an environment is made out of the terminal."""
-    sys.stdout.flush()
-    sys.stderr.flush()
-    kept = [os.dup(1), os.dup(2)]
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    try:
-        for number in (1, 2):
-            os.dup2(nowhere, number)
-        yield
-    finally:
-        for number, own in zip((1, 2), kept, strict=True):
-            os.dup2(own, number)
-        for each in (*kept, nowhere):
-            os.close(each)
 
 
 def make(
@@ -66,7 +37,7 @@ def make(
     if watched:
         os.environ.setdefault(opengl.VARIABLE, opengl.backend())
     try:
-        with quiet(), _silent():
+        with quiet(), silent():
             for each in (*imports, *([module] if colon else [])):
                 own_code.load(each)
             made = gymnasium.make(

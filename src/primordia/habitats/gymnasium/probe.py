@@ -9,6 +9,7 @@ import numpy as np
 
 from primordia.habitats.gymnasium import environment
 from primordia.habitats.gymnasium.spaces import Acting, Observation
+from primordia.habitats.silence import quiet
 
 TICKS = 200
 """Random steps in which keys of `info` are looked for."""
@@ -94,7 +95,7 @@ def random_play(
         seen.append((np.zeros(observation.width), dict(info)))
         observation.fill(seen[-1][0], given)
 
-    with environment.quiet():
+    with quiet():
         made.action_space.seed(0)
         over = True
         for tick in range(TICKS):
@@ -129,7 +130,7 @@ def screen_shape(env: str, options: Mapping[str, Any], imports: Sequence[str]) -
     """
     made = environment.make(env, options, imports, watched=True)
     try:
-        with environment.quiet():
+        with quiet():
             made.reset(seed=0)
             picture: Any = made.render()
             return np.shape(picture)
@@ -146,7 +147,7 @@ def check_food(env: str, options: Mapping[str, Any], imports: Sequence[str], fun
         ValueError: there is no such function, or it gives no number.
     """
     food, made = environment.food_function(function), environment.make(env, options, imports)
-    with environment.quiet():
+    with quiet():
         made.action_space.seed(0)
         made.reset(seed=0)
         given = made.step(made.action_space.sample())

@@ -15,6 +15,7 @@ from gymnasium import Env
 from primordia.errors import Trouble
 from primordia.habitats.gymnasium import environment, state
 from primordia.habitats.gymnasium.spaces import Acting, Observation
+from primordia.habitats.silence import quiet
 
 MESSAGE = 240
 """bytes of the line that says why an environment failed"""
@@ -76,12 +77,12 @@ class Environments:
 
     def reset(self, cell: int) -> None:
         """Begin a new life. An environment that cannot is at fault in the first tick."""
-        with environment.quiet():
+        with quiet():
             self._begin(cell, int(self._arrays["seed"][cell]) >> 1)
 
     def step(self, cells: list[int]) -> None:
         """Step the environments of cells by one tick."""
-        with environment.quiet():
+        with quiet():
             for cell in cells:
                 self._act(cell, self._arrays["action"][cell])
 
@@ -157,7 +158,7 @@ class Environments:
         Raises:
             Trouble: a life did not repeat.
         """
-        with environment.quiet():
+        with quiet():
             self._load(cell, saved)
 
     def _load(self, cell: int, saved: bytes) -> None:

@@ -125,10 +125,13 @@ class Gymnax(JaxHabitat, Settings):
         return Gymnax(**{**self.model_dump(), **changed})
 
     def picture(self, body: Body, action: np.ndarray) -> "Image":
-        """Return a picture of what the body senses."""
-        from primordia.habitats.gymnax.picture import draw
+        """Return a picture by the environment's library, or of what the body senses."""
+        from primordia.habitats.gymnax.picture import draw, rendered
 
-        return draw(np.asarray(body.packed.senses(self.senses_size)), self.senses.grid)
+        about, packed = self.simulator, body.packed
+        state = packed.state(self.senses_size, about.example.state)
+        drawn = rendered(about.env, state, about.params)
+        return drawn or draw(np.asarray(packed.senses(self.senses_size)), self.senses.grid)
 
     def reset(self, words: Array) -> Body:
         """Return bodies from words uint32 (N, 2)."""

@@ -1,16 +1,54 @@
-"""Pictures of what bodies sense: a grid in colours, one for each channel, or a bar for each sense."""
+"""Pictures of bodies: drawn by the environment's library, or else of what they sense.
+
+A grid has a colour for each channel; other senses have a bar each.
+"""
 
 import colorsys
+from collections.abc import Callable
+from functools import lru_cache
+from importlib import import_module
+from typing import Any
 
+import jax
 import numpy as np
 from PIL import Image, ImageDraw
 
 from primordia.habitats.framed import PAPER, framed
+from primordia.habitats.silence import quiet, silent
 
 WIDTH = 400
 """pixels, at least"""
 GROUND = np.array([24, 26, 32])
 BAR, AXIS = "#23395b", "#8a8a8a"
+
+
+BLOCK = 64
+"""pixels of a block of Craftax, one of the sizes that it draws"""
+
+
+def rendered(env: Any, state: Any, params: Any) -> Image.Image | None:
+    """Return what the environment's library draws of a state; None if it cannot draw it."""
+    try:
+        with quiet(), silent():
+            pixels = _renderer(env)(state, params)
+    except (AttributeError, ImportError, OSError, ValueError):
+        return None
+    return framed(Image.fromarray(np.asarray(pixels).astype(np.uint8)))
+
+
+@lru_cache(maxsize=8)
+def _renderer(env: Any) -> Callable[[Any, Any], Any]:
+    """Return a function of a state and parameters that draws pixels (H, W, 3), up to 255.
+
+    Raises:
+        AttributeError, ImportError: there is none.
+    """
+    package, within, _ = type(env).__module__.partition(".envs.")
+    if within and package.startswith("craftax."):
+        draw = jax.jit(import_module(f"{package}.renderer").make_craftax_pixel_renderer(BLOCK))
+        return lambda state, _: draw(state)
+    draw_classic = import_module("gymnax.visualize.vis_gym").render_gym_frame
+    return lambda state, params: draw_classic(env.name, state, params)
 
 
 def draw(senses: np.ndarray, grid: tuple[int, ...] | None) -> Image.Image:

@@ -10,12 +10,11 @@ import json
 import re
 import warnings
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, redirect_stdout
+from contextlib import contextmanager
 from dataclasses import is_dataclass
 from functools import cache, cached_property, lru_cache, partial
 from importlib import import_module
 from importlib.metadata import version
-from io import StringIO
 from pkgutil import iter_modules
 from typing import Any, NamedTuple
 
@@ -25,6 +24,7 @@ import numpy as np
 from jax import Array
 
 from primordia import device, own_code
+from primordia.habitats.silence import quiet
 from primordia.settings.tables import did_you_mean
 
 LIBRARIES = ("gymnax", "craftax", "octax")
@@ -204,7 +204,7 @@ def _make(name: str, time_limit: bool) -> Any:
     if package not in makers:
         return _own(name)
     try:
-        with traced(), redirect_stdout(StringIO()):  # Craftax says where its textures are from
+        with traced(), quiet():  # Craftax says where its textures are from
             return makers[package](wanted)
     except ImportError as error:
         raise ValueError(
