@@ -61,6 +61,39 @@ class Choice(Walk):
         return SimpleNamespace(n=4, shape=())
 
 
+@dataclass(frozen=True)
+class Stepped:
+    """A state with the names of MuJoCo Playground's."""
+
+    obs: Any
+    reward: Any
+    done: Any
+    metrics: dict[str, Any]
+
+
+jax.tree_util.register_dataclass(Stepped)
+
+
+class Played:
+    """A walk with the interface of MuJoCo Playground; its steps write into `metrics`."""
+
+    action_size = 2
+
+    def reset(self, key: Any) -> Stepped:
+        place = jax.random.uniform(key, (2,), minval=-1.0, maxval=1.0)
+        nothing = jnp.float32(0)
+        return Stepped(self.seen(place), nothing, nothing, {"far": nothing})
+
+    def step(self, state: Stepped, action: Any) -> Stepped:
+        place = state.obs["state"] + action
+        far = jnp.abs(place).max()
+        state.metrics["far"] = far
+        return Stepped(self.seen(place), far / 4, jnp.float32(far > 2.0), state.metrics)
+
+    def seen(self, place: Any) -> Any:
+        return {"state": place, "privileged_state": jnp.concatenate([place, place])}
+
+
 class Mute(Walk):
     """A walk whose actions no brain can put out."""
 

@@ -110,6 +110,19 @@ def test_a_choice_is_an_action_and_rooms_are_senses_of_which_one_is_one() -> Non
     np.testing.assert_array_equal(habitat.sense(bodies)[0], np.eye(4)[7 % 4])
 
 
+def test_an_environment_like_playgrounds_is_perceived_as_by_a_policy_and_ends_when_done() -> None:
+    habitat = Gymnax(env="tests.walks:Played", food='info["far"]', fatal="done")
+    assert (habitat.action, habitat.senses_size) == (Continuous(2), 2)
+    bodies, outcomes = lived(habitat, 4, np.full((4, 2), 0.75, np.float32))
+    born = np.asarray(habitat.sense(habitat.reset(WORDS)))
+    np.testing.assert_allclose(habitat.sense(bodies), born + 3, 1e-5)
+    for tick, outcome in enumerate(outcomes, start=1):
+        far = np.abs(born + 0.75 * tick).max(axis=1)
+        np.testing.assert_allclose(outcome.food, far, 1e-5)
+        np.testing.assert_array_equal(outcome.fatal, far > 2)
+    assert not habitat.simulator.changes_state()
+
+
 def test_what_is_scored_has_the_reward_and_the_time_limit() -> None:
     original = walk(fatal="obs[0] > 9", food="2").original()
     _, outcomes = lived(original, 5)
@@ -177,6 +190,18 @@ def test_every_product_is_rounded_before_it_is_added(optimised: None) -> None:
     expected = a * b + c, thrice, (a * b + c) * a + c, a * (a * a) + c, a * a - c
     for one, other in zip(found, expected, strict=True):
         np.testing.assert_array_equal(one, other)
+
+
+def test_a_sum_over_nothing_is_zero_and_nothing_has_no_sums() -> None:
+    def products(a: Any, b: Any) -> Any:
+        return a @ b, b.T @ a.T, b.sum(axis=0)
+
+    zero, a = np.uint32(0), np.ones((0, 3), np.float32)
+    for b in (np.ones((3, 2), np.float32), np.ones((3, 0), np.float32)):
+        for one, other in zip(rounded(products, zero)(a, b), products(a, b), strict=True):
+            np.testing.assert_array_equal(one, other)
+    one = rounded(lambda a: a.T @ a, zero)(a)
+    np.testing.assert_array_equal(one, np.zeros((3, 3)))
 
 
 def test_it_is_known_whether_a_function_uses_its_first_argument() -> None:

@@ -113,3 +113,15 @@ def test_a_life_is_drawn_by_its_library_or_as_it_is_sensed(
     assert picture.size == (size[0], size[1] + MARGIN)
     assert len(picture.getcolors(maxcolors=100_000)) >= 3
     assert capfd.readouterr() == ("", "")
+
+
+@pytest.mark.slow
+def test_a_task_of_mujoco_playground_keeps_the_contract(optimised: None) -> None:
+    needs = "pip install 'primordia[playground]'"
+    pytest.importorskip("mujoco_playground", reason=needs, exc_type=ImportError)
+    habitat = Gymnax(env="playground:PendulumSwingup", food="max(reward, 0)")
+    check_habitat(habitat)
+    body = jax.tree.map(lambda leaf: np.asarray(leaf)[0], habitat.reset(WORDS))
+    assert len(habitat.picture(body, np.zeros(1, np.float32)).getcolors(maxcolors=100_000)) > 100
+    with pytest.raises(ValueError, match="did you mean 'CartpoleBalance'"):
+        Gymnax(env="playground:CartpoleBalnce")

@@ -18,7 +18,7 @@ from pydantic import Field, model_validator
 from primordia.habitats import conditions
 from primordia.habitats.conditions import Expression, Names
 from primordia.habitats.contract import Continuous, Discrete, JaxHabitat, Outcome
-from primordia.habitats.gymnax import simulator
+from primordia.habitats.gymnax import libraries, simulator
 from primordia.habitats.gymnax.packed import Packed, pack
 from primordia.habitats.gymnax.rounded import rounded, uses_first
 from primordia.habitats.gymnax.simulator import Simulator, Step
@@ -43,13 +43,13 @@ class Body(NamedTuple):
 
 
 class Gymnax(JaxHabitat, Settings):
-    """An environment of gymnax, Craftax or Octax, or one of your own, as a habitat."""
+    """An environment of gymnax, Craftax, Octax or MuJoCo Playground, or your own, as a habitat."""
 
     words: ClassVar = 2
 
     env: str = Field(
         min_length=1,
-        description="an environment of gymnax or Craftax, octax:NAME, or module:Class",
+        description="an environment of gymnax or Craftax, octax:NAME, playground:NAME, or module:Class",
     )
     params: dict[str, Any] = Field(
         {}, description="parameters of the environment that are replaced"
@@ -106,8 +106,8 @@ class Gymnax(JaxHabitat, Settings):
 
     @property
     def versions(self) -> dict[str, str]:
-        """Versions of the environment's library, and of flax, which it is made with."""
-        return simulator.versions(self.env)
+        """Versions of the packages that the environment is computed by."""
+        return libraries.versions(self.env)
 
     @property
     def senses_size(self) -> int:

@@ -14,41 +14,52 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from primordia.habitats.framed import PAPER, framed
+from primordia.habitats.gymnax.playground import Playground
+from primordia.habitats.mujoco.picture import Renderer
 from primordia.habitats.silence import quiet, silent
 
 WIDTH = 400
 """pixels, at least"""
 GROUND = np.array([24, 26, 32])
 BAR, AXIS = "#23395b", "#8a8a8a"
-
-
 BLOCK = 64
 """pixels of a block of Craftax, one of the sizes that it draws"""
 
 
 def rendered(env: Any, state: Any, params: Any) -> Image.Image | None:
-    """Return what the environment's library draws of a state; None if it cannot draw it."""
+    """Return what the environment's library draws of a state; None if it cannot draw it.
+
+    Raises:
+        InputError: this machine cannot draw robots.
+    """
     try:
         with quiet(), silent():
-            pixels = _renderer(env)(state, params)
+            return _renderer(env)(state, params)
     except (AttributeError, ImportError, OSError, ValueError):
         return None
-    return framed(Image.fromarray(np.asarray(pixels).astype(np.uint8)))
 
 
 @lru_cache(maxsize=8)
-def _renderer(env: Any) -> Callable[[Any, Any], Any]:
-    """Return a function of a state and parameters that draws pixels (H, W, 3), up to 255.
+def _renderer(env: Any) -> Callable[[Any, Any], Image.Image]:
+    """Return a function that draws a state with parameters.
 
     Raises:
         AttributeError, ImportError: there is none.
     """
+    if isinstance(env, Playground):
+        robot = Renderer(env.env.mj_model)
+        return lambda state, _: robot.draw(np.asarray(state.data.qpos))
     package, within, _ = type(env).__module__.partition(".envs.")
     if within and package.startswith("craftax."):
         draw = jax.jit(import_module(f"{package}.renderer").make_craftax_pixel_renderer(BLOCK))
-        return lambda state, _: draw(state)
+        return lambda state, _: _framed(draw(state))
     draw_classic = import_module("gymnax.visualize.vis_gym").render_gym_frame
-    return lambda state, params: draw_classic(env.name, state, params)
+    return lambda state, params: _framed(draw_classic(env.name, state, params))
+
+
+def _framed(pixels: Any) -> Image.Image:
+    """Return a picture of pixels (H, W, 3), up to 255."""
+    return framed(Image.fromarray(np.asarray(pixels).astype(np.uint8)))
 
 
 def draw(senses: np.ndarray, grid: tuple[int, ...] | None) -> Image.Image:

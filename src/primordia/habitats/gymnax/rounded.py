@@ -9,6 +9,7 @@ axes, also those of matrix products, are trees of additions, whatever the number
 
 from collections.abc import Callable, Sequence
 from functools import partial
+from math import prod
 from typing import Any
 
 import jax
@@ -185,7 +186,7 @@ def _may_be_added(function: Jaxpr) -> set[Any]:
 
 def _summed(a: Array, axes: int) -> Array:
     """Return the sum over the first axes, in the same order for arrays of all shapes."""
-    a = a.reshape(-1, *a.shape[axes:])
+    a = a.reshape(prod(a.shape[:axes]), *a.shape[axes:])  # also where an axis is empty
     while (count := len(a)) > 1:
         half = (count + 1) // 2
         a = jnp.concatenate([a[: count // 2] + a[half:], a[count // 2 : half]])

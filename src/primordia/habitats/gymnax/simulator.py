@@ -1,21 +1,17 @@
-"""Environments by name, each as pure functions of one body: reset and step, without resets of their own.
+"""Environments as pure functions of one body: reset and step, without resets of their own.
 
 An environment has the interface of gymnax: `default_params`, `reset_env(key, params)`,
-`step_env(key, state, action, params)`, `action_space(params)` and `observation_space(params)`. One of
-your own is named as `module:Class`, or `module:function` that returns it.
+`step_env(key, state, action, params)`, `action_space(params)` and `observation_space(params)`.
 """
 
 import dataclasses
 import json
 import re
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import is_dataclass
-from functools import cache, cached_property, lru_cache, partial
-from importlib import import_module
-from importlib.metadata import version
-from pkgutil import iter_modules
+from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
 
 import jax
@@ -23,20 +19,13 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from primordia import device, own_code
-from primordia.habitats.silence import quiet
+from primordia import device
+from primordia.habitats.gymnax import libraries
+from primordia.habitats.gymnax.libraries import NEVER
 from primordia.settings.tables import did_you_mean
 
-LIBRARIES = ("gymnax", "craftax", "octax")
-CRAFTAX = (
-    "Craftax-Classic-Symbolic-v1",
-    "Craftax-Symbolic-v1",
-    "Craftax-Classic-Pixels-v1",
-    "Craftax-Pixels-v1",
-)
 TIME_LIMITS = ("max_steps_in_episode", "max_timesteps")
 """Parameters after whose number of steps an environment ends, whatever happens in it."""
-NEVER = 2**31 - 1
 ADDRESS = re.compile("0x[0-9a-f]+")
 """Where in memory a function is, which JAX shows of some."""
 
@@ -182,83 +171,9 @@ def simulator(name: str, params: str, time_limit: bool) -> Simulator:
         ValueError: there is no such environment or parameter, or its library is not installed.
     """
     device.prepare()
-    env = _make(name, time_limit)
+    with traced():
+        env = libraries.make(name, time_limit)
     return Simulator(env, _params(env, name, json.loads(params), time_limit), time_limit)
-
-
-def package_of(name: str) -> str:
-    """Return the package that an environment's name is looked for in."""
-    package, colon, _ = name.partition(":")
-    if colon:
-        return package
-    return "craftax" if name.startswith("Craftax") else "gymnax"
-
-
-def _make(name: str, time_limit: bool) -> Any:
-    package, wanted = package_of(name), name.rpartition(":")[2]
-    makers: dict[str, Callable[[str], Any]] = {
-        "gymnax": _of_gymnax,
-        "craftax": _of_craftax,
-        "octax": partial(_of_octax, time_limit=time_limit),
-    }
-    if package not in makers:
-        return _own(name)
-    try:
-        with traced(), quiet():  # Craftax says where its textures are from
-            return makers[package](wanted)
-    except ImportError as error:
-        raise ValueError(
-            f"env: {name} needs {package}: pip install 'primordia[{package}]' ({error})"
-        ) from None
-
-
-def _of_gymnax(name: str) -> Any:
-    gymnax = import_module("gymnax")
-    _check_known(name, gymnax.registered_envs, "gymnax")
-    try:
-        return gymnax.make(name)[0]
-    except OSError as error:
-        raise ValueError(f"env: {name} cannot be made: {error}") from None
-
-
-def _of_craftax(name: str) -> Any:
-    _check_known(name, CRAFTAX, "craftax")
-    return import_module("craftax.craftax_env").make_craftax_env_from_name(name, auto_reset=False)
-
-
-def _of_octax(name: str, time_limit: bool) -> Any:
-    games = import_module("octax.environments")
-    stem = name.replace("-", "_").rstrip("0123456789")
-    known = [each.name for each in iter_modules(games.__path__)]
-    _check_known(stem, known, "octax")
-    limits = {} if time_limit else {"max_num_steps_per_episodes": NEVER}
-    env = games.create_environment(name, **limits)[0]
-    return import_module("octax.wrappers").OctaxGymnaxWrapper(env)
-
-
-def _check_known(name: str, known: Any, package: str) -> None:
-    if name not in known:
-        near = did_you_mean(name, list(known)) or f"; known: {', '.join(known)}"
-        raise ValueError(f"env: {package} has no environment {name!r}{near}")
-
-
-def _own(name: str) -> Any:
-    """Return an environment of the user's own, of `module:Class` or `module:function`."""
-    module, _, attribute = name.partition(":")
-    try:
-        env = getattr(own_code.load(module), attribute)()
-    except (Exception, SystemExit) as error:  # the module is the user's, and may raise anything
-        raise ValueError(f"env: {name!r} cannot be made: {error}") from error
-    lacking = [
-        each
-        for each in ("default_params", "reset_env", "step_env", "action_space")
-        if not hasattr(env, each)
-    ]
-    if lacking:
-        raise ValueError(
-            f"env: {name} has no {', '.join(lacking)}, which gymnax's environments have"
-        )
-    return env
 
 
 def _params(env: Any, name: str, changed: dict[str, Any], time_limit: bool) -> Any:
@@ -288,10 +203,3 @@ def _as(default: Any, value: Any, name: str) -> Any:
     elif type(value) is type(default):
         return value
     raise ValueError(f"params: {name} is {default!r} by default, so it cannot be {value!r}")
-
-
-@cache
-def versions(name: str) -> dict[str, str]:
-    """Return the versions of the packages that an environment of a library is computed by."""
-    package = package_of(name)
-    return {each: version(each) for each in (package, "flax")} if package in LIBRARIES else {}

@@ -46,7 +46,11 @@ def report(env: str) -> tuple[list[str], list[str]]:
     habitat, found = _measured(env)
     action = habitat.action
     named: dict[str, Any] = dict(habitat.names)
-    what = f"one of {action.size}" if isinstance(action, Discrete) else f"{action.size} numbers"
+    what = (
+        f"one of {action.size}"
+        if isinstance(action, Discrete)
+        else ("1 number" if action.size == 1 else f"{action.size} numbers")
+    )
     limits = ", ".join(habitat.simulator.limits)
     facts = [
         f"Observation: {named['obs']} numbers, obs[0] to obs[{named['obs'] - 1}] in conditions.",
@@ -65,7 +69,9 @@ def report(env: str) -> tuple[list[str], list[str]]:
 
 
 def _listed(part: str, kinds: dict[str, Any]) -> str:
-    return ", ".join(f'{part}["{name}"]' for name in kinds) or "none"
+    """List names, without private parts, of which states of MJX have dozens."""
+    public = (name for name in kinds if not name.startswith("_") and "._" not in name)
+    return ", ".join(f'{part}["{name}"]' for name in public) or "none"
 
 
 @cache
