@@ -46,11 +46,8 @@ def report(env: str) -> tuple[list[str], list[str]]:
     habitat, found = _measured(env)
     action = habitat.action
     named: dict[str, Any] = dict(habitat.names)
-    what = (
-        f"one of {action.size}"
-        if isinstance(action, Discrete)
-        else ("1 number" if action.size == 1 else f"{action.size} numbers")
-    )
+    numbers = f"{action.size} number{'s' * (action.size > 1)}"
+    what = f"one of {action.size}" if isinstance(action, Discrete) else numbers
     limits = ", ".join(habitat.simulator.limits)
     facts = [
         f"Observation: {named['obs']} numbers, obs[0] to obs[{named['obs'] - 1}] in conditions.",
