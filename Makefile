@@ -62,7 +62,7 @@ clean:
 
 .venv/installed-dev: .venv/installed
 	$(BIN)/python -m pip install --quiet $(CONSTRAINTS) --group dev
-	$(BIN)/python -m pip install --quiet $(CONSTRAINTS) --no-deps --group environments
+	$(BIN)/python -m pip install --quiet $(CONSTRAINTS) --no-deps --group no-deps
 	@touch $@
 
 .venv/installed-mutants: .venv/installed-dev

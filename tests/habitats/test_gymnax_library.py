@@ -13,7 +13,7 @@ from primordia.habitats.gymnax.habitat import Gymnax
 from primordia.habitats.gymnax.task import report, values
 from primordia.testing import check_habitat
 
-gymnax = pytest.importorskip("gymnax", reason="pip install --no-deps --group environments")
+gymnax = pytest.importorskip("gymnax", reason="pip install --no-deps --group no-deps")
 
 CLASSIC = ["CartPole-v1", "Acrobot-v1", "MountainCar-v0", "MountainCarContinuous-v0", "Pendulum-v1",
            "Catch-bsuite"]  # fmt: skip

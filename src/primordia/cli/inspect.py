@@ -82,7 +82,7 @@ def replay(run: Path, begin: int | None, end: int | None, out: Path | None, **ch
     click.echo(chosen_organism(run, **chosen).replay(out, (begin, end)))
 
 
-@click.command(short_help="Write genomes to a file that runs can start from.")
+@click.command(short_help="Write genomes to a file that runs can start from, or a brain as ONNX.")
 @run_argument
 @click.option(
     "--organism", "organisms", type=int, multiple=True, help="Birth number; may be repeated."
@@ -93,6 +93,8 @@ def replay(run: Path, begin: int | None, end: int | None, out: Path | None, **ch
 @click.argument("file", type=click.Path(path_type=Path))
 def export(run: Path, organisms: tuple[int, ...], world: int, trust: bool, file: Path) -> None:
     """Write genomes to a safetensors FILE, which `primordia run --ancestor` takes.
+
+    If its name ends with .onnx, FILE is one brain as an ONNX model, for other programs.
 
     Without --organism it is the champion, the longest-lived of the later half of the births.
     """

@@ -1,17 +1,24 @@
-"""Export: genomes of organisms, rebuilt from the records, in a file that a run can start from."""
+"""Export: organisms, rebuilt from the records, for other runs and other programs."""
 
 from collections.abc import Sequence
 from pathlib import Path
 
 from primordia.brains import genomes
+from primordia.errors import InputError
 from primordia.history.lineage import rebuild_all
+from primordia.organism.policy import Policy
 from primordia.runs.records import Records
+
+ONNX = ".onnx"
 
 
 def export(
     run: Records, out: Path, organisms: Sequence[int] = (), world: int = 0
 ) -> tuple[int, ...]:
-    """Write genomes of organisms to a safetensors file -> their birth numbers; see `genomes`.
+    """Write organisms to a file -> their birth numbers.
+
+    The file is an ONNX model of one brain if its name ends with .onnx, see `onnx.write`; else it holds
+    genomes in safetensors, see `genomes.write`.
 
     Args:
         run: the organisms' run.
@@ -20,7 +27,7 @@ def export(
         world: the organisms' world.
 
     Raises:
-        InputError: no such organism was born.
+        InputError: no such organism was born, or a model is to hold several.
         Trouble: the file cannot be written.
     """
     chosen = tuple(organisms) or (int(run.lives.id[run.lives.oldest(world)]),)
@@ -29,5 +36,11 @@ def export(
         "seed": str(run.world_seeds[world]),
         "organisms": " ".join(map(str, chosen)),
     }
-    genomes.write(out, run.layout, rebuild_all(run, [(each, world) for each in chosen]), about)
+    rebuilt = rebuild_all(run, [(each, world) for each in chosen])
+    if out.suffix != ONNX:
+        genomes.write(out, run.layout, rebuilt, about)
+    elif len(chosen) == 1:
+        Policy(run.law, rebuilt[0]).to_onnx(out, about)
+    else:
+        raise InputError(f"{out}: an ONNX model is one brain; give one organism")
     return chosen

@@ -1,5 +1,8 @@
 """A brain without its world: `policy(senses) -> action`, for use in any other program."""
 
+from collections.abc import Mapping
+from pathlib import Path
+
 import jax.numpy as jnp
 import numpy as np
 
@@ -7,6 +10,7 @@ from primordia.compiled import shared
 from primordia.habitats.contract import Discrete
 from primordia.law.law import Law
 from primordia.law.motor import chosen
+from primordia.organism import onnx
 
 
 class Policy:
@@ -23,6 +27,15 @@ class Policy:
     def weights(self) -> dict[str, np.ndarray]:
         """The weights by block, float32 (*shape) each, such as a state dictionary holds them."""
         return {name: np.asarray(block)[0] for name, block in self._genome.items()}
+
+    @property
+    def memory(self) -> np.ndarray:
+        """What it remembers now, float32 (M,)."""
+        return np.asarray(self._memory)[0]
+
+    def to_onnx(self, path: str | Path, about: Mapping[str, str] | None = None) -> None:
+        """Write it as an ONNX model, with `about` as metadata; see `onnx.write`."""
+        onnx.write(Path(path), self._law, self.weights, dict(about or {}))
 
     def reset(self) -> None:
         """Clear the memory, as at birth."""
