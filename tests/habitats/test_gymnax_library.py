@@ -101,6 +101,7 @@ def test_players_act_and_perceive_the_grid(task: str) -> None:
     [
         ("CartPole-v1", (600, 400)),
         ("Breakout-MinAtar", (400, 400)),
+        ("Catch-bsuite", (200, 400)),
         pytest.param("Craftax-Classic-Symbolic-v1", (576, 576), marks=pytest.mark.slow),
     ],
 )

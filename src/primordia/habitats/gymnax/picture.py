@@ -19,7 +19,7 @@ from primordia.habitats.mujoco.picture import Renderer
 from primordia.habitats.silence import quiet, silent
 
 WIDTH = 400
-"""pixels, at least"""
+"""pixels of the longer side of a grid, and the least of a row of bars"""
 GROUND = np.array([24, 26, 32])
 BAR, AXIS = "#23395b", "#8a8a8a"
 BLOCK = 64
@@ -75,7 +75,7 @@ def _coloured(cells: np.ndarray) -> Image.Image:
         share = np.clip(cells[:, :, channel], 0, 1)[:, :, None]
         colour = 255 * np.array(colorsys.hsv_to_rgb(channel / channels, 0.65, 0.95))
         picture = np.where(share > 0, GROUND + share * (colour - GROUND), picture)
-    zoom = max(WIDTH // width, 1)
+    zoom = max(WIDTH // max(height, width), 1)
     large = Image.fromarray(picture.astype(np.uint8))
     return large.resize((width * zoom, height * zoom), Image.Resampling.NEAREST)
 

@@ -55,7 +55,7 @@ class Senses:
         self._squash = squash
         leaves = jax.tree.leaves(example)
         self.size = self._choices or sum(int(np.prod(leaf.shape)) for leaf in leaves)
-        self.grid = leaves[0].shape if len(leaves) == 1 and len(leaves[0].shape) == 3 else None
+        self.grid = _grid(leaves[0].shape) if len(leaves) == 1 else None
         """(height, width, channels) of an observation that is a grid"""
         low, high = (getattr(space, name, None) for name in ("low", "high"))
         if low is None or high is None or len(leaves) != 1:
@@ -100,6 +100,11 @@ def flattened(observation: Any) -> Array:
         jnp.asarray(leaf).astype(jnp.float32).ravel() for leaf in jax.tree.leaves(observation)
     ]
     return leaves[0] if len(leaves) == 1 else jnp.concatenate(leaves)
+
+
+def _grid(shape: tuple[int, ...]) -> tuple[int, ...] | None:
+    """Return the (height, width, channels) of an observation of this shape; None if it is no grid."""
+    return (*shape, 1)[:3] if len(shape) in (2, 3) else None
 
 
 def _bounds(low: Any, high: Any, shape: tuple[int, ...]) -> tuple[np.ndarray, ...]:
