@@ -18,6 +18,7 @@ from primordia.law.metabolism import ONE
 from primordia.organism import video
 from primordia.organism.reliving.instant import Stretch
 from primordia.organism.reliving.relived import RelivedLife
+from primordia.runs import bundle
 from primordia.runs.records import Records
 
 PART = 30.0
@@ -48,6 +49,8 @@ def replay(
         InputError: no such organism was born, its habitat draws no pictures, or no age is left to show.
         Trouble: the video cannot be written, or the life does not repeat as recorded.
     """
+    if out is None:
+        bundle.refuse_changes(run.path)
     path = out or run.path / "videos" / f"world{world}-organism{organism}.mp4"
     video.check_name(path)
     life = RelivedLife.of(run, organism, world)
