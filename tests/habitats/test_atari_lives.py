@@ -12,10 +12,9 @@ from primordia.habitats.atari.games import screen_size
 from primordia.habitats.atari.habitat import SCALED, Atari
 from primordia.habitats.atari.picture import draw
 from primordia.habitats.framed import MARGIN
-from primordia.law.life import BODILY
 from primordia.law.metabolism import ONE
 from primordia.law.world import Cause
-from primordia.organism.reliving.relived import RelivedLife
+from primordia.organism.reliving.relived import ALONE, RelivedLife
 from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
 from tests.commands import here
@@ -62,7 +61,7 @@ def assert_ends_as_recorded(run: Archive, organism: int, world: int) -> None:
     stretches = list(life.stretches())
     last, scores = stretches[-1], [each.bodies["tally"][:, 0] for each in stretches]
     assert last.tick[-1] == life.ends
-    assert last.cause[-1] == (life.cause if life.cause in BODILY else -1)
+    assert last.cause[-1] == (life.cause if life.cause in ALONE else -1)
     if life.cause is None:
         stored = at_the_end(life)
         np.testing.assert_array_equal(

@@ -13,14 +13,13 @@ import primordia
 from primordia.engine.state import named_leaves
 from primordia.errors import InputError, Trouble
 from primordia.habitats.cartpole.habitat import CartPole
-from primordia.law.life import BODILY
 from primordia.law.world import Cause
 from primordia.organism import replay
 from primordia.organism.organism import Organism
 from primordia.organism.reliving.in_jax import LifeInJax
 from primordia.organism.reliving.instant import Stretch
 from primordia.organism.reliving.on_host import LifeOnHost
-from primordia.organism.reliving.relived import RelivedLife
+from primordia.organism.reliving.relived import ALONE, RelivedLife
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests.commands import complains, here
@@ -72,7 +71,7 @@ def assert_ends_as_recorded(life: RelivedLife) -> list[Stretch]:
         assert last.energy[-1] == stored["world.organisms.energy"]
         assert last.eaten[-1] == stored["world.organisms.eaten"]
     assert not hungry or (last.energy[-1] <= 0) == (life.cause is Cause.STARVED)
-    assert last.cause[-1] == (life.cause if life.cause in BODILY else -1)
+    assert last.cause[-1] == (life.cause if life.cause in ALONE else -1)
     assert all((each.energy[:-1] > 0).all() for each in seen)
     return seen
 

@@ -11,11 +11,14 @@ from primordia.organism import replay
 RATE = 50.0
 
 
-def test_a_life_is_shown_in_two_parts_once_it_is_longer_than_both() -> None:
+def test_a_life_is_shown_in_two_parts_once_it_is_longer_than_both(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     both = 2 * int(replay.PART * RATE)
     for ticks, parts in ((both + 1, 1), (both + 2, 2)):
         life: Any = SimpleNamespace(record=SimpleNamespace(born=[70]), begins=70, ends=70 + ticks)
-        shown = replay._parts(life, RATE, (None, None))
+        monkeypatch.setattr(replay, "_picture_rate", lambda life: RATE)
+        shown = replay.parts_of(life)
         assert len(shown) == parts
         assert (shown[0][0], shown[-1][-1]) == (1, ticks)
         assert sum(map(len, shown)) == (ticks if parts == 1 else both)

@@ -151,11 +151,11 @@ def _arms(place: Run | str | Path) -> list[Records]:
 
 
 def load(run: str | Path | Sequence[str | Path], trust: bool = False) -> Run:
-    """Return the run in a directory, several runs as one arm, or an experiment.
+    """Return the run in a directory or a bundle, several runs as one arm, or an experiment.
 
     Args:
-        run: a run's directory; a folder that holds runs; a pattern, such as `runs/h*`; several of
-            these; or the directory of an experiment, which gives an `Experiment`.
+        run: a run's directory; a bundle of one; a folder that holds runs; a pattern, such as `runs/h*`;
+            several of these; or the directory of an experiment, which gives an `Experiment`.
         trust: allow the run's own code to be executed, from now on and on this machine. Without that,
             code that the user did not begin a run with stops what executes it: `resume`, `fork`,
             `verify`, `replay`, `evaluate` and `policy`. Reading records executes nothing.

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from primordia.api import notebook
 from primordia.api.run import Run
 from primordia.comparison.comparison import Comparison, compare
 from primordia.experiments import campaign
@@ -27,6 +28,10 @@ class Experiment(Run):
     def arms(self) -> dict[str, Run]:
         """The runs of each arm by its name, the reference first."""
         return {name: Run(folder) for name, folder in self._recorded().arms.items()}
+
+    def _repr_html_(self) -> str:
+        """Return a table of the arms, as notebooks show it."""
+        return notebook.of_experiment(self.status())
 
     def directories(self) -> tuple[Path, ...]:
         """Return the directories of the runs that have a checkpoint."""

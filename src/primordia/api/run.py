@@ -10,9 +10,11 @@ import numpy as np
 import pyarrow as pa
 
 from primordia import device as devices
+from primordia.api import notebook
 from primordia.assays.heredity import Inherited, heredity
 from primordia.comparison.controls import FOUNDERS, Standing, evolved, unevolved
 from primordia.comparison.shadow import ORGANISMS, Shadow, shadow
+from primordia.errors import InputError, Trouble
 from primordia.history.info import info
 from primordia.history.lineage import rebuild
 from primordia.history.threshold import Threshold, threshold
@@ -20,7 +22,7 @@ from primordia.organism.evaluation import Evaluation, evaluate
 from primordia.organism.export import export
 from primordia.organism.organism import Organism
 from primordia.organism.policy import Policy
-from primordia.runs import directory, loop, opening
+from primordia.runs import bundle, directory, loop, opening
 from primordia.runs.archive import Archive
 from primordia.runs.fork import fork
 from primordia.runs.lives import LATE, Lives
@@ -38,12 +40,19 @@ class Run:
     """
 
     path: Path
-    """a run's directory, a folder that holds runs, or a pattern such as `runs/h*`"""
+    """a run's directory or bundle, a folder that holds runs, or a pattern such as `runs/h*`"""
     others: tuple[Path, ...] = ()
     """further ones of the same arm"""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "path", Path(self.path))
+
+    def _repr_html_(self) -> str:
+        """Return a table of the worlds, as notebooks show it."""
+        try:
+            return notebook.of_run(self.info())
+        except (InputError, Trouble) as error:
+            return notebook.table(str(error), (), ())
 
     def opened(self) -> Records:
         """Open the records for reading, as they are now."""
@@ -185,6 +194,11 @@ class Run:
             return loop.resume(
                 self.only().path, limits, inexact=inexact, checkpoint_every=every, listen=listen
             )
+
+    def bundle(self, file: str | Path) -> Path:
+        """Write the run into one file, which `load` takes -> the file; see `bundle.write`."""
+        bundle.write(self.only().path, Path(file))
+        return Path(file)
 
     def verify(self, device: str = "cpu", listen: Listener | None = None) -> list[str]:
         """Repeat the run and compare -> what differs; see `verify.verify`."""

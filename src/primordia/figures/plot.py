@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from primordia import files
 from primordia.errors import InputError
 from primordia.figures import style
+from primordia.runs import bundle
 from primordia.runs.records import Records
 from primordia.settings import parts
 
@@ -47,6 +48,8 @@ def plot(
         raise InputError(
             f"{run.path} has no world {world}; they count from 0 to {run.config.seeds - 1}"
         )
+    if out is None:
+        bundle.refuse_changes(run.path)
     drawing = {_file(name): find(name) for name in figures or KNOWN}
     assert len(run.lives)
     if out is None:

@@ -11,6 +11,7 @@ from primordia.law.world import BirthCause, Cause
 from primordia.organism.evaluation import Evaluation, evaluate
 from primordia.organism.policy import Policy
 from primordia.organism.replay import replay
+from primordia.organism.revival import Revival, revive
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 
@@ -97,3 +98,13 @@ class Organism:
     ) -> Path:
         """Make a video of its life -> the path of the file; see `replay.replay`."""
         return replay(self.run, self.id, self.world, Path(out) if out is not None else None, ages)
+
+    def revive(
+        self,
+        since: int | None = None,
+        save: str | Path | None = None,
+        film: str | Path | None = None,
+    ) -> Revival:
+        """Live its life again and compare it with the record; see `revival.revive`."""
+        save, film = (None if each is None else Path(each) for each in (save, film))
+        return revive(self.run, self.id, self.world, since=since, save=save, film=film)

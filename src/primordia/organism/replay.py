@@ -18,6 +18,7 @@ from primordia.law.metabolism import ONE
 from primordia.organism import video
 from primordia.organism.reliving.instant import Stretch
 from primordia.organism.reliving.relived import RelivedLife
+from primordia.runs import bundle
 from primordia.runs.records import Records
 
 PART = 30.0
@@ -48,16 +49,27 @@ def replay(
         InputError: no such organism was born, its habitat draws no pictures, or no age is left to show.
         Trouble: the video cannot be written, or the life does not repeat as recorded.
     """
+    if out is None:
+        bundle.refuse_changes(run.path)
     path = out or run.path / "videos" / f"world{world}-organism{organism}.mp4"
     video.check_name(path)
     life = RelivedLife.of(run, organism, world)
-    rate = _picture_rate(life)
-    step = ceil(rate / video.FASTEST[path.suffix])
-    parts = _parts(life, rate, ages)
+    parts = parts_of(life, ages)
     if out is None:
         files.own_folder(path.parent)
-    video.write(path, _pictures(life, parts, step, rate / step), rate / step)
+    film(life, path, parts)
     return path
+
+
+def film(life: RelivedLife, path: Path, parts: list[range]) -> None:
+    """Make a video of parts of a life, `parts_of` it, in an .mp4 or .gif.
+
+    Raises:
+        Trouble: the video cannot be written, or the life does not repeat as recorded.
+    """
+    rate = _picture_rate(life)
+    step = ceil(rate / video.FASTEST[path.suffix])
+    video.write(path, _pictures(life, parts, step, rate / step), rate / step)
 
 
 def lacking(habitat: AnyHabitat) -> list[str]:
@@ -73,9 +85,13 @@ def _picture_rate(life: RelivedLife) -> float:
     return life.habitat.rate
 
 
-def _parts(life: RelivedLife, rate: float, ages: tuple[int | None, int | None]) -> list[range]:
-    """Return the ages to be shown, in ticks."""
-    born = int(life.record.born[0])
+def parts_of(life: RelivedLife, ages: tuple[int | None, int | None] = (None, None)) -> list[range]:
+    """Return the ages to be shown, in ticks; see `replay`.
+
+    Raises:
+        InputError: no age is left to show, or its habitat draws no pictures.
+    """
+    rate, born = _picture_rate(life), int(life.record.born[0])
     first, last = life.begins + 1 - born, life.ends - born
     if ages == (None, None) and last - first > 2 * PART * rate:
         part = int(PART * rate)

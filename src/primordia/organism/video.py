@@ -19,7 +19,7 @@ def check_name(path: Path) -> None:
     """Raise InputError unless the name ends in .mp4 or .gif, and is free or that of a regular file."""
     files.check_output(path)
     if path.suffix not in FASTEST:
-        raise InputError(f"--out {path}: a video is an .mp4 or a .gif")
+        raise InputError(f"{path}: a video is an .mp4 or a .gif")
 
 
 def write(path: Path, pictures: Iterator[Image.Image], rate: float) -> None:

@@ -26,7 +26,8 @@ def open_pool(
         fields: dtype and shape of the arrays by name.
         cells: number of simulators.
         workers: number of worker processes, at most one for each cell; 0: the simulators are in this
-            process; None: one for each core, and none if there is one core.
+            process; None: one for each core, and none if there is one core or one simulator, since a
+            process takes a second to start.
         modules: modules of the user's own that the simulators import.
 
     Raises:
@@ -34,7 +35,7 @@ def open_pool(
     """
     if workers is None:
         among = cores.count()
-        workers = among if among > 1 else 0
+        workers = among if among > 1 and cells > 1 else 0
     if workers == 0:
         return InProcess(simulator, settings, fields, cells)
     return Workers(simulator, settings, fields, cells, min(workers, cells), modules)

@@ -49,7 +49,8 @@ class Arm(Records):
         self.path, self.runs = path, tuple(runs)
         _refuse_others(self.runs)
         counts = [run.config.seeds for run in runs]
-        self._firsts = np.concatenate([[0], np.cumsum(counts)[:-1]])
+        self.firsts = np.concatenate([[0], np.cumsum(counts)[:-1]])
+        """the number that the first world of each run has among all, int64 (R,)"""
         self.config: Config = runs[0].config.model_copy(update={"seeds": sum(counts)})
         _refuse_twice(self.runs, self.world_seeds)
 
@@ -107,21 +108,21 @@ class Arm(Records):
     @cached_property
     def state(self) -> "_Joined":
         """The arrays of all states, joined, without the open tails."""
-        return _Joined(self.runs, self._firsts, "state")
+        return _Joined(self.runs, self.firsts, "state")
 
     @cached_property
     def origin(self) -> Mapping[str, np.ndarray] | None:
         """The arrays that the forks began with, joined; None if these are no forks."""
-        return None if self.config.fork is None else _Joined(self.runs, self._firsts, "origin")
+        return None if self.config.fork is None else _Joined(self.runs, self.firsts, "origin")
 
     @cached_property
     def lives(self) -> Lives:
         """All lives of all runs."""
-        return joined([run.lives for run in self.parts()], self._firsts)
+        return joined([run.lives for run in self.parts()], self.firsts)
 
     def segments(self, name: str, columns: Sequence[str] | None = None) -> Iterator[pa.Table]:
         """Read a table run by run; see `Records.table`."""
-        for first, run in zip(self._firsts.tolist(), self.parts(), strict=True):
+        for first, run in zip(self.firsts.tolist(), self.parts(), strict=True):
             for part in run.segments(name, columns):
                 yield _shifted(part, first)
 
@@ -143,6 +144,15 @@ class Arm(Records):
     def heredity(self) -> Heredity:
         """The part of the law that makes genomes."""
         return self.runs[0].heredity
+
+
+def run_of(records: Records, world: int) -> tuple[Archive, int]:
+    """Return the run that holds a world of some records, and the number that the world has in it."""
+    if isinstance(records, Archive):
+        return records, world
+    assert isinstance(records, Arm)
+    number = int(np.searchsorted(records.firsts, world, side="right")) - 1
+    return records.runs[number], world - int(records.firsts[number])
 
 
 class _Joined(Mapping[str, np.ndarray]):

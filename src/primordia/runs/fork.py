@@ -20,7 +20,7 @@ from primordia.law.genesis import initial_looks
 from primordia.law.metabolism import to_fixed_point
 from primordia.law.world import Climate, Looks, World, Worlds
 from primordia.random.wide import Wide, never, wide
-from primordia.runs import checkpoint, directory
+from primordia.runs import bundle, checkpoint, directory
 from primordia.runs.archive import Archive
 from primordia.runs.arrays import world_ticks
 from primordia.runs.lives import Lives
@@ -83,7 +83,7 @@ def _fork_config(source: Path, settings: dict[str, Any], at: int) -> Config:
     if "task" in settings:
         raise InputError("there is no setting 'task' of a fork: it has the task of its run")
     values = merged(from_toml(source / "config.toml"), settings)
-    values["fork"] = ForkedFrom(run=str(source), tick=at).model_dump()
+    values["fork"] = ForkedFrom(run=str(bundle.origin_of(source)), tick=at).model_dump()
     return validated(values, source=str(source))
 
 

@@ -103,14 +103,22 @@ def read(path: Path) -> Manifest:
         OSError: the file cannot be read.
         ValueError: it holds no manifest, or was changed.
     """
+    return parsed(files.read(path))
+
+
+def parsed(text: bytes) -> Manifest:
+    """Return the manifest in a text; raise ValueError if it holds none, or was changed."""
     try:
-        content = json.loads(files.read(path))
+        content = json.loads(text)
         recorded = content.pop("sha256")
-    except (RecursionError, AttributeError, KeyError, TypeError) as error:
-        raise ValueError(f"{path} is no manifest") from error
+    except (RecursionError, AttributeError, KeyError, TypeError, ValueError):
+        raise ValueError("a manifest cannot be read") from None
     if recorded != _checksum(content):
-        raise ValueError(f"{path} was changed")
-    return Manifest.model_validate_json(json.dumps(content))
+        raise ValueError("a manifest was changed")
+    try:
+        return Manifest.model_validate_json(json.dumps(content))
+    except ValueError:
+        raise ValueError("a manifest is not one of a run") from None
 
 
 def _checksum(content: dict[str, Any]) -> str:

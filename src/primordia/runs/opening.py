@@ -7,7 +7,7 @@ from pathlib import Path
 
 from primordia import files
 from primordia.errors import InputError
-from primordia.runs import checkpoint, directory
+from primordia.runs import bundle, checkpoint, directory
 from primordia.runs.archive import Archive
 from primordia.runs.arm import Arm
 from primordia.runs.records import Records
@@ -20,7 +20,7 @@ def opened(places: Sequence[str | Path], name: str | None = None) -> Records:
     """Open a run by its directory, or several runs as one arm.
 
     Args:
-        places: directories of runs, folders that hold runs, and patterns of them, such as `runs/h*`.
+        places: directories of runs, bundles, folders that hold runs, and patterns, such as `runs/h*`.
         name: the arm's name.
 
     Raises:
@@ -28,8 +28,8 @@ def opened(places: Sequence[str | Path], name: str | None = None) -> Records:
     """
     paths = [path for place in places for path in run_paths(Path(place))]
     if [Path(place) for place in places] == paths and len(paths) == 1 and name is None:
-        return Archive(paths[0])
-    runs = sorted(map(Archive, paths), key=lambda run: run.config.seed)
+        return _archive(paths[0])
+    runs = sorted(map(_archive, paths), key=lambda run: run.config.seed)
     return Arm(Path(name if name is not None else str(places[0])), runs)
 
 
@@ -41,11 +41,16 @@ def only(places: Sequence[str | Path]) -> Archive:
             f"{places[0]} is an arm of {len(paths)} runs, and this takes a single one, such as"
             f" {paths[0]}"
         )
-    return Archive(paths[0])
+    return _archive(paths[0])
+
+
+def _archive(path: Path) -> Archive:
+    """Open a run by its directory or its bundle."""
+    return Archive(bundle.opened(path) if path.is_file() else path)
 
 
 def run_paths(place: Path) -> list[Path]:
-    """Return the directories of the runs at a place, in the order of their names.
+    """Return the directories and bundles of the runs at a place, in the order of their names.
 
     Raises:
         InputError: there is none.

@@ -41,26 +41,35 @@ class LifeInJax:
         self, now: Instant, ticks: np.ndarray, rates: Rates, count: int
     ) -> tuple[Instant, Stretch]:
         """Live the first `count` of TICKS ticks, with their rates (TICKS,); ignore the others."""
-        now, lived = self._lived(self._mind, now, wide(ticks), rates)
+        real = np.arange(len(ticks)) < count
+        now, lived = self._lived(self._mind, now, (wide(ticks), rates, real))
         columns = jax.tree.map(lambda each: np.asarray(each)[:count, 0], lived)
-        return now, Stretch(ticks[:count], *columns)
+        return now, Stretch._make([ticks[:count], *columns, np.zeros((count, 0), np.int32)])
+
+    def stored_as(self, bodies: Bodies) -> dict[str, np.ndarray]:
+        """Return a body (1, ...) as a checkpoint holds it, by the names of the arrays."""
+        return {name: np.asarray(leaf) for name, leaf in named_leaves({"bodies": bodies})}
 
     def close(self) -> None:
         """Do nothing: there are no resources to release."""
 
 
 def _lived(
-    law: Law, habitat: JaxHabitat, mind: Mind, now: Instant, ticks: Wide, rates: Rates
+    law: Law, habitat: JaxHabitat, mind: Mind, now: Instant, ticks: tuple[Wide, Rates, Array]
 ) -> tuple[Instant, tuple]:
-    """Live ticks (n,) -> the life's state after them; the columns of a Stretch, (n, 1, ...) each."""
+    """Live ticks (n,) -> the life's state after them; the columns of a Stretch, (n, 1, ...) each.
 
-    def step(now: Instant, given: tuple[Wide, Rates]) -> tuple[Instant, tuple]:
-        tick, rates = given
+    `ticks` holds their numbers, their rates, and which are real, bool; the state skips the others.
+    """
+
+    def step(now: Instant, given: tuple[Wide, Rates, Array]) -> tuple[Instant, tuple]:
+        tick, rates, real = given
         senses = habitat.sense(now.bodies)
         thought = think(law, mind, now.memory, senses, tick.map(jnp.atleast_1d))
         bodies, outcome = habitat.step(now.bodies, thought.action)
         vitals, cause = judge(law, now.vitals, thought.faulty, bodies, outcome, rates)
         columns = senses, thought.action, bodies, *vitals, cause
-        return Instant(thought.memory, vitals, bodies), columns
+        after = Instant(thought.memory, vitals, bodies)
+        return jax.tree.map(lambda new, old: jnp.where(real, new, old), after, now), columns
 
-    return lax.scan(step, now, (ticks, rates))
+    return lax.scan(step, now, ticks)

@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+import jax
 import numpy as np
 from jax import Array
 
@@ -34,4 +35,10 @@ class Stretch(NamedTuple):
     eaten: np.ndarray
     """int32, fixed point: food since birth"""
     cause: np.ndarray
-    """int32: cause of a death by brain, body or store in the tick, or -1"""
+    """int32: cause of a death by brain, body, store or accident in the tick, or -1"""
+    counts: np.ndarray
+    """int32 (n, K): what the habitat counts, after the tick"""
+
+    def take(self, ticks: slice) -> "Stretch":
+        """Return some of the ticks."""
+        return jax.tree.map(lambda column: column[ticks], self)

@@ -53,13 +53,24 @@ class LifeOnHost:
             memory, before, action = thought.memory, np.array(senses), np.asarray(thought.action)
             senses, outcome = self._habitat.step(action, np.ones(1, bool))
             judged = thought.faulty, senses, outcome
-            lived.append(_copied((before, action, self._habitat.seen(), judged)))
-        perceived, actions, seen, judged = jax.tree.map(lambda *each: np.stack(each), *lived)
+            lived.append(_copied((before, action, self._habitat.seen(), self._counts(), judged)))
+        perceived, actions, seen, counts, judged = jax.tree.map(
+            lambda *each: np.stack(each), *lived
+        )
         vitals, cause = self._judged(now.vitals, _padded(judged, self.TICKS), rates)
         after = jax.tree.map(lambda each: np.asarray(each)[:count], (*vitals, cause))
-        stretch = Stretch(ticks[:count], perceived, actions, seen, *(each[:, 0] for each in after))
+        lived = [ticks[:count], perceived, actions, seen, *(each[:, 0] for each in after), counts]
+        stretch = Stretch._make(lived)
         energy, eaten, _ = (each[-1] for each in after)
         return Instant(memory, Vitals(energy, eaten), senses), stretch
+
+    def stored_as(self, bodies: np.ndarray) -> dict[str, np.ndarray]:
+        """Return senses (1, S) as a checkpoint holds them; the habitat itself holds the body."""
+        return {"bodies.senses": np.asarray(bodies)}
+
+    def _counts(self) -> np.ndarray:
+        """Return what the habitat counts, int32 (1, K)."""
+        return self._habitat.tally() if self._habitat.tallies else np.zeros((1, 0), np.int32)
 
     def close(self) -> None:
         """Release the habitat's resources."""

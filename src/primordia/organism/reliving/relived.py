@@ -4,10 +4,11 @@ It is a function of the organism's genome, the world's seed, and the tick and ce
 promise), so the neighbours need not live again.
 """
 
-from collections.abc import Generator
+from collections.abc import Generator, Mapping
 from contextlib import closing
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -16,6 +17,7 @@ import pyarrow.compute as pc
 from jax import Array
 
 from primordia.brains.contract import Genome
+from primordia.compiled import shared
 from primordia.config import Config
 from primordia.errors import InputError, Trouble
 from primordia.habitats.contract import AnyHabitat
@@ -26,15 +28,19 @@ from primordia.law.genesis import body_words
 from primordia.law.law import Law
 from primordia.law.life import BODILY, Vitals
 from primordia.law.metabolism import ONE, Rates, to_fixed_point
-from primordia.law.world import Cause
+from primordia.law.world import Cause, Climate
 from primordia.organism.mind import Mind
 from primordia.organism.reliving.in_jax import LifeInJax
 from primordia.organism.reliving.instant import Instant, Stretch
 from primordia.organism.reliving.on_host import LifeOnHost
-from primordia.random.keys import Purpose, stream
+from primordia.random.keys import Purpose, bits, chance, stream
 from primordia.random.wide import Wide, wide
+from primordia.runs.arrays import world_ticks
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records
+
+ALONE = (*BODILY, Cause.HAZARD)
+"""Causes of death that a life shows when it is lived alone; others are acts of neighbours."""
 
 
 @dataclass(frozen=True)
@@ -50,24 +56,41 @@ class RelivedLife:
     """a single genome, first axis 1"""
     record: Lives
     """a single row"""
+    stored: Mapping[str, np.ndarray] | None
+    """arrays of the state in which the relived life begins; None: it begins with the birth"""
 
     @classmethod
-    def of(cls, run: Records, organism: int, world: int = 0) -> "RelivedLife":
+    def of(
+        cls,
+        run: Records,
+        organism: int,
+        world: int = 0,
+        stored: Mapping[str, np.ndarray] | None = None,
+    ) -> "RelivedLife":
         """Prepare the life of an organism.
+
+        Args:
+            run: the organism's run.
+            organism: birth number.
+            world: the organism's world.
+            stored: arrays of a checkpoint of the run in which the organism is alive, to begin there. By
+                default the life begins with the birth, or with the fork if the organism is older.
 
         Raises:
             InputError: no such organism was born, or its life cannot be lived again.
         """
         habitat, law, row = run.habitat, run.law, run.lives.row(organism, world)
-        genome = law.heredity.layout.split(jnp.asarray(rebuild(run, organism, world)[None]))
-        record = run.lives.take(np.array([row]))
-        life = cls(run, run.config, law, habitat, genome, record)
-        if life.begins_at_fork and not habitat.exact:
+        record, fork = run.lives.take(np.array([row])), run.config.fork
+        begin = "the checkpoint"
+        if stored is None and fork is not None and int(record.born[0]) <= fork.tick:
+            stored, begin = run.origin, "the fork"
+        if stored is not None and not habitat.exact:
             raise InputError(
-                f"{run.path}: organism {organism} is older than the fork, and its habitat cannot save"
+                f"{run.path}: organism {organism} is older than {begin}, and its habitat cannot save"
                 " bodies"
             )
-        return life
+        genome = law.heredity.layout.split(jnp.asarray(rebuild(run, organism, world)[None]))
+        return cls(run, run.config, law, habitat, genome, record, stored)
 
     @property
     def world(self) -> int:
@@ -75,16 +98,11 @@ class RelivedLife:
         return int(self.record.world[0])
 
     @property
-    def begins_at_fork(self) -> bool:
-        """Whether the organism was alive at the fork, so that its life is relived from there."""
-        fork = self.config.fork
-        return fork is not None and int(self.record.born[0]) <= fork.tick
-
-    @property
     def begins(self) -> int:
-        """The tick at whose end the relived life begins: that of the birth, or of the fork."""
-        fork = self.config.fork
-        return max(int(self.record.born[0]), fork.tick if fork else 0)
+        """The tick at whose end the relived life begins: that of the birth, or of the stored state."""
+        if self.stored is None:
+            return int(self.record.born[0])
+        return int(world_ticks(self.stored)[self.world])
 
     @property
     def ends(self) -> int:
@@ -105,14 +123,43 @@ class RelivedLife:
         Raises:
             Trouble: the life does not repeat as recorded.
         """
-        with closing(self._alone(watched)) as alone:
-            instant = self._start(alone)
-            for first in range(self.begins, self.ends, alone.TICKS):
-                ticks = first + 1 + np.arange(alone.TICKS)
-                count = min(alone.TICKS, self.ends - first)
-                instant, stretch = alone.live(instant, ticks, self._rates(ticks), count)
+        for _, stretch in self.instants(watched):
+            if stretch is not None:
                 self._check(stretch)
                 yield stretch
+
+    def instants(
+        self, watched: bool = False
+    ) -> Generator[tuple[dict[str, np.ndarray], Stretch | None], None, None]:
+        """Live the life until it ends as recorded, or until it ends before; compare it with nothing.
+
+        Yields:
+            The memory, the energy, the food, and the body or its senses, (1, ...) each, by the names
+            under which a checkpoint holds them, at first and after each stretch; and the stretch, None
+            at first. A death ends a stretch, after which memory and body have no meaning.
+        """
+        with closing(self._alone(watched)) as alone:
+            instant = self._start(alone)
+            yield _as_stored(alone, instant), None
+            for first in range(self.begins, self.ends, alone.TICKS):
+                ticks = first + 1 + np.arange(alone.TICKS)
+                climate = self._climate(ticks)
+                count = min(alone.TICKS, self.ends - first)
+                instant, stretch = alone.live(instant, ticks, Rates.of(climate), count)
+                stretch = self._with_accidents(stretch, ticks, climate)
+                died = np.flatnonzero(stretch.cause >= 0)[:1]
+                yield _as_stored(alone, instant), stretch.take(np.s_[: (*(died + 1), count)[0]])
+                if len(died):
+                    return
+
+    def _with_accidents(self, stretch: Stretch, ticks: np.ndarray, climate: Climate) -> Stretch:
+        """Return a stretch with the accidents that the world's seed has for this cell."""
+        if not self.law.has_hazard:
+            return stretch
+        cell = jnp.asarray(self.record.cell)
+        struck = np.asarray(shared(_struck)(self._seed, wide(ticks), cell, climate["hazard"]))
+        struck = struck[: len(stretch.tick)] & (stretch.cause < 0)
+        return stretch._replace(cause=np.where(struck, np.int32(Cause.HAZARD), stretch.cause))
 
     def _alone(self, watched: bool) -> LifeInJax | LifeOnHost:
         """Return what steps brain and body, in a new habitat."""
@@ -123,19 +170,17 @@ class RelivedLife:
         return LifeInJax(self.law, mind, habitat)
 
     def _start(self, alone: LifeInJax | LifeOnHost) -> Instant:
-        """Return the state in which the relived life begins: at birth, or at the fork."""
-        if self.begins_at_fork:
-            return self._at_fork(alone)
+        """Return the state in which the relived life begins."""
+        if self.stored is not None:
+            return self._restored(alone, self.stored)
         key = stream(self._seed, Purpose.BODY, wide(self.record.born))
         words = body_words(key, jnp.asarray(self.record.cell), self.habitat.words)
         memory = jnp.zeros((1, self.law.memory), jnp.float32)
-        store = self._rates(np.array([self.begins])).store
+        store = self._climate(np.array([self.begins]))["metabolism.store"]
         vitals = Vitals(to_fixed_point(store), jnp.zeros(1, jnp.int32))
         return Instant(memory, vitals, alone.embody(words))
 
-    def _at_fork(self, alone: LifeInJax | LifeOnHost) -> Instant:
-        arrays = self.run.origin
-        assert arrays is not None
+    def _restored(self, alone: LifeInJax | LifeOnHost, arrays: Mapping[str, np.ndarray]) -> Instant:
         cell = [place_in(arrays, int(self.record.id[0]), self.world)]
 
         def own(name: str) -> Array:
@@ -148,10 +193,10 @@ class RelivedLife:
     def _check(self, stretch: Stretch) -> None:
         """Compare a stretch with the record: tick and cause of death, energy left, food eaten.
 
-        Deaths by neighbours or by chance are not repeated: the organism is then alive at its last tick.
+        Deaths by neighbours are not repeated: the organism is then alive at its last tick.
         """
         last = stretch.tick == self.ends
-        expected = np.where(last & (self.cause in BODILY), int(self.cause or 0), -1)
+        expected = np.where(last & (self.cause in ALONE), int(self.cause or 0), -1)
         same = np.array_equal(stretch.cause, expected)
         if last.any() and self.cause is not None:
             same &= (stretch.energy[-1], stretch.eaten[-1]) == self.at_death
@@ -164,10 +209,15 @@ class RelivedLife:
     @cached_property
     def at_death(self) -> tuple[int, int]:
         """Energy left and food eaten as recorded at death, fixed point."""
+        return round(self.death["energy"] * ONE), round(self.death["food"] * ONE)
+
+    @cached_property
+    def death(self) -> dict[str, Any]:
+        """The row of the organism's death, by column."""
         own = (pc.field("world") == self.world) & (pc.field("id") == int(self.record.id[0]))
-        deaths = self.run.segments("deaths", ("world", "id", "energy", "food"))
-        row = next(row for segment in deaths for row in segment.filter(own).to_pylist())
-        return round(row["energy"] * ONE), round(row["food"] * ONE)
+        columns = ("world", "id", "tick", "cause", "energy", "food", *self.run.schema.tallies)
+        deaths = self.run.segments("deaths", columns)
+        return next(row for segment in deaths for row in segment.filter(own).to_pylist())
 
     @property
     def _seed(self) -> Wide:
@@ -178,7 +228,19 @@ class RelivedLife:
     def _past(self) -> PastClimate:
         return PastClimate(self.run)
 
-    def _rates(self, ticks: np.ndarray) -> Rates:
-        """Return the metabolism in force in each tick, float32 (n,) each."""
+    def _climate(self, ticks: np.ndarray) -> Climate:
+        """Return the settings in force in each tick, float32 (n,) each."""
         itself = self.record.take(np.zeros(len(ticks), int))
-        return Rates.of(jax.tree.map(jnp.asarray, self._past.of_lives(itself, ticks)))
+        return jax.tree.map(jnp.asarray, self._past.of_lives(itself, ticks))
+
+
+def _as_stored(alone: LifeInJax | LifeOnHost, instant: Instant) -> dict[str, np.ndarray]:
+    energy, eaten = instant.vitals
+    own = {"memory": instant.memory, "energy": energy, "eaten": eaten}
+    held = {f"world.organisms.{name}": np.asarray(array) for name, array in own.items()}
+    return held | alone.stored_as(instant.bodies)
+
+
+def _struck(seed: Wide, ticks: Wide, cell: Array, hazard: Array) -> Array:
+    """Return whether an accident strikes the cell in each tick (n,), bool; see `law.tick.judge`."""
+    return chance(bits(stream(seed, Purpose.HAZARD, ticks), cell).hi, hazard)

@@ -1,0 +1,36 @@
+"""The commands `primordia bundle` and `unbundle`: a run in one file."""
+
+from pathlib import Path
+
+import click
+
+from primordia.cli.flags import run_argument
+
+
+@click.command(short_help="Write a run into one file, to send to others.")
+@run_argument
+@click.argument("file", type=click.Path(path_type=Path))
+def bundle(run: Path, file: Path) -> None:
+    """Write a run into one FILE, such as run.zip, as of its newest checkpoint.
+
+    Commands that read a RUN take the file in its place. Equal runs make equal files.
+    """
+    from primordia.api import load
+
+    load(run).bundle(file)
+    click.echo(f"{file}: {file.stat().st_size:,} bytes")
+
+
+@click.command(short_help="Make a run of a bundle, to go on with it.")
+@click.argument("file", type=click.Path(path_type=Path))
+@click.argument("folder", type=click.Path(path_type=Path))
+def unbundle(file: Path, folder: Path) -> None:
+    """Make a run in FOLDER of a FILE that `primordia bundle` wrote. Nothing in it is executed."""
+    from primordia.runs import bundle
+
+    bundle.unbundle(file, folder)
+    click.echo(folder)
+
+
+COMMANDS = (bundle, unbundle)
+"""The commands of this module."""

@@ -1,0 +1,96 @@
+"""The command `primordia revive`, which lives a life again and compares it with its record."""
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from primordia.cli.cache import cache_option
+from primordia.cli.flags import run_argument, trust_option
+from primordia.cli.table import show_table
+from primordia.errors import Trouble
+
+if TYPE_CHECKING:
+    from primordia.organism.revival import Revival
+
+
+@click.command(short_help="Live a life again and compare it with the record.")
+@run_argument
+@click.argument("organism", type=int, metavar="ID")
+@click.option("--world", type=int, default=0, help="The organism's world [0].")
+@click.option(
+    "--from",
+    "since",
+    type=int,
+    metavar="TICK",
+    help="Begin with the newest kept checkpoint of this tick or an earlier one [birth].",
+)
+@click.option(
+    "--save",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Write senses, actions, energy and food of each tick: .npz, .parquet or .csv.",
+)
+@click.option(
+    "--video",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Film the life too: .mp4 or .gif; the first and last 30 seconds of a long one.",
+)
+@trust_option
+@cache_option
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+def revive(
+    run: Path,
+    organism: int,
+    world: int,
+    since: int | None,
+    save: Path | None,
+    video: Path | None,
+    trust: bool,
+    as_json: bool,
+) -> None:
+    """Live the life of an organism again, tick for tick, and compare it with its record.
+
+    The tick and the cause of its death, the energy left, the food eaten, and what the habitat counts are
+    compared. A living organism lives up to the newest checkpoint, and its memory and body are compared
+    too. The exit status is 0 if all agree, 1 if one does not, and 2 if the life cannot be lived again.
+
+    A life begins with the birth, or with the fork if the organism is older. A run keeps its newest two
+    checkpoints and what a fork began with, so --from can begin with one of these.
+    """
+    from primordia.api import load
+
+    found = load(run, trust).organism(organism, world).revive(since, save, video)
+    if as_json:
+        click.echo(json.dumps(found.to_dict()))
+    else:
+        _show(found)
+    if not found.agrees:
+        names = ", ".join(each.name for each in found.respects if not each.agrees)
+        raise Trouble(f"organism {organism} of world {world} did not live as recorded: {names}")
+
+
+def _show(found: "Revival") -> None:
+    begin = {"birth": "its birth", "fork": "the fork", "checkpoint": "the checkpoint"}[found.begin]
+    title = (
+        f"organism {found.organism} of world {found.world}, lived again from {begin} at tick"
+        f" {found.begins:,} to tick {found.ends:,}"
+    )
+    rows = [
+        (each.name, _text(each.recorded), _text(each.relived), "yes" if each.agrees else "NO")
+        for each in found.respects
+    ]
+    notes = [*(f"Note: {each}." for each in found.notes), *map(str, found.files)]
+    show_table(title, ("", "recorded", "relived", "agrees"), rows, notes)
+
+
+def _text(value: object) -> str:
+    if value is None:
+        return "-"
+    return value if isinstance(value, str) else f"{value:,.10g}"
+
+
+COMMANDS = (revive,)
+"""The commands of this module."""

@@ -1,0 +1,109 @@
+"""What is compared of a life: as the records hold it, and as it turned out when it was lived again."""
+
+import hashlib
+from collections.abc import Iterator, Mapping
+from typing import TypeAlias
+
+import numpy as np
+
+from primordia.law.metabolism import ONE
+from primordia.law.world import Cause
+from primordia.organism.reliving.instant import Stretch
+from primordia.organism.reliving.relived import RelivedLife
+
+Value: TypeAlias = int | float | str | None
+ALIVE = "alive"
+"""The word in place of a cause of death."""
+OWN = tuple(f"world.organisms.{name}" for name in ("memory", "energy", "eaten"))
+"""The names of an organism's own arrays in a state, as far as they change in its life."""
+BODIES, SENSES, COUNTS = "bodies", ("bodies.senses",), "bodies.tally"
+"""The beginning of the names of a body's arrays in a state; its senses and counts, of one on the host."""
+
+
+def recorded(life: RelivedLife) -> dict[str, Value]:
+    """Return what the records hold of a life, by name.
+
+    Of the dead: tick and cause of death, energy left, food eaten, and what the habitat counts. Of the
+    living: the same at the newest checkpoint, and digests of the memory, and of the body or its senses.
+    """
+    names = life.run.schema.tallies
+    if life.cause is not None:
+        energy, food = life.at_death
+        counts = {name: life.death[name] for name in names}
+        return {"tick": life.ends, "cause": life.cause.label, **_vitals(energy, food), **counts}
+    place = life.world * life.config.cells + int(life.record.cell[0])
+    state = life.run.state
+    body = [each for each in state if each.startswith(BODIES)]
+    own = [*OWN, *(SENSES if life.habitat.kind == "host" else body)]
+    held = {name: state[name][place : place + 1] for name in own}
+    lived = names if life.begins < life.ends else ()
+    counts = dict(zip(lived, state[COUNTS][place].tolist(), strict=True)) if lived else {}
+    return {"tick": life.ends, "cause": ALIVE, **_of_living(held), **counts}
+
+
+class Course:
+    """The course that a life takes when it is lived again, whatever the record says."""
+
+    def __init__(self, life: RelivedLife) -> None:
+        """Prepare to live; `stretches` lives."""
+        self._life = life
+        self._held: dict[str, np.ndarray] = {}
+        self._last: Stretch | None = None
+
+    def stretches(self) -> Iterator[Stretch]:
+        """Live the life, and yield it some ticks at a time; see `RelivedLife.instants`."""
+        for held, stretch in self._life.instants():
+            self._held = held
+            if stretch is not None:
+                self._last = stretch
+                yield stretch
+
+    @property
+    def tick(self) -> int:
+        """The last tick that was lived."""
+        return self._life.begins if self._last is None else int(self._last.tick[-1])
+
+    @property
+    def replaced(self) -> bool:
+        """Whether the life ended as the record says: a child was born in its cell, where it was alive."""
+        life, lives = self._life, self._life.run.lives
+        child = (lives.world == life.world) & (lives.cell == life.record.cell)
+        child &= (lives.born == life.ends) & (lives.id != life.record.id)
+        return life.cause is Cause.REPLACED and self._cause < 0 and bool(child.any())
+
+    @property
+    def _cause(self) -> int:
+        return -1 if self._last is None else int(self._last.cause[-1])
+
+    def found(self) -> dict[str, Value]:
+        """Return what was found of the life, under the names of `recorded`, as far as it was found."""
+        if self._cause < 0 and not self.replaced:
+            ended = {"cause": ALIVE} | ({"tick": self.tick} if self._life.cause is None else {})
+            held = _of_living(self._held)
+        else:
+            cause = Cause(self._cause) if self._cause >= 0 else Cause.REPLACED
+            ended, held = {"cause": cause.label, "tick": self.tick}, {}
+        if self._last is not None:
+            held |= _vitals(int(self._last.energy[-1]), int(self._last.eaten[-1]))
+            counts = self._last.counts[-1].tolist()
+            held |= dict(zip(self._life.run.schema.tallies, counts, strict=True))
+        return ended | held
+
+
+def _vitals(energy: int, eaten: int) -> dict[str, Value]:
+    return {"energy": energy / ONE, "food": eaten / ONE}
+
+
+def _of_living(held: Mapping[str, np.ndarray]) -> dict[str, Value]:
+    """Return energy, food and digests of memory and body, of arrays (1, ...) of a state."""
+    memory, energy, eaten = (held[name] for name in OWN)
+    body = {name: held[name] for name in sorted(held) if name.startswith(BODIES)}
+    name = "senses" if list(body) == list(SENSES) else "body"
+    seen = _digest(*body.values())
+    return _vitals(int(energy[0]), int(eaten[0])) | {"memory": _digest(memory), name: seen}
+
+
+def _digest(*arrays: np.ndarray) -> str:
+    """Return the first figures of a checksum of arrays, bit for bit."""
+    content = b"".join(np.ascontiguousarray(each).tobytes() for each in arrays)
+    return hashlib.sha256(content).hexdigest()[:12]

@@ -1,0 +1,191 @@
+"""A life revived: lived again, and compared with its record in every respect that the records hold."""
+
+from collections import deque
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from primordia.errors import InputError, Trouble
+from primordia.law.world import Cause
+from primordia.organism import diary, replay, video
+from primordia.organism.reliving.course import Course, Value, recorded
+from primordia.organism.reliving.relived import RelivedLife
+from primordia.runs import checkpoint, directory
+from primordia.runs.archive import Archive
+from primordia.runs.arm import run_of
+from primordia.runs.arrays import Arrays, world_ticks
+from primordia.runs.records import Records
+
+
+@dataclass(frozen=True)
+class Respect:
+    """One thing in which a life and its record are compared."""
+
+    name: str
+    recorded: Value
+    relived: Value
+    """None if the relived life has no such value, since it took another course"""
+
+    @property
+    def agrees(self) -> bool:
+        """Whether both are the same."""
+        return self.recorded == self.relived
+
+
+@dataclass(frozen=True)
+class Revival:
+    """The outcome of a life that was lived again."""
+
+    organism: int
+    """birth number"""
+    world: int
+    begin: str
+    """what it began with: `birth`, `fork` or `checkpoint`"""
+    begins: int
+    """the tick at whose end it began"""
+    ends: int
+    """the last tick that was lived again"""
+    respects: tuple[Respect, ...]
+    notes: tuple[str, ...]
+    """what limits the comparison"""
+    files: tuple[Path, ...]
+    """the files that were written"""
+
+    @property
+    def agrees(self) -> bool:
+        """Whether life and record agree in all respects."""
+        return all(each.agrees for each in self.respects)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return everything as JSON can hold it."""
+        respects = [
+            {"name": each.name, "recorded": each.recorded, "relived": each.relived,
+             "agrees": each.agrees}
+            for each in self.respects
+        ]  # fmt: skip
+        own = {
+            name: getattr(self, name) for name in ("organism", "world", "begin", "begins", "ends")
+        }
+        files = [str(each) for each in self.files]
+        return {**own, "agrees": self.agrees, "respects": respects,
+                "notes": list(self.notes), "files": files}  # fmt: skip
+
+
+def revive(
+    run: Records,
+    organism: int,
+    world: int = 0,
+    *,
+    since: int | None = None,
+    save: Path | None = None,
+    film: Path | None = None,
+) -> Revival:
+    """Live a life again, tick for tick, and compare it with its record.
+
+    A living organism lives up to the run's newest checkpoint, which also holds its memory, and its body,
+    or its senses in a habitat on the host. A death by a neighbour's child repeats if the organism is
+    alive at its end, and a child was born in its cell in that tick. Other deaths repeat by themselves.
+
+    Args:
+        run: the organism's run.
+        organism: birth number.
+        world: the organism's world.
+        since: begin with the newest state that the run keeps of this tick or an earlier one: one of the
+            newest two checkpoints, or what a fork began with. By default the life begins with the birth,
+            or with the fork if the organism is older.
+        save: an .npz, .parquet or .csv file to write the life to; see `diary.write`.
+        film: an .mp4 or .gif file to film the life to, if it agrees with its record.
+
+    Raises:
+        InputError: the life cannot be lived again; the message says why.
+        Trouble: a file cannot be written.
+    """
+    run.lives.row(organism, world)
+    archive, own = run_of(run, world)
+    if save is not None:
+        diary.check_name(save)
+    if film is not None:
+        video.check_name(film)
+    try:
+        life = RelivedLife.of(archive, organism, own, _stored(archive, organism, own, since))
+        _refuse_restart(life)
+        told = recorded(life)
+    except Trouble as error:  # so that status 1 has one meaning: the life is not as recorded
+        raise InputError(f"organism {organism} cannot be revived: {error}") from None
+    parts = replay.parts_of(life) if film is not None else []
+    course = _lived(life, save)
+    found, notes = course.found(), _notes(archive, course)
+    respects = tuple(Respect(name, value, found.get(name)) for name, value in told.items())
+    written = [] if save is None else [save]
+    if film is not None and all(each.agrees for each in respects):
+        replay.film(life, film, parts)
+        written.append(film)
+    elif film is not None:
+        notes.append(f"{film} was not made, since the life is not as recorded")
+    begin = "birth" if life.stored is None else "fork" if since is None else "checkpoint"
+    place = organism, world, begin, life.begins, course.tick
+    return Revival(*place, respects, tuple(notes), tuple(written))
+
+
+def _lived(life: RelivedLife, save: Path | None) -> Course:
+    """Live a life, and write it to a file if one is named -> its course."""
+    course = Course(life)
+    if save is None:
+        deque(course.stretches(), 0)
+    elif life.begins == life.ends:
+        raise InputError(f"organism {life.record.id[0]} has lived no tick, so nothing can be saved")
+    else:
+        diary.write(save, course.stretches(), life.run.schema.tallies)
+    return course
+
+
+def _stored(run: Archive, organism: int, world: int, since: int | None) -> Arrays | None:
+    """Return the newest kept state of a life that is of tick `since` or an earlier one."""
+    if since is None:
+        return None
+    row, kept = run.lives.row(organism, world), []
+    born, ended = int(run.lives.born[row]), int(run.lives.ended[row])
+    for each in checkpoint.whole_checkpoints(run.path, run.fault_in):
+        arrays = run.arrays_of(each)
+        tick = int(world_ticks(arrays)[world])
+        if born <= tick < ended:
+            if tick <= since:
+                return arrays
+            kept.append(f"{tick:,}")
+    life = f"organism {organism} lived from tick {born:,} to {ended:,}"
+    if kept:
+        raise InputError(f"--from {since}: {life}, and {run.path} keeps {' and '.join(kept)} of it")
+    raise InputError(
+        f"--from {since}: {life}, and {run.path} keeps no checkpoint of these ticks (it keeps the newest"
+        " two); without --from the life begins at birth"
+    )
+
+
+def _refuse_restart(life: RelivedLife) -> None:
+    if life.cause is Cause.RESTART:
+        raise InputError(
+            f"organism {life.record.id[0]} ended when its run was started again, which is no part of a"
+            " life, so it cannot be lived again"
+        )
+
+
+def _notes(run: Archive, course: Course) -> list[str]:
+    """Return what limits a comparison, in sentences."""
+    progress, (_, faults) = run.progress, run.newest
+    notes = [f"{fault}; an older checkpoint was read" for fault in faults[:1]]
+    if course.replaced:
+        notes.append(
+            "the births say that a child took its cell in that tick; neighbours were not relived"
+        )
+    if directory.is_written(run.path):
+        notes.append(f"the run goes on; these are its records up to tick {run.ends.max():,}")
+    if run.other_versions:
+        notes.append(f"exactness is off: {'; '.join(run.other_versions)}")
+    elif not progress.exact:
+        notes.append("exactness is off: parts of this run cannot be repeated bit for bit")
+    if progress.restarts:
+        notes.append(
+            "when the run went on, the bodies of the living began again as at birth"
+            f" ({progress.restarts:,} times); a life that crosses this does not repeat"
+        )
+    return notes

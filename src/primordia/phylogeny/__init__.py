@@ -1,0 +1,1 @@
+"""Who descends from whom: lineages for other tools, lines of descent, selection between lines."""

@@ -1,0 +1,270 @@
+"""A run in one file, to send to others: a zip of what its newest checkpoint names, and of nothing else.
+
+    run/versions.json  config.toml  description.json  ...
+    run/births/*.parquet  deaths/*.parquet  metrics/*.parquet
+    run/checkpoints/000012/  origin/
+
+Equal runs make equal bytes. A bundle may come from anywhere, so it is read as the work of a forger: each
+file must be named by a manifest, with its size and checksum. Nothing is compressed, so no file is
+larger than it seems. Nothing in a bundle is executed.
+"""
+
+import atexit
+import hashlib
+import os
+import re
+import shutil
+import stat
+import unicodedata
+import zipfile
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import ExitStack
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import IO
+
+from primordia import files, interrupts
+from primordia.errors import InputError, Trouble
+from primordia.runs import checkpoint, directory, manifest
+from primordia.runs.archive import Archive
+from primordia.runs.checkpoint import FOLDER, MANIFEST, NUMBER, ORIGIN, STATE
+from primordia.runs.directory import VERSIONS
+from primordia.runs.manifest import Manifest, Seal
+
+TOP = "run/"
+"""The folder in a bundle that holds the run."""
+EPOCH = (1980, 1, 1, 0, 0, 0)
+"""The time of all files in a bundle, the earliest that a zip can hold."""
+PIECE = 2**20
+"""Bytes that are copied at a time."""
+TRIES = 3
+"""Number of times that a run which goes on meanwhile is opened."""
+MANIFESTS = re.compile(rf"({ORIGIN}|{FOLDER}/{NUMBER.pattern})/{re.escape(MANIFEST)}")
+"""Paths of manifests in a run, from whose folders they have their names."""
+Seals = dict[str, Seal | None]
+"""Size and checksum of files by their path below the run; None for manifests and versions."""
+Entries = dict[str, zipfile.ZipInfo]
+"""What a zip says of its files, by their path below the run."""
+_copies: dict[tuple, Path] = {}
+"""The copy that `opened` has made of each bundle, by path, size and time of the file."""
+_bundles: dict[Path, Path] = {}
+"""The bundle that each copy was made of."""
+
+
+def write(run: Path, file: Path) -> Archive:
+    """Write a run into a file, as of its newest whole checkpoint -> the run as it was written.
+
+    Raises:
+        InputError: the run has no checkpoint yet, or the path is that of something else than a file.
+        Trouble: the run is damaged, or the file cannot be written.
+    """
+    files.check_output(file)
+    with ExitStack() as stack:
+        for _ in range(TRIES):
+            archive = Archive(run)
+            names = sorted(_named(archive))
+            try:
+                sources = {name: stack.enter_context((run / name).open("rb")) for name in names}
+            except FileNotFoundError:  # the run has gone on and removed this checkpoint
+                continue
+            files.make_folder(file.parent)
+            files.write(file, partial(_fill, sources))
+            return archive
+    raise Trouble(f"{run} changes faster than it can be read; stop it first")
+
+
+def _named(run: Archive) -> Seals:
+    """Return the files of which a run consists at its newest whole checkpoint."""
+    kept = [run.last, checkpoint.origin(run.path, run.fault_in)]
+    manifests = {each.path: each.manifest for each in kept if each is not None}
+    return _sealed({path.relative_to(run.path).as_posix(): manifests[path] for path in manifests})
+
+
+def _sealed(manifests: dict[str, Manifest]) -> Seals:
+    """Return the files that manifests name, given by their folders.
+
+    Raises:
+        ValueError: two of them contradict each other.
+    """
+    seals: Seals = {VERSIONS: None}
+    for folder, each in manifests.items():
+        named: Seals = {
+            f"{folder}/{MANIFEST}": None,
+            f"{folder}/{STATE}": each.state,
+            **each.inputs,
+        }
+        for table, segments in each.segments.items():
+            named |= {f"{table}/{one.name}": Seal(one.bytes, one.sha256) for one in segments}
+        for name, seal in named.items():
+            if seals.setdefault(name, seal) != seal:
+                raise ValueError(f"its manifests contradict each other about {name}")
+    return seals
+
+
+def _fill(sources: Mapping[str, IO[bytes]], path: Path) -> None:
+    """Write a zip without compression, whose bytes depend on names and contents alone."""
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_STORED) as bundle:
+        for name, source in sources.items():
+            entry = zipfile.ZipInfo(TOP + name, EPOCH)
+            entry.create_system, entry.external_attr = 3, (stat.S_IFREG | 0o644) << 16
+            entry.file_size = os.fstat(source.fileno()).st_size
+            with bundle.open(entry, "w") as to:
+                shutil.copyfileobj(source, to, PIECE)
+
+
+def opened(file: Path) -> Path:
+    """Return a directory with the run of a bundle, which is removed when this process ends.
+
+    Raises:
+        InputError: the file is no bundle, or not what its manifests say.
+        Trouble: the directory cannot be written.
+    """
+    about = file.stat()
+    key = file.resolve(), about.st_ino, about.st_size, about.st_mtime_ns
+    if key not in _copies:
+        temporary = TemporaryDirectory(prefix="primordia-")
+        atexit.register(temporary.cleanup)
+        copy = Path(temporary.name) / (file.name.partition(".")[0] or "run")
+        with interrupts.undone_by(temporary.cleanup):
+            _extract(file, copy)
+        _copies[key], _bundles[copy] = copy, file
+    return _copies[key]
+
+
+def origin_of(path: Path) -> Path:
+    """Return the bundle of which `opened` made a copy; any other path is its own origin."""
+    return _bundles.get(path, path)
+
+
+def unbundle(file: Path, folder: Path) -> None:
+    """Make a run's directory of a bundle.
+
+    Raises:
+        InputError: the file is no bundle, or not what its manifests say; the folder is taken.
+        Trouble: the directory cannot be written.
+    """
+    files.check_name(folder)
+    if not file.is_file():
+        raise InputError(f"there is no bundle {file}")
+    if os.path.lexists(folder) and not (folder.is_dir() and not any(folder.iterdir())):
+        raise InputError(f"{folder} exists already; name another folder")
+    files.make_folder(folder.parent)
+    temporary = folder.with_name(files.TEMPORARY + folder.name)
+    if os.path.lexists(temporary):
+        files.remove(temporary)
+    with interrupts.undone_by(partial(shutil.rmtree, temporary, ignore_errors=True)):
+        _extract(file, temporary)
+        try:
+            temporary.rename(folder)
+            files.sync(folder.parent)
+        except OSError as error:
+            raise Trouble(f"{folder} cannot be written: {error.strerror or error}") from None
+
+
+def refuse_changes(path: Path) -> None:
+    """Raise InputError if a path is that of a bundle, or of the copy that `opened` made of one."""
+    if path.is_file() or path in _bundles:
+        file = origin_of(path)
+        raise InputError(
+            f"nothing is written into a bundle: `primordia unbundle {file} FOLDER` makes a run of it;"
+            " figures and videos need --out alone"
+        )
+
+
+def _extract(file: Path, folder: Path) -> None:
+    """Write the files of a bundle into a new folder, after it is known which they must be."""
+    if not zipfile.is_zipfile(file):
+        raise InputError(f"{file} is not a run of primordia, and no bundle of one")
+    try:
+        with zipfile.ZipFile(file) as bundle:
+            entries = _entries(bundle)
+            if sum(each.file_size for each in entries.values()) > file.stat().st_size:
+                raise ValueError("its files are larger than itself")
+            seals = _seals(bundle, entries)
+            for name in sorted(entries.keys() ^ seals.keys()):
+                held = "is named by no manifest" if name in entries else "is missing"
+                raise ValueError(f"{name} {held}")
+            for name, seal in seals.items():
+                if seal is not None and seal.bytes != entries[name].file_size:
+                    raise ValueError(f"{name} has another size than its manifest says")
+            directory.make_folders(folder)
+            for name, seal in seals.items():
+                _copy(_pieces(bundle, entries[name]), folder / name, seal)
+    except (InputError, Trouble):
+        raise
+    except Exception as error:  # zipfile raises errors of many kinds for what is no zip
+        raise InputError(f"{file} is no sound bundle: {error}") from None
+
+
+def _entries(bundle: zipfile.ZipFile) -> Entries:
+    """Return what a zip says of its files.
+
+    Raises:
+        ValueError: it holds something that no bundle holds.
+    """
+    entries: Entries = {}
+    for entry in bundle.infolist():
+        name, kind = entry.orig_filename.removeprefix(TOP), stat.S_IFMT(entry.external_attr >> 16)
+        parts = name.split("/")
+        if not entry.orig_filename.startswith(TOP) or not all(map(_is_plain, parts)):
+            raise ValueError(f"{entry.orig_filename!r} is no path of a file in a run")
+        if kind not in (0, stat.S_IFREG):
+            raise ValueError(f"{name} is {files.KINDS.get(kind, 'no file')}")
+        if entry.flag_bits & 1:
+            raise ValueError(f"{name} is encrypted")
+        if entry.compress_type != zipfile.ZIP_STORED or entry.compress_size != entry.file_size:
+            raise ValueError(f"{name} is compressed, and no bundle compresses")
+        if name in entries:
+            raise ValueError(f"{name} is there twice")
+        entries[name] = entry
+    folded = {unicodedata.normalize("NFKC", name).casefold() for name in entries}
+    if len(folded) != len(entries):
+        raise ValueError("two of its files have names that differ by case alone")
+    return entries
+
+
+def _is_plain(part: str) -> bool:
+    """Return whether a part of a path is the name of a file on every system."""
+    return part not in ("", ".", "..") and part.isprintable() and not set(part) & set('\\:*?"<>|')
+
+
+def _seals(bundle: zipfile.ZipFile, entries: Entries) -> Seals:
+    """Return the files that a bundle must hold: those that its manifests name.
+
+    Raises:
+        ValueError: it has no manifest or several, or one that was changed.
+    """
+    found = [match for match in map(MANIFESTS.fullmatch, entries) if match]
+    for name in (VERSIONS, *(match[0] for match in found)):
+        if name in entries and entries[name].file_size > files.READABLE:
+            raise ValueError(f"{name} is too large")
+    manifests = {match[1]: manifest.parsed(bundle.read(entries[match[0]])) for match in found}
+    if len(manifests.keys() - {ORIGIN}) > 1 or not manifests:
+        raise ValueError(f"it has {len(manifests) or 'no'} checkpoints instead of one")
+    return _sealed(manifests)
+
+
+def _pieces(bundle: zipfile.ZipFile, entry: zipfile.ZipInfo) -> Iterator[bytes]:
+    """Yield the content of a file; raise ValueError if it cannot be read."""
+    try:
+        with bundle.open(entry) as source:
+            while piece := source.read(PIECE):
+                yield piece
+    except Exception as error:
+        raise ValueError(str(error)) from None
+
+
+def _copy(pieces: Iterable[bytes], path: Path, seal: Seal | None) -> None:
+    """Write a new file; raise ValueError if it is not what was sealed."""
+    digest = hashlib.sha256()
+    files.make_folder(path.parent)
+    try:
+        with path.open("xb") as file:
+            for piece in pieces:
+                digest.update(piece)
+                file.write(piece)
+    except OSError as error:
+        raise Trouble(f"{path} cannot be written: {error.strerror or error}") from None
+    if seal is not None and digest.hexdigest() != seal.sha256:
+        raise ValueError(f"the checksum of {path.name} does not hold")
