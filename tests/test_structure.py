@@ -27,7 +27,7 @@ LAYERS = [
     {"comparison"},
     {"figures", "live", "tracking"},
     {"experiments"},
-    {"report"},
+    {"film", "report"},
     {"api", "envs", "testing"},
     {"cli"},
     {"__main__"},

@@ -17,7 +17,7 @@ def test_a_life_is_shown_in_two_parts_once_it_is_longer_than_both(
     both = 2 * int(replay.PART * RATE)
     for ticks, parts in ((both + 1, 1), (both + 2, 2)):
         life: Any = SimpleNamespace(record=SimpleNamespace(born=[70]), begins=70, ends=70 + ticks)
-        monkeypatch.setattr(replay, "_picture_rate", lambda life: RATE)
+        monkeypatch.setattr(replay, "picture_rate", lambda life: RATE)
         shown = replay.parts_of(life)
         assert len(shown) == parts
         assert (shown[0][0], shown[-1][-1]) == (1, ticks)
@@ -30,8 +30,8 @@ def test_cards_and_the_last_picture_stay_at_least_one_frame(
 ) -> None:
     picture = Image.new("RGB", (64, 36))
     moments = [(0, None, 0), (0, None, 1), (1, None, 0)]
-    monkeypatch.setattr(replay, "_moments", lambda *given: iter(moments))
-    monkeypatch.setattr(replay, "_picture", lambda *given: picture)
+    monkeypatch.setattr(replay, "moments", lambda *given: iter(moments))
+    monkeypatch.setattr(replay, "picture_of", lambda *given: picture)
     life: Any = None
     frames = list(replay._pictures(life, [range(1, 3), range(9, 10)], 1, rate))
     still = max(1, round(replay.STILL * rate))

@@ -150,6 +150,12 @@ class Run:
 
         return plot(self.opened(), Path(out) if out is not None else None, world, figures)
 
+    def film(self, out: str | Path | None = None, world: int = 0, **options: Any) -> Path:
+        """Film a world, by default into the run's `videos` -> the file; see `film.film`."""
+        from primordia.film.film import film
+
+        return film(self.opened(), Path(out) if out is not None else None, world, **options)
+
     def track(
         self, tensorboard: str | Path | None = None, wandb: str | Path | None = None, **options: Any
     ) -> None:

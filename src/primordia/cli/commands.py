@@ -11,6 +11,7 @@ from primordia.cli import (
     evaluate,
     evolve,
     experiment,
+    film,
     inspect,
     revive,
     shadow,
@@ -43,7 +44,19 @@ def commands() -> None:
     """
 
 
-PARTS = (evolve, environments, experiment, inspect, revive, bundle, track, evaluate, shadow, assays)
+PARTS = (
+    evolve,
+    environments,
+    experiment,
+    inspect,
+    film,
+    revive,
+    bundle,
+    track,
+    evaluate,
+    shadow,
+    assays,
+)
 for command in (each for part in PARTS for each in part.COMMANDS):
     commands.add_command(command)
 

@@ -77,7 +77,7 @@ def picture(lives: Lives, clades: Clades, cells: np.ndarray, ticks: np.ndarray) 
     rows = occupants(lives, cells, ticks)
     occupied = rows != EMPTY
     codes, place, size = np.unique(
-        _line_codes(lives, clades, rows, ticks)[occupied], return_inverse=True, return_counts=True
+        line_codes(lives, clades, rows, ticks)[occupied], return_inverse=True, return_counts=True
     )
     image = np.ones((*rows.shape, 3))
     image[occupied] = line_colours(lives, clades, codes, size)[place]
@@ -85,7 +85,7 @@ def picture(lives: Lives, clades: Clades, cells: np.ndarray, ticks: np.ndarray) 
 
 
 def line_colours(lives: Lives, clades: Clades, codes: np.ndarray, size: np.ndarray) -> np.ndarray:
-    """Return the colours of lines, float64 (K, 3), by their `_line_codes` and sizes in the picture.
+    """Return the colours of lines, float64 (K, 3), by their `line_codes` and sizes in the picture.
 
     Lines of one era take the colours in turn, the largest first. A line that lasts to the end of its era
     has a strong colour, any other a pale one. Organisms of the time before the first era are grey.
@@ -94,7 +94,7 @@ def line_colours(lives: Lives, clades: Clades, codes: np.ndarray, size: np.ndarr
     last = int(lives.ended.max())
     ends = np.append(clades.renewals, last + 1)
     final = occupants(lives, np.unique(lives.cell), np.minimum(ends, last))
-    lasted = np.isin(codes, _line_codes(lives, clades, final, ends - 1)[final != EMPTY])
+    lasted = np.isin(codes, line_codes(lives, clades, final, ends - 1)[final != EMPTY])
     order = np.lexsort((-size, ~lasted, era))
     turn = np.empty(len(codes), np.int64)
     turn[order] = np.arange(len(codes)) - np.searchsorted(era[order], era[order])
@@ -104,7 +104,7 @@ def line_colours(lives: Lives, clades: Clades, codes: np.ndarray, size: np.ndarr
     return np.where(lasted[:, None], colour, 1 - (1 - colour) * (1 - PALE))
 
 
-def _line_codes(lives: Lives, clades: Clades, rows: np.ndarray, ticks: np.ndarray) -> np.ndarray:
+def line_codes(lives: Lives, clades: Clades, rows: np.ndarray, ticks: np.ndarray) -> np.ndarray:
     """Return one number for era and line of each organism (T, N): era x number of lives + line.
 
     An era is the time from one renewal of lines to the next.

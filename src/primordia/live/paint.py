@@ -109,7 +109,7 @@ def _letter(line: int, capital: bool = False) -> str:
 
 
 @cache
-def _colour(hue: int) -> tuple[int, int, int]:
+def colour(hue: int) -> tuple[int, int, int]:
     """Return a colour at steps of the golden ratio, so that successive hues differ."""
     light = 0.6 if hue % 2 else 0.7
     red, green, blue = colorsys.hls_to_rgb(hue * 0.61803398875 % 1.0, light, 0.66)
@@ -118,7 +118,7 @@ def _colour(hue: int) -> tuple[int, int, int]:
 
 @cache
 def _style(hue: int) -> Style:
-    return Style(color=Color.from_rgb(*_colour(hue)))
+    return Style(color=Color.from_rgb(*colour(hue)))
 
 
 def _hue(line: int) -> Style:
@@ -136,5 +136,5 @@ def _shade(code: int) -> tuple[float, float, float]:
     if code == EMPTY:
         return GROUND
     light = (0.4, 0.6, 0.8, 1.0)[code % 4]
-    red, green, blue = _colour(code // 4)
+    red, green, blue = colour(code // 4)
     return red * light, green * light, blue * light

@@ -67,7 +67,7 @@ def film(life: RelivedLife, path: Path, parts: list[range]) -> None:
     Raises:
         Trouble: the video cannot be written, or the life does not repeat as recorded.
     """
-    rate = _picture_rate(life)
+    rate = picture_rate(life)
     step = ceil(rate / video.FASTEST[path.suffix])
     video.write(path, _pictures(life, parts, step, rate / step), rate / step)
 
@@ -77,7 +77,7 @@ def lacking(habitat: AnyHabitat) -> list[str]:
     return [*habitat.lacks(Ability.PICTURE), *([] if habitat.rate else ["rate"])]
 
 
-def _picture_rate(life: RelivedLife) -> float:
+def picture_rate(life: RelivedLife) -> float:
     """Return the ticks in a second of a life; raise InputError if its habitat draws no pictures."""
     if lacks := " and no ".join(f"`{name}`" for name in lacking(life.habitat)):
         raise InputError(f"{life.run.path}: its habitat draws no pictures (it has no {lacks})")
@@ -91,7 +91,7 @@ def parts_of(life: RelivedLife, ages: tuple[int | None, int | None] = (None, Non
     Raises:
         InputError: no age is left to show, or its habitat draws no pictures.
     """
-    rate, born = _picture_rate(life), int(life.record.born[0])
+    rate, born = picture_rate(life), int(life.record.born[0])
     first, last = life.begins + 1 - born, life.ends - born
     if ages == (None, None) and last - first > 2 * PART * rate:
         part = int(PART * rate)
@@ -114,19 +114,17 @@ def _pictures(
     Between two parts comes a card with the time left out.
     """
     still, part, picture = max(1, round(STILL * rate)), 0, None
-    for part_now, stretch, i in _moments(life, parts, step):
+    for part_now, stretch, i in moments(life, parts, step):
         if part_now > part and picture is not None:
             left_out = parts[part_now].start - parts[part].stop
             yield from repeat(_card(picture.size, f"{left_out:,} ticks later"), still)
-        part, picture = part_now, _picture(life, stretch, i)
+        part, picture = part_now, picture_of(life, stretch, i)
         yield picture
     assert picture is not None
     yield from repeat(picture, still)
 
 
-def _moments(
-    life: RelivedLife, parts: list[range], step: int
-) -> Iterator[tuple[int, Stretch, int]]:
+def moments(life: RelivedLife, parts: list[range], step: int) -> Iterator[tuple[int, Stretch, int]]:
     """Yield the number of the part, the stretch and the place in it of each tick that is shown."""
     for stretch in life.stretches(watched=True):
         ages = stretch.tick - life.record.born[0]
@@ -137,7 +135,7 @@ def _moments(
                 yield number, stretch, int(i)
 
 
-def _picture(life: RelivedLife, stretch: Stretch, i: int) -> Image.Image:
+def picture_of(life: RelivedLife, stretch: Stretch, i: int) -> Image.Image:
     tick = int(stretch.tick[i])
     body = jax.tree.map(lambda leaf: leaf[i], stretch.bodies)
     picture = life.habitat.picture(body, stretch.action[i])

@@ -1,0 +1,42 @@
+"""The command `primordia film`, which films a world."""
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from primordia.cli.cache import cache_option
+from primordia.cli.flags import run_argument, trust_option
+
+
+@click.command(short_help="Make a film of a world.")
+@run_argument
+@click.option(
+    "--out", type=click.Path(path_type=Path), help="An .mp4 or .gif file [under RUN/videos]."
+)
+@click.option("--world", default=0, help="The world's number [0].")
+@click.option(
+    "--by",
+    type=click.Choice(["births", "ticks"]),
+    default="births",
+    help="Between two pictures pass equally many of these [births].",
+)
+@click.option("--from", "begin", type=int, metavar="TICK", help="First tick shown.")
+@click.option("--to", "end", type=int, metavar="TICK", help="Last tick shown.")
+@click.option("--organism", type=int, metavar="ID", help="Whose life is shown [the oldest so far].")
+@trust_option
+@cache_option
+def film(run: Path, trust: bool, begin: int | None, end: int | None, **chosen: Any) -> None:
+    """Film a world: all of its cells as organisms are born and die, and beside them the life of one.
+
+    The colour of a cell is the line of descent. Cells are lighter with age, flash at a birth, and fade
+    after a death. A torus is a square; of a ring the present is outside, and its past within. The film is
+    half a minute long at most. The life beside the world goes at its own speed.
+    """
+    from primordia.api import load
+
+    click.echo(load(run, trust).film(ticks=(begin, end), **chosen))
+
+
+COMMANDS = (film,)
+"""The commands of this module."""

@@ -1,0 +1,70 @@
+"""The lives beside a world: of the oldest organism so far, or of one that is chosen."""
+
+from collections.abc import Iterator
+from itertools import repeat
+from math import ceil
+from typing import NamedTuple
+
+import numpy as np
+from PIL import Image
+
+from primordia.film.moments import RATE
+from primordia.film.oldest import oldest_so_far, shown
+from primordia.organism import replay
+from primordia.organism.reliving.relived import RelivedLife
+from primordia.runs.lives import Lives
+from primordia.runs.records import Records
+
+LEAST = 4 * RATE
+"""Pictures for which a life is shown at least, before that of an older organism takes its place."""
+
+
+class Beside(NamedTuple):
+    """A picture of a life, and words about the organism."""
+
+    life: Image.Image | None
+    about: str
+
+
+def oldest(run: Records, lives: Lives, ticks: np.ndarray) -> Iterator[Beside]:
+    """Yield the life of the oldest so far at each moment; each begins with its birth and goes on.
+
+    Args:
+        run: the run.
+        lives: the lives of one world.
+        ticks: the moments, int64 (F,).
+    """
+    now = -1
+    for row in shown(oldest_so_far(lives, ticks), LEAST).tolist():
+        if row != now:
+            now, pictures = row, pictures_of(run, int(lives.id[row]), int(lives.world[row]))
+        yield Beside(next(pictures), f"the oldest so far: organism {lives.id[row]:,}")
+
+
+def chosen(run: Records, organism: int, world: int, count: int) -> Iterator[Beside]:
+    """Yield the life of one organism, `count` pictures."""
+    pictures = pictures_of(run, organism, world)
+    for _ in range(count):
+        yield Beside(next(pictures), f"organism {organism:,}")
+
+
+def nothing(count: int) -> Iterator[Beside]:
+    """Yield no life, for a habitat that draws no pictures."""
+    yield from repeat(Beside(None, ""), count)
+
+
+def pictures_of(run: Records, organism: int, world: int) -> Iterator[Image.Image]:
+    """Yield the pictures of a life, RATE in a second of the life; the last one is repeated for ever.
+
+    Raises:
+        InputError: the life cannot be lived again, or its habitat draws no pictures.
+        Trouble: the life does not repeat as recorded.
+    """
+    life = RelivedLife.of(run, organism, world)
+    rate, born = replay.picture_rate(life), int(life.record.born[0])
+    whole = [range(life.begins + 1 - born, life.ends - born + 1)]
+    each = max(round(RATE / rate), 1)
+    for _, stretch, i in replay.moments(life, whole, ceil(rate / RATE)):
+        picture = replay.picture_of(life, stretch, i)
+        yield from repeat(picture, each)
+    yield from repeat(picture)

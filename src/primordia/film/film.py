@@ -1,0 +1,95 @@
+"""A film of a world, from the records of a run."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from primordia import files
+from primordia.errors import InputError
+from primordia.film import beside
+from primordia.film.beside import Beside
+from primordia.film.colours import colours
+from primordia.film.frame import Frames
+from primordia.film.moments import RATE, By, moments
+from primordia.film.shape import shape
+from primordia.history import series
+from primordia.organism import replay, video
+from primordia.runs import bundle
+from primordia.runs.lives import Lives
+from primordia.runs.records import Records
+
+STILL = 2 * RATE
+"""Pictures for which the end is shown."""
+
+
+def film(
+    run: Records,
+    out: Path | None = None,
+    world: int = 0,
+    by: By = "births",
+    ticks: tuple[int | None, int | None] = (None, None),
+    organism: int | None = None,
+) -> Path:
+    """Film a world -> the path of the file.
+
+    Beside the world is the life of the oldest organism so far, or of a chosen one, if the habitat draws
+    pictures. A life goes at its own speed, which is not that of the world.
+
+    Args:
+        run: the world's run.
+        out: an .mp4 or .gif; by default under the run's `videos`.
+        world: its number.
+        by: what passes between two pictures; see `moments`.
+        ticks: the first and the last tick that are shown; by default all.
+        organism: birth number of the organism whose life is shown; by default the oldest so far.
+
+    Raises:
+        InputError: there is no such world or organism, or nothing to show.
+        Trouble: the film cannot be written, or a life does not repeat as recorded.
+    """
+    if out is None:
+        bundle.refuse_changes(run.path)
+    path = out or run.path / "videos" / f"world{world}.mp4"
+    video.check_name(path)
+    if not 0 <= world < run.config.seeds:
+        raise InputError(
+            f"{run.path} has no world {world}; they count from 0 to {run.config.seeds - 1}"
+        )
+    lives = run.lives.of_world(world)
+    shown = moments(lives, run.config.begins, by, ticks)
+    lived = _beside(run, lives, shown, organism)
+    if out is None:
+        files.own_folder(path.parent)
+    video.write(path, _pictures(run, lives, shown, lived), RATE)
+    return path
+
+
+def _beside(
+    run: Records, lives: Lives, shown: np.ndarray, organism: int | None
+) -> Iterator[Beside]:
+    if organism is not None:
+        return beside.chosen(run, organism, int(lives.world[0]), len(shown))
+    if replay.lacking(run.habitat):
+        return beside.nothing(len(shown))
+    return beside.oldest(run, lives, shown)
+
+
+def _pictures(
+    run: Records, lives: Lives, shown: np.ndarray, lived: Iterator[Beside]
+) -> Iterator[Image.Image]:
+    config = run.config
+    form = shape(config.placement, config.cells)
+    world = f", world {lives.world[0]}" if config.seeds > 1 else ""
+    frames = Frames(f"{config.task}{world}", replay.lacking(run.habitat) != [])
+    births = np.searchsorted(lives.born, shown, side="right")
+    alive = series.population(lives, shown)
+    of_cells = colours(lives, form.cells, shown, config.saturation_ticks)
+    for number, (seen, life) in enumerate(zip(of_cells, lived, strict=True)):
+        counts = f"tick {shown[number]:,}   births {births[number]:,}   alive {alive[number]:,}"
+        share = (number + 1) / len(shown)
+        picture = frames.draw(form.draw(seen), counts, share, *life)
+        yield picture
+    for _ in range(STILL):
+        yield picture

@@ -1,0 +1,66 @@
+"""One picture of a film: the world on the left, a life on the right, and words below them."""
+
+from functools import cache
+
+import numpy as np
+from PIL import Image, ImageDraw, ImageFont
+
+from primordia.film.shape import PAPER, SIDE
+
+WIDTH, HEIGHT, EDGE = 960, 576, 20
+"""pixels of the whole picture, and of its margins"""
+LIFE = WIDTH - SIDE - 3 * EDGE
+"""pixels, the width of the picture of a life"""
+INK, SOFT = "#e8e6e1", "#8d93a0"
+TITLE, SMALL = 20, 14
+BAR = 3
+"""pixels, the height of the bar that shows how much of the film has passed"""
+
+
+class Frames:
+    """Pictures of a film, which has a title."""
+
+    def __init__(self, title: str, alone: bool) -> None:
+        """Take the title, and whether the world is shown without a life."""
+        self._left = (WIDTH - SIDE) // 2 if alone else EDGE
+        self._empty = Image.new("RGB", (WIDTH, HEIGHT), tuple(PAPER.tolist()))
+        pen = ImageDraw.Draw(self._empty)
+        pen.text((EDGE, EDGE - 4), title, INK, font(TITLE))
+
+    def draw(
+        self, world: np.ndarray, counts: str, share: float, life: Image.Image | None, about: str
+    ) -> Image.Image:
+        """Return a picture.
+
+        Args:
+            world: uint8 (SIDE, SIDE, 3).
+            counts: words below the world.
+            share: part of the film that has passed, 0 to 1.
+            life: a picture of the life, or None.
+            about: words below it.
+        """
+        picture = self._empty.copy()
+        top = EDGE + TITLE + 8
+        picture.paste(Image.fromarray(world), (self._left, top))
+        pen, below = ImageDraw.Draw(picture), top + SIDE + 14
+        pen.text((EDGE, below), counts, SOFT, font(SMALL))
+        if life is not None:
+            fitting = fitted(life, (LIFE, SIDE))
+            right = 2 * EDGE + SIDE
+            picture.paste(fitting, (right, top + (SIDE - fitting.height) // 2))
+            pen.text((WIDTH - EDGE, below), about, SOFT, font(SMALL), anchor="ra")
+        pen.rectangle((0, HEIGHT - BAR, round(share * WIDTH), HEIGHT), fill=SOFT)
+        return picture
+
+
+def fitted(picture: Image.Image, room: tuple[int, int]) -> Image.Image:
+    """Return a picture as large as a room, (width, height) in pixels, allows."""
+    scale = min(room[0] / picture.width, room[1] / picture.height)
+    size = (round(picture.width * scale), round(picture.height * scale))
+    return picture if size == picture.size else picture.resize(size, Image.Resampling.BILINEAR)
+
+
+@cache
+def font(size: int) -> ImageFont.ImageFont | ImageFont.FreeTypeFont:
+    """Return the font of a size in pixels."""
+    return ImageFont.load_default(size)

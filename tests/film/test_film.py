@@ -1,0 +1,62 @@
+"""Films of worlds, made by the command."""
+
+from pathlib import Path
+
+import imageio.v3 as iio
+import numpy as np
+import pytest
+
+import primordia
+from primordia.film import film as films
+from primordia.film.frame import HEIGHT, WIDTH
+from primordia.film.shape import SIDE
+from primordia.runs import loop
+from tests.commands import complains, here
+from tests.worlds import MEADOW, config
+
+
+@pytest.fixture(scope="module")
+def poles(tmp_path_factory: pytest.TempPathFactory) -> primordia.Run:
+    path = tmp_path_factory.mktemp("film") / "poles"
+    return primordia.run("CartPole-survival", path, cells=16, stop={"ticks": 300})
+
+
+def test_a_world_is_filmed_with_the_life_of_the_oldest_beside_it(poles: primordia.Run) -> None:
+    done = here("film", poles.path)
+    assert done.stdout.strip() == str(poles.path / "videos" / "world0.mp4"), done.stderr
+    frames = iio.imread(poles.path / "videos" / "world0.mp4")
+    births = len(np.unique(poles.lives().born))
+    assert births <= len(frames) - films.STILL <= births + 2
+    assert frames.shape[1:] == (HEIGHT, WIDTH, 3)
+    world, life = frames[:, 60:500, 40:480].astype(int), frames[:, 100:500, SIDE + 60 :].astype(int)
+    assert np.abs(np.diff(world[: -films.STILL], axis=0)).max() > 60
+    assert np.abs(np.diff(life[: -films.STILL], axis=0)).max() > 60
+    assert np.abs(np.diff(frames[-films.STILL // 2 :].astype(int), axis=0)).mean() < 1
+
+
+def test_a_film_by_ticks_of_a_chosen_organism(poles: primordia.Run, tmp_path: Path) -> None:
+    file = poles.film(tmp_path / "film.gif", by="ticks", ticks=(100, 160), organism=3)
+    frames = iio.imread(file)
+    assert len(frames) <= 61 + films.STILL
+    assert frames.shape[1:3] == (HEIGHT // 2, WIDTH // 2)
+
+
+def test_a_world_whose_habitat_draws_nothing_is_filmed_alone(tmp_path: Path) -> None:
+    loop.start(config({**MEADOW, "stop": {"ticks": 60}}), tmp_path / "run")
+    file = primordia.load(tmp_path / "run").film(by="ticks")
+    frames = iio.imread(file)
+    assert len(frames) == 61 + films.STILL
+    inside = frames[-1, :, (WIDTH - SIDE) // 2 : (WIDTH + SIDE) // 2]
+    beside = frames[-1, 50 : HEIGHT - 40, : (WIDTH - SIDE) // 2 - 4]
+    assert inside.max() > 100 > 60 > beside.max()
+
+
+def test_what_cannot_be_filmed_is_one_line(poles: primordia.Run, tmp_path: Path) -> None:
+    for words, line in (
+        (("--world", 3), "has no world 3; they count from 0 to 0"),
+        (("--from", 200, "--to", 100), "not from 200 to 100"),
+        (("--organism", 10**6), "no organism"),
+        (("--out", tmp_path / "film.avi"), "a video is an .mp4 or a .gif"),
+    ):
+        complains(here("film", poles.path, *words), 2, line)
+    assert not list(tmp_path.iterdir())

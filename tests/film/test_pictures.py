@@ -1,0 +1,126 @@
+"""What the pictures of a film show."""
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from primordia.errors import InputError
+from primordia.film import shape as shapes
+from primordia.film.colours import FADING, GROUND, PALETTE, colours
+from primordia.film.frame import HEIGHT, WIDTH, Frames, fitted
+from primordia.film.moments import RATE, SECONDS, moments
+from primordia.film.shape import PAPER, SIDE, Ring, shape
+from primordia.law.placement import Placement
+from tests.synthetic import alive, world_of
+
+LIVED = [(0, 9, True), (2, 30, False), (2, 4, True), (5, 30, False), (11, 1, True)]
+FULL = 20
+
+
+def hue(colour: np.ndarray) -> np.ndarray:
+    """Return a colour's direction, which its light does not change."""
+    return colour / np.linalg.norm(colour.astype(float))
+
+
+def test_a_cell_has_the_colour_of_its_line_lighter_with_age_and_fades_after_death() -> None:
+    world = world_of(LIVED, until=40)
+    ticks = np.arange(12, 40)
+    cells = world.cell.astype(np.int64)
+    drawn = np.array(list(colours(world, cells, ticks, FULL)), float)
+    for number, tick in enumerate(ticks):
+        for row in range(len(world)):
+            if alive(world, row, tick):
+                likeness = [hue(drawn[number, row]) @ hue(colour) for colour in PALETTE]
+                assert max(likeness) > 0.9995
+                assert number == 0 or drawn[number, row].sum() >= drawn[number - 1, row].sum()
+    dying = int(world.ended[world.died].max()) - 12
+    row = int(np.argmax(np.where(world.died, world.ended, 0)))
+    left = FADING ** np.arange(1, len(ticks) - dying + 1)
+    expected = GROUND + left[:, None] * (drawn[dying - 1, row] - GROUND)
+    np.testing.assert_allclose(drawn[dying:, row], expected, atol=1.5)
+    never = np.flatnonzero(world.ended < 12)
+    assert (drawn[0, never] == GROUND).all()
+
+
+def test_a_newborn_flashes_once() -> None:
+    world = world_of([(0, 90, False)] * 9 + [(7, 90, False)], until=40)
+    drawn = np.array(list(colours(world, world.cell.astype(np.int64), np.arange(5, 10), FULL)), int)
+    assert drawn[2, 9].min() > drawn[3, 9].max() * 0.9
+    assert drawn[2, 9].sum() > drawn[4, 9].sum()
+
+
+def test_a_torus_is_drawn_cell_for_cell() -> None:
+    form = shape(Placement(topology="torus4", rows=3), 12)
+    seen = np.arange(36, dtype=np.uint8).reshape(12, 3) + 100
+    picture = form.draw(seen[form.cells])
+    zoom = SIDE // 4
+    top = (SIDE - 3 * zoom) // 2
+    for cell in range(12):
+        row, column = divmod(cell, 4)
+        middle = picture[top + row * zoom + zoom // 2, column * zoom + zoom // 2]
+        np.testing.assert_array_equal(middle, seen[cell])
+    assert (picture[: top - 1] == PAPER).all()
+
+
+@pytest.mark.parametrize(("cells", "columns"), [(10, 4), (16, 4)])
+def test_a_well_mixed_world_is_a_square(cells: int, columns: int) -> None:
+    form = shape(Placement(topology="well-mixed"), cells)
+    picture = form.draw(np.full((len(form.cells), 3), 200, np.uint8))
+    zoom = SIDE // columns
+    # Each cell has a dark edge of one pixel above and on its left.
+    assert (picture == 200).all(axis=2).sum() == cells * (zoom - 1) ** 2
+
+
+def test_large_worlds_are_drawn_in_part() -> None:
+    torus = shape(Placement(topology="torus4"), 1_000_000)
+    assert torus.draw(np.zeros((len(torus.cells), 3), np.uint8)).shape == (SIDE, SIDE, 3)
+    assert (np.diff(torus.cells[:100]) == 3).all()
+    ring = shape(Placement(), 5_000)
+    assert len(ring.cells) <= Ring.MOST
+
+
+def test_a_ring_has_the_present_outside_and_its_past_within() -> None:
+    ring = shape(Placement(), 4)
+    first, then = np.zeros((4, 3), np.uint8), np.zeros((4, 3), np.uint8)
+    first[0], then[0] = (200, 0, 0), (0, 200, 0)
+    ring.draw(first)
+    for _ in range(19):
+        picture = ring.draw(then)
+    # Cell 0 of four is the quarter on the right above; the diagonal is its middle.
+    radii = np.arange(SIDE // 2)
+    diagonal = (radii / np.sqrt(2)).astype(int)
+    seen = picture[SIDE // 2 - 1 - diagonal, SIDE // 2 + diagonal]
+    outer = int(SIDE // 2 * (1 - shapes.NOW))
+    assert (seen[outer + 1 : -2] == then[0]).all()
+    assert (seen[outer - 17 : outer - 1] == then[0]).all()
+    assert (seen[outer - 19] == first[0]).all()
+    assert (seen[outer - 23] == GROUND.astype(np.uint8)).all()
+
+
+def test_moments_pass_by_births_or_by_ticks() -> None:
+    world = world_of([(born**2, 5, born > 0) for born in range(40)], until=2_000)
+    by_births = moments(world, 0, "births", (None, None))
+    assert set(by_births) == {0, *world.born.tolist(), 2_000}
+    by_ticks = moments(world, 0, "ticks", (100, 2_000))
+    assert (by_ticks[0], by_ticks[-1], len(by_ticks)) == (100, 2_000, RATE * SECONDS)
+    assert set(np.diff(by_ticks)) == {2, 3}
+    for ticks in ((-1, None), (None, 2_001), (50, 50)):
+        with pytest.raises(InputError, match="can be shown from tick 0 to 2000"):
+            moments(world, 0, "ticks", ticks)
+    with pytest.raises(InputError, match="nothing was born from tick 1700 to 1800"):
+        moments(world, 0, "births", (1_700, 1_800))
+
+
+def test_a_picture_has_the_world_the_life_and_the_share_that_has_passed() -> None:
+    world = np.full((SIDE, SIDE, 3), 90, np.uint8)
+    life = Image.new("RGB", (30, 10), "red")
+    picture = np.asarray(Frames("a task", alone=False).draw(world, "tick 1", 0.25, life, "it"))
+    assert picture.shape == (HEIGHT, WIDTH, 3)
+    assert (picture == 90).all(axis=2).sum() == SIDE**2
+    red = (picture == (255, 0, 0)).all(axis=2)
+    assert red.sum() > 30 * 10
+    assert np.argmax(red.any(axis=0)) > SIDE
+    bar = (picture[-1] != PAPER).any(axis=1)
+    assert bar.sum() == pytest.approx(WIDTH / 4, abs=1)
+    assert fitted(life, (90, 100)).size == (90, 30)
+    assert fitted(life, (900, 20)).size == (60, 20)
