@@ -1,6 +1,7 @@
 """A film of a world, from the records of a run."""
 
 from collections.abc import Iterator
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,7 @@ from primordia.errors import InputError
 from primordia.film import beside
 from primordia.film.beside import Beside
 from primordia.film.colours import colours
-from primordia.film.frame import Frames
+from primordia.film.frame import Frames, with_colours
 from primordia.film.moments import RATE, By, moments
 from primordia.film.shape import shape
 from primordia.history import series
@@ -62,7 +63,9 @@ def film(
     lived = _beside(run, lives, shown, organism)
     if out is None:
         files.own_folder(path.parent)
-    video.write(path, _pictures(run, lives, shown, lived), RATE)
+    pictures = _pictures(run, lives, shown, lived)
+    first = next(pictures)
+    video.write(path, chain([first], pictures), RATE, with_colours(first))
     return path
 
 

@@ -5,6 +5,7 @@ from functools import cache
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
+from primordia.film.colours import DARKEST, PALETTE
 from primordia.film.shape import PAPER, SIDE
 
 WIDTH, HEIGHT, EDGE = 960, 576, 20
@@ -13,6 +14,8 @@ LIFE = WIDTH - SIDE - 3 * EDGE
 """pixels, the width of the picture of a life"""
 INK, SOFT = "#e8e6e1", "#8d93a0"
 TITLE, SMALL = 20, 14
+STRIPS = 3
+"""Lights of each colour that a GIF has."""
 BAR = 3
 """pixels, the height of the bar that shows how much of the film has passed"""
 
@@ -51,6 +54,18 @@ class Frames:
             pen.text((WIDTH - EDGE, below), about, SOFT, font(SMALL), anchor="ra")
         pen.rectangle((0, HEIGHT - BAR, round(share * WIDTH), HEIGHT), fill=SOFT)
         return picture
+
+
+def with_colours(picture: Image.Image) -> Image.Image:
+    """Return a small copy of a picture, with a strip of the colours that cells can have."""
+    small = fitted(picture, (WIDTH // 4, HEIGHT // 4))
+    lights = np.linspace(DARKEST, 1, STRIPS)[:, None, None]
+    strips = np.clip(PALETTE * lights, 0, 255).astype(np.uint8)
+    strip = Image.fromarray(strips).resize((small.width, small.height), Image.Resampling.NEAREST)
+    both = Image.new("RGB", (small.width, 2 * small.height))
+    both.paste(small, (0, 0))
+    both.paste(strip, (0, small.height))
+    return both
 
 
 def fitted(picture: Image.Image, room: tuple[int, int]) -> Image.Image:

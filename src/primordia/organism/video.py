@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from fractions import Fraction
+from functools import partial
 from pathlib import Path
 
 import av
@@ -22,14 +23,25 @@ def check_name(path: Path) -> None:
         raise InputError(f"{path}: a video is an .mp4 or a .gif")
 
 
-def write(path: Path, pictures: Iterator[Image.Image], rate: float) -> None:
-    """Write pictures of one size, `rate` in a second, to an .mp4 or .gif.
+def write(
+    path: Path,
+    pictures: Iterator[Image.Image],
+    rate: float,
+    sample: Image.Image | None = None,
+) -> None:
+    """Write pictures of one size to an .mp4 or .gif.
+
+    Args:
+        path: the file.
+        pictures: one or more.
+        rate: pictures in a second.
+        sample: a picture with the colours of all, of which a GIF can have 256; by default the first.
 
     Raises:
         Trouble: the file cannot be written.
     """
     files.make_folder(path.parent)
-    encode = _gif if path.suffix == ".gif" else _mp4
+    encode = partial(_gif, sample=sample) if path.suffix == ".gif" else _mp4
     files.write(path, lambda temporary: encode(temporary, pictures, rate))
 
 
@@ -50,10 +62,14 @@ def _frame(picture: Image.Image) -> av.VideoFrame:
     return av.VideoFrame.from_ndarray(np.asarray(picture), format="rgb24")
 
 
-def _gif(path: Path, pictures: Iterator[Image.Image], rate: float) -> None:
-    """Write a GIF of half the size, with the colours of the first picture."""
+def _gif(
+    path: Path, pictures: Iterator[Image.Image], rate: float, sample: Image.Image | None
+) -> None:
+    """Write a GIF of half the size, with the colours of the sample, or of the first picture."""
     first = next(pictures)
-    palette = first.quantize(colors=64, dither=Image.Dither.NONE)
+    palette = (sample or first).quantize(
+        colors=256 if sample else 64, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE
+    )
     small = (
         picture.reduce(2).quantize(palette=palette, dither=Image.Dither.NONE)
         for picture in _all(first, pictures)
