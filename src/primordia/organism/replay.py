@@ -136,6 +136,7 @@ def moments(life: RelivedLife, parts: list[range], step: int) -> Iterator[tuple[
 
 
 def picture_of(life: RelivedLife, stretch: Stretch, i: int) -> Image.Image:
+    """Return the picture of one tick of a stretch, with captions."""
     tick = int(stretch.tick[i])
     body = jax.tree.map(lambda leaf: leaf[i], stretch.bodies)
     picture = life.habitat.picture(body, stretch.action[i])
