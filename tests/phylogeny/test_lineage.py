@@ -63,7 +63,7 @@ def lineage(run: Path, *words: object) -> pa.Table:
     """Return what the command writes for a run, without a word on the way."""
     out = run.parent / "lineage.parquet"
     done = here("lineage", run, *words, "--out", out)
-    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    assert (done.returncode, done.stdout, done.stderr) == (0, f"{out}\n", "")
     return pq.read_table(out)
 
 
@@ -189,6 +189,12 @@ def test_without_its_source_a_fork_begins_with_roots(tmp_path: Path) -> None:
     shutil.rmtree(source)
     live(source, 60)  # the same life, as far as the fork
     assert lineage(lone).equals(whole)
+
+
+def test_a_run_that_goes_on_is_read_as_of_its_newest_checkpoint(family: Path) -> None:
+    before = lineage(family / "run")
+    with directory.locked(family / "run"):
+        assert lineage(family / "run").equals(before)
 
 
 def test_phylotrackpy_loads_a_run(family: Path) -> None:

@@ -36,6 +36,7 @@ def lineage(run: Path, organism: int | None, out: Path, **choice: Any) -> None:
     from primordia.api import load
 
     load(run).lineage(organism, out=out, say=report, **choice)
+    click.echo(out)
 
 
 COMMANDS = (lineage,)
