@@ -85,7 +85,9 @@ def test_every_command_and_block_of_a_page_works(
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(str(tmp_path))
     for kind, text in blocks(page):
-        assert kind in {"sh", "python", "toml", "text"}, f"{page}: what is a block of {kind}?"
+        assert kind in {"sh", "python", "toml", "text", "r", "sql"}, (
+            f"{page}: what is a block of {kind}?"
+        )
         try_out(kind, text, tmp_path)
 
 

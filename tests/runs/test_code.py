@@ -176,6 +176,7 @@ def test_looking_executes_no_code_of_a_run(folder: Path, monkeypatch: pytest.Mon
         ["info", run, "--json"],
         ["plot", run, "--out", run.parent / "figures"],
         ["export", run, run.parent / "genome.safetensors"],
+        ["lineage", run, "--out", run.parent / "lineage.csv"],
         ["compare", run, twin, "--out", run.parent],
     ):
         done = here(*command)

@@ -31,6 +31,7 @@ COMMANDS = [
     ["info", "{run}", "--json"],
     ["plot", "{run}", "--out", "{new}"],
     ["export", "{run}", "{new}"],
+    ["lineage", "{run}", "--extant", "--out", "{new}.csv"],
     ["compare", "{run}", "{twin}", "--out", "{new}"],
     ["verify", "{run}"],
     ["resume", "{run}", "--ticks", "170", "--quiet"],

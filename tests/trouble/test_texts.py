@@ -77,6 +77,7 @@ def test_odd_words_are_answered_with_one_line(
 
 FILES = (
     ("export", "RUN", "{}"),
+    ("lineage", "RUN", "--out", "{}.nwk"),
     ("replay", "RUN", "--from", "0", "--to", "5", "--out", "{}.gif"),
     ("run", *SMALL, "--ticks", "5", "--out", "{}"),
 )
@@ -85,7 +86,7 @@ FILES = (
 
 @settings(max_examples=20)
 @given(ODD_WORDS.map(lambda text: text.replace("/", "")), st.sampled_from(FILES))
-@example("\x1b\udcff", FILES[2])
+@example("\x1b\udcff", FILES[3])
 def test_odd_names_are_written_or_refused_with_one_line(
     place: Path, half: Path, text: str, words: tuple[str, ...]
 ) -> None:

@@ -1,6 +1,7 @@
 """A run as users handle it: each call opens the run, and one line gives what a command gives."""
 
-from collections.abc import Iterable, Mapping, Sequence
+import warnings
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain, count
 from pathlib import Path
@@ -22,6 +23,10 @@ from primordia.organism.evaluation import Evaluation, evaluate
 from primordia.organism.export import export
 from primordia.organism.organism import Organism
 from primordia.organism.policy import Policy
+from primordia.phylogeny import formats
+from primordia.phylogeny.forks import whole_past
+from primordia.phylogeny.reduce import chosen
+from primordia.phylogeny.table import table
 from primordia.runs import bundle, directory, loop, opening
 from primordia.runs.archive import Archive
 from primordia.runs.fork import fork
@@ -137,6 +142,27 @@ class Run:
     def export(self, out: str | Path, *organisms: int, world: int = 0) -> tuple[int, ...]:
         """Write genomes of organisms of a world to a safetensors file; see `export.export`."""
         return export(self.opened(), Path(out), organisms, world)
+
+    def lineage(
+        self,
+        organism: int | None = None,
+        *,
+        out: str | Path | None = None,
+        say: Callable[[str], object] = warnings.warn,
+        **choice: Any,
+    ) -> pa.Table | None:
+        """Return who descends from whom as a table, or write it to a file `out`; see docs/phylogeny.md.
+
+        `say` is called with a line on what is missing. The choices are those of `reduce.chosen`: `world`,
+        `extant`, `collapse`; with `organism`, a birth number, it is that organism's line of descent.
+        """
+        if out is not None:
+            formats.check_suffix(Path(out))
+        part = chosen(whole_past(self.only(), say), organism, **choice)
+        if out is None:
+            return table(part)
+        formats.save(part, Path(out), say)
+        return None
 
     def rebuild(self, organism: int, world: int = 0) -> np.ndarray:
         """Return an organism's genome, float32 (P,), rebuilt from the birth records alone."""

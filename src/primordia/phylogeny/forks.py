@@ -1,0 +1,129 @@
+"""Forks: the record of a run, put together with those of the runs that it was forked from.
+
+A fork's records begin with the births of the organisms then alive. Their ancestors, and all that died
+before, are on record in the run that was forked.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from primordia.errors import InputError, Trouble
+from primordia.phylogeny.phylogeny import Phylogeny, recorded, stacked, taken
+from primordia.runs.archive import Archive
+from primordia.runs.arrays import read_count
+from primordia.runs.lives import Lives
+
+AS_INHERITED = ("world", "id", "parent", "cell", "birth_cause", "born")
+"""What a fork copies of the births of the organisms that were alive at it."""
+Say = Callable[[str], object]
+"""Called with a line for the user."""
+
+
+def whole_past(run: Archive, say: Say) -> Phylogeny:
+    """Return all organisms of a run, those before its fork included, through forks of forks.
+
+    Args:
+        run: the run, read as of its newest checkpoint.
+        say: called if the run that was forked is not there, or is another one. Then the organisms alive
+            at that fork are roots.
+
+    Raises:
+        InputError: nothing has lived in the run yet.
+        Trouble: its records are damaged.
+    """
+    past, seen = recorded(run), {run.path.resolve()}
+    while (fork := run.config.fork) is not None:
+        for place in _places(run):
+            if place.resolve() in seen:
+                continue
+            try:
+                source = Archive(place)
+                longer = _joined(_until(source, fork.tick), past, run)
+            except (InputError, Trouble):
+                continue
+            if longer is not None:
+                past, run = longer, source
+                break
+        else:
+            say(
+                f"{run.path} was forked from {fork.run}, which is not there or is another run now: the"
+                f" organisms alive at tick {fork.tick} are roots"
+            )
+            break
+        seen.add(place.resolve())
+    return past.rooted()
+
+
+def _places(run: Archive) -> list[Path]:
+    """Return the paths at which the run that was forked may be: as named, or beside the fork."""
+    assert run.config.fork is not None
+    named = Path(run.config.fork.run)
+    return [named, run.path.resolve().parent / named.name]
+
+
+def _until(run: Archive, tick: int) -> Phylogeny:
+    """Return what a run had on record at the end of a tick.
+
+    Raises:
+        InputError: a world has not lived through the tick.
+    """
+    if run.ends.min() < tick:
+        raise InputError(f"{run.path} has not reached tick {tick}")
+    known = recorded(run)
+    before = known.take(np.flatnonzero(known.lives.born <= tick))
+    return replace(before, lives=before.lives.recorded_until(tick))
+
+
+def _joined(earlier: Phylogeny, later: Phylogeny, fork: Archive) -> Phylogeny | None:
+    """Return the organisms of a run up to a fork, and of the fork; None if it is a fork of another run.
+
+    Args:
+        earlier: organisms of the run that was forked, on record at the end of that tick.
+        later: organisms of the fork, and of its forks.
+        fork: the fork itself.
+    """
+    assert fork.config.fork is not None
+    inherited = later.lives.born <= fork.config.fork.tick
+    alive, again = np.flatnonzero(~earlier.lives.died), np.flatnonzero(inherited)
+    own = np.flatnonzero(~inherited)
+    same = _agree(earlier.lives.take(alive), later.lives.take(again))
+    if not (same and _follow(later.lives.take(own), earlier.lives, fork)):
+        return None
+    begun = np.concatenate([np.arange(len(earlier)), len(earlier) + own])
+    ended = begun.copy()  # those alive at the fork end as the fork records it
+    ended[alive] = len(earlier) + again
+    world = np.concatenate([earlier.lives.world, later.lives.world])[begun]
+    order = np.argsort(world.astype(np.uint16), kind="stable")
+    begun, ended = begun[order], ended[order]
+    lengths = len(earlier), len(later)
+
+    def column(name: str, rows: np.ndarray) -> np.ndarray:
+        return np.concatenate([getattr(each.lives, name) for each in (earlier, later)])[rows]
+
+    born = {name: column(name, begun) for name in (*AS_INHERITED, "seen")}
+    lives = Lives(**born, ended=column("ended", ended), cause=column("cause", ended))
+    return Phylogeny(
+        lives,
+        taken(stacked(earlier.of_births, later.of_births, lengths), begun),
+        taken(stacked(earlier.of_deaths, later.of_deaths, lengths), ended),
+    )
+
+
+def _agree(living: Lives, inherited: Lives) -> bool:
+    """Return whether the organisms alive in a run are those that a fork of it began with."""
+    return all(
+        np.array_equal(getattr(living, name), getattr(inherited, name)) for name in AS_INHERITED
+    )
+
+
+def _follow(own: Lives, past: Lives, fork: Archive) -> bool:
+    """Return whether the birth numbers of a run's past end where those of a fork of it begin."""
+    if fork.origin is None:
+        return False
+    births = read_count(fork.origin, "world.worlds.births").astype(np.int64)
+    if max(past.worlds, own.worlds) > len(births):
+        return False
+    return bool((past.id < births[past.world]).all() and (own.id >= births[own.world]).all())

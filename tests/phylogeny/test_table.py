@@ -1,0 +1,220 @@
+"""Phylogenies of invented worlds as tables and trees, against brute force and other readers."""
+
+from io import StringIO
+from pathlib import Path
+
+import dendropy
+import numpy as np
+import pandas as pd
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+from hypothesis import given
+
+from primordia.errors import InputError, Trouble
+from primordia.phylogeny import formats
+from primordia.phylogeny.newick import newick
+from primordia.phylogeny.phylogeny import Phylogeny
+from primordia.phylogeny.reduce import chosen
+from primordia.phylogeny.table import table
+from tests.phylogeny.forests import (
+    FORESTS,
+    ancestry,
+    convert,
+    forest,
+    frame,
+    parents_of,
+    phyloframe,
+    phylotrack,
+)
+
+DEEP = 100_000
+
+
+def text_of(whole: Phylogeny) -> str:
+    return b"".join(newick(whole)).decode()
+
+
+def links(trees: list[dendropy.Tree]) -> dict[int, tuple[int | None, float]]:
+    """Return the parent of each organism and the length of its branch, as DendroPy reads them."""
+
+    def label(node: dendropy.Node) -> int:
+        return int(node.taxon.label if node.taxon is not None else node.label)
+
+    return {
+        label(node): (node.parent_node and label(node.parent_node), node.edge.length)
+        for tree in trees
+        for node in tree.preorder_node_iter()
+    }
+
+
+@given(FORESTS)
+def test_a_table_is_in_the_standard_and_in_phyloframes_format(worlds: list) -> None:
+    whole = forest(*worlds)
+    rows = table(whole)
+    standard = frame(rows)
+    assert phyloframe.alifestd_validate(standard)
+    assert convert.RosettaTree(standard, validate="error").as_alife is not None
+    assert phyloframe.alifestd_is_topologically_sorted(standard)
+    assert phyloframe.alifestd_is_chronologically_ordered(standard)
+    assert phyloframe.alifestd_is_working_format_asexual(standard) == (len(worlds) == 1)
+    lives, number = whole.lives, rows["id"].to_numpy()
+    np.testing.assert_array_equal(number // 10**12, lives.world)
+    np.testing.assert_array_equal(number % 10**12, lives.id)
+    for world, own, parent, ancestor, parents in zip(
+        lives.world.tolist(),
+        number.tolist(),
+        lives.parent.tolist(),
+        rows["ancestor_id"].to_pylist(),
+        parents_of(rows).values(),
+        strict=True,
+    ):
+        assert parents == ([] if parent < 0 else [world * 10**12 + parent])
+        assert ancestor == (own if parent < 0 else parents[0])
+
+
+@given(FORESTS)
+def test_the_living_and_their_ancestors_are_found(worlds: list) -> None:
+    whole = forest(*worlds)
+    rows, kept = table(whole), table(chosen(whole, extant=True))
+    living = set(rows.filter(np.isinf(rows["destruction_time"].to_numpy()))["id"].to_pylist())
+    assert set(kept["id"].to_pylist()) == ancestry(parents_of(rows), living)
+    assert kept.equals(rows.filter(pa.array(np.isin(rows["id"], kept["id"]))))
+
+
+@given(FORESTS)
+def test_the_line_of_an_organism_is_itself_and_its_ancestors(worlds: list) -> None:
+    whole, world = forest(*worlds), len(worlds) - 1
+    parents = parents_of(table(whole))
+    for number in range(len(worlds[world])):
+        line = table(chosen(whole, number, world))["id"].to_pylist()
+        assert set(line) == ancestry(parents, {world * 10**12 + number})
+        assert line == sorted(line)
+
+
+@given(FORESTS)
+def test_collapsing_keeps_what_branches_lives_or_founds(worlds: list) -> None:
+    whole = forest(*worlds)
+    rows, kept = table(whole), table(chosen(whole, collapse=True))
+    parents, dead = parents_of(rows), np.isfinite(rows["destruction_time"].to_numpy())
+    children = [parent for each in parents.values() for parent in each]
+    gone = {
+        number
+        for number, died in zip(parents, dead, strict=True)
+        if died and parents[number] and children.count(number) == 1
+    }
+    expected = {}
+    for number in parents.keys() - gone:
+        up = parents[number]
+        while up and up[0] in gone:
+            up = parents[up[0]]
+        expected[number] = up
+    assert parents_of(kept) == expected
+
+
+@given(FORESTS)
+def test_collapsing_the_dead_is_what_phyloframe_does(worlds: list) -> None:
+    dead = [[(*organism[:2], False) for organism in world] for world in worlds]
+    whole = forest(*dead)
+    theirs = phyloframe.alifestd_collapse_unifurcations(frame(table(whole)))
+    ours = table(chosen(whole, collapse=True))
+    assert theirs["id"].tolist() == ours["id"].to_pylist()
+    assert theirs["ancestor_id"].tolist() == ours["ancestor_id"].to_pylist()
+
+
+@given(FORESTS)
+def test_trees_are_read_back_by_dendropy(worlds: list) -> None:
+    whole = forest(*worlds)
+    born = dict(zip(table(whole)["id"].to_pylist(), whole.lives.born.tolist(), strict=True))
+    trees = dendropy.TreeList.get(data=text_of(whole), schema="newick", rooting="force-rooted")
+    read = links(list(trees))
+    assert {number: [up] if up is not None else [] for number, (up, _) in read.items()} == (
+        parents_of(table(whole))
+    )
+    for number, (up, length) in read.items():
+        assert length == born[number] - (0 if up is None else born[up])
+
+
+@given(FORESTS)
+def test_trees_are_those_of_the_table_in_the_converter(worlds: list) -> None:
+    """Its branches have the same lengths: a root's is the time of its birth."""
+    whole = forest(*worlds)
+    standard = frame(table(whole)).assign(label=lambda rows: rows["id"].astype(str))
+    theirs = convert.alife_dataframe_to_dendropy_trees(standard, setup_edge_lengths=True)
+    ours = dendropy.TreeList.get(data=text_of(whole), schema="newick", rooting="force-rooted")
+    assert links(theirs) == links(list(ours))
+
+
+def test_a_deep_line_needs_no_recursion(tmp_path: Path) -> None:
+    line = forest([(0, 0, False), *[(1, 1, False)] * (DEEP - 1), (1, 1, True)])
+    text = text_of(line)
+    assert text.startswith("(" * DEEP + f"{DEEP}:1)")
+    read = phyloframe.alifestd_from_newick(text)
+    assert len(read) == DEEP + 1
+    assert read["branch_length"].sum() == DEEP
+    assert len(chosen(line, extant=True)) == DEEP + 1
+    assert len(chosen(line, DEEP - 1)) == DEEP
+    both = chosen(line, extant=True, collapse=True)
+    assert table(both)["ancestor_list"].to_pylist() == ["[NONE]", "[0]"]
+    assert text_of(both) == f"({DEEP}:{DEEP})0:0;\n"
+    formats.save(line, tmp_path / "deep.csv", pytest.fail)
+    loaded = phylotrack(str(tmp_path / "deep.csv"))
+    assert (loaded.get_num_active(), loaded.get_num_taxa()) == (1, DEEP + 1)
+
+
+@pytest.mark.parametrize("rows_at_once", [1, 7, 1000])
+def test_files_of_all_formats_hold_the_same(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, rows_at_once: int
+) -> None:
+    """They are written in batches, of which a large phylogeny has several."""
+    world = [(min(number, number % 10), number % 2, number % 3 == 0) for number in range(100)]
+    whole = forest(world, world)
+    rows, text = table(whole), text_of(whole)
+    for module in ("table", "newick"):
+        monkeypatch.setattr(f"primordia.phylogeny.{module}.ROWS", rows_at_once)
+    for name in ("a.parquet", "a.csv", "a.tsv", "a.NWK", "a.newick"):
+        formats.save(whole, tmp_path / name, pytest.fail)
+    assert pq.read_table(tmp_path / "a.parquet").equals(rows)
+    causes = {"birth_cause": "category", "death_cause": "category"}
+    read = pd.read_csv(tmp_path / "a.csv", dtype=causes)
+    assert (tmp_path / "a.csv").read_text().startswith("id,ancestor_list,ancestor_id,origin_time,")
+    whole_frame = rows.to_pandas()
+    pd.testing.assert_frame_equal(
+        read, whole_frame, check_dtype=False, check_categorical=False, check_like=False
+    )
+    about = pd.read_csv(tmp_path / "a.tsv", sep="\t", dtype=causes).rename(columns={"strain": "id"})
+    assert about.columns.tolist() == [name for name in read.columns if "ancestor" not in name]
+    pd.testing.assert_frame_equal(about, read[about.columns])
+    trees = (tmp_path / "a.newick").read_text()
+    assert trees == (tmp_path / "a.NWK").read_text() == text
+    tree = phyloframe.alifestd_from_newick(trees, allow_forest=True)
+    up = tree.set_index("id")["taxon_label"].astype(int)
+    theirs = dict(zip(up, up[tree["ancestor_id"]], strict=True))
+    assert theirs == dict(zip(read["id"], read["ancestor_id"], strict=True))
+
+
+def test_a_header_is_quoted_where_a_strangers_count_needs_it(tmp_path: Path) -> None:
+    whole = forest([(0, 0, True)])
+    odd = Phylogeny(whole.lives, {}, {'a,"b"\n': pa.array([1]), "cell": pa.array([2])})
+    formats.save(odd, tmp_path / "odd.csv", pytest.fail)
+    read = pd.read_csv(StringIO((tmp_path / "odd.csv").read_text()))
+    assert read.columns.tolist()[-2:] == ['a,"b"\n', "cell_"]
+    assert read.iloc[0].tolist()[-2:] == [1, 2]
+
+
+def test_wrong_choices_are_refused(tmp_path: Path) -> None:
+    whole = forest([(0, 0, True)], [(0, 0, True)])
+    with pytest.raises(InputError, match="no organism 1 was born in world 0"):
+        chosen(whole, 1)
+    with pytest.raises(InputError, match="the worlds are 0 to 1"):
+        chosen(whole, world=2)
+    with pytest.raises(InputError, match="the worlds are 0 to 1"):
+        chosen(whole, 0, -1)
+    with pytest.raises(InputError, match="give one"):
+        chosen(whole, 0, extant=True)
+    for name in ("a", "a.txt", ".csv"):
+        with pytest.raises(InputError, match=r"\.parquet, \.csv, \.nwk, \.newick, \.tsv"):
+            formats.save(whole, tmp_path / name, pytest.fail)
+    whole.lives.id[1] = 10**12
+    with pytest.raises(Trouble, match="10\\^12"):
+        table(whole)
