@@ -141,6 +141,12 @@ class Run:
 
         return plot(self.opened(), Path(out) if out is not None else None, world, figures)
 
+    def report(self, out: str | Path | None = None) -> Path:
+        """Write a page about the run, by default `report.html` in its directory; see `report.report`."""
+        from primordia.report.report import report  # Matplotlib takes a second to load
+
+        return report(self.opened(), Path(out) if out is not None else None)
+
     def track(
         self, tensorboard: str | Path | None = None, wandb: str | Path | None = None, **options: Any
     ) -> None:

@@ -33,6 +33,7 @@ def replay(
     world: int = 0,
     out: Path | None = None,
     ages: tuple[int | None, int | None] = (None, None),
+    part: float | None = None,
 ) -> Path:
     """Make a video of a life -> the path of the file.
 
@@ -43,6 +44,7 @@ def replay(
         out: an .mp4 or .gif; by default under the run's `videos`.
         ages: first and last age shown, in ticks. By default the whole life is shown, or the first and
             last 30 seconds of a life longer than a minute.
+        part: seconds shown at each end of a long life, other than 30.
 
     Raises:
         InputError: no such organism was born, its habitat draws no pictures, or no age is left to show.
@@ -53,7 +55,7 @@ def replay(
     life = RelivedLife.of(run, organism, world)
     rate = _picture_rate(life)
     step = ceil(rate / video.FASTEST[path.suffix])
-    parts = _parts(life, rate, ages)
+    parts = _parts(life, rate, ages, part)
     if out is None:
         files.own_folder(path.parent)
     video.write(path, _pictures(life, parts, step, rate / step), rate / step)
@@ -73,12 +75,18 @@ def _picture_rate(life: RelivedLife) -> float:
     return life.habitat.rate
 
 
-def _parts(life: RelivedLife, rate: float, ages: tuple[int | None, int | None]) -> list[range]:
-    """Return the ages to be shown, in ticks."""
+def _parts(
+    life: RelivedLife,
+    rate: float,
+    ages: tuple[int | None, int | None],
+    seconds: float | None = None,
+) -> list[range]:
+    """Return the ages to be shown, in ticks; of a long life `seconds` at each end, by default PART."""
+    seconds = PART if seconds is None else seconds
     born = int(life.record.born[0])
     first, last = life.begins + 1 - born, life.ends - born
-    if ages == (None, None) and last - first > 2 * PART * rate:
-        part = int(PART * rate)
+    if ages == (None, None) and last - first > 2 * seconds * rate:
+        part = int(seconds * rate)
         return [range(first, first + part), range(last - part + 1, last + 1)]
     begin, end = ages
     shown = range(max(first, begin or 0), min(last, last if end is None else end) + 1)

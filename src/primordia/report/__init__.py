@@ -1,1 +1,1 @@
-"""A run as one HTML page: figures to hover, zoom and scrub, from a file or live from a run that goes on."""
+"""A run as one HTML page with figures to hover, zoom and scrub: a file, or live while a run goes on."""

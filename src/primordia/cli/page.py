@@ -1,0 +1,31 @@
+"""The commands `primordia report` and `primordia watch`: a run as a page."""
+
+from pathlib import Path
+
+import click
+
+from primordia.cli.cache import cache_option
+from primordia.cli.flags import runs_argument, trust_option
+
+
+@click.command(short_help="Write a page with figures to hover, zoom and scrub.")
+@runs_argument
+@click.option(
+    "--out", type=click.Path(path_type=Path), help="An .html file [report.html in the RUN]."
+)
+@trust_option
+@cache_option
+def report(runs: tuple[Path, ...], out: Path | None, trust: bool) -> None:
+    """Write one HTML file about a run, several runs as one arm, or an experiment.
+
+    The file opens in any browser, loads nothing, and can be passed on: what happened in words, curves,
+    the space-time picture, the phylogeny of the living, and two lives as films. A life is lived again in
+    its habitat to be filmed. The run's own code is executed for that only if you have trusted it.
+    """
+    from primordia.api import load
+
+    click.echo(load(runs, trust).report(out))
+
+
+COMMANDS = (report,)
+"""The commands of this module."""
