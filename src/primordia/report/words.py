@@ -43,12 +43,11 @@ def words(run: Records, info: dict[str, Any]) -> list[str]:
 def setting(config: Config) -> str:
     """Say what lives in the worlds of a run, and by what rule."""
     about = f"{config.about.rstrip('.')}. " if config.about else ""
-    worlds = "The world has" if config.seeds == 1 else f"{config.seeds:,} worlds have"
-    each = "" if config.seeds == 1 else " each"
+    worlds = "The world has" if config.seeds == 1 else f"Each of {config.seeds:,} worlds has"
     taken = ", whose organism dies" if config.placement.rule == "replacing" else ""
     room = "a neighbouring" if taken else "an empty neighbouring"
     parts = [
-        f"{about}{worlds} {config.cells:,} {WORLDS[config.placement.topology]}{each}. In each cell lives"
+        f"{about}{worlds} {config.cells:,} {WORLDS[config.placement.topology]}. In each cell lives"
         " at most one organism: a small neural network in a simulation of its own.",
         "No one sets a goal, and nothing is rewarded. An organism lives until its world kills it, and"
         f" while it lives it copies itself into {room} cell{taken}.",
@@ -57,7 +56,7 @@ def setting(config: Config) -> str:
         parts.append("Copies differ from their parent by small random changes.")
     else:
         parts.append(
-            "In this run nothing is inherited: each child is a new random network. It is a control."
+            "Nothing is inherited in this run, a control: each child is a new random network."
         )
     if config.metabolism is not None:
         parts.append("An organism that gathers too little food starves.")

@@ -22,9 +22,9 @@ function moveChart(u, share) {
 
 function showSpan(u, low, span, all) {
   const [first, last] = [toLine(u, all.min), toLine(u, all.max)];
-  const kept = Math.min(span, last - first);
-  const start = Math.min(Math.max(low, first), last - kept);
-  u.setScale("x", { min: fromLine(u, start), max: fromLine(u, start + kept) });
+  if (span > (last - first) * 0.999) return u.setScale("x", all);
+  const start = Math.min(Math.max(low, first), last - span);
+  u.setScale("x", { min: fromLine(u, start), max: fromLine(u, start + span) });
 }
 
 function readChart(u, step) {

@@ -36,7 +36,7 @@ function drawAxes(context, box, world, view) {
   }
   label(context, "births", box.left - 6, box.top - 12, "right");
   label(context, "ticks", box.left + box.width + 6, box.top - 12, "left");
-  label(context, "cell", box.left, box.top + box.height + 14, "right");
+  label(context, "cell", box.left - 8, box.top + box.height + 14, "right");
 }
 
 function label(context, text, x, y, align) {

@@ -9,9 +9,10 @@ async function render(content) {
   const parts = [
     element("h1", {}, content.title),
     element("p", { class: "subtitle" }, content.subtitle),
-    element("div", { class: "words" }, ...content.words.map((text) => element("p", {}, text))),
-    element("dl", { class: "numbers" }, ...content.numbers.map(({ name, value }) =>
-      element("div", {}, element("dt", {}, name), element("dd", {}, value)))),
+    element("div", { class: "lede" },
+      element("div", { class: "words" }, ...content.words.map((text) => element("p", {}, text))),
+      element("dl", { class: "numbers" }, ...content.numbers.map(({ name, value }) =>
+        element("div", {}, element("dt", {}, name), element("dd", {}, value))))),
     ...(content.arms ? armsSection(content.arms) : []),
     worlds.element,
     ...(content.panels.length ? [curvesSection(content.panels)] : []),

@@ -85,7 +85,10 @@ function childrenOf(world, at, show) {
     if (parent[child] - 1 === number[at]) found.push(child);
   }
   if (found.length) span.append(": ");
-  found.forEach((child, i) => span.append(i ? ", " : "", link(world, child, show)));
-  if (found.length && found.length < children[at]) span.append(", …");
+  const more = found.length < children[at] ? ", …" : "";
+  found.forEach((child, i) => {
+    const after = i < found.length - 1 ? "," : more;
+    span.append(element("span", { class: "child" }, link(world, child, show), after), " ");
+  });
   return span;
 }
