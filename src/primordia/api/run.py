@@ -1,6 +1,6 @@
 """A run as users handle it: each call opens the run, and one line gives what a command gives."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain, count
 from pathlib import Path
@@ -146,6 +146,13 @@ class Run:
         from primordia.report.report import report  # Matplotlib takes a second to load
 
         return report(self.opened(), Path(out) if out is not None else None)
+
+    def watch(self, port: int | None = None, begun: Callable[[str], object] = print) -> None:
+        """Serve a live page about the run on this machine, until Ctrl-C; see `watch.watch`."""
+        from primordia.report.server import PORT  # Matplotlib takes a second to load
+        from primordia.report.watch import watch
+
+        watch(self.opened, PORT if port is None else port, begun)
 
     def track(
         self, tensorboard: str | Path | None = None, wandb: str | Path | None = None, **options: Any

@@ -72,12 +72,9 @@ class Ground:
         """The rows of the organisms that are given, int64 (R,), rising."""
         if self.whole:
             return np.arange(len(self.lives))
-        parts = np.array_split(self.moments, len(self.moments) // 100 + 1)
-        seen = [
-            np.unique(occupants(self.lives, self.shown, self.lives.born[part])) for part in parts
-        ]
+        seen = occupants(self.lives, self.shown, self.lives.born[self.moments])
         living = np.flatnonzero(~self.lives.died)
-        rows = np.unique(np.concatenate([*seen, living[: SEEN // self.share]]))
+        rows = np.unique(np.concatenate([seen.ravel(), living[: SEEN // self.share]]))
         return rows[rows != EMPTY]
 
     @cached_property

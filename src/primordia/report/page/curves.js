@@ -29,7 +29,10 @@ function chart(panel) {
   const draw = () => {
     if (holder.u) holder.u.destroy();
     holder.u = drawnChart(panel, plot, key, plot.clientWidth);
+    const zoom = zooms.get(panel.title);
+    if (zoom) holder.u.setScale("x", zoom);
   };
+  closers.add(() => holder.u && holder.u.destroy());
   onWidth(plot, draw);
   painters.add(() => holder.u && draw());
   chartControls(plot, holder);
@@ -50,8 +53,21 @@ function drawnChart(panel, plot, key, width) {
     axes: [axis(panel.x, panel.log_x, "x"), axis(panel.y, panel.log_y, "y")],
     series: [{}, ...curves.map(series)],
     bands: bandsOf(curves),
-    hooks: { setCursor: [(u) => tellValues(u, panel, curves, items)] },
+    hooks: {
+      setCursor: [(u) => tellValues(u, panel, curves, items)],
+      setScale: [(u, axis) => axis === "x" && keepZoom(u, panel.title)],
+    },
   }, data, plot);
+}
+
+// The part of each chart that is in view, by its title, while it is not all of it.
+const zooms = new Map();
+
+function keepZoom(u, title) {
+  const { min, max } = u.scales.x;
+  const xs = u.data[0];
+  if (min > xs[0] || max < xs[xs.length - 1]) zooms.set(title, { min, max });
+  else zooms.delete(title);
 }
 
 const scale = (log) => ({ time: false, distr: log ? 3 : 1, range: (u, low, high) => [low, high] });

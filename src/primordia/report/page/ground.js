@@ -8,14 +8,15 @@ const KEY_STEPS = {
 function groundFigure(world, palette, chosen, kept) {
   const hint = "Click a cell to see who lived there.";
   const keys = "Drag moves, and the wheel zooms once the picture has been clicked. Keys: arrows, +, − and 0.";
-  const canvas = element("canvas", { tabindex: 0, role: "img", "aria-label":
+  const canvas = element("canvas", { id: "ground", tabindex: 0, role: "img", "aria-label":
     `Space and time: ${whole(world.cells)} cells across, ${whole(world.births)} births downwards, coloured by`
     + ` line of descent. ${keys} Organisms can also be chosen by their number beside the picture.` });
   const readout = element("p", { class: "readout" }, "\u00a0");
   const figure = { world, palette, chosen, canvas, readout, view: kept.view || wholeView(world) };
   figure.paint = () => paintFigure(figure);
   figure.show = (view) => {
-    kept.view = figure.view = view;
+    figure.view = view;
+    kept.view = isWhole(world, view) ? null : view;
     figure.paint();
   };
   figure.zoom = (way, x, y) =>

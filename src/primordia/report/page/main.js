@@ -1,10 +1,12 @@
 // The page: its content is in it, as JSON; all figures are made from that.
 
 const kept = { world: 0, view: null, number: null };
+const closers = new Set();
 
 async function render(content) {
-  painters.clear();
   const main = document.getElementById("main");
+  [...closers].forEach((close) => close());
+  [closers, painters].forEach((group) => group.clear());
   const worlds = worldsSection(content, kept);
   const parts = [
     element("h1", {}, content.title),
@@ -20,8 +22,23 @@ async function render(content) {
     factsSection(content.facts),
   ];
   await worlds.filled;
-  main.replaceChildren(...parts);
+  exchange(main, parts);
   main.dataset.drawn = "yes";
+}
+
+// Put new parts in place of the old ones; what is read, and what has the focus, stay where they are.
+function exchange(main, parts) {
+  const nameOf = (each) => each && (each.id || each.getAttribute("aria-label"));
+  const name = nameOf(document.activeElement);
+  const place = window.scrollY;
+  main.style.minHeight = `${main.offsetHeight}px`;
+  main.replaceChildren(...parts);
+  const same = name && [...main.querySelectorAll("[id], [aria-label]")].find((each) => nameOf(each) === name);
+  if (same) same.focus({ preventScroll: true });
+  requestAnimationFrame(() => requestAnimationFrame(() => {
+    window.scrollTo({ top: place, behavior: "instant" });
+    main.style.minHeight = "";
+  }));
 }
 
 beginScheme();
