@@ -151,6 +151,7 @@ OUTPUTS = {
     "genome.safetensors": ("export", "RUN", "OUT/genome.safetensors"),
     "life.mp4": ("replay", "RUN", "--out", "OUT/life.mp4"),
     "ages.png": ("plot", "RUN", "--figure", "ages", "--out", "OUT"),
+    "page.html": ("report", "RUN", "--out", "OUT/page.html"),
 }
 
 

@@ -60,7 +60,7 @@ def panel(title: str, about: str, x: str, y: str, tables: Iterable[dict], **scal
 
 def table(x: np.ndarray, *curves: dict[str, Any]) -> dict[str, Any]:
     """Return curves over the same x, which rises; of points of one x the last is kept."""
-    places, last = numbers(x, digits=9), np.append(np.diff(x) > 0, True)
+    places, last = numbers(x, digits=9), np.append(np.diff(x) > 0, True)[: len(x)]
     keep = np.flatnonzero(last).tolist()
     kept = [{**each, "values": [each["values"][i] for i in keep]} for each in curves]
     return {"x": [places[i] for i in keep], "curves": kept}
@@ -116,7 +116,8 @@ def _deaths(lives: Lives) -> Panel:
     for name, group, colour in (("dead", died, style.SKY), ("alive", ~died, style.ORANGE)):
         some = np.flatnonzero(group)[:: int(group.sum()) // DOTS + 1]
         some = some[np.argsort(number[some], kind="stable")]
-        tables.append(table(number[some], curve(name, lifespan[some].clip(1), colour, "dots")))
+        if len(some):
+            tables.append(table(number[some], curve(name, lifespan[some].clip(1), colour, "dots")))
     if died.any():
         middle, low, median, high = quartiles(number[died], lifespan[died].clip(1))
         tables.append(

@@ -25,7 +25,10 @@ def film(ground: Ground, config: Config) -> dict[str, Any] | None:
         `cells`: a byte for each picture and cell: 0 if it is empty, else ink + 1 in the lower 5 bits and
         the shade of the age in the upper 3. `places`, `ticks`, `alive`: of each picture.
     """
-    rows, columns = config.placement.shape(config.cells)
+    try:
+        rows, columns = config.placement.shape(config.cells)
+    except ValueError:  # settings that no run begins with
+        return None
     count = min(PICTURES, BYTES // ground.share // config.cells, len(ground.lives))
     if rows == 1 or count < 2:
         return None

@@ -70,7 +70,7 @@ def _one_world(worlds: list[dict[str, Any]], run: Records, rate: float | None) -
         f"In {world['ticks']:,} ticks{simulated(world['ticks'], rate)},"
         f" {count(world['births'], 'organism')} {'was' if world['births'] == 1 else 'were'} born, and"
         f" {_deaths(worlds)}.",
-        *_extinct(world["extinctions"]),
+        *_extinct(world["extinctions"], config, "The world"),
     ]
     if fixed := world["fixation"]:
         parts.append(
@@ -103,7 +103,7 @@ def _many_worlds(worlds: list[dict[str, Any]], run: Records, rate: float | None)
     return [
         f"In up to {longest:,} ticks{simulated(longest, rate)} of each world,"
         f" {count(total('births'), 'organism')} were born, and {_deaths(worlds)}.",
-        *_extinct(total("extinctions"), "The worlds"),
+        *_extinct(total("extinctions"), run.config, "The worlds"),
         f"{most} worlds are saturated: all cells full, and no death for"
         f" {run.config.saturation_ticks:,} ticks.",
     ]
@@ -124,11 +124,13 @@ def _deaths(worlds: Sequence[dict[str, Any]]) -> str:
     return f"{sum(number for number, _ in died):,} died: {listed}"
 
 
-def _extinct(times: int, what: str = "The world") -> list[str]:
+def _extinct(times: int, config: Config, what: str) -> list[str]:
     if not times:
         return []
     often = "once" if times == 1 else f"{times:,} times"
-    return [f"{what} died out {often}, and life began again with a random founder."]
+    new = "a random founder" if config.genesis == "one" else "founders in all cells"
+    new = new if not config.ancestors else "the genomes that it was given"
+    return [f"{what} died out {often}, and life began again with {new}."]
 
 
 def _lives(run: Records, rate: float | None) -> list[str]:

@@ -36,10 +36,10 @@ async function fillWorld(body, content, kept) {
 }
 
 function groundText({ topology, cells, shown, whole: complete }) {
-  const order = { ring: "the ring", "well-mixed": "the world, all of which are neighbours" };
-  const across = `cells of ${order[topology] || "the torus, row after row"}`;
+  const order = { ring: "in the order of the ring", "well-mixed": "all neighbours of each other" };
+  const across = order[topology] || "row after row of the torus";
   const some = shown < cells ? ` ${whole(shown)} of ${whole(cells)} cells are shown.` : "";
   const seen = complete ? "" : " The cells are looked at after some births only; lives between two of these are not shown.";
-  return `The ${across} from left to right, births downwards. Each colour is a line of descent: strong if it lasted,`
+  return `Cells lie across, ${across}; births run downwards. Each colour is a line of descent: strong if it lasted,`
     + ` pale if it died out; gaps are empty cells.${some}${seen}`;
 }
