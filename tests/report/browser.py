@@ -82,6 +82,16 @@ class Page:
         self.script("arguments[0].focus()", element)
         ActionChains(self.driver).send_keys(*keys).perform()
 
+    def touch(self, kind: str, origin: list[float], fingers: list[tuple[int, int]]) -> None:
+        """Put, move or lift fingers at points relative to an origin in the window."""
+        points = [
+            {"x": origin[0] + x, "y": origin[1] + y, "id": number}
+            for number, (x, y) in enumerate(fingers)
+        ]
+        self.driver.execute_cdp_cmd(
+            "Input.dispatchTouchEvent", {"type": kind, "touchPoints": points}
+        )
+
     def pixels(self, canvas: WebElement) -> np.ndarray:
         """Return the pixels of a canvas, uint8 (height, width, 4)."""
         address = self.script("return arguments[0].toDataURL()", canvas)
@@ -107,6 +117,7 @@ class Page:
         """Give the page a size in CSS pixels."""
         values = {"width": wide, "height": tall, "deviceScaleFactor": 1, "mobile": mobile}
         self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", values)
+        self.driver.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": mobile})
 
     def prefers(self, **features: str) -> None:
         """Set what the user of the browser prefers, such as `color_scheme="dark"`."""

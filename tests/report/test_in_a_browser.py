@@ -175,6 +175,27 @@ def test_space_time_zooms_and_moves_by_wheel_keys_mouse_and_buttons(
     assert page.text(".organism h3") == "No organism is chosen", "to drag is not to click"
 
 
+def test_two_fingers_zoom_the_picture_and_a_tap_chooses(cart_page: Path, page: Page) -> None:
+    page.size(*PHONE, mobile=True)
+    page.open_file(cart_page)
+    canvas = page.one(CANVAS)
+    page.script("arguments[0].scrollIntoView({block: 'center'})", canvas)
+    whole = page.pixels(canvas)
+    box = page.script(
+        "const {left, top} = arguments[0].getBoundingClientRect(); return [left, top]", canvas
+    )
+    points = [[(150 - apart, 200), (150 + apart, 200)] for apart in (20, 35, 50, 65, 80)]
+    page.touch("touchStart", box, points[0])
+    for each in points[1:]:
+        page.touch("touchMove", box, each)
+    page.touch("touchEnd", box, [])
+    page.until(lambda: differ(page.pixels(canvas), whole))
+    assert page.text(".organism h3") == "No organism is chosen", "to pinch is not to tap"
+    page.touch("touchStart", box, [(150, 200)])
+    page.touch("touchEnd", box, [])
+    page.until(lambda: page.text(".organism h3") != "No organism is chosen")
+
+
 def test_the_page_scrolls_by_the_wheel_until_the_picture_is_chosen(
     cart_page: Path, page: Page
 ) -> None:

@@ -3,6 +3,7 @@
 import json
 import re
 import shlex
+import shutil
 import sys
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,7 @@ from primordia.runs.archive import Archive
 from tests.commands import complains, here
 from tests.experiments.meadows import write
 from tests.runs.test_code import begun, elsewhere, folder
-from tests.worlds import MEADOW, config
+from tests.worlds import config
 
 __all__ = ["folder"]
 
@@ -57,11 +58,12 @@ def test_names_that_are_no_page_are_one_line(torus: Path, tmp_path: Path) -> Non
     complains(here("report", tmp_path / "none"), 2, "none is not a run")
 
 
-def test_a_run_in_which_nothing_lives_is_one_line(tmp_path: Path) -> None:
-    loop.start(config(MEADOW, stop={"ticks": 0 + 1}), tmp_path / "run")
-    for folder_ in (tmp_path / "run" / "checkpoints").iterdir():
-        (folder_ / "manifest.json").unlink()
-    complains(here("report", tmp_path / "run"), 1, str(tmp_path / "run"))
+def test_a_damaged_run_is_one_line(torus: Path, tmp_path: Path) -> None:
+    run = Path(shutil.copytree(torus, tmp_path / "run"))
+    for folder_ in (run / "checkpoints").iterdir():
+        (folder_ / "manifest.json").write_text("{}")
+    complains(here("report", run, "--out", tmp_path / "page.html"), 1, str(run))
+    assert not (tmp_path / "page.html").exists()
 
 
 def test_code_from_elsewhere_is_executed_only_when_trusted(
