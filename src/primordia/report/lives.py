@@ -1,12 +1,14 @@
 """Lives as short films in a page: that of the champion, and that of the first organism."""
 
 import base64
+import shutil
 import tempfile
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-from primordia import device
+from primordia import device, interrupts
 from primordia.errors import InputError, Trouble
 from primordia.organism.replay import replay
 from primordia.runs.lives import Lives
@@ -54,7 +56,10 @@ def _film(run: Records, title: str, row: int) -> dict[str, str]:
             " replay` films it"
         )
     device.prepare()
-    with tempfile.TemporaryDirectory() as folder:
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        interrupts.before_end(partial(shutil.rmtree, folder, ignore_errors=True)),
+    ):
         path = replay(run, number, world, Path(folder) / "life.mp4", part=PART)
         data = base64.b64encode(path.read_bytes()).decode("ascii")
     where = f" of world {world}" if run.lives.worlds > 1 else ""
