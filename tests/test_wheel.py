@@ -45,12 +45,19 @@ def test_the_wheel_runs_without_the_repository(wheel: Path, tmp_path: Path) -> N
     assert list(empty.iterdir()) == []
 
 
+def files_of_the_page() -> list[Path]:
+    page = ROOT / "src" / "primordia" / "report" / "page"
+    found = [path for path in page.rglob("*") if path.is_file()]
+    assert {"index.html", "style.css", "main.js", "LICENSE"} <= {path.name for path in found}
+    return found
+
+
 def test_the_wheel_holds_the_package_and_its_licence_and_nothing_else(wheel: Path) -> None:
     with zipfile.ZipFile(wheel) as archive:
         names = archive.namelist()
     source = ROOT / "src"
     ours = [path for path in (source / "primordia").rglob("*") if path.suffix in (".py", ".toml")]
-    ours.append(source / "primordia" / "py.typed")
+    ours += [source / "primordia" / "py.typed", *files_of_the_page()]
     expected = {path.relative_to(source).as_posix() for path in ours}
     assert {name for name in names if name.startswith("primordia/")} == expected
     (info,) = {name.partition("/")[0] for name in names if not name.startswith("primordia/")}

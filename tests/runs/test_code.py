@@ -175,6 +175,7 @@ def test_looking_executes_no_code_of_a_run(folder: Path, monkeypatch: pytest.Mon
         ["info", run],
         ["info", run, "--json"],
         ["plot", run, "--out", run.parent / "figures"],
+        ["report", run, "--out", run.parent / "report.html"],
         ["export", run, run.parent / "genome.safetensors"],
         ["lineage", run, "--out", run.parent / "lineage.csv"],
         ["compare", run, twin, "--out", run.parent],

@@ -30,6 +30,7 @@ COMMANDS = [
     ["info", "{run}"],
     ["info", "{run}", "--json"],
     ["plot", "{run}", "--out", "{new}"],
+    ["report", "{run}", "--out", "{new}.html"],
     ["export", "{run}", "{new}"],
     ["lineage", "{run}", "--extant", "--out", "{new}.csv"],
     ["compare", "{run}", "{twin}", "--out", "{new}"],

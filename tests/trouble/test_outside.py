@@ -152,6 +152,7 @@ OUTPUTS = {
     "lineage.csv": ("lineage", "RUN", "--out", "OUT/lineage.csv"),
     "life.mp4": ("replay", "RUN", "--out", "OUT/life.mp4"),
     "ages.png": ("plot", "RUN", "--figure", "ages", "--out", "OUT"),
+    "page.html": ("report", "RUN", "--out", "OUT/page.html"),
 }
 
 

@@ -67,6 +67,12 @@ class Experiment(Run):
         ]
         return [*save(self.compare(), folder), *drawn]
 
+    def report(self, out: str | Path | None = None) -> Path:
+        """Write a page with the arms side by side, by default `report.html` in the directory."""
+        from primordia.report.report import report  # Matplotlib takes a second to load
+
+        return report(self._recorded(), Path(out) if out is not None else None)
+
     def sources(self) -> Sources:
         """Return the directories of the runs of each arm, and whether there are jobs left."""
         recorded = self._recorded()

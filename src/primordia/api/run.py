@@ -182,6 +182,19 @@ class Run:
 
         return film(self.opened(), Path(out) if out is not None else None, world, **options)
 
+    def report(self, out: str | Path | None = None) -> Path:
+        """Write a page about the run, by default `report.html` in its directory; see `report.report`."""
+        from primordia.report.report import report  # Matplotlib takes a second to load
+
+        return report(self.opened(), Path(out) if out is not None else None)
+
+    def watch(self, port: int | None = None, begun: Callable[[str], object] = print) -> None:
+        """Serve a live page about the run on this machine, until Ctrl-C; see `watch.watch`."""
+        from primordia.report.server import PORT  # Matplotlib takes a second to load
+        from primordia.report.watch import watch
+
+        watch(self.opened, PORT if port is None else port, begun)
+
     def track(
         self, tensorboard: str | Path | None = None, wandb: str | Path | None = None, **options: Any
     ) -> None:

@@ -25,6 +25,9 @@ STRONG = np.concatenate([share * np.array([to_rgb(hue) for hue in HUES]) for sha
 YOUNG = "#a0a0a0"
 PALE = 0.7
 """Share of white in the colour of a line that died out."""
+COLOURS = np.concatenate([STRONG, [to_rgb(YOUNG)]])
+INKS = np.concatenate([COLOURS, 1 - (1 - COLOURS) * (1 - PALE)])
+"""All colours of lines, strong ones first, then their pale ones in the same order, float64 (30, 3)."""
 MAX_TAKEOVERS = 8
 """Largest number of takeovers that are marked."""
 
@@ -80,12 +83,12 @@ def picture(lives: Lives, clades: Clades, cells: np.ndarray, ticks: np.ndarray) 
         line_codes(lives, clades, rows, ticks)[occupied], return_inverse=True, return_counts=True
     )
     image = np.ones((*rows.shape, 3))
-    image[occupied] = line_colours(lives, clades, codes, size)[place]
+    image[occupied] = INKS[line_inks(lives, clades, codes, size)[place]]
     return image
 
 
-def line_colours(lives: Lives, clades: Clades, codes: np.ndarray, size: np.ndarray) -> np.ndarray:
-    """Return the colours of lines, float64 (K, 3), by their `line_codes` and sizes in the picture.
+def line_inks(lives: Lives, clades: Clades, codes: np.ndarray, size: np.ndarray) -> np.ndarray:
+    """Return the place in INKS of each line, int64 (K,), by their `line_codes` and sizes in the picture.
 
     Lines of one era take the colours in turn, the largest first. A line that lasts to the end of its era
     has a strong colour, any other a pale one. Organisms of the time before the first era are grey.
@@ -98,10 +101,10 @@ def line_colours(lives: Lives, clades: Clades, codes: np.ndarray, size: np.ndarr
     order = np.lexsort((-size, ~lasted, era))
     turn = np.empty(len(codes), np.int64)
     turn[order] = np.arange(len(codes)) - np.searchsorted(era[order], era[order])
-    colour = STRONG[(turn + era - 1) % len(STRONG)]  # each era begins with another colour
+    colour = (turn + era - 1) % len(STRONG)  # each era begins with another colour
     young = lives.born[line] > np.append(-1, clades.renewals)[era]
-    colour[young] = to_rgb(YOUNG)
-    return np.where(lasted[:, None], colour, 1 - (1 - colour) * (1 - PALE))
+    colour[young] = len(STRONG)
+    return np.where(lasted, colour, len(COLOURS) + colour)
 
 
 def line_codes(lives: Lives, clades: Clades, rows: np.ndarray, ticks: np.ndarray) -> np.ndarray:

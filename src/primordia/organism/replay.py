@@ -34,6 +34,7 @@ def replay(
     world: int = 0,
     out: Path | None = None,
     ages: tuple[int | None, int | None] = (None, None),
+    part: float | None = None,
 ) -> Path:
     """Make a video of a life -> the path of the file.
 
@@ -44,6 +45,7 @@ def replay(
         out: an .mp4 or .gif; by default under the run's `videos`.
         ages: first and last age shown, in ticks. By default the whole life is shown, or the first and
             last 30 seconds of a life longer than a minute.
+        part: seconds shown at each end of a long life, other than 30.
 
     Raises:
         InputError: no such organism was born, its habitat draws no pictures, or no age is left to show.
@@ -54,7 +56,7 @@ def replay(
     path = out or run.path / "videos" / f"world{world}-organism{organism}.mp4"
     video.check_name(path)
     life = RelivedLife.of(run, organism, world)
-    parts = parts_of(life, ages)
+    parts = parts_of(life, ages, part)
     if out is None:
         files.own_folder(path.parent)
     film(life, path, parts)
@@ -85,16 +87,21 @@ def picture_rate(life: RelivedLife) -> float:
     return life.habitat.rate
 
 
-def parts_of(life: RelivedLife, ages: tuple[int | None, int | None] = (None, None)) -> list[range]:
-    """Return the ages to be shown, in ticks; see `replay`.
+def parts_of(
+    life: RelivedLife,
+    ages: tuple[int | None, int | None] = (None, None),
+    seconds: float | None = None,
+) -> list[range]:
+    """Return the ages to be shown, in ticks; of a long life `seconds` at each end, by default PART.
 
     Raises:
         InputError: no age is left to show, or its habitat draws no pictures.
     """
+    seconds = PART if seconds is None else seconds
     rate, born = picture_rate(life), int(life.record.born[0])
     first, last = life.begins + 1 - born, life.ends - born
-    if ages == (None, None) and last - first > 2 * PART * rate:
-        part = int(PART * rate)
+    if ages == (None, None) and last - first > 2 * seconds * rate:
+        part = int(seconds * rate)
         return [range(first, first + part), range(last - part + 1, last + 1)]
     begin, end = ages
     shown = range(max(first, begin or 0), min(last, last if end is None else end) + 1)

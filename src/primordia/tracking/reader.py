@@ -68,7 +68,7 @@ class Reader:
         for arm, paths in runs.items():
             for path in paths:
                 try:
-                    version = _version(path)
+                    version = newest_version(path)
                     if (patient or path in self._seen) and version == self._seen.get(path):
                         continue  # it has no checkpoint yet, or none since the last look
                     found = list(self._of_run(arm, path))
@@ -101,7 +101,8 @@ class Reader:
         )
 
 
-def _version(path: Path) -> Version:
+def newest_version(path: Path) -> Version:
+    """Return name and time of the newest checkpoint of a run; None if it has none."""
     folders = checkpoint.numbered(path)
     return (folders[-1].name, folders[-1].stat().st_mtime_ns) if folders else None
 

@@ -1,0 +1,50 @@
+"""The commands `primordia report` and `primordia watch`: a run as a page."""
+
+from pathlib import Path
+
+import click
+
+from primordia import interrupts
+from primordia.cli.cache import cache_option
+from primordia.cli.flags import run_argument, runs_argument, trust_option
+
+
+@click.command(short_help="Write a page with figures to hover, zoom and scrub.")
+@runs_argument
+@click.option(
+    "--out", type=click.Path(path_type=Path), help="An .html file [report.html in the RUN]."
+)
+@trust_option
+@cache_option
+def report(runs: tuple[Path, ...], out: Path | None, trust: bool) -> None:
+    """Write one HTML file about a run, several runs as one arm, or an experiment.
+
+    The file opens in any browser, loads nothing, and can be passed on: what happened in words, curves,
+    the space-time picture, the phylogeny of the living, and two lives as films. A life is lived again in
+    its habitat to be filmed. The run's own code is executed for that only if you have trusted it.
+    """
+    from primordia.api import load
+
+    click.echo(load(runs, trust).report(out))
+
+
+@click.command(short_help="Show a run in a browser while it goes on.")
+@run_argument
+@click.option(
+    "--port",
+    type=click.IntRange(0, 65535),
+    help="Port on this machine; 0 is any that is free [8321].",
+)
+def watch(run: Path, port: int | None) -> None:
+    """Show a run in a browser of this machine, live while the run goes on.
+
+    It is the page of `report` without films. It changes with each checkpoint of the run, which is not
+    disturbed. Only programs on this machine can reach it, and they can read it only. Ctrl-C ends it.
+    """
+    from primordia.api import load
+
+    with interrupts.last_words(lambda: "Stopped watching; the run is unchanged"):
+        load(run).watch(port, lambda address: click.echo(f"{address} shows {run}; Ctrl-C stops"))
+
+
+COMMANDS = (report, watch)

@@ -1,0 +1,125 @@
+"""The content of a page: all that is told of a run, or of an experiment, as JSON can hold it."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from primordia.experiments.campaign import Campaign
+from primordia.history.info import info
+from primordia.report.arms import arms, names
+from primordia.report.curves import panels
+from primordia.report.facts import facts
+from primordia.report.film import film
+from primordia.report.ground import Ground, palette
+from primordia.report.lives import films
+from primordia.report.organisms import organisms
+from primordia.report.tree import tree
+from primordia.report.words import count, setting, words
+from primordia.runs.records import Records
+
+WORLDS = 6
+"""Largest number of worlds whose pictures are in a page."""
+
+
+def of_run(run: Records, filmed: bool = True) -> dict[str, Any]:
+    """Return the content of the page of a run, or of several runs as one arm.
+
+    Args:
+        run: the run.
+        filmed: whether lives are lived again and filmed.
+
+    Raises:
+        InputError: nothing has lived in the run yet.
+        Trouble: the run is damaged.
+    """
+    assert len(run.lives)
+    numbers = info(run)
+    worlds = range(min(run.lives.worlds, WORLDS))
+    seeds = run.world_seeds.tolist()
+    left_out = run.lives.worlds - len(worlds)
+    return {
+        "palette": palette(),
+        "arms": None,
+        "title": run.config.task,
+        "subtitle": f"{_name(run.path)}, {_seeds(seeds)}",
+        "words": words(run, numbers),
+        "numbers": _numbers(numbers["worlds"]),
+        "panels": panels(run),
+        "worlds": [view(run, world, f"seed {seeds[world]}", len(worlds)) for world in worlds],
+        "left_out": f"{count(left_out, 'further world')} not shown" if left_out else "",
+        "films": films(run) if filmed else None,
+        "facts": [{"name": "", **facts(run, numbers)}],
+    }
+
+
+def of_experiment(chosen: Campaign) -> dict[str, Any]:
+    """Return the content of the page of an experiment: its arms side by side, and a world of each.
+
+    Raises:
+        InputError: an arm has not begun, or the arms cannot be compared.
+        Trouble: a run is damaged.
+    """
+    runs = chosen.opened()
+    named = dict(zip(names(runs), runs, strict=True))
+    numbers = {name: info(run) for name, run in named.items()}
+    jobs = ", ".join(f"{jobs:,} {state}" for state, jobs in chosen.status().jobs.items() if jobs)
+    shown = list(named.items())[:WORLDS]
+    worlds = sum(len(each["worlds"]) for each in numbers.values())
+    return {
+        "palette": palette(),
+        "title": chosen.plan.question or runs[0].config.task,
+        "subtitle": f"{_name(chosen.path)}, {runs[0].config.task}, jobs: {jobs}",
+        "words": [
+            f"The experiment has {count(len(runs), 'arm')}: {', '.join(named)}. They differ in the"
+            f" settings below; {count(worlds, 'world')} were lived in all.",
+            setting(runs[0].config),
+        ],
+        "numbers": _numbers([world for each in numbers.values() for world in each["worlds"]]),
+        "arms": arms(runs),
+        "panels": [],
+        "worlds": [
+            view(run, 0, f"{name}, seed {run.world_seeds[0]}", len(shown)) for name, run in shown
+        ],
+        "left_out": "The first world of each arm is shown",
+        "films": None,
+        "facts": [{"name": name, **facts(run, numbers[name])} for name, run in named.items()],
+    }
+
+
+def view(run: Records, world: int, name: str, share: int) -> dict[str, Any]:
+    """Return the pictures of one world of a run: space-time, organisms, film, phylogeny."""
+    ground = Ground(run.lives.of_world(world), run.config.cells, share)
+    return {
+        "name": name,
+        "topology": run.config.placement.topology,
+        "rate": run.description.rate,
+        "ground": ground.data(),
+        "organisms": organisms(ground.lives, ground.rows),
+        "film": film(ground, run.config),
+        "tree": tree(ground),
+    }
+
+
+def _name(path: Path) -> str:
+    return path.resolve().name
+
+
+def _seeds(seeds: Sequence[int]) -> str:
+    return f"seed {seeds[0]}" if len(seeds) == 1 else f"seeds {seeds[0]} to {seeds[-1]}"
+
+
+def _numbers(worlds: Sequence[dict[str, Any]]) -> list[dict[str, str]]:
+    """Return the main numbers of some worlds, with their names."""
+    total = {name: sum(world[name] for world in worlds) for name in ("births", "deaths", "alive")}
+    several = len(worlds) > 1
+    shown = {
+        "worlds" if several else "times extinct": len(worlds)
+        if several
+        else worlds[0]["extinctions"],
+        "ticks": max(world["ticks"] for world in worlds),
+        "organisms born": total["births"],
+        "died": total["deaths"],
+        "alive": total["alive"],
+        "age of the oldest alive": max(world["oldest_age"] or 0 for world in worlds),
+    }
+    return [{"name": name, "value": f"{value:,}"} for name, value in shown.items()]

@@ -1,0 +1,89 @@
+"""Facts at the end of a page: settings, versions, digests, and how to live the run again."""
+
+import shlex
+from pathlib import Path
+from typing import Any
+
+from primordia import config as configs
+from primordia.config import Config
+from primordia.errors import InputError
+from primordia.runs.records import Records
+from primordia.settings.tables import NONE, flat, tasks
+
+
+def facts(run: Records, info: dict[str, Any]) -> dict[str, Any]:
+    """Return settings, versions, digests of the worlds, and commands; see `commands`.
+
+    Args:
+        run: the run.
+        info: the run in numbers, see `history.info.info`.
+    """
+    config = _shown(run)
+    settings = flat(config.model_dump(mode="json"))
+    return {
+        "settings": {
+            name: _text(value)
+            for name, value in settings.items()
+            if value not in (None, [], "", {})
+        },
+        "toml": config.to_toml(),
+        "versions": {name: str(value) for name, value in run.versions.items()},
+        "digests": [
+            {"seed": str(world["seed"]), "digest": world["digest"]} for world in info["worlds"]
+        ],
+        "exact": info["exact"],
+        "restarts": info["restarts"],
+        "commands": commands(config, run.path.resolve().name, bool(run.description.code)),
+    }
+
+
+def _shown(run: Records) -> Config:
+    """Return the settings of a run with the limits now in force, and no more than names of files."""
+    config = run.config
+    fork = config.fork and config.fork.model_copy(update={"run": Path(config.fork.run).name})
+    ancestors = tuple(Path(each).name for each in config.ancestors)
+    changes = {"stop": run.progress.limits, "fork": fork, "ancestors": ancestors}
+    return config.model_copy(update=changes)
+
+
+def commands(config: Config, name: str, own_code: bool) -> list[str]:
+    """Return the commands that live a run again, and tell whether it came out the same.
+
+    A run of a task of ours whose settings fit into flags needs nothing else, and other runs need the
+    `config.toml` in the page. A fork, and a run with genomes or code of its own, needs its directory.
+
+    Args:
+        config: the settings.
+        name: the name of the run's directory.
+        own_code: whether the run holds code.
+    """
+    if config.fork or config.ancestors or own_code:
+        return [shlex.join(["primordia", "verify", name])]
+    flags = _flags(config)
+    what = ["config.toml"] if flags is None else [config.task, *flags]
+    return [
+        shlex.join(["primordia", "run", *what, "--out", "again"]),
+        "primordia info again --json",
+    ]
+
+
+def _flags(config: Config) -> list[str] | None:
+    """Return the flags by which a run differs from a task of ours; None if flags do not tell it."""
+    if config.task not in tasks():
+        return None
+    try:
+        base = flat(configs.load(config.task).model_dump(mode="json"))
+    except InputError:  # a package is missing
+        return None
+    own = flat(config.model_dump(mode="json"))
+    changed = {name: value for name, value in own.items() if base.get(name, NONE) != value}
+    if base.keys() - own.keys() or any(isinstance(value, list) for value in changed.values()):
+        return None
+    return [word for name, value in changed.items() for word in (f"--{name}", _text(value))]
+
+
+def _text(value: Any) -> str:
+    """Write a setting as flags and TOML do."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    return NONE if value is None else str(value)

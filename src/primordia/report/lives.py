@@ -1,0 +1,70 @@
+"""Lives as short films in a page: that of the champion, and that of the first organism."""
+
+import base64
+import shutil
+import tempfile
+from contextlib import suppress
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from primordia import device, interrupts
+from primordia.errors import InputError, Trouble
+from primordia.organism.replay import replay
+from primordia.runs.lives import Lives
+from primordia.runs.records import Records
+
+PART = 6.0
+"""Seconds shown at each end of a long life."""
+LONGEST = {"jax": 2_000_000, "host": 100_000}
+"""Ticks of the longest life that is lived again for a page, by kind of habitat: about a minute."""
+
+
+def films(run: Records) -> dict[str, Any]:
+    """Film lives of a run, for `lives.js`.
+
+    A life is lived again in its habitat. So only the code of installed packages, and code that the user
+    has trusted, is executed.
+
+    Returns:
+        `films`: each with its `title`, what it shows (`about`), and `data`, an MP4 in base64; `missing`:
+        the reason why a life is not shown, or "".
+    """
+    shown, reasons = [], []
+    for title, row in chosen(run.lives).items():
+        try:
+            shown.append(_film(run, title, row))
+        except (InputError, Trouble) as error:
+            reasons.append(str(error).replace(str(run.path), "this run"))
+    return {"films": shown, "missing": "; ".join(dict.fromkeys(reasons))}
+
+
+def chosen(lives: Lives) -> dict[str, int]:
+    """Return the rows of the lives that are filmed, by title: the first organism and the champion."""
+    rows = {"The first organism": 0}
+    with suppress(InputError):  # nothing was born since the fork
+        rows["The longest-lived of the later half"] = lives.oldest()
+    return rows
+
+
+def _film(run: Records, title: str, row: int) -> dict[str, str]:
+    number, world = int(run.lives.id[row]), int(run.lives.world[row])
+    kind, ticks = run.habitat.kind, int(run.lives.lifespan[row])
+    if ticks > LONGEST[kind]:
+        raise InputError(
+            f"the life of organism {number} is {ticks:,} ticks long, too long for a page; `primordia"
+            " replay` films it"
+        )
+    device.prepare()
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        interrupts.before_end(partial(shutil.rmtree, folder, ignore_errors=True)),
+    ):
+        path = replay(run, number, world, Path(folder) / "life.mp4", part=PART)
+        data = base64.b64encode(path.read_bytes()).decode("ascii")
+    where = f" of world {world}" if run.lives.worlds > 1 else ""
+    end = "dead" if run.lives.died[row] else "alive"
+    about = (
+        f"Organism {number:,}{where}: born at tick {run.lives.born[row]:,}, {ticks:,} ticks, {end}"
+    )
+    return {"title": title, "about": about, "data": data}

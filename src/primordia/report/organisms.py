@@ -1,0 +1,80 @@
+"""Facts of the organisms in a picture: births, lives, parents, and lines of descent among them."""
+
+from typing import Any
+
+import numpy as np
+
+from primordia.law.world import BirthCause, Cause
+from primordia.report.packed import packed
+from primordia.runs.lives import Lives
+
+CAUSES = [cause.label for cause in Cause]
+BIRTHS = [cause.label for cause in BirthCause]
+
+
+def organisms(lives: Lives, rows: np.ndarray) -> dict[str, Any]:
+    """Return the facts of some organisms of one world, for `organisms.js`.
+
+    Args:
+        lives: the lives of the world.
+        rows: rows of the organisms, int64 (R,), rising.
+
+    Returns:
+        Packed arrays (R,). `parent`: birth number of the parent plus 1, or 0. `ancestor`: place of the
+        nearest ancestor among these organisms plus 1, or 0. `cause`: of death plus 1; 0 if alive.
+        `born`: ticks from the first birth on record on, to which `first` is to be added.
+    """
+    some = lives.take(rows)
+    first = int(lives.born[0])
+    return {
+        "first": first,
+        "number": packed(some.id, rising=True),
+        "born": packed(some.born - first, rising=True),
+        "lifespan": packed(some.lifespan),
+        "cell": packed(some.cell),
+        "origin": packed(some.birth_cause),
+        "cause": packed(some.cause.astype(np.int64) + 1),
+        "parent": packed(some.parent + 1),
+        "ancestor": packed(nearest(lives.parent_row, rows) + 1),
+        "generation": packed(generations(lives.parent_row)[rows]),
+        "children": packed(children(lives.parent_row)[rows]),
+        "causes": CAUSES,
+        "origins": BIRTHS,
+    }
+
+
+def children(parent_row: np.ndarray) -> np.ndarray:
+    """Return the number of children of each organism, int64 (L,)."""
+    return np.bincount(parent_row[parent_row >= 0], minlength=len(parent_row))
+
+
+def generations(parent_row: np.ndarray) -> np.ndarray:
+    """Return the number of ancestors on record of each organism, int64 (L,).
+
+    The distances to an ancestor twice as far are known at each step, so few steps are needed (pointer
+    jumping: Wyllie 1979).
+    """
+    far = np.where(parent_row >= 0, parent_row, np.arange(len(parent_row)))
+    distance = (parent_row >= 0).astype(np.int64)
+    while True:
+        further = far[far]
+        if np.array_equal(further, far):
+            return distance
+        distance, far = distance + distance[far], further
+
+
+def nearest(parent_row: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """Return the place in `rows` of the nearest ancestor of each of these organisms, int64 (R,), or -1.
+
+    Args:
+        parent_row: row of each organism's parent, or -1; int64 (L,).
+        rows: some organisms, int64 (R,), rising.
+    """
+    place = np.full(len(parent_row), -1)
+    place[rows] = np.arange(len(rows))
+    itself = np.arange(len(parent_row))
+    jump = np.where((place >= 0) | (parent_row < 0), itself, parent_row)
+    while not np.array_equal(further := jump[jump], jump):
+        jump = further
+    parent = parent_row[rows]
+    return np.where(parent >= 0, place[jump[np.maximum(parent, 0)]], -1)

@@ -1,0 +1,33 @@
+"""Arrays in a page: typed, compressed, and written in base64; `arrays.js` reads them."""
+
+import base64
+import gzip
+from typing import Any
+
+import numpy as np
+
+
+def packed(values: np.ndarray, rising: bool = False) -> dict[str, Any]:
+    """Return an array of numbers that are no less than 0, as JSON can hold it.
+
+    Args:
+        values: integers from 0 on, of any shape; those of 2^32 and more are kept as float64, which is
+            exact up to 2^53.
+        rising: whether they never fall; then their differences are kept, which are shorter.
+
+    Returns:
+        `type`: uint8, uint16, uint32 or float64, little-endian; `rising`; `data`: the values in C order,
+        by gzip (RFC 1952), in base64 (RFC 4648).
+    """
+    flat = np.asarray(values).ravel()
+    kept = np.diff(flat, prepend=flat.dtype.type(0)) if rising else flat
+    kind = _kind(int(kept.max(initial=0)))
+    raw = kept.astype(np.dtype(kind).newbyteorder("<")).tobytes()
+    data = base64.b64encode(gzip.compress(raw, mtime=0)).decode("ascii")
+    return {"type": kind, "rising": rising, "data": data}
+
+
+def _kind(most: int) -> str:
+    """Return the shortest type that holds all integers from 0 to `most`."""
+    fitting = (kind for kind in ("uint8", "uint16", "uint32") if most <= np.iinfo(kind).max)
+    return next(fitting, "float64")

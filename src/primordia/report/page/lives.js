@@ -1,0 +1,14 @@
+// Lives as short films; they are in the page, and do not play by themselves.
+
+function livesSection({ films, missing }) {
+  const about = "Each life was lived again from its record, tick for tick, and came out as recorded. Of a long life"
+    + " the first and last seconds are shown.";
+  const figures = films.map(({ title, about: what, data }) => {
+    const video = element("video", { controls: true, loop: true, muted: true, playsinline: true, preload: "auto",
+      "aria-label": `${title}: ${what}` });
+    video.src = URL.createObjectURL(new Blob([bytesOf(data)], { type: "video/mp4" }));
+    return element("figure", {}, video, element("figcaption", {}, element("strong", {}, title), what));
+  });
+  const why = missing ? [element("p", { class: "about" }, `Not filmed: ${missing}.`)] : [];
+  return section("Lives", films.length ? about : "", element("div", { class: "lives" }, ...figures), ...why);
+}

@@ -1,0 +1,138 @@
+"""The page of a run, served on this machine alone while the run goes on.
+
+The server gives three things at fixed names and reads no path from a request: the page, its content as
+JSON, and events that say when the content has changed (server-sent events: WHATWG HTML, section 9.2). It
+answers requests that name this machine in the Host header only, so that no page of another site can read
+from it under a name of its own (DNS rebinding).
+"""
+
+from collections.abc import Callable
+from http import HTTPStatus
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+
+from primordia.errors import InputError
+from primordia.report.watched import Watched
+
+HERE = "127.0.0.1"
+PORT = 8321
+"""The port unless another is chosen."""
+MOST_LISTENERS = 32
+"""Largest number of pages that wait for events at a time."""
+QUIET = 10.0
+"""Seconds after which a waiting page gets an empty line, so that one that is gone is noticed."""
+HEADERS = {
+    "Cache-Control": "no-store",
+    "Content-Security-Policy": "frame-ancestors 'none'",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Referrer-Policy": "no-referrer",
+    "X-Content-Type-Options": "nosniff",
+}
+
+
+class Server(ThreadingHTTPServer):
+    """A server of one page, at this machine's own address."""
+
+    daemon_threads = True
+    block_on_close = False
+
+    def __init__(self, watched: Watched, port: int) -> None:
+        """Begin to listen.
+
+        Args:
+            watched: what is shown.
+            port: the port, or 0 for any that is free.
+
+        Raises:
+            InputError: the port is in use, or is not one that the user may take.
+        """
+        self.watched, self.listeners = watched, 0
+        try:
+            super().__init__((HERE, port), Handler)
+        except OSError as error:
+            why = error.strerror or error
+            raise InputError(f"--port {port}: {why}; choose another, or 0 for any") from None
+
+    @property
+    def address(self) -> str:
+        """The address of the page."""
+        return f"http://{HERE}:{self.server_port}/"
+
+
+class Handler(BaseHTTPRequestHandler):
+    """Answers one request."""
+
+    server: Server
+    server_version, sys_version = "primordia", ""
+    timeout = 30
+
+    def do_GET(self) -> None:
+        """Answer with what has this name."""
+        answers: dict[str, Callable[[], None]] = {
+            "/": self._page,
+            "/data": self._data,
+            "/events": self._events,
+        }
+        hosts = self.headers.get_all("Host", [])
+        if hosts not in ([f"{name}:{self.server.server_port}"] for name in (HERE, "localhost")):
+            self._refuse(HTTPStatus.FORBIDDEN)
+        elif self.path not in answers:
+            self._refuse(HTTPStatus.NOT_FOUND)
+        else:
+            answers[self.path]()
+
+    do_HEAD = do_GET  # noqa: N815
+
+    def _not_allowed(self) -> None:
+        self._refuse(HTTPStatus.METHOD_NOT_ALLOWED, Allow="GET, HEAD")
+
+    do_POST = do_PUT = do_PATCH = do_DELETE = do_OPTIONS = _not_allowed  # noqa: N815
+
+    def _page(self) -> None:
+        self._answer("text/html; charset=utf-8", self.server.watched.page())
+
+    def _data(self) -> None:
+        self._answer("application/json", self.server.watched.data())
+
+    def _events(self) -> None:
+        """Tell of each change of the content, until the page is gone."""
+        server = self.server
+        if server.listeners >= MOST_LISTENERS:
+            return self._refuse(HTTPStatus.SERVICE_UNAVAILABLE)
+        self._begin(HTTPStatus.OK, "text/event-stream")
+        if self.command == "HEAD":
+            return
+        server.listeners += 1
+        try:
+            self._tell()
+        except OSError:  # the page is gone
+            pass
+        finally:
+            server.listeners -= 1
+
+    def _tell(self) -> None:
+        told = None
+        while True:
+            state = self.server.watched.news(told, QUIET)
+            self.wfile.write(b": \n\n" if state == told else f"data: {state}\n\n".encode())
+            self.wfile.flush()
+            told = state
+
+    def _answer(self, kind: str, body: bytes) -> None:
+        self._begin(HTTPStatus.OK, kind, **{"Content-Length": str(len(body))})
+        if self.command != "HEAD":
+            self.wfile.write(body)
+
+    def _refuse(self, status: HTTPStatus, **headers: str) -> None:
+        self.close_connection = True
+        self._begin(status, "text/plain; charset=utf-8", **headers)
+        if self.command != "HEAD":
+            self.wfile.write(f"{status.value} {status.phrase}\n".encode())
+
+    def _begin(self, status: HTTPStatus, kind: str, **headers: str) -> None:
+        self.send_response(status)
+        for name, value in {**HEADERS, "Content-Type": kind, **headers}.items():
+            self.send_header(name, value)
+        self.end_headers()
+
+    def log_message(self, format: str, *args: object) -> None:
+        """Print nothing of a request."""

@@ -1,0 +1,33 @@
+"""A run watched in a browser on this machine."""
+
+import threading
+from collections.abc import Callable
+
+from primordia.report.server import PORT, Server
+from primordia.report.watched import Watched
+from primordia.runs.records import Records
+
+
+def watch(
+    open_: Callable[[], Records], port: int = PORT, begun: Callable[[str], object] = print
+) -> None:
+    """Serve the page of a run until the process ends, or Ctrl-C.
+
+    Args:
+        open_: opens the run for reading; called again whenever it has a new checkpoint.
+        port: the port at 127.0.0.1, or 0 for any that is free.
+        begun: called with the address of the page once it is served.
+
+    Raises:
+        InputError: there is no run, nothing has lived in it yet, or the port is in use.
+        Trouble: the run is damaged.
+        KeyboardInterrupt: on Ctrl-C, unless that ends the process at once.
+    """
+    watched, ended = Watched(open_), threading.Event()
+    with Server(watched, port) as server:
+        threading.Thread(target=watched.follow, args=(ended,), daemon=True).start()
+        try:
+            begun(server.address)
+            server.serve_forever()
+        finally:
+            ended.set()

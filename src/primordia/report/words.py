@@ -1,0 +1,171 @@
+"""What happened in a run, in words for people who do not know Primordia."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from primordia.config import Config
+from primordia.live.panel import duration
+from primordia.runs.lives import Lives
+from primordia.runs.records import Records
+
+WORLDS = {
+    "ring": "cells on a ring",
+    "torus4": "cells on a torus, a plane whose opposite edges meet",
+    "torus8": "cells on a torus, a plane whose opposite edges meet",
+    "well-mixed": "cells, all of which are neighbours",
+}
+DEATHS = {
+    "fatal": "of what their world did to them",
+    "starved": "of hunger",
+    "hazard": "by accident",
+    "replaced": "since a child took their cell",
+    "fault": "of a fault in their brain",
+    "time-limit": "at the end of their time",
+    "restart": "when the run went on without their bodies",
+}
+
+
+def words(run: Records, info: dict[str, Any]) -> list[str]:
+    """Return paragraphs about a run.
+
+    Args:
+        run: the run.
+        info: the run in numbers, see `history.info.info`.
+    """
+    worlds = info["worlds"]
+    happened = _one_world if len(worlds) == 1 else _many_worlds
+    rate = run.description.rate
+    return [setting(run.config), " ".join(happened(worlds, run, rate)), " ".join(_lives(run, rate))]
+
+
+def setting(config: Config) -> str:
+    """Say what lives in the worlds of a run, and by what rule."""
+    about = f"{config.about.rstrip('.')}. " if config.about else ""
+    worlds = "The world has" if config.seeds == 1 else f"Each of {config.seeds:,} worlds has"
+    taken = ", whose organism dies" if config.placement.rule == "replacing" else ""
+    room = "a neighbouring" if taken else "an empty neighbouring"
+    parts = [
+        f"{about}{worlds} {config.cells:,} {WORLDS[config.placement.topology]}. In each cell lives"
+        " at most one organism: a small neural network in a simulation of its own.",
+        "No one sets a goal, and nothing is rewarded. An organism lives until its world kills it, and"
+        f" while it lives it copies itself into {room} cell{taken}.",
+    ]
+    if config.inheritance == "parent":
+        parts.append("Copies differ from their parent by small random changes.")
+    else:
+        parts.append(
+            "Nothing is inherited in this run, a control: each child is a new random network."
+        )
+    if config.metabolism is not None:
+        parts.append("An organism that gathers too little food starves.")
+    return " ".join(parts)
+
+
+def _one_world(worlds: list[dict[str, Any]], run: Records, rate: float | None) -> list[str]:
+    (world,) = worlds
+    config = run.config
+    parts = [
+        f"In {world['ticks']:,} ticks{simulated(world['ticks'], rate)},"
+        f" {count(world['births'], 'organism')} {'was' if world['births'] == 1 else 'were'} born, and"
+        f" {_deaths(worlds)}.",
+        *_extinct(world["extinctions"], config, "The world"),
+    ]
+    if fixed := world["fixation"]:
+        parts.append(
+            f"Since tick {fixed['tick']:,} (birth {fixed['births']:,}) all that live descend from one"
+            " ancestor."
+        )
+    if saturated := world["saturation"]:
+        parts.append(
+            f"At tick {saturated['tick']:,} the world was saturated: all {config.cells:,} cells were"
+            f" full, and no organism had died for {config.saturation_ticks:,} ticks."
+        )
+    elif world["alive"]:
+        parts.append(
+            f"{count(world['alive'], 'organism')} live{'s' if world['alive'] == 1 else ''} now in the"
+            f" {config.cells:,} cells. The world is not saturated: organisms still die, and others"
+            " follow."
+        )
+    else:
+        parts.append("Nothing lives there now.")
+    return parts
+
+
+def _many_worlds(worlds: list[dict[str, Any]], run: Records, rate: float | None) -> list[str]:
+    def total(name: str) -> int:
+        return sum(world[name] for world in worlds)
+
+    longest = max(world["ticks"] for world in worlds)
+    saturated = sum(world["saturation"] is not None for world in worlds)
+    most = "All" if saturated == len(worlds) else f"{saturated:,} of {len(worlds):,}"
+    return [
+        f"In up to {longest:,} ticks{simulated(longest, rate)} of each world,"
+        f" {count(total('births'), 'organism')} were born, and {_deaths(worlds)}.",
+        *_extinct(total("extinctions"), run.config, "The worlds"),
+        f"{most} worlds are saturated: all cells full, and no death for"
+        f" {run.config.saturation_ticks:,} ticks.",
+    ]
+
+
+def _deaths(worlds: Sequence[dict[str, Any]]) -> str:
+    """Write how many died, and of what."""
+    causes: dict[str, int] = {}
+    for world in worlds:
+        for cause, number in world["deaths_by_cause"].items():
+            causes[cause] = causes.get(cause, 0) + number
+    died = [(number, DEATHS[cause]) for cause, number in causes.items() if number]
+    if not died:
+        return "none has died"
+    if len(died) == 1:
+        return f"{died[0][0]:,} died, {died[0][1]}"
+    listed = ", ".join(f"{number:,} {how}" for number, how in died)
+    return f"{sum(number for number, _ in died):,} died: {listed}"
+
+
+def _extinct(times: int, config: Config, what: str) -> list[str]:
+    if not times:
+        return []
+    often = "once" if times == 1 else f"{times:,} times"
+    new = "a random founder" if config.genesis == "one" else "founders in all cells"
+    new = new if not config.ancestors else "the genomes that it was given"
+    return [f"{what} died out {often}, and life began again with {new}."]
+
+
+def _lives(run: Records, rate: float | None) -> list[str]:
+    """Compare early and late lives, and name the longest."""
+    lives = run.lives
+    parts = []
+    quarter = max(len(lives) // 4, 1)
+    order = np.argsort(lives.rank, kind="stable")
+    early, late = (lives.take(rows) for rows in (order[:quarter], order[-quarter:]))
+    if len(lives) >= 40:
+        parts.append(
+            f"Of the first quarter of the organisms, half lived {_median(early)}; of the last quarter,"
+            f" half {_median(late)} so far."
+        )
+    row = int(lives.lifespan.argmax())
+    which = f"organism {lives.id[row]:,}"
+    where = f" of world {lives.world[row]}" if lives.worlds > 1 else ""
+    fate = "is dead" if lives.died[row] else "is alive"
+    long = int(lives.lifespan[row])
+    parts.append(
+        f"The longest life is that of {which}{where}, born at tick {lives.born[row]:,}: {long:,}"
+        f" ticks{simulated(long, rate)}; it {fate}."
+    )
+    return parts
+
+
+def _median(lives: Lives) -> str:
+    return f"{int(np.quantile(lives.lifespan, 0.5, method='lower')):,} ticks or more"
+
+
+def simulated(ticks: int, rate: float | None) -> str:
+    """Write the time in the simulation, in brackets; nothing if the habitat has no clock."""
+    return f" ({duration(ticks / rate)} of simulated time)" if rate else ""
+
+
+def count(number: int, what: str) -> str:
+    """Write a number of things."""
+    return f"{number:,} {what}{'' if number == 1 else 's'}"

@@ -1,0 +1,71 @@
+"""Runs that pages are made of: three small worlds on a torus, and the same with few words."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import primordia
+from primordia.runs import loop
+from tests.report.browser import DESKTOP, Page, browser
+from tests.worlds import MEADOW, config
+
+TORUS: dict[str, Any] = {
+    **MEADOW,
+    "about": "Meadows in which nothing moves.",
+    "habitat": {"name": "tests.toys:Meadow", "lifespan": 90},
+    "brain": {"kind": "feed-forward", "hidden": 1},
+    "placement": {"topology": "torus8"},
+    "cells": 24,
+    "seed": 5,
+    "seeds": 3,
+    "replication": 0.05,
+    "hazard": 0.01,
+    "metabolism": {"store": 400.0},
+    "sample_every": 100,
+    "stop": {"ticks": 900},
+}
+
+
+@pytest.fixture(scope="session")
+def torus(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Make a run of three worlds with births, copies and deaths of several causes."""
+    where = tmp_path_factory.mktemp("report") / "torus"
+    loop.start(config(TORUS), where)
+    return where
+
+
+@pytest.fixture(scope="session")
+def cart(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Make a run with poles on carts, whose lives can be filmed."""
+    where = tmp_path_factory.mktemp("report") / "cart"
+    loop.start(config(cells=16, stop={"ticks": 1500, "until": None}), where)
+    return where
+
+
+@pytest.fixture(scope="session")
+def cart_page(cart: Path) -> Path:
+    """Write the page of a run, with films."""
+    return primordia.load(cart).report()
+
+
+@pytest.fixture(scope="session")
+def torus_page(torus: Path) -> Path:
+    """Write the page of a run of three worlds on a torus."""
+    return primordia.load(torus).report()
+
+
+@pytest.fixture(scope="session")
+def started() -> Iterator[Page]:
+    """Start a browser."""
+    with browser() as page:
+        yield page
+
+
+@pytest.fixture
+def page(started: Page) -> Page:
+    """Return the browser at the size of a desktop, with a user who prefers nothing."""
+    started.size(*DESKTOP)
+    started.prefers(color_scheme="light")
+    return started

@@ -1,0 +1,177 @@
+"""The pictures of a page hold what the records say, cell by cell and moment by moment."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from primordia.figures import spacetime
+from primordia.report import film, ground
+from primordia.report.ground import Ground
+from primordia.report.organisms import generations, nearest, organisms
+from primordia.report.packed import packed
+from primordia.report.tree import Node, grown, in_order, tree
+from primordia.runs.archive import Archive
+from primordia.runs.lives import Lives
+from tests.report.unpacked import all_unpacked, unpacked
+from tests.synthetic import alive
+
+PARENTS = st.lists(st.integers(-1, 30), min_size=1, max_size=40).map(
+    lambda drawn: np.array([min(parent, row - 1) for row, parent in enumerate(drawn)])
+)
+"""The row of each organism's parent, or -1; parents come before their children."""
+
+
+@given(st.lists(st.integers(0, 2**53)), st.booleans())
+def test_packed_arrays_come_out_as_they_went_in(values: list[int], rising: bool) -> None:
+    given_ = np.array(sorted(values) if rising else values, np.int64)
+    assert unpacked(packed(given_, rising)).tolist() == given_.tolist()
+
+
+def occupant(lives: Lives, cell: int, tick: int) -> int:
+    """Return the row of the organism in a cell after a tick, or -1, by looking at all of them."""
+    here = [row for row in np.flatnonzero(lives.cell == cell).tolist() if alive(lives, row, tick)]
+    assert len(here) <= 1
+    return here[0] if here else -1
+
+
+@pytest.mark.parametrize("whole", [True, False])
+def test_space_time_shows_who_was_where_after_each_moment(
+    torus: Path, monkeypatch: pytest.MonkeyPatch, whole: bool
+) -> None:
+    lives = Archive(torus).lives.of_world(1)
+    if not whole:
+        monkeypatch.setattr(ground, "WHOLE", 10)
+        monkeypatch.setattr(ground, "SEEN", 700)
+    shown = Ground(lives, 24)
+    data, facts = shown.data(), all_unpacked(organisms(lives, shown.rows))
+    moments, segments = unpacked(data["moments"]), all_unpacked(data["segments"])
+    assert data["whole"] == (len(moments) == len(lives)) == whole
+    assert unpacked(data["ticks"]).tolist() == lives.born[moments].tolist()
+    for place in moments.tolist():
+        tick = int(lives.born[place])
+        there = np.flatnonzero((segments["start"] <= place) & (place < segments["stop"]))
+        seen = {int(segments["column"][i]): int(segments["organism"][i]) for i in there}
+        assert len(seen) == len(there), "two organisms in a cell"
+        expected = {cell: occupant(lives, cell, tick) for cell in range(24)}
+        numbers = {cell: int(lives.id[row]) for cell, row in expected.items() if row >= 0}
+        assert {cell: int(facts["number"][at]) for cell, at in seen.items()} == numbers
+
+
+def test_the_lines_of_space_time_have_the_inks_of_the_figure(torus: Path) -> None:
+    lives = Archive(torus).lives.of_world(0)
+    shown = Ground(lives, 24)
+    segments, clades = all_unpacked(shown.data()["segments"]), spacetime.clades_of(lives)
+    ticks = lives.born[segments["start"]]
+    rows = segments["organism"]
+    codes = spacetime.line_codes(lives, clades, rows[:, None], ticks)[:, 0]
+    for code in np.unique(codes):
+        assert len(set(segments["ink"][codes == code].tolist())) == 1, "a line has one ink"
+    strong = segments["ink"] < len(spacetime.COLOURS)
+    picture = spacetime.picture(lives, clades, np.arange(24), ticks)
+    drawn = picture[np.arange(len(ticks)), segments["column"]]
+    assert (strong == (drawn.min(axis=1) < spacetime.PALE)).all(), "pale in the figure too"
+
+
+def test_facts_of_organisms_are_those_of_the_records(torus: Path) -> None:
+    lives = Archive(torus).lives.of_world(2)
+    facts = all_unpacked(organisms(lives, np.arange(len(lives))))
+    assert facts["number"].tolist() == lives.id.tolist()
+    assert facts["born"].tolist() == (lives.born - lives.born[0]).tolist()
+    assert facts["lifespan"].tolist() == lives.lifespan.tolist()
+    assert facts["cause"].tolist() == (lives.cause + 1).tolist()
+    assert (facts["parent"] - 1).tolist() == lives.parent.tolist()
+    children = [int((lives.parent == number).sum()) for number in lives.id.tolist()]
+    assert facts["children"].tolist() == children
+
+
+@given(PARENTS, st.data())
+def test_ancestors_and_generations_are_those_of_a_walk(parents: np.ndarray, data: Any) -> None:
+    some = np.array(sorted(data.draw(st.sets(st.integers(0, len(parents) - 1)))), np.int64)
+
+    def above(row: int) -> list[int]:
+        return [] if parents[row] < 0 else [int(parents[row]), *above(int(parents[row]))]
+
+    assert generations(parents).tolist() == [len(above(row)) for row in range(len(parents))]
+    expected = [next((up for up in above(row) if up in some), -1) for row in some.tolist()]
+    assert [(-1 if at < 0 else int(some[at])) for at in nearest(parents, some)] == expected
+
+
+@given(PARENTS, st.data())
+def test_the_phylogeny_joins_lines_where_they_part(parents: np.ndarray, data: Any) -> None:
+    leaves = sorted(data.draw(st.sets(st.integers(0, len(parents) - 1), min_size=1)))
+    nodes = in_order(grown(parents, leaves))
+    of_row = {node.row: node for node in nodes}
+
+    def line(row: int) -> list[int]:
+        return [row] if parents[row] < 0 else [row, *line(int(parents[row]))]
+
+    def drawn(node: Node | None) -> list[int]:
+        return [] if node is None else [node.row, *drawn(node.parent)]
+
+    for leaf in leaves:
+        walked = [row for row in line(leaf) if row in of_row]
+        assert drawn(of_row[leaf]) == walked
+        assert sum(of_row[row].skipped + 1 for row in walked) == len(line(leaf))
+    lines = [line(leaf) for leaf in leaves]
+    for row, node in of_row.items():
+        ways = {each[each.index(row) - 1] for each in lines if row in each and each[0] != row}
+        assert node.alive or len(ways) > 1 or parents[row] < 0, "each node is needed"
+        assert {child.left_by for child in node.children} == ways
+    levels = [node.level for node in nodes if node.alive]
+    assert sorted(levels) == list(range(len(leaves)))
+    assert not_crossing(nodes)
+
+
+def not_crossing(nodes: list[Node]) -> bool:
+    """Return whether no line that leaves a parent crosses the bar of another node."""
+    for node in nodes:
+        if node.parent is None:
+            continue
+        low, high = sorted((node.level, node.parent.level))
+        for other in nodes:
+            end = np.inf if other.alive else other.children[0].left_by
+            if low < other.level < high and other.left_by < node.left_by < end:
+                return False
+    return True
+
+
+def test_the_phylogeny_of_a_run_shows_all_that_live(torus: Path) -> None:
+    lives = Archive(torus).lives.of_world(0)
+    shown = tree(Ground(lives, 24))
+    assert shown is not None
+    living = sorted(node["number"] for node in shown["nodes"] if node["alive"])
+    assert living == lives.id[~lives.died].tolist()
+    for node in shown["nodes"]:
+        assert 0 <= node["start"] <= node["stop"] <= len(lives)
+        assert node["parent"] < 0 or node["start"] <= shown["nodes"][node["parent"]]["stop"]
+
+
+def test_a_film_of_a_torus_shows_every_cell(torus: Path) -> None:
+    run = Archive(torus)
+    lives = run.lives.of_world(1)
+    shown = film.film(Ground(lives, 24), run.config)
+    assert shown is not None
+    assert (shown["rows"], shown["columns"]) == (4, 6)
+    pictures = unpacked(shown["cells"]).reshape(-1, 24)
+    for place, tick, alive_, picture in zip(
+        shown["places"], shown["ticks"], shown["alive"], pictures, strict=True
+    ):
+        assert tick == lives.born[place]
+        there = [occupant(lives, cell, tick) for cell in range(24)]
+        assert (picture > 0).tolist() == [row >= 0 for row in there]
+        assert alive_ == sum(row >= 0 for row in there)
+    shades = pictures[pictures > 0] >> film.INK_BITS
+    assert shades.min() == 0
+    assert shades.max() == film.SHADES - 1
+
+
+def test_a_ring_has_no_film(torus: Path) -> None:
+    run = Archive(torus)
+    config = run.config.model_copy(update={"placement": type(run.config.placement)()})
+    assert film.film(Ground(run.lives.of_world(0), 24), config) is None
+    odd = run.config.model_copy(update={"cells": 23})
+    assert film.film(Ground(run.lives.of_world(0), 24), odd) is None, "no torus has 23 cells"

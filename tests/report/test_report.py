@@ -1,0 +1,132 @@
+"""The command and the methods: where a page is written, what it executes, and what is one line."""
+
+import json
+import re
+import shlex
+import shutil
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import primordia
+from primordia.report.facts import facts
+from primordia.report.lives import films
+from primordia.runs import loop
+from primordia.runs.archive import Archive
+from tests.commands import complains, here
+from tests.experiments.meadows import write
+from tests.runs.test_code import begun, elsewhere, folder
+from tests.worlds import config
+
+__all__ = ["folder"]
+
+
+def content(path: Path) -> dict[str, Any]:
+    """Return the content of a page."""
+    (text,) = re.findall(r'<script type="application/json"[^>]*>(.*?)</script>', path.read_text())
+    return json.loads(text)
+
+
+def test_a_page_is_written_into_the_run_or_where_one_says(torus: Path, tmp_path: Path) -> None:
+    done = here("report", torus)
+    assert (done.returncode, done.stdout) == (0, f"{torus / 'report.html'}\n")
+    out = tmp_path / "new" / "page.html"
+    assert here("report", torus, "--out", out).returncode == 0
+    assert out.read_bytes() == (torus / "report.html").read_bytes(), "the same bytes each time"
+    assert primordia.load(torus).report(tmp_path / "again.htm").read_bytes() == out.read_bytes()
+    assert here("info", torus).returncode == 0
+    assert str(torus.parent) not in out.read_text(), "no path of the machine"
+
+
+def test_several_runs_are_one_arm(torus: Path, tmp_path: Path) -> None:
+    loop.start(Archive(torus).config.model_copy(update={"seed": 8, "seeds": 1}), tmp_path / "more")
+    complains(here("report", str(torus.parent / "tor*"), tmp_path / "more"), 2, "--out FILE.html")
+    out = tmp_path / "page.html"
+    assert here("report", torus, tmp_path / "more", "--out", out).returncode == 0
+    assert content(out)["subtitle"].endswith("seeds 5 to 8")
+    assert len(content(out)["worlds"]) == 4
+
+
+def test_names_that_are_no_page_are_one_line(torus: Path, tmp_path: Path) -> None:
+    complains(here("report", torus, "--out", tmp_path / "page.pdf"), 2, "page.pdf", ".html")
+    (tmp_path / "folder.html").mkdir()
+    complains(here("report", torus, "--out", tmp_path / "folder.html"), 2, "is a folder")
+    (tmp_path / "link.html").symlink_to(tmp_path / "mine")
+    complains(here("report", torus, "--out", tmp_path / "link.html"), 2, "is a symbolic link")
+    complains(here("report", tmp_path / "none"), 2, "none is not a run")
+
+
+def test_a_damaged_run_is_one_line(torus: Path, tmp_path: Path) -> None:
+    run = Path(shutil.copytree(torus, tmp_path / "run"))
+    for folder_ in (run / "checkpoints").iterdir():
+        (folder_ / "manifest.json").write_text("{}")
+    complains(here("report", run, "--out", tmp_path / "page.html"), 1, str(run))
+    assert not (tmp_path / "page.html").exists()
+
+
+def test_code_from_elsewhere_is_executed_only_when_trusted(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run = elsewhere(folder, begun(folder), monkeypatch)
+    done = here("report", run)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "pond" not in sys.modules
+    films = content(run / "report.html")["films"]
+    assert films["films"] == []
+    assert "--trust" in films["missing"]
+    assert here("report", run, "--trust").returncode == 0
+    assert "draws no pictures" in content(run / "report.html")["films"]["missing"]
+
+
+def test_long_lives_are_not_filmed(cart: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("primordia.report.lives.LONGEST", {"jax": 1, "host": 1})
+    found = films(Archive(cart))
+    assert found["films"] == []
+    assert "too long for a page" in found["missing"]
+
+
+def test_the_command_in_the_page_lives_the_run_again(
+    cart_page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (told,) = content(cart_page)["facts"]
+    command, look = map(shlex.split, told["commands"])
+    assert here(*command[1:], "--quiet").returncode == 0
+    (world,) = json.loads(here(*look[1:]).stdout)["worlds"]
+    assert told["digests"] == [{"seed": "0", "digest": world["digest"]}]
+
+
+def test_a_run_that_flags_do_not_tell_is_told_by_its_settings(tmp_path: Path) -> None:
+    season = {"kind": "schedule", "setting": "hazard", "at": 50, "value": 0.01}
+    loop.start(config(cells=8, stop={"ticks": 200}, seasons=[season]), tmp_path / "run")
+    told = facts(Archive(tmp_path / "run"), primordia.load(tmp_path / "run").info())
+    assert told["commands"][0] == "primordia run config.toml --out again"
+    (tmp_path / "config.toml").write_text(told["toml"])
+    primordia.run(str(tmp_path / "config.toml"), tmp_path / "again")
+    again = primordia.load(tmp_path / "again").info()["worlds"]
+    assert [each["digest"] for each in told["digests"]] == [each["digest"] for each in again]
+
+
+def test_a_fork_is_verified_since_it_needs_its_directory(torus: Path, tmp_path: Path) -> None:
+    primordia.load(torus).fork(400, tmp_path / "fork")
+    page = content(primordia.load(tmp_path / "fork").report())
+    assert page["facts"][0]["commands"] == ["primordia verify fork"]
+    assert page["facts"][0]["settings"]["fork.run"] == "torus"
+    assert page["worlds"][0]["tree"]["living"] > 0
+
+
+def test_an_experiment_is_shown_as_far_as_it_is(tmp_path: Path) -> None:
+    file, out = write(tmp_path, jobs={"worlds": 3}), tmp_path / "out"
+    assert here("experiment", file, "--out", out, "--job", 0, "--quiet").returncode == 0
+    complains(here("report", out), 2, "arm harsh", "has not begun")
+    assert here("experiment", file, "--out", out, "--job", 1, "--quiet").returncode == 0
+    assert here("report", out).returncode == 0
+    page = content(out / "report.html")
+    assert page["title"] == "Is it mild?"
+    outcomes, effects = page["arms"]["tables"]
+    assert [row[0] for row in outcomes["rows"]] == ["mild", "harsh"]
+    assert [row[0] for row in effects["rows"]] == ["harsh"]
+    compared = primordia.load(out).compare()
+    assert outcomes["head"][-len(compared.outcomes) :] == list(compared.outcomes.values())

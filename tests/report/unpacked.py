@@ -1,0 +1,24 @@
+"""What the browser makes of packed arrays, in Python."""
+
+import base64
+import gzip
+from typing import Any
+
+import numpy as np
+
+
+def unpacked(value: dict[str, Any]) -> np.ndarray:
+    """Return the numbers of a packed array, (n,)."""
+    raw = gzip.decompress(base64.b64decode(value["data"], validate=True))
+    numbers = np.frombuffer(raw, np.dtype(value["type"]).newbyteorder("<"))
+    numbers = np.cumsum(numbers.astype(np.float64)) if value["rising"] else numbers
+    return numbers.astype(np.int64)
+
+
+def all_unpacked(group: dict[str, Any]) -> dict[str, np.ndarray]:
+    """Return the packed arrays of a group, by name."""
+    return {
+        name: unpacked(value)
+        for name, value in group.items()
+        if isinstance(value, dict) and "data" in value
+    }
