@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from PIL import Image
 from selenium import webdriver
+from selenium.common.exceptions import StaleElementReferenceException
 from selenium.webdriver import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.remote.webelement import WebElement
@@ -43,8 +44,9 @@ class Page:
         return self.open(path.as_uri())
 
     def until(self, true: Callable[[], Any]) -> Any:
-        """Wait until something holds -> its value."""
-        return WebDriverWait(self.driver, PATIENCE, poll_frequency=0.02).until(lambda _: true())
+        """Wait until something holds -> its value; parts of the page may be drawn again meanwhile."""
+        wait = WebDriverWait(self.driver, PATIENCE, 0.02, [StaleElementReferenceException])
+        return wait.until(lambda _: true())
 
     def script(self, code: str, *values: Any) -> Any:
         return self.driver.execute_script(code, *values)
