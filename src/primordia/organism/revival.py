@@ -100,13 +100,13 @@ def revive(
         InputError: the life cannot be lived again; the message says why.
         Trouble: a file cannot be written.
     """
-    run.lives.row(organism, world)
-    archive, own = run_of(run, world)
     if save is not None:
         diary.check_name(save)
     if film is not None:
         video.check_name(film)
     try:
+        run.lives.row(organism, world)
+        archive, own = run_of(run, world)
         life = RelivedLife.of(archive, organism, own, _stored(archive, organism, own, since))
         _refuse_restart(life)
         told = recorded(life)
