@@ -278,7 +278,7 @@ def test_what_limits_the_comparison_is_said(
     reseal(newest(run), lambda content: content["progress"].update(exact=False, restarts=2))
     inexact, restarts = revive(Archive(run), number).notes
     assert inexact.startswith("exactness is off")
-    assert "began again as at birth (2 times)" in restarts
+    assert "began again 2 times, when the run went on" in restarts
     lives = Archive(chain[0]).lives
     row = int(np.flatnonzero(lives.cause == Cause.REPLACED)[0])
     replaced = Organism(Archive(chain[0]), row).revive()
