@@ -20,7 +20,6 @@ from primordia.organism.organism import Organism
 from primordia.organism.revival import Revival
 from primordia.random.keys import Purpose, bits, stream
 from primordia.random.wide import to_host, wide
-from primordia.runs.records import Records
 
 SEED = 20261124
 """of the draws"""
@@ -101,18 +100,16 @@ def forked(run: Run, ticks: int) -> Run:
     for number in (1, 2):
         at, out = ticks * number // 2 + ticks // 4, Path(f"{run.path}-fork{number}")
         stop = {"until": "none", "ticks": at + ticks // 2}
-        run = (
-            Run(out)
-            if out.exists()
-            else run.fork(at, out, {"seed": 100 * number, "stop": stop}, checkpoint_every=EVERY)
-        )
+        settings = {"seed": 100 * number, "stop": stop}
+        run = Run(out) if out.exists() else run.fork(at, out, settings, checkpoint_every=EVERY)
     return run
 
 
-def revived(run: Run, count: int, number: int) -> tuple[int, int, int, int, int, int, float]:
+def revived(run: Run, count: int, number: int) -> tuple[int, ...]:
     """Revive organisms of a run -> the numbers of a row of the table."""
     began, records = time.perf_counter(), run.opened()
-    words = to_host(bits(stream(wide(SEED), Purpose.EVALUATION, wide(number)), lines(records)))
+    lives = np.arange(len(records.lives), dtype=np.uint32)
+    words = to_host(bits(stream(wide(SEED), Purpose.EVALUATION, wide(number)), lives))
     drawn = np.argsort(words, kind="stable")[:count].tolist()
     agreed = later = agreed_later = ticks = 0
     for organism in (Organism(records, row) for row in drawn):
@@ -123,7 +120,7 @@ def revived(run: Run, count: int, number: int) -> tuple[int, int, int, int, int,
         except InputError:
             continue
         later, agreed_later = later + 1, agreed_later + agrees(run, found)
-    seconds = round(time.perf_counter() - began, 1)
+    seconds = round(time.perf_counter() - began)
     return len(records.lives), len(drawn), agreed, later, agreed_later, ticks, seconds
 
 
@@ -132,11 +129,6 @@ def agrees(run: Run, found: Revival) -> bool:
     if not found.agrees:
         print(f"{run.path}: {found.to_dict()}", file=sys.stderr, flush=True)
     return found.agrees
-
-
-def lines(records: Records) -> np.ndarray:
-    """Return the numbers of all lives of a run, from 0."""
-    return np.arange(len(records.lives), dtype=np.uint32)
 
 
 if __name__ == "__main__":

@@ -63,7 +63,15 @@ def test_saved_states_go_on_in_another_kind(one: int, other: int) -> None:
 
 @pytest.mark.parametrize(
     ("cores", "asked", "cells", "in_workers"),
-    [("1", None, 5, 0), ("3", None, 5, 3), ("8", None, 5, 5), ("1", 2, 5, 2), ("3", 0, 5, 0)],
+    [
+        ("1", None, 5, 0),
+        ("3", None, 5, 3),
+        ("8", None, 5, 5),
+        ("1", 2, 5, 2),
+        ("3", 0, 5, 0),
+        ("3", None, 1, 0),
+        ("3", 2, 1, 1),
+    ],
 )
 def test_simulators_are_in_workers_if_there_are_several_cores(
     monkeypatch: pytest.MonkeyPatch, cores: str, asked: int | None, cells: int, in_workers: int
@@ -73,6 +81,13 @@ def test_simulators_are_in_workers_if_there_are_several_cores(
         others = processes(pool) - {os.getpid()}
         assert len(others) == in_workers
         assert isinstance(pool, Workers if in_workers else InProcess)
+
+
+@pytest.mark.parametrize("workers", [0, 1])
+def test_a_pool_may_be_closed_twice(workers: int) -> None:
+    pool = counters(workers)
+    pool.close()
+    pool.close()
 
 
 def fails_to_step(pool: Pool) -> None:

@@ -108,6 +108,23 @@ def words(command: list[str], run: Path) -> list[str]:
     return [word.format(run=run, new=run.parent / "new") for word in command]
 
 
+def test_a_bundle_executes_nothing_until_it_is_trusted(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run = begun(folder)
+    file = primordia.load(run).bundle(folder / "sent.zip")
+    shutil.move(file, folder.parent / "sent.zip")
+    elsewhere(folder, run, monkeypatch)
+    for command in (["info"], ["plot", "--out", "figures", "--figure", "ages"]):
+        assert here(command[0], folder.parent / "sent.zip", *command[1:]).returncode == 0
+    assert "pond" not in sys.modules
+    stopped = here("revive", folder.parent / "sent.zip", 3)
+    complains(stopped, 2, "executes code that is not of an installed package")
+    assert "pond" not in sys.modules
+    done = here("revive", folder.parent / "sent.zip", 3, "--trust")
+    assert done.returncode == 0, done.stderr
+
+
 def test_a_run_holds_the_code_that_it_executes(folder: Path) -> None:
     run = begun(folder)
     for name in PARTS:

@@ -38,6 +38,8 @@ COMMANDS = [
     ["resume", "{run}", "--ticks", "170", "--quiet"],
     ["fork", "{run}", "--at", "60", "--out", "{new}", "--quiet"],
     ["evaluate", "{run}", "--games", "1", "--ticks", "10"],
+    ["revive", "{run}", "3", "--world", "1", "--save", "{new}.npz"],
+    ["bundle", "{run}", "{new}"],
 ]
 SECONDS = 120
 """A command that takes longer waits for something that never comes."""

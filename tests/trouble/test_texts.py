@@ -53,6 +53,9 @@ WORDS = (
     ("resume", "{}"),
     ("verify", "{}"),
     ("fork", "{}", "--at", "5"),
+    ("revive", "{}", "1"),
+    ("bundle", "{}", "{}"),
+    ("unbundle", "{}", "{}"),
     ("run", "{}"),
     ("run", TASK, "--{}", "1"),
     ("run", TASK, "--hazard", "{}"),
@@ -67,7 +70,7 @@ WORDS = (
 
 @settings(max_examples=60)
 @given(ODD_WORDS, st.sampled_from(WORDS))
-@example("\udcff", WORDS[4])
+@example("\udcff", ("run", "{}"))
 def test_odd_words_are_answered_with_one_line(
     place: Path, text: str, words: tuple[str, ...]
 ) -> None:
@@ -78,6 +81,8 @@ def test_odd_words_are_answered_with_one_line(
 FILES = (
     ("export", "RUN", "{}"),
     ("lineage", "RUN", "--out", "{}.nwk"),
+    ("bundle", "RUN", "{}"),
+    ("revive", "RUN", "0", "--save", "{}.npz"),
     ("replay", "RUN", "--from", "0", "--to", "5", "--out", "{}.gif"),
     ("run", *SMALL, "--ticks", "5", "--out", "{}"),
 )
@@ -86,7 +91,7 @@ FILES = (
 
 @settings(max_examples=20)
 @given(ODD_WORDS.map(lambda text: text.replace("/", "")), st.sampled_from(FILES))
-@example("\x1b\udcff", FILES[3])
+@example("\x1b\udcff", ("run", *SMALL, "--ticks", "5", "--out", "{}"))
 def test_odd_names_are_written_or_refused_with_one_line(
     place: Path, half: Path, text: str, words: tuple[str, ...]
 ) -> None:

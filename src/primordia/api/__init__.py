@@ -158,7 +158,7 @@ def load(run: str | Path | Sequence[str | Path], trust: bool = False) -> Run:
             several of these; or the directory of an experiment, which gives an `Experiment`.
         trust: allow the run's own code to be executed, from now on and on this machine. Without that,
             code that the user did not begin a run with stops what executes it: `resume`, `fork`,
-            `verify`, `replay`, `evaluate` and `policy`. Reading records executes nothing.
+            `verify`, `replay`, `revive`, `evaluate` and `policy`. Reading records executes nothing.
 
     Raises:
         InputError: there is no run, or the runs are not of one arm.

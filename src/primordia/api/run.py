@@ -234,11 +234,10 @@ class Run:
         **limits: Any,
     ) -> list[str]:
         """Go on with the run, with new `ticks`, `births` or `until` if given; see `loop.resume`."""
-        every = checkpoint_every
+        every, run = checkpoint_every, self.only().path
+        bundle.refuse_changes(run)
         with devices.selected(device):
-            return loop.resume(
-                self.only().path, limits, inexact=inexact, checkpoint_every=every, listen=listen
-            )
+            return loop.resume(run, limits, inexact=inexact, checkpoint_every=every, listen=listen)
 
     def bundle(self, file: str | Path) -> Path:
         """Write the run into one file, which `load` takes -> the file; see `bundle.write`."""

@@ -61,8 +61,10 @@ def revive(
     checkpoints and what a fork began with, so --from can begin with one of these.
     """
     from primordia.api import load
+    from primordia.organism import revival
 
-    found = load(run, trust).organism(organism, world).revive(since, save, video)
+    opened = load(run, trust).opened()
+    found = revival.revive(opened, organism, world, since=since, save=save, film=video)
     if as_json:
         click.echo(json.dumps(found.to_dict()))
     else:

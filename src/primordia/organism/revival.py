@@ -100,13 +100,13 @@ def revive(
         InputError: the life cannot be lived again; the message says why.
         Trouble: a file cannot be written.
     """
-    run.lives.row(organism, world)
-    archive, own = run_of(run, world)
     if save is not None:
         diary.check_name(save)
     if film is not None:
         video.check_name(film)
     try:
+        run.lives.row(organism, world)
+        archive, own = run_of(run, world)
         life = RelivedLife.of(archive, organism, own, _stored(archive, organism, own, since))
         _refuse_restart(life)
         told = recorded(life)
@@ -183,9 +183,10 @@ def _notes(run: Archive, course: Course) -> list[str]:
         notes.append(f"exactness is off: {'; '.join(run.other_versions)}")
     elif not progress.exact:
         notes.append("exactness is off: parts of this run cannot be repeated bit for bit")
-    if progress.restarts:
+    if times := progress.restarts:
+        often = "once" if times == 1 else f"{times:,} times"
         notes.append(
-            "when the run went on, the bodies of the living began again as at birth"
-            f" ({progress.restarts:,} times); a life that crosses this does not repeat"
+            f"the bodies of the living began again {often}, when the run went on; a life that was lived"
+            " then does not repeat"
         )
     return notes

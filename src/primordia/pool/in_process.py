@@ -1,8 +1,8 @@
-"""Simulators in this process, for a run that has one core: no pipes, no waiting for the slower of two."""
+"""Simulators in this process, for one core or a single life: no pipes, no waiting for the slower one."""
 
 import traceback
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any
 
 import numpy as np
@@ -54,8 +54,9 @@ class InProcess(Pool):
                 self._simulator.load(cell, states[cell])
 
     def close(self) -> None:
-        """Forget the simulators."""
-        del self._simulator
+        """Forget the simulators; a pool may be closed twice."""
+        with suppress(AttributeError):
+            del self._simulator
 
 
 @contextmanager

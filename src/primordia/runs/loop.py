@@ -20,7 +20,7 @@ from primordia.engine.engine import Engine
 from primordia.engine.state import Limits
 from primordia.errors import InputError
 from primordia.law.events import Events
-from primordia.runs import bundle, checkpoint, directory, faults
+from primordia.runs import checkpoint, directory, faults
 from primordia.runs.archive import Archive
 from primordia.runs.checkpoint import Checkpoint
 from primordia.runs.manifest import Progress
@@ -111,7 +111,6 @@ def resume(
         Trouble: a file cannot be written, or no checkpoint is whole.
     """
     _check_interval(checkpoint_every)
-    bundle.refuse_changes(run)
     given, archive = valid_limits(limits or {}), Archive(run)
     if archive.changed_code:
         _check_same(run, archive.changed_code, inexact)

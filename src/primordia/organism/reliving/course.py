@@ -67,9 +67,10 @@ class Course:
     def replaced(self) -> bool:
         """Whether the life ended as the record says: a child was born in its cell, where it was alive."""
         life, lives = self._life, self._life.run.lives
+        if life.cause is not Cause.REPLACED or self._cause >= 0:
+            return False
         child = (lives.world == life.world) & (lives.cell == life.record.cell)
-        child &= (lives.born == life.ends) & (lives.id != life.record.id)
-        return life.cause is Cause.REPLACED and self._cause < 0 and bool(child.any())
+        return bool((child & (lives.born == life.ends)).any())
 
     @property
     def _cause(self) -> int:

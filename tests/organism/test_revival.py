@@ -1,0 +1,358 @@
+"""Lives revived agree with their records in every respect; a record that was changed does not."""
+
+import json
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.csv as csv
+import pyarrow.parquet as pq
+import pytest
+
+import primordia
+from primordia.errors import InputError, Trouble
+from primordia.law.metabolism import ONE
+from primordia.law.world import Cause
+from primordia.organism.organism import Organism
+from primordia.organism.reliving.relived import RelivedLife
+from primordia.organism.revival import Revival, revive
+from primordia.runs import directory, loop
+from primordia.runs.archive import Archive
+from primordia.runs.arm import Arm
+from tests.commands import complains, here
+from tests.toys import Mirror
+from tests.trouble import newest, reseal
+from tests.worlds import MILL, config
+
+WAYS: dict[str, Any] = {
+    **MILL,
+    "cells": 16,
+    "hazard": 0.02,
+    "brain": {"hidden": 2},
+    "placement": {"topology": "torus4", "rule": "replacing"},
+    "replication": 0.06,
+}
+"""A world in which organisms die in every way: hunger, broken wheels, accidents, neighbours."""
+CLOCKED = {"name": "tests.toys:Clocked", "inner": "mill"}
+
+
+@pytest.fixture(scope="module", params=["in JAX", "on the host"])
+def chain(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
+    """Make a run of two worlds with seeds of its own, a fork of it, and a fork of the fork."""
+    folder = tmp_path_factory.mktemp("chain")
+    habitat = CLOCKED if request.param == "on the host" else MILL["habitat"]
+    settings = config({**WAYS, "habitat": habitat, "seeds": 2, "seed": 77, "stop": {"ticks": 120}})
+    loop.start(settings, folder / "run")
+    loop.resume(folder / "run", {"ticks": 150})
+    run = primordia.load(folder / "run")
+    fork = run.fork(100, folder / "fork", seed=9, stop={"ticks": 200})
+    again = fork.fork(180, folder / "again", seed=300, stop={"ticks": 260})
+    return [run.path, fork.path, again.path]
+
+
+def by_cause(run: Archive) -> dict[int, np.ndarray]:
+    """Return the rows of the lives that ended by each cause; -1: of the living."""
+    return {
+        int(cause): np.flatnonzero(run.lives.cause == cause) for cause in np.unique(run.lives.cause)
+    }
+
+
+@pytest.mark.parametrize("number", range(3))
+def test_lives_of_each_end_agree_with_the_records(chain: list[Path], number: int) -> None:
+    """Among them are lives older than the fork, and organisms born in the last tick."""
+    run = Archive(chain[number])
+    ends = by_cause(run)
+    assert set(ends) >= {-1, Cause.STARVED, Cause.HAZARD, Cause.REPLACED}
+    for cause, rows in ends.items():
+        for row in rows[np.linspace(0, len(rows) - 1, 3).astype(int)]:
+            found = Organism(run, int(row)).revive()
+            assert found.agrees, found
+            assert found.ends == run.lives.ended[row]
+            names = [each.name for each in found.respects]
+            counts = list(run.schema.tallies)
+            assert names[:4] == ["tick", "cause", "energy", "food"]
+            body = "senses" if counts else "body"
+            living = ["memory", body] if cause == -1 else []
+            lived = counts if found.begins < found.ends else []
+            assert names[4:] == [*living, *lived]
+
+
+def test_a_life_revived_from_a_checkpoint_agrees_too(chain: list[Path]) -> None:
+    run = Archive(chain[0])
+    across = np.flatnonzero((run.lives.born < 118) & (run.lives.ended > 122))
+    died = run.lives.died[across]
+    for row in (across[died][0], *across[~died][:1]):
+        for since in (120, 121, 10**20):
+            found = Organism(run, int(row)).revive(since)
+            assert (found.begin, found.begins, found.agrees) == ("checkpoint", 120, True)
+    with pytest.raises(InputError, match=r"--from 1: .* keeps 120 of it"):
+        Organism(run, int(across[0])).revive(since=1)
+    with pytest.raises(InputError, match="keeps no checkpoint of these ticks"):
+        Organism(run, 0).revive(since=100)
+
+
+def test_a_fork_is_a_state_to_begin_with(chain: list[Path]) -> None:
+    run = Archive(chain[1])
+    row = int(np.flatnonzero((run.lives.born < 90) & (run.lives.ended > 110))[0])
+    organism = Organism(run, row)
+    by_itself, asked = organism.revive(), organism.revive(since=100)
+    assert (by_itself.begin, asked.begin) == ("fork", "checkpoint")
+    assert (by_itself.begins, by_itself.respects) == (asked.begins, asked.respects)
+
+
+def test_an_arms_worlds_are_those_of_its_runs(chain: list[Path], tmp_path: Path) -> None:
+    other = config({**WAYS, "seeds": 1, "seed": 40, "stop": {"ticks": 60}})
+    loop.start(other, tmp_path / "a")
+    loop.start(other.model_copy(update={"seed": 50, "seeds": 2}), tmp_path / "b")
+    arm = primordia.load([tmp_path / "a", tmp_path / "b"])
+    assert isinstance(arm.opened(), Arm)
+    alone = Archive(tmp_path / "b")
+    for world in (1, 2):
+        number = int(alone.lives.of_world(world - 1).id[-3])
+        found = arm.organism(number, world).revive()
+        assert found.agrees
+        assert found.world == world
+        assert found.respects == revive(alone, number, world - 1).respects
+
+
+Row = dict[str, Any]
+
+
+def later(row: Row) -> None:
+    row["tick"] += 1
+
+
+def earlier(row: Row) -> None:
+    row["tick"] -= 1
+
+
+def otherwise(row: Row) -> None:
+    row["cause"] = "fault" if row["cause"] != "fault" else "fatal"
+
+
+def replaced(row: Row) -> None:
+    row["cause"] = "replaced"
+
+
+def richer(row: Row) -> None:
+    row["energy"] += 1 / ONE
+
+
+def hungrier(row: Row) -> None:
+    row["food"] -= 1 / ONE
+
+
+FORGERIES: list[tuple[Callable[[Row], None], set[str]]] = [
+    (later, {"tick"}),
+    (earlier, {"tick", "cause"}),
+    (otherwise, {"cause"}),
+    (replaced, {"cause"}),
+    (richer, {"energy"}),
+    (hungrier, {"food"}),
+]
+"""Changes of the row of a death, and what then differs at least."""
+
+
+@pytest.mark.parametrize(("change", "respects"), FORGERIES)
+def test_a_forged_death_is_noticed(
+    chain: list[Path], tmp_path: Path, change: Callable[[Row], None], respects: set[str]
+) -> None:
+    """The forger has changed one number of a closed segment, and computed all checksums again."""
+    run = Path(shutil.copytree(chain[0], tmp_path / "run"))
+    lives = Archive(run).lives.of_world(0)
+    likely = (lives.lifespan > 3) & (lives.ended < 149)
+    chosen = [
+        int(lives.id[likely & (lives.cause == cause)][0]) for cause in (Cause.STARVED, Cause.HAZARD)
+    ]
+    for path in run.glob("deaths/*.parquet"):
+        before = pq.read_table(path)
+        rows = before.to_pylist()
+        for row in rows:
+            if row["world"] == 0 and row["id"] in chosen:
+                change(row)
+        pq.write_table(pa.Table.from_pylist(rows, schema=before.schema), path)
+    reseal(newest(run))
+    for number in chosen:
+        done = here("revive", run, number, "--json")
+        complains(done, 1, f"organism {number} of world 0 did not live as recorded")
+        found = json.loads(done.stdout)
+        assert not found["agrees"]
+        assert {row["name"] for row in found["respects"] if not row["agrees"]} >= respects
+    shown = here("revive", run, chosen[0])
+    assert shown.returncode == 1
+    assert "NO" in shown.stdout
+
+
+@pytest.mark.parametrize("name", ["energy", "eaten", "memory"])
+def test_a_forged_state_of_the_living_is_noticed(
+    chain: list[Path], tmp_path: Path, name: str
+) -> None:
+    run = Path(shutil.copytree(chain[0], tmp_path / "run"))
+    lives = Archive(run).lives.of_world(0)
+    row = int(np.flatnonzero(~lives.died & (lives.lifespan > 3))[0])
+    with np.load(newest(run) / "state.npz") as stored:
+        arrays = dict(stored)
+    array = arrays[f"world.organisms.{name}"]
+    array[lives.cell[row]] += array.dtype.type(1)
+    np.savez(newest(run) / "state.npz", allow_pickle=False, **arrays)
+    reseal(newest(run))
+    respect = {"energy": "energy", "eaten": "food", "memory": "memory"}[name]
+    found = revive(Archive(run), int(lives.id[row]))
+    assert [each.name for each in found.respects if not each.agrees] == [respect]
+
+
+def test_a_life_is_saved_tick_by_tick(chain: list[Path], tmp_path: Path) -> None:
+    """The three kinds of file hold the same, and what the life itself shows."""
+    run = Archive(chain[0])
+    lives = run.lives.of_world(0)
+    number = int(lives.id[np.argmax(lives.lifespan)])
+    paths = [tmp_path / "new" / f"life.{kind}" for kind in ("npz", "parquet", "csv")]
+    for path in paths:
+        assert revive(run, number, save=path).files == (path,)
+    life = RelivedLife.of(run, number)
+    seen = list(life.stretches())
+    with np.load(paths[0]) as npz:
+        saved = dict(npz)
+    assert saved["tick"].tolist() == list(range(life.begins + 1, life.ends + 1))
+    for name in ("senses", "action"):
+        own = np.concatenate([getattr(each, name) for each in seen])
+        assert saved[name].tobytes() == own.tobytes()
+    assert (saved["energy"] * ONE).tolist() == np.concatenate(
+        [each.energy for each in seen]
+    ).tolist()
+    if run.schema.tallies:
+        assert saved["ticks"].tolist() == list(range(1, len(saved["tick"]) + 1))
+    table = pq.read_table(paths[1])
+    assert table["senses_2"].to_numpy().tobytes() == saved["senses"][:, 2].tobytes()
+    assert table["action_1"].to_numpy().tobytes() == saved["action"][:, 1].tobytes()
+    read = csv.read_csv(paths[2])
+    assert read.column_names == table.column_names
+    for name in read.column_names:
+        np.testing.assert_array_equal(read[name].to_numpy().astype(table[name].to_numpy().dtype),
+                                      table[name].to_numpy())  # fmt: skip
+
+
+def test_a_video_is_made_of_a_life_that_agrees(tmp_path: Path) -> None:
+    run, film = tmp_path / "run", tmp_path / "life.gif"
+    primordia.run("CartPole-survival", run, cells=8, stop={"ticks": 200, "until": "none"})
+    done = here("revive", run, 1, "--video", film)
+    assert done.returncode == 0, done.stderr
+    assert str(film) in done.stdout
+    assert film.stat().st_size > 100
+    life = primordia.load(run).organism(1)
+    life.lives.ended[life.row] -= 1  # as a forged record would say
+    found = life.revive(film=tmp_path / "other.gif")
+    assert not found.agrees
+    assert not (tmp_path / "other.gif").exists()
+    assert "was not made" in found.notes[-1]
+
+
+def only_note(found: Revival) -> str:
+    (note,) = found.notes
+    return note
+
+
+def dead(run: Archive) -> int:
+    """Return an organism that starved in world 0."""
+    lives = run.lives.of_world(0)
+    return int(lives.id[lives.cause == Cause.STARVED][0])
+
+
+def test_what_limits_the_comparison_is_said(
+    chain: list[Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run = Path(shutil.copytree(chain[0], tmp_path / "run"))
+    number = dead(Archive(run))
+    assert revive(Archive(run), number).notes == ()
+    with directory.locked(run):
+        assert "the run goes on; these are its records up to tick 150" in only_note(
+            revive(Archive(run), number)
+        )
+    versions = json.loads((run / "versions.json").read_text())
+    (run / "versions.json").write_text(json.dumps({**versions, "jaxlib": "0.0.1"}))
+    assert "exactness is off: jaxlib 0.0.1 then" in only_note(revive(Archive(run), number))
+    (run / "versions.json").write_text(json.dumps(versions))
+    reseal(newest(run), lambda content: content["progress"].update(exact=False, restarts=2))
+    inexact, restarts = revive(Archive(run), number).notes
+    assert inexact.startswith("exactness is off")
+    assert "began again 2 times, when the run went on" in restarts
+    lives = Archive(chain[0]).lives
+    row = int(np.flatnonzero(lives.cause == Cause.REPLACED)[0])
+    replaced = Organism(Archive(chain[0]), row).revive()
+    assert "a child took its cell in that tick" in only_note(replaced)
+
+
+def test_a_missing_segment_is_an_error_of_one_line(chain: list[Path], tmp_path: Path) -> None:
+    run = Path(shutil.copytree(chain[0], tmp_path / "run"))
+    number = dead(Archive(run))
+    done = here("revive", run, number)
+    assert done.returncode == 0
+    first, last = sorted(run.glob("deaths/*"))
+    last.unlink()
+    done = here("revive", run, number)
+    assert done.returncode == 0, done.stderr
+    assert "is missing; an older checkpoint was read" in done.stdout
+    first.unlink()
+    complains(here("revive", run, number), 2, "000000.parquet is missing")
+
+
+def test_what_cannot_be_revived_is_refused(
+    chain: list[Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run, (organism, *_) = chain[0], Archive(chain[0]).lives.id
+    complains(here("revive", run, 10**6), 2, "no organism 1000000 was born in world 0")
+    complains(here("revive", run, organism, "--world", 7), 2, "was born in world 7")
+    complains(here("revive", tmp_path, organism), 2, "is not a run")
+    complains(
+        here("revive", run, organism, "--save", tmp_path / "a.xls"), 2, ".npz, .parquet, .csv"
+    )
+    complains(here("revive", run, organism, "--video", tmp_path / "a.avi"), 2, ".mp4 or a .gif")
+    complains(here("revive", run, organism, "--video", tmp_path / "a.gif"), 2, "no pictures")
+    complains(here("revive", run, organism, "--from", 3), 2, "keeps no checkpoint of these ticks")
+    opened = Archive(run)
+    opened.lives.cause[opened.lives.row(dead(opened))] = Cause.RESTART
+    with pytest.raises(InputError, match="ended when its run was started again"):
+        revive(opened, int(opened.lives.id[opened.lives.cause == Cause.RESTART][0]))
+    monkeypatch.setattr(Mirror, "exact", False, raising=False)
+    older = Archive(chain[1])
+    if older.schema.tallies:
+        with pytest.raises(InputError, match="older than the fork, and its habitat cannot save"):
+            Organism(older, 0).revive()
+
+
+def test_an_organism_that_was_just_born_agrees_and_has_nothing_to_save(
+    chain: list[Path], tmp_path: Path
+) -> None:
+    before = Archive(chain[0])
+    tick = int(before.lives.born[before.lives.born < 150].max())
+    stopped = before.config.model_copy(
+        update={"stop": before.config.stop.model_copy(update={"ticks": tick})}
+    )
+    loop.start(stopped, tmp_path / "run")
+    run = Archive(tmp_path / "run")
+    unborn = Organism(run, int(np.flatnonzero(run.lives.born == tick)[0]))
+    found = unborn.revive()
+    assert found.agrees
+    assert [each.name for each in found.respects[:5]] == [
+        "tick",
+        "cause",
+        "energy",
+        "food",
+        "memory",
+    ]
+    with pytest.raises(InputError, match="has lived no tick"):
+        unborn.revive(save=tmp_path / "a.npz")
+
+
+def test_a_damaged_record_is_no_other_life(
+    chain: list[Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fails(*_: object) -> None:
+        raise Trouble("it is damaged")
+
+    monkeypatch.setattr(RelivedLife, "of", fails)
+    with pytest.raises(InputError, match="organism 0 cannot be revived: it is damaged"):
+        revive(Archive(chain[0]), 0)

@@ -1,0 +1,83 @@
+"""Runs as notebooks show them: every text of a run is text, whatever it says."""
+
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import primordia
+from primordia.api import notebook
+from primordia.experiments.status import ArmStatus, CampaignStatus
+from primordia.runs import loop
+from tests.worlds import config
+
+SCRIPT = "<script>alert(1)</script>&amp;\"'"
+
+
+class Parts(HTMLParser):
+    """The elements of a text in HTML, and the texts in them."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.elements: list[str] = []
+        self.texts: list[str] = []
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.elements.append(tag)
+        if tag in ("th", "td", "p"):
+            self.texts.append("")
+
+    def handle_data(self, data: str) -> None:
+        self.texts[-1] += data
+
+
+TABLE = {"p", "strong", "table", "thead", "tbody", "tr", "th", "td"}
+
+
+def shown(part: Any) -> Parts:
+    """Return what a notebook shows of an object; nothing of it is more than a table."""
+    parts = Parts(part._repr_html_())
+    assert set(parts.elements) <= TABLE
+    return parts
+
+
+def test_a_run_is_a_table_of_its_worlds(tmp_path: Path) -> None:
+    settings = {"task": SCRIPT, "cells": 8, "seeds": 2, "stop": {"ticks": 300}}
+    habitat = {"name": "cartpole"}
+    loop.start(config({**settings, "habitat": habitat, "saturation_ticks": 100}), tmp_path / "run")
+    run = primordia.load(tmp_path / "run")
+    parts = shown(run)
+    assert parts.texts[0] == f"{SCRIPT}: 2 worlds of 8 cells"
+    assert parts.elements.count("tr") == 1 + 2
+    rows = [parts.texts[1:][i : i + 8] for i in range(0, 8 * 3, 8)]
+    worlds = run.info()["worlds"]
+    for row, world in zip(rows[1:], worlds, strict=True):
+        assert row[:4] == [f"{world[name]:,}" for name in ("seed", "ticks", "births", "alive")]
+
+
+def test_a_run_that_cannot_be_read_shows_the_error(tmp_path: Path) -> None:
+    place = tmp_path / "<script>"
+    assert shown(primordia.api.Run(place)).texts == [
+        f"{place} is not a run of primordia: it has no readable versions.json"
+    ]
+
+
+def test_many_worlds_are_not_all_listed() -> None:
+    numbers = "seed", "ticks", "births", "alive", "mean_age", "oldest_age"
+    world: dict[str, Any] = dict.fromkeys(numbers, 1)
+    world |= {"deaths_by_cause": {"fatal": 2, "hazard": 0}, "saturation": None}
+    worlds = [world] * (notebook.MOST + 7)
+    parts = Parts(notebook.of_run({"task": "x", "cells": 1, "worlds": worlds}))
+    assert parts.elements.count("tr") == 1 + notebook.MOST
+    assert parts.texts[-1] == "and 7 more"
+    assert "2 fatal" in parts.texts
+
+
+def test_an_experiment_is_a_table_of_its_arms() -> None:
+    arms = (ArmStatus(SCRIPT, 5, 4, 3, 1234.5, None), ArmStatus("none", 5, 0, 0, None, None))
+    jobs = {"done": 9, "running": 1, "failed": 0, "waiting": 0}
+    parts = Parts(notebook.of_experiment(CampaignStatus(f"Why? {SCRIPT}", jobs, arms, (), ())))
+    assert set(parts.elements) <= TABLE
+    assert parts.texts[0] == f"Why? {SCRIPT} Jobs: 9 done, 1 running"
+    assert parts.texts[6:11] == [SCRIPT, "5", "4", "3", "1,234"]
