@@ -5,7 +5,16 @@ import errno
 import click
 
 from primordia import interrupts
-from primordia.cli import environments, evaluate, evolve, experiment, inspect, shadow, track
+from primordia.cli import (
+    descent,
+    environments,
+    evaluate,
+    evolve,
+    experiment,
+    inspect,
+    shadow,
+    track,
+)
 from primordia.cli.assays import group as assays
 from primordia.cli.cache import keep_compiled_code
 from primordia.cli.streams import flush, report
@@ -33,7 +42,7 @@ def commands() -> None:
     """
 
 
-PARTS = (evolve, environments, experiment, inspect, track, evaluate, shadow, assays)
+PARTS = (evolve, environments, experiment, inspect, track, evaluate, shadow, descent, assays)
 for command in (each for part in PARTS for each in part.COMMANDS):
     commands.add_command(command)
 
