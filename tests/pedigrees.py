@@ -16,7 +16,7 @@ Event = tuple[list[int], list[int]]
 
 
 def walked(history: list[Event], founders: int = 1) -> Lives:
-    """Return the lives of a world with this history; it is founded again in the tick in which it dies out."""
+    """Return the lives of a world with this history; when it dies out it is founded again at once."""
     parent, born = [-1] * founders, [0] * founders
     ended, now = [-1] * founders, list(range(founders))
     for tick, (mothers, dying) in enumerate(history, 1):

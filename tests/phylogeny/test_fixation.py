@@ -97,9 +97,12 @@ def test_sweeps_are_the_changes_of_the_common_ancestor(history: list[Event], fou
 
 
 def test_a_sweep_by_hand() -> None:
-    """Two founders; the first has a child at tick 2, which has two. The second founder dies last, at tick 8."""
+    """The first of two founders has a child at tick 2, which has two; the second dies at tick 8."""
     lives = lives_of(
-        parent=[-1, -1, 0, 2, 2], born=[0, 0, 2, 4, 5], ended=[6, 8, 9, 9, 9], died=[1, 1, 0, 0, 0]
+        parent=[-1, -1, 0, 2, 2],
+        born=[0, 0, 2, 4, 5],
+        ended=[6, 8, 9, 9, 9],
+        died=[True, True, False, False, False],
     )
     (only,) = sweeps(lives)
     assert (only.organism, only.born, only.half, only.fixed, only.duration) == (2, 2, 5, 8, 6)

@@ -23,7 +23,7 @@ from primordia.runs.lives import Lives
 
 MOST, FEWEST = 200, 40
 """Largest and smallest number of shadows."""
-DRAWS = 4 * 10**8
+DRAWS = 10**9
 """Draws up to which there are more shadows than FEWEST."""
 DEATH, BIRTH, FOUNDER = 0, 1, 2
 """Kinds of events."""
@@ -136,7 +136,7 @@ def _deal(labels: Array, first: int, last: int, kinds: Array, before: Array, key
 
     def event(number: Array, labels: Array) -> Array:
         living, birth = before[number], kinds[number] != DEATH
-        drawn = below(_words(key, number, shadows), living)
+        drawn = below(_words(key, number, which), living)
         source = which * slots + jnp.where(birth, drawn, living - 1)
         target = which * slots + jnp.where(birth, living, drawn)
         line = labels.at[source].get(mode="promise_in_bounds")
@@ -147,19 +147,29 @@ def _deal(labels: Array, first: int, last: int, kinds: Array, before: Array, key
 
 
 def deal_one_line(
-    counts: Array, first: int, last: int, kinds: Array, before: Array, key: Wide
+    counts: Array, which: Array, first: int, last: int, kinds: Array, before: Array, key: Wide
 ) -> Array:
-    """Deal births and deaths to one line of each shadow and to all others -> its living, int32 (R,)."""
+    """Deal births and deaths to one line of each shadow and to all others -> its living, int32 (R,).
+
+    Args:
+        counts: living of the line in each shadow, int32 (R,).
+        which: numbers of the shadows, int32 (R,); they make the draws.
+        first: the first event.
+        last: the event after the last.
+        kinds: kind of each event, int8 (E,).
+        before: number of living before each, int32 (E,).
+        key: key of the draws.
+    """
 
     def event(number: Array, counts: Array) -> Array:
-        drawn = below(_words(key, number, len(counts)), before[number]) < counts
+        drawn = below(_words(key, number, which), before[number]) < counts
         step = jnp.where(kinds[number] == BIRTH, 1, jnp.where(kinds[number] == DEATH, -1, 0))
         return counts + jnp.where(drawn, step, 0)
 
     return lax.fori_loop(first, last, event, counts)
 
 
-def _words(key: Wide, number: Array, shadows: int) -> Array:
-    """Return the random word of an event in each shadow, uint32 (R,)."""
-    event = jnp.full(shadows, number, jnp.uint32)
-    return encrypt(key, Wide(event, jnp.arange(shadows, dtype=jnp.uint32))).hi
+def _words(key: Wide, number: Array, which: Array) -> Array:
+    """Return the random word of an event in each of some shadows, uint32 (R,)."""
+    event = jnp.full(which.shape, number, jnp.uint32)
+    return encrypt(key, Wide(event, which.astype(jnp.uint32))).hi

@@ -149,10 +149,11 @@ def lines(run: Records, world: int | None = None, at: int | None = None) -> list
         raise InputError(f"there is no world {world}; the worlds are 0 to {count - 1}")
     seeds = run.world_seeds.tolist()
     worlds: Sequence[int] = range(count) if world is None else [world]
-    return [_of_world(each, run.lives.of_world(each), at, seeds[each]) for each in worlds]
+    return [lines_of_world(each, run.lives.of_world(each), at, seeds[each]) for each in worlds]
 
 
-def _of_world(world: int, lives: Lives, at: int | None, seed: int) -> WorldLines:
+def lines_of_world(world: int, lives: Lives, at: int | None, seed: int) -> WorldLines:
+    """Measure lines in the lives of one world; `seed` is its seed, for the others see `lines`."""
     turnover, era = Turnover.of(lives), last_era(lives)
     founded = founding_tick(lives) if at is None else at
     own = founders(lives, founded)

@@ -16,8 +16,10 @@ LOW, HIGH = 0.05, 0.95
 """Shares between which a line has a slope: below and above, chance alone decides."""
 LEAST = 5
 """Fewest instants for a slope."""
-MOST, FEWEST = 2000, 100
+MOST, FEWEST = 1000, 200
 """Largest and smallest number of shadows of a line."""
+EVENTS = 2**15
+"""Births and deaths after which lines that are lost are put aside."""
 
 
 class Slopes:
@@ -89,12 +91,29 @@ def of_shadows(census: Census, turnover: Turnover, counts: np.ndarray, seed: int
     deal = Deal.of(census.lives, turnover, census.ticks, seed, what=1)
     shadows = deal.replicates(lines, FEWEST, MOST)
     entries = between(counts, census.living[:, None]).argmax(axis=0)
-    slopes, now = Slopes(lines * shadows), np.zeros((lines, shadows), np.int32)
-    call = shared(deal_one_line)
+    slopes, now = Slopes(lines * shadows), np.zeros(lines * shadows, np.int32)
     for place, begin, end, living in deal.parts:
-        if ((now > 0) & (now < living)).any():
-            now = np.array(call(jnp.asarray(now.ravel()), begin, end, *deal[:3])).reshape(lines, -1)
-        new = entries == place
-        now[new] = counts[place, new][:, None]
-        slopes.add(int(census.ticks[place] - census.ticks[0]), now.ravel(), living)
+        for first in range(begin, end, EVENTS):
+            _drift_on(now, deal, first, min(first + EVENTS, end))
+        new = np.flatnonzero(entries == place)
+        now.reshape(lines, -1)[new] = counts[place, new][:, None]
+        slopes.add(int(census.ticks[place] - census.ticks[0]), now, living)
     return slopes.slopes.reshape(lines, shadows)
+
+
+def _drift_on(now: np.ndarray, deal: Deal, first: int, last: int) -> None:
+    """Let the lines of shadows, int32 (N,), drift from one event to another, in place.
+
+    Only lines that are neither lost nor all of the living can change. A line that is all has no slope any
+    more, so it is treated as lost.
+    """
+    now[now >= int(deal.before[first])] = 0
+    rows = np.flatnonzero(now)
+    if not len(rows):
+        return
+    size = 1 << max(int(len(rows) - 1).bit_length(), 8)  # few sizes, since JAX compiles for each
+    padded = np.zeros((2, size), np.int32)
+    padded[:, : len(rows)] = rows, now[rows]
+    which, count = map(jnp.asarray, padded)
+    drifted = shared(deal_one_line)(count, which, first, last, *deal[:3])
+    now[rows] = np.asarray(drifted)[: len(rows)]
