@@ -79,7 +79,7 @@ def common_after(lives: Lives, tick: int) -> int | None:
 def test_sweeps_are_the_changes_of_the_common_ancestor(history: list[Event], founders: int) -> None:
     lives = walked(history, founders)
     began = max(int(lives.born[row]) for row in range(len(lives)) if lives.parent[row] < 0)
-    expected = {}
+    expected: dict[int, int] = {}
     for tick in range(began, len(history) + 1):
         row = common_after(lives, tick)
         if row is not None and lives.born[row] > began:

@@ -130,7 +130,7 @@ def observed(genealogy: Genealogy) -> Times:
 
 def neutral(lives: Lives, turnover: Turnover) -> Times:
     """Return the coalescence times that drift alone would make, from births and population; see above."""
-    born = turnover.birth & (lives.seen == lives.born)[turnover.row]
+    born = turnover.birth & (turnover.tick > lives.seen.min())  # since the fork, if it is one
     living = turnover.living[born].astype(float)
     own = lives.parent[turnover.row[born]] >= 0
     chance = np.where(own & (living >= 2), 2 / np.maximum(living * (living - 1), 2), 0.0)

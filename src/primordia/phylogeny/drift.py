@@ -35,9 +35,9 @@ class Deal(NamedTuple):
     """The E births and deaths of a world from the first to the last of T instants, to be dealt out."""
 
     kinds: Array
-    """int8 (E,)"""
+    """int8 (E + 1,); the last is no event"""
     before: Array
-    """number of living before each, int32 (E,)"""
+    """number of living before each, int32 (E + 1,)"""
     key: Wide
     """key of the draws"""
     places: np.ndarray
@@ -58,8 +58,13 @@ class Deal(NamedTuple):
         before = turnover.living[events] - np.where(kinds == DEATH, -1, 1)
         tick = streams(wide(seed), wide(int(ticks[0])), Purpose.DRIFT)[Purpose.DRIFT]
         key = encrypt(tick, wide(what))
-        given = jnp.asarray(kinds), jnp.asarray(before.astype(np.int32))
-        return cls(*given, key, places - places[0], turnover.living[places - 1])
+        return cls(
+            kinds=jnp.asarray(np.append(kinds, np.int8(DEATH))),
+            before=jnp.asarray(np.append(before, 1).astype(np.int32)),
+            key=key,
+            places=places - places[0],
+            living=turnover.living[places - 1],
+        )
 
     def replicates(self, lines: int, fewest: int, most: int) -> int:
         """Return how many shadows are drawn, of so many lines each drawn on their own."""

@@ -19,10 +19,10 @@ def founding_tick(lives: Lives) -> int:
     `crowd_size`. In a world whose cells are filled with founders, it is that of the founders.
     """
     era = last_era(lives)
-    turnover = Turnover.of(era)
+    turnover, begin = Turnover.of(era), int(era.seen.min())
     crowd = turnover.closes & (turnover.living >= crowd_size(era))
-    since = np.flatnonzero(crowd & (turnover.tick >= era.seen.min()))
-    return int(max(turnover.tick[since[0]], lives.seen.min()) if len(since) else era.seen.max())
+    crowd[: np.searchsorted(turnover.tick, begin, side="right") - 1] = False  # before the fork
+    return max(int(turnover.tick[crowd.argmax()]), begin)
 
 
 def instants(at: int, last: int) -> np.ndarray:

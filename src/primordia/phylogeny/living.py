@@ -67,7 +67,11 @@ class Census:
 
 @dataclass(frozen=True)
 class Turnover:
-    """Births and deaths of one world in the order of their ticks, births first in each, (E,) each."""
+    """Births and deaths of one world in the order of their ticks, (E,) each.
+
+    In a tick children are born first, since a parent may die in it. Then organisms die. Founders come
+    last: a world is founded again in the tick in which it dies out.
+    """
 
     tick: np.ndarray
     """int64, not falling"""
@@ -81,10 +85,12 @@ class Turnover:
         """Return the turnover of one world."""
         dead = np.flatnonzero(lives.died)
         dead = dead[np.argsort(lives.ended[dead])]
-        tick = np.concatenate([lives.born, lives.ended[dead]])
-        order = np.argsort(tick, kind="stable")  # births come first
-        row = np.concatenate([np.arange(len(lives)), dead])[order]
-        return cls(tick[order], row, order < len(lives))
+        founder = lives.parent < 0
+        parts = np.flatnonzero(~founder), dead, np.flatnonzero(founder)
+        tick = np.concatenate([lives.born[parts[0]], lives.ended[dead], lives.born[parts[2]]])
+        birth = np.repeat([True, False, True], list(map(len, parts)))
+        order = np.argsort(tick, kind="stable")
+        return cls(tick[order], np.concatenate(parts)[order], birth[order])
 
     @cached_property
     def living(self) -> np.ndarray:
