@@ -131,9 +131,9 @@ def _ancestor_row(found: "Ancestors", place: int) -> tuple[str, ...]:
 def _common_text(found: "Ancestors") -> str:
     if (common := found.common) is not None:
         return (
-            f"All the living descend from organism {common.organism:,}, born at tick {common.born:,}, the"
-            f" youngest that all have in common (generation {common.generation:,}). It is the ancestor of"
-            f" all since tick {common.fixed:,}."
+            f"The common ancestor of the living is organism {common.organism:,}, born at tick"
+            f" {common.born:,} in generation {common.generation:,}. All descend from it since tick"
+            f" {common.since:,}."
         )
     if not found.roots:
         return "Nothing is alive, so there is no common ancestor of the living."
@@ -180,8 +180,9 @@ def _notes(found: "WorldLines", told: dict[str, Any]) -> list[str]:
     ]
     if found.pairs.mean is not None and found.neutral_pairs.mean is not None:
         notes.append(
-            f"Two of the living had a common ancestor {found.pairs.mean:,.0f} ticks ago (mean); drift"
-            f" alone would give {found.neutral_pairs.mean:,.0f}."
+            f"{found.pairs.share[-1]:.0%} of the pairs of the living have a common ancestor on record,"
+            f" {found.pairs.mean:,.0f} ticks ago in the mean. Drift alone would give"
+            f" {found.neutral_pairs.share[-1]:.0%} and {found.neutral_pairs.mean:,.0f} ticks."
         )
     return notes
 

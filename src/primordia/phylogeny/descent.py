@@ -10,7 +10,7 @@ from primordia.errors import InputError
 from primordia.history.lineage import changes, descent
 from primordia.law.world import BirthCause, Cause
 from primordia.phylogeny.coalescence import Genealogy
-from primordia.phylogeny.fixation import UNKNOWN, branches, first_ticks
+from primordia.phylogeny.fixation import UNKNOWN, branches, first_ticks, nearest
 from primordia.phylogeny.frequencies import instants
 from primordia.phylogeny.living import Census, Turnover
 from primordia.runs.lives import Lives
@@ -27,8 +27,8 @@ class CommonAncestor:
     organism: int
     born: int
     """tick of its birth"""
-    fixed: int
-    """first tick after which all the living were its descendants, or it was alone"""
+    since: int
+    """tick after which all the living have been its descendants, or itself"""
     generation: int
     """births from the root of its line to it"""
 
@@ -156,7 +156,7 @@ def ancestors(run: Records, organism: int, world: int = 0) -> Ancestors:
         ticks=dict(zip(SHARES, ticks, strict=True)),
         census=Census(lives, instants(begin, int(lives.ended.max()))),
         branch=branch,
-        common=_common(genealogy, turnover),
+        common=_common(genealogy),
         roots=len(genealogy.roots),
     )
 
@@ -173,15 +173,19 @@ def _children(lives: Lives, line: np.ndarray) -> np.ndarray:
     return np.bincount(lives.parent_row + 1, minlength=len(lives) + 1)[line + 1]
 
 
-def _common(genealogy: Genealogy, turnover: Turnover) -> CommonAncestor | None:
+def _common(genealogy: Genealogy) -> CommonAncestor | None:
     """Return the common ancestor of the living of one world."""
     row, lives = genealogy.common_ancestor, genealogy.lives
     if row is None:
         return None
-    alone = np.array([row])
-    ((fixed,),) = first_ticks(turnover, branches(lives.parent_row, alone), 1, (1,))
+    others = nearest(lives.parent_row, np.array([row])) < 0  # all are dead
     above = genealogy.rows[: np.searchsorted(genealogy.rows, row)]  # all its ancestors
-    return CommonAncestor(int(lives.id[row]), int(lives.born[row]), int(fixed), len(above))
+    return CommonAncestor(
+        organism=int(lives.id[row]),
+        born=int(lives.born[row]),
+        since=int(max(lives.born[row], lives.ended[others].max(initial=0))),
+        generation=len(above),
+    )
 
 
 def _known(value: float) -> float | None:

@@ -70,10 +70,10 @@ def first_ticks(
     Returns:
         For each share, ticks int64 (D,), UNKNOWN where it has not happened.
     """
-    at = branch[turnover.row].astype(np.int32)
+    at = branch[turnover.row]
     change = np.where(turnover.birth, np.int32(1), np.int32(-1))
     looks = [_Look(turnover, share, length) for share in shares]
-    alive = np.zeros(length + 1, np.int64)
+    alive = np.zeros(length + 1, np.int32)  # of one type with `change`: add.at is fast then
     # Each look at a part tells of one ancestor, so parts have a few ancestors each.
     span = int(np.clip(4 * len(at) // max(length, 1), *SPANS))
     for first in range(0, len(at), span):
@@ -100,7 +100,7 @@ class _Look:
         """Follow a part of the births and deaths; `alive`: how many leave at each place, before it."""
         needed, next_ = self._needed[part], self._next
         while next_ < len(self.ticks):
-            own = at >= np.int32(next_)
+            own = at >= next_
             counts = np.cumsum(change * own, dtype=np.int32)
             reached = counts >= needed - self._above
             first = reached.argmax()
