@@ -107,3 +107,11 @@ def test_a_sweep_by_hand() -> None:
     (only,) = sweeps(lives)
     assert (only.organism, only.born, only.half, only.fixed, only.duration) == (2, 2, 5, 8, 6)
     assert (only.birth_cause, only.living) == ("mutant", 3)
+
+
+def test_a_sweep_that_is_under_way_is_the_youngest_beyond_one_half() -> None:
+    """The founder is alive, and of four others three descend from its child of tick 2."""
+    lives = lives_of([-1, 0, 1, 1, 0], [0, 2, 3, 4, 5], [9] * 5, [False] * 5)
+    (only,) = sweeps(lives)
+    assert (only.organism, only.half, only.fixed, only.duration) == (1, 3, None, None)
+    assert only.living == 3

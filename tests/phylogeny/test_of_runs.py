@@ -2,18 +2,23 @@
 
 import json
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import primordia
 from primordia.errors import InputError
 from primordia.history.pedigree import genomes
 from primordia.law.world import BirthCause
+from primordia.phylogeny.descent import Ancestors
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests.commands import complains, here
+from tests.synthetic import world_of
 from tests.worlds import MEADOW, config
 
 LIVES: dict[str, Any] = {
@@ -180,3 +185,17 @@ def test_without_heredity_lines_go_on_and_a_line_of_descent_does_not(tmp_path: P
     assert len(primordia.load(tmp_path / "run").ancestors().line) == 1
     (first, _) = primordia.load(tmp_path / "run").lines()
     assert first.shares[-1].max() > 0.2
+
+
+@given(lived=st.lists(st.integers(0, 50), min_size=1, max_size=90))
+def test_a_table_has_the_first_the_last_and_the_largest_gain(lived: list[int]) -> None:
+    line = world_of([(place, each, True) for place, each in enumerate(lived)], until=200)
+    found: Any = SimpleNamespace(line=line)
+    places = Ancestors.telling(found, 20).tolist()
+    assert places == sorted(set(places))
+    assert min(len(lived), 15) <= len(places) <= 20
+    assert {0, len(lived) - 1} <= set(places)
+    span = np.maximum(line.lifespan, 1)
+    gains = span[1:] / span[:-1]
+    if len(gains) and (gains == gains.max()).sum() == 1:
+        assert gains.argmax() + 1 in places

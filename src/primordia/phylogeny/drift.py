@@ -144,9 +144,9 @@ def _deal(labels: Array, first: int, last: int, kinds: Array, before: Array, key
         drawn = below(_words(key, number, which), living)
         source = which * slots + jnp.where(birth, drawn, living - 1)
         target = which * slots + jnp.where(birth, living, drawn)
-        line = labels.at[source].get(mode="promise_in_bounds")
+        line = labels.at[source].get(mode="clip")  # records may be forged
         line = jnp.where(kinds[number] == FOUNDER, NO_LINE, line)
-        return labels.at[target].set(line, unique_indices=True, mode="promise_in_bounds")
+        return labels.at[target].set(line, unique_indices=True, mode="drop")
 
     return lax.fori_loop(first, last, event, labels.ravel()).reshape(shadows, slots)
 
