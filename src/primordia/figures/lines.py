@@ -9,6 +9,8 @@ from primordia.phylogeny.lines import BAND, WorldLines
 
 COLOURED = len(style.PALETTE)
 """Most lines that have a colour of their own."""
+DRAWN = 60
+"""Most lines that are drawn."""
 SHADOWS = "95 % of neutral shadows"
 
 
@@ -34,7 +36,7 @@ def _shares(axes: Axes, found: WorldLines) -> None:
     low, high = np.percentile(found.drift.largest, BAND, axis=0)
     axes.fill_between(_time(found), low, high, color=style.FAINT, linewidth=0)
     order = found.ranked
-    axes.plot(_time(found), found.shares[:, order[COLOURED:]], color=style.SOFT, linewidth=0.4)
+    axes.plot(_time(found), found.shares[:, order[COLOURED:DRAWN]], color=style.SOFT, linewidth=0.4)
     for place, colour in zip(
         order[:COLOURED][::-1], style.PALETTE[: len(order)][::-1], strict=True
     ):
