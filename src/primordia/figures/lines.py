@@ -50,9 +50,10 @@ def _shares(axes: Axes, found: WorldLines) -> None:
 
 def _effective(axes: Axes, found: WorldLines) -> None:
     low, high = np.percentile(found.drift.effective, BAND, axis=0)
-    axes.fill_between(_time(found), np.maximum(low, 1), high, color=style.FAINT, linewidth=0)
-    alive = found.living > 0
-    axes.plot(_time(found)[alive], found.effective[2, alive], color=style.BLUE)
+    band = np.maximum(low, 1), np.maximum(high, 1)  # no line at all is left in an extinct world
+    axes.fill_between(_time(found), *band, color=style.FAINT, linewidth=0)
+    some = found.effective[2] > 0
+    axes.plot(_time(found)[some], found.effective[2, some], color=style.BLUE)
     style.logarithmic(axes.yaxis)
     axes.set_ylabel("lines")
     style.title(axes, "Effective number of lines", {"recorded": style.BLUE, SHADOWS: style.SOFT})
@@ -74,7 +75,10 @@ def _diversity(axes: Axes, found: WorldLines) -> None:
 def _pairs(axes: Axes, found: WorldLines) -> None:
     for times, colour in ((found.neutral_pairs, style.SOFT), (found.pairs, style.BLUE)):
         axes.step(np.append(0, times.back), np.append(0, times.share), where="post", color=colour)
-    axes.set(ylim=(0, 1.02), xlim=(0, None), ylabel="share of pairs")
+    if not len(found.pairs.back):
+        style.remark(axes, "no two of the living have a common ancestor on record")
+    last = max(int(found.ticks[-1] - found.lives.born.min()), 1)
+    axes.set(ylim=(0, 1.02), xlim=(0, last), ylabel="share of pairs")
     style.linear(axes.xaxis)
     axes.set_xlabel("ticks back to their common ancestor")
     key = {"recorded": style.BLUE, "expected of drift": style.SOFT}
