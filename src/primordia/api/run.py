@@ -24,7 +24,9 @@ from primordia.organism.export import export
 from primordia.organism.organism import Organism
 from primordia.organism.policy import Policy
 from primordia.phylogeny import formats
+from primordia.phylogeny.descent import Ancestors, ancestors
 from primordia.phylogeny.forks import whole_past
+from primordia.phylogeny.lines import WorldLines, lines
 from primordia.phylogeny.reduce import chosen
 from primordia.phylogeny.table import table
 from primordia.runs import bundle, directory, loop, opening
@@ -134,6 +136,18 @@ class Run:
     def threshold(self, after: float = LATE) -> list[Threshold]:
         """Measure whether a good line keeps its ground in each world; see `history.threshold`."""
         return threshold(self.opened(), after)
+
+    def ancestors(self, organism: int | None = None, world: int | None = None) -> Ancestors:
+        """Follow the line of descent of an organism, by default the `oldest`; see `descent.ancestors`."""
+        run = self.opened()
+        if organism is not None:
+            return ancestors(run, organism, world or 0)
+        oldest = Organism(run, run.lives.oldest(world))
+        return ancestors(run, oldest.id, oldest.world)
+
+    def lines(self, world: int | None = None, at: int | None = None) -> list[WorldLines]:
+        """Measure evolution in lines, in one world or in all; see `phylogeny.lines`."""
+        return lines(self.opened(), world, at)
 
     def policy(self) -> Policy:
         """Return the brain of the champion, see `oldest`, as `policy(senses) -> action`."""

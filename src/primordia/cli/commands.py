@@ -7,6 +7,7 @@ import click
 from primordia import interrupts
 from primordia.cli import (
     bundle,
+    descent,
     environments,
     evaluate,
     evolve,
@@ -54,6 +55,7 @@ PARTS = (
     page,
     film,
     revive,
+    descent,
     lineage,
     bundle,
     track,

@@ -2,11 +2,17 @@
 
 from collections.abc import Iterable, Sequence
 
+WIDEST = 1000
+"""Largest width of a table, in characters."""
+
 
 def show_table(
     title: str, head: Sequence[str], rows: Iterable[Sequence[str]], notes: Iterable[str] = ()
 ) -> None:
-    """Print a title, a table whose first column holds names and the others numbers, and notes."""
+    """Print a title, a table whose first column holds names and the others numbers, and notes.
+
+    The table is as wide as it must be: a number that is cut short is of no use.
+    """
     from rich import box
     from rich.console import Console
     from rich.table import Table
@@ -16,7 +22,10 @@ def show_table(
         shown.add_column(name, justify="right")
     for row in rows:
         shown.add_row(*row)
-    Console(highlight=False, soft_wrap=True).print(title, shown, *notes, sep="\n")
+    console = Console(highlight=False, soft_wrap=True)
+    whole = console.measure(shown, options=console.options.update(max_width=WIDEST))
+    console.width = max(console.width, whole.maximum)
+    console.print(title, shown, *notes, sep="\n")
 
 
 def spread(values: Iterable[float | None]) -> str:

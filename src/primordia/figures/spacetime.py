@@ -8,9 +8,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter
 
 from primordia.config import Config
 from primordia.figures import style
-from primordia.history import series
-from primordia.history.clades import Clades, find_clades
-from primordia.history.lines import CROWD
+from primordia.history.clades import Clades, crowd_size, find_clades
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 
@@ -55,12 +53,6 @@ def draw(run: Records, world: int) -> Figure:
 def clades_of(lives: Lives) -> Clades:
     """Return the lines of descent of one world."""
     return find_clades(lives.parent_row, lives.born, lives.ended, lives.died, crowd_size(lives))
-
-
-def crowd_size(lives: Lives) -> int:
-    """Return the number of living at which lines begin: CROWD, or half the largest population."""
-    most = int(series.population(lives, lives.born).max())
-    return min(CROWD, max(most // 2, 1))
 
 
 def occupants(lives: Lives, cells: np.ndarray, ticks: np.ndarray) -> np.ndarray:

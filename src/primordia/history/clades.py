@@ -4,7 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from primordia.history.lines import Lines, Turnover
+from primordia.history import series
+from primordia.history.lines import CROWD, Lines, Turnover
+from primordia.runs.lives import Lives
 
 
 @dataclass(frozen=True)
@@ -47,3 +49,9 @@ def find_clades(
     renewals = np.array(lines.renewals, np.int64)
     by_takeover = np.isin(renewals, lines.takeovers)
     return Clades(born, np.array(birth_line, np.int64), renewals, by_takeover)
+
+
+def crowd_size(lives: Lives) -> int:
+    """Return the number of living at which lines begin: CROWD, or half the largest population."""
+    most = int(series.population(lives, lives.born).max())
+    return min(CROWD, max(most // 2, 1))

@@ -4,7 +4,7 @@ The founder's genome is made first. Then the mutations along the line of descent
 the rule that made them (`law.heredity`). A mutation gives the same bits on every device and version.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 
 import jax
 import jax.numpy as jnp
@@ -47,11 +47,11 @@ def rebuild_all(run: Records, organisms: Sequence[tuple[int, int]]) -> np.ndarra
     device.prepare()
     lineages = [run.lives.take(descent(run.lives, *each)) for each in organisms]
     past, genomes = PastClimate(run), []
-    replay = shared(_replay_births, run.heredity)
     for lineage in lineages:
         genome, births = _starting_point(run, lineage)
-        climate = past.of_lives(births, births.born)
-        genomes.append(_replay(run, replay, births, climate, genome))
+        for last, _ in _replayed(run, past, births, genome):
+            genome = last
+        genomes.append(genome)
     return np.stack(genomes)
 
 
@@ -70,6 +70,33 @@ def descent(lives: Lives, organism: int, world: int) -> np.ndarray:
     return np.array(rows[::-1])
 
 
+def changes(run: Records, organism: int, world: int = 0) -> np.ndarray:
+    """Return how far each genome on a line of descent is from its parent's, float64 (D, B).
+
+    It is the Euclidean (L2) norm of the change in each block of weights; of two parents, the first
+    counts. It is NaN where the parent's genome is not known: of founders, and of organisms that were
+    alive at a fork.
+
+    Raises:
+        InputError: no such organism was born, or the mutation is code that the user has not trusted.
+    """
+    rows = descent(run.lives, organism, world)
+    found = np.full((len(rows), len(run.layout.names)), np.nan)
+    if run.schema.mates:
+        made = run.layout.split(np.diff(pedigree.genomes(run, rows), axis=0))
+        each = [np.linalg.norm(block.reshape(len(block), -1), axis=1) for block in made.values()]
+        found[1:] = np.stack(each, axis=1)
+        return found
+    device.prepare()
+    lineage = run.lives.take(rows)
+    genome, births = _starting_point(run, lineage)
+    parts = [part for _, part in _replayed(run, PastClimate(run), births, genome)]
+    if parts:
+        found[len(rows) - len(births) :] = np.concatenate(parts)[: len(births)]
+    found[lineage.birth_cause == BirthCause.FOUNDER] = np.nan
+    return found
+
+
 def _starting_point(run: Records, lineage: Lives) -> tuple[np.ndarray, Lives]:
     """Return the genome (P,) to start a lineage from, and the births to replay from there.
 
@@ -85,30 +112,29 @@ def _starting_point(run: Records, lineage: Lives) -> tuple[np.ndarray, Lives]:
     return np.zeros(run.layout.length, np.float32), lineage
 
 
-def _replay(
-    run: Records,
-    replay: Callable,
-    lineage: Lives,
-    climate: Mapping[str, np.ndarray],
-    genome: np.ndarray,
-) -> np.ndarray:
-    """Replay the births of a lineage (D,) in order, from a genome (P,) -> the last genome."""
-    notes = run.notes_of(lineage)
+def _replayed(
+    run: Records, past: PastClimate, lineage: Lives, genome: np.ndarray
+) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Replay the births of a lineage (D,) in order, from a genome (P,), part by part.
+
+    Yields the last genome of each part, and how far each of its births changed a genome; see `changes`.
+    """
+    replay = shared(_replay_births, run.heredity)
+    notes, climate = run.notes_of(lineage), past.of_lives(lineage, lineage.born)
     for first in range(0, len(lineage), STEPS_AT_A_TIME):
         rows = np.arange(first, first + STEPS_AT_A_TIME)
         births, real = lineage.take(rows % len(lineage)), rows < len(lineage)
         values = {name: each[rows % len(lineage)] for name, each in climate.items()}
         seed = wide(run.world_seeds[births.world])
-        genome = np.asarray(
-            replay(
-                genome,
-                (seed, wide(births.id), wide(births.born)),
-                (births.cell, births.birth_cause == BirthCause.FOUNDER, real),
-                values,
-                notes[rows % len(lineage)],
-            )
+        last, norms = replay(
+            genome,
+            (seed, wide(births.id), wide(births.born)),
+            (births.cell, births.birth_cause == BirthCause.FOUNDER, real),
+            values,
+            notes[rows % len(lineage)],
         )
-    return genome
+        genome = np.asarray(last)
+        yield genome, np.asarray(norms)
 
 
 def _replay_births(
@@ -118,8 +144,8 @@ def _replay_births(
     marks: tuple,
     climate: Climate,
     notes: Array,
-) -> Array:
-    """Replay births (S,) one after another, without those that only fill the shape -> genome (P,).
+) -> tuple[Array, Array]:
+    """Replay births (S,) one after another, without those that only fill the shape.
 
     Args:
         heredity: the heredity of the run.
@@ -128,14 +154,19 @@ def _replay_births(
         marks: cell within the world; whether it is a founder; whether it is real, no filling.
         climate: values of the settings at each birth.
         notes: the mutation's notes at each birth, int32 (S, n).
+
+    Returns:
+        The last genome, float32 (P,), and the norm of each birth's change in each block, float32 (S, B).
     """
 
-    def step(genome: Array, given: tuple) -> tuple[Array, None]:
+    def step(genome: Array, given: tuple) -> tuple[Array, Array]:
         (seed, number, tick), (cell, founder, real), climate, notes = jax.tree.map(
             jnp.atleast_1d, given
         )
         birth = recorded(heredity, (seed, number, tick), (cell, founder), climate)
         child = heredity.rebuild_genomes(birth, genome[None], notes.reshape(1, -1))[0]
-        return jnp.where(real, child, genome), None
+        change = heredity.layout.split(child - genome).values()
+        norms = jnp.stack([jnp.linalg.norm(block.ravel()) for block in change])
+        return jnp.where(real, child, genome), norms
 
-    return lax.scan(step, jnp.asarray(genome), (counts, marks, climate, notes))[0]
+    return lax.scan(step, jnp.asarray(genome), (counts, marks, climate, notes))

@@ -41,6 +41,7 @@ class Purpose(IntEnum):
     CONTROL = 13
     MATE = 14
     CROSS = 15
+    DRIFT = 16
 
 
 def encrypt(key: Wide, counter: Wide) -> Wide:

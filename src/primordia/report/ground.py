@@ -16,12 +16,11 @@ from primordia.figures.spacetime import (
     EMPTY,
     INKS,
     clades_of,
-    crowd_size,
     line_codes,
     line_inks,
     occupants,
 )
-from primordia.history.clades import Clades
+from primordia.history.clades import Clades, crowd_size
 from primordia.report.packed import packed
 from primordia.runs.lives import Lives
 

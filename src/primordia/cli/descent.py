@@ -1,0 +1,219 @@
+"""Commands on who descends from whom: ancestors, lines."""
+
+import json
+from collections.abc import Callable
+from functools import partial
+from math import isnan
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from primordia import files
+from primordia.cli.assays.options import json_option, out_option
+from primordia.cli.cache import cache_option
+from primordia.cli.flags import run_argument, trust_option
+from primordia.cli.table import show_table
+from primordia.errors import InputError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from primordia.phylogeny.descent import Ancestors
+    from primordia.phylogeny.lines import WorldLines
+    from primordia.phylogeny.sweeps import Sweep
+
+ROWS, LINES = 20, 10
+"""Most ancestors, and most lines of a world, in a table."""
+
+
+@click.command(short_help="Show the line of descent of an organism.")
+@run_argument
+@click.argument("organism", type=int, required=False, metavar="[ID]")
+@click.option("--world", type=int, help="The organism's world [0, or that of the champion].")
+@out_option
+@trust_option
+@cache_option
+@json_option
+def ancestors(
+    run: Path, organism: int | None, world: int | None, out: Path | None, trust: bool, as_json: bool
+) -> None:
+    """Show the ancestors of the organism with birth number ID, and how far the line of each spread.
+
+    Without ID it is the champion: the longest-lived of the later half of the births. The table shows some
+    of the ancestors, JSON all of them.
+    """
+    from primordia.api import load
+
+    found = load(run, trust).ancestors(organism, world)
+    if as_json:
+        click.echo(json.dumps(found.to_dict()))
+    else:
+        _show_ancestors(run, found)
+    if out is not None:
+        from primordia.figures import descent
+
+        _draw(partial(descent.draw, found), out, "ancestors", as_json)
+
+
+@click.command(short_help="Measure evolution in lines: selection beside drift, sweeps, diversity.")
+@run_argument
+@click.option("--world", default="0", metavar="N|all", help="World, or all of them [0].")
+@click.option("--at", type=int, metavar="TICK", help="Tick at which lines are founded [see above].")
+@out_option
+@cache_option
+@json_option
+def lines(run: Path, world: str, at: int | None, out: Path | None, as_json: bool) -> None:
+    """Measure how lines of descent replace each other, beside neutral shadows of them.
+
+    A line is all descendants of one organism that is alive after the tick --at. By default it is the
+    first tick since the last extinction after which 16 are alive, or half the largest population if that
+    is less. Where founders fill the world, it is their tick.
+    """
+    from primordia.api import load
+
+    found = load(run).lines(_world(world), at)
+    if as_json:
+        click.echo(json.dumps([each.to_dict() for each in found]))
+    else:
+        for each in found:
+            _show_lines(run, each)
+    if out is not None:
+        from primordia.figures import lines as figure
+
+        for each in found:
+            _draw(partial(figure.draw, each), out, f"lines-{each.world}", as_json)
+
+
+def _world(text: str) -> int | None:
+    if text == "all":
+        return None
+    try:
+        return int(text)
+    except ValueError:
+        raise InputError(f"--world: {text!r} is not the number of a world, and not all") from None
+
+
+def _show_ancestors(run: Path, found: "Ancestors") -> None:
+    places = found.telling(ROWS).tolist()
+    notes = [
+        "change: L2 norm of the change that mutation made in the genome.",
+        "10 %, 50 %, all: first tick after which more than this share of the living were descendants.",
+    ]
+    if left_out := len(found.line) - len(places):
+        notes.append(
+            f"{left_out:,} ancestors are left out. The table has the first, the last, those that outlived"
+            " their parents most, and others evenly spaced. --json has all."
+        )
+    if found.unknown:
+        notes.append(f"The changes are not known: {found.unknown}.")
+    show_table(
+        f"{run}: the line of organism {found.organism:,} of world {found.world}",
+        ("organism", "line", "born", "lived", "death", "children", "change", "10 %", "50 %", "all"),
+        [_ancestor_row(found, place) for place in places],
+        [*notes, _common_text(found)],
+    )
+
+
+def _ancestor_row(found: "Ancestors", place: int) -> tuple[str, ...]:
+    step = found.step(place)
+    size = None if found.size is None else found.size[place]
+    return (
+        f"{step['organism']:,}",
+        *(f"{step[name]:,}" for name in ("generation", "born", "lifespan")),
+        step["cause"] or "alive",
+        f"{step['children']:,}",
+        _number(size, ".3g") if step["birth_cause"] == "mutant" else step["birth_cause"],
+        *(_count(step[name]) for name in ("tenth", "half", "fixed")),
+    )
+
+
+def _common_text(found: "Ancestors") -> str:
+    if (common := found.common) is not None:
+        return (
+            f"The common ancestor of the living is organism {common.organism:,}, born at tick"
+            f" {common.born:,} in generation {common.generation:,}. All descend from it since tick"
+            f" {common.since:,}."
+        )
+    if not found.roots:
+        return "Nothing is alive, so there is no common ancestor of the living."
+    return (
+        f"The living have no common ancestor on record. They descend from {found.roots:,} organisms"
+        " without a parent on record."
+    )
+
+
+def _show_lines(run: Path, found: "WorldLines") -> None:
+    told = found.to_dict()
+    rows = [
+        (
+            f"{line['organism']:,}",
+            f"{line['largest_share']:.3f}",
+            f"{line['final_share']:.3f}",
+            _number(line["slope"], ".2g"),
+            _number(line["slope_per_lifespan"], ".2g"),
+            _number(line["p_of_slope"], ".2g"),
+            _number(line["p_of_final_share"], ".2g"),
+        )
+        for line in told["lines"][:LINES]
+    ]
+    head = ("line of", "largest", "last share", "s per tick", "s per life", "p of s", "p of last")
+    title = (
+        f"{run}: world {found.world}, {len(found.founders):,} lines founded at tick {told['founded']:,},"
+        f" up to tick {found.ticks[-1]:,}"
+    )
+    show_table(title, head, rows, _notes(found, told))
+
+
+def _notes(found: "WorldLines", told: dict[str, Any]) -> list[str]:
+    notes = []
+    if (left_out := len(found.founders) - LINES) > 0:
+        notes.append(f"{left_out:,} smaller lines are left out; --json has all.")
+    now, (low, high) = found.effective[2, -1], (e[-1] for e in told["bands"]["effective_lines"])
+    notes += [
+        "s: slope of ln(x / (1 - x)) over time while the share x is between 5 and 95 %. p: two-sided,"
+        " beside neutral shadows with the same births, deaths and population.",
+        f"Effective number of lines at the end: {now:.2f}; in 95 % of {told['shadows']:,} shadows"
+        f" {low:.2f} to {high:.2f}. Over all instants: p = {told['p_of_effective_lines']:.2g}.",
+        _sweeps_text(found.sweeps),
+        f"Phylogenetic diversity of the living: {found.diversity[-1]:,} ticks.",
+    ]
+    if found.pairs.mean is not None and found.neutral_pairs.mean is not None:
+        notes.append(
+            f"{found.pairs.share[-1]:.0%} of the pairs of the living have a common ancestor on record,"
+            f" {found.pairs.mean:,.0f} ticks ago in the mean. Drift alone would give"
+            f" {found.neutral_pairs.share[-1]:.0%} and {found.neutral_pairs.mean:,.0f} ticks."
+        )
+    return notes
+
+
+def _sweeps_text(sweeps: "list[Sweep]") -> str:
+    durations = sorted(each.duration for each in sweeps if each.duration is not None)
+    text = f"Sweeps to all of the living: {len(durations):,}"
+    if durations:
+        text += f", in {durations[len(durations) // 2]:,} ticks (median)"
+    if sweeps and sweeps[-1].half is not None and sweeps[-1].fixed is None:
+        last = sweeps[-1]
+        text += f". Under way: that of {last.organism:,}, above one half since tick {last.half:,}"
+    return f"{text}."
+
+
+def _draw(draw: "Callable[[], Figure]", folder: Path, name: str, as_json: bool) -> None:
+    from primordia.figures import style
+
+    files.make_folder(folder)
+    with style.applied():
+        pictures = style.save(draw(), folder / name)
+    click.echo(f"Figure: {' and '.join(map(str, pictures))}", err=as_json)
+
+
+def _number(value: float | None, form: str) -> str:
+    return "-" if value is None or isnan(value) else f"{value:{form}}"
+
+
+def _count(value: int | None) -> str:
+    return "-" if value is None else f"{value:,}"
+
+
+COMMANDS = (ancestors, lines)
+"""The commands of this module."""

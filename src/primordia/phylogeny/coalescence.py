@@ -1,0 +1,143 @@
+"""The genealogy of the living of one world: their common ancestor, and when each two of them had one.
+
+Without selection, two of the n living after a birth are the newborn and its parent with probability
+2 / (n (n - 1)), whichever two they are (Moran 1958; Kingman 1982). So the births and the sizes of the
+population give the distribution of coalescence times that drift alone would have made.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from primordia.phylogeny.living import Turnover
+from primordia.runs.lives import Lives
+
+
+@dataclass(frozen=True)
+class Genealogy:
+    """The living of one world at its end, and their A ancestors, by rising row."""
+
+    lives: Lives
+    rows: np.ndarray
+    """rows of the living and all their ancestors, int64 (A,)"""
+    parent: np.ndarray
+    """place of each one's parent among them, or -1, int64 (A,)"""
+    size: np.ndarray
+    """number of the living that each is or has as descendants, int64 (A,)"""
+    merges: np.ndarray
+    """pairs of the living whose lines part at its birth: one goes through it, one through its parent"""
+
+    @classmethod
+    def of(cls, lives: Lives) -> "Genealogy":
+        """Trace the genealogy of the living of one world."""
+        rows = _with_ancestors(lives)
+        above = lives.parent_row[rows]
+        parent = np.where(above < 0, -1, np.searchsorted(rows, above))
+        size = (~lives.died[rows]).astype(int).tolist()
+        merges = [0] * len(rows)
+        for place, of in reversed(list(enumerate(parent.tolist()))):
+            if of >= 0:  # the size of the parent is by now that without this child and older ones
+                merges[place] = size[of] * size[place]
+                size[of] += size[place]
+        return cls(lives, rows, parent, np.array(size, np.int64), np.array(merges, np.int64))
+
+    @property
+    def living(self) -> int:
+        """Number of living."""
+        return int((~self.lives.died).sum())
+
+    @property
+    def roots(self) -> np.ndarray:
+        """Rows of the ancestors whose parents are not on record, int64."""
+        return self.rows[self.parent < 0]
+
+    @cached_property
+    def common_ancestor(self) -> int | None:
+        """Row of the youngest organism from which all the living descend; None if there is none."""
+        common = self.rows[self.size == self.living]
+        return int(common[-1]) if self.living and len(common) else None
+
+    def trunk(self) -> np.ndarray:
+        """Return the rows from the largest root on, from each to its child with most of the living."""
+        if not len(self.rows):
+            return np.zeros(0, np.int64)
+        order = np.lexsort((self.size, self.parent))
+        heir = np.full(len(self.rows) + 1, -1)
+        heir[self.parent[order]] = order  # the last of a parent's children is the largest
+        line = [int(heir[-1])]  # that of place -1: the largest root
+        while heir[line[-1]] >= 0:
+            line.append(int(heir[line[-1]]))
+        return self.rows[line]
+
+    def coalescences(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return ticks at which lines of the living part, falling, and the pairs that part there."""
+        parted = np.flatnonzero(self.merges)[::-1]
+        ticks = self.lives.born[self.rows[parted]]
+        falling, place = np.unique(-ticks, return_inverse=True)
+        pairs = np.zeros(len(falling), np.int64)
+        np.add.at(pairs, place, self.merges[parted])
+        return -falling, pairs
+
+
+def _with_ancestors(lives: Lives) -> np.ndarray:
+    """Return the rows of the living and all their ancestors, rising, int64."""
+    known = np.zeros(len(lives), bool)
+    new = np.flatnonzero(~lives.died)
+    while len(new) > 1:
+        known[new] = True
+        older = lives.parent_row[new]
+        new = np.unique(older[older >= 0])
+        new = new[~known[new]]
+    row = int(new[0]) if len(new) else -1
+    while (
+        row >= 0 and not known[row]
+    ):  # one line is left; it is the trunk below the common ancestor
+        known[row] = True
+        row = int(lives.parent_row[row])
+    return np.flatnonzero(known)
+
+
+@dataclass(frozen=True)
+class Times:
+    """Ticks back from the end of a world to the common ancestor of pairs: what share has it by then."""
+
+    back: np.ndarray
+    """int64 (K,), rising"""
+    share: np.ndarray
+    """share of pairs whose common ancestor is at most so far back, float64 (K,), rising"""
+
+    @property
+    def median(self) -> float | None:
+        """The time that half of the pairs do not exceed; None where it is before the records."""
+        reached = np.flatnonzero(self.share >= 0.5)
+        return float(self.back[reached[0]]) if len(reached) else None
+
+    @property
+    def mean(self) -> float | None:
+        """The mean over pairs with a common ancestor on record; None if there is none."""
+        if not len(self.share) or not self.share[-1]:
+            return None
+        return float(np.diff(self.share, prepend=0) @ self.back / self.share[-1])
+
+
+def observed(genealogy: Genealogy) -> Times:
+    """Return the coalescence times of all pairs of the living of one world, exact."""
+    ticks, pairs = genealogy.coalescences()
+    all_pairs = genealogy.living * (genealogy.living - 1) // 2
+    return Times(_end(genealogy.lives) - ticks, pairs.cumsum() / max(all_pairs, 1))
+
+
+def neutral(lives: Lives, turnover: Turnover) -> Times:
+    """Return the coalescence times that drift alone would make, from births and population; see above."""
+    born = turnover.birth & (turnover.tick > lives.seen.min())  # since the fork, if it is one
+    living = turnover.living[born].astype(float)
+    own = lives.parent[turnover.row[born]] >= 0
+    chance = np.where(own & (living >= 2), 2 / np.maximum(living * (living - 1), 2), 0.0)
+    apart = np.cumprod(1 - chance[::-1])
+    back = _end(lives) - turnover.tick[born][::-1]
+    return Times(back, 1 - apart)
+
+
+def _end(lives: Lives) -> int:
+    return int(lives.ended.max())

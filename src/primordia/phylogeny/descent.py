@@ -1,0 +1,196 @@
+"""The line of descent of an organism: its ancestors, their mutations, and how far each line spread."""
+
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from primordia.errors import InputError
+from primordia.history.lineage import changes, descent
+from primordia.law.world import BirthCause, Cause
+from primordia.phylogeny.coalescence import Genealogy
+from primordia.phylogeny.fixation import UNKNOWN, branches, first_ticks, nearest
+from primordia.phylogeny.frequencies import instants
+from primordia.phylogeny.living import Census, Turnover
+from primordia.runs.lives import Lives
+from primordia.runs.records import Records
+
+SHARES = {"tenth": 0.1, "half": 0.5, "fixed": 1}
+"""Shares of the living whose first ticks are given; see `first_ticks`."""
+
+
+@dataclass(frozen=True)
+class CommonAncestor:
+    """The youngest organism from which all the living of a world descend."""
+
+    organism: int
+    born: int
+    """tick of its birth"""
+    since: int
+    """tick after which all the living have been its descendants, or itself"""
+    generation: int
+    """births from the root of its line to it"""
+
+
+@dataclass(frozen=True)
+class Ancestors:
+    """An organism of a run and its D - 1 ancestors, the oldest first."""
+
+    organism: int
+    world: int
+    line: Lives
+    """the lives of the ancestors and the organism"""
+    children: np.ndarray
+    """children of each so far, int64 (D,)"""
+    blocks: list[str]
+    """names of the B blocks of weights"""
+    changes: np.ndarray | None
+    """size of each one's mutation by block, float64 (D, B); see `lineage.changes`. None: not known"""
+    unknown: str | None
+    """why they are not known"""
+    ticks: dict[str, np.ndarray]
+    """for each of SHARES, the first tick after which more of the living were descendants, int64 (D,), or
+    UNKNOWN"""
+    census: Census
+    """the living of the world at instants"""
+    branch: np.ndarray
+    """place on the line from which each organism of the world descends, int64; see `branches`"""
+    common: CommonAncestor | None
+    """the common ancestor of the living; None if there is none on record"""
+    roots: int
+    """ancestors of the living whose parents are not on record, or that had none"""
+
+    @cached_property
+    def size(self) -> np.ndarray | None:
+        """Size of each mutation over all blocks, float64 (D,); NaN where it is not known."""
+        return None if self.changes is None else np.sqrt((self.changes**2).sum(axis=1))
+
+    def shares(self, places: np.ndarray) -> np.ndarray:
+        """Return which share of the living descended from some of the line at each instant, (T, K).
+
+        Args:
+            places: places on the line, rising, int64 (K,).
+        """
+        group = np.searchsorted(places, self.branch, side="right") - 1
+        counts = self.census.counts(group, len(places))
+        from_each = counts[:, ::-1].cumsum(axis=1)[:, ::-1]
+        return from_each / np.maximum(self.census.living, 1)[:, None]
+
+    def telling(self, most: int) -> np.ndarray:
+        """Return the places of at most `most` of the line, rising: the first, the last, the most telling.
+
+        They are the half of them that outlived their parents by the largest ratio, and others evenly
+        spaced.
+        """
+        count = len(self.line)
+        if count <= most:
+            return np.arange(count)
+        lived = np.maximum(self.line.lifespan, 1)
+        gain = np.append(0.0, np.log(lived[1:] / lived[:-1]))
+        chosen = {0, count - 1, *np.argsort(-gain, kind="stable")[: most // 2 - 1].tolist()}
+        spaced = np.linspace(0, count - 1, most).astype(int).tolist()
+        others = [place for place in spaced if place not in chosen]
+        wanted = most - len(chosen)
+        return np.array(sorted(chosen | set(others[:: -(-len(others) // wanted)][:wanted])))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain values for JSON, with all ancestors."""
+        return {
+            "organism": self.organism,
+            "world": self.world,
+            "blocks": self.blocks,
+            "changes_unknown": self.unknown,
+            "roots_of_the_living": self.roots,
+            "common_ancestor": self.common and asdict(self.common),
+            "line": [self.step(place) for place in range(len(self.line))],
+        }
+
+    def step(self, place: int) -> dict[str, Any]:
+        """Return one of the line as plain values; None is what is not known or has not happened."""
+        line, parent = self.line, int(self.line.parent[place])
+        size = None if self.changes is None else [_known(each) for each in self.changes[place]]
+        return {
+            "generation": place,
+            "organism": int(line.id[place]),
+            "parent": None if parent < 0 else parent,
+            "born": int(line.born[place]),
+            "lifespan": int(line.lifespan[place]),
+            "cause": Cause(line.cause[place]).label if line.died[place] else None,
+            "children": int(self.children[place]),
+            "birth_cause": BirthCause(line.birth_cause[place]).label,
+            "change": size and dict(zip(self.blocks, size, strict=True)),
+            **{name: _happened(ticks[place]) for name, ticks in self.ticks.items()},
+        }
+
+
+def ancestors(run: Records, organism: int, world: int = 0) -> Ancestors:
+    """Follow the line of descent of an organism, from the records alone.
+
+    A line ends with a founder, or with an organism that was alive at the fork that the run began with.
+
+    Args:
+        run: the organism's run, or an arm.
+        organism: birth number.
+        world: the organism's world.
+
+    Raises:
+        InputError: no such organism was born.
+    """
+    rows = descent(run.lives, organism, world)
+    lives = run.lives.of_world(world)
+    line = rows - np.searchsorted(run.lives.world, world)
+    turnover, branch = Turnover.of(lives), branches(lives.parent_row, line)
+    ticks = first_ticks(turnover, branch, len(line), tuple(SHARES.values()))
+    known, unknown = _changes(run, organism, world)
+    genealogy = Genealogy.of(lives)
+    begin = max(int(lives.born[line[0]]), int(lives.seen.min()))
+    return Ancestors(
+        organism=organism,
+        world=world,
+        line=lives.take(line),
+        children=_children(lives, line),
+        blocks=run.layout.names,
+        changes=known,
+        unknown=unknown,
+        ticks=dict(zip(SHARES, ticks, strict=True)),
+        census=Census(lives, instants(begin, int(lives.ended.max()))),
+        branch=branch,
+        common=_common(genealogy),
+        roots=len(genealogy.roots),
+    )
+
+
+def _changes(run: Records, organism: int, world: int) -> tuple[np.ndarray | None, str | None]:
+    """Return the sizes of mutations, or why they are not known: no code of the run is executed."""
+    try:
+        return changes(run, organism, world), None
+    except InputError as error:
+        return None, str(error)
+
+
+def _children(lives: Lives, line: np.ndarray) -> np.ndarray:
+    return np.bincount(lives.parent_row + 1, minlength=len(lives) + 1)[line + 1]
+
+
+def _common(genealogy: Genealogy) -> CommonAncestor | None:
+    """Return the common ancestor of the living of one world."""
+    row, lives = genealogy.common_ancestor, genealogy.lives
+    if row is None:
+        return None
+    others = nearest(lives.parent_row, np.array([row])) < 0  # all are dead
+    above = genealogy.rows[: np.searchsorted(genealogy.rows, row)]  # all its ancestors
+    return CommonAncestor(
+        organism=int(lives.id[row]),
+        born=int(lives.born[row]),
+        since=int(max(lives.born[row], lives.ended[others].max(initial=0))),
+        generation=len(above),
+    )
+
+
+def _known(value: float) -> float | None:
+    return None if np.isnan(value) else float(value)
+
+
+def _happened(tick: int) -> int | None:
+    return None if tick == UNKNOWN else int(tick)

@@ -1,0 +1,113 @@
+"""How the descendants of each ancestor on a line spread among the living, exact to the tick."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from primordia.phylogeny.living import Turnover
+
+ROWS = 4096
+"""Organisms that are looked at together."""
+SPANS = 256, 2048
+"""Fewest and most births and deaths that are looked at together."""
+UNKNOWN = -1
+"""The tick of what has not happened."""
+
+
+def nearest(parent_row: np.ndarray, marked: np.ndarray) -> np.ndarray:
+    """Return the nearest marked organism on each one's line of descent, itself included; its row or -1.
+
+    Args:
+        parent_row: row of each parent, or -1, int64 (L,), parents before their children.
+        marked: rows, int64.
+    """
+    found = np.full(len(parent_row) + 1, -1)  # the last is that of no parent, -1
+    found[marked] = marked
+    for first in range(0, len(parent_row), ROWS):
+        parent = parent_row[first : first + ROWS]
+        own = np.arange(len(parent))
+        known = (found[first : first + ROWS][: len(own)] >= 0) | (parent < first)
+        start = np.where(known, own, parent - first)
+        while (start != (further := start[start])).any():  # the way is doubled in each step
+            start = further
+        before = np.where(found[first + own] >= 0, first + own, found[parent])
+        found[first + own] = before[start]
+    return found[:-1]
+
+
+def branches(parent_row: np.ndarray, line: np.ndarray) -> np.ndarray:
+    """Return the place on a line of descent at which each organism's own line leaves it, int64 (L,).
+
+    It is the place of the youngest ancestor that both have in common, -1 if they have none.
+
+    Args:
+        parent_row: row of each parent, or -1, int64 (L,).
+        line: rows of a line of descent, oldest first, int64 (D,).
+    """
+    return places_of(line, nearest(parent_row, line))
+
+
+def places_of(rising: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """Return the places of rows, which are all among the rising ones, or -1 of row -1."""
+    return np.where(rows < 0, -1, np.searchsorted(rising, rows))
+
+
+def first_ticks(
+    turnover: Turnover, branch: np.ndarray, length: int, shares: Sequence[float]
+) -> list[np.ndarray]:
+    """Return the first ticks after which each ancestor's descendants exceed some shares of the living.
+
+    The descendants of an ancestor are those whose lines leave the line of descent at its place or later.
+    So an ancestor reaches a share no earlier than the one before it, and one pass over the births and
+    deaths is enough.
+
+    Args:
+        turnover: births and deaths of the world.
+        branch: place where each organism's line leaves the line of descent, int64 (L,); see `branches`.
+        length: D, the number of ancestors on it.
+        shares: from 0 to below 1 each; 1 asks for all of the living.
+
+    Returns:
+        For each share, ticks int64 (D,), UNKNOWN where it has not happened.
+    """
+    at = branch[turnover.row]
+    change = np.where(turnover.birth, np.int32(1), np.int32(-1))
+    looks = [_Look(turnover, share, length) for share in shares]
+    alive = np.zeros(length + 1, np.int32)  # of one type with `change`: add.at is fast then
+    # Each look at a part tells of one ancestor, so parts have a few ancestors each.
+    span = int(np.clip(4 * len(at) // max(length, 1), *SPANS))
+    for first in range(0, len(at), span):
+        part = slice(first, first + span)
+        for look in looks:
+            look.follow(part, at[part], change[part], alive)
+        np.add.at(alive, at[part], change[part])  # place -1 is the last, which is never read
+    return [look.ticks for look in looks]
+
+
+class _Look:
+    """Follows which ancestor is the next to reach a share of the living."""
+
+    def __init__(self, turnover: Turnover, share: float, length: int) -> None:
+        living = turnover.living.astype(np.int32)
+        needed = living if share == 1 else np.floor(share * living).astype(np.int32) + 1
+        never = np.int32(2**31 - 1)
+        self._needed = np.where(turnover.closes & (living > 0), needed, never)
+        self._tick = turnover.tick
+        self.ticks = np.full(length, UNKNOWN)
+        self._next, self._above = 0, 0  # the next ancestor, and its descendants before a part
+
+    def follow(self, part: slice, at: np.ndarray, change: np.ndarray, alive: np.ndarray) -> None:
+        """Follow a part of the births and deaths; `alive`: how many leave at each place, before it."""
+        needed, next_ = self._needed[part], self._next
+        while next_ < len(self.ticks):
+            own = at >= next_
+            counts = np.cumsum(change * own, dtype=np.int32)
+            reached = counts >= needed - self._above
+            first = reached.argmax()
+            if not reached[first]:
+                self._above += int(counts[-1])
+                break
+            self.ticks[next_] = self._tick[part.start + first]
+            self._above -= int(alive[next_])
+            next_ += 1
+        self._next = next_

@@ -1,0 +1,55 @@
+"""Lines of a world, the descendants of all that are alive at a tick, and when they are counted."""
+
+import numpy as np
+
+from primordia.errors import InputError
+from primordia.history.clades import crowd_size
+from primordia.phylogeny.fixation import nearest, places_of
+from primordia.phylogeny.living import Census, Turnover, last_era
+from primordia.runs.lives import Lives
+
+INSTANTS = 300
+"""Largest number of instants at which lines are counted."""
+
+
+def founding_tick(lives: Lives) -> int:
+    """Return the tick after which lines of one world are founded if no other is named.
+
+    It is the first tick since the last extinction, or since the fork, after which a crowd is alive; see
+    `crowd_size`. In a world whose cells are filled with founders, it is that of the founders.
+    """
+    era = last_era(lives)
+    turnover, begin = Turnover.of(era), int(era.seen.min())
+    crowd = turnover.closes & (turnover.living >= crowd_size(era))
+    crowd[: np.searchsorted(turnover.tick, begin, side="right") - 1] = False  # before the fork
+    return max(int(turnover.tick[crowd.argmax()]), begin)
+
+
+def instants(at: int, last: int) -> np.ndarray:
+    """Return ticks from `at` to `last`, ever further apart: most lines are lost early; int64 (T,)."""
+    after = np.geomspace(1, max(last - at, 1), INSTANTS).round().astype(np.int64)
+    return np.unique(np.concatenate([[at], at + after[at + after <= last]]))
+
+
+def founders(lives: Lives, at: int) -> np.ndarray:
+    """Return the rows of the organisms of one world that are alive after a tick, int64 (K,).
+
+    Raises:
+        InputError: the tick is not on record, or nothing is alive after it.
+    """
+    first, last = int(lives.seen.min()), int(lives.ended.max())
+    if not first <= at <= last:
+        raise InputError(f"--at: tick {at:,} is not on record; the ticks are {first:,} to {last:,}")
+    rows = Census(lives, np.array([at])).pairs[1]
+    if not len(rows):
+        raise InputError(f"--at: nothing is alive after tick {at:,}, so no line begins there")
+    return rows
+
+
+def lines_of(lives: Lives, founders: np.ndarray) -> np.ndarray:
+    """Return the line of each organism, a place among the founders, or -1; int64 (L,).
+
+    Each line is all descendants of one of the founders, int64 (K,), which were alive at one tick. A
+    child belongs to its parent's line, and to the line of the first parent if it has two.
+    """
+    return places_of(founders, nearest(lives.parent_row, founders))

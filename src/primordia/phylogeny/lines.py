@@ -1,0 +1,210 @@
+"""Evolution of one world measured in lines: their shares over time, beside those of drift."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from primordia.errors import InputError
+from primordia.phylogeny import coalescence, slopes
+from primordia.phylogeny.coalescence import Genealogy, Times
+from primordia.phylogeny.diversity import hill_numbers, phylogenetic_diversity
+from primordia.phylogeny.drift import Drift, drift
+from primordia.phylogeny.frequencies import founders, founding_tick, instants, lines_of
+from primordia.phylogeny.living import Census, Turnover, last_era
+from primordia.phylogeny.sweeps import Sweep, sweeps
+from primordia.runs.lives import Lives
+from primordia.runs.records import Records
+
+BAND = (2.5, 97.5)
+"""Percentiles of shadows between which 95 % of them lie."""
+
+
+@dataclass(frozen=True)
+class WorldLines:
+    """K lines of one world at T instants, and what else tells how it evolved."""
+
+    world: int
+    lives: Lives
+    """all lives of the world"""
+    founders: np.ndarray
+    """rows of the organisms that founded the lines, int64 (K,)"""
+    ticks: np.ndarray
+    """instants at which lines were counted, int64 (T,); at the first they were founded"""
+    counts: np.ndarray
+    """living of each line, int64 (T, K)"""
+    living: np.ndarray
+    """all living, int64 (T,)"""
+    slopes: np.ndarray
+    """selection coefficient of each line in one tick, float64 (K,); NaN where it cannot be measured"""
+    shadow_slopes: dict[int, np.ndarray]
+    """for each line with a slope, by its place, the slopes of its shadows, float64, rising"""
+    drift: Drift
+    """what all lines do when they drift together"""
+    sweeps: list[Sweep]
+    diversity: np.ndarray
+    """phylogenetic diversity of the living at the instants, in ticks, int64 (T,)"""
+    pairs: Times
+    """coalescence times of the living"""
+    neutral_pairs: Times
+    """those that drift alone would give"""
+
+    @property
+    def shares(self) -> np.ndarray:
+        """Share of each line in the living, float64 (T, K); 0 in an empty world."""
+        return self.counts / np.maximum(self.living, 1)[:, None]
+
+    @cached_property
+    def effective(self) -> np.ndarray:
+        """Effective numbers of lines of orders 0, 1 and 2, float64 (3, T)."""
+        return hill_numbers(self.counts)
+
+    @cached_property
+    def lifespan(self) -> float | None:
+        """Ticks lived for each death since the lines were founded; None without a death."""
+        late = self.lives.ended > self.ticks[0]
+        deaths = int((self.lives.died & late).sum())
+        lived = (self.lives.ended - np.maximum(self.lives.born, self.ticks[0]))[late].sum()
+        return float(lived / deaths) if deaths else None
+
+    @cached_property
+    def p_of_slopes(self) -> np.ndarray:
+        """Two-sided p value of each slope among those of its shadows, float64 (K,); NaN without."""
+        p = np.full(len(self.founders), np.nan)
+        for place, null in self.shadow_slopes.items():
+            p[place] = two_sided(self.slopes[place], null)
+        return p
+
+    @cached_property
+    def p_of_finals(self) -> np.ndarray:
+        """Two-sided p value of each final share among those of all lines of shadows, float64 (K,)."""
+        return two_sided(self.shares[-1], np.sort(self.drift.final, axis=None))
+
+    @cached_property
+    def p_of_effective(self) -> float:
+        """Two-sided p value of the effective number of lines (order 2), averaged over the instants."""
+        null = np.sort(self.drift.effective.mean(axis=1))
+        return float(two_sided(self.effective[2].mean(), null))
+
+    @property
+    def ranked(self) -> np.ndarray:
+        """Places of the lines, that with the largest share at any instant first, int64 (K,)."""
+        return np.argsort(-self.shares.max(axis=0), kind="stable")
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain values for JSON."""
+        bands = {
+            "largest_share": np.percentile(self.drift.largest, BAND, axis=0),
+            "effective_lines": np.percentile(self.drift.effective, BAND, axis=0),
+        }
+        return {
+            "world": self.world,
+            "founded": int(self.ticks[0]),
+            "lifespan": self.lifespan,
+            "shadows": len(self.drift.final),
+            "p_of_effective_lines": self.p_of_effective,
+            "ticks": self.ticks.tolist(),
+            "living": self.living.tolist(),
+            "effective_lines": dict(zip("012", self.effective.tolist(), strict=True)),
+            "phylogenetic_diversity": self.diversity.tolist(),
+            "bands": {name: band.tolist() for name, band in bands.items()},
+            "lines": [self._line(place) for place in self.ranked.tolist()],
+            "sweeps": [each.to_dict() for each in self.sweeps],
+            "coalescence": _pairs(self.pairs),
+            "neutral_coalescence": _pairs(self.neutral_pairs),
+        }
+
+    def _line(self, place: int) -> dict[str, Any]:
+        founder, slope = self.founders[place], _number(self.slopes[place])
+        null = self.shadow_slopes.get(place)
+        return {
+            "organism": int(self.lives.id[founder]),
+            "born": int(self.lives.born[founder]),
+            "slope": slope,
+            "slope_per_lifespan": slope and self.lifespan and slope * self.lifespan,
+            "neutral_slopes": None if null is None else np.percentile(null, BAND).tolist(),
+            "p_of_slope": _number(self.p_of_slopes[place]),
+            "largest_share": float(self.shares[:, place].max()),
+            "final_share": float(self.shares[-1, place]),
+            "p_of_final_share": float(self.p_of_finals[place]),
+            "living": self.counts[:, place].tolist(),
+        }
+
+
+def lines(run: Records, world: int | None = None, at: int | None = None) -> list[WorldLines]:
+    """Measure lines in one world of a run, or in all.
+
+    Args:
+        run: the run, or an arm.
+        world: number of the world; by default all.
+        at: tick after which each of the living begins a line; by default see `founding_tick`.
+
+    Raises:
+        InputError: there is no such world, or nothing is alive after the tick.
+    """
+    count = run.lives.worlds
+    if world is not None and not 0 <= world < count:
+        raise InputError(f"there is no world {world}; the worlds are 0 to {count - 1}")
+    seeds = run.world_seeds.tolist()
+    worlds: Sequence[int] = range(count) if world is None else [world]
+    return [lines_of_world(each, run.lives.of_world(each), at, seeds[each]) for each in worlds]
+
+
+def lines_of_world(world: int, lives: Lives, at: int | None, seed: int) -> WorldLines:
+    """Measure lines in the lives of one world; `seed` is its seed, for the others see `lines`."""
+    turnover, era = Turnover.of(lives), last_era(lives)
+    founded = founding_tick(lives) if at is None else at
+    own = founders(lives, founded)
+    census = Census(lives, instants(founded, int(lives.ended.max())))
+    counts = census.counts(lines_of(lives, own), len(own))
+    measured = slopes.observed(counts, census.living, census.ticks)
+    with_slope = np.flatnonzero(np.isfinite(measured))
+    null = slopes.of_shadows(census, turnover, counts[:, with_slope], seed)
+    return WorldLines(
+        world=world,
+        lives=lives,
+        founders=own,
+        ticks=census.ticks,
+        counts=counts,
+        living=census.living,
+        slopes=measured,
+        shadow_slopes={
+            place: np.sort(of[np.isfinite(of)])
+            for place, of in zip(with_slope.tolist(), null, strict=True)
+        },
+        drift=drift(lives, turnover, census.ticks, len(own), seed),
+        sweeps=sweeps(era),
+        diversity=phylogenetic_diversity(lives, census.ticks),
+        pairs=coalescence.observed(Genealogy.of(lives)),
+        neutral_pairs=coalescence.neutral(era, Turnover.of(era)),
+    )
+
+
+def two_sided(values: np.ndarray, null: np.ndarray) -> np.ndarray:
+    """Return two-sided p values of values among N of the null hypothesis, in their shape, float64.
+
+    Twice the smaller share of those at least as large or as small, the value itself counted among them
+    (Davison & Hinkley 1997, sec. 4.2), at most 1.
+
+    Args:
+        values: of any shape.
+        null: values of the null hypothesis, rising, (N,).
+    """
+    at_most = 1 + np.searchsorted(null, values, side="right")
+    at_least = 1 + len(null) - np.searchsorted(null, values, side="left")
+    return np.minimum(2 * np.minimum(at_most, at_least) / (1 + len(null)), 1.0)
+
+
+def _number(value: float) -> float | None:
+    return None if np.isnan(value) else float(value)
+
+
+def _pairs(times: Times) -> dict[str, Any]:
+    return {
+        "mean": times.mean,
+        "median": times.median,
+        "ticks_back": times.back.tolist(),
+        "share": times.share.tolist(),
+    }

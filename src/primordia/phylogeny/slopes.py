@@ -1,0 +1,119 @@
+"""Selection coefficients of lines: the slopes of their logit shares, beside the slopes that drift makes.
+
+Selection changes the logit of a line's share x, ln(x / (1 - x)), by the selection coefficient s in each
+unit of time (Haldane 1924; Crow & Kimura 1970). So s is the slope of the logit over time, as it is
+measured in competitions (Lenski et al. 1991).
+"""
+
+import jax.numpy as jnp
+import numpy as np
+
+from primordia.compiled import shared
+from primordia.phylogeny.drift import Deal, deal_one_line
+from primordia.phylogeny.living import Census, Turnover
+
+LOW, HIGH = 0.05, 0.95
+"""Shares between which a line has a slope: below and above, chance alone decides."""
+LEAST = 5
+"""Fewest instants for a slope."""
+MOST, FEWEST = 1000, 200
+"""Largest and smallest number of shadows of a line."""
+EVENTS = 2**15
+"""Births and deaths after which lines that are lost are put aside."""
+
+
+class Slopes:
+    """The slopes of the logit shares of N lines, by weighted least squares, one instant after another.
+
+    The weight of an instant is m x (1 - x) for m living: the inverse of the variance of a logit share
+    that was counted among so many.
+    """
+
+    def __init__(self, number: int) -> None:
+        """Start with no instant; `number`: N."""
+        self._sums = np.zeros((5, number))
+        self._instants = np.zeros(number, np.int64)
+
+    def add(self, tick: int, counts: np.ndarray, living: int) -> None:
+        """Add an instant: the number of living of each line (N,), and of all lines."""
+        rows = np.flatnonzero(between(counts, living))
+        count = counts[rows].astype(float)
+        weight, logit = count * (living - count) / max(living, 1), np.log(count / (living - count))
+        for place, term in enumerate((1, tick, tick * float(tick), logit, tick * logit)):
+            self._sums[place, rows] += weight * term
+        self._instants[rows] += 1
+
+    @property
+    def slopes(self) -> np.ndarray:
+        """The slope of each line in one tick, float64 (N,); NaN with fewer than LEAST instants."""
+        w, wt, wtt, wy, wty = self._sums
+        spread = w * wtt - wt**2
+        known = (self._instants >= LEAST) & (spread > 0)
+        return np.where(known, (w * wty - wt * wy) / np.where(known, spread, 1), np.nan)
+
+
+def between(counts: np.ndarray, living: int | np.ndarray) -> np.ndarray:
+    """Return whether lines have shares between LOW and HIGH; counts and living broadcast."""
+    return (counts > 0) & (counts >= LOW * living) & (counts <= HIGH * living) & (counts < living)
+
+
+def observed(counts: np.ndarray, living: np.ndarray, ticks: np.ndarray) -> np.ndarray:
+    """Return the slopes of K lines, float64 (K,); NaN where a line has none.
+
+    Args:
+        counts: living of each line at T instants, int64 (T, K).
+        living: all living at each, int64 (T,).
+        ticks: the instants, int64 (T,).
+    """
+    slopes = Slopes(counts.shape[1])
+    for tick, row, number in zip((ticks - ticks[0]).tolist(), counts, living.tolist(), strict=True):
+        slopes.add(tick, row, number)
+    return slopes.slopes
+
+
+def of_shadows(census: Census, turnover: Turnover, counts: np.ndarray, seed: int) -> np.ndarray:
+    """Return the slopes of M lines in each of R shadows, float64 (M, R); NaN where a shadow has none.
+
+    The shadow of a line begins where the line first has a share between LOW and HIGH, with the number
+    of living that the line then has. From there on it drifts. What led the line there has no effect on
+    what drift does next, so without selection the line's slope is one more of its shadows' slopes.
+
+    Args:
+        census: the living of one world at T instants.
+        turnover: its births and deaths.
+        counts: living of each line at each, int64 (T, M); each line is between the bounds at some
+            instant.
+        seed: the world's seed.
+    """
+    lines = counts.shape[1]
+    if not lines:
+        return np.zeros((0, 0))
+    deal = Deal.of(census.lives, turnover, census.ticks, seed, what=1)
+    shadows = deal.replicates(lines, FEWEST, MOST)
+    entries = between(counts, census.living[:, None]).argmax(axis=0)
+    slopes, now = Slopes(lines * shadows), np.zeros(lines * shadows, np.int32)
+    for place, begin, end, living in deal.parts:
+        for first in range(begin, end, EVENTS):
+            _drift_on(now, deal, first, min(first + EVENTS, end))
+        new = np.flatnonzero(entries == place)
+        now.reshape(lines, -1)[new] = counts[place, new][:, None]
+        slopes.add(int(census.ticks[place] - census.ticks[0]), now, living)
+    return slopes.slopes.reshape(lines, shadows)
+
+
+def _drift_on(now: np.ndarray, deal: Deal, first: int, last: int) -> None:
+    """Let the lines of shadows, int32 (N,), drift from one event to another, in place.
+
+    Only lines that are neither lost nor all of the living can change. A line that is all has no slope any
+    more, so it is treated as lost.
+    """
+    now[now >= int(deal.before[first])] = 0
+    rows = np.flatnonzero(now)
+    if not len(rows):
+        return
+    size = 1 << max(int(len(rows) - 1).bit_length(), 8)  # few sizes, since JAX compiles for each
+    padded = np.zeros((2, size), np.int32)
+    padded[:, : len(rows)] = rows, now[rows]
+    which, count = map(jnp.asarray, padded)
+    drifted = shared(deal_one_line)(count, which, first, last, *deal[:3])
+    now[rows] = np.asarray(drifted)[: len(rows)]

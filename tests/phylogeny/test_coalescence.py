@@ -1,0 +1,131 @@
+"""Common ancestors, coalescence times and the tree of the living, beside walks up every line."""
+
+from collections import Counter
+from itertools import combinations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from primordia.phylogeny.coalescence import Genealogy, neutral, observed
+from primordia.phylogeny.diversity import hill_numbers, phylogenetic_diversity
+from primordia.phylogeny.living import Turnover, last_era
+from primordia.runs.lives import Lives
+from tests.pedigrees import HISTORY, Event, line_to, lives_of, living_after, moran, walked
+
+
+def parted(lives: Lives, one: int, other: int) -> int | None:
+    """Return the tick at which the lines of two organisms part; None if they have no common ancestor."""
+    lines = [line_to(lives, row)[::-1] for row in (one, other)]
+    shared = sum(a == b for a, b in zip(*lines, strict=False))
+    rest = [line[shared] for line in lines if len(line) > shared]
+    return min(int(lives.born[row]) for row in rest) if shared else None
+
+
+@given(history=HISTORY, founders=st.integers(1, 3))
+def test_each_pair_of_the_living_coalesces_where_its_lines_part(
+    history: list[Event], founders: int
+) -> None:
+    lives = walked(history, founders)
+    living, end = living_after(lives, len(history)), int(lives.ended.max())
+    ticks = [parted(lives, *pair) for pair in combinations(living, 2)]
+    counted = Counter(end - tick for tick in ticks if tick is not None)
+    times = observed(Genealogy.of(lives))
+    shares = np.diff(times.share, prepend=0) * max(len(ticks), 1)
+    assert (
+        dict(zip(times.back.tolist(), shares.round().astype(int).tolist(), strict=True)) == counted
+    )
+    if counted:
+        assert times.mean == pytest.approx(np.mean(list(counted.elements())))
+    if len(counted) and counted.total() == len(ticks):
+        assert times.median == np.quantile(list(counted.elements()), 0.5, method="inverted_cdf")
+
+
+@given(history=HISTORY, founders=st.integers(1, 3))
+def test_the_common_ancestor_is_the_youngest_on_all_lines(
+    history: list[Event], founders: int
+) -> None:
+    lives = walked(history, founders)
+    lines = [line_to(lives, row) for row in living_after(lives, len(history))]
+    common = [row for row in lines[0] if all(row in line for line in lines)]
+    genealogy = Genealogy.of(lives)
+    assert genealogy.common_ancestor == (common[0] if common else None)
+    assert set(genealogy.rows.tolist()) == {row for line in lines for row in line}
+    assert len(genealogy.roots) == len({line[-1] for line in lines})
+    trunk = genealogy.trunk().tolist()
+    assert trunk[::-1] in lines
+    assert set(common) <= set(trunk)
+
+
+def tree_length(lives: Lives, tick: int) -> int:
+    """Return the length of the tree of those alive after a tick: who carries their lines in each tick."""
+    length = 0
+    for then in range(tick):
+        carriers = set()
+        for row in living_after(lives, tick):
+            carriers |= set([each for each in line_to(lives, row) if lives.born[each] <= then][:1])
+        length += len(carriers)
+    return length
+
+
+@given(history=HISTORY, founders=st.integers(1, 3))
+def test_the_tree_of_the_living_is_as_long_as_their_lines(
+    history: list[Event], founders: int
+) -> None:
+    lives = walked(history, founders)
+    ticks = np.arange(0, len(history) + 1, 3)
+    found = phylogenetic_diversity(lives, ticks)
+    assert found.tolist() == [tree_length(lives, tick) for tick in ticks.tolist()]
+
+
+def test_trees_are_traced_across_parts_of_the_records() -> None:
+    """A pedigree of several parts, beside the sum over its genealogy."""
+    lives = moran(30, 10_000)
+    genealogy = Genealogy.of(lives)
+    ticks, _ = genealogy.coalescences()
+    born, end = lives.born[genealogy.rows], 10_000
+    last = np.where(lives.died[genealogy.rows], -1, end)  # when each is left by the last line
+    np.maximum.at(last, genealogy.parent[genealogy.parent >= 0], born[genealogy.parent >= 0])
+    whole = phylogenetic_diversity(lives, np.array([end]))
+    assert whole.tolist() == [(last - born).sum()]
+    assert len(ticks) == 29
+
+
+def test_a_tree_by_hand() -> None:
+    """A founder with children at ticks 2 and 4 dies at 5; the first child has one at 6; 9 is the end."""
+    lives = lives_of([-1, 0, 0, 1], [0, 2, 4, 6], [5, 9, 9, 9], [True, False, False, False])
+    assert phylogenetic_diversity(lives, np.array([1, 3, 5, 9])).tolist() == [
+        *(1, 1 + 2 + 1, 4 + 3 + 1, 4 + 7 + 5 + 3)
+    ]
+    times = observed(Genealogy.of(lives))
+    assert times.back.tolist() == [3, 7]
+    assert times.share.tolist() == [1 / 3, 1]
+
+
+def test_drift_gives_the_times_of_a_moran_process() -> None:
+    """With n + 1 alive after each birth, two lines meet at it with probability 2 / (n (n + 1))."""
+    size, births = 12, 4000
+    lives = moran(size, births)
+    expected = neutral(lives, Turnover.of(lives))
+    assert expected.mean == pytest.approx(size * (size + 1) / 2 - 1, rel=0.01)
+    means = [observed(Genealogy.of(moran(size, 600, name=10 + 2 * k))).mean for k in range(60)]
+    assert np.mean([each for each in means if each is not None]) == pytest.approx(
+        expected.mean, rel=0.2
+    )
+
+
+def test_hill_numbers_are_those_of_even_and_uneven_shares() -> None:
+    counts = np.array([[5, 5, 5, 5], [10, 0, 0, 0], [0, 0, 0, 0], [6, 3, 1, 0]])
+    found = hill_numbers(counts)
+    share = np.array([0.6, 0.3, 0.1])
+    uneven = [3, np.exp(-(share * np.log(share)).sum()), 1 / (share**2).sum()]
+    assert pytest.approx(np.array([[4, 4, 4], [1, 1, 1], [0, 0, 0], uneven])) == found.T
+
+
+@given(history=HISTORY, founders=st.integers(1, 3))
+def test_an_era_begins_with_the_last_founders(history: list[Event], founders: int) -> None:
+    lives = walked(history, founders)
+    era = last_era(lives)
+    first = max(row for row in range(len(lives)) if lives.parent[row] < 0) - founders + 1
+    assert era.id.tolist() == list(range(first, len(lives)))

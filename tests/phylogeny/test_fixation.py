@@ -1,0 +1,117 @@
+"""Fixation along a line of descent, and sweeps, beside pedigrees walked one organism at a time."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from primordia.phylogeny.fixation import UNKNOWN, branches, first_ticks, nearest
+from primordia.phylogeny.living import Turnover
+from primordia.phylogeny.sweeps import sweeps
+from primordia.runs.lives import Lives
+from tests.pedigrees import HISTORY, Event, line_to, lives_of, living_after, moran, walked
+
+
+def share_after(lives: Lives, ancestor: int, tick: int) -> float:
+    living = living_after(lives, tick)
+    return sum(ancestor in line_to(lives, row) for row in living) / max(len(living), 1)
+
+
+@given(history=HISTORY, founders=st.integers(1, 3), which=st.integers(0, 99))
+def test_shares_of_the_living_are_those_of_a_count(
+    history: list[Event], founders: int, which: int
+) -> None:
+    lives = walked(history, founders)
+    line = np.array(line_to(lives, which % len(lives))[::-1])
+    branch = branches(lives.parent_row, line)
+    found = first_ticks(Turnover.of(lives), branch, len(line), (0.1, 0.5, 1))
+    for share, ticks in zip((0.1, 0.5, 1), found, strict=True):
+        for ancestor, tick in zip(line.tolist(), ticks.tolist(), strict=True):
+            shares = [share_after(lives, ancestor, each) for each in range(len(history) + 1)]
+            above = [each > share or each == share == 1 for each in shares]
+            assert tick == (above.index(True) if any(above) else UNKNOWN)
+
+
+@pytest.mark.parametrize("size", [2, 40])
+def test_a_long_line_is_looked_at_in_parts(size: int) -> None:
+    """The parts are shorter than the pedigree, and there are more ancestors than fit into one."""
+    lives = moran(size, 5000)
+    line = np.array(line_to(lives, len(lives) - 1)[::-1])
+    branch = branches(lives.parent_row, line)
+    (fixed,) = first_ticks(Turnover.of(lives), branch, len(line), (1,))
+    lowest = np.full(5001, len(line))  # the first place at which one of the living left the line
+    for row in range(len(lives)):
+        end = lives.ended[row] if lives.died[row] else 5001
+        lowest[lives.born[row] : end] = np.minimum(lowest[lives.born[row] : end], branch[row])
+    for place in range(len(line)):
+        reached = np.flatnonzero(lowest[lives.born[line[place]] :] >= place)
+        expected = lives.born[line[place]] + reached[0] if len(reached) else UNKNOWN
+        assert fixed[place] == expected
+
+
+@given(history=HISTORY, marks=st.sets(st.integers(0, 30), min_size=1))
+def test_the_nearest_marked_ancestor_is_that_of_a_walk(
+    history: list[Event], marks: set[int]
+) -> None:
+    lives = walked(history)
+    marked = sorted({each % len(lives) for each in marks})
+    expected = [
+        next((each for each in line_to(lives, row) if each in marked), -1)
+        for row in range(len(lives))
+    ]
+    assert nearest(lives.parent_row, np.array(marked)).tolist() == expected
+
+
+def test_the_nearest_marked_ancestor_is_found_across_parts() -> None:
+    parent = np.arange(-1, 10_000)
+    parent[7000] = 2
+    found = nearest(parent, np.array([0, 5000]))
+    assert found[[4999, 5000, 6999, 7000, 9999]].tolist() == [0, 5000, 5000, 0, 0]
+
+
+def common_after(lives: Lives, tick: int) -> int | None:
+    """Return the youngest common ancestor of those alive after a tick."""
+    lines = [line_to(lives, row) for row in living_after(lives, tick)]
+    return next((row for row in lines[0] if all(row in line for line in lines)), None)
+
+
+@given(history=HISTORY, founders=st.integers(1, 3))
+def test_sweeps_are_the_changes_of_the_common_ancestor(history: list[Event], founders: int) -> None:
+    lives = walked(history, founders)
+    began = max(int(lives.born[row]) for row in range(len(lives)) if lives.parent[row] < 0)
+    expected: dict[int, int] = {}
+    for tick in range(began, len(history) + 1):
+        row = common_after(lives, tick)
+        if row is not None and lives.born[row] > began:
+            expected.setdefault(row, tick)
+    found = sweeps(lives)
+    done = {each.organism: each.fixed for each in found if each.fixed is not None}
+    assert done == expected
+    for each in found:
+        assert each.half is not None
+        assert share_after(lives, each.organism, each.half) > 0.5
+        assert share_after(lives, each.organism, each.half - 1) <= 0.5
+        if each.fixed is not None:
+            assert each.duration == each.fixed - lives.born[each.organism]
+            assert each.living == len(living_after(lives, each.fixed))
+
+
+def test_a_sweep_by_hand() -> None:
+    """The first of two founders has a child at tick 2, which has two; the second dies at tick 8."""
+    lives = lives_of(
+        parent=[-1, -1, 0, 2, 2],
+        born=[0, 0, 2, 4, 5],
+        ended=[6, 8, 9, 9, 9],
+        died=[True, True, False, False, False],
+    )
+    (only,) = sweeps(lives)
+    assert (only.organism, only.born, only.half, only.fixed, only.duration) == (2, 2, 5, 8, 6)
+    assert (only.birth_cause, only.living) == ("mutant", 3)
+
+
+def test_a_sweep_that_is_under_way_is_the_youngest_beyond_one_half() -> None:
+    """The founder is alive, and of four others three descend from its child of tick 2."""
+    lives = lives_of([-1, 0, 1, 1, 0], [0, 2, 3, 4, 5], [9] * 5, [False] * 5)
+    (only,) = sweeps(lives)
+    assert (only.organism, only.half, only.fixed, only.duration) == (1, 3, None, None)
+    assert only.living == 3

@@ -1,0 +1,201 @@
+"""Both commands on runs: lines of descent with their mutations, forks, two parents, and bad input."""
+
+import json
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import primordia
+from primordia.errors import InputError
+from primordia.history.pedigree import genomes
+from primordia.law.world import BirthCause
+from primordia.phylogeny.descent import Ancestors
+from primordia.runs import loop
+from primordia.runs.archive import Archive
+from tests.commands import complains, here
+from tests.synthetic import world_of
+from tests.worlds import MEADOW, config
+
+LIVES: dict[str, Any] = {
+    **MEADOW,
+    "brain": {"hidden": 6},
+    "hazard": 0.03,
+    "replication": 0.3,
+    "mutation": {"probability": 0.6, "blocks": {"output": {"scale": 0.5}}},
+    "seeds": 2,
+}
+MATES: dict[str, Any] = {**LIVES, "recombination": {"probability": 0.8}}
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Make a run of two worlds whose organisms mutate more often than not."""
+    where = tmp_path_factory.mktemp("descent") / "run"
+    loop.start(config(LIVES, stop={"ticks": 300}), where)
+    return where
+
+
+@pytest.fixture(scope="module")
+def forked(run: Path) -> Path:
+    """Fork it at tick 200."""
+    return primordia.load(run).fork(200, run.parent / "fork", stop={"ticks": 320}).path
+
+
+@pytest.fixture(scope="module")
+def mated(run: Path) -> Path:
+    """Make a run in which most children have two parents."""
+    loop.start(config(MATES, stop={"ticks": 200}), run.parent / "mated")
+    return run.parent / "mated"
+
+
+@pytest.mark.parametrize("which", ["run", "forked", "mated"])
+def test_a_line_has_its_lives_and_the_changes_of_its_genomes(
+    which: str, request: pytest.FixtureRequest
+) -> None:
+    path = request.getfixturevalue(which)
+    found, oldest = primordia.load(path).ancestors(), primordia.load(path).oldest()
+    assert (found.organism, found.world) == (oldest.id, oldest.world)
+    assert found.line.id.tolist() == oldest.descent()
+    opened = Archive(path)
+    rows = np.array([opened.lives.row(each, found.world) for each in found.line.id])
+    assert found.children.tolist() == [(opened.lives.parent_row == row).sum() for row in rows]
+    begins = opened.config.begins
+    made, blocks = genomes(opened, rows), np.cumsum(opened.layout.sizes)[:-1]
+    assert found.changes is not None
+    for place in range(1, len(rows)):
+        parts = np.split(made[place].astype(float) - made[place - 1], blocks)
+        if found.line.born[place] > begins:
+            norms = [np.linalg.norm(part) for part in parts]
+            assert found.changes[place] == pytest.approx(norms, rel=1e-5)
+    known = np.isfinite(found.changes).all(axis=1)
+    founder = found.line.birth_cause == BirthCause.FOUNDER
+    if which != "mated":
+        assert (known == (~founder & (found.line.born > begins))).all()
+        copies = known & (found.line.birth_cause == BirthCause.COPY)
+        assert not found.changes[copies].any()
+    assert known.sum() > 3
+
+
+def test_a_line_in_a_fork_begins_with_an_organism_alive_at_it(forked: Path, run: Path) -> None:
+    in_fork = primordia.load(forked).ancestors(world=1)
+    whole = primordia.load(forked.parent / "run").organism(in_fork.line.id[0], 1).descent()
+    assert in_fork.line.entered[0] > 0
+    assert len(whole) > 1
+    assert in_fork.common is None or in_fork.common.generation >= 0
+    (lines,) = primordia.load(forked).lines(world=1)
+    assert lines.ticks[0] == 200
+    assert sorted(lines.lives.id[lines.founders]) == sorted(lines.lives.id[lines.lives.entered > 0])
+
+
+def test_mutations_of_untrusted_code_are_left_out(
+    run: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: object) -> None:
+        raise InputError("its code is not trusted")
+
+    monkeypatch.setattr("primordia.phylogeny.descent.changes", refuse)
+    found = primordia.load(run).ancestors(world=0)
+    assert found.size is None
+    assert found.to_dict()["line"][-1]["change"] is None
+    printed = here("ancestors", run, "--world", 0, "--out", run.parent / "without")
+    assert "The changes are not known: its code is not trusted." in printed.stdout
+
+
+def test_the_commands_print_tables_and_json_and_draw(run: Path, tmp_path: Path) -> None:
+    done = here("ancestors", run, "--world", 1, "--out", tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert len([line for line in done.stdout.splitlines() if line.startswith(" ")]) <= 24
+    assert "…" not in done.stdout
+    told = json.loads(here("ancestors", run, "--world", 1, "--json").stdout)
+    assert told["line"][0]["birth_cause"] == "founder"
+    assert told["line"][-1]["organism"] == told["organism"]
+    assert [each["generation"] for each in told["line"]] == list(range(len(told["line"])))
+    by_number = json.loads(here("ancestors", run, told["organism"], "--world", 1, "--json").stdout)
+    assert by_number == told
+    done = here("lines", run, "--world", "all", "--out", tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.count("lines founded at tick") == 2
+    assert {each.name for each in tmp_path.iterdir()} == {
+        f"{name}.{kind}" for name in ("ancestors", "lines-0", "lines-1") for kind in ("png", "svg")
+    }
+    of_all = json.loads(here("lines", run, "--world", "all", "--json").stdout)
+    (of_one,) = json.loads(here("lines", run, "--world", 1, "--json").stdout)
+    assert of_all[1] == of_one
+    assert sum(line["final_share"] for line in of_one["lines"]) == pytest.approx(1)
+
+
+def test_lines_can_be_founded_at_any_tick(run: Path) -> None:
+    (late,) = json.loads(here("lines", run, "--at", 250, "--json").stdout)
+    assert late["founded"] == late["ticks"][0] == 250
+    assert len(late["lines"]) == late["living"][0]
+    assert late["ticks"][-1] == 300
+
+
+def test_the_last_tick_is_enough(run: Path) -> None:
+    """At the last tick each line has one organism, and nothing has drifted."""
+    (only,) = primordia.load(run).lines(world=0, at=300)
+    assert only.ticks.tolist() == [300]
+    assert (only.counts == 1).all()
+    assert only.p_of_effective == 1
+
+
+@pytest.mark.parametrize(
+    ("words", "part"),
+    [
+        (["ancestors", "RUN", 10**9], "no organism 1000000000 was born in world 0"),
+        (["ancestors", "RUN", "--world", 7], "there is no world 7"),
+        (["lines", "RUN", "--world", 2], "there is no world 2; the worlds are 0 to 1"),
+        (["lines", "RUN", "--world", "both"], "'both' is not the number of a world, and not all"),
+        (["lines", "RUN", "--at", 301], "tick 301 is not on record; the ticks are 0 to 300"),
+        (["lines", "RUN/none"], "is not a run"),
+    ],
+)
+def test_bad_input_is_one_line(run: Path, words: list, part: str) -> None:
+    complains(here(*(str(word).replace("RUN", str(run)) for word in words)), 2, part)
+
+
+def test_lines_of_a_world_that_died_out_are_lost(tmp_path: Path) -> None:
+    """All 16 founders die at once, and so do their successors."""
+    starving = {
+        **MEADOW,
+        "replication": 0.0,
+        "genesis": "fill",
+        "metabolism": {"store": 30.5},
+        "stop": {"ticks": 40},
+    }
+    loop.start(config(starving), tmp_path / "run")
+    (first,) = primordia.load(tmp_path / "run").lines(at=1)
+    assert first.counts[0].tolist() == [1] * 16
+    assert first.counts[-1].tolist() == [0] * 16
+    assert first.drift.final.max() == 0
+    assert first.p_of_effective == 1
+    found = primordia.load(tmp_path / "run").ancestors()
+    assert (found.common, found.roots) == (None, 16)
+    assert "They descend from 16 organisms" in here("ancestors", tmp_path / "run").stdout
+
+
+def test_without_heredity_lines_go_on_and_a_line_of_descent_does_not(tmp_path: Path) -> None:
+    """The control's children are random founders that have a mother; lines are hers, genomes are not."""
+    loop.start(config({**LIVES, "inheritance": "founder"}, stop={"ticks": 200}), tmp_path / "run")
+    assert len(primordia.load(tmp_path / "run").ancestors().line) == 1
+    (first, _) = primordia.load(tmp_path / "run").lines()
+    assert first.shares[-1].max() > 0.2
+
+
+@given(lived=st.lists(st.integers(0, 50), min_size=1, max_size=90))
+def test_a_table_has_the_first_the_last_and_the_largest_gain(lived: list[int]) -> None:
+    line = world_of([(place, each, True) for place, each in enumerate(lived)], until=200)
+    found: Any = SimpleNamespace(line=line)
+    places = Ancestors.telling(found, 20).tolist()
+    assert places == sorted(set(places))
+    assert min(len(lived), 15) <= len(places) <= 20
+    assert {0, len(lived) - 1} <= set(places)
+    span = np.maximum(line.lifespan, 1)
+    gains = span[1:] / span[:-1]
+    if len(gains) and (gains == gains.max()).sum() == 1:
+        assert gains.argmax() + 1 in places

@@ -1,0 +1,147 @@
+"""Selection coefficients and their null: what is put into a pedigree comes out of its measures."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from primordia.errors import InputError
+from primordia.phylogeny.drift import drift
+from primordia.phylogeny.frequencies import founders, founding_tick, instants, lines_of
+from primordia.phylogeny.lines import WorldLines, lines_of_world, two_sided
+from primordia.phylogeny.living import Census, Turnover
+from primordia.phylogeny.slopes import observed
+from tests.pedigrees import HISTORY, Event, line_to, living_after, moran, walked
+
+
+def test_the_slope_of_a_logistic_rise_is_its_coefficient() -> None:
+    ticks, s = np.arange(0, 2000, 20), 0.004
+    share = 1 / (1 + np.exp(-s * (ticks - 900.0)))
+    living = np.where(ticks < 1000, 100_000, 50_000)
+    counts = (share * living).round().astype(int)
+    found = observed(np.stack([counts, living - counts], axis=1), living, ticks)
+    assert found == pytest.approx([s, -s], rel=1e-3)
+
+
+def test_the_slope_is_that_of_weighted_least_squares() -> None:
+    rng = np.random.default_rng(1)
+    ticks, living = np.arange(100, 400, 10), np.full(30, 80)
+    counts = rng.integers(0, 81, (30, 2))
+    share = counts / 80
+    for line, slope in enumerate(observed(counts, living, ticks)):
+        inside = (share[:, line] >= 0.05) & (share[:, line] <= 0.95)
+        x = share[inside, line]
+        weights = np.sqrt(80 * x * (1 - x))  # polyfit squares them
+        expected = np.polyfit(ticks[inside], np.log(x / (1 - x)), 1, w=weights)[0]
+        assert slope == pytest.approx(expected, rel=1e-6)
+
+
+def test_a_line_needs_some_instants_between_the_bounds() -> None:
+    counts = np.array([[2, 2, 2, 2, 98, 98], [40, 41, 42, 43, 50, 100], [10, 20, 30, 40, 99, 99]]).T
+    found = observed(counts, np.full(6, 100), np.arange(6))
+    assert np.isfinite(found).tolist() == [False, True, False]
+
+
+SIZE, BIRTHS = 40, 1600
+
+
+@pytest.fixture
+def quick(optimised: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Draw fewer shadows of each line."""
+    monkeypatch.setattr("primordia.phylogeny.slopes.MOST", 200)
+
+
+def measured(name: int, advantage: float = 0.0) -> WorldLines:
+    """Measure a Moran process in which three of the founders have an advantage as parents."""
+    favoured = (lambda row: 1.0 if row < 3 else 1 - advantage) if advantage else None
+    return lines_of_world(0, moran(SIZE, BIRTHS, name, favoured), None, name)
+
+
+@pytest.mark.usefixtures("quick")
+def test_without_selection_p_values_are_those_of_chance() -> None:
+    """The lines of one world are not independent, so the bounds are wide."""
+    worlds = [measured(100 + 2 * k) for k in range(20)]
+    slopes = np.concatenate([each.p_of_slopes[np.isfinite(each.p_of_slopes)] for each in worlds])
+    assert len(slopes) > 100
+    assert 0.4 < slopes.mean() < 0.6
+    for below in (0.1, 0.3, 0.6):
+        assert (slopes < below).mean() == pytest.approx(below, abs=0.1)
+    whole = np.array([each.p_of_effective for each in worlds])
+    assert 0.35 < whole.mean() < 0.65
+    assert (whole < 0.1).mean() < 0.25
+
+
+def test_an_advantage_that_is_put_in_comes_out_as_the_slope() -> None:
+    """Without it a founder's line has 1 - a times as many children, so s is about -ln(1 - a) / size."""
+    size, advantage, found = 400, 0.2, []
+    for k in range(6):
+        lives = moran(size, 12_000, 300 + 2 * k, lambda row: 1.0 if row < 100 else 1 - advantage)
+        own = founders(lives, 0)
+        census = Census(lives, instants(0, 12_000))
+        favoured = census.counts(lines_of(lives, own), size)[:, :100].sum(axis=1)
+        found += observed(favoured[:, None], census.living, census.ticks).tolist()
+    assert np.mean(found) == pytest.approx(-np.log(1 - advantage) / size, rel=0.15)
+
+
+@pytest.mark.usefixtures("quick")
+def test_a_strong_advantage_is_told_from_drift() -> None:
+    p = []
+    for k in range(8):
+        world = measured(500 + 2 * k, 0.6)
+        winner = world.ranked[0]
+        p.append(world.p_of_slopes[winner])
+        assert world.slopes[winner] > 0
+    assert np.median(p) < 0.05
+
+
+def test_a_shadow_has_the_recorded_population_and_repeats() -> None:
+    lives = moran(20, 300, 7)
+    ticks, turnover = instants(0, 300), Turnover.of(lives)
+    one, again = (drift(lives, turnover, ticks, 20, seed=3) for _ in range(2))
+    other = drift(lives, turnover, ticks, 20, seed=4)
+    assert (one.final == again.final).all()
+    assert (one.final != other.final).any()
+    assert one.final.sum(axis=1) == pytest.approx(np.ones(len(one.final)))
+    assert one.effective[:, 0] == pytest.approx(np.full(len(one.final), 20))
+    assert (np.diff(one.effective[:, -1]) != 0).any()
+
+
+def test_the_chance_to_be_all_is_the_share_at_the_beginning() -> None:
+    """Moran 1958: each of n organisms is the ancestor of all in the end with probability 1 / n."""
+    lives = moran(6, 600, 11)
+    found = drift(lives, Turnover.of(lives), instants(0, 600), 6, seed=5)
+    assert (found.final.max(axis=1) == 1).all()
+    assert found.final.mean(axis=0) == pytest.approx(np.full(6, 1 / 6), abs=0.09)
+
+
+@given(history=HISTORY, starts=st.integers(1, 3), at=st.integers(0, 30))
+def test_lines_are_the_descendants_of_the_living_at_a_tick(
+    history: list[Event], starts: int, at: int
+) -> None:
+    lives = walked(history, starts)
+    at = min(at, len(history))
+    own = founders(lives, at)
+    assert own.tolist() == living_after(lives, at)
+    census = Census(lives, instants(at, len(history)))
+    counts = census.counts(lines_of(lives, own), len(own))
+    for tick, row, living in zip(census.ticks.tolist(), counts, census.living, strict=True):
+        now = living_after(lives, tick)
+        first = [next((a for a in line_to(lives, each) if a in own), None) for each in now]
+        assert row.tolist() == [first.count(each) for each in own.tolist()]
+        assert living == len(now)
+
+
+def test_lines_begin_with_the_founders_of_a_full_world_and_with_a_crowd_elsewhere() -> None:
+    assert founding_tick(moran(40, 50)) == 0
+    doubling = walked([([0], []), ([0, 1], []), ([0, 1, 2, 3], [])] + [([], [])] * 5)
+    assert founding_tick(doubling) == 2  # 8 at most, so half of them
+
+
+def test_a_tick_that_is_not_on_record_is_refused() -> None:
+    with pytest.raises(InputError, match="tick 51 is not on record; the ticks are 0 to 50"):
+        founders(moran(5, 50), 51)
+
+
+def test_p_values_count_the_value_itself_and_both_sides() -> None:
+    null = np.arange(1.0, 10.0)
+    assert two_sided(np.array([0.0, 5.0, 9.0, 10.0]), null) == pytest.approx([0.2, 1, 0.4, 0.2])
