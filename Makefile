@@ -6,11 +6,12 @@ CONSTRAINTS ?= --constraint constraints.txt --build-constraint constraints.txt
 
 .PHONY: demo test quick slow check format figures bench mutants constraints clean
 
-demo: .venv/installed  ## evolve pole balancers, draw figures of the run, and film the longest life
+demo: .venv/installed  ## evolve pole balancers, draw figures of the run, film the longest life, and write a page about it
 	rm -rf runs/demo
 	$(BIN)/primordia run CartPole-survival --out runs/demo
 	$(BIN)/primordia plot runs/demo
 	$(BIN)/primordia replay runs/demo
+	$(BIN)/primordia report runs/demo
 
 test: .venv/installed-dev  ## run all tests: ten minutes on two cores
 	$(BIN)/python -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder
