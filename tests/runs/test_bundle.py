@@ -147,7 +147,7 @@ def test_a_run_made_of_a_bundle_goes_on_as_the_run_itself(
 
 def test_nothing_is_written_into_a_bundle(file: Path, tmp_path: Path) -> None:
     before = file.read_bytes()
-    for words in (["resume", "--ticks", "200"], ["plot"], ["replay"]):
+    for words in (["resume", "--ticks", "200"], ["plot"], ["replay"], ["film"], ["report"]):
         done = here(words[0], file, *words[1:])
         complains(done, 2, f"nothing is written into a bundle: `primordia unbundle {file} FOLDER`")
     done = here("fork", file, "--at", 40, "--ticks", 45, "--out", tmp_path / "fork", "--quiet")

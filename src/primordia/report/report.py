@@ -7,6 +7,7 @@ from primordia.errors import InputError
 from primordia.experiments.campaign import Campaign
 from primordia.report.content import of_experiment, of_run
 from primordia.report.page import page
+from primordia.runs import bundle
 from primordia.runs.records import Records
 
 NAME = "report.html"
@@ -24,6 +25,8 @@ def report(shown: Records | Campaign, out: Path | None = None) -> Path:
         InputError: nothing has lived in the run yet, or the name is not that of an HTML file.
         Trouble: a run is damaged, or the file cannot be written.
     """
+    if out is None:
+        bundle.refuse_changes(shown.path)
     path = out if out is not None else shown.path / NAME
     if path.suffix not in (".html", ".htm"):
         raise InputError(f"--out {path}: a report is an .html file")

@@ -17,7 +17,7 @@ WORLDS = {
     "well-mixed": "cells, all of which are neighbours",
 }
 DEATHS = {
-    "fatal": "of what their world did to them",
+    "fatal": "killed by their world",
     "starved": "of hunger",
     "hazard": "by accident",
     "replaced": "since a child took their cell",
@@ -49,8 +49,8 @@ def setting(config: Config) -> str:
     parts = [
         f"{about}{worlds} {config.cells:,} {WORLDS[config.placement.topology]}. In each cell lives"
         " at most one organism: a small neural network in a simulation of its own.",
-        "No one sets a goal, and nothing is rewarded. An organism lives until its world kills it, and"
-        f" while it lives it copies itself into {room} cell{taken}.",
+        "There is no goal and no reward. An organism lives until its world kills it, and while it lives"
+        f" it copies itself into {room} cell{taken}.",
     ]
     if config.inheritance == "parent":
         parts.append("Copies differ from their parent by small random changes.")
@@ -142,8 +142,8 @@ def _lives(run: Records, rate: float | None) -> list[str]:
     early, late = (lives.take(rows) for rows in (order[:quarter], order[-quarter:]))
     if len(lives) >= 40:
         parts.append(
-            f"Of the first quarter of the organisms, half lived {_median(early)}; of the last quarter,"
-            f" half {_median(late)} so far."
+            f"Half of the first quarter of the organisms lived {_median(early)}, and half of the last"
+            f" quarter {_median(late)} so far."
         )
     row = int(lives.lifespan.argmax())
     which = f"organism {lives.id[row]:,}"

@@ -168,7 +168,7 @@ def refuse_changes(path: Path) -> None:
         file = origin_of(path)
         raise InputError(
             f"nothing is written into a bundle: `primordia unbundle {file} FOLDER` makes a run of it;"
-            " figures and videos need --out alone"
+            " figures, films and pages need --out alone"
         )
 
 
