@@ -88,7 +88,7 @@ def test_words_tell_the_numbers_of_the_run(torus: Path) -> None:
     about, happened, lives = words(run, numbers)
     births = sum(world["births"] for world in numbers["worlds"])
     assert about.startswith("Meadows in which nothing moves. Each of 3 worlds has 24 cells on")
-    assert "nothing is rewarded" in about
+    assert "no goal and no reward" in about
     assert "starves" in about
     assert f"{births:,} organisms were born" in happened
     assert f"organism {int(run.lives.id[run.lives.lifespan.argmax()]):,} of world" in lives
