@@ -1,10 +1,12 @@
 """Lines of descent, as the live view follows them, obey their rule."""
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from primordia.engine.engine import Engine
+from primordia.errors import Trouble
 from primordia.history.lines import DIES, NO_PARENT, Lines, Turnover, turnovers
 from tests import worlds
 
@@ -114,3 +116,10 @@ def test_chunks_of_any_length_give_the_same_lines() -> None:
         outcomes.append((lines.line_of, lines.takeovers))
     assert outcomes[0] == outcomes[1]
     assert outcomes[0][1]
+
+
+@pytest.mark.parametrize("late", [(3, 2, 0), (3, 0, DIES)])
+def test_a_record_of_what_the_dead_do_is_damaged(late: Event) -> None:
+    events = [(1, 0, NO_PARENT), (1, 1, NO_PARENT), (2, 0, DIES), late]
+    with pytest.raises(Trouble, match="has a child or dies while it is not alive"):
+        followed(events, Lines([], crowd=2))

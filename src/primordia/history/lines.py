@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from primordia.errors import Trouble
 from primordia.law.columns import Columns
 from primordia.law.events import BIRTHS, DEATHS, Events, Rows
 
@@ -53,7 +54,18 @@ class Lines:
         """Follow births and deaths -> the line that each newborn was born into.
 
         In a tick births come first, since a parent may die in it.
+
+        Raises:
+            Trouble: an organism has a child or dies while it is not alive.
         """
+        try:
+            return self._followed(turnover)
+        except KeyError:
+            raise Trouble(
+                "the records are damaged: an organism has a child or dies while it is not alive"
+            ) from None
+
+    def _followed(self, turnover: Turnover) -> list[int]:
         now, birth_lines = -1, []
         for tick, number, parent in _in_order(turnover):
             if tick != now and now >= 0:
