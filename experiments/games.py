@@ -15,12 +15,14 @@ table goes to `results/` beside the file, as Markdown and CSV.
 """
 
 import csv
+import io
 from pathlib import Path
 from typing import Any
 
 import named
 
 import primordia
+from primordia import files
 from primordia.comparison.controls import OUTCOMES, Group, Standing, evolved, unevolved
 from primordia.comparison.tables import spread_text
 from primordia.experiments.results import table
@@ -87,11 +89,12 @@ def worlds_of(standing: Standing, run: Records) -> list[dict[str, Any]]:
 def write_rows(stem: Path, rows: list[dict[str, Any]], summary_text: str) -> None:
     """Write all rows to STEM.csv and their summary to STEM.md."""
     stem.parent.mkdir(parents=True, exist_ok=True)
-    with stem.with_suffix(".csv").open("w", newline="", encoding="utf-8") as out:
-        sheet = csv.DictWriter(out, list(rows[0]), lineterminator="\n")
-        sheet.writeheader()
-        sheet.writerows(rows)
-    stem.with_suffix(".md").write_text(summary_text + "\n", encoding="utf-8")
+    text = io.StringIO()
+    sheet = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
+    sheet.writeheader()
+    sheet.writerows(rows)
+    files.write_text(stem.with_suffix(".csv"), text.getvalue())
+    files.write_text(stem.with_suffix(".md"), summary_text + "\n")
     print(f"{stem}: .md .csv")
 
 
