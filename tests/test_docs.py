@@ -30,7 +30,7 @@ def blocks(page: Path) -> list[tuple[str, str]]:
 
 def with_blocks() -> list[Any]:
     """Return the pages that have blocks; those that live the longest runs are slow."""
-    marks = dict.fromkeys(("tutorial", "experiments"), pytest.mark.slow)
+    marks = dict.fromkeys(("tutorial", "experiments", "gymnax", "report"), pytest.mark.slow)
     return [
         pytest.param(page, id=page.stem, marks=marks.get(page.stem, ()))
         for page in PAGES
