@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from primordia.figures import spacetime
 from primordia.report import film, ground
 from primordia.report.ground import Ground
-from primordia.report.organisms import generations, nearest, organisms
+from primordia.report.organisms import generations, nearest_among, organisms
 from primordia.report.packed import packed
 from primordia.report.tree import Node, grown, in_order, tree
 from primordia.runs.archive import Archive
@@ -97,7 +97,7 @@ def test_ancestors_and_generations_are_those_of_a_walk(parents: np.ndarray, data
 
     assert generations(parents).tolist() == [len(above(row)) for row in range(len(parents))]
     expected = [next((up for up in above(row) if up in some), -1) for row in some.tolist()]
-    assert [(-1 if at < 0 else int(some[at])) for at in nearest(parents, some)] == expected
+    assert [(-1 if at < 0 else int(some[at])) for at in nearest_among(parents, some)] == expected
 
 
 @given(PARENTS, st.data())

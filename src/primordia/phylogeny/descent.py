@@ -9,8 +9,9 @@ import numpy as np
 from primordia.errors import InputError
 from primordia.history.lineage import changes, descent
 from primordia.law.world import BirthCause, Cause
+from primordia.phylogeny.ancestry import children, nearest
 from primordia.phylogeny.coalescence import Genealogy
-from primordia.phylogeny.fixation import UNKNOWN, branches, first_ticks, nearest
+from primordia.phylogeny.fixation import UNKNOWN, branches, first_ticks
 from primordia.phylogeny.frequencies import instants
 from primordia.phylogeny.living import Census, Turnover
 from primordia.runs.lives import Lives
@@ -149,7 +150,7 @@ def ancestors(run: Records, organism: int, world: int = 0) -> Ancestors:
         organism=organism,
         world=world,
         line=lives.take(line),
-        children=_children(lives, line),
+        children=children(lives.parent_row)[line],
         blocks=run.layout.names,
         changes=known,
         unknown=unknown,
@@ -167,10 +168,6 @@ def _changes(run: Records, organism: int, world: int) -> tuple[np.ndarray | None
         return changes(run, organism, world), None
     except InputError as error:
         return None, str(error)
-
-
-def _children(lives: Lives, line: np.ndarray) -> np.ndarray:
-    return np.bincount(lives.parent_row + 1, minlength=len(lives) + 1)[line + 1]
 
 
 def _common(genealogy: Genealogy) -> CommonAncestor | None:

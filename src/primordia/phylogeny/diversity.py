@@ -8,7 +8,7 @@ descendant dies.
 
 import numpy as np
 
-from primordia.phylogeny.fixation import ROWS
+from primordia.phylogeny.ancestry import ROWS
 from primordia.phylogeny.living import stops
 from primordia.runs.lives import Lives
 

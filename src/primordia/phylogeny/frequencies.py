@@ -4,7 +4,7 @@ import numpy as np
 
 from primordia.errors import InputError
 from primordia.history.clades import crowd_size
-from primordia.phylogeny.fixation import nearest, places_of
+from primordia.phylogeny.ancestry import nearest, places_of
 from primordia.phylogeny.living import Census, Turnover, last_era
 from primordia.runs.lives import Lives
 

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from primordia.law.world import BirthCause, Cause
+from primordia.phylogeny.ancestry import children, nearest, places_of
 from primordia.report.packed import packed
 from primordia.runs.lives import Lives
 
@@ -35,17 +36,12 @@ def organisms(lives: Lives, rows: np.ndarray) -> dict[str, Any]:
         "origin": packed(some.birth_cause),
         "cause": packed(some.cause.astype(np.int64) + 1),
         "parent": packed(some.parent + 1),
-        "ancestor": packed(nearest(lives.parent_row, rows) + 1),
+        "ancestor": packed(nearest_among(lives.parent_row, rows) + 1),
         "generation": packed(generations(lives.parent_row)[rows]),
         "children": packed(children(lives.parent_row)[rows]),
         "causes": CAUSES,
         "origins": BIRTHS,
     }
-
-
-def children(parent_row: np.ndarray) -> np.ndarray:
-    """Return the number of children of each organism, int64 (L,)."""
-    return np.bincount(parent_row[parent_row >= 0], minlength=len(parent_row))
 
 
 def generations(parent_row: np.ndarray) -> np.ndarray:
@@ -63,18 +59,12 @@ def generations(parent_row: np.ndarray) -> np.ndarray:
         distance, far = distance + distance[far], further
 
 
-def nearest(parent_row: np.ndarray, rows: np.ndarray) -> np.ndarray:
+def nearest_among(parent_row: np.ndarray, rows: np.ndarray) -> np.ndarray:
     """Return the place in `rows` of the nearest ancestor of each of these organisms, int64 (R,), or -1.
 
     Args:
         parent_row: row of each organism's parent, or -1; int64 (L,).
         rows: some organisms, int64 (R,), rising.
     """
-    place = np.full(len(parent_row), -1)
-    place[rows] = np.arange(len(rows))
-    itself = np.arange(len(parent_row))
-    jump = np.where((place >= 0) | (parent_row < 0), itself, parent_row)
-    while not np.array_equal(further := jump[jump], jump):
-        jump = further
-    parent = parent_row[rows]
-    return np.where(parent >= 0, place[jump[np.maximum(parent, 0)]], -1)
+    known = np.append(nearest(parent_row, rows), -1)  # the last is that of no parent, -1
+    return places_of(rows, known[parent_row[rows]])
