@@ -1,4 +1,4 @@
-"""Seconds and memory of `ancestors` and `lines` on a run of millions of births, with invented records.
+"""Seconds and memory of `ancestors`, `lines` and `report` on millions of births, with invented records.
 
     python benchmarks/descent.py [BIRTHS] [CELLS]
 
@@ -83,5 +83,5 @@ if __name__ == "__main__":
     )
     with tempfile.TemporaryDirectory() as folder:
         forge(Path(folder, "run"), births, cells)
-        for command in ("info", "ancestors", "lines"):
+        for command in ("info", "ancestors", "lines", "report"):
             measure(Path(folder, "run"), command)

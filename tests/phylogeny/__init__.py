@@ -1,0 +1,1 @@
+"""Tests of phylogenies: tables, trees, lines of descent, selection between lines."""

@@ -6,14 +6,12 @@ from typing import Any
 import click
 
 from primordia.cli.cache import cache_option
-from primordia.cli.flags import run_argument, trust_option
+from primordia.cli.flags import run_argument, trust_option, video_option
 
 
 @click.command(short_help="Make a film of a world.")
 @run_argument
-@click.option(
-    "--out", type=click.Path(path_type=Path), help="An .mp4 or .gif file [under RUN/videos]."
-)
+@video_option
 @click.option("--world", default=0, help="The world's number [0].")
 @click.option(
     "--by",

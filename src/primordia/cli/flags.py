@@ -32,6 +32,9 @@ checkpoint_option = click.option(
 trust_option = click.option(
     "--trust", is_flag=True, help="Let the run's own code be executed, from now on."
 )
+video_option = click.option(
+    "--out", type=click.Path(path_type=Path), help="An .mp4 or .gif file [under RUN/videos]."
+)
 quiet_option = click.option("--quiet", is_flag=True, help="Print nothing while running.")
 
 LIMITS = {

@@ -15,6 +15,7 @@ from primordia.cli.flags import (
     run_argument,
     runs_argument,
     trust_option,
+    video_option,
 )
 from primordia.errors import Trouble
 
@@ -69,9 +70,7 @@ def plot(runs: tuple[Path, ...], out: Path | None, world: int, figures: tuple[st
 @click.option("--world", type=int, help="The organism's world [0, or that of the champion].")
 @click.option("--from", "begin", type=int, help="First age shown, in ticks.")
 @click.option("--to", "end", type=int, help="Last age shown, in ticks.")
-@click.option(
-    "--out", type=click.Path(path_type=Path), help="An .mp4 or .gif file [under RUN/videos]."
-)
+@video_option
 @trust_option
 @cache_option
 def replay(run: Path, begin: int | None, end: int | None, out: Path | None, **chosen: Any) -> None:

@@ -20,8 +20,8 @@ FLASH = 0.75
 """Share of white in a cell in which an organism was born since the moment before."""
 FADING = 0.8
 """Share of the light of a death that is left at the next moment."""
-BLOCK = 64
-"""Moments that are computed together."""
+MOST = 2**22
+"""Cells at moments that are computed together: the lives are sorted once for them."""
 PALETTE = np.array([colour(hue) for hue in range(HUES)], np.float32)
 
 
@@ -36,8 +36,9 @@ def colours(lives: Lives, cells: np.ndarray, ticks: np.ndarray, full: int) -> It
     """
     clades, before = clades_of(lives), int(ticks[0])
     embers = np.broadcast_to(GROUND, (len(cells), 3)).copy()
-    for at in range(0, len(ticks), BLOCK):
-        block = ticks[at : at + BLOCK]
+    together = max(MOST // len(cells), 1)
+    for at in range(0, len(ticks), together):
+        block = ticks[at : at + together]
         rows = occupants(lives, cells, block)
         codes = line_codes(lives, clades, rows, block)
         for tick, row, code in zip(block.tolist(), rows, codes, strict=True):

@@ -61,10 +61,10 @@ def film(
     lives = run.lives.of_world(world)
     shown = moments(lives, run.config.begins, by, ticks)
     lived = _beside(run, lives, shown, organism)
-    if out is None:
-        files.own_folder(path.parent)
     pictures = _pictures(run, lives, shown, lived)
     first = next(pictures)
+    if out is None:
+        files.own_folder(path.parent)
     video.write(path, chain([first], pictures), RATE, with_colours(first))
     return path
 

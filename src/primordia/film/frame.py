@@ -1,12 +1,11 @@
 """One picture of a film: the world on the left, a life on the right, and words below them."""
 
-from functools import cache
-
 import numpy as np
-from PIL import Image, ImageDraw, ImageFont
+from PIL import Image, ImageDraw
 
 from primordia.film.colours import DARKEST, PALETTE
 from primordia.film.shape import PAPER, SIDE
+from primordia.organism.replay import font
 
 WIDTH, HEIGHT, EDGE = 960, 576, 20
 """pixels of the whole picture, and of its margins"""
@@ -73,9 +72,3 @@ def fitted(picture: Image.Image, room: tuple[int, int]) -> Image.Image:
     scale = min(room[0] / picture.width, room[1] / picture.height)
     size = (round(picture.width * scale), round(picture.height * scale))
     return picture if size == picture.size else picture.resize(size, Image.Resampling.BILINEAR)
-
-
-@cache
-def font(size: int) -> ImageFont.ImageFont | ImageFont.FreeTypeFont:
-    """Return the font of a size in pixels."""
-    return ImageFont.load_default(size)

@@ -158,15 +158,16 @@ def picture_of(life: RelivedLife, stretch: Stretch, i: int) -> Image.Image:
 
 def _captioned(picture: Image.Image, left: str, right: str, below: str) -> Image.Image:
     """Write words into a picture: in its upper corners, and below those on the left."""
-    pen, font = ImageDraw.Draw(picture), _font(SIZE)
-    pen.text((14, 12), left, INK, font)
-    pen.text((14, 32), below, INK, font)
-    pen.text((picture.width - 14, 12), right, INK, font, anchor="ra")
+    pen, letters = ImageDraw.Draw(picture), font(SIZE)
+    pen.text((14, 12), left, INK, letters)
+    pen.text((14, 32), below, INK, letters)
+    pen.text((picture.width - 14, 12), right, INK, letters, anchor="ra")
     return picture
 
 
 @cache
-def _font(size: int) -> ImageFont.ImageFont | ImageFont.FreeTypeFont:
+def font(size: int) -> ImageFont.ImageFont | ImageFont.FreeTypeFont:
+    """Return the font of a size in pixels."""
     return ImageFont.load_default(size)
 
 
@@ -174,5 +175,5 @@ def _card(size: tuple[int, int], words: str) -> Image.Image:
     """Draw words on an empty picture."""
     card = Image.new("RGB", size, PAPER)
     middle = (size[0] / 2, size[1] / 2)
-    ImageDraw.Draw(card).text(middle, words, INK, _font(2 * SIZE), anchor="mm")
+    ImageDraw.Draw(card).text(middle, words, INK, font(2 * SIZE), anchor="mm")
     return card

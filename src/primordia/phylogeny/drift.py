@@ -67,7 +67,7 @@ class Deal(NamedTuple):
         )
 
     def replicates(self, lines: int, fewest: int, most: int) -> int:
-        """Return how many shadows are drawn, of so many lines each drawn on their own."""
+        """Return the number of shadows of each of some lines, which are drawn one by one."""
         return int(np.clip(DRAWS // max(self.places[-1] * lines, 1), fewest, most))
 
     @property

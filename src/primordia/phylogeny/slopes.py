@@ -25,8 +25,8 @@ EVENTS = 2**15
 class Slopes:
     """The slopes of the logit shares of N lines, by weighted least squares, one instant after another.
 
-    The weight of an instant is m x (1 - x) for m living: the inverse of the variance of a logit share
-    that was counted among so many.
+    The weight of an instant is m x (1 - x) for m living: the inverse of the variance of the logit of a
+    share among m.
     """
 
     def __init__(self, number: int) -> None:

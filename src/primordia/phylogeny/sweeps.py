@@ -1,4 +1,4 @@
-"""Sweeps: organisms whose descendants came to be all of the living, one common ancestor after another."""
+"""Sweeps: the organisms whose descendants replaced all others, one after another."""
 
 from dataclasses import asdict, dataclass
 from typing import Any

@@ -1,4 +1,4 @@
-"""The content of a page: all that is told of a run, or of an experiment, as JSON can hold it."""
+"""The content of a page about a run or an experiment, as values that JSON can hold."""
 
 from collections.abc import Sequence
 from pathlib import Path

@@ -78,7 +78,7 @@ class Ground:
 
     @cached_property
     def segments(self) -> dict[str, np.ndarray]:
-        """The lives in the shown cells, cut where lines begin anew; sorted by cell and time, (S,) each.
+        """The lives in the shown cells, cut where new lines begin; sorted by cell and time, (S,) each.
 
         `row`: row of the organism; `start`, `stop`: the places of time between which it is there; `code`:
         its line, see `line_codes`.
