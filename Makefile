@@ -12,6 +12,8 @@ demo: .venv/installed  ## evolve pole balancers, draw figures of the run, film t
 	$(BIN)/primordia plot runs/demo
 	$(BIN)/primordia replay runs/demo
 	$(BIN)/primordia report runs/demo
+	@echo 'Open runs/demo/report.html in a browser. `source .venv/bin/activate` puts `primordia` on the path.'
+	@echo 'docs/tutorial.md goes on from here in ten minutes.'
 
 test: .venv/installed-dev  ## run all tests: ten minutes on two cores
 	$(BIN)/python -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder
