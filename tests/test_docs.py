@@ -71,10 +71,10 @@ def try_out(kind: str, text: str, where: Path) -> None:
         (where / named[1]).write_text(text)
     if kind == "sh":
         for line in text.splitlines():
-            program, *words = shlex.split(line, comments=True)
+            program, *words = shlex.split(line, comments=True) or [""]
             if program == "make":
                 run(["make", "-n", "-C", str(HERE), *words], where)
-            else:
+            elif program:
                 assert program == "primordia", line
                 done = commands.here(*words)
                 assert done.returncode == 0, f"{line}\n{done.stdout}{done.stderr}"
