@@ -160,8 +160,8 @@ def standings(
 ) -> Standings:
     """Return how the four groups of an experiment play.
 
-    Tables of the first seeds name groups otherwise, and have the longest-lived of the arm without heredity
-    as the best of founders: chosen from more of them than heredity had births.
+    Tables of the first seeds name groups otherwise, and have the longest-lived of the arm without
+    heredity as the best of founders: chosen from more of them than heredity had births.
     """
     new = ("{arm}: champion", "{arm}: all alive", "best founder", "founder")
     old = ("{arm}", "{arm}, all alive", control, "a founder")
@@ -184,6 +184,13 @@ def worlds(name: str) -> str:
 def seeds(name: str) -> str:
     """Say the same in a table: `20, unseen seeds`, or `5, first seeds`."""
     return f"{rows(name).seed.nunique()}, {'unseen' if unseen(name) else 'first'} seeds"
+
+
+def seeds_of_games(name: str) -> str:
+    """Say the same of the worlds whose organisms play."""
+    found = rows(f"{name}-games")
+    number = found["seed" if "seed" in found else "world"]
+    return f"{number.nunique()}, {'unseen' if number.min() >= UNSEEN else 'first'} seeds"
 
 
 def listed(values: Iterable[float]) -> str:
@@ -230,6 +237,7 @@ def pages() -> dict[Path, str]:
         unseen=unseen,
         worlds=worlds,
         seeds=seeds,
+        seeds_of_games=seeds_of_games,
         listed=listed,
         against=against,
         least_of_best=least_of_best,
