@@ -203,6 +203,12 @@ def share(part: float, whole: float) -> str:
     return f"{100 * part / whole:.0f} %"
 
 
+def ratio(name: str, arm: str, to: str, column: str) -> str:
+    """Return how many times the median of another arm that of an arm is."""
+    own, others = (float(cell(name, each, column).median.replace(",", "")) for each in (arm, to))
+    return f"{own / others:.1f}"
+
+
 def budget(name: str, task: str) -> str:
     """Return the organism-ticks of a world whose cells are full all the time, in millions."""
     return f"{int(rows(name).ticks.max()) * config.load(task).cells / 1e6:.2g}"
@@ -233,6 +239,7 @@ def pages() -> dict[Path, str]:
         standings=standings,
         games=games,
         share=share,
+        ratio=ratio,
         budget=budget,
         unseen=unseen,
         worlds=worlds,
