@@ -18,7 +18,11 @@ from tests import commands
 
 pytestmark = pytest.mark.usefixtures("optimised")  # some runs are long
 HERE = Path(__file__).parent.parent
-PAGES = [HERE / "README.md", *sorted((HERE / "docs").glob("*.md"))]
+TEMPLATES = HERE / "docs" / "templates"
+PAGES = [
+    HERE / "README.md",
+    *sorted(page for page in (HERE / "docs").rglob("*.md") if TEMPLATES not in page.parents),
+]
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 FILE = re.compile(r"# ([\w-]+\.\w+)\n")
 """The first line of a block that is a file, with its name."""
@@ -28,11 +32,15 @@ def blocks(page: Path) -> list[tuple[str, str]]:
     return BLOCK.findall(page.read_text(encoding="utf-8"))
 
 
+def name(page: Path) -> str:
+    return page.relative_to(HERE).as_posix()
+
+
 def with_blocks() -> list[Any]:
     """Return the pages that have blocks; those that live the longest runs are slow."""
     marks = dict.fromkeys(("tutorial", "experiments", "gymnax", "report"), pytest.mark.slow)
     return [
-        pytest.param(page, id=page.stem, marks=marks.get(page.stem, ()))
+        pytest.param(page, id=name(page), marks=marks.get(page.stem, ()))
         for page in PAGES
         if blocks(page)
     ]
@@ -93,11 +101,11 @@ def test_every_command_and_block_of_a_page_works(
 
 def test_figures_of_pages_are_those_of_the_tables(monkeypatch: pytest.MonkeyPatch) -> None:
     """`make figures` fills them in."""
-    monkeypatch.syspath_prepend(str(HERE / "docs" / "templates"))
+    monkeypatch.syspath_prepend(str(TEMPLATES))
     fill = import_module("fill")
 
     for page, text in fill.pages().items():
-        assert page.read_text(encoding="utf-8") == text, f"{page.name} differs; run `make figures`"
+        assert page.read_text(encoding="utf-8") == text, f"{name(page)} differs; run `make figures`"
 
 
 def test_links_of_pages_lead_to_files_that_exist() -> None:
@@ -105,7 +113,7 @@ def test_links_of_pages_lead_to_files_that_exist() -> None:
         text = page.read_text(encoding="utf-8")
         for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)|src=\"([^\":]+)\"", text):
             path = page.parent / (target[0] or target[1])
-            assert path.exists(), f"{page.name} links to {path}"
+            assert path.exists(), f"{name(page)} links to {path}"
 
 
 def test_pictures_of_the_readme_are_small() -> None:

@@ -108,14 +108,14 @@ def test_figures_that_are_typed_by_hand_are_found(text: str, found: list[str]) -
     assert typed(text, {30_000.0}) == found
 
 
-@pytest.mark.parametrize("template", sorted(TEMPLATES.glob("*.md")), ids=lambda path: path.stem)
+@pytest.mark.parametrize("template", sorted(TEMPLATES.rglob("*.md")), ids=lambda path: path.stem)
 def test_no_measured_figure_of_a_page_is_typed_by_hand(template: Path) -> None:
     found = typed(template.read_text(encoding="utf-8"), settings())
     assert set(found) <= KNOWN.keys(), "write an expression over a committed table, or add a reason"
 
 
 def test_each_reason_for_a_typed_figure_is_still_needed() -> None:
-    every = "\n\n".join(path.read_text(encoding="utf-8") for path in TEMPLATES.glob("*.md"))
+    every = "\n\n".join(path.read_text(encoding="utf-8") for path in TEMPLATES.rglob("*.md"))
     assert KNOWN.keys() <= set(typed(every, settings()))
 
 

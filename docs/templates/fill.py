@@ -2,11 +2,11 @@
 
     python docs/templates/fill.py
 
-Each page with measured figures has a template of its name beside this file, in Jinja2. In a template, a
-figure is an expression over a table, such as `{{ cell("cartpole/heredity", "no-heredity", "births to
-saturation").median }}`. So no sentence can say another figure than its table. A table is named by its
-folder below `experiments` and its name in `results/` there. A test fills all templates and compares them
-with the pages.
+Each page with measured figures has a template in Jinja2: `docs/results/atari.md` is made from
+`docs/templates/results/atari.md`. In a template, a figure is an expression over a table, such as
+`{{ cell("cartpole/heredity", "no-heredity", "births to saturation").median }}`. So no sentence can say
+another figure than its table. A table is named by its folder below `experiments` and its name in
+`results/` there. A test fills all templates and compares them with the pages.
 """
 
 import re
@@ -251,9 +251,9 @@ def pages() -> dict[Path, str]:
         chosen=chosen,
     )
     filler.filters.update(number=number_text)
+    names = sorted(path.relative_to(HERE).as_posix() for path in HERE.rglob("*.md"))
     return {
-        HERE.parent / path.name: HEAD.format(path.name) + filler.get_template(path.name).render()
-        for path in sorted(HERE.glob("*.md"))
+        HERE.parent / name: HEAD.format(name) + filler.get_template(name).render() for name in names
     }
 
 

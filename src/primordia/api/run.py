@@ -165,7 +165,7 @@ class Run:
         say: Callable[[str], object] = warnings.warn,
         **choice: Any,
     ) -> pa.Table | None:
-        """Return who descends from whom as a table, or write it to a file `out`; see docs/phylogeny.md.
+        """Return who descends from whom as a table, or write it to a file; see docs/how-to/phylogeny.md.
 
         `say` is called with a line on what is missing. The choices are those of `reduce.chosen`: `world`,
         `extant`, `collapse`; with `organism`, a birth number, it is that organism's line of descent.

@@ -23,7 +23,7 @@ OF_TREES = ("ancestor_list", "ancestor_id")
 
 
 def save(whole: Phylogeny, out: Path, say: Callable[[str], object]) -> None:
-    """Write a phylogeny to a file: .parquet, .csv, .nwk or .newick, or .tsv; see docs/phylogeny.md.
+    """Write a phylogeny to .parquet, .csv, .nwk, .newick or .tsv; see docs/how-to/phylogeny.md.
 
     Args:
         whole: the phylogeny.
