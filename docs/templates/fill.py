@@ -161,7 +161,7 @@ def standings(
     """Return how the four groups of an experiment play.
 
     Tables of the first seeds name groups otherwise, and have the longest-lived of the arm without
-    heredity as the best of founders: chosen from more of them than heredity had births.
+    heredity as the best of founders, mostly chosen from more of them than heredity had births.
     """
     new = ("{arm}: champion", "{arm}: all alive", "best founder", "founder")
     old = ("{arm}", "{arm}, all alive", control, "a founder")
