@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pandas as pd
+import reference
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from primordia import config
@@ -249,6 +250,10 @@ def pages() -> dict[Path, str]:
         against=against,
         least_of_best=least_of_best,
         chosen=chosen,
+        commands=reference.commands,
+        settings=reference.settings,
+        parts=reference.parts,
+        seasons=reference.seasons,
     )
     filler.filters.update(number=number_text)
     names = sorted(path.relative_to(HERE).as_posix() for path in HERE.rglob("*.md"))

@@ -27,7 +27,12 @@ device_option = click.option(
     help="What computes: cpu or gpu, all that JAX has.",
 )
 checkpoint_option = click.option(
-    "--checkpoint-every", type=float, default=60.0, show_default=True, metavar="SECONDS"
+    "--checkpoint-every",
+    type=float,
+    default=60.0,
+    show_default=True,
+    metavar="SECONDS",
+    help="Time from one checkpoint to the next.",
 )
 trust_option = click.option(
     "--trust", is_flag=True, help="Let the run's own code be executed, from now on."
