@@ -145,7 +145,6 @@ def ancestors(run: Records, organism: int, world: int = 0, say: Say = warnings.w
     Raises:
         InputError: no such organism was born.
     """
-    run.lives.row(organism, world)
     archive, own = run_of(run, world)
     lives, runs = archive.lives, [archive]
     if archive.config.fork is not None:
@@ -183,14 +182,17 @@ def _changes(
     """
     found, until = np.full((len(line), len(runs[0].layout.names)), np.nan), len(line)
     for run in runs:
+        before = int((line.born <= run.config.begins).sum())
+        if before == until and run is not runs[-1]:
+            continue  # all are alive at its fork, or older
         try:
             own = changes(run, int(line.id[until - 1]), world)
         except InputError as error:
-            return None if run is runs[0] else found, str(error)
+            return None if until == len(line) else found, str(error)
         found[until - len(own) : until] = own
-        until = int((line.born <= run.config.begins).sum())  # alive at the fork, or older
-        if not until:
+        if not before:
             break
+        until = before
     return found, None
 
 
