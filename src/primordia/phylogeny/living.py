@@ -83,21 +83,14 @@ class Turnover:
     @classmethod
     def of(cls, lives: Lives) -> "Turnover":
         """Return the turnover of one world."""
+        dead = np.flatnonzero(lives.died)
+        dead = dead[np.argsort(lives.ended[dead])]
         founder = lives.parent < 0
-        children, founders = (_by_tick(each, lives.born) for each in (~founder, founder))
-        dead = _by_tick(lives.died, lives.ended)
-        birth, death, start = lives.born[children], lives.ended[dead], lives.born[founders]
-        # Sorted parts are merged by the places of the deaths and the founders; children have the others.
-        at_death = np.arange(len(dead)) + np.searchsorted(birth, death, side="right")
-        at_death += np.searchsorted(start, death, side="left")
-        at_start = np.arange(len(founders)) + np.searchsorted(birth, start, side="right")
-        at_start += np.searchsorted(death, start, side="right")
-        row = np.zeros(len(birth) + len(death) + len(start), np.int64)
-        tick, born, own = row.copy(), np.ones(len(row), bool), np.ones(len(row), bool)
-        born[at_death] = own[at_death] = own[at_start] = False
-        row[own], row[at_death], row[at_start] = children, dead, founders
-        tick[own], tick[at_death], tick[at_start] = birth, death, start
-        return cls(tick, row, born)
+        parts = np.flatnonzero(~founder), dead, np.flatnonzero(founder)
+        tick = np.concatenate([lives.born[parts[0]], lives.ended[dead], lives.born[parts[2]]])
+        birth = np.repeat([True, False, True], list(map(len, parts)))
+        order = np.argsort(tick, kind="stable")
+        return cls(tick[order], np.concatenate(parts)[order], birth[order])
 
     @cached_property
     def living(self) -> np.ndarray:
@@ -108,9 +101,3 @@ class Turnover:
     def closes(self) -> np.ndarray:
         """Whether each is the last of its tick, bool (E,)."""
         return np.append(self.tick[1:] > self.tick[:-1], True)
-
-
-def _by_tick(which: np.ndarray, ticks: np.ndarray) -> np.ndarray:
-    """Return the rows of some organisms, bool (L,), in the order of their ticks, int64 (L,)."""
-    rows = np.flatnonzero(which)
-    return rows[np.argsort(ticks[rows], kind="stable")]
