@@ -28,7 +28,7 @@ def test_a_wrong_variable_is_one_line_that_names_it(
 ) -> None:
     monkeypatch.setenv("PRIMORDIA_CORES", wrong)
     with pytest.raises(
-        InputError, match=r"^PRIMORDIA_CORES: a number of cores, 1 or more, not "
+        InputError, match=r"^PRIMORDIA_CORES must be a number of cores, 1 or more, not "
     ) as said:
         cores.count()
     assert repr(wrong) in str(said.value)

@@ -1,4 +1,4 @@
-"""`python -m primordia`, which imports nothing from the current folder unless a task names it."""
+"""`python -m primordia`: it imports modules of the current folder only if a task names them."""
 
 import sys
 

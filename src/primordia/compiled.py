@@ -7,7 +7,8 @@ from typing import Any
 import jax
 
 KEPT = 64
-"""compiled functions that are kept, the last ones used, each with its code for all shapes of a call"""
+"""number of the last used compiled functions that are kept, each with its code for all shapes of a
+call"""
 
 
 def shared(function: Callable, *fixed: Any, donate: tuple[int, ...] = ()) -> Callable:
@@ -19,7 +20,8 @@ def shared(function: Callable, *fixed: Any, donate: tuple[int, ...] = ()) -> Cal
     Args:
         function: a pure function of a module or a class.
         fixed: its first arguments, which never change.
-        donate: positions, among the other arguments, of those that a call uses up; see `donate_argnums`.
+        donate: positions among the other arguments whose memory a call may reuse; see
+            `donate_argnums`.
     """
     try:
         hash(fixed)

@@ -50,7 +50,7 @@ class Stop(Settings):
 
     ticks: int | None = Field(None, ge=1, lt=2**63, description="ticks after which a world stops")
     births: int | None = Field(
-        None, ge=1, lt=2**63, description="births, with founders, after which a world stops"
+        None, ge=1, lt=2**63, description="births (founders included) after which a world stops"
     )
     until: Literal["saturation"] | None = Field(
         None,
@@ -66,7 +66,8 @@ class ForkedFrom(Settings):
 
 
 class Config(Settings):
-    """All settings of a run. It depends on nothing else but package versions and the device."""
+    """All settings of a run. A run depends on them, package versions and the device, and on nothing
+    else."""
 
     task: str = Field(min_length=1, description="name of the task")
     about: str = Field("", description="the task, in one line")
@@ -89,10 +90,13 @@ class Config(Settings):
         "parent", description="parent: heredity; founder: every child is a founder (the control)"
     )
     genesis: Literal["one", "fill"] = Field(
-        "one", description="life starts, and restarts, with one founder in a random cell, or in all"
+        "one",
+        description="how life starts and restarts: one founder in a random cell, or a "
+        "founder in every cell "
+        "(fill)",
     )
     hazard: Rate = Field(
-        0.0, ge=0, le=1, description="probability of accidental death in a tick, for all organisms"
+        0.0, ge=0, le=1, description="probability that an organism dies by accident in a tick"
     )
     metabolism: Metabolism | None = Field(None, description="none: no organism starves")
     seasons: tuple[Season, ...] = Field(
@@ -125,7 +129,7 @@ class Config(Settings):
             raise InputError(f"habitat: {error}") from None
 
     def build_brain(self) -> Brain:
-        """Return the brain of this run's organisms."""
+        """Return the brain of the run's organisms."""
         return make("brain", self.brain, brains.find)
 
     def build_layout(self, habitat: AnyHabitat) -> Layout:
@@ -133,7 +137,7 @@ class Config(Settings):
         return self.build_brain().layout(habitat.senses_size, habitat.action.size)
 
     def build_law(self, habitat: AnyHabitat) -> Law:
-        """Return the law that holds in this run's worlds."""
+        """Return the law of the run's worlds."""
         brain, heredity = self.build_brain(), self.build_heredity(self.build_layout(habitat))
         return Law(
             worlds=self.seeds,
@@ -189,16 +193,16 @@ class Config(Settings):
 
     @property
     def begins(self) -> int:
-        """Return the tick at the end of which the records begin: that of the fork, or 0."""
+        """Return the tick after which the records begin: that of the fork, or 0."""
         return 0 if self.fork is None else self.fork.tick
 
     def to_toml(self) -> str:
-        """Return TOML from which `validated` makes the same Config."""
+        """Return the settings as TOML, from which `validated` makes the same Config."""
         return tomli_w.dumps(replaced(self.model_dump(mode="json"), None, NONE))
 
 
 def load(task: str, settings: dict[str, Any] | None = None) -> Config:
-    """Return the configuration of a task's name or a TOML file, with some settings changed.
+    """Return the configuration of a task, by its name or TOML file, with some settings changed.
 
     A file whose `task` is a built-in name changes that task. Any other file is a task by itself.
 
@@ -220,7 +224,7 @@ def validated(values: dict[str, Any], source: str) -> Config:
 
 
 def parsed(values: dict[str, Any], source: str) -> Config:
-    """Return a Config of these values, each checked by itself, which needs no code of any part.
+    """Return a Config of these values, each checked alone; no code of a part is executed.
 
     Raises:
         InputError: a value is wrong; the message names it and the source, in one line.
@@ -229,7 +233,8 @@ def parsed(values: dict[str, Any], source: str) -> Config:
 
 
 def _parsed(values: dict[str, Any], source: str, others: Callable[[], list[str]]) -> Config:
-    """Return a Config; `others` names the settings of parts, among which a wrong name may be meant."""
+    """Return a Config; `others` are names of parts' settings, which the message for a wrong name
+    may suggest."""
     try:
         check_values(values)
         return Config.model_validate(replaced(values, NONE, None))
@@ -240,7 +245,7 @@ def _parsed(values: dict[str, Any], source: str, others: Callable[[], list[str]]
 
 
 def _completed(config: Config, source: str) -> Config:
-    """Add the defaults of brain and mutation, so that `config.toml` holds if a version changes them."""
+    """Add the defaults of brain and mutation, so that `config.toml` does not depend on the version."""
     built: dict[str, Any] = {}
     try:
         for part, default in DEFAULTS.items():
@@ -293,7 +298,7 @@ def limits(values: dict[str, Any]) -> dict[str, Any]:
 
 
 def _check(config: Config) -> None:
-    """Raise an error if settings that are right by themselves do not fit together."""
+    """Raise an error if settings that are each valid do not fit together."""
     habitat = config.build_habitat()
     config.placement.shape(config.cells)
     if config.seed + config.seeds > 2**64:
@@ -302,7 +307,8 @@ def _check(config: Config) -> None:
         )
     if config.cells * config.seeds > 2**26:
         raise InputError(
-            f"cells x seeds: {config.cells * config.seeds} cells are more than 2^26; spread them over"
+            f"cells x seeds: {config.cells * config.seeds} cells are more than 2^26; spread them "
+            "over"
             " several runs"
         )
     try:
@@ -312,7 +318,8 @@ def _check(config: Config) -> None:
     continuous = any(isinstance(part, Continuous) for part in habitat.action.parts)
     if config.motor.kind == "gaussian" and not continuous:
         raise InputError(
-            "motor.kind: this habitat's actions are discrete, so a gaussian motor has no use; set direct"
+            "motor.kind: this habitat's actions are discrete, so a gaussian motor cannot be used; "
+            "set direct"
         )
     law = config.build_law(habitat)
     try:
@@ -329,10 +336,10 @@ def _check_season(setting: str, config: Config, law: Law) -> None:
             {*law.rates, *(f"mutation.{name}" for name in rates_of(law.heredity.mutation))}
         )
         raise InputError(
-            f"seasons: {setting} is no setting that seasons can change in this task"
+            f"seasons: {setting} is not a setting that seasons can change in this task"
             f"{did_you_mean(setting, known)}"
         )
     if setting.startswith("metabolism.") and config.metabolism is None:
         raise InputError(
-            f"seasons: there is no metabolism, so no {setting}; remove the season or add a metabolism"
+            f"seasons: {setting} needs a metabolism; remove the season or add a metabolism"
         )

@@ -1,6 +1,6 @@
-"""The cores that this process may use; a job of a campaign has one. This file does not load JAX.
+"""The number of cores that this process may use; a campaign's job has one core. JAX is not loaded.
 
-Processors are not pinned: the system moves a process to a core that is free.
+Processes are not pinned to cores: the system moves a process to a free core.
 """
 
 import os
@@ -16,22 +16,22 @@ OF_XLA = "NPROC"
 
 
 def count() -> int:
-    """Return the number of cores that PRIMORDIA_CORES gives, or else those that the system gives.
+    """Return the number of cores that PRIMORDIA_CORES gives, or else that of the system.
 
     Raises:
-        InputError: PRIMORDIA_CORES is no number of cores.
+        InputError: PRIMORDIA_CORES is not a number of cores.
     """
     given = os.environ.get(VARIABLE)
     if given is None:
         return available()
     if not (given.isascii() and given.isdecimal() and int(given)):
-        raise InputError(f"{VARIABLE}: a number of cores, 1 or more, not {given!r}")
+        raise InputError(f"{VARIABLE} must be a number of cores, 1 or more, not {given!r}")
     return int(given)
 
 
 @contextmanager
 def one_unless_given() -> Iterator[None]:
-    """Let this process use one core in a `with` block, unless PRIMORDIA_CORES says otherwise."""
+    """Let this process use one core in a `with` block, unless PRIMORDIA_CORES is set."""
     given = VARIABLE in os.environ
     os.environ.setdefault(VARIABLE, "1")
     try:
@@ -47,9 +47,9 @@ def available() -> int:
 
 
 def limit_threads() -> None:
-    """Let XLA start no more threads than PRIMORDIA_CORES says; call this before JAX starts.
+    """Limit XLA's threads to PRIMORDIA_CORES. Call this before JAX starts.
 
-    Without PRIMORDIA_CORES nothing is changed: XLA then starts as many as the system gives cores.
+    Without PRIMORDIA_CORES nothing is changed, and XLA starts one thread for each core.
     """
     if VARIABLE in os.environ:
         os.environ[OF_XLA] = str(count())

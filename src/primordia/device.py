@@ -1,4 +1,4 @@
-"""The device, the instruction set and the versions that compute a run; it is exact within one of each."""
+"""The device, the instruction set and the versions that a run depends on. Equal ones give equal bits."""
 
 import os
 import platform
@@ -23,16 +23,16 @@ SAME_BITS = (
     "--xla_cpu_use_fusion_emitters",
     "--xla_backend_extra_options=-fast-isel=false",
 )
-"""Beginnings of flags of XLA that change no bit of a result; any other may."""
+"""Prefixes of XLA's flags that change no bit of a result. Any other flag may change bits."""
 
 
 def prepare() -> None:
-    """Start JAX in the way runs need, unless it has started; call this before JAX makes an array.
+    """Set up JAX for runs, unless it has started. Call this before JAX makes an array.
 
-    XLA is limited to AVX2, so that x86-64 machines with and without AVX-512 give the same bits (measured:
-    no slower). A limit that is already in XLA_FLAGS stands. XLA reads the flag once in a process, and
-    ignores it as a compiler option of `jax.jit`. If the program has used JAX before, nothing is changed,
-    and the run records the instruction set that XLA_FLAGS then allow.
+    XLA is limited to AVX2, so that x86-64 machines with and without AVX-512 give the same bits
+    (measured: no slower). A limit that is already in XLA_FLAGS is kept. XLA reads the flag once in
+    a process, and ignores it as a compiler option of `jax.jit`. If the program has already used
+    JAX, nothing is changed, and the run records the instruction set that XLA_FLAGS allow.
     """
     if backends_are_initialized():
         return
@@ -41,8 +41,8 @@ def prepare() -> None:
     if ISA_FLAG not in flags:
         # The flag stays set: JAX's cache of compiled code tells code for AVX2 from other code by it.
         os.environ["XLA_FLAGS"] = f"{flags} {ISA_FLAG}=AVX2".strip()
-    # A small call is computed by the thread that makes it. Handing it to another thread costs a third of
-    # the time of a tick. JAX reads this option when it starts.
+    # A small call is computed by the thread that makes it. Passing it to another thread would cost
+    # a third of the time of a tick. JAX reads this option when it starts.
     name = "jax_cpu_enable_async_dispatch"
     before = jax.config.read(name)
     jax.config.update(name, False)
@@ -78,7 +78,8 @@ def default() -> jax.Device:
 def sharing(worlds: int) -> list[jax.Device]:
     """Return the devices that share a run's worlds: the default one, and others of its kind.
 
-    All take equally many worlds, so there are as many devices as the largest divisor of `worlds` allows.
+    All devices take the same number of worlds. So the number of devices is the largest possible
+    divisor of `worlds`.
     """
     first = default()
     alike = [
@@ -92,7 +93,7 @@ def sharing(worlds: int) -> list[jax.Device]:
 
 
 def instruction_set() -> str:
-    """Return the architecture, XLA's newest vector instructions, and its flags that may change bits."""
+    """Return the architecture, XLA's newest vector instructions, and the flags that may change bits."""
     flags = os.environ.get("XLA_FLAGS", "").split()
     others = sorted(flag for flag in flags if not flag.startswith((ISA_FLAG, *SAME_BITS)))
     machine = platform.machine()

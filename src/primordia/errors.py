@@ -2,11 +2,11 @@
 
 
 class InputError(Exception):
-    """The user's request cannot be carried out as it stands; exit status 2."""
+    """The user's request cannot be carried out and must be changed; exit status 2."""
 
 
 class InUseError(InputError):
-    """Another process is writing what was to be written."""
+    """Another process is writing the same run."""
 
 
 class Trouble(Exception):  # noqa: N818

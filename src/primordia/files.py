@@ -1,6 +1,6 @@
 """Atomic files, either whole or absent: temporary name, fsync, rename, fsync of the folder.
 
-Nothing but regular files is ever replaced, and no link is followed where a run keeps its own.
+Only regular files are ever replaced. No link is followed in the folders of a run.
 """
 
 import errno
@@ -20,7 +20,7 @@ from primordia.errors import InputError, Trouble
 READABLE = 2**26
 """Largest size, in bytes, of a file of settings or of a manifest."""
 LONGEST_NAME = 240
-"""Largest length of a name, in bytes. A disk allows 255; while a file is written its name is longer."""
+"""Largest length of a name, in bytes. A disk allows 255, and an unfinished file has a longer name."""
 TEMPORARY = ".writing-"
 """Prefix of the names of unfinished files."""
 
@@ -32,14 +32,14 @@ KINDS: dict[int, str] = {
     stat.S_IFCHR: "a device",
     stat.S_IFBLK: "a device",
 }
-"""Things other than regular files that have a path."""
+"""Names of the kinds of paths that are not regular files."""
 
 
 def write(path: Path, fill: Callable[[Path], object]) -> None:
-    """Write the file `path`: `fill` writes a temporary path, which is then renamed.
+    """Write the file `path`: `fill` writes a temporary file, which is then renamed.
 
     Raises:
-        InputError: the path is that of something else than a regular file.
+        InputError: the path exists and is not a regular file.
         Trouble: the file cannot be written (disk full, no permission, ...).
     """
     check_output(path)
@@ -50,7 +50,9 @@ def write(path: Path, fill: Callable[[Path], object]) -> None:
             temporary.unlink()
 
     try:
-        temporary.unlink(missing_ok=True)  # it could be a link, which `fill` would follow
+        temporary.unlink(
+            missing_ok=True
+        )  # the temporary path could be a link, which `fill` would follow
         with interrupts.undone_by(undo):
             fill(temporary)
             sync(temporary)
@@ -73,7 +75,8 @@ def write_text(path: Path, text: str) -> None:
 def replace_text(path: Path, text: str) -> None:
     """Write a text in UTF-8 without waiting for the disk: readers see the old file or the new one.
 
-    After a power cut the file may be damaged or missing; it is for what can be found out again.
+    After a power cut the file may be damaged or missing. So use it only for content that can be
+    computed again.
 
     Raises:
         Trouble: the file cannot be written.
@@ -87,33 +90,30 @@ def replace_text(path: Path, text: str) -> None:
 
 
 def check_output(path: Path) -> None:
-    """Raise InputError unless the path is free or that of a regular file, which may be replaced."""
+    """Raise InputError unless the path is free or a regular file, which may be replaced."""
     if (kind := _kind(path)) is not None:
         raise InputError(f"{path} is {kind}, not a file; it was left unchanged")
 
 
 def own_folder(path: Path) -> None:
-    """Make a folder of a run, unless it exists; a link is refused, since it leads out of the run.
+    """Make a folder of a run, unless it exists. A link is refused, since it leads out of the run.
 
     Raises:
-        InputError: the path is that of something else than a folder.
+        InputError: the path exists and is not a folder.
         Trouble: the folder cannot be made.
     """
     kind = _kind(path)
     if kind not in (None, KINDS[stat.S_IFDIR]):
-        raise InputError(
-            f"{path} is {kind}, not a folder; a run writes into folders of its own only"
-        )
+        raise InputError(f"{path} is {kind}, not a folder; a run writes only into its own folders")
     if kind is None:
         make_folder(path)
 
 
 def make_folder(path: Path) -> None:
-    """Make a folder and its missing parents, and wait until their names are on the disk.
+    """Make a folder and its missing parents, and wait until they are on the disk.
 
     Raises:
-        InputError: no folder can have this name.
-        Trouble: it cannot be made.
+        InputError: no folder can have this name. Trouble: the folder cannot be made.
     """
     check_name(path)
     try:
@@ -126,7 +126,7 @@ def make_folder(path: Path) -> None:
 
 
 def remove(path: Path) -> None:
-    """Remove a file, a folder with its content, or a link without what it leads to.
+    """Remove a file, a folder with its content, or a link (but not its target).
 
     Raises:
         Trouble: it cannot be removed.
@@ -141,18 +141,19 @@ def remove(path: Path) -> None:
 
 
 def _kind(path: Path) -> str | None:
-    """Return what a path is, such as "a folder"; None if it is free or a regular file."""
+    """Return the kind of a path, such as "a folder"; None if it is free or a regular file."""
     check_name(path)
     try:
         return KINDS.get(stat.S_IFMT(path.lstat().st_mode))
-    except OSError:  # it is free, or cannot be looked at, of which writing says more
+    except OSError:  # the path is free, or cannot be read; then writing it gives the error
         return None
 
 
 def check_name(path: Path) -> None:
-    """Raise InputError unless a path is UTF-8, as libraries want it, without a NUL, and short enough.
+    """Raise InputError unless a path is UTF-8, as libraries need it, without a NUL, and short
+    enough.
 
-    Python represents bytes that are no UTF-8 by halves of surrogate pairs.
+    Python represents bytes that are not UTF-8 by halves of surrogate pairs.
     """
     name = str(path)
     if "\0" in name or name != name.encode(errors="replace").decode():
@@ -171,20 +172,21 @@ def sync(path: Path) -> None:
 
 
 def read(path: Path) -> bytes:
-    """Return the content of a regular file; to read a pipe might take for ever.
+    """Return the content of a regular file. Other kinds are refused: reading a pipe could block for
+    ever.
 
     Raises:
-        OSError: it cannot be read, is no regular file, or is larger than READABLE.
+        OSError: the file cannot be read, is not a regular file, or is larger than READABLE.
     """
     if path.exists() and not path.is_file():
-        raise OSError(errno.EINVAL, "it is not a regular file")
+        raise OSError(errno.EINVAL, "not a regular file")
     if path.stat().st_size > READABLE:
-        raise OSError(errno.EFBIG, "it is too large")
+        raise OSError(errno.EFBIG, "the file is too large")
     return path.read_bytes()
 
 
 def seal(path: Path) -> dict[str, Any]:
-    """Return size and checksum of a file, as manifests keep them."""
+    """Return the size and the checksum of a file, as in manifests."""
     with path.open("rb") as file:
         digest = hashlib.file_digest(file, "sha256").hexdigest()
     return {"bytes": path.stat().st_size, "sha256": digest}
@@ -197,5 +199,5 @@ def fault_in(path: Path, size: int, sha256: str) -> str | None:
     if path.stat().st_size != size:
         return f"{path} has {path.stat().st_size} bytes instead of {size}"
     if seal(path)["sha256"] != sha256:
-        return f"{path} was changed or damaged: its checksum does not hold"
+        return f"{path} was changed or damaged: its checksum differs"
     return None

@@ -1,13 +1,13 @@
-"""Interrupts: what Ctrl-C, SIGTERM and SIGHUP do to a command and to a run.
+"""Interrupts: the effects of Ctrl-C, SIGTERM and SIGHUP on commands and runs.
 
-Python's own handler raises KeyboardInterrupt between any two instructions of the main thread. Callbacks
-of libraries swallow it there, half an import breaks, and a compiler in C++ delays it. So signals are only
-noted here, and take effect in one of two ways:
+Python's own handler raises KeyboardInterrupt between any two instructions of the main thread. Then
+a library's callback may swallow it, an import may break halfway, and a C++ compiler delays it. So
+signals are only noted here, and take effect in one of two ways:
 
-- A run that has advanced looks at `noted` between two chunks, and writes a checkpoint before it stops.
-  If a chunk does not end, as in a simulator that hangs, a second signal ends the process.
-- At all other times a command has nothing to lose, since a run survives even kill -9. A thread, which the
-  system wakes whatever the main thread does, ends the process (`end_commands_at_once`).
+- A run checks `noted` between two chunks, and writes a checkpoint before it stops. If a chunk does
+not end, since a simulator hangs, a second signal ends the process.
+- At all other times a signal ends the process at once, since a run survives even kill -9. A thread
+does this, which the system wakes whatever the main thread does (`end_commands_at_once`).
 """
 
 import atexit
@@ -38,7 +38,7 @@ _last_words: list[Callable[[], str]] = [lambda: "Stopped"]
 def end_commands_at_once() -> None:
     """Let signals end this process from now on, with a line on stderr, except in blocks of `deferred`."""
     _handle(_note)
-    atexit.register(_ignore)  # it is called last, since nothing else has been imported yet
+    atexit.register(_ignore)  # registered first, so it is called last
     woken, waker = os.pipe()
     os.set_blocking(waker, False)
     signal.set_wakeup_fd(waker, warn_on_full_buffer=False)
@@ -66,15 +66,15 @@ def noting() -> Iterator[list[int]]:
 
 
 def deferred() -> AbstractContextManager[None]:
-    """Do not end the process at once in a `with` block, which looks at what is noted."""
+    """Do not end the process at once in a `with` block, which checks `noted`."""
     return _entry(_deferred, True)
 
 
 @contextmanager
 def giving_way() -> Iterator[None]:
-    """Do not leave the `with` block once the process is being ended, also not by an error.
+    """Never leave the `with` block while the process is being ended, even by an error.
 
-    The main thread goes on meanwhile, and may fail because a file of its own has been removed.
+    Meanwhile the main thread goes on, and may fail because one of its files has been removed.
     """
     try:
         yield
@@ -84,7 +84,7 @@ def giving_way() -> Iterator[None]:
 
 
 def before_end(undo: Callable[[], object]) -> AbstractContextManager[None]:
-    """Call `undo` before the process is ended at once in a `with` block; it must not take a lock."""
+    """Call `undo` before the process is ended at once in a `with` block. `undo` must not take a lock."""
     return _entry(_undo, undo)
 
 
@@ -100,7 +100,7 @@ def undone_by(undo: Callable[[], object]) -> Iterator[None]:
 
 
 def last_words(words: Callable[[], str]) -> AbstractContextManager[None]:
-    """Say `words()` where the process is ended at once in a `with` block; it must not take a lock."""
+    """Print `words()` if the process is ended at once in a `with` block; `words` must not take a lock."""
     return _entry(_last_words, words)
 
 
@@ -118,9 +118,11 @@ def _note(number: int, _: object) -> None:
 
 
 def _handle(handler: Callable[[int, object], None] | signal.Handlers) -> list:
-    """Handle the signals -> each with its handler before. SIGHUP stays ignored, as `nohup` asks."""
+    """Handle the signals and return their earlier handlers. SIGHUP stays ignored under `nohup`."""
     before = [(each, signal.getsignal(each)) for each in SIGNALS]
-    before = [(each, own) for each, own in before if own is not None]  # set by other than Python
+    before = [
+        (each, own) for each, own in before if own is not None
+    ]  # a handler that Python did not set
     if before[-1] == (signal.SIGHUP, signal.SIG_IGN):
         before.pop()
     for each, _ in before:
@@ -129,7 +131,7 @@ def _handle(handler: Callable[[int, object], None] | signal.Handlers) -> list:
 
 
 def _ignore() -> None:
-    """Ignore signals while the interpreter ends: it hands them to the system, which would kill it."""
+    """Ignore signals while the interpreter ends: the system's default would kill the process."""
     _handle(signal.SIG_IGN)
 
 

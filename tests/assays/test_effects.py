@@ -51,7 +51,7 @@ def test_mutants_are_made_as_in_the_run_and_no_copy_is_among_them(subjects: Subj
 
 def test_a_mutation_that_never_happens_is_refused(subjects: Subjects) -> None:
     never = Operator.of("never", Gaussian(probability=0.0), subjects)
-    with pytest.raises(InputError, match="leaves children as they are"):
+    with pytest.raises(InputError, match="makes no mutants"):
         mutants(subjects, never, 3, None)
 
 

@@ -124,10 +124,10 @@ def broken(path: Path, kind: str) -> None:
     [
         ("missing", "there is no genome file"),
         ("no safetensors", "is not a safetensors file"),
-        ("another brain", "holds genomes of another brain: .*5x5.*this task's is .*6x6"),
-        ("no numbers", "no finite numbers"),
-        ("torn", "holds no whole genome"),
-        ("no organism", "holds no whole genome"),
+        ("another brain", "holds genomes of another brain: .*5x5.*this task's brain is .*6x6"),
+        ("no numbers", "not finite numbers"),
+        ("torn", "holds no complete genome"),
+        ("no organism", "holds no complete genome"),
     ],
 )
 def test_a_file_that_cannot_be_used_is_an_error_that_says_why(

@@ -45,8 +45,8 @@ def test_a_state_dictionary_becomes_a_founder_and_its_policy_has_the_weights(
     [
         ({"input": None}, "the block input is missing"),
         ({"input": "turned"}, "transpose it"),
-        ({"bias": np.zeros(3)}, "bias is no block of this task's brain, which has input"),
-        ({"output": np.full((2, 32), np.nan)}, "no finite numbers"),
+        ({"bias": np.zeros(3)}, "bias is not a block of this task's brain, which has input"),
+        ({"output": np.full((2, 32), np.nan)}, "not finite numbers"),
     ],
 )
 def test_what_does_not_fit_is_named(

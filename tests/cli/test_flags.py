@@ -184,8 +184,10 @@ def test_a_misspelt_option_is_corrected(command: click.Command) -> None:
 
 
 def test_an_argument_given_as_a_flag_is_explained() -> None:
-    complains(here("run", "--task", TASK), 2, "give it as a word:", "run TASK|FILE.toml")
-    complains(here("fork", "--run", "x", "--at", "3"), 2, "give it as a word:", "fork RUN")
+    complains(here("run", "--task", TASK), 2, "give the argument without it:", "run TASK|FILE.toml")
+    complains(
+        here("fork", "--run", "x", "--at", "3"), 2, "give the argument without it:", "fork RUN"
+    )
 
 
 def test_words_after_two_hyphens_are_no_flags(started: list[Config]) -> None:

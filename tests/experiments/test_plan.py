@@ -70,8 +70,8 @@ def test_words_of_a_question_may_change_and_settings_may_not(tmp_path: Path) -> 
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"arms": [{"name": "a"}, {"name": "a"}]}, "'a' cannot be the name of an arm, or is that of two"),
-        ({"arms": [{"name": "jobs"}]}, "'jobs' cannot be the name"),
+        ({"arms": [{"name": "a"}, {"name": "a"}]}, "'a' cannot name an arm, or names two arms"),
+        ({"arms": [{"name": "jobs"}]}, "'jobs' cannot name an arm"),
         ({"arms": [{"name": "a/b"}]}, "arm 'a/b': name"),
         ({"arms": [{"name": ".."}]}, "arm '..': name"),
         ({"arms": [{"hazard": 0.1}]}, "an arm has no name"),
@@ -79,13 +79,13 @@ def test_words_of_a_question_may_change_and_settings_may_not(tmp_path: Path) -> 
         ({"arms": "heredity"}, "one or more arms"),
         ({"questions": "?"}, "there is no 'questions'; did you mean 'question'?"),
         ({"sees": 3}, "there is no 'sees'; did you mean 'seeds'?"),
-        ({"question": 3}, "question is a text"),
+        ({"question": 3}, "question must be a text"),
         ({"jobs": {"world": 3}}, "jobs: there is no setting 'world'; did you mean 'worlds'?"),
         ({"jobs": {"worlds": 0}}, "jobs: worlds: "),
         ({"jobs": {"worlds": 1}, "seeds": 60_000}, "120,000 jobs are more than 100,000"),
         ({"task": None}, "`task` is missing"),
         ({"task": "CartPole-survivl"}, "did you mean 'CartPole-survival'?"),
-        ({"arms": [{"name": "a", "task": "Pong-survival"}]}, "arm 'a' is of another task"),
+        ({"arms": [{"name": "a", "task": "Pong-survival"}]}, "arm 'a' has another task"),
         ({"arms": [{"name": "a", "hazrd": 0.1}]}, "arm 'a': .*did you mean 'hazard'?"),
         ({"arms": [{"name": "a", "hazard": 2.0}]}, "arm 'a': .*hazard"),
         ({"fork": {"of": "none", "at": 5}}, "none is not a run"),
@@ -136,5 +136,5 @@ def test_a_fork_has_the_jobs_and_settings_of_its_source(tmp_path: Path) -> None:
         ("same/0-1", "../one/harsh/0-1"),
         ("same/2", "../one/harsh/2"),
     ]
-    with pytest.raises(InputError, match="task, seeds and cells of a fork are those of one/harsh"):
+    with pytest.raises(InputError, match="a fork takes its task, seeds and cells from one/harsh"):
         read(write(tmp_path, "two", fork=fork, **other), tmp_path / "runs" / "two")

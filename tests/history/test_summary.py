@@ -47,15 +47,13 @@ def test_the_summary_of_one_world_names_its_moments() -> None:
     assert "cannot be repeated" in summarised([world()], exact=False)
 
 
-def test_the_summary_says_whether_good_lines_keep_their_ground() -> None:
+def test_the_summary_says_whether_good_lines_persist() -> None:
     numbers = "p 0.5, v 0.25, s 2: s (1 - p (1 - v)) is"
-    assert f"    good lines keep their ground: {numbers} 1.3\n" in summarised(
-        [world(threshold=held(1.26))]
-    )
-    assert f"lose their ground: {numbers} 0.9\n" in summarised([world(threshold=held(0.9))])
-    assert "ground" not in summarised([world()])
+    assert f"    good lines persist: {numbers} 1.3\n" in summarised([world(threshold=held(1.26))])
+    assert f"good lines are lost: {numbers} 0.9\n" in summarised([world(threshold=held(0.9))])
+    assert "good lines" not in summarised([world()])
     some = [world(threshold=held(value)) for value in (0.5, 0.9, 2.0)] + [world()] * 3
-    assert f"    good lines keep their ground in 1 of 3; medians {numbers} 0.9" in summarised(some)
+    assert f"    good lines persist in 1 of 3; medians {numbers} 0.9" in summarised(some)
 
 
 def test_the_summary_says_what_food_keeps_an_organism_alive() -> None:

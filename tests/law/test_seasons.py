@@ -280,7 +280,7 @@ def test_impossible_seasons_are_refused(change: dict[str, Any]) -> None:
 )
 def test_a_season_of_what_seasons_cannot_change_is_refused(setting: str, nearest: str) -> None:
     season = ratchet(setting, "mean_age", 1.0, 0.5, 10)
-    with pytest.raises(InputError, match="no setting that seasons can change") as error:
+    with pytest.raises(InputError, match="not a setting that seasons can change") as error:
         config(MILL, seasons=[season])
     assert nearest in str(error.value)
 

@@ -169,7 +169,7 @@ def test_mutations_of_untrusted_code_are_left_out(
     assert found.size is None
     assert found.to_dict()["line"][-1]["change"] is None
     printed = here("ancestors", run, "--world", 0, "--out", run.parent / "without")
-    assert "The changes are not known: its code is not trusted." in printed.stdout
+    assert "The changes are unknown: its code is not trusted." in printed.stdout
 
 
 def test_the_commands_print_tables_and_json_and_draw(run: Path, tmp_path: Path) -> None:
@@ -216,7 +216,7 @@ def test_the_last_tick_is_enough(run: Path) -> None:
         (["ancestors", "RUN", 10**9], "no organism 1000000000 was born in world 0"),
         (["ancestors", "RUN", "--world", 7], "there is no world 7"),
         (["lines", "RUN", "--world", 2], "there is no world 2; the worlds are 0 to 1"),
-        (["lines", "RUN", "--world", "both"], "'both' is not the number of a world, and not all"),
+        (["lines", "RUN", "--world", "both"], "'both' is neither the number of a world nor `all`"),
         (["lines", "RUN", "--at", 301], "tick 301 is not on record; the ticks are 0 to 300"),
         (["lines", "RUN/none"], "is not a run"),
     ],

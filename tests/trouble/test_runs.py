@@ -120,7 +120,7 @@ def test_verify_says_what_differs_and_a_possible_reason(run: Path) -> None:
         content["digests"]["births"][0][0] ^= 1
 
     reseal(newest(run), change)
-    parts = [str(run), "does not hold", "world 0 (seed 0) differs", "jax 0.0.1 then"]
+    parts = [str(run), "differs from its records", "world 0 (seed 0) differs", "jax 0.0.1 then"]
     complains(here("verify", run), 1, *parts)
 
 

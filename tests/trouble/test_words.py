@@ -114,13 +114,13 @@ def test_files_that_are_no_text_are_errors(tmp_path: Path) -> None:
     file.write_bytes(b"\xff\x00\xfe")
     folder.mkdir()
     complains(here("run", file), 2, str(file), "not valid TOML")
-    complains(here("run", folder), 2, str(folder), "it is not a regular file")
+    complains(here("run", folder), 2, str(folder), "not a regular file")
 
 
 @pytest.mark.parametrize(
     ("words", "part"),
     [
-        (("PIPE",), "PIPE cannot be read: it is not a regular file"),
+        (("PIPE",), "PIPE cannot be read: not a regular file"),
         ((TASK, "--ancestor", "PIPE"), "there is no genome file PIPE"),
     ],
 )

@@ -55,14 +55,15 @@ def run(
 
     Args:
         task: name of a built-in task, or a TOML file.
-        out: directory to make; by default a new one under `runs/`.
+        out: directory of the new run; by default a new one under `runs/`.
         resume: go on with the run in `out` if it has begun, instead of refusing the directory.
         checkpoint_every: seconds from one checkpoint to the next.
-        device: what computes, `cpu` or `gpu`: all such devices that JAX has, if the number of worlds
+        device: `cpu` or `gpu`. All such devices that JAX has are used if the number of worlds
             allows it; see `device.sharing`.
         listen: called after each chunk.
-        settings: changed settings, tables as dicts: `{"cells": 64, "mutation": {"scale": 0.02}}`.
-        more: further ones: `cells=64, mutation={"scale": 0.02}`.
+        settings: changed settings, with tables as dicts: `{"cells": 64, "mutation": {"scale":
+            0.02}}`.
+        more: further changed settings as keywords: `cells=64, mutation={"scale": 0.02}`.
 
     Raises:
         InputError: a name or setting is wrong, or `out` is taken.
@@ -72,7 +73,7 @@ def run(
     with devices.selected(device):
         chosen = config.load(task, {**(settings or {}), **more})
         if resume and out is None:
-            raise InputError("to go on with a run, name its directory: --out")
+            raise InputError("resume needs the directory of the run: give out (--out)")
         path = Path(out) if out is not None else fresh_directory(default_name(chosen))
         live = loop.begin_or_resume if resume else loop.start
         live(chosen, path, checkpoint_every=checkpoint_every, listen=listen)
@@ -93,14 +94,14 @@ def experiment(
     """Run the arms of an experiment on all cores, or go on with it, and write its results.
 
     Args:
-        file: an experiment's TOML file, or the directory of one that has begun.
+        file: an experiment's TOML file, or the directory of an experiment that has begun.
         out: the experiment's directory; by default the file's name under `runs/`.
-        jobs: jobs at a time; by default one for each core.
+        jobs: number of jobs that run at once; by default one for each core.
         only: names of arms to run; by default all.
-        ray: address of a Ray cluster to run on; "": that of this machine, or a new one.
+        ray: address of a Ray cluster to run on; "" for the cluster of this machine, or a new one.
         checkpoint_every: seconds from one checkpoint to the next.
         device: the device that JAX computes on, `cpu` or `gpu`.
-        look: called about twice a second with the status.
+        look: a function that is called about twice a second with the status.
 
     Raises:
         InputError: something in the file is wrong, or `out` holds another experiment.
@@ -128,8 +129,8 @@ def compare(
     """Put runs or arms of one task side by side, the first as the reference; see `comparison.compare`.
 
     Args:
-        runs: a run's directory, an arm's folder, `name=PATTERN` for several runs as one arm, such as
-            `heredity=runs/h*`, or the directory of an experiment, for all its arms.
+        runs: a run's directory; an arm's folder; `name=PATTERN` for several runs as one arm, such
+            as `heredity=runs/h*`; or the directory of an experiment, for all its arms.
         births: horizon in births.
         ticks: horizon in ticks.
 
@@ -154,14 +155,16 @@ def load(run: str | Path | Sequence[str | Path], trust: bool = False) -> Run:
     """Return the run in a directory or a bundle, several runs as one arm, or an experiment.
 
     Args:
-        run: a run's directory; a bundle of one; a folder that holds runs; a pattern, such as `runs/h*`;
-            several of these; or the directory of an experiment, which gives an `Experiment`.
-        trust: allow the run's own code to be executed, from now on and on this machine. Without that,
-            code that the user did not begin a run with stops what executes it: `resume`, `fork`,
-            `verify`, `replay`, `revive`, `evaluate` and `policy`. Reading records executes nothing.
+        run: a run's directory; a run's bundle; a folder that holds runs; a pattern, such as
+            `runs/h*`; several of these; or the directory of an experiment, which gives an
+            `Experiment`.
+        trust: allow Primordia to execute the run's own code on this machine from now on. Code with
+            which the user began a run needs no permission. For other code `resume`, `fork`,
+            `verify`, `replay`, `revive`, `evaluate` and `policy` raise InputError. Reading records
+            executes nothing.
 
     Raises:
-        InputError: there is no run, or the runs are not of one arm.
+        InputError: there is no run, or the runs do not belong to one arm.
     """
     places = [run] if isinstance(run, str | Path) else list(run)
     first, *others = map(Path, places)

@@ -1,4 +1,4 @@
-"""An experiment as users handle it."""
+"""The Python interface to an experiment."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -14,9 +14,10 @@ from primordia.tracking.track import Sources
 
 
 class Experiment(Run):
-    """The directory of an experiment; `arms` gives its runs.
+    """The directory of an experiment. Its runs are in `arms`.
 
-    What takes a run, such as `oldest` or `table`, takes one of the arms: `experiment.arms["heredity"]`.
+    Methods of a run, such as `oldest` or `table`, are called on an arm:
+    `experiment.arms["heredity"]`.
     """
 
     @property
@@ -42,7 +43,7 @@ class Experiment(Run):
         return self._recorded().opened()
 
     def status(self) -> CampaignStatus:
-        """Return the states of the jobs and the figures of the arms so far; no run is opened."""
+        """Return the states of the jobs and the numbers of the arms so far; open no run."""
         return self._recorded().status()
 
     def info(self) -> dict[str, Any]:
@@ -50,13 +51,13 @@ class Experiment(Run):
         return self._recorded().info()
 
     def compare(self, births: int | None = None, ticks: int | None = None) -> Comparison:
-        """Put the arms side by side; see `comparison.compare`."""
+        """Compare the arms; see `comparison.compare`."""
         return compare(self.records(), births, ticks)
 
     def plot(
         self, out: str | Path | None = None, world: int = 0, figures: Sequence[str] = ()
     ) -> list[Path]:
-        """Draw the arms side by side, and the figures of each arm into a folder of its name."""
+        """Draw the arms side by side, and the figures of each arm in a folder with its name."""
         from primordia.figures.comparison import save  # Matplotlib takes a second to load
 
         folder = Path(out) if out is not None else self.path / "figures"
@@ -74,7 +75,7 @@ class Experiment(Run):
         return report(self._recorded(), Path(out) if out is not None else None)
 
     def sources(self) -> Sources:
-        """Return the directories of the runs of each arm, and whether there are jobs left."""
+        """Return the directories of each arm's runs, and whether jobs are left."""
         recorded = self._recorded()
         jobs, runs = recorded.status().jobs, recorded.runs()
         named = {name if len(runs) > 1 else "": paths for name, paths in runs.items()}

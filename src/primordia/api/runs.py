@@ -1,4 +1,4 @@
-"""A run as users handle it: each call opens the run, and one line gives what a command gives."""
+"""The Python interface to a run: a method for each command. Each call opens the run."""
 
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -49,7 +49,7 @@ class Run:
     path: Path
     """a run's directory or bundle, a folder that holds runs, or a pattern such as `runs/h*`"""
     others: tuple[Path, ...] = ()
-    """further ones of the same arm"""
+    """further runs of the same arm"""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "path", Path(self.path))
@@ -70,7 +70,7 @@ class Run:
         return opening.only([self.path, *self.others])
 
     def directories(self) -> tuple[Path, ...]:
-        """Return the directories of the runs, once each is known to be one."""
+        """Return the directories of the runs; raise InputError if one is not a run."""
         return self.opened().paths
 
     def info(self) -> dict[str, Any]:
@@ -98,14 +98,16 @@ class Run:
     def oldest(self, world: int | None = None, after: float = LATE) -> Organism:
         """Return the organism that lived longest, in one world or in all.
 
-        Only those count that were born after a share `after` of their world's births, and never before a
-        fork. So the founders that a world begins with are not among them. Of equals it is the last-born.
+        Only organisms born after a share `after` of their world's births count, and only those born
+        since a fork. So the founders that a world begins with do not count. Among equal lives the
+        last-born wins.
         """
         run = self.opened()
         return Organism(run, run.lives.oldest(world, after))
 
     def champions(self) -> list[Organism]:
-        """Return the `oldest` organism of each world in which anything was born since the run began."""
+        """Return the `oldest` organism of each world in which anything was born since the run
+        began."""
         run = self.opened()
         return [Organism(run, row) for row in run.lives.champions().tolist()]
 
@@ -116,17 +118,19 @@ class Run:
     def standings(
         self, founders: int | None = FOUNDERS, world: int | None = None, **options: Any
     ) -> list[Standing]:
-        """Evaluate champions, all that are alive, the best of as many founders, and founders.
+        """Evaluate the champions, the living, founders, and the best of as many founders as were
+        born.
 
-        `founders` and `world` are those of `controls.unevolved`; options are those of `Group.evaluate`.
+        `founders` and `world` are those of `controls.unevolved`; `options` are those of
+        `Group.evaluate`.
         """
         run = self.opened()
-        # Champions first, so that wrong options are found before many founders have lived.
+        # The champions come first, so that a wrong option fails before many founders have lived.
         found = [group.evaluate(**options) for group in evolved(run, world)]
         return found + [group.evaluate(**options) for group in unevolved(run, founders, world)]
 
     def shadow(self, organisms: int = ORGANISMS, ticks: int | None = None) -> Shadow:
-        """Let organisms and their unselected shadows live once more; see `shadow.shadow`."""
+        """Let organisms and their unselected shadows live again; see `shadow.shadow`."""
         return shadow(self.opened(), organisms, ticks)
 
     def heredity(self, after: float = LATE) -> list[Inherited]:
@@ -134,7 +138,7 @@ class Run:
         return heredity(self.opened(), after)
 
     def threshold(self, after: float = LATE) -> list[Threshold]:
-        """Measure whether a good line keeps its ground in each world; see `history.threshold`."""
+        """Measure in each world whether a good line can persist; see `history.threshold`."""
         return threshold(self.opened(), after)
 
     def ancestors(
@@ -173,10 +177,11 @@ class Run:
         say: Callable[[str], object] = warnings.warn,
         **choice: Any,
     ) -> pa.Table | None:
-        """Return who descends from whom as a table, or write it to a file; see docs/how-to/phylogeny.md.
+        """Return the phylogeny as a table, or write it to a file; see docs/how-to/phylogeny.md.
 
-        `say` is called with a line on what is missing. The choices are those of `reduce.chosen`: `world`,
-        `extant`, `collapse`; with `organism`, a birth number, it is that organism's line of descent.
+        `say` is called with one line about anything that is missing. `world`, `extant` and
+        `collapse` are those of `reduce.chosen`. With `organism`, a birth number, the table is that
+        organism's line of descent.
         """
         if out is not None:
             formats.check_suffix(Path(out))
@@ -193,19 +198,21 @@ class Run:
     def plot(
         self, out: str | Path | None = None, world: int = 0, figures: Sequence[str] = ()
     ) -> list[Path]:
-        """Draw the figures into a folder, by default the run's own -> the files; see `plot.plot`."""
+        """Draw the figures in a folder, by default the run's own. Return the files; see
+        `plot.plot`."""
         from primordia.figures.plot import plot  # Matplotlib takes a second to load
 
         return plot(self.opened(), Path(out) if out is not None else None, world, figures)
 
     def film(self, out: str | Path | None = None, world: int = 0, **options: Any) -> Path:
-        """Film a world, by default into the run's `videos` -> the file; see `film.film`."""
+        """Film a world, by default in the run's `videos`. Return the file; see `film.film`."""
         from primordia.film.film import film
 
         return film(self.opened(), Path(out) if out is not None else None, world, **options)
 
     def report(self, out: str | Path | None = None) -> Path:
-        """Write a page about the run, by default `report.html` in its directory; see `report.report`."""
+        """Write a page about the run, by default `report.html` in its directory; see
+        `report.report`."""
         from primordia.report.report import report  # Matplotlib takes a second to load
 
         return report(self.opened(), Path(out) if out is not None else None)
@@ -224,7 +231,7 @@ class Run:
         track(self.sources, self.path.resolve().name, tensorboard, wandb, **options)
 
     def sources(self) -> Sources:
-        """Return the directories of the runs, and whether a process goes on with one of them."""
+        """Return the directories of the runs, and whether a process is running one of them."""
         paths = self.directories()
         return Sources({"": paths}, any(map(directory.is_written, paths)))
 
@@ -239,7 +246,8 @@ class Run:
         listen: Listener | None = None,
         **more: Any,
     ) -> "Run":
-        """Make a run that goes on from the end of tick `at`, with changed settings; see `runs.fork`."""
+        """Make a run that goes on from the end of tick `at`, with changed settings; see
+        `runs.fork`."""
         path = Path(out) if out is not None else fresh_directory(f"{self.path.name}-at{at}")
         with devices.selected(device):
             fork(self.only(), at, path, {**(settings or {}), **more}, listen)
@@ -262,12 +270,12 @@ class Run:
             return loop.resume(run, limits, inexact=inexact, checkpoint_every=every, listen=listen)
 
     def bundle(self, file: str | Path) -> Path:
-        """Write the run into one file, which `load` takes -> the file; see `bundle.write`."""
+        """Write the run into one file, which `load` reads. Return the file; see `bundle.write`."""
         bundle.write(self.only().path, Path(file))
         return Path(file)
 
     def verify(self, device: str = "cpu", listen: Listener | None = None) -> list[str]:
-        """Repeat the run and compare -> what differs; see `verify.verify`."""
+        """Repeat the run and return the differences; see `verify.verify`."""
         with devices.selected(device):
             return verify(self.only(), listen)
 

@@ -1,1 +1,1 @@
-"""Assays: what is inherited in a run, what limits its evolution, and what a genome is worth."""
+"""Assays: measurements of heredity, of what limits evolution, and of single genomes."""

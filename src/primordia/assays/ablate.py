@@ -1,4 +1,4 @@
-"""What an organism needs: it plays its games again without senses, memory, or a block of its weights."""
+"""Ablation: an organism plays its games again without senses, memory, or a block of its weights."""
 
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
@@ -13,15 +13,15 @@ from primordia.organism.playing.seats import Frozen
 
 @dataclass(frozen=True)
 class Ablation:
-    """An organism's life without one thing."""
+    """An organism's life without a sense, its memory, or a block of weights."""
 
     without: str
     organism: int
     world: int
     intact: float
-    """mean ticks that the whole organism lived in its games"""
+    """mean ticks that the intact organism lived in its games"""
     lifespan: float
-    """mean ticks that it lived in the same games without the thing"""
+    """mean ticks that it lived in the same games after the ablation"""
 
     @property
     def kept(self) -> float:
@@ -34,7 +34,7 @@ class Ablation:
 
 
 class _Loss(NamedTuple):
-    """What K organisms lose."""
+    """The ablated parts of K organisms."""
 
     name: str
     frozen: Frozen
@@ -47,13 +47,13 @@ def ablate(
 ) -> list[Ablation]:
     """Let each subject live without its senses, its memory, and each block of its weights.
 
-    Senses without change are those at the start of each game. A memory that is lost is zero in each tick.
-    Weights that are lost are zero.
+    Ablated senses keep their values from the start of each game. An ablated memory is zero in each
+    tick. Ablated weights are zero.
 
     Args:
         subjects: the organisms.
-        each_sense: whether each sense is also frozen alone.
-        games: games of each; one where nothing is drawn at random.
+        each_sense: whether to ablate each sense alone too.
+        games: games of each organism; one if the habitat draws nothing at random.
         ticks: length at which a game is cut.
     """
     number = subjects.games(games)

@@ -1,6 +1,7 @@
 """Two genomes in one empty world: whose descendants take over?
 
-Half of the cells begin with either genome, and children are exact copies. So only life and death decide.
+Each genome begins in half of the cells, and children are exact copies. So only survival and
+replication decide.
 """
 
 from dataclasses import dataclass
@@ -21,11 +22,11 @@ from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
 
 WORLDS = 10
-"""Worlds, if not told otherwise."""
+"""Default number of worlds."""
 TICKS = 5_000
-"""Ticks of each world, if not told otherwise."""
+"""Default number of ticks of each world."""
 MOMENTS = 101
-"""Ticks at which shares are counted, the first and the last among them."""
+"""Number of ticks at which shares are counted, with the first and the last."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,8 @@ class Competition:
 
     @property
     def late_share(self) -> np.ndarray:
-        """Mean of `share` over the later half of the ticks, float64 (W,); NaN if nothing lives then."""
+        """Mean of `share` over the later half of the ticks, float64 (W,); NaN if nothing lives
+        then."""
         late = self.share[:, self.share.shape[1] // 2 :]
         known = np.isfinite(late)
         total = np.where(known, late, 0).sum(axis=1)
@@ -50,13 +52,13 @@ class Competition:
 
     @property
     def won(self) -> tuple[int, int]:
-        """Worlds in which most of the late living descend from `one`, and from `other`."""
+        """Number of worlds whose late living descend mostly from `one`, and from `other`."""
         late = self.late_share
         return int((late > 0.5).sum()), int((late < 0.5).sum())
 
     @property
     def p(self) -> float:
-        """The probability of a split of the worlds at least as uneven, of equal genomes (sign test)."""
+        """Probability that equal genomes split the worlds at least as unevenly (sign test)."""
         return sign_test(*self.won)
 
     def to_dict(self) -> dict[str, Any]:
@@ -77,10 +79,10 @@ class Competition:
 def compete(
     one: Subjects, other: Subjects, worlds: int = WORLDS, ticks: int = TICKS
 ) -> Competition:
-    """Let two genomes share empty worlds.
+    """Let two genomes compete in empty worlds.
 
-    Cells are filled with either genome in turn, and again if all die. There is no mutation and no second
-    parent; all else is the law of `one`.
+    The two genomes fill the cells by turns, and again if all organisms die. There is no mutation
+    and no recombination. All other settings are those of `one`.
 
     Args:
         one: a single organism or genome, and the law.
@@ -98,7 +100,9 @@ def compete(
             )
     layout = one.law.heredity.layout
     if layout != other.law.heredity.layout:
-        raise InputError(f"{one.source} and {other.source} have different brains, so none can win")
+        raise InputError(
+            f"{one.source} and {other.source} have different brains, so they cannot share a world"
+        )
     with TemporaryDirectory() as folder:
         file = Path(folder, "both.safetensors")
         both = np.concatenate([one.players.genomes, other.players.genomes])
@@ -114,7 +118,7 @@ def compete(
 
 
 def _settings(config: Config, file: Path, worlds: int, ticks: int) -> Config:
-    """Return the settings of worlds that two ancestors share, without mutation."""
+    """Return the settings of worlds with these two ancestors and without mutation."""
     changes: dict[str, Any] = {
         "ancestors": (str(file),),
         "genesis": "fill",
@@ -145,13 +149,13 @@ def _of_first(lives: Lives, seed: np.uint64) -> np.ndarray:
     """
     founder = lives.birth_cause == BirthCause.FOUNDER
     above = np.where(founder, np.arange(len(lives)), lives.parent_row)
-    while (above != above[above]).any():  # twice as many generations each time
+    while (above != above[above]).any():  # each round doubles the generations that are followed
         above = above[above]
     return (lives.id[above].astype(np.uint64) + seed) % np.uint64(2) == 0
 
 
 def _alive(lives: Lives, tick: np.ndarray) -> np.ndarray:
-    """Return how many of some lives go on at the end of each tick, int64 (T,)."""
+    """Return how many of these lives go on at the end of each tick, int64 (T,)."""
     ended = np.sort(lives.ended[lives.died])
     born = np.searchsorted(np.sort(lives.born), tick, side="right")
     return born - np.searchsorted(ended, tick, side="right")

@@ -1,7 +1,8 @@
-"""What mutations do: mutants of an organism live the parent's own games, by each mutation.
+"""Effects of mutations: mutants of an organism play the parent's own games.
 
-A mutant plays the games that its parent plays, with the same random numbers. In a game without chance a
-genome has one lifespan, so `as long` then means that the mutation changed nothing that mattered.
+A mutant plays the games that its parent plays, with the same random numbers. In a game without
+chance a genome has one lifespan. An equally long life then means that the mutation had no effect on
+it.
 """
 
 from collections.abc import Iterable, Sequence
@@ -18,14 +19,14 @@ from primordia.mutations.gaussian import Block, Gaussian
 from primordia.organism.games import lifespans_in_games
 
 MUTANTS = 24
-"""Mutants of an organism by each mutation, if not told otherwise."""
+"""Default number of mutants of an organism by each mutation."""
 SCALES = (0.001, 0.003, 0.01, 0.03, 0.1, 0.3)
-"""Standard deviations of noise, as shares of that of founders' weights, if not told otherwise."""
+"""Default standard deviations of noise, as shares of that of founders' weights."""
 
 
 @dataclass(frozen=True)
 class Effect:
-    """What one mutation does to one organism."""
+    """The effect of one mutation on one organism."""
 
     mutation: str
     organism: int
@@ -42,17 +43,17 @@ class Effect:
 
     @property
     def longer(self) -> float:
-        """Share that lived longer."""
+        """Share of the mutants that lived longer."""
         return float((self.mutants > self.lifespan).mean())
 
     @property
     def tenth_longer(self) -> float:
-        """Share that lived longer by a tenth or more."""
+        """Share of the mutants that lived longer by a tenth or more."""
         return float((10 * self.mutants >= 11 * self.lifespan).mean())
 
     @property
     def third_shorter(self) -> float:
-        """Share that lived shorter by a third or more."""
+        """Share of the mutants that lived shorter by a third or more."""
         return float((3 * self.mutants <= 2 * self.lifespan).mean())
 
     def to_dict(self) -> dict[str, Any]:
@@ -80,19 +81,20 @@ def effects(
     games: int = GAMES,
     ticks: int = TICKS,
 ) -> list[Effect]:
-    """Let mutants of each subject live, by its run's own mutation and by others.
+    """Let mutants of each subject live, made by its run's own mutation and by others.
 
     Args:
         subjects: the parents.
-        scales: of Gaussian noise on all weights, as shares of the standard deviation of founders' weights
-            in each block.
-        differs: of calibrated mutations; see `mutations.calibrated`. A parent remembers one game.
-        count: mutants of each parent by each mutation.
-        games: games of each genome; one where nothing is drawn at random.
+        scales: standard deviations of Gaussian noise on all weights, as shares of the standard
+            deviation of founders' weights in each block.
+        differs: values of `differs` for calibrated mutations; see `mutations.calibrated`. A parent
+            remembers one game.
+        count: number of mutants of each parent by each mutation.
+        games: games of each genome; one if the habitat draws nothing at random.
         ticks: length at which a game is cut.
 
     Raises:
-        InputError: the run's own mutation leaves children as they are.
+        InputError: the run's own mutation makes no mutants.
     """
     operators = [own_operator(subjects), *_gaussian(subjects, scales)]
     operators += _calibrated(subjects, differs)

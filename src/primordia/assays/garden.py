@@ -1,6 +1,6 @@
-"""The common garden: the oldest organisms are born again under fresh keys, beside others.
+"""The common garden: the oldest organisms and others are born again with fresh random keys.
 
-The oldest of many lived long by luck too. Born again, they live as long as their genomes deserve.
+The oldest organisms were also lucky. Their lives with fresh keys show what their genomes are worth.
 """
 
 from collections.abc import Mapping
@@ -16,7 +16,7 @@ from primordia.runs.lives import LATE
 from primordia.runs.records import Records
 
 EACH = 20
-"""Organisms of a world in each group, if not told otherwise."""
+"""Default number of organisms of a world in each group."""
 
 
 @dataclass(frozen=True)
@@ -26,15 +26,15 @@ class Bed:
     group: str
     world: int
     organism: np.ndarray
-    """birth numbers, int64 (K,); founders are numbered from 0, and have no record"""
+    """birth numbers, int64 (K,); fresh founders have no record and are numbered from 0"""
     recorded: np.ndarray | None
-    """ticks that each lived in its world so far, int64 (K,)"""
+    """ticks that each organism has lived in its world so far, int64 (K,)"""
     reborn: np.ndarray
-    """mean ticks that each lived in its games, float64 (K,)"""
+    """mean ticks that each organism lived in its games, float64 (K,)"""
 
     @property
     def kept(self) -> float | None:
-        """Mean life when born again, as a share of the recorded one."""
+        """Mean life in the games, as a share of the mean recorded life."""
         return None if self.recorded is None else float(self.reborn.mean() / self.recorded.mean())
 
     def to_dict(self) -> dict[str, Any]:
@@ -61,10 +61,10 @@ def garden(
 
     Args:
         run: the run, or an arm.
-        each: organisms of each group in each world, or as many as there are. The oldest are those of the
-            late-born. The others are evenly spaced over the late births, the last of a world left out.
+        each: most organisms of each group in each world. The oldest are chosen among the late-born.
+            The others are evenly spaced over the late births, without the world's last birth.
         after: share of a world's births after which a birth is late.
-        games: games of each organism; one where nothing is drawn at random.
+        games: games of each organism; one if the habitat draws nothing at random.
         ticks: length at which a game is cut.
         habitat: changed settings of the habitat.
 
@@ -105,7 +105,8 @@ def _beds(
 
 
 def _oldest(rows: np.ndarray, lifespan: np.ndarray, count: int) -> np.ndarray:
-    """Return the rows of the longest-lived; of equals the last-born, as with champions."""
+    """Return the rows of the longest-lived; among equals the last-born come first, as with
+    champions."""
     return rows[np.argsort(lifespan[rows], kind="stable")[::-1][:count]]
 
 

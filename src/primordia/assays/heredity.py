@@ -1,9 +1,10 @@
-"""Is length of life inherited? Parents and offspring, and the two terms of the Price equation.
+"""Heredity of lifespan: the regression of offspring on parents, and the Price equation.
 
-Lifespans are compared as natural logarithms, since they differ by factors. The slope of the offspring's
-on the parent's is the realised heritability of an organism with one parent (Falconer & Mackay 1996,
-ch. 10). The Price equation (Price 1970) divides the change from parents to offspring in two: selection,
-by which the long-lived have more children, and transmission, by which children differ from their parents.
+Lifespans are compared as natural logarithms, since they differ by factors. The slope of the
+offspring's lifespan on the parent's is the realised heritability if organisms have one parent
+(Falconer & Mackay 1996, ch. 10). The Price equation (Price 1970) divides the change from parents to
+offspring into two terms. Selection: the long-lived have more children. Transmission: children
+differ from their parents.
 """
 
 from dataclasses import asdict, dataclass
@@ -22,13 +23,14 @@ class Pairs:
 
     pairs: int
     slope: float | None
-    """of the child's log lifespan on the parent's; None with fewer than LEAST, or equal parents"""
+    """slope of the child's log lifespan on the parent's; None for fewer than LEAST pairs, or if all
+    parents are equal"""
     as_long: float | None
-    """share that live exactly as long as the parent"""
+    """share of the children that live exactly as long as the parent"""
     longer: float | None
-    """share that live longer by a tenth or more"""
+    """share of the children that live longer by a tenth or more"""
     shorter: float | None
-    """share that live shorter by a third or more"""
+    """share of the children that live shorter by a third or more"""
 
 
 @dataclass(frozen=True)
@@ -40,9 +42,9 @@ class Inherited:
     mutants: Pairs
     both: Pairs
     selection: float | None
-    """Cov(w, z) / mean w: change of the mean log lifespan z by the numbers of children w"""
+    """Cov(w, z) / mean w, with log lifespan z and number of children w"""
     transmission: float | None
-    """E(w (z' - z)) / mean w: change by differences between children z' and parents"""
+    """E(w (z' - z)) / mean w, with z' the log lifespan of the children"""
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain values for JSON."""
@@ -89,17 +91,18 @@ def _pairs(found: Families, which: np.ndarray) -> Pairs:
 
 
 def slope(x: np.ndarray, y: np.ndarray) -> float | None:
-    """Return the slope of y on x by least squares; None for few points, or all of one x."""
+    """Return the slope of y on x by least squares; None for few points, or if all x are equal."""
     if len(x) < LEAST or np.ptp(x) == 0:
         return None
     return float(np.cov(x, y)[0, 1] / np.var(x, ddof=1))
 
 
 def price(found: Families) -> tuple[float | None, float | None]:
-    """Return selection and transmission from complete families: parent and all late children are dead.
+    """Return selection and transmission from families whose parent and late children are all dead.
 
-    Organisms that were born late and have no children count as parents of none. The sum of both terms is
-    the mean log lifespan of the children minus that of these parents. Both are None without children.
+    Late-born organisms without children count as parents of zero children. The sum of both terms is
+    the mean log lifespan of the children minus that of these parents. Both terms are None if there
+    are no children.
     """
     lives, z = found.lives, _log(found.lives.lifespan)
     counted = np.zeros(len(lives), bool)

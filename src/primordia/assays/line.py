@@ -1,4 +1,4 @@
-"""When a line of descent became good: each genome on the way to an organism lives again."""
+"""The lives of an organism's ancestors: each genome on its line of descent lives again."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -14,9 +14,9 @@ from primordia.organism.games import lifespans_in_games
 from primordia.runs.records import Records
 
 MOST = 200
-"""Genomes of a line that live again, if not told otherwise."""
+"""Default number of genomes of a line that live again."""
 GOOD = 0.9
-"""Share of the last genome's life from which a genome counts as good."""
+"""A genome counts as good if it lives at least this share of the last genome's life."""
 
 
 @dataclass(frozen=True)
@@ -24,13 +24,13 @@ class Step:
     """A genome on the line, and the life that it gives."""
 
     generation: int
-    """births since the first of the line"""
+    """births since the first organism of the line"""
     organism: int
     born: int
     """tick of birth"""
     birth_cause: str
     recorded: int
-    """ticks that the organism lived in its world so far"""
+    """ticks that the organism has lived in its world so far"""
     reborn: float
     """mean ticks that it lived in the games of the line's last organism"""
 
@@ -43,19 +43,19 @@ class Line:
     world: int
     generations: int
     genomes: int
-    """different genomes of the line, of which the steps are a sample"""
+    """number of different genomes of the line; the steps are a sample of them"""
     steps: list[Step]
 
     @property
     def good(self) -> Step:
-        """The first step from which no later one lives less than GOOD of the last."""
+        """The first step from which on every step lives at least GOOD of the last one's life."""
         enough = GOOD * self.steps[-1].reborn
         below = [k for k, step in enumerate(self.steps) if step.reborn < enough]
         return self.steps[below[-1] + 1 if below else 0]
 
     @property
     def largest(self) -> tuple[Step, Step] | None:
-        """The two neighbours between which life grew most, as a ratio; None if it never grew."""
+        """The two neighbouring steps with the largest ratio of lives; None if life never grew."""
         pairs = list(zip(self.steps, self.steps[1:], strict=False))
         grown = [pair for pair in pairs if pair[1].reborn > pair[0].reborn]
         return max(grown, key=lambda pair: pair[1].reborn / pair[0].reborn, default=None)
@@ -77,15 +77,16 @@ def line(
 ) -> Line:
     """Let the ancestors of an organism live again, all in the same games.
 
-    Copies have their parent's genome, so only founders, mutants and children of two parents live. A line
-    that begins at a fork begins with the oldest organism of the line that the fork's records know.
+    Copies have their parent's genome, so only founders, mutants and children of two parents live.
+    The line of a fork's organism begins with the oldest ancestor in the fork's records.
 
     Args:
         run: the organism's run, or its arm.
         organism: birth number.
         world: the organism's world.
-        most: most genomes that live, evenly spaced over those of the line, the first and last among them.
-        games: games of each; one where nothing is drawn at random.
+        most: largest number of genomes that live. They are evenly spaced over the line, with its
+            first and its last.
+        games: games of each genome; one if the habitat draws nothing at random.
         ticks: length at which a game is cut.
         habitat: changed settings of the habitat.
 
@@ -116,7 +117,7 @@ def line(
 
 
 def _changed(run: Records, rows: np.ndarray) -> np.ndarray:
-    """Return the places in a line of descent (D,) where the genome changed, the first among them."""
+    """Return the indices in a line of descent (D,) at which the genome changed, with the first."""
     lives = run.lives.take(rows)
     changed = (lives.birth_cause != BirthCause.COPY) | (run.mates_of(lives) >= 0)
     changed[0] = True

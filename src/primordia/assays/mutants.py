@@ -1,4 +1,4 @@
-"""Mutants of living genomes, made by any mutation as a run would make them."""
+"""Mutants of given genomes, made by any mutation as in a run."""
 
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -20,22 +20,23 @@ from primordia.random.keys import streams
 from primordia.random.wide import wide
 
 MOST_CHILDREN = 1000
-"""Children of a genome for each mutant wanted, before a mutation counts as one that never happens."""
+"""Children made for each wanted mutant, before the mutation counts as one that never happens."""
 
 
 class Operator(NamedTuple):
-    """A mutation, and what it needs to know of K parents."""
+    """A mutation with its rates and the notes of K parents."""
 
     name: str
     mutation: Mutation
     rates: Mapping[str, np.ndarray]
-    """present values of the mutation's rates, float32 (K,) each"""
+    """present values of the mutation's rates, each float32 (K,)"""
     notes: np.ndarray
     """the parents' notes, int32 (K, n)"""
 
     @classmethod
     def of(cls, name: str, mutation: Mutation, subjects: Subjects) -> "Operator":
-        """Return an operator with its rates as set, for parents without notes."""
+        """Return the operator of a mutation with its configured rates, for parents without
+        notes."""
         count = len(subjects.organism)
         rates = mutation.rates(subjects.law.heredity.layout).items()
         values = {rate: np.full(count, value, np.float32) for rate, value in rates}
@@ -54,16 +55,16 @@ def own_operator(subjects: Subjects) -> Operator:
 def mutants(
     subjects: Subjects, operator: Operator, count: int, remembered: Remembered | None
 ) -> np.ndarray:
-    """Return mutants of each of K subjects, float32 (K, count, P); copies are not among them.
+    """Return mutants of each of K subjects, float32 (K, count, P), without exact copies.
 
     Args:
         subjects: the parents.
         operator: the mutation.
-        count: number of mutants of each.
+        count: number of mutants of each parent.
         remembered: moments of the parents; see `moments_of`.
 
     Raises:
-        InputError: the mutation leaves children as they are.
+        InputError: the mutation makes no mutants.
     """
     return np.stack(
         [_of_one(subjects, operator, count, remembered, k) for k in range(len(subjects.organism))]
@@ -91,9 +92,7 @@ def _of_one(
         found = np.concatenate([found, np.asarray(children)[np.asarray(mutated)]])
         if len(found) >= count:
             return found[:count].astype(np.float32)
-    raise InputError(
-        f"{subjects.source}: its mutation leaves children as they are, as it is now set"
-    )
+    raise InputError(f"{subjects.source}: its mutation makes no mutants with the present settings")
 
 
 def _children(
@@ -106,11 +105,11 @@ def _children(
 
 
 def moments_of(players: Players, rule: Moments, ticks: int) -> Remembered:
-    """Return the last moments that players remember of one game: every so many ticks from its start.
+    """Return the last moments of one game that players remember, at regular ticks from its start.
 
     Args:
         players: the organisms, K.
-        rule: how many moments are kept, and how often.
+        rule: number of moments that are kept, and the ticks between two of them.
         ticks: length at which the game is cut.
     """
     count, law = len(players.genomes), players.law

@@ -1,4 +1,4 @@
-"""The subjects of assays, which live again: organisms of a run, genomes of a file, founders of a task."""
+"""The subjects of assays: organisms of a run, genomes of a file, or founders of a task."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -25,11 +25,12 @@ from primordia.random.wide import wide
 from primordia.runs.records import Records
 
 GAMES = 5
-"""Games of each genome, if not told otherwise; one where nothing is drawn at random."""
+"""Default number of games of each genome; one game if the habitat draws nothing at random."""
 TICKS = 20_000
-"""Length at which games are cut, if not told otherwise."""
+"""Default length at which games are cut, in ticks."""
 FOUNDERS, BEST = 512, 16
-"""Founders of a task that live once, and the longest-lived of them, which are its subjects."""
+"""Number of a task's founders that live once, and number of the longest-lived that are its
+subjects."""
 
 
 class Subjects(NamedTuple):
@@ -41,13 +42,13 @@ class Subjects(NamedTuple):
     """settings of the run, or of the task; the habitat may be changed"""
     players: Players
     organism: np.ndarray
-    """birth number of each, or its number in the file or among the founders, int64 (K,)"""
+    """birth numbers, or numbers in the file or among the founders, int64 (K,)"""
     world: np.ndarray
-    """world of each, int64 (K,); 0 outside a run"""
+    """worlds of the organisms, int64 (K,); 0 outside a run"""
     notes: np.ndarray
     """the mutation's notes, int32 (K, n)"""
     climate: Mapping[str, np.ndarray]
-    """present values of the settings that seasons change, float32 (K,) each"""
+    """present values of the settings that seasons change, each float32 (K,)"""
 
     @property
     def law(self) -> Law:
@@ -56,12 +57,12 @@ class Subjects(NamedTuple):
 
     @property
     def names(self) -> list[str]:
-        """What each is called in tables."""
+        """The subjects' names in tables."""
         pairs = zip(self.organism.tolist(), self.world.tolist(), strict=True)
         return [f"{organism} of world {world}" for organism, world in pairs]
 
     def games(self, wanted: int) -> int:
-        """Return the number of games that are worth playing: one where all would be the same."""
+        """Return the number of games to play: one if all games would be the same."""
         return 1 if self.players.deterministic else wanted
 
 
@@ -108,13 +109,13 @@ def of_file(
 
     Args:
         file: a genome file, such as `primordia export` writes.
-        numbers: those in the file, counted from 0; by default all.
-        task: in which they live; by default the one that the file names.
+        numbers: numbers of the genomes in the file, counted from 0; by default all.
+        task: the task in which they live; by default the task that the file names.
         habitat: as in `of_run`.
 
     Raises:
-        InputError: the file cannot be read, names no task or has no such genome; or the task's brain is
-            another one.
+        InputError: the file cannot be read, names no task or has no such genome; or its genomes do
+            not fit the task's brain.
     """
     named = task or genomes.about(file).get("task")
     if named is None:
@@ -131,11 +132,12 @@ def of_file(
 def of_task(
     task: str, numbers: Sequence[int] = (), habitat: Mapping[str, Any] | None = None
 ) -> Subjects:
-    """Return founders of a task, in which nothing has evolved yet: the longest-lived of many.
+    """Return the longest-lived of many founders of a task, in which nothing has evolved yet.
 
     Args:
         task: name of a task, or a TOML file.
-        numbers: some of the FOUNDERS founders, counted from 0; by default the BEST that live longest.
+        numbers: numbers among the FOUNDERS founders, counted from 0; by default the BEST that live
+            longest.
         habitat: as in `of_run`.
 
     Raises:
@@ -164,7 +166,7 @@ def founders(chosen: Config, count: int) -> np.ndarray:
 
 
 def _fresh(source: str, chosen: Config, number: np.ndarray, own: np.ndarray) -> Subjects:
-    """Return genomes (K, P) that are no organisms of a run, by their numbers (K,)."""
+    """Return subjects with genomes (K, P) from outside a run, and their numbers (K,)."""
     habitat, count = chosen.build_habitat(), len(number)
     law = chosen.build_law(habitat)
     climate = {name: np.asarray(each) for name, each in initial_climate(law, count).items()}

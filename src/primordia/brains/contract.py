@@ -30,13 +30,13 @@ KNOWN = {
 class Brain(Settings, ABC):
     """A brain's settings and its behaviour.
 
-    A brain is pure and treats each organism by itself. It gives the same bits for every number of
-    organisms and of threads; for sums, `layers.matvec` ensures that.
+    A brain is pure and treats each organism independently. It gives the same bits for every number
+    of organisms and of threads; `layers.matvec` ensures that for sums.
     """
 
     @abstractmethod
     def blocks(self, senses: int, outputs: int) -> dict[str, Shape]:
-        """Return name and shape of each block of weights; their order is that of the flat genome.
+        """Return name and shape of each block of weights, in the order of the flat genome.
 
         Args:
             senses: S, numbers that an organism perceives.
@@ -61,7 +61,7 @@ class Brain(Settings, ABC):
         """
 
     def layout(self, senses: int, outputs: int) -> Layout:
-        """Return the layout of its genomes.
+        """Return the layout of the brain's genomes.
 
         Raises:
             InputError: a block has a name or a shape that cannot be used.
@@ -70,5 +70,6 @@ class Brain(Settings, ABC):
 
 
 def find(name: object) -> type[Brain]:
-    """Return the brain class called `name`; LookupError says why there is none."""
+    """Return the brain class called `name`; raise LookupError, with the reason, if there is
+    none."""
     return parts.find("brain", name, KNOWN, Brain)

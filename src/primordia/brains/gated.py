@@ -8,7 +8,7 @@ from primordia.brains.layers import Biases, Hidden, gate, layer, linear, mix
 from primordia.brains.layout import Shape
 
 UNITS = ("reset", "update", "candidate")
-"""parts of a gated recurrent unit that have weights for senses and for memory"""
+"""parts of a gated recurrent unit, each with weights for senses and for memory"""
 
 
 class Gated(Brain):
@@ -28,7 +28,8 @@ class Gated(Brain):
     biases: Biases = False
 
     def blocks(self, senses: int, outputs: int) -> dict[str, Shape]:
-        """Return `UNIT_input` and `UNIT_recurrent` for each of UNITS (Wr, Ur, ...), and `output` (V)."""
+        """Return `UNIT_input` and `UNIT_recurrent` for each of UNITS (Wr, Ur, ...), and `output`
+        (V)."""
         blocks: dict[str, Shape] = {}
         for unit in UNITS:
             blocks |= layer(f"{unit}_input", senses, self.hidden, self.biases)

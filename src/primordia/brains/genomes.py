@@ -1,4 +1,4 @@
-"""Genome files: the weights of K organisms in safetensors, to keep, to share and to start runs from.
+"""Genome files: the weights of K organisms in safetensors.
 
 A file holds one float32 tensor (K, *shape) for each block of the brain, in the blocks' order.
 """
@@ -18,7 +18,7 @@ from primordia.errors import InputError
 FOUNDERS = "founders.safetensors"
 """The file in a run's directory that keeps its ancestors."""
 MOST_ANCESTORS = 2**16
-"""The largest number of ancestors of a run: founders take them in turn by 32-bit arithmetic."""
+"""The largest number of ancestors of a run; 32-bit arithmetic chooses a founder's ancestor."""
 
 
 def write(path: Path, layout: Layout, genomes: np.ndarray, about: dict[str, str]) -> None:
@@ -37,7 +37,7 @@ def read(paths: Sequence[str], layout: Layout) -> np.ndarray:
     """Return the genomes of some files, in their order, float32 (K, P).
 
     Raises:
-        InputError: a file cannot be read, is no genome file, or is one of another brain.
+        InputError: a file cannot be read, is not a genome file, or has genomes of another brain.
     """
     genomes = np.concatenate([_read(Path(path), layout) for path in paths])
     if len(genomes) > MOST_ANCESTORS:
@@ -50,7 +50,7 @@ def read(paths: Sequence[str], layout: Layout) -> np.ndarray:
 def of_state(path: Path, layout: Layout) -> np.ndarray:
     """Return the genome of a state dictionary in a safetensors file, float32 (1, P).
 
-    It has a tensor (*shape) for each block of the brain, in any float type.
+    The file has a tensor (*shape) for each block of the brain, in any float type.
 
     Raises:
         InputError: the file cannot be read, or a block is missing, unknown or of another shape; the
@@ -70,19 +70,19 @@ def of_state(path: Path, layout: Layout) -> np.ndarray:
             )
     if unknown := sorted(set(state) - set(layout.names)):
         raise InputError(
-            f"{path}: {unknown[0]} is no block of this task's brain, which has {wanted}"
+            f"{path}: {unknown[0]} is not a block of this task's brain, which has {wanted}"
         )
     genome = layout.join({name: state[name][None] for name in layout.names}).astype(np.float32)
     if not np.isfinite(genome).all():
-        raise InputError(f"{path} has weights that are no finite numbers")
+        raise InputError(f"{path} has weights that are not finite numbers")
     return genome
 
 
 def about(path: Path) -> dict[str, str]:
-    """Return what a file says of its genomes, such as their `task`; see `write`.
+    """Return the metadata of a genome file, such as its `task`; see `write`.
 
     Raises:
-        InputError: the file cannot be read, or is no genome file.
+        InputError: the file cannot be read, or is not a genome file.
     """
     with _opening(path), safe_open(path, "numpy") as opened:
         return opened.metadata() or {}
@@ -90,8 +90,8 @@ def about(path: Path) -> dict[str, str]:
 
 @contextmanager
 def _opening(path: Path) -> Iterator[None]:
-    """Raise InputError instead of what goes wrong while a file is read."""
-    if not path.is_file():  # to open a pipe might take for ever
+    """Raise InputError in place of the errors of reading a file."""
+    if not path.is_file():  # Opening a pipe could block for ever.
         raise InputError(f"there is no genome file {path}")
     try:
         yield
@@ -107,15 +107,15 @@ def _read(path: Path, layout: Layout) -> np.ndarray:
     shapes = {name: block.shape[1:] for name, block in blocks.items()}
     if shapes != dict(layout.blocks):
         raise InputError(
-            f"{path} holds genomes of another brain: {_described(shapes)}; this task's is"
-            f" {_described(dict(layout.blocks))}"
+            f"{path} holds genomes of another brain: {_described(shapes)}; this task's brain is "
+            f"{_described(dict(layout.blocks))}"
         )
     counts = {len(block) for block in blocks.values()}
     if len(counts) != 1 or 0 in counts:
-        raise InputError(f"{path} holds no whole genome; export it again")
+        raise InputError(f"{path} holds no complete genome; export it again")
     genomes = layout.join(blocks).astype(np.float32)
     if not np.isfinite(genomes).all():
-        raise InputError(f"{path} has weights that are no finite numbers; use another genome")
+        raise InputError(f"{path} has weights that are not finite numbers; use another genome")
     return genomes
 
 

@@ -9,7 +9,7 @@ from primordia import interrupts
 def main() -> None:
     """Execute a command and exit."""
     open_streams()
-    interrupts.end_commands_at_once()  # before anything else is imported, which takes seconds
+    interrupts.end_commands_at_once()  # before the other imports, which take seconds
     from primordia.cli import commands, streams
 
     streams.prepare()
@@ -17,7 +17,7 @@ def main() -> None:
 
 
 def open_streams() -> None:
-    """Let standard streams that are closed lead nowhere; the next file opened would take their place."""
+    """Open closed standard streams on the null device, since the next opened file would replace them."""
     while (nowhere := os.open(os.devnull, os.O_RDWR)) <= 2:
         os.set_inheritable(nowhere, True)  # worker processes have the same streams
     os.close(nowhere)

@@ -11,9 +11,9 @@ from primordia.cli.flags import run_argument
 @run_argument
 @click.argument("file", type=click.Path(path_type=Path))
 def bundle(run: Path, file: Path) -> None:
-    """Write a run into one FILE, such as run.zip, as of its newest checkpoint.
+    """Write the newest checkpoint of a run, and its records, into one FILE such as run.zip.
 
-    Commands that read a RUN take the file in its place. Equal runs make equal files.
+    Commands that read a RUN also read this FILE. Equal runs make equal files.
     """
     from primordia.api import load
 
@@ -21,11 +21,11 @@ def bundle(run: Path, file: Path) -> None:
     click.echo(f"{file}: {file.stat().st_size:,} bytes")
 
 
-@click.command(short_help="Make a run of a bundle, to go on with it.")
+@click.command(short_help="Make a run from a bundle, to go on with it.")
 @click.argument("file", type=click.Path(path_type=Path))
 @click.argument("folder", type=click.Path(path_type=Path))
 def unbundle(file: Path, folder: Path) -> None:
-    """Make a run in FOLDER of a FILE that `primordia bundle` wrote. Nothing in it is executed."""
+    """Make a run in FOLDER from a FILE that `primordia bundle` wrote. No code in the FILE is executed."""
     from primordia.runs import bundle
 
     bundle.unbundle(file, folder)

@@ -1,4 +1,4 @@
-"""Compiled code that commands keep on disk, so that a second run of a task starts in seconds."""
+"""The cache of compiled code on disk, with which a second run of a task starts in seconds."""
 
 import hashlib
 import os
@@ -13,21 +13,22 @@ CPUINFO = Path("/proc/cpuinfo")
 FEATURES = ("model name", "flags", "CPU implementer", "CPU part", "Features")
 """Lines of CPUINFO on which compiled code depends."""
 LARGEST = 2**30
-"""Bytes that compiled code may take; what has not been used for longest is then removed."""
+"""Largest size of the cache in bytes; the least recently used code is removed first."""
 
 
 def keep_compiled_code() -> None:
-    """Tell JAX where to keep compiled code, unless the environment does; call it before JAX is imported.
+    """Set JAX's folder for compiled code, unless the environment does. Call it before JAX is
+    imported.
 
-    Processors of different kinds have their own folders, since a home folder may be shared by machines
-    and code compiled for one may crash another.
+    Each kind of processor has a separate folder. Machines may share a home folder, and code that
+    was compiled for one machine may crash another.
     """
     folder = user_cache_path("primordia", appauthor=False) / "compiled" / processor()
     try:
         folder.mkdir(parents=True, exist_ok=True)
-    except OSError:  # a home folder that cannot be written
+    except OSError:  # the home folder cannot be written
         return
-    # A full disk costs the next run some seconds; it is not worth a warning.
+    # A full disk only slows the start of the next run, so no warning is shown.
     warnings.filterwarnings("ignore", message="Error (reading|writing) persistent compilation")
     os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(folder))
     os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "0.2")
@@ -35,7 +36,7 @@ def keep_compiled_code() -> None:
 
 
 def processor(cpuinfo: Path = CPUINFO) -> str:
-    """Return a name for the kind of this machine's processor and the instructions that it has."""
+    """Return a name for this machine's kind of processor and its instruction set."""
     try:
         first = cpuinfo.read_text(encoding="utf-8").split("\n\n")[0]
         about = [line for line in first.splitlines() if line.startswith(FEATURES)]

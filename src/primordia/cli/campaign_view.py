@@ -1,4 +1,4 @@
-"""The display of an experiment that goes on: a table in a terminal, a plain line a minute elsewhere."""
+"""The display of a running experiment: a table in a terminal, elsewhere one line a minute."""
 
 import sys
 import time
@@ -18,14 +18,14 @@ from primordia.live.panel import duration, with_prefix
 from primordia.live.view import show_cursor
 
 SHARE = 0.02
-"""Share of the time that the display may take."""
+"""Largest share of the time that the display takes."""
 SHOWN = 12
-"""Most jobs under way that are listed."""
+"""Largest number of running jobs that are listed."""
 
 
 @contextmanager
 def watching(quiet: bool, read: Callable[[], CampaignStatus]) -> Iterator[Callable[[], None]]:
-    """Yield what is to be called often: it reads the status and shows it when that is due."""
+    """Yield a function to call often, which reads and shows the status at intervals."""
     console = Console(highlight=False, file=sys.__stdout__)
     clock = Clock()
     if quiet:
@@ -44,7 +44,7 @@ def watching(quiet: bool, read: Callable[[], CampaignStatus]) -> Iterator[Callab
 
 
 class Clock:
-    """The time since the command began, and what it has brought about."""
+    """The time since the command began, and the jobs done in it."""
 
     def __init__(self) -> None:
         self._began, self._done = time.perf_counter(), -1
@@ -67,7 +67,7 @@ class Clock:
 
 
 class _Paced:
-    """A call that is made at intervals, longer ones if it takes long."""
+    """A call that is made at intervals, which are longer for a slow call."""
 
     def __init__(self, interval: float, call: Callable[[], None]) -> None:
         self._interval, self._call, self._due = interval, call, 0.0
@@ -86,7 +86,7 @@ def line(status: CampaignStatus, clock: Clock) -> str:
 
 
 def table(status: CampaignStatus, clock: Clock | None = None) -> Group:
-    """Return the arms so far, the jobs under way, and those that have failed."""
+    """Return the table of the arms so far, the running jobs, and the failed jobs."""
     parts: list[Text | Table] = [Text(status.question, "bold"), _arms(status.arms)]
     if status.running:
         parts.append(_running(status.running))
@@ -99,7 +99,7 @@ def table(status: CampaignStatus, clock: Clock | None = None) -> Group:
 
 
 def _pace(status: CampaignStatus, clock: Clock) -> list[str]:
-    """Return the speed of the jobs under way, and the time that is left if it is known."""
+    """Return the speed of the running jobs, and the time that is left if it is known."""
     left = clock.left(status)
     rate = [f"{with_prefix(status.rate)} organism-ticks/s"] if status.rate else []
     return [*rate, f"about {duration(left)} left"] if left else rate

@@ -68,7 +68,7 @@ for command in (each for part in PARTS for each in part.COMMANDS):
 
 
 def execute() -> int:
-    """Execute the command that `sys.argv` gives -> its exit status."""
+    """Execute the command in `sys.argv`. Return its exit status."""
     keep_compiled_code()
     try:
         return _outcome()

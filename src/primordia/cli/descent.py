@@ -1,4 +1,4 @@
-"""Commands on who descends from whom: ancestors, lines."""
+"""Commands on lines of descent: ancestors, lines."""
 
 import json
 from collections.abc import Callable
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from primordia.phylogeny.sweeps import Sweep
 
 ROWS, LINES = 20, 10
-"""Most ancestors, and most lines of a world, in a table."""
+"""Largest numbers of ancestors, and of lines of a world, in a table."""
 
 
 @click.command(short_help="Show the line of descent of an organism.")
@@ -39,10 +39,10 @@ ROWS, LINES = 20, 10
 def ancestors(
     run: Path, organism: int | None, world: int | None, out: Path | None, trust: bool, as_json: bool
 ) -> None:
-    """Show the ancestors of the organism with birth number ID, and how far the line of each spread.
+    """Show the ancestors of the organism with birth number ID, and how far their lines spread.
 
-    Without ID it is the champion: the longest-lived of the later half of the births. The table shows some
-    of the ancestors, JSON all of them.
+    Without ID the organism is the champion: the longest-lived of the later half of the births. The
+    table shows some of the ancestors, JSON all of them.
     """
     from primordia.api import load
 
@@ -60,16 +60,18 @@ def ancestors(
 @click.command(short_help="Measure evolution in lines: selection beside drift, sweeps, diversity.")
 @run_argument
 @click.option("--world", default="0", metavar="N|all", help="World, or all of them [0].")
-@click.option("--at", type=int, metavar="TICK", help="Tick at which lines are founded [see above].")
+@click.option(
+    "--at", type=int, metavar="TICK", help="Tick at which the lines are founded [see above]."
+)
 @out_option
 @cache_option
 @json_option
 def lines(run: Path, world: str, at: int | None, out: Path | None, as_json: bool) -> None:
-    """Measure how lines of descent replace each other, beside neutral shadows of them.
+    """Measure how lines of descent replace each other, and compare them with neutral shadows.
 
-    A line is all descendants of one organism that is alive after the tick --at. By default it is the
-    first tick since the last extinction after which 16 are alive, or half the largest population if that
-    is less. Where founders fill the world, it is their tick.
+    A line is an organism that is alive after the tick --at, with all its descendants. By default,
+    --at is the first tick since the last extinction with 16 living organisms, or with half of the
+    largest population if that is less. If founders fill the world, --at is their tick of birth.
     """
     from primordia.api import load
 
@@ -92,23 +94,25 @@ def _world(text: str) -> int | None:
     try:
         return int(text)
     except ValueError:
-        raise InputError(f"--world: {text!r} is not the number of a world, and not all") from None
+        raise InputError(f"--world: {text!r} is neither the number of a world nor `all`") from None
 
 
 def _show_ancestors(run: Path, found: "Ancestors") -> None:
     places = found.telling(ROWS).tolist()
     notes = [
-        "change: L2 norm of the change that mutation made in the genome.",
-        "10 %, 50 %, all: first tick after which more than this share of the living were descendants.",
+        "change: L2 norm of the genome's change by mutation.",
+        "10 %, 50 %, all: first tick after which more than this share of the living were "
+        "descendants.",
     ]
     if left_out := len(found.line) - len(places):
         notes.append(
-            f"{left_out:,} ancestors are left out. The table has the first, the last, those that outlived"
-            " their parents most, and others evenly spaced. --json has all."
+            f"{left_out:,} ancestors are left out. The table shows the first, the last, those "
+            "that outlived their parents most, and others evenly spaced. --json shows "
+            "all."
         )
     if found.unknown:
         which = "The changes" if found.changes is None else "The changes before a fork"
-        notes.append(f"{which} are not known: {found.unknown}.")
+        notes.append(f"{which} are unknown: {found.unknown}.")
     show_table(
         f"{run}: the line of organism {found.organism:,} of world {found.world}",
         ("organism", "line", "born", "lived", "death", "children", "change", "10 %", "50 %", "all"),
@@ -161,7 +165,8 @@ def _show_lines(run: Path, found: "WorldLines") -> None:
     ]
     head = ("line of", "largest", "last share", "s per tick", "s per life", "p of s", "p of last")
     title = (
-        f"{run}: world {found.world}, {len(found.founders):,} lines founded at tick {told['founded']:,},"
+        f"{run}: world {found.world}, {len(found.founders):,} lines founded at tick "
+        f"{told['founded']:,},"
         f" up to tick {found.ticks[-1]:,}"
     )
     show_table(title, head, rows, _notes(found, told))
@@ -170,10 +175,11 @@ def _show_lines(run: Path, found: "WorldLines") -> None:
 def _notes(found: "WorldLines", told: dict[str, Any]) -> list[str]:
     notes = []
     if (left_out := len(found.founders) - LINES) > 0:
-        notes.append(f"{left_out:,} smaller lines are left out; --json has all.")
+        notes.append(f"{left_out:,} smaller lines are left out; --json shows all.")
     now, (low, high) = found.effective[2, -1], (e[-1] for e in told["bands"]["effective_lines"])
     notes += [
-        "s: slope of ln(x / (1 - x)) over time while the share x is between 5 and 95 %. p: two-sided,"
+        "s: slope of ln(x / (1 - x)) over time while the share x is between 5 and 95 %. p: "
+        "two-sided,"
         " beside neutral shadows with the same births, deaths and population.",
         f"Effective number of lines at the end: {now:.2f}; in 95 % of {told['shadows']:,} shadows"
         f" {low:.2f} to {high:.2f}. Over all instants: p = {told['p_of_effective_lines']:.2g}.",
@@ -182,7 +188,8 @@ def _notes(found: "WorldLines", told: dict[str, Any]) -> list[str]:
     ]
     if found.pairs.mean is not None and found.neutral_pairs.mean is not None:
         notes.append(
-            f"{found.pairs.share[-1]:.0%} of the pairs of the living have a common ancestor on record,"
+            f"{found.pairs.share[-1]:.0%} of the pairs of the living have a common ancestor on "
+            "record,"
             f" {found.pairs.mean:,.0f} ticks ago in the mean. Drift alone would give"
             f" {found.neutral_pairs.share[-1]:.0%} and {found.neutral_pairs.mean:,.0f} ticks."
         )

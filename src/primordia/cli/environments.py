@@ -14,10 +14,11 @@ from primordia.errors import InputError
     "--env", required=True, metavar="ENV", help="Environment, such as gym:LunarLander-v3."
 )
 def new(file: Path, env: str) -> None:
-    """Write FILE.toml, a task in an environment of another library, with comments on what can be changed.
+    """Write FILE.toml, a task in another library's environment. Its comments explain the settings.
 
-    The settings come from the environment's own spaces and from random play. ENV is gym:NAME, or
-    gym:MODULE:NAME if a module must be imported first; or gymnax:NAME, or gymnax:MODULE:CLASS.
+    The settings come from the environment's own spaces and from random play. ENV is gym:NAME or
+    gymnax:NAME. It is gym:MODULE:NAME if a module must be imported first, and gymnax:MODULE:CLASS
+    for a class.
     """
     from primordia.settings import doors
 
@@ -30,10 +31,11 @@ def new(file: Path, env: str) -> None:
 @click.command(short_help="Measure whether lives in an environment repeat.")
 @click.argument("env", metavar="ENV")
 def check(env: str) -> None:
-    """Measure what can be relied upon in an environment of another library.
+    """Measure whether lives in another library's environment repeat.
 
-    Lives of random actions are lived again in the same environment, in new ones and from saved states,
-    and compared bit for bit. The status is 1 if something is wrong with the environment.
+    Lives with random actions are lived again in the same environment, in new environments and from
+    saved states. They are compared bit for bit. The exit status is 1 if the environment has a
+    fault.
     """
     from primordia.settings import doors
 
@@ -45,7 +47,7 @@ def check(env: str) -> None:
 
 
 def _broken_contract(env: str) -> list[str]:
-    """Return what an environment in JAX does against the contract of habitats."""
+    """Return how an environment in JAX breaks the contract of habitats; None if it keeps it."""
     import warnings
 
     from primordia.config import load

@@ -25,19 +25,29 @@ SENSES = {
 @click.command(cls=HabitatCommand, short_help="Measure champions, or one organism, in whole games.")
 @run_argument
 @click.option("--organism", type=int, help="Measure this organism alone, by its birth number.")
-@click.option("--world", type=int, help="The organism's world [0]; or this world alone [all].")
+@click.option(
+    "--world",
+    type=int,
+    help="The organism's world [0]; without an organism, the only world measured [all].",
+)
 @click.option("--games", default=30, show_default=True, help="Number of games.")
 @click.option(
     "--founders",
     type=click.IntRange(min=1),
     default=500,
     show_default=True,
-    help="Choose the best founder among as many as there were births, but no more than this.",
+    help="Choose the best founder among as many as there were births, and at most this number.",
 )
 @click.option("--ticks", default=100_000, show_default=True, help="Cut games at this length.")
-@click.option("--freeze-senses", is_flag=True, help="Keep senses as they are at the start.")
 @click.option(
-    "--open-loop", is_flag=True, help="Repeat the actions of a game of its task, whatever happens."
+    "--freeze-senses",
+    is_flag=True,
+    help="Freeze the senses at their values from the start of each game.",
+)
+@click.option(
+    "--open-loop",
+    is_flag=True,
+    help="Ignore the senses: repeat the actions of a game of the organism's task.",
 )
 @trust_option
 @cache_option
@@ -57,10 +67,10 @@ def evaluate(
     trust: bool,
     as_json: bool,
 ) -> None:
-    """Let organisms play the game that their task is made of, from fresh starts, and print their results.
+    """Let organisms play whole games of their task from fresh starts, and print the results.
 
-    The champion of each world plays, the longest-lived of the later half of the births. Its controls play
-    too: all organisms that are alive, the longest-lived of many founders, and founders as they come.
+    The champion of each world plays: the longest-lived of the later half of the births. The
+    controls are all living organisms, the longest-lived of many founders, and unselected founders.
 
     The lifespan is counted by the rules of the task; score and length are those of the whole game. Any
     setting of the habitat can be changed by a flag, such as --sticky 0.25; `primordia evaluate RUN
@@ -92,9 +102,10 @@ def evaluation_text(result: "Evaluation", changes: dict[str, Any]) -> str:
     values = result.to_dict()
     distinct = f"{_games(result.distinct, 'distinct ')}"
     if result.games == 1:
-        distinct += "; nothing is drawn at random, so all are the same"
+        distinct += "; nothing is random, so all games are the same"
     lines = [
-        f"organism {result.organism} of world {result.world}: {_games(result.games)}{_changed(changes)}"
+        f"organism {result.organism} of world {result.world}: "
+        f"{_games(result.games)}{_changed(changes)}"
         f"{SENSES[result.senses]}",
         f"  {distinct}",
         f"  lifespan  {_quartiles(values['lifespan'])}{_cut(values['alive_when_cut'], 'alive')}",
@@ -106,7 +117,7 @@ def evaluation_text(result: "Evaluation", changes: dict[str, Any]) -> str:
 
 
 def show_standings(standings: "list[Standing]", title: str) -> None:
-    """Print a row for each group of organisms, and how to read it."""
+    """Print a row for each group of organisms, and notes on how to read it."""
     from primordia.comparison.controls import OUTCOMES
 
     outcomes = [name for name in OUTCOMES if standings[0].over_worlds(name)]
@@ -123,17 +134,16 @@ def show_standings(standings: "list[Standing]", title: str) -> None:
 
 
 def _notes(standings: "list[Standing]") -> list[str]:
-    """Say how the rows are to be read."""
+    """Return notes on how to read the rows."""
     worlds = standings[0].to_dict()["worlds"]
-    notes = [
-        "The best founder is the longest-lived of as many founders, which have had no evolution."
-    ]
+    notes = ["The best founder is the longest-lived of as many founders, which have not evolved."]
     if worlds > 1:
         notes.append("Medians over worlds (quartiles) of the median organism of each world.")
     if all(each.evaluations[0].distinct == 1 for each in standings):
         notes.append(
-            "All games of an organism are the same, so champions are judged by the game that chose them,"
-            " unless a setting is changed, such as --sticky 0.25."
+            "All games of an organism are the same, so champions are judged by the game that "
+            "chose them. Change a setting, such as --sticky 0.25, to make games "
+            "differ."
         )
     return notes
 

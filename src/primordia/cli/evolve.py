@@ -56,9 +56,9 @@ def run(
 ) -> None:
     """Evolve in a new run directory.
 
-    TASK is one of `primordia tasks`; a FILE.toml names a `task` and the settings that differ from it;
-    gym:NAME is an environment of Gymnasium, and gymnax:NAME one in JAX. Any setting below can be given
-    as a flag, such as --seed 3, --cells 64 or --mutation.scale 0.02.
+    TASK is one of `primordia tasks`, a FILE.toml with a `task` and the settings that differ from
+    it, an environment of Gymnasium (gym:NAME), or an environment in JAX (gymnax:NAME). Any setting
+    below can be given as a flag, such as --seed 3, --cells 64 or --mutation.scale 0.02.
     """
     from primordia import api, config
 
@@ -92,7 +92,9 @@ def resume(run: Path, quiet: bool, trust: bool, **options: Any) -> None:
     _drive(run, quiet, drive)
 
 
-@click.command(cls=SettingsCommand, short_help="Replay the tape of a run from a tick.")
+@click.command(
+    cls=SettingsCommand, short_help="Go on from a tick of a run with another seed or settings."
+)
 @run_argument
 @click.option("--at", type=int, required=True, metavar="TICK", help="Tick at whose end to fork.")
 @out_option
@@ -113,10 +115,10 @@ def fork(
     quiet: bool,
     **options: Any,
 ) -> None:
-    """Replay the tape from a tick of a RUN: a new run, with another --seed or other settings.
+    """Begin a new run from a tick of a RUN, with another --seed or other settings.
 
-    Without either it repeats the RUN. Any setting can be changed that leaves brains, senses and cells
-    unchanged.
+    With the same seed and settings it repeats the RUN. Settings that change brains, senses or cells
+    cannot be changed.
     """
     from primordia.api import fresh_directory, load
 
@@ -156,7 +158,7 @@ def _drive(path: Path, quiet: bool, go: Callable[[Any], object]) -> None:
 
 
 def _while_shown(listen: "Listener", stopped: Callable[[], str]) -> "Listener":
-    """Return a listener that stops the run with one line once its output cannot be written."""
+    """Return a listener that stops the run with one line if its output cannot be written."""
 
     def show(status: "Status") -> None:
         try:

@@ -23,19 +23,21 @@ if TYPE_CHECKING:
 @click.command(short_help="Run arms of many worlds on all cores.")
 @click.argument("file", metavar="FILE.toml|DIR", type=click.Path(path_type=Path))
 @click.option(
-    "--out", type=click.Path(path_type=Path), help="Directory of the runs [runs/, FILE's name]."
+    "--out", type=click.Path(path_type=Path), help="Directory of the runs [runs/ and FILE's name]."
 )
-@click.option("--jobs", type=click.IntRange(1), help="Jobs at a time [one for each core].")
-@click.option("--only", multiple=True, metavar="ARM", help="Run this arm; may be repeated.")
+@click.option(
+    "--jobs", type=click.IntRange(1), help="Number of jobs that run at once [one for each core]."
+)
+@click.option("--only", multiple=True, metavar="ARM", help="Run only this arm; may be repeated.")
 @click.option("--job", type=int, metavar="K", help="Run exactly one job, by its number from 0.")
-@click.option("--status", is_flag=True, help="Show how far the experiment is; run nothing.")
+@click.option("--status", is_flag=True, help="Show the progress of the experiment; run nothing.")
 @click.option("--json", "as_json", is_flag=True, help="With --status: print one JSON object.")
 @click.option(
     "--ray",
     is_flag=False,
     flag_value="",
     metavar="[ADDRESS]",
-    help="Run jobs on a Ray cluster: that of ADDRESS, this machine's, or a new one.",
+    help="Run jobs on the Ray cluster at ADDRESS, or else on this machine's or a new one.",
 )
 @checkpoint_option
 @device_option
@@ -53,9 +55,10 @@ def experiment(
 ) -> None:
     """Run the arms of an experiment, and write its results.
 
-    FILE.toml holds a question, shared settings, and [[arms]] with the settings that differ. The worlds of
-    each arm are cut into jobs; each job is a run of its own. The same command goes on where it was
-    stopped or cut off, and does nothing twice. DIR is the directory of an experiment that has begun.
+    FILE.toml holds a question, shared settings, and [[arms]] with the settings that differ. The
+    worlds of each arm are divided into jobs; each job is a separate run. The same command resumes
+    an interrupted experiment and repeats no finished job. DIR is the directory of an experiment
+    that has begun.
     """
     from primordia.experiments.campaign import begin, planned
 
@@ -75,7 +78,7 @@ def experiment(
 
 
 def _trust(path: Path) -> None:
-    from primordia.api import load  # which imports all that looks at runs
+    from primordia.api import load  # imports everything that reads runs
 
     load(path, trust=True)
 
@@ -97,7 +100,7 @@ def show_status(status: "CampaignStatus") -> None:
 
 
 def _live_one(chosen: "Campaign", number: int, checkpoint_every: float, device: str) -> None:
-    """Live one job in this process, which has one core unless PRIMORDIA_CORES says more."""
+    """Run one job in this process, on one core or on PRIMORDIA_CORES cores."""
     from primordia.experiments.job import ending_of
 
     job = chosen.job(number)
@@ -143,7 +146,7 @@ def _report_failure(job: "Job", ending: "Ending", again: bool) -> None:
 
 
 def _end_unless_done(chosen: "Campaign", result: "Result") -> None:
-    """Say what is not done, and exit."""
+    """Report the jobs that are not done, and exit."""
     if result.stopped:
         report(f"Stopped and saved. Go on with: primordia experiment {chosen.path}")
         raise SystemExit(interrupts.STATUS)

@@ -1,6 +1,6 @@
-"""Flags: a command's options, and any setting of a task by its dotted name."""
+"""Flags: the options of a command, and all settings of a task by their dotted names."""
 
-from os.path import isfile  # false, not an error, for a name that is too long
+from os.path import isfile  # False, and no error, for a name that is too long
 from pathlib import Path
 from typing import Any
 
@@ -10,21 +10,21 @@ from primordia.errors import InputError
 from primordia.settings.tables import parsed_toml
 from primordia.settings.values import check_values
 
-CHAMPION = "that of the longest-lived of the later half of the births"
-"""the organism that is meant where none is named"""
+CHAMPION = "the longest-lived of the later half of the births"
+"""the default organism"""
 
 run_argument = click.argument("run", type=click.Path(path_type=Path))
 runs_argument = click.argument(
     "runs", type=click.Path(path_type=Path), nargs=-1, required=True, metavar="RUN..."
 )
 out_option = click.option(
-    "--out", type=click.Path(path_type=Path), help="Directory to make [under runs/]."
+    "--out", type=click.Path(path_type=Path), help="Directory of the new run [under runs/]."
 )
 device_option = click.option(
     "--device",
     default="cpu",
     show_default=True,
-    help="What computes: cpu or gpu, all that JAX has.",
+    help="Devices that compute: cpu or gpu, all that JAX has.",
 )
 checkpoint_option = click.option(
     "--checkpoint-every",
@@ -35,7 +35,7 @@ checkpoint_option = click.option(
     help="Time from one checkpoint to the next.",
 )
 trust_option = click.option(
-    "--trust", is_flag=True, help="Let the run's own code be executed, from now on."
+    "--trust", is_flag=True, help="Allow the run's own code to be executed from now on."
 )
 video_option = click.option(
     "--out", type=click.Path(path_type=Path), help="An .mp4 or .gif file [under RUN/videos]."
@@ -45,7 +45,7 @@ quiet_option = click.option("--quiet", is_flag=True, help="Print nothing while r
 LIMITS = {
     "ticks": "Stop each world after this number of ticks, or none.",
     "births": "Stop each world after this number of births, or none.",
-    "until": "saturation: stop each world once saturated; or none.",
+    "until": "saturation: stop each world when it is saturated; or none.",
 }
 
 
@@ -57,7 +57,7 @@ def limit_options(command: Any) -> Any:
 
 
 def take_limits(options: dict[str, Any]) -> dict[str, Any]:
-    """Remove the limits from a command's options -> the values of those that were given."""
+    """Remove the limits from a command's options. Return those that were given."""
     given = {name: options.pop(name) for name in LIMITS}
     return {name: _value(text) for name, text in given.items() if text is not None}
 
@@ -89,11 +89,11 @@ class SettingsCommand(click.Command):
     def _is_setting(self, ctx: click.Context, flag: str) -> bool:
         """Return whether a word is a flag of a setting.
 
-        Names of settings have no hyphens. So click itself suggests `--checkpoint-every` for
-        `--checkpoint_every` and for `--chekpoint-every`.
+        Names of settings have no hyphens. So click itself can suggest `--checkpoint-every` for
+        `--checkpoint_every` or `--chekpoint-every`.
 
         Raises:
-            InputError: it is the name of an argument.
+            InputError: the word is the name of an argument.
         """
         options, arguments = set(), {}
         for parameter in self.get_params(ctx):
@@ -102,20 +102,21 @@ class SettingsCommand(click.Command):
             options.update(parameter.opts)
         if flag in arguments:
             raise InputError(
-                f"there is no flag {flag}; give it as a word: {ctx.command_path} {arguments[flag]}"
+                f"there is no flag {flag}; give the argument without it: {ctx.command_path} "
+                f"{arguments[flag]}"
             )
         hyphenated = flag.replace("_", "-") in options or ("-" in flag[2:] and "." not in flag)
         return flag.startswith("--") and not hyphenated
 
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Append every setting with its value, and what it means."""
+        """Append every setting with its value and its meaning."""
         title, rows = self.settings(ctx)
         if rows:
             with formatter.section(title):
                 formatter.write_dl(rows)
 
     def settings(self, ctx: click.Context) -> tuple[str, list[tuple[str, str]]]:
-        """Return a title and rows for --help: all settings of the task, file or run that is named."""
+        """Return a title and rows for --help: all settings of the named task, file or run."""
         from primordia.cli.help import run_rows, setting_rows
         from primordia.settings.doors import is_door
         from primordia.settings.tables import tasks
@@ -136,7 +137,7 @@ class HabitatCommand(SettingsCommand):
     """A command on a RUN that takes any setting of its habitat as a flag."""
 
     def settings(self, ctx: click.Context) -> tuple[str, list[tuple[str, str]]]:
-        """Return a title and rows for --help: the settings of the habitat of the run named."""
+        """Return a title and rows for --help: the settings of the named run's habitat."""
         from primordia.cli.help import habitat_rows
 
         words = ctx.meta["words"]
@@ -150,12 +151,14 @@ def set_value(settings: dict[str, Any], path: str, value: Any) -> None:
     for group in groups:
         settings = settings.setdefault(group, {})
         if not isinstance(settings, dict):
-            raise InputError(f"--{path}: --{group} already has a single value; give one of the two")
+            raise InputError(
+                f"--{path}: --{group} already has a single value; give only one of the two"
+            )
     settings[name] = value
 
 
 def _value(text: str) -> Any:
-    """Return a flag's value, read as TOML; a text that is not one value of TOML stays a string."""
+    """Return a flag's value, read as TOML. A text that is not a TOML value stays a string."""
     try:
         values = parsed_toml(f"value = {text}")
     except ValueError:

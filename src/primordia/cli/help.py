@@ -15,11 +15,11 @@ from primordia.settings.tables import DEFAULTS, NONE, PARTS, merged, replaced, v
 
 
 def setting_rows(task: str | None, given: dict[str, Any]) -> list[tuple[str, str]]:
-    """Return each setting with its value in a task (or by default), and what it means.
+    """Return each setting with its value in a task, or by default, and its meaning.
 
     Args:
-        task: name of a task or a file; None for none, which has no habitat.
-        given: settings by flags, such as another brain, whose own settings are then shown.
+        task: name of a task or a file; None for the defaults, without a habitat.
+        given: settings by flags; if they name another brain, its settings are shown.
     """
     values = merged(values_of(task) if task else {}, given)
     fields: dict[str, Any] = {}
@@ -49,21 +49,21 @@ def _rows(fields: dict[str, Any], values: dict[str, Any]) -> list[tuple[str, str
 
 
 def _meaning(field: Any) -> str:
-    """Return the description of a setting; if it is a choice, with the values that it can have."""
+    """Return the description of a setting, with the possible values of a choice."""
     values = replaced(choices(field.annotation), None, NONE)
     listed = ", ".join(each if isinstance(each, str) else json.dumps(each) for each in values)
     return f"{field.description or ''}{f' ({listed})' if listed else ''}"
 
 
 def _of_part(part: str, values: dict[str, Any]) -> dict[str, Any]:
-    """Return the settings of the part that a task has, or has by default: path -> field."""
+    """Return the settings of a task's part, or of the default part: path -> field."""
     contract, key, table = CONTRACTS[part], PARTS[part], values.get(part, {})
     default = DEFAULTS.get(part)
     named = table.get(key, default) if isinstance(table, dict) else default
     described = f"{', '.join(contract.KNOWN)}, or module:Class"
     fields: dict[str, Any] = {f"{part}.{key}": Field(default, description=described)}
     if named is not None:
-        with suppress(LookupError):  # `run` reports a wrong name
+        with suppress(LookupError):  # The command `run` reports a wrong name.
             fields |= setting_fields(contract.find(named), f"{part}.")
     return fields
 

@@ -1,4 +1,4 @@
-"""Commands that read run directories and do not change them, and `tasks`."""
+"""Commands that only read run directories, and `tasks`."""
 
 import json
 from pathlib import Path
@@ -45,13 +45,13 @@ def info(runs: tuple[Path, ...], as_json: bool) -> None:
 @click.option(
     "--out", type=click.Path(path_type=Path), help="Folder for the figures [RUN/figures]."
 )
-@click.option("--world", default=0, help="World whose lines of descent are drawn [0].")
+@click.option("--world", default=0, help="World of which the lines of descent are drawn [0].")
 @click.option(
     "--figure",
     "figures",
     multiple=True,
     metavar="NAME|module:function",
-    help="Draw this one alone; may be repeated [all of ours].",
+    help="Draw only this figure; may be repeated [all figures].",
 )
 def plot(runs: tuple[Path, ...], out: Path | None, world: int, figures: tuple[str, ...]) -> None:
     """Draw figures: ages, survival, population, and lines of descent in space and time.
@@ -76,7 +76,8 @@ def plot(runs: tuple[Path, ...], out: Path | None, world: int, figures: tuple[st
 def replay(run: Path, begin: int | None, end: int | None, out: Path | None, **chosen: Any) -> None:
     """Make a video of a life: the whole life, or the first and last 30 seconds of a long one.
 
-    Without --organism it is the life of the champion: the longest-lived of the later half of the births.
+    Without --organism the life is that of the champion: the longest-lived of the later half of the
+    births.
     """
     click.echo(chosen_organism(run, **chosen).replay(out, (begin, end)))
 
@@ -95,7 +96,8 @@ def export(run: Path, organisms: tuple[int, ...], world: int, trust: bool, file:
 
     If its name ends with .onnx, FILE is one brain as an ONNX model, for other programs.
 
-    Without --organism it is the champion, the longest-lived of the later half of the births.
+    Without --organism the genome is that of the champion: the longest-lived of the later half of
+    the births.
     """
     from primordia.api import load
 
@@ -106,12 +108,14 @@ def export(run: Path, organisms: tuple[int, ...], world: int, trust: bool, file:
 @click.command("import", short_help="Write a state dictionary as a genome file.")
 @click.argument("state", type=click.Path(path_type=Path))
 @click.argument("file", type=click.Path(path_type=Path))
-@click.option("--task", required=True, help="Task, or FILE.toml, whose brain the weights are for.")
+@click.option(
+    "--task", required=True, help="Task, or FILE.toml, with the brain that has these weights."
+)
 def import_(state: Path, file: Path, task: str) -> None:
-    """Write a genome FILE, which `primordia run --ancestor` takes, from weights that were made elsewhere.
+    """Write weights from another program as a genome FILE, which `primordia run --ancestor` takes.
 
-    STATE is a safetensors file with a tensor for each block of the brain, such as PyTorch's save_file of
-    safetensors.torch writes from a state dictionary.
+    STATE is a safetensors file with a tensor for each block of the brain. In PyTorch,
+    safetensors.torch.save_file writes it from a state dictionary.
     """
     from primordia import config
     from primordia.brains import genomes
@@ -141,8 +145,10 @@ def verify(run: Path, device: str, trust: bool) -> None:
 
     differences = load(run, trust).verify(device)
     if differences:
-        raise Trouble(f"{run} does not hold: {differences[0]}")
-    click.echo(f"{run} holds: every world was repeated from its beginning with the same result.")
+        raise Trouble(f"{run} differs from its records: {differences[0]}")
+    click.echo(
+        f"{run} is verified: every world was repeated from its beginning with the same result."
+    )
 
 
 @click.command()
@@ -157,9 +163,11 @@ def tasks() -> None:
 @click.command(short_help="Compare runs of one task.")
 @click.argument("runs", nargs=-1, metavar="REFERENCE RUN...")
 @click.option(
-    "--births", type=click.IntRange(1), help="Count only saturation before this number of births."
+    "--births", type=click.IntRange(1), help="Horizon in births: a later saturation does not count."
 )
-@click.option("--ticks", type=click.IntRange(1), help="Count only saturation before this tick.")
+@click.option(
+    "--ticks", type=click.IntRange(1), help="Horizon in ticks: a later saturation does not count."
+)
 @click.option(
     "--out",
     type=click.Path(path_type=Path, file_okay=False),
@@ -170,8 +178,8 @@ def tasks() -> None:
 def compare(runs: tuple[str, ...], out: Path, as_json: bool, **horizons: int | None) -> None:
     """Compare runs of one task: how soon worlds saturate, how long organisms live.
 
-    The first run is the reference of all others. The units are worlds, so give runs many (--seeds), or
-    several runs to an arm: 'heredity=runs/h*' 'none=runs/n*'.
+    The first run is the reference of all others. The units are worlds, so compare runs with many
+    worlds (--seeds), or give an arm several runs: 'heredity=runs/h*' 'none=runs/n*'.
     """
     from primordia import api
     from primordia.comparison.tables import comparison_tables

@@ -1,4 +1,4 @@
-"""The command `primordia lineage`: who descends from whom, for other programs."""
+"""The command `primordia lineage`: the phylogeny of a run for other programs."""
 
 from pathlib import Path
 from typing import Any
@@ -9,7 +9,7 @@ from primordia.cli.flags import run_argument
 from primordia.cli.streams import report
 
 
-@click.command(short_help="Write who descends from whom for other programs.")
+@click.command(short_help="Write the phylogeny of a run for other programs.")
 @run_argument
 @click.argument("organism", type=int, required=False, metavar="[ID]")
 @click.option(
@@ -19,19 +19,19 @@ from primordia.cli.streams import report
     metavar="FILE",
     help="File to write: .parquet, .csv, .nwk or .tsv.",
 )
-@click.option("--world", type=int, help="Only this world [all; with ID, world 0].")
-@click.option("--extant", is_flag=True, help="Only the living and their ancestors.")
+@click.option("--world", type=int, help="Write only this world [all; with ID, world 0].")
+@click.option("--extant", is_flag=True, help="Write only the living and their ancestors.")
 @click.option(
     "--collapse", is_flag=True, help="Leave out the dead that have a parent and only one child."
 )
 def lineage(run: Path, organism: int | None, out: Path, **choice: Any) -> None:
-    """Write who descends from whom, with what is known of each organism, to a file for other programs.
+    """Write the parent, the life and the death of each organism to a file for other programs.
 
     With ID, a birth number, only that organism and its ancestors are written. Organisms that lived before
     a fork are read from the run that was forked.
 
-    The suffix of FILE says in which format: .parquet or .csv is a table in the ALife data standard, .nwk
-    or .newick a tree in Newick, .tsv metadata of the tree for Taxonium.
+    The suffix of FILE gives the format. .parquet and .csv are tables in the ALife data standard.
+    .nwk and .newick are trees in Newick. .tsv holds metadata of the tree for Taxonium.
     """
     from primordia.api import load
 

@@ -19,9 +19,10 @@ from primordia.cli.flags import run_argument, runs_argument, trust_option
 def report(runs: tuple[Path, ...], out: Path | None, trust: bool) -> None:
     """Write one HTML file about a run, several runs as one arm, or an experiment.
 
-    The file opens in any browser, loads nothing, and can be passed on: what happened in words, curves,
-    the space-time picture, the phylogeny of the living, and two lives as films. A life is lived again in
-    its habitat to be filmed. The run's own code is executed for that only if you have trusted it.
+    The file opens in any browser and loads nothing else. It has a summary in words, curves, the
+    space-time picture, the phylogeny of the living, and films of two lives. The films are made by
+    living the lives again. If that needs the run's own code, they are made only if you have trusted
+    the code.
     """
     from primordia.api import load
 
@@ -33,13 +34,14 @@ def report(runs: tuple[Path, ...], out: Path | None, trust: bool) -> None:
 @click.option(
     "--port",
     type=click.IntRange(0, 65535),
-    help="Port on this machine; 0 is any that is free [8321].",
+    help="Port on this machine; 0 for any free port [8321].",
 )
 def watch(run: Path, port: int | None) -> None:
     """Show a run in a browser of this machine, live while the run goes on.
 
-    It is the page of `report` without films. It changes with each checkpoint of the run, which is not
-    disturbed. Only programs on this machine can reach it, and they can read it only. Ctrl-C ends it.
+    The page is that of `report` without films. It changes with each checkpoint, and the run is not
+    disturbed. Only programs on this machine can open the page, and only to read it. Ctrl-C stops
+    the command.
     """
     from primordia.api import load
 

@@ -53,12 +53,13 @@ def revive(
 ) -> None:
     """Live the life of an organism again, tick for tick, and compare it with its record.
 
-    The tick and the cause of its death, the energy left, the food eaten, and what the habitat counts are
-    compared. A living organism lives up to the newest checkpoint, and its memory and body are compared
-    too. The exit status is 0 if all agree, 1 if one does not, and 2 if the life cannot be lived again.
+    The comparison covers the tick and the cause of death, the energy left, the food eaten, and the
+    habitat's tallies. A living organism lives up to the newest checkpoint, and its memory and body
+    are compared too. The exit status is 0 if all agree, 1 if one does not, and 2 if the life cannot
+    be lived again.
 
-    A life begins with the birth, or with the fork if the organism is older. A run keeps its newest two
-    checkpoints and what a fork began with, so --from can begin with one of these.
+    A life begins at birth, or at the fork if the organism is older. With --from it begins at a
+    checkpoint. A run keeps its two newest checkpoints, and a fork also its first one.
     """
     from primordia.api import load
     from primordia.organism import revival

@@ -1,4 +1,4 @@
-"""The command `primordia shadow`, which tells selection from chance."""
+"""The command `primordia shadow`, which measures selection beside chance."""
 
 import json
 from pathlib import Path
@@ -13,9 +13,11 @@ if TYPE_CHECKING:
     from primordia.comparison.shadow import Shadow
 
 
-@click.command(short_help="Compare organisms with a pedigree that nothing selected.")
+@click.command(short_help="Compare organisms with an unselected pedigree.")
 @runs_argument
-@click.option("--organisms", default=500, show_default=True, help="Most organisms of a world.")
+@click.option(
+    "--organisms", default=500, show_default=True, help="Largest number of organisms of a world."
+)
 @click.option("--ticks", type=int, help="Cut lives at this age [the task's saturation_ticks].")
 @trust_option
 @cache_option
@@ -23,10 +25,11 @@ if TYPE_CHECKING:
 def shadow(
     runs: tuple[Path, ...], organisms: int, ticks: int | None, trust: bool, as_json: bool
 ) -> None:
-    """Let organisms live once more, and beside each its shadow, whose line was never selected.
+    """Let organisms live again, and beside each its shadow, whose line was never selected.
 
-    The shadows have the same pedigree, with founders and mutations drawn again. Both live alone, under
-    the same fresh keys. Several runs are one arm; of an experiment each arm is one.
+    The shadows have the same pedigree, with new random founders and mutations. Organism and shadow
+    each live alone, with the same fresh random keys. Several runs are measured as one arm. Each arm
+    of an experiment is measured.
     """
     from primordia.api import Experiment, load
 
@@ -40,11 +43,12 @@ def shadow(
 
 
 def shadow_text(found: "Shadow") -> str:
-    """Return the result for people."""
+    """Return the result as text."""
     told = found.to_dict()
     longer, shorter = found.longer
     head = (
-        f"{found.name}: {told['organisms']:,} of {found.births:,} births in {told['worlds']} worlds,"
+        f"{found.name}: {told['organisms']:,} of {found.births:,} births in {told['worlds']} "
+        "worlds,"
         f" born again alone; {2 * told['organisms']:,} lives, {told['ticks']:,} ticks"
     )
     lines = [f"{'':12}{'mean life':>12}{f'reach {found.cut:,} ticks':>24}"]

@@ -1,4 +1,4 @@
-"""The standard streams of a command: in UTF-8, and without control characters of a run's names."""
+"""The standard streams of a command: UTF-8, without control characters."""
 
 import io
 import os
@@ -14,14 +14,16 @@ class Printable(io.TextIOWrapper):
     """A stream of text on which control characters are spelled out."""
 
     def write(self, text: str) -> int:
-        """Write a text -> its length."""
+        """Write a text. Return its length."""
         super().write(printable(text))
         return len(text)
 
 
 def prepare() -> None:
-    """Replace the standard streams of this process by ones that take any text."""
-    if isinstance(sys.__stdout__, io.TextIOWrapper):  # the live view writes escape sequences to it
+    """Replace the standard streams of this process by streams that accept any text."""
+    if isinstance(
+        sys.__stdout__, io.TextIOWrapper
+    ):  # the live view writes escape sequences to this stream
         sys.__stdout__.reconfigure(encoding="utf-8", errors="backslashreplace")
     sys.stdout, sys.stderr = _stream(1), _stream(2)
 
@@ -33,7 +35,7 @@ def _stream(number: int) -> Printable:
 
 
 def flush() -> None:
-    """Flush the streams; what cannot be written is dropped, since Python would try again at its end."""
+    """Flush the streams. Drop text that cannot be written, which Python would write again at exit."""
     for stream in (sys.stdout, sys.stderr):
         try:
             stream.flush()
@@ -44,5 +46,5 @@ def flush() -> None:
 def report(message: object) -> None:
     """Print a message as one line on stderr."""
     line = " ".join(map(str.strip, str(message).splitlines()))
-    with suppress(OSError):  # the stream may be closed, and then there is no other place to say so
+    with suppress(OSError):  # stderr may be closed, and there is no other place for the message
         click.echo(f"primordia: {printable(line)}", err=True)

@@ -9,9 +9,9 @@ WIDEST = 1000
 def show_table(
     title: str, head: Sequence[str], rows: Iterable[Sequence[str]], notes: Iterable[str] = ()
 ) -> None:
-    """Print a title, a table whose first column holds names and the others numbers, and notes.
+    """Print a title, a table, and notes. The first column holds names, the others hold numbers.
 
-    The table is as wide as it must be: a number that is cut short is of no use.
+    The table is as wide as its numbers need, since a number that is cut short is useless.
     """
     from rich import box
     from rich.console import Console
@@ -29,7 +29,7 @@ def show_table(
 
 
 def spread(values: Iterable[float | None]) -> str:
-    """Write the median and the quartiles of the values that are known; a dash if none is."""
+    """Return the median and the quartiles of the known values as text; a dash if there are none."""
     from primordia.comparison.tables import spread_text
 
     return spread_text(float("nan") if value is None else value for value in values)

@@ -28,7 +28,7 @@ from primordia.cli.streams import report
     default=30.0,
     show_default=True,
     metavar="SECONDS",
-    help="With --follow: time from one look to the next.",
+    help="With --follow: the interval between two readings.",
 )
 def track(
     runs: tuple[Path, ...], tensorboard: Path | None, wandb: Path | None, **options: Any
@@ -36,8 +36,8 @@ def track(
     """Write the metrics of a run, several runs as one arm, or an experiment for dashboards.
 
     Each column of the table `metrics` becomes a series over ticks, and each world a run of the
-    dashboard, such as seed-3. The RUN is read as of its newest checkpoint, and is not disturbed. What an
-    earlier call wrote of the same worlds is replaced.
+    dashboard, such as seed-3. The command reads the newest checkpoint and does not disturb the RUN.
+    It replaces the output of an earlier call for the same worlds.
     """
     from primordia.api import load
 
@@ -52,7 +52,7 @@ def track(
     try:
         load(runs).track(tensorboard, wandb, seen=say, **options)
     except KeyboardInterrupt:
-        report("stopped; what was read until now is written")
+        report("stopped; everything read so far is written")
         raise SystemExit(interrupts.STATUS) from None
 
 

@@ -1,11 +1,11 @@
-"""Runs side by side: how soon their worlds saturate, and how long organisms live in them.
+"""Comparisons of runs: how soon worlds saturate, and how long organisms live.
 
-The units are worlds; those of one run are independent. Where two runs have the same seeds, the worlds of
-one seed are a pair; see `pairs`. The first run is the reference of all others, and all intervals of one
-outcome hold together; see `resample`. A world that stopped before it saturated is treated as censored;
-see `measured`.
-In forks, births, ticks and lives count from the tick of the latest fork on, in all runs. Where few worlds
-saturate, lives count up to the last tick that all worlds have lived through.
+The units are worlds. The worlds of one run are independent. If two runs have the same seeds, the
+worlds of one seed are a pair; see `pairs`. The first run is the reference of all others. All
+intervals of one outcome hold simultaneously; see `resample`. A world that stopped before it
+saturated is treated as censored; see `measured`. If runs are forks, the births, ticks and lives of
+all runs count from the tick of the latest fork. If few worlds saturate, lives count up to the last
+tick that all worlds have lived through.
 """
 
 from collections.abc import Sequence
@@ -39,7 +39,7 @@ OUTCOMES = {
     "food": "food a {span}, late",
 }
 UNSATURATED = ("longest", "pace")
-"""Outcomes that are compared only where saturation is rare."""
+"""Outcomes that are compared only if saturation is rare."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class ComparedArm:
 
     name: str
     settings: dict[str, Any]
-    """dotted name -> value, of the settings in which the runs differ"""
+    """the settings in which the runs differ: dotted name -> value"""
     seeds: np.ndarray
     """the seed of each world, uint64 (W,)"""
     measured: dict[str, Measured]
@@ -64,7 +64,7 @@ class ComparedArm:
     pace: Pace
     gathering: Gathering
     extinctions: Extinctions
-    """those on record in the time that is compared"""
+    """the lives on record in the compared time"""
 
     @property
     def worlds(self) -> int:
@@ -87,7 +87,7 @@ class Comparison:
     age: int
     """age, in ticks, up to which lives count"""
     begin: int
-    """tick at the end of which births, ticks and lives begin to count: that of the latest fork, or 0"""
+    """tick after which births, ticks and lives count: that of the latest fork, or 0"""
     births: int | None
     """horizon in births; None if there is none"""
     ticks: int | None
@@ -97,12 +97,12 @@ class Comparison:
 
     @property
     def contrasts(self) -> int:
-        """Number of runs that are held against the reference; their intervals hold together."""
+        """Number of runs that are compared with the reference; their intervals hold simultaneously."""
         return max(len(self.arms) - 1, 1)
 
     @property
     def outcomes(self) -> dict[str, str]:
-        """The outcomes worth showing, name -> title: known in some world, and of use."""
+        """The outcomes to show, name -> title: those that are known in some world and apply."""
         useless = UNSATURATED if any(often_saturated(arm.measured) for arm in self.arms) else ()
         return {
             name: title.format(span=self.span)
@@ -142,17 +142,17 @@ class Comparison:
 def compare(
     runs: Sequence[Records], births: int | None = None, ticks: int | None = None
 ) -> Comparison:
-    """Read runs and put them side by side.
+    """Compare runs, read from their records.
 
     Args:
         runs: the first is the reference.
-        births: horizon: a world counts as saturated only if it saturates before that many births, which
-            count like all others from the latest fork.
+        births: horizon: a world counts as saturated only if it saturates before this number of
+            births, counted from the latest fork.
         ticks: horizon in ticks, likewise.
 
     Raises:
-        InputError: fewer than two runs, one given twice, different tasks, a run in which nothing has
-            lived, or a world that stopped before a horizon and before it saturated.
+        InputError: there are fewer than two runs, one run is given twice, the tasks differ, nothing
+            has lived in a run, or a world stopped before a horizon and before it saturated.
     """
     configs = _configs(runs)
     age = min(config.saturation_ticks for config in configs)
@@ -201,13 +201,13 @@ def _common_ticks(runs: Sequence[Records], configs: Sequence[Config]) -> tuple[i
         late, early = runs[begun.index(max(begun))], runs[ended.index(min(ended))]
         raise InputError(
             f"{late.path} was forked at tick {max(begun):,}, {early.path} ends at {min(ended):,}:"
-            " they have no time in common"
+            " they have no ticks in common"
         )
     return max(begun), min(ended)
 
 
 def _names(runs: Sequence[Records]) -> list[str]:
-    """Return the names of the runs' directories; the whole path where two have one name."""
+    """Return the names of the runs' directories, or the whole path if two have the same name."""
     names = [run.path.resolve().name for run in runs]
     return [
         name if names.count(name) == 1 else str(run.path)
@@ -229,7 +229,7 @@ def _worlds(lives: Lives) -> list[Lives]:
 def _configs(runs: Sequence[Records]) -> list[Config]:
     """Return the settings of runs; raise InputError if the runs cannot be compared."""
     if len(runs) < 2:
-        raise InputError("compare needs two runs or more; the first is the reference of the others")
+        raise InputError("compare needs two or more runs; the first is the reference of the others")
     paths = [path.resolve() for run in runs for path in run.paths]
     if len(set(paths)) < len(paths):
         raise InputError("a run is given twice; its worlds cannot be compared with themselves")
@@ -245,7 +245,7 @@ def _configs(runs: Sequence[Records]) -> list[Config]:
 
 def differing(configs: Sequence[Config]) -> list[dict[str, Any]]:
     """Return, for each configuration, the settings in which the configurations differ."""
-    ignored: Any = {"about": True, "fork": {"run"}}  # words, and the name of a folder
+    ignored: Any = {"about": True, "fork": {"run"}}  # texts, and the name of a folder
     each = [flat(config.model_dump(mode="json", exclude=ignored)) for config in configs]
     names = dict.fromkeys(name for settings in each for name in settings)
     different = [

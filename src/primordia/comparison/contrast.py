@@ -1,6 +1,6 @@
-"""The worlds of one run against those of another, in one value of each world.
+"""Contrasts: one value of each world of a run against that of a reference's worlds.
 
-The order of two worlds counts where it is known, and otherwise as a tie (Gehan 1965).
+Two worlds whose order is unknown count as a tie (Gehan 1965).
 """
 
 from dataclasses import dataclass
@@ -14,33 +14,33 @@ from primordia.comparison.pairs import Paired, Rows, paired
 from primordia.comparison.resample import LEAST, MISSED, enough, interval, least, resamples
 
 WORDS = ((0.147, "negligible"), (0.33, "small"), (0.474, "medium"))
-"""Words for an absolute delta below each number; above the last it is "large" (Romano et al. 2006)."""
+"""Words for an absolute delta below each number; "large" above the last (Romano et al. 2006)."""
 
 
 @dataclass(frozen=True)
 class Contrast:
-    """The worlds of a run against the worlds of a reference, in one value."""
+    """One value of a run's worlds against that of a reference's worlds."""
 
     delta: float
-    """Cliff's delta (1993): share of pairs of any two worlds in which the run's value is larger, less the
-    share in which it is smaller; -1 to 1"""
+    """Cliff's delta (1993): share of all pairs of worlds in which the run's value is larger, less
+    the share in which it is smaller; -1 to 1"""
     decided: float
     """share of these pairs whose order is known, or known to be a tie"""
     paired: Paired | None
-    """the worlds of each seed side by side; None unless both runs have the same seeds"""
+    """the pairs of worlds with equal seeds; None unless both runs have the same seeds"""
     ratio: Bounds
-    """median of the run over median of the reference"""
+    """median of the run divided by median of the reference"""
     coverage: float
-    """share of resamples in `interval`: 0.95 for one contrast, more for several that hold together"""
+    """share of resamples in `interval`: 0.95 for one contrast, more for several simultaneous ones"""
     interval: Bounds | None
-    """interval that holds this ratio, with both its bounds, in a share `coverage` of resamples of the
-    worlds, or of the pairs; None where one of the runs has too few worlds, see `resample.least`"""
+    """interval that holds both bounds of this ratio in a share `coverage` of resamples of worlds or
+    pairs; None if one of the runs has too few worlds, see `resample.least`"""
     worlds: int
-    """worlds of the run that has fewer"""
+    """number of worlds of the smaller run"""
 
     @property
     def word(self) -> str | None:
-        """The word for the size of the effect; None where one of the runs has fewer than LEAST worlds."""
+        """The word for the size of the effect; None if one of the runs has fewer than LEAST worlds."""
         if self.worlds < LEAST:
             return None
         return next((word for below, word in WORDS if abs(self.delta) < below), "large")
@@ -49,8 +49,8 @@ class Contrast:
     def needed(self) -> int | None:
         """Worlds of each run at which 80 % of experiments find an effect of this size; see `needed`.
 
-        The level is that of the interval. It is None where there is no effect, or one of the runs has
-        fewer than LEAST worlds.
+        The level is that of the interval. None if there is no effect, or one of the runs has fewer
+        than LEAST worlds.
         """
         if self.worlds < LEAST:
             return None
@@ -80,10 +80,10 @@ def contrast(
     """Compare the worlds of two runs.
 
     Args:
-        run: a value of each world of a run.
-        reference: the same of the run that it is held against.
+        run: one value of each world of the run.
+        reference: the same value of each world of the reference.
         pairs: the worlds of the same seeds; None if the worlds of both runs are independent.
-        contrasts: number of contrasts whose intervals hold together.
+        contrasts: number of contrasts whose intervals hold simultaneously.
     """
     if pairs is not None:
         run, reference = run.take(pairs[0]), reference.take(pairs[1])
@@ -114,14 +114,14 @@ def plain(bounds: Bounds) -> list[float | None]:
 
 
 def _interval(runs: tuple[Measured, Measured], streams: tuple[int, int], missed: float) -> Bounds:
-    """Return the interval of the ratio of medians; runs that share a stream are resampled together."""
+    """Return the interval of the ratio of medians; runs with a common stream are resampled together."""
     one, other = (_medians(*each, enough(missed)) for each in zip(runs, streams, strict=True))
     low, high = _ratio(one, other)
     return float(interval(low, missed)[0]), float(interval(high, missed)[1])
 
 
 def _medians(run: Measured, stream: int, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return bounds of the median in each resample of the worlds, float64 (count,) each."""
+    """Return bounds of the median in each resample of the worlds, each float64 (count,)."""
     parts = map(run.take, resamples(len(run.value), stream, count))
     bounds = [(quantile(part.value, 0.5), quantile(part.high, 0.5)) for part in parts]
     low, high = map(np.concatenate, zip(*bounds, strict=True))
@@ -134,7 +134,7 @@ def _pairs(small: np.ndarray, large: np.ndarray) -> int:
 
 
 def _ratio(run: tuple, reference: tuple) -> tuple[np.ndarray, np.ndarray]:
-    """Return bounds of a ratio from bounds of its terms: 0 to infinity unless both are positive."""
+    """Return bounds of a ratio from bounds of its terms: 0 to infinity unless both terms are positive."""
     with np.errstate(all="ignore"):
         low, high = np.divide(run[0], reference[1]), np.divide(run[1], reference[0])
     positive = np.minimum(run[0], reference[0]) > 0

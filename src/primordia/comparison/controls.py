@@ -1,8 +1,8 @@
-"""Evaluation with controls: champions, all that are alive, the best of as many founders, and founders.
+"""Evaluation with controls: champions, the living, the best of many founders, and founders.
 
-A champion is the longest-lived of many, by luck as well as by descent. So as many founders as its world
-had births live one life each, and the longest-lived of them is judged as the champion is. No game in
-which an organism was chosen is among those that judge it, unless all games of the task are the same.
+A champion is the longest-lived of many, by luck as well as by descent. So the control is chosen in
+the same way: as many founders as the world had births live once, and the longest-lived of them is
+judged. No organism is judged by the game that chose it, unless all games of the task are the same.
 """
 
 from collections.abc import Mapping
@@ -18,14 +18,14 @@ from primordia.organism.players import evaluation_keys, founders_of, players_of
 from primordia.runs.records import Records
 
 FOUNDERS = 500
-"""Largest number of founders of a world of which the best is chosen, if not told otherwise."""
+"""Default for the largest number of founders of a world of which the best is chosen."""
 TYPICAL = 20
-"""Founders of a world that are judged without being chosen."""
+"""Number of founders of a world that are judged without being chosen."""
 OUTCOMES = ("lifespan", "score", "length")
 
 
 class Quartiles(NamedTuple):
-    """The median over worlds of a value of each, and the quartiles."""
+    """The median and the quartiles, over worlds, of one value of each world."""
 
     median: float
     q1: float
@@ -34,15 +34,16 @@ class Quartiles(NamedTuple):
 
 @dataclass(frozen=True)
 class Standing:
-    """How a group of organisms did."""
+    """The results of a group of organisms."""
 
     name: str
     chosen_from: int
-    """largest number, over worlds, of organisms that each was chosen from; 1: these were not chosen"""
+    """largest number, over worlds, of organisms among which each was chosen; 1 if they were not chosen"""
     evaluations: list[Evaluation]
 
     def by_world(self, outcome: str) -> dict[int, float]:
-        """Return the median organism's median game in each world; nothing if there is no such outcome.
+        """Return the median organism's median game in each world; an empty array if there is no
+        such outcome.
 
         Args:
             outcome: `lifespan`, or `score` or `length` of the whole game.
@@ -74,7 +75,7 @@ class Standing:
 
 @dataclass(frozen=True)
 class Group:
-    """Organisms of some worlds of a run, all chosen in one way."""
+    """Organisms of some worlds of a run, all chosen in the same way."""
 
     run: Records
     name: str
@@ -91,7 +92,8 @@ class Group:
         senses: Senses = "live",
         habitat: Mapping[str, Any] | None = None,
     ) -> Standing:
-        """Let each organism play; those that were not chosen play one game. See `evaluation.evaluate`."""
+        """Let each organism play; organisms that were not chosen play one game. See
+        `evaluation.evaluate`."""
         each = games if self.chosen_from > 1 else min(games, 1)
         evaluations = judged(
             self.run,
@@ -106,11 +108,11 @@ class Group:
 
 
 def evolved(run: Records, world: int | None = None) -> list[Group]:
-    """Return the champions of a run or an arm, and all that are alive if there are any.
+    """Return the champions of a run or an arm, and all living organisms if there are any.
 
     Args:
         run: the run, or the arm.
-        world: this world alone; by default all worlds in which anything was born since the run began.
+        world: the only world; by default all worlds in which anything was born since the run began.
 
     Raises:
         InputError: nothing was born there.
@@ -123,15 +125,17 @@ def evolved(run: Records, world: int | None = None) -> list[Group]:
 
 
 def unevolved(run: Records, most: int | None = FOUNDERS, world: int | None = None) -> list[Group]:
-    """Return the longest-lived of a number of founders for each world, and some founders as they come.
+    """Return for each world the longest-lived of a number of founders, and some unselected
+    founders.
 
-    To choose, each founder lives once, up to the age without a death that saturates a world. Of equals
-    the last counts, as with champions.
+    Each founder lives once, up to `saturation_ticks`, so that the best can be chosen. Among equals
+    the last is chosen, as with champions.
 
     Args:
         run: the run, or the arm.
-        most: largest number of founders of a world of which the best is chosen; None: as many as births.
-        world: as of `evolved`.
+        most: largest number of founders of a world of which the best is chosen; None: the number of
+            births.
+        world: as for `evolved`.
 
     Raises:
         InputError: nothing was born there, or `most` is below one.
@@ -144,7 +148,7 @@ def unevolved(run: Records, most: int | None = FOUNDERS, world: int | None = Non
 
 
 def _champions(run: Records, world: int | None) -> np.ndarray:
-    """Return the row of the champion of one world, or of each."""
+    """Return the row of the champion of one world, or of each world."""
     rows = run.lives.champions() if world is None else np.array([run.lives.oldest(world)])
     if not len(rows):
         raise InputError(f"{run.path}: nothing has been born since the fork")
@@ -165,7 +169,8 @@ def _recorded(run: Records, name: str, chosen_from: int, rows: np.ndarray) -> Gr
 
 
 def _founders(run: Records, worlds: np.ndarray, counts: np.ndarray) -> list[Group]:
-    """Return the longest-lived of `counts` founders for each of these worlds, and some as they come."""
+    """Return for each of these worlds the longest-lived of `counts` founders, and some unselected
+    ones."""
     world, everyone = founders_of(run, worlds, counts)
     number = np.concatenate([np.arange(count) for count in counts])
     lived = lifespans(everyone, run.config.saturation_ticks)

@@ -17,14 +17,14 @@ class Gathering:
     curve: np.ndarray
     """food in each window, float64 (W, WINDOWS); NaN where no organism lived, or found any food"""
     late: Measured
-    """food in the last quarter of the time; known if there was any food at all"""
+    """food in the last quarter of the time; known if any food was gathered"""
 
 
 def gathering(run: Records, worlds: int, begin: int, end: int, span: float) -> Gathering:
-    """Return the food gathered in the worlds of a run, in a span of `span` ticks.
+    """Return the food that organisms gather in `span` ticks, in each world of a run.
 
-    All worlds must be on record between the ticks `begin` and `end`. If the food of each world adds up
-    to nothing, there was none, and the metrics are not read.
+    All worlds must be on record between the ticks `begin` and `end`. The metrics are not read if no
+    world gathered any food.
     """
     if not run.count("world.worlds.food").any():
         return Gathering(np.full((worlds, WINDOWS), np.nan), _known(np.zeros(worlds), False))

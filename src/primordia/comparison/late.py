@@ -12,11 +12,11 @@ COLUMNS = {
     "late_score": "their median score",
     "best_score": "best score at any death",
 }
-"""Figures of each world, with their names in tables."""
+"""Columns with the values of each world: name -> name in tables."""
 
 
 def last_deaths(run: Records, compared: Comparison) -> list[dict[str, float]]:
-    """Return COLUMNS of each world, up to the tick where runs are compared; scores if there are any."""
+    """Return COLUMNS of each world, up to the last compared tick; scores only if there are any."""
     edges = compared.arms[0].pace.edges
     begins, ends = edges[-1 - LATE], edges[-1]
     deaths = run.table("deaths") if "score" in run.schema.tallies else None

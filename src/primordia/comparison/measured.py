@@ -1,8 +1,8 @@
 """One value of each world, some of them censored.
 
-The value of a world that stopped before it saturated is *at least* the births or ticks that it reached.
-Nothing is assumed about the course of such a world after it stopped. A quartile is given by its bounds,
-which are equal where it is known. So every statement is exact, for any reason why worlds stopped.
+If a world stopped before it saturated, its value is *at least* the births or ticks that it reached.
+Nothing is assumed about its course after the stop. A quartile is given by its bounds, which are
+equal if it is known. So every statement is exact, whatever stopped the worlds.
 """
 
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ import numpy as np
 from primordia.errors import InputError
 
 Bounds = tuple[float, float]
-"""Lower and upper bound of a value; infinity where no upper bound is known."""
+"""Lower and upper bound of a value; infinity if no upper bound is known."""
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class Measured:
     value: np.ndarray
     """float64 (W,)"""
     known: np.ndarray
-    """bool (W,); where False, the true value is at least `value`"""
+    """bool (W,); False if the true value is only known to be at least `value`"""
 
     @property
     def high(self) -> np.ndarray:
@@ -38,7 +38,9 @@ class Measured:
         if (short := ~self.known & (self.value < horizon)).any():
             world = int(np.flatnonzero(short)[0])
             raise InputError(
-                f"world {world} stopped at {self.value[world]:,.0f} before it saturated, so nothing is"
+                f"world {world} stopped at {self.value[world]:,.0f} before it saturated, so "
+                "nothing "
+                "is"
                 f" known about it up to {horizon:,.0f}"
             )
         near = self.value < horizon
@@ -49,12 +51,13 @@ class Measured:
         return Measured(self.value[rows], self.known[rows])
 
     def quantile(self, q: float) -> Bounds:
-        """Return bounds of the smallest value that a share q of worlds does not exceed."""
+        """Return bounds of the q-quantile: the smallest value that a share q of worlds does not
+        exceed."""
         low, high = (quantile(each, q) for each in (self.value, self.high))
         return float(low), float(high)
 
 
 def quantile(values: np.ndarray, q: float) -> np.ndarray:
-    """Return a quantile along the last axis, as an order statistic, so that infinities do no harm."""
+    """Return a quantile along the last axis, as an order statistic: infinities are allowed."""
     place = max(int(np.ceil(q * values.shape[-1])) - 1, 0)
     return np.partition(values, place, axis=-1)[..., place]

@@ -1,4 +1,4 @@
-"""The moments of a world's life that are compared: its first long life, and its saturation."""
+"""Times in a world's history that are compared: its first long life, and its saturation."""
 
 from collections.abc import Sequence
 
@@ -14,8 +14,8 @@ from primordia.runs.records import Records
 def first_long(worlds: Sequence[Lives], age: int) -> Measured:
     """Return the number of the first birth in each world, after its fork, whose life reached an age.
 
-    It is known if all organisms born before are dead. Otherwise it is at least the number of the first
-    one that is still alive.
+    The number is known if all organisms born before that birth are dead. Otherwise it is at least
+    the number of the first organism that is still alive.
     """
     value, known = [], []
     for lived in (world.take(np.flatnonzero(world.entered == 0)) for world in worlds):
@@ -33,7 +33,7 @@ def saturation(
 ) -> dict[str, Measured]:
     """Return the births and ticks to saturation of each world of a run, counted from tick `begin`.
 
-    They are 0 in a world that was saturated by then. `lives` are those recorded since.
+    They are 0 in a world that was saturated at `begin`. `lives` are those recorded since `begin`.
     """
 
     def by_world(name: str) -> np.ndarray:

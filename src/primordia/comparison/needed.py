@@ -1,8 +1,8 @@
-"""How many worlds a claim needs: those with which an effect of its size would be told from none.
+"""Sample sizes: the number of worlds with which an effect of a given size would be found.
 
 Noether (1987, Sample size determination for some common nonparametric tests, JASA 82, 645-647) gives the
-numbers for the test of Mann and Whitney and for the sign test. Both are normal approximations. That for
-Mann and Whitney's test leaves ties out of account, so with many ties fewer worlds may do.
+numbers for the test of Mann and Whitney and for the sign test. Both are normal approximations. The
+one for Mann and Whitney's test ignores ties, so fewer worlds may suffice if there are many ties.
 """
 
 import math
@@ -11,16 +11,16 @@ from statistics import NormalDist
 from primordia.comparison.pairs import Paired
 
 POWER = 0.8
-"""Probability with which the effect would be told from none."""
+"""Power: the probability that the test finds the effect."""
 
 
 def of_each_run(delta: float, missed: float) -> int | None:
     """Return the worlds of each run for Cliff's `delta`; None if it is 0.
 
     Args:
-        delta: share of all pairs of worlds with the larger value in one run, less the share with the
-            smaller.
-        missed: level of the test, with two sides.
+        delta: share of all pairs of worlds in which the run's value is larger, less the share in
+            which it is smaller.
+        missed: two-sided level of the test.
     """
     return math.ceil(_sum_of_quantiles(missed) ** 2 / (1.5 * delta**2)) if delta else None
 
@@ -34,6 +34,6 @@ def of_pairs(effect: Paired, missed: float) -> int | None:
 
 
 def _sum_of_quantiles(missed: float) -> float:
-    """Return the normal quantiles of a level with two sides and of the power, added."""
+    """Return the sum of the normal quantiles of a two-sided level and of the power."""
     normal = NormalDist()
     return normal.inv_cdf(1 - missed / 2) + normal.inv_cdf(POWER)

@@ -9,7 +9,7 @@ from primordia.history import series
 from primordia.runs.lives import Lives
 
 WINDOWS, LATE = 12, 3
-"""Number of windows that time is cut into, and the number of last ones that are called late."""
+"""Number of windows of a world's time, and number of the last windows that are called late."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Pace:
 
 
 def pace(worlds: list[Lives], begin: int, end: int) -> Pace:
-    """Return the pace of the lives of each world, all on record between the ticks `begin` and `end`."""
+    """Return the pace of dying in each world; all must be on record between ticks `begin` and `end`."""
     edges = np.linspace(begin, end, WINDOWS + 1)
     lived = [series.exposure(world.seen, world.ended, edges) for world in worlds]
     deaths = [

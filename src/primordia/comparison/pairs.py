@@ -1,9 +1,9 @@
-"""Pairs of worlds: those of one seed in two runs.
+"""Pairs of worlds: the two worlds of the same seed in two runs.
 
-Such worlds draw the same random words, from the same founders on, until something makes them differ; two
-forks of one run share a past. So they may be alike. Resamples therefore draw pairs: both worlds of a
-seed are in a resample, or neither. That is right whether they are alike or not. If they are alike, the
-interval is narrower; if not, it is as wide as that of independent worlds.
+The worlds of a pair draw the same random words and have the same founders, and two forks of one run
+share a past. So their values may be correlated. A resample therefore has both worlds of a seed or
+neither. This is correct with and without correlation: the interval of correlated pairs is narrower,
+and that of uncorrelated pairs is as wide as for independent worlds.
 """
 
 from typing import NamedTuple
@@ -13,7 +13,7 @@ import numpy as np
 from primordia.comparison.measured import Measured
 
 Rows = tuple[np.ndarray, np.ndarray]
-"""The worlds of two runs, pair by pair, int64 (W,) each."""
+"""The worlds of two runs in the order of their pairs, each int64 (W,)."""
 
 
 class Paired(NamedTuple):
@@ -22,9 +22,9 @@ class Paired(NamedTuple):
     pairs: int
     """number of pairs"""
     larger: int
-    """pairs in which the run's world is known to have the larger value"""
+    """number of pairs in which the run's world is known to have the larger value"""
     smaller: int
-    """pairs in which it is known to have the smaller one; all others are ties (Gehan 1965)"""
+    """number of pairs in which it is known to have the smaller value; all others are ties (Gehan 1965)"""
 
     @property
     def delta(self) -> float:
@@ -35,8 +35,8 @@ class Paired(NamedTuple):
 def same_seeds(run: np.ndarray, reference: np.ndarray) -> Rows | None:
     """Return the pairs of worlds in the order of seeds, uint64 (W,) for each run.
 
-    It is None unless both runs have the same seeds, each once. Some seeds in common make no pairs: the
-    other worlds would be lost.
+    None unless both runs have the same seeds, each once. Runs with only some common seeds are not
+    paired, since their other worlds would be lost.
     """
     if len(run) != len(reference):
         return None

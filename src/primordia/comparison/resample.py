@@ -1,7 +1,7 @@
-"""Worlds drawn with replacement, for intervals; the draws come from our keys and are always the same.
+"""Resamples of worlds (with replacement) for intervals. The draws come from fixed keys.
 
-Where several runs are held against one reference, their intervals hold together: the share of resamples
-outside of each is divided by the number of contrasts (Bonferroni; Dunn 1961).
+If several runs are compared with one reference, their intervals hold simultaneously: the share of
+resamples outside each interval is divided by the number of contrasts (Bonferroni; Dunn 1961).
 """
 
 import math
@@ -14,20 +14,20 @@ from primordia.random.wide import Wide
 
 RESAMPLES = 1000
 MISSED = 0.05
-"""Share of resamples that lie outside an interval, or outside one or more that hold together."""
+"""Share of resamples outside an interval, or outside at least one of several simultaneous ones."""
 LEAST = 5
-"""Fewest worlds of a run that are resampled. Even the whole range of n worlds holds the median of all
-possible worlds with probability 1 - 2^(1 - n) only: 94 % for 5, 88 % for 4."""
+"""Fewest worlds of a run that are resampled. The whole range of n worlds holds the median of all
+possible worlds only with probability 1 - 2^(1 - n): 94 % for 5, 88 % for 4."""
 NUMBERS = 2**18
 """Numbers of worlds that are drawn at once: the 1,000 resamples of 10,000 worlds would take 80 MB."""
 OUTSIDE = 10
-"""Fewest resamples that must lie beyond either end of an interval."""
+"""Smallest number of resamples beyond either end of an interval."""
 
 
 def resamples(worlds: int, stream: int = 0, count: int = RESAMPLES) -> Iterator[np.ndarray]:
     """Yield `count` resamples in parts of K: the numbers of the worlds in each, int64 (K, worlds).
 
-    Two runs whose worlds are independent use different streams, so their resamples are too.
+    Two runs with independent worlds use different streams, so that their resamples are independent.
     """
     key = Wide(np.full(1, stream, np.uint32), np.full(1, worlds, np.uint32))  # type: ignore[arg-type]
     part = max(NUMBERS // worlds, 1)
@@ -38,21 +38,21 @@ def resamples(worlds: int, stream: int = 0, count: int = RESAMPLES) -> Iterator[
 
 
 def interval(values: np.ndarray, missed: float = MISSED) -> tuple[np.ndarray, np.ndarray]:
-    """Return the percentile interval of values of resamples, along the first axis (Efron 1979)."""
+    """Return the percentile interval of resampled values, along the first axis (Efron 1979)."""
     ordered = np.sort(values, axis=0)
     outside = int(len(values) * missed / 2)
     return ordered[outside], ordered[len(values) - 1 - outside]
 
 
 def enough(missed: float) -> int:
-    """Return how many resamples an interval takes that misses so few of them."""
+    """Return the number of resamples for an interval with a share `missed` of them outside."""
     return max(RESAMPLES, math.ceil(2 * OUTSIDE / missed))
 
 
 def least(contrasts: int) -> int:
-    """Return the fewest worlds of a run for intervals that hold together.
+    """Return the smallest number of worlds of a run for simultaneous intervals.
 
-    The range of the worlds misses the median as much more rarely as the intervals must: one world more
-    for twice the contrasts.
+    Twice the contrasts need one more world, since each world halves the probability that the range
+    of the worlds misses the median.
     """
     return LEAST + math.ceil(math.log2(contrasts))

@@ -1,9 +1,10 @@
-"""The neutral shadow: would the same pedigree live as long if life and death had chosen nothing?
+"""The neutral shadow: lifespans of the same pedigree without selection.
 
-All organisms of a sample are born again, alone and under fresh keys, which no run has used. So are their
-shadows: organisms of the same pedigree whose founders and mutations were drawn again. A shadow has the
-generations and mutations of its original, but no genome in its line was ever tried by life. What the
-originals live longer is due to selection (Bedau & Packard 1992).
+A sample of organisms is born again, each alone and with fresh random keys that no run has used.
+Their shadows are born with the same keys. A shadow has the pedigree of its original, but its
+founder and mutations are drawn again. It has as many generations and mutations as its original, but
+no genome in its line was selected. If the originals live longer than the shadows, the difference is
+due to selection (Bedau & Packard 1992).
 """
 
 from dataclasses import dataclass
@@ -25,7 +26,7 @@ from primordia.random.wide import wide
 from primordia.runs.records import Records
 
 ORGANISMS = 500
-"""Largest number of organisms of a world that are born again, if not told otherwise."""
+"""Default for the largest number of organisms of a world that are born again."""
 
 
 @dataclass(frozen=True)
@@ -34,9 +35,9 @@ class Shadow:
 
     name: str
     births: int
-    """births on record, of which the organisms are a sample"""
+    """number of births on record, of which the organisms are a sample"""
     world: np.ndarray
-    """world of each organism, int32 (K,), not falling"""
+    """world of each organism, int32 (K,), in ascending order"""
     original: np.ndarray
     """ticks that each organism lived when it was born again, int64 (K,)"""
     shadow: np.ndarray
@@ -46,25 +47,26 @@ class Shadow:
 
     @property
     def means(self) -> tuple[np.ndarray, np.ndarray]:
-        """Mean life of originals and of shadows in each world, float64 (W,) each."""
+        """Mean life of originals and of shadows in each world, each float64 (W,)."""
         _, place, count = np.unique(self.world, return_inverse=True, return_counts=True)
         original, shadow = (np.bincount(place, each) for each in (self.original, self.shadow))
         return original / count, shadow / count
 
     @property
     def longer(self) -> tuple[int, int]:
-        """Worlds in which the originals live longer than the shadows, and shorter, on average."""
+        """Numbers of worlds in which the originals live longer, and shorter, than the shadows on
+        average."""
         original, shadow = self.means
         return int((original > shadow).sum()), int((original < shadow).sum())
 
     @property
     def p(self) -> float:
-        """The probability of a split of the worlds at least as uneven, without selection (sign test)."""
+        """Probability that the worlds split at least as unevenly without selection (sign test)."""
         return sign_test(*self.longer)
 
     @property
     def ratio(self) -> float:
-        """Median over worlds of the originals' mean life over the shadows'."""
+        """Median over worlds of the originals' mean life divided by the shadows'."""
         return float(np.median(np.divide(*self.means)))
 
     @property
@@ -100,15 +102,16 @@ class Shadow:
 
 
 def shadow(run: Records, organisms: int = ORGANISMS, ticks: int | None = None) -> Shadow:
-    """Let organisms of a run and their shadows live once more, in pairs.
+    """Let organisms of a run and their shadows live again, in pairs.
 
     Args:
         run: the run, or an arm.
-        organisms: most of each world, evenly spaced over its births but the last.
-        ticks: age at which lives are cut; by default that without a death which saturates a world.
+        organisms: largest number of organisms of each world, evenly spaced over all its births but
+            the last.
+        ticks: age at which lives are cut; by default the task's `saturation_ticks`.
 
     Raises:
-        InputError: a number below one, or no world has two births since the fork.
+        InputError: a number is below one, or no world has two births since the fork.
     """
     cut = run.config.saturation_ticks if ticks is None else ticks
     if organisms < 1 or cut < 1:
@@ -117,7 +120,7 @@ def shadow(run: Records, organisms: int = ORGANISMS, ticks: int | None = None) -
     rows = _sample(run.lives.world[own], own, organisms) if len(own) else own
     if not len(rows):
         raise InputError(
-            f"{run.path}: shadow needs two births in a world, since the fork if it is one"
+            f"{run.path}: shadow needs two births in a world (of a fork: since the fork)"
         )
     original, redrawn = (_lifespans(run, rows, each, cut) for each in (False, True))
     return Shadow(run.path.name, len(own), run.lives.world[rows], original, redrawn, cut)
@@ -126,8 +129,8 @@ def shadow(run: Records, organisms: int = ORGANISMS, ticks: int | None = None) -
 def _sample(worlds: np.ndarray, rows: np.ndarray, most: int) -> np.ndarray:
     """Return at most `most` rows of each world, evenly spaced, without the last birth of a world.
 
-    A saturated world stopped because its last-born lived long. That birth would tell of the limit, not of
-    selection; without it, births up to such a limit are a fair sample (Haldane 1945).
+    A saturated world stopped because its last-born lived long. So that birth depends on the limit.
+    Without it, the births up to such a limit are an unbiased sample (Haldane 1945).
     """
     each = (rows[worlds == world][:-1] for world in np.unique(worlds))
     return np.concatenate([own[_spaced(len(own), most)] for own in each])
@@ -140,7 +143,7 @@ def _spaced(count: int, most: int) -> np.ndarray:
 
 
 def _lifespans(run: Records, rows: np.ndarray, redrawn: bool, cut: int) -> np.ndarray:
-    """Return the ticks that organisms live, or their shadows, each under its own fresh key, (K,)."""
+    """Return the ticks that organisms or their shadows live, each with its own fresh key, (K,)."""
     lives = run.lives.take(rows)
     climate = PastClimate(run).of_lives(lives, lives.born)
     keys = stream(wide(run.world_seeds[lives.world]), Purpose.REBIRTH, wide(lives.id))

@@ -1,7 +1,7 @@
 """Survival: the share alive at each age, by Kaplan-Meier (1958) over lives, with worlds as the units.
 
-Organisms alive at a fork count from their age at the fork on (delayed entry: Kalbfleisch and Prentice
-2002, section 1.3), since the shorter lives of their generation are not on its record.
+Organisms alive at a fork count from their age at the fork (delayed entry: Kalbfleisch and Prentice
+2002, section 1.3), since the fork has no record of the shorter lives of their generation.
 """
 
 from dataclasses import dataclass
@@ -19,13 +19,13 @@ class Survival:
     """Deaths and organisms at risk in each of W worlds, at each of A ages with a death.
 
     Lives count up to a limit of age; longer lives survive to the limit. The living are censored at
-    their present age. After the last observed age a curve is constant.
+    their present age. A curve is constant after the last observed age.
     """
 
     limit: int
     """age, in ticks, up to which lives count"""
     ages: np.ndarray
-    """int64 (A,), rising, up to the limit: ages with at least one death"""
+    """int64 (A,), ascending, up to the limit: ages with at least one death"""
     deaths: np.ndarray
     """int64 (W, A)"""
     at_risk: np.ndarray
@@ -38,17 +38,18 @@ class Survival:
 
     @property
     def steps(self) -> np.ndarray:
-        """Ages at which curves have their steps, with both ends, 0 and the limit, (A + 2,)."""
+        """Ages of the steps of curves, from 0 to the limit, (A + 2,)."""
         return np.concatenate([[0], self.ages, [self.limit]])
 
     def with_ends(self, curve: np.ndarray) -> np.ndarray:
-        """Return a curve (A,) with values at both ends, (A + 2,): 1 at age 0, the last at the limit."""
+        """Return a curve (A,) with values at both ends, (A + 2,): 1 at age 0, and the last value at
+        the limit."""
         alive = np.insert(curve, 0, 1.0)
         return np.append(alive, alive[-1])
 
     @cached_property
     def band(self) -> tuple[np.ndarray, np.ndarray]:
-        """Pointwise 95 % interval of the pooled curve over resamples of whole worlds, (A,) each."""
+        """Pointwise 95 % interval of the pooled curve over resamples of whole worlds, each (A,)."""
         worlds = len(self.deaths)
         curves = np.empty((RESAMPLES, len(self.ages)), np.float32)
         deaths, at_risk = self.deaths.astype(float), self.at_risk.astype(float)
@@ -70,7 +71,8 @@ def survival(lives: Lives, worlds: int, limit: int) -> Survival:
     ages = np.unique(lives.lifespan[died])
     deaths = np.zeros((worlds, len(ages)), np.int64)
     np.add.at(deaths, (lives.world[died], np.searchsorted(ages, lives.lifespan[died])), 1)
-    # At risk at an age: lives that end no earlier, less those that come on record no earlier.
+    # At risk at an age: the lives that end at it or later, less those whose record begins at it or
+    # later.
     reached, later = (
         _reaching(lives.world, each, worlds, ages) for each in (lives.lifespan, lives.entered)
     )
@@ -78,12 +80,12 @@ def survival(lives: Lives, worlds: int, limit: int) -> Survival:
 
 
 def _reaching(world: np.ndarray, age: np.ndarray, worlds: int, ages: np.ndarray) -> np.ndarray:
-    """Return the number of lives in each world that are no younger than each of `ages`, int64 (W, A)."""
+    """Return the number of lives in each world that reach each of `ages`, int64 (W, A)."""
     last = np.zeros((worlds, len(ages) + 1), np.int64)
     np.add.at(last, (world, np.searchsorted(ages, age, side="right")), 1)
     return np.cumsum(last[:, ::-1], axis=1)[:, ::-1][:, 1:]
 
 
 def _alive(deaths: np.ndarray, at_risk: np.ndarray) -> np.ndarray:
-    """Return the product over ages of the share that survives each, 1 where no organism is at risk."""
+    """Return the product of the shares that survive each age; 1 if no organism is at risk."""
     return np.cumprod(1 - deaths / np.maximum(at_risk, 1), axis=-1)

@@ -26,7 +26,7 @@ DIRECTIONS = {
 """Words for a smaller and a larger value of each outcome."""
 
 WIDE = 1000
-"""Columns of text, enough that no line is broken."""
+"""Width of the text in characters, enough that no line is broken."""
 
 
 def comparison_tables(compared: Comparison) -> str:
@@ -42,14 +42,14 @@ def comparison_tables(compared: Comparison) -> str:
 
 
 def quartiles_text(arm: ComparedArm, outcome: str) -> str:
-    """Write the median, and the quartiles in brackets if they differ."""
+    """Return the median, and the quartiles in brackets if they differ, as text."""
     quartiles = (bounds_text(arm.measured[outcome].quantile(q)) for q in (0.25, 0.5, 0.75))
     q1, median, q3 = quartiles
     return f"{median} ({q1} to {q3})" if q1 != q3 else median
 
 
 def spread_text(values: Iterable[float]) -> str:
-    """Write the median and the quartiles of the values that are known; a dash if none is."""
+    """Return the median and the quartiles of the known values as text; a dash if there are none."""
     known = [value for value in values if not math.isnan(value)]
     if not known:
         return "-"
@@ -58,7 +58,7 @@ def spread_text(values: Iterable[float]) -> str:
 
 
 def effect_text(against: Contrast, outcome: str) -> str:
-    """Write delta with its word and direction."""
+    """Return delta with its word and direction as text."""
     smaller, larger = DIRECTIONS[outcome]
     direction = f" {larger if against.delta > 0 else smaller}" if against.delta else ""
     known = f"; order known of {int(100 * against.decided)} %" if against.decided < 1 else ""
@@ -67,17 +67,17 @@ def effect_text(against: Contrast, outcome: str) -> str:
 
 
 def paired_text(against: Contrast) -> str:
-    """Write delta within pairs of worlds of one seed; nothing if there are no pairs."""
+    """Return delta within pairs of worlds as text; "" if there are no pairs."""
     return f"{against.paired.delta:+.2f}" if against.paired else ""
 
 
 def needed_text(against: Contrast) -> str:
-    """Write how many worlds a claim of this size needs; nothing if that is unknown."""
+    """Return the number of worlds that an effect of this size needs as text; "" if it is unknown."""
     return "" if against.needed is None else f"{against.needed:,} worlds an arm"
 
 
 def ratio_text(against: Contrast) -> str:
-    """Write the ratio of medians, with its interval if there is one."""
+    """Return the ratio of medians, with its interval if there is one, as text."""
     ratio = bounds_text(against.ratio)
     if against.interval is None:
         return ratio
@@ -86,7 +86,7 @@ def ratio_text(against: Contrast) -> str:
 
 
 def bounds_text(bounds: Bounds) -> str:
-    """Write a value, or the bounds that are known of it."""
+    """Return a value, or its known bounds, as text."""
     low, high = bounds
     if low == high:
         return number_text(low)
@@ -96,12 +96,12 @@ def bounds_text(bounds: Bounds) -> str:
 
 
 def setting_text(value: Any) -> str:
-    """Write a setting as TOML and flags do."""
+    """Return the text of a setting, as in TOML and flags."""
     return "none" if value is None else str(value)
 
 
 def number_text(value: float) -> str:
-    """Write a number with at least three digits, and commas between thousands."""
+    """Return a number as text with at least three digits, and commas between thousands."""
     if math.isinf(value):
         return "inf"
     return f"{value:,.0f}" if abs(value) >= 100 or value == round(value) else f"{value:.3g}"
@@ -123,7 +123,7 @@ def _runs(compared: Comparison) -> Table:
 
 
 def _against(compared: Comparison, outcome: str) -> Table:
-    """Return a table of one outcome of each run, and of each run against the first."""
+    """Return a table of one outcome: each run, and each run against the first."""
     reference, *others = compared.arms
     against = {arm.name: compared.contrast(arm, outcome) for arm in others}
     columns = {
@@ -144,29 +144,36 @@ def _against(compared: Comparison, outcome: str) -> Table:
 
 
 def _ratio_title(against: list[Contrast]) -> str:
-    """Return the title of the ratio's column, with the share that its intervals hold."""
+    """Return the title of the ratio's column, with the coverage of its intervals."""
     if all(each.interval is None for each in against):
         return "ratio of medians"
     return f"ratio of medians ({100 * (1 - MISSED):.0f} %{' for all' if len(against) > 1 else ''})"
 
 
 def evidence_notes(compared: Comparison) -> list[str]:
-    """Say how pairs, intervals and needed worlds are to be read, as far as there are any."""
+    """Return notes on how to read pairs, intervals and needed worlds, if the tables have any."""
     against = [compared.contrast(arm, "births") for arm in compared.arms[1:]]
     notes = []
     if any(each.paired for each in against):
         notes.append(
-            "Within seeds: delta within pairs of worlds of one seed; intervals draw such pairs."
+            "Within seeds: delta within pairs of worlds with equal seeds. Intervals resample "
+            "these "
+            "pairs."
         )
     if len(against) > 1 and any(each.interval for each in against):
         notes.append(
-            f"All intervals of an outcome hold together in {100 * (1 - MISSED):.0f} % of cases, each"
-            f" alone in {100 * against[0].coverage:.4g} % (Bonferroni, for {len(against)} contrasts)."
+            f"All intervals of an outcome hold simultaneously in {100 * (1 - MISSED):.0f} % of "
+            "cases, "
+            "each"
+            f" alone in {100 * against[0].coverage:.4g} % (Bonferroni, for {len(against)} "
+            "contrasts)."
         )
     if any(each.worlds >= LEAST for each in against):
         level = f"{100 * (1 - against[0].coverage):.3g} %"
         notes.append(
-            "Needs: the number of worlds in each arm at which 80 % of experiments find an effect of this"
+            "Needs: the number of worlds in each arm at which 80 % of experiments find an effect "
+            "of "
+            "this"
             f" size, at a level of {level} (Noether 1987)."
         )
     return notes
@@ -178,7 +185,8 @@ def _table(*columns: str) -> Table:
 
 def _notes(compared: Comparison) -> list[str]:
     notes = [
-        "Medians and intervals are over worlds. A world that stopped unsaturated is treated as censored."
+        "Medians and intervals are over worlds. A world that stopped unsaturated is treated as "
+        "censored."
     ]
     notes += _too_few(compared) + evidence_notes(compared)
     if any(arm.extinctions.crashes.any() for arm in compared.arms):
@@ -187,7 +195,7 @@ def _notes(compared: Comparison) -> list[str]:
         )
     if compared.begin:
         notes.append(
-            f"Births, ticks and lives count from tick {compared.begin:,}, that of the fork."
+            f"Births, ticks and lives count from tick {compared.begin:,}, the tick of the fork."
         )
     if {"pace", "food"} & set(compared.outcomes):
         notes.append("Late: the last quarter of the time that all worlds have lived through.")
@@ -195,19 +203,22 @@ def _notes(compared: Comparison) -> list[str]:
         *notes,
         f"A long life: {compared.age:,} ticks. Mean lifespan: ticks in each world, up to that age"
         " (Kaplan-Meier).",
-        "Delta: Cliff's delta, the share of pairs of worlds in which the run's value is larger than the"
+        "Delta: Cliff's delta, the share of pairs of worlds in which the run's value is larger "
+        "than "
+        "the"
         " reference's,",
         "less the share in which it is smaller.",
     ]
 
 
 def _too_few(compared: Comparison) -> list[str]:
-    """Say which run has too few worlds for intervals, or even for words."""
+    """Return a note on the run that has too few worlds for intervals, or even for words."""
     few, wanted = min(compared.arms, key=lambda arm: arm.worlds), least(compared.contrasts)
     if few.worlds >= wanted:
         return []
     what = "Intervals, and words for sizes, need" if wanted == LEAST else "Intervals need"
     words = f"; words for sizes need {LEAST}" if few.worlds < LEAST < wanted else ""
     return [
-        f"{what} {wanted} worlds of each run (--seeds {wanted}): {few.name} has {few.worlds}{words}."
+        f"{what} {wanted} worlds of each run (--seeds {wanted}): {few.name} has "
+        f"{few.worlds}{words}."
     ]

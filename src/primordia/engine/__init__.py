@@ -1,1 +1,1 @@
-"""The engine, which advances worlds chunk by chunk with habitats in JAX and on the host."""
+"""The engine: it advances worlds chunk by chunk, with habitats in JAX or on the host."""

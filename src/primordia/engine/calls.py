@@ -1,4 +1,4 @@
-"""The compiled calls for a habitat on the host: halves of ticks, and their settling."""
+"""The compiled calls for a habitat on the host: think, judge, and settle."""
 
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -28,7 +28,7 @@ class Decision(NamedTuple):
     alive: Array
     """bool (C,): cells with an organism"""
     active: Array
-    """bool (C,): cells to be stepped next"""
+    """bool (C,): cells to step next"""
     died: Array
     """bool (C,): cells whose organism died in the tick"""
     newborn: Array
@@ -38,18 +38,18 @@ class Decision(NamedTuple):
     ran: Array
     """bool (W,): worlds that ran in the tick"""
     remembered: Array
-    """bool (): the tick ends with a moment that organisms remember"""
+    """bool (): organisms remember a moment at the end of the tick"""
     go_on: Array
     """bool (): some world runs, and the lists have room"""
     due: Array
-    """int32 (): ticks after which the world must be settled at the latest"""
+    """int32 (): the world must be settled within this number of ticks"""
 
 
 class Calls:
     """Compiled functions of a law."""
 
     def __init__(self, law: Law, form: Form, words: int) -> None:
-        """Compile for worlds held in a form, and bodies made from `words` random words."""
+        """Compile for worlds of a packed form, and for bodies made from `words` random words."""
         steps = _Steps(law, form, words)
         self.hold, self.release = shared(Form.hold, form), shared(Form.release, form)
         self.think = shared(_Steps.think, steps)
@@ -63,11 +63,11 @@ class Unsettled(NamedTuple):
     """The ticks lived since the last settled one."""
 
     held: Held
-    """the world after them, not settled yet"""
+    """the world after these ticks, not settled yet"""
     fates: Fates
     """fates of the latest tick"""
     ticks: Any
-    """int32 (): number of the ticks"""
+    """int32 (): number of these ticks"""
 
 
 @dataclass(frozen=True)
@@ -121,7 +121,7 @@ class _Steps:
         return Bulk.of(world), events, self.form.hold(world), decision
 
     def remember(self, bulk: Bulk, held: Held, senses: Array, ran: Array) -> Bulk:
-        """Let organisms remember at the end of a settled tick, whose newborn have senses."""
+        """Let organisms remember at the end of a settled tick, after its newborn have senses."""
         return Bulk.of(remember(self.law, self.form.release(held, bulk), senses, ran))
 
     def _decide(

@@ -66,10 +66,10 @@ class Engine:
         return bool(np.asarray(_running(self.state.world.worlds, limits)).any())
 
     def limits(self, stop: dict[str, Any], ticks: np.ndarray | None = None) -> Limits:
-        """Return the limits of all worlds for settings of `stop`.
+        """Return the limits of all worlds, by settings of `stop`.
 
         Args:
-            stop: settings of `config.Stop`; one that is missing or None is no limit.
+            stop: settings of `config.Stop`; a missing setting or None is no limit.
             ticks: a limit of ticks for each world, (W,), in place of that of `stop`.
         """
 

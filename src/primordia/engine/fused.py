@@ -57,7 +57,7 @@ class FusedChunks:
 def advance(
     law: Law, habitat: JaxHabitat, state: State, events: Events, limits: Limits, ticks: Array
 ) -> tuple[State, Events, Array]:
-    """Advance worlds by at most `ticks` -> state, events, number of ticks advanced, int32 ()."""
+    """Advance worlds by at most `ticks`. Return state, events, and the number of ticks, int32 ()."""
 
     def go_on(carry: tuple) -> Array:
         _, events, live_worlds, done = carry
@@ -108,7 +108,7 @@ def _quiet(
 
 
 def _embody(law: Law, habitat: JaxHabitat, world: World, bodies: Bodies, newborn: Array) -> Bodies:
-    """Insert fresh bodies for the newborn, bool (C,), a batch at a time, since a body may cost much."""
+    """Insert fresh bodies for the newborn, bool (C,), in batches, since bodies may be expensive."""
     key = stream(world.worlds.seed, Purpose.BODY, world.worlds.tick)
 
     def one_batch(cells: Array, valid: Array, carry: tuple[Bodies]) -> tuple[Bodies]:

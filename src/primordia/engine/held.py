@@ -1,6 +1,6 @@
-"""Worlds packed into few arrays between compiled calls, since the cost of a call grows with its arrays.
+"""Worlds packed into few arrays, since the cost of a compiled call grows with its number of arrays.
 
-Measured for 32 cells: settling a world of 61 arrays takes 0.55 ms, most of it to pass the arrays.
+Measured for 32 cells: settling a world of 61 arrays takes 0.55 ms, most of which passes the arrays.
 """
 
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from primordia.law.world import Organisms, Remembered, World
 
 
 class Held(NamedTuple):
-    """A world without what is bulky."""
+    """A packed world without its bulk."""
 
     organisms: Array
     """uint32 (C, K)"""
@@ -26,7 +26,7 @@ class Held(NamedTuple):
 
 
 class Bulk(NamedTuple):
-    """What is too large to be packed for every call; see `Organisms`."""
+    """The arrays of a world that are too large to be packed for every call; see `Organisms`."""
 
     genome: Genome
     moments: Remembered | None
@@ -58,7 +58,7 @@ class Form:
         return Held(organisms, self.worlds.pack(world.worlds))
 
     def release(self, held: Held, bulk: Bulk) -> World:
-        """Return the world that was packed, with the bulk given."""
+        """Return the world that was packed, with this bulk."""
         organisms = self.organisms.unpack(held.organisms)._replace(**bulk._asdict())
         return World(organisms, self.worlds.unpack(held.worlds))
 

@@ -1,9 +1,9 @@
 """Chunks with a habitat on the host: the habitat is stepped between compiled calls, one for each tick.
 
-The call judges a tick and then thinks the next one. A quiet tick needs no other call. A tick with an
-event, or in which something falls due, is settled by a second call, and the newborn need a third for
-their first thought. The changes of unsettled ticks are kept beside the state, so a chunk may end at any
-tick.
+The call judges a tick and then thinks the next one. A tick without events needs no other call. A
+tick with an event, or with a change that is due, is settled by a second call. The first thought of
+the newborn takes a third call. The changes of unsettled ticks are kept beside the state, so a chunk
+may end at any tick.
 """
 
 import numpy as np
@@ -82,7 +82,7 @@ class HostedChunks:
         return self._messages.of(self.events.deaths)
 
     def _release(self, bulk: Bulk, held: Held) -> World:
-        """Return the world; its bulk does not pass through a call, which would copy it."""
+        """Return the world. Its bulk passes through no compiled call, which would copy it."""
         world = self._calls.release(held, NO_BULK)
         return world._replace(organisms=world.organisms._replace(**bulk._asdict()))
 
@@ -95,7 +95,8 @@ class HostedChunks:
         active: Array,
         most: int,
     ) -> tuple[Unsettled, Thought, np.ndarray]:
-        """Live ticks up to and including the first eventful one, at most `most`; none before genesis.
+        """Live up to and including the first eventful tick, at most `most` ticks; none before
+        genesis.
 
         Returns:
             the ticks lived; the thought of the next tick; senses, float32 (C, S).

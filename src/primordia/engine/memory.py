@@ -1,4 +1,4 @@
-"""Memory: what the arrays of a run need, known from their shapes before any is made."""
+"""The memory that the arrays of a run need, computed from their shapes before they are made."""
 
 import os
 from contextlib import suppress
@@ -17,7 +17,7 @@ from primordia.law.genesis import begin
 from primordia.law.law import Law
 
 MEMINFO, CGROUP = Path("/proc/meminfo"), Path("/sys/fs/cgroup/memory.max")
-"""Where Linux says how much memory is available, and how much a container may have."""
+"""Linux's files with the available memory, and with the limit of a container."""
 
 
 def check(law: Law, habitat: AnyHabitat, devices: list[jax.Device]) -> None:
@@ -27,7 +27,9 @@ def check(law: Law, habitat: AnyHabitat, devices: list[jax.Device]) -> None:
         cells = law.worlds * law.cells
         raise InputError(
             f"cells x seeds: {cells:,} cells need {_gigabytes(needed)} of memory or more,"
-            f" {_gigabytes(available)} are available; choose fewer cells, fewer seeds or a smaller brain"
+            f" {_gigabytes(available)} are available; choose fewer cells, fewer seeds or a "
+            "smaller "
+            "brain"
         )
 
 
@@ -53,7 +55,7 @@ def bytes_available(devices: list[jax.Device]) -> int:
     if known:
         return len(known) * min(int(each["bytes_limit"] - each["bytes_in_use"]) for each in known)
     amounts = [os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")]
-    with suppress(OSError, ValueError):  # other systems than Linux; no limit
+    with suppress(OSError, ValueError):  # systems other than Linux: no limit
         amounts.append(int(CGROUP.read_text(encoding="utf-8")))
     with suppress(OSError, ValueError):
         lines = dict(

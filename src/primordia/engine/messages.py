@@ -1,4 +1,4 @@
-"""What habitats on the host say of bodies that failed: a line for each organism that died of it."""
+"""Messages of habitats on the host about failed bodies: a line for each organism that died of a fault."""
 
 import numpy as np
 
@@ -18,7 +18,7 @@ class Messages:
         self._of_deaths: list[str] = []
 
     def note_deaths(self, died: np.ndarray) -> None:
-        """Note why bodies failed in cells whose organism died, bool (C,), before they are reset."""
+        """Note why bodies failed, before they are reset, in cells whose organism died, bool (C,)."""
         self._of_deaths += [self._habitat.message(cell) for cell in np.flatnonzero(died).tolist()]
 
     def of(self, deaths: Rows) -> list[str]:

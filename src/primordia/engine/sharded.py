@@ -1,9 +1,9 @@
 """Chunks on several devices, each of which holds an equal number of a run's worlds.
 
-Worlds share nothing, so every device drives a loop for its own worlds, with its own lists of events, and
-waits for no other before the chunk ends. A list may be full on one device while others go on: then their
-worlds are ahead until the others have reached a limit. A state is what it is on one device, with each of
-its arrays split along the first axis.
+Worlds share nothing. So every device has a loop for its own worlds, with its own lists of events,
+and waits for the others only at the end of a chunk. If a list is full on one device, the worlds of
+the other devices are ahead of its worlds for a while. A state is the same as on one device, but
+each of its arrays is split along the first axis.
 """
 
 from collections.abc import Callable
@@ -33,14 +33,14 @@ AXIS = "devices"
 SPLIT: Any = PartitionSpec(AXIS)
 """an array whose first axis is split over the devices"""
 SAME: Any = PartitionSpec()
-"""an array that all devices have"""
+"""an array that is copied to all devices"""
 
 
 class ShardedChunks(FusedChunks):
     """Law and habitat in one compiled loop on each device, for its share of the worlds."""
 
     def __init__(self, law: Law, habitat: JaxHabitat, devices: list[jax.Device]) -> None:
-        """`devices`: their number divides that of the worlds."""
+        """Use `devices`; their number must divide the number of worlds."""
         self._law, self._habitat = law, habitat
         self._share = replace(law, worlds=law.worlds // len(devices))
         mesh = Mesh(np.array(devices), (AXIS,))
@@ -60,7 +60,9 @@ class ShardedChunks(FusedChunks):
         Returns:
             state; the number of ticks advanced on the device that advanced most.
         """
-        state = jax.device_put(state, self._split)  # it stays where it is, unless it was changed
+        state = jax.device_put(
+            state, self._split
+        )  # the template stays on its devices, unless it was changed
         state, self._lists, done = self._advance(state, self._lists, limits, np.int32(ticks))
         self.events = self._joined()
         return state, int(np.asarray(done).max())
@@ -82,11 +84,12 @@ class ShardedChunks(FusedChunks):
 
 
 def _joined(lists: Rows, columns: Columns, share: int) -> Rows:
-    """Return one list of the devices' lists, in the order of ticks; rows of a tick stay in order.
+    """Join the devices' lists into one, in the order of ticks; rows of the same tick stay in order.
 
     Args:
         lists: rows uint32 (D, capacity, fields), filled int32 (D,).
-        columns: the first columns; the first of all numbers cells or worlds within a device.
+        columns: the first columns of a row; the very first is the number of a cell or world within
+            a device.
         share: the number of cells or worlds of a device.
     """
     parts = [np.zeros((0, lists.rows.shape[2]), np.uint32)]
@@ -100,7 +103,8 @@ def _joined(lists: Rows, columns: Columns, share: int) -> Rows:
 
 
 def _on_each(mesh: Mesh, function: Callable, *given: PartitionSpec | tuple) -> Callable:
-    """Return a function that calls another one on each device, with its shares of the arguments."""
+    """Return a function that calls `function` on each device with that device's share of the
+    arguments."""
     return jax.shard_map(function, mesh=mesh, in_specs=given, out_specs=SPLIT, check_vma=False)
 
 
@@ -137,4 +141,4 @@ def _advance(
 
 
 _of_device = partial(jax.tree.map, lambda leaf: leaf[None])
-"""Give the arrays of a device a first axis, along which those of all devices are put together."""
+"""Give the arrays of a device a first axis, along which the arrays of all devices are joined."""

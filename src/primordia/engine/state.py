@@ -1,7 +1,7 @@
 """The state of a run and the limits of its worlds, which both kinds of chunks share.
 
-A chunk is many ticks of law and habitat between two visits of the host. It may have any length: no life
-depends on it.
+A chunk is many ticks of law and habitat between two visits of the host. No life depends on the
+length of chunks.
 """
 
 from collections.abc import Callable, Mapping
@@ -36,7 +36,7 @@ class State(NamedTuple):
 
     world: World
     bodies: Bodies
-    """bodies of a habitat in JAX; of one on the host, the senses, float32 (C, S)"""
+    """bodies of a habitat in JAX; senses, float32 (C, S), of a habitat on the host"""
 
 
 def running(worlds: Worlds, limits: Limits) -> Array:
@@ -57,9 +57,9 @@ def filled(
     prefix: str = "",
     place: Callable[[np.ndarray], Array] = jnp.array,
 ) -> Tree:
-    """Return a tree like the template, with stored arrays, whose names are its paths after a prefix.
+    """Return a tree like the template with stored arrays, named by a prefix and their paths.
 
-    `place` copies an array of the host to where it is needed.
+    `place` copies an array from the host to its device.
 
     Raises:
         Trouble: an array is missing, or has another shape or type than the template's.
@@ -74,6 +74,6 @@ def filled(
 
 
 def ticks_left(law: Law, world: World, limits: Limits, live_worlds: Array) -> Array:
-    """Return the ticks until a limit or something else falls due in a running world, int32 ()."""
+    """Return the ticks until a running world reaches a limit or another due change, int32 ()."""
     to_limit = jnp.where(live_worlds, world.worlds.tick.until(limits.ticks), 2**31 - 1).min()
     return jnp.minimum(to_limit, quiet_ticks(law, world, live_worlds))

@@ -1,7 +1,7 @@
 """Tallies: counts of an organism's life for people, such as a score; the law never sees them.
 
-A habitat on the host may keep them: `tallies` are their names, and `tally()` returns those of the present
-lives, int32 (C, K). They become columns of the lists of deaths and samples.
+A habitat on the host may keep them. Its `tallies` are their names, and its `tally()` returns the
+counts of the present lives, int32 (C, K). They become columns of the lists of deaths and samples.
 """
 
 from typing import Any

@@ -1,4 +1,4 @@
-"""Bodies of a task without brains: whoever acts in them lives and dies by the law's own rules."""
+"""Bodies of a task without brains: a policy acts in them, and they live and die by the law."""
 
 from typing import Any, NamedTuple
 
@@ -21,7 +21,7 @@ from primordia.random.wide import wide
 
 
 class Births(NamedTuple):
-    """What bodies of K organisms follow from, as in a run: int (K,) each."""
+    """The births that determine the bodies of K organisms, as in a run: each int (K,)."""
 
     seeds: np.ndarray
     """seed of the world"""
@@ -71,7 +71,7 @@ class Bodies:
         self._vitals = _vitals(energy, eaten)
 
     def step(self, action: np.ndarray, alive: np.ndarray) -> np.ndarray:
-        """Live a tick in the cells alive, bool (N,) -> cause of death or -1, int32 (N,)."""
+        """Live a tick in the cells alive, bool (N,). Return causes of death or -1, int32 (N,)."""
         before = [np.asarray(each) for each in self._vitals]
         senses, outcome = self.habitat.step(action, alive)
         vitals, cause = self._judge(self._vitals, self._sound, senses, outcome, self._rates)
@@ -86,7 +86,7 @@ class Bodies:
 
 
 def _vitals(energy: Any, eaten: Any) -> Vitals:
-    """Return energy and food, NumPy arrays, as the law takes them."""
+    """Return energy and food as the law's arrays."""
     return Vitals(energy, eaten)
 
 
@@ -116,7 +116,7 @@ def _part_space(part: Discrete | Continuous) -> Space:
 
 
 def as_row(action: Any, kind: Any) -> np.ndarray:
-    """Return a body's action as the habitat takes it: int32 () or float32 (K,)."""
+    """Return a body's action in the habitat's form: int32 () or float32 (K,)."""
     if isinstance(kind, Discrete):
         return np.array(action, np.int32)
     if isinstance(kind, Compound):

@@ -14,11 +14,11 @@ FIRST = np.array([0])
 
 
 class LifeEnv(gymnasium.Env):
-    """A life in a task of ours: `terminated` is death, and there is no time limit.
+    """A life in one of Primordia's tasks: `terminated` is death, and there is no time limit.
 
-    Observations are what an organism would perceive, float32 (S,). `info` has `food`, the food gathered
-    so far; `energy`, if the task has a metabolism; and `cause` in the tick of death. All are the numbers
-    that an organism with these actions would have in a run.
+    Observations are an organism's senses, float32 (S,). `info` has `food`, the food gathered so
+    far; `energy`, if the task has a metabolism; and `cause` in the tick of death. All numbers equal
+    those of an organism with the same actions in a run.
     """
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 30}  # noqa: RUF012
@@ -33,7 +33,7 @@ class LifeEnv(gymnasium.Env):
         """Make a body.
 
         Args:
-            task: a task of ours, or a file, as for `primordia run`.
+            task: name of a task, or a file, as for `primordia run`.
             settings: settings that differ, as nested tables.
             reward: the reward of each tick that is lived; death has none.
             render_mode: `rgb_array`, or None.
@@ -51,10 +51,10 @@ class LifeEnv(gymnasium.Env):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
-        """Begin a life, which follows from the seed and the number of lives since it was given.
+        """Begin a life, determined by the seed and the number of lives since the seed was given.
 
-        `options` may have `tick` and `cell`. With these and the seed of a run's world, the body is that
-        of the organism that was born there.
+        `options` may have `tick` and `cell`. With the seed of a run's world, the body is that of
+        the organism born at this tick in this cell.
         """
         super().reset(seed=seed)
         self._episode = 0 if seed is not None else self._episode + 1

@@ -13,9 +13,9 @@ from primordia.habitats.contract import Compound
 
 
 class LifeVectorEnv(VectorEnv):
-    """N lives in a task of ours, with the same numbers as N environments `LifeEnv`.
+    """N lives in one of Primordia's tasks, with the same numbers as N environments `LifeEnv`.
 
-    Life number n of body i follows from the seed that the body was given and n. See `LifeEnv` for
+    Life number n of body i is determined by n and the body's seed. See `LifeEnv` for
     observations and `info`.
     """
 
@@ -31,12 +31,12 @@ class LifeVectorEnv(VectorEnv):
         """Make the bodies.
 
         Args:
-            task: a task of ours, or a file, as for `primordia run`.
+            task: name of a task, or a file, as for `primordia run`.
             num_envs: number N of bodies.
             settings: settings that differ, as nested tables.
             reward: the reward of each tick that is lived; death has none.
-            autoreset_mode: NEXT_STEP: the step after a death begins the next life; DISABLED: `reset` with
-                `options={"reset_mask": mask}` does, with a bool (N,).
+            autoreset_mode: NEXT_STEP: the step after a death begins the next life; DISABLED: only
+                `reset` with `options={"reset_mask": mask}`, mask bool (N,), begins it.
             render_mode: None; a vector environment draws nothing.
 
         Raises:
@@ -64,7 +64,7 @@ class LifeVectorEnv(VectorEnv):
     ) -> tuple[np.ndarray, dict[str, Any]]:
         """Begin lives in all bodies, or in those of `options["reset_mask"]`, bool (N,).
 
-        A seed s is given to body i as s + i.
+        With a single seed s, body i gets the seed s + i.
         """
         chosen = np.asarray((options or {}).get("reset_mask", np.ones(self.num_envs, bool)), bool)
         first = self._seeds_of(seed)
@@ -94,7 +94,7 @@ class LifeVectorEnv(VectorEnv):
     def step(
         self, actions: Any
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
-        """Live one tick in the bodies that are alive; the others begin a life, if this is NEXT_STEP."""
+        """Live one tick in the living bodies; with NEXT_STEP the other bodies begin a life."""
         kind, alive = self._bodies.habitat.action, self._alive.copy()
         rows = iterate(self.action_space, actions) if isinstance(kind, Compound) else actions
         cause = self._bodies.step(np.stack([as_row(row, kind) for row in rows]), alive)

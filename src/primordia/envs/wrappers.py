@@ -16,10 +16,10 @@ Food = Callable[[Any, float, dict[str, Any]], float]
 
 
 class Survival(gymnasium.Wrapper, RecordConstructorArgs):
-    """An environment in which to live is all: no time limit, and no reward but for being alive."""
+    """An environment that rewards only survival, without a time limit."""
 
     def __init__(self, env: gymnasium.Env, reward: float = 0.0) -> None:
-        """Wrap an environment, whose time limit is taken off; `reward` is that of each tick lived."""
+        """Wrap an environment and remove its time limit; each tick lived has this `reward`."""
         RecordConstructorArgs.__init__(self, reward=reward)
         super().__init__(_without_limit(env))
         self._reward = reward
@@ -31,10 +31,10 @@ class Survival(gymnasium.Wrapper, RecordConstructorArgs):
 
 
 class Forager(gymnasium.Wrapper, RecordConstructorArgs):
-    """An environment in which one starves without food; energy is computed as in our worlds.
+    """An environment in which a body starves without food. Energy is computed as in runs.
 
-    `info["energy"]` is the energy left, `info["food"]` the food so far; `info["cause"]` is `starved` if
-    that is why a life ends, and else `fatal`.
+    `info["energy"]` is the energy left. `info["food"]` is the food so far. At the end of a life
+    `info["cause"]` is `starved` or `fatal`.
     """
 
     def __init__(
@@ -48,7 +48,7 @@ class Forager(gymnasium.Wrapper, RecordConstructorArgs):
         gain: float = 1.0,
         cap: float = 1e6,
     ) -> None:
-        """Wrap an environment, whose time limit is taken off.
+        """Wrap an environment and remove its time limit.
 
         Args:
             env: the environment.

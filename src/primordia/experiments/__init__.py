@@ -1,1 +1,1 @@
-"""Experiments: arms of many worlds, cut into jobs that are runs, lived on all cores or on a cluster."""
+"""Experiments: arms of many worlds, divided into jobs. A job is a run on one core or cluster node."""

@@ -1,4 +1,4 @@
-"""A campaign: an experiment in its directory, with its jobs; begun, looked at, and gathered."""
+"""Campaigns: an experiment in its directory, its jobs, their status, and the results."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -17,7 +17,7 @@ from primordia.runs.opening import EXPERIMENT, opened
 from primordia.runs.records import Records
 
 RESULTS = "results"
-"""Name of the results in an experiment's directory, without what follows the dot."""
+"""Stem of the names of the result files in an experiment's directory."""
 
 
 class Campaign:
@@ -51,7 +51,7 @@ class Campaign:
         return self.jobs[number]
 
     def left(self, arms: Sequence[str] = ()) -> list[Job]:
-        """Return the jobs that are not done, of some arms or of all.
+        """Return the jobs that are not done, of some arms or of all arms.
 
         Raises:
             InputError: there is no such arm.
@@ -62,7 +62,7 @@ class Campaign:
         ]
 
     def status(self) -> CampaignStatus:
-        """Return the states of the jobs and the figures of the arms so far."""
+        """Return the states of the jobs and the numbers of the arms so far."""
         return status(self.plan, self._ledger.entries())
 
     def opened(self) -> list[Records]:
@@ -77,7 +77,7 @@ class Campaign:
         return [opened([folder]) for folder in self.arms.values()]
 
     def gather(self) -> list[Path]:
-        """Write the results of all arms -> the files; none if there is a single arm."""
+        """Write the results of all arms. Return the files; none if there is a single arm."""
         if len(self.plan.arms) < 2:
             return []
         from primordia.experiments import results  # Matplotlib takes a second to load
@@ -98,7 +98,7 @@ class Campaign:
 
 
 def _worlds(folder: Path) -> list[dict[str, Any]]:
-    """Return the worlds of an arm, as in the `info` of a run; those that have not begun are missing."""
+    """Return the worlds of an arm that have begun, as in the `info` of a run."""
     try:
         return list(info(opened([folder]))["worlds"])
     except InputError:
@@ -116,14 +116,14 @@ def recorded(path: Path) -> Campaign:
 
 
 def planned(file: Path, out: Path | None = None) -> Campaign:
-    """Return the experiment of a file, or in a directory; nothing is written.
+    """Return the experiment of a file or a directory, without writing anything.
 
     Args:
-        file: an experiment's file, or the directory of one that has begun.
+        file: an experiment's file, or the directory of an experiment that has begun.
         out: the directory; by default the file's name under `runs/`.
 
     Raises:
-        InputError: something in the file is wrong, or the directory holds another experiment.
+        InputError: the file has a fault, or the directory holds another experiment.
     """
     if is_experiment(file):
         return recorded(file)

@@ -1,4 +1,4 @@
-"""The loop over jobs: each is lived once, by a process that is free; one that fails is tried again."""
+"""The loop over jobs: a free process takes the next job, and a job that fails is tried again."""
 
 import queue
 from collections import Counter
@@ -12,16 +12,16 @@ from primordia.experiments.ending import Ending
 from primordia.experiments.plan import Job
 
 ATTEMPTS = 3
-"""Times that a job is tried before it has failed."""
+"""Number of times that a job is tried."""
 MOMENT = 0.5
-"""Seconds from one look at the jobs to the next."""
+"""Seconds between two readings of the jobs' states."""
 
 
 class Place(Protocol):
-    """Where jobs are lived."""
+    """A place where jobs run."""
 
     def submit(self, job: Job) -> Future[Ending]:
-        """Let a job be lived as soon as there is room."""
+        """Run a job as soon as there is a free process."""
 
     def stop(self) -> None:
         """Stop all jobs, each after a checkpoint if that is possible, and release everything."""
@@ -29,14 +29,14 @@ class Place(Protocol):
 
 @dataclass
 class Result:
-    """What became of all jobs."""
+    """The outcomes of all jobs."""
 
     done: int = 0
     failed: list[Ending] = field(default_factory=list)
     elsewhere: int = 0
-    """jobs that another process lives"""
+    """jobs that another process runs"""
     stopped: bool = False
-    """a signal came before the end"""
+    """whether a signal came before the end"""
 
 
 def live_all(
@@ -45,13 +45,14 @@ def live_all(
     look: Callable[[], object],
     failed: Callable[[Job, Ending, bool], object],
 ) -> Result:
-    """Live jobs, and stop early if a signal comes.
+    """Run jobs, and stop early if a signal comes.
 
     Args:
-        jobs: those to be lived, in this order.
-        place: where.
-        look: called about twice a second.
-        failed: called with each job that fails, and whether it will be tried again.
+        jobs: the jobs to run, in this order.
+        place: where the jobs run.
+        look: a function that is called about twice a second.
+        failed: a function that is called with each job that fails, and whether it will be tried
+            again.
     """
     ended: queue.SimpleQueue[tuple[Job, Future[Ending]]] = queue.SimpleQueue()
     result, tries = Result(), Counter[int]()
@@ -75,7 +76,7 @@ def live_all(
                         else:
                             result.failed.append(ending)
                     if ending.state == "stopped" and not noted:
-                        submit(job)  # its process alone got a signal
+                        submit(job)  # only its process got a signal
                     result.done += ending.state == "done"
                     result.elsewhere += ending.state == "elsewhere"
         finally:

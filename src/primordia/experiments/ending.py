@@ -1,13 +1,13 @@
-"""What became of a job."""
+"""The outcomes of jobs."""
 
 from typing import Literal, NamedTuple
 
 
 class Ending(NamedTuple):
-    """What became of a job that was to be lived."""
+    """The outcome of a job."""
 
     job: int
     state: Literal["done", "failed", "elsewhere", "stopped"]
-    """elsewhere: another process lives it; stopped: a signal came, and the job can go on"""
+    """elsewhere: another process runs it; stopped: a signal came, and the job can go on"""
     error: str | None = None
-    """one line, if it failed"""
+    """the error in one line, if the job failed"""

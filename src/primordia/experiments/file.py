@@ -1,4 +1,4 @@
-"""The file of an experiment, which a user writes: a question, shared settings, and arms.
+"""The file of an experiment, written by a user: a question, shared settings, and arms.
 
 question = "Does heredity matter?"
 task = "CartPole-survival"
@@ -11,9 +11,9 @@ name = "heredity"
 name = "no-heredity"
 inheritance = "founder"
 
-The first arm is the reference. `[jobs] worlds` is the number of worlds of one job. With `[fork]`, all
-arms go on from the worlds `of` a run, of an arm's folder, or of an arm of another file in the same folder
-(`other/arm`), `at` the end of a tick.
+The first arm is the reference. `[jobs] worlds` is the number of worlds of one job. With `[fork]`,
+all arms are forks. `of` names a run, an arm's folder, or an arm of another file in the same folder
+(`other/arm`), and `at` is the tick of the fork.
 """
 
 import os
@@ -42,10 +42,10 @@ from primordia.settings.tables import (
 )
 
 OWN = ("question", "arms", "jobs", "fork")
-"""Keys of an experiment's file that are no settings of a run."""
+"""Keys of an experiment's file that are not settings of a run."""
 BY_TENS = 10
-"""Worlds of a job in a habitat in JAX, where worlds of one run share each compiled call. On the host the
-simulators take nearly all of the time, and a job has one world."""
+"""Number of worlds of a job with a habitat in JAX, where the worlds of a run share each compiled
+call. On the host the simulators take nearly all of the time, so a job has one world."""
 
 
 class _Jobs(Settings):
@@ -62,19 +62,19 @@ def read(file: Path, out: Path) -> Plan:
 
     Args:
         file: the experiment's file.
-        out: the directory in which the experiment is, or will be.
+        out: the directory of the experiment; it need not exist yet.
 
     Raises:
-        InputError: the file cannot be read, or something in it is wrong; the message says what.
+        InputError: the file cannot be read or has a fault; the message says which.
     """
     values = from_toml(file)
     own = {name: values.pop(name) for name in OWN if name in values}
     _refuse_unknown(values, file)
     question, arms = own.get("question", ""), own.get("arms")
     if not isinstance(question, str):
-        raise InputError(f"{file}: question is a text in quotes")
+        raise InputError(f"{file}: question must be a text in quotes")
     if not (isinstance(arms, list) and arms and all(isinstance(arm, dict) for arm in arms)):
-        raise InputError(f"{file}: an experiment has one or more arms, each a table [[arms]]")
+        raise InputError(f"{file}: an experiment needs one or more arms, each a table [[arms]]")
     jobs, fork = (
         _table(own, name, kind, file) for name, kind in (("jobs", _Jobs), ("fork", _ForkOf))
     )
@@ -82,14 +82,18 @@ def read(file: Path, out: Path) -> Plan:
     if fork is not None:
         base, sources = _origin(fork, file, out)
         if {"task", "seeds", "cells"} & {*values, *(name for arm in arms for name in arm)}:
-            raise InputError(f"{file}: task, seeds and cells of a fork are those of {fork.of}")
+            raise InputError(
+                f"{file}: a fork takes its task, seeds and cells from {fork.of}; remove them"
+            )
         values = merged(base, values)
     elif "task" not in values:
-        raise InputError(f"{file}: `task` is missing: the name of a task, or a file")
+        raise InputError(f"{file}: `task` is missing; set it to the name of a task, or a file")
     chosen = [_arm(values, arm, file, fork is not None) for arm in arms]
     names = Counter(arm.name for arm in chosen)
     if twice := [name for name, count in names.items() if count > 1 or name in RESERVED]:
-        raise InputError(f"{file}: {twice[0]!r} cannot be the name of an arm, or is that of two")
+        raise InputError(
+            f"{file}: {twice[0]!r} cannot name an arm, or names two arms; choose another name"
+        )
     worlds = (jobs and jobs.worlds) or _recorded_worlds(out) or _default_worlds(chosen[0].config)
     plan = Plan(question=question, worlds=worlds, fork=sources, arms=tuple(chosen))
     if (count := len(plan.jobs())) > plans.LARGEST:
@@ -115,12 +119,12 @@ def _table(own: dict[str, Any], name: str, kind: type[Settings], file: Path) -> 
 
 
 def _arm(shared: dict[str, Any], own: dict[str, Any], file: Path, complete: bool) -> ArmPlan:
-    """Return an arm with all its settings, checked as a whole.
+    """Return an arm with all its settings, checked together.
 
     Args:
-        shared: the settings of all arms; if `complete`, all that there are, else those that differ from
+        shared: the settings of all arms: every setting if `complete`, else those that differ from
             the task's.
-        own: those that differ in this arm, and its name.
+        own: the settings that differ in this arm, and its name.
         file: the experiment's file.
         complete: see `shared`.
     """
@@ -129,7 +133,7 @@ def _arm(shared: dict[str, Any], own: dict[str, Any], file: Path, complete: bool
     if name is None:
         raise InputError(f"{file}: an arm has no name")
     if own.get("task", shared["task"]) != shared["task"]:
-        raise InputError(f"{file}: arm {name!r} is of another task; all arms are of one")
+        raise InputError(f"{file}: arm {name!r} has another task; all arms must have the same task")
     values = merged(shared, own)
     beside = file.parent / str(values["task"])
     task = str(beside) if beside.is_file() else str(values["task"])
@@ -149,7 +153,7 @@ def _arm(shared: dict[str, Any], own: dict[str, Any], file: Path, complete: bool
 
 
 def _origin(fork: _ForkOf, file: Path, out: Path) -> tuple[dict[str, Any], Fork]:
-    """Return the settings of the worlds that are forked, and their runs."""
+    """Return the settings of the forked worlds, and their runs."""
     other, _, arm = fork.of.partition("/")
     try:
         if (sibling := file.with_name(f"{other}.toml")).is_file() and arm:
@@ -166,7 +170,7 @@ def _origin(fork: _ForkOf, file: Path, out: Path) -> tuple[dict[str, Any], Fork]
 def _of_experiment(
     file: Path, out: Path, arm: str
 ) -> tuple[dict[str, Any], list[tuple[Path, int]]]:
-    """Return the settings of another experiment's arm, and its runs with their numbers of worlds."""
+    """Return the settings of another experiment's arm, and its runs, each with its number of worlds."""
     begun = (out / opening.EXPERIMENT).is_file()
     plan = plans.recorded(out) if begun else read(file, out)
     runs = [(out / job.folder, job.worlds) for job in plan.jobs() if job.arm == arm]
@@ -174,7 +178,7 @@ def _of_experiment(
 
 
 def _of_runs(place: Path) -> tuple[dict[str, Any], list[tuple[Path, int]]]:
-    """Return the settings of runs that are one arm, and each with its number of worlds."""
+    """Return the settings of runs of one arm, and the runs, each with its number of worlds."""
     paths = opening.opened([place]).paths
     configs = [read_config(path) for path in paths]
     settings = replaced(configs[0].model_dump(mode="json"), None, NONE)
@@ -184,7 +188,7 @@ def _of_runs(place: Path) -> tuple[dict[str, Any], list[tuple[Path, int]]]:
 
 
 def _recorded_worlds(out: Path) -> int | None:
-    """Return the worlds of a job of an experiment that has begun; None if it has not."""
+    """Return the number of worlds of a job in an experiment; None if it has not begun."""
     return plans.recorded(out).worlds if (out / opening.EXPERIMENT).is_file() else None
 
 

@@ -1,4 +1,4 @@
-"""Jobs on the cores of this machine: a process for each core, which lives one job after another."""
+"""Jobs on the cores of this machine: one process for each core runs one job after another."""
 
 import json
 import os
@@ -15,9 +15,9 @@ from primordia.experiments.job import note_failure
 from primordia.experiments.plan import Job
 
 PATIENCE = 15.0
-"""Seconds in which a process that is to stop may write its checkpoint."""
+"""Seconds that a process has for its checkpoint when it must stop."""
 LOG = "workers.log"
-"""The file, in the experiment's directory, that holds what workers and their libraries print."""
+"""The file in the experiment's directory with the output of workers and their libraries."""
 
 
 class Here:
@@ -26,7 +26,7 @@ class Here:
     def __init__(
         self, out: Path, processes: int, checkpoint_every: float, device: str = "cpu"
     ) -> None:
-        """Prepare to live jobs of the experiment in `out`, one at a time in each process."""
+        """Prepare to run jobs of the experiment in `out`, one at a time in each process."""
         self._out, self._arguments = out, (str(checkpoint_every), device)
         self._own = threading.local()
         self._workers: list[subprocess.Popen[str]] = []
@@ -34,12 +34,12 @@ class Here:
         self._starting, self._stopping = threading.Lock(), False
 
     def submit(self, job: Job) -> Future[Ending]:
-        """Let a process live a job as soon as one is free."""
+        """Run a job as soon as a process is free."""
         return self._threads.submit(self._live, job)
 
     def stop(self) -> None:
         """Stop all processes, each after a checkpoint; jobs that have not begun are dropped."""
-        with self._starting:  # no process is started from now on
+        with self._starting:  # no process starts after this
             self._stopping = True
         self._threads.shutdown(wait=False, cancel_futures=True)
         for worker in self._workers:
@@ -50,7 +50,7 @@ class Here:
                 worker.wait(PATIENCE)
             except subprocess.TimeoutExpired:
                 worker.kill()
-        self._threads.shutdown()  # each has read its worker's last answer, or its end
+        self._threads.shutdown()  # each thread has read its worker's last answer or end
         for worker in self._workers:
             with worker, suppress(BrokenPipeError):
                 assert worker.stdin is not None
@@ -86,7 +86,7 @@ class Here:
                 stdout=subprocess.PIPE,
                 stderr=log,
                 text=True,
-                process_group=0,  # Ctrl-C in a terminal is for the experiment, which stops its workers
+                process_group=0,  # Ctrl-C in a terminal goes to the experiment, which stops its workers
                 env=environment(),
             )
         self._workers.append(worker)
@@ -94,5 +94,5 @@ class Here:
 
 
 def environment() -> dict[str, str]:
-    """Return the variables of a process that lives jobs: one core, and this process's modules."""
+    """Return the environment of a process that runs jobs: one core, and this process's modules."""
     return {**os.environ, cores.VARIABLE: "1", "PYTHONPATH": os.pathsep.join(sys.path)}

@@ -1,4 +1,4 @@
-"""One job: an ordinary run, begun or gone on with, wherever it is lived."""
+"""Jobs: an ordinary run that a job begins or resumes."""
 
 import os
 import time
@@ -20,23 +20,24 @@ from primordia.runs.fork import fork
 from primordia.runs.loop import Status
 
 EVERY = 2.0
-"""Seconds from one sign of life to the next."""
+"""Seconds between two updates of a job's entry."""
 
 
 def live(
     plan: Plan, job: Job, out: Path, checkpoint_every: float = 60.0, device: str = "cpu"
 ) -> None:
-    """Live a job to its end, from its beginning or from its newest checkpoint.
+    """Run a job to its end, from its beginning or from its newest checkpoint.
 
     Args:
         plan: the experiment.
         job: one of its jobs.
         out: the experiment's directory.
         checkpoint_every: seconds from one checkpoint to the next.
-        device: the device that it is computed on, `cpu` or `gpu`.
+        device: the device that computes the job, `cpu` or `gpu`.
 
     Raises:
-        InputError: another process lives it, or it cannot go on with these versions or settings.
+        InputError: another process runs the job, or it cannot go on with these versions or
+            settings.
         Trouble: a file cannot be written.
         KeyboardInterrupt: on a signal, after a checkpoint.
     """
@@ -63,7 +64,7 @@ def _live(plan: Plan, job: Job, out: Path, checkpoint_every: float, watch: "_Wat
 def ending_of(
     plan: Plan, job: Job, out: Path, checkpoint_every: float = 60.0, device: str = "cpu"
 ) -> Ending:
-    """Live a job -> what became of it; a failure is noted for those who look on."""
+    """Run a job and return its outcome; record a failure in the job's entry."""
     try:
         live(plan, job, out, checkpoint_every, device)
     except KeyboardInterrupt:
@@ -73,7 +74,7 @@ def ending_of(
     except (InputError, Trouble, OSError) as error:
         note_failure(job, out, str(error))
         return Ending(job.number, "failed", str(error))
-    except Exception as error:  # of the user's own code, or ours: the other jobs go on
+    except Exception as error:  # an error of the user's code or of ours: the other jobs go on
         traceback.print_exc()
         text = f"{type(error).__name__}: {error}".splitlines()[0]
         note_failure(job, out, text)
@@ -82,7 +83,7 @@ def ending_of(
 
 
 def note_failure(job: Job, out: Path, error: str) -> None:
-    """Note that a job has failed, and why, if that can be written."""
+    """Record that a job has failed, and why, if the disk allows it."""
     ledger = Ledger(out, [job])
     entry = ledger.entry(job).model_copy(update={"state": "failed", "error": error})
     with suppress(Trouble, InputError):
@@ -96,7 +97,7 @@ def configuration(plan: Plan, job: Job) -> Config:
 
 
 def _changes(config: Config) -> dict[str, object]:
-    """Return the settings of a fork; those that are unchanged are given too."""
+    """Return the settings of a fork, with the unchanged ones."""
     return config.model_dump(mode="json", exclude={"task", "about", "fork", "seeds", "ancestors"})
 
 
@@ -105,7 +106,7 @@ def _go_on(run: Path, config: Config, checkpoint_every: float, watch: "_Watch") 
     held = archive.code()
     here = {source.sha256 for source in code.found(config.own_modules).values()}
     if {source.sha256 for source in held.values()} <= here:
-        code.trust(held)  # the user's own files; a folder from elsewhere may hold others
+        code.trust(held)  # these are the user's own files; a folder from elsewhere may hold others
     limits = config.stop.model_dump()
     loop.resume(run, limits, checkpoint_every=checkpoint_every, listen=watch)
 
@@ -122,14 +123,14 @@ def _worlds(run: Archive) -> list[WorldCounts]:
 
 
 class _Watch:
-    """A listener that writes a job's counts into its entry from time to time."""
+    """A listener that writes a job's counts into its entry at intervals."""
 
     def __init__(self, ledger: Ledger, job: Job, entry: Entry) -> None:
         self._ledger, self._job, self._entry = ledger, job, entry
         self._speed, self._due = Speed(), 0.0
 
     def __call__(self, status: Status) -> None:
-        """Write the counts if that is due."""
+        """Write the counts if the interval has passed."""
         now = time.perf_counter()
         if now < self._due:
             return

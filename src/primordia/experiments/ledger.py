@@ -1,7 +1,7 @@
-"""What is known of each job: a small file that the process which lives it writes from time to time.
+"""The ledger: a small file with the state of each job, written at intervals by its process.
 
-The files tell states and counts without opening a run, from any shell on any machine. A job is done if
-its file says so and its run is there. If a file is lost, the job is gone on with and has nothing to do.
+The files give states and counts without opening a run, on any machine. A job is done if its file
+says so and its run exists. If a file is lost, the job is resumed and ends at once.
 """
 
 import json
@@ -18,7 +18,7 @@ from primordia.experiments.plan import Job
 
 FOLDER = "jobs"
 SILENT = 600.0
-"""Seconds without a sign after which a job on another machine is taken to be cut off."""
+"""Seconds without an update after which a job on another machine counts as interrupted."""
 State = Literal["waiting", "running", "done", "failed"]
 
 
@@ -37,7 +37,7 @@ class WorldCounts(BaseModel):
 
 
 class Entry(BaseModel):
-    """What is known of a job."""
+    """The state of a job."""
 
     model_config = ConfigDict(extra="forbid", strict=True)
 
@@ -47,7 +47,7 @@ class Entry(BaseModel):
     error: str | None = None
     worlds: list[WorldCounts] = Field([])
     rate: float | None = None
-    """organism-ticks a second of the last seconds"""
+    """organism-ticks a second in the last seconds"""
     left_s: float | None = None
     """seconds until the last world reaches a limit; None if unknown"""
     updated: float = 0.0
@@ -57,7 +57,7 @@ class Entry(BaseModel):
 
 
 class Ledger:
-    """The entries of all jobs; those that are done are read once."""
+    """The entries of all jobs; the entry of a job that is done is read once."""
 
     def __init__(self, out: Path, jobs: list[Job]) -> None:
         self._folder, self._out = out / FOLDER, out
@@ -76,7 +76,7 @@ class Ledger:
         ]
 
     def entry(self, job: Job) -> Entry:
-        """Return the entry of a job, as it is now."""
+        """Return the present entry of a job."""
         if (known := self._done.get(job.number)) is not None:
             return known
         entry = self._read(job)
@@ -97,7 +97,7 @@ class Ledger:
         """Write the entry of a job.
 
         Raises:
-            Trouble: it cannot be written.
+            Trouble: the entry cannot be written.
         """
         entry.updated, entry.host, entry.process = time.time(), socket.gethostname(), os.getpid()
         files.own_folder(self._folder)
@@ -108,12 +108,12 @@ class Ledger:
 
 
 def _nothing_of(job: Job) -> Entry:
-    """Return the entry of a job of which nothing is known."""
+    """Return the entry of a job without a file."""
     return Entry(job=job.number, arm=job.arm)
 
 
 def _is_lived(entry: Entry) -> bool:
-    """Return whether the process that writes an entry seems to go on."""
+    """Return whether the process that writes an entry seems to be alive."""
     if entry.state != "running":
         return False
     if entry.host != socket.gethostname():
@@ -122,6 +122,6 @@ def _is_lived(entry: Entry) -> bool:
         os.kill(entry.process, 0)
     except ProcessLookupError:
         return False
-    except PermissionError:  # the process of another user
+    except PermissionError:  # a process of another user
         return True
     return True

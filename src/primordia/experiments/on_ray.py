@@ -1,6 +1,7 @@
-"""Jobs as tasks of a Ray cluster (Moritz et al. 2018), which all see the folder of the experiment.
+"""Jobs as tasks of a Ray cluster (Moritz et al. 2018) whose nodes all see the experiment's folder.
 
-Ray places tasks, and begins one again whose node has died; it then goes on from its newest checkpoint.
+Ray places the tasks. If a node dies, Ray begins its tasks again, and they go on from their newest
+checkpoints.
 """
 
 import logging
@@ -20,17 +21,17 @@ from primordia.experiments.ending import Ending
 from primordia.experiments.plan import Job
 
 PATIENCE = 30.0
-"""Seconds in which jobs that are to stop may write their checkpoints."""
+"""Seconds that jobs have for their checkpoints when they must stop."""
 RELEASE = 120.0
-"""Seconds in which the lock of a run may become free whose node has died."""
+"""Seconds to wait for the lock of a run after its node has died."""
 CONNECT = 5.0
-"""Seconds in which a cluster must answer."""
+"""Longest time for a cluster's answer, in seconds."""
 ANSWER = 60.0
-"""Seconds in which a node must answer."""
+"""Longest time for a node's answer, in seconds."""
 
 
 class OnRay:
-    """Tasks on a Ray cluster, with one core each, and one GPU each if jobs are computed there."""
+    """Tasks on a Ray cluster; each has one core, and one GPU if the device is `gpu`."""
 
     def __init__(
         self, out: Path, checkpoint_every: float, device: str = "cpu", address: str | None = None
@@ -40,8 +41,8 @@ class OnRay:
         Args:
             out: the experiment's directory.
             checkpoint_every: seconds from one checkpoint to the next.
-            device: the device that jobs are computed on, `cpu` or `gpu`.
-            address: that of the cluster; None: the one that this machine belongs to, or a new one on this
+            device: the device that computes the jobs, `cpu` or `gpu`.
+            address: address of the cluster; None: this machine's cluster, or a new cluster on this
                 machine alone.
 
         Raises:
@@ -57,7 +58,7 @@ class OnRay:
         self._futures: list[Future[Ending]] = []
 
     def submit(self, job: Job) -> Future[Ending]:
-        """Let a node live a job as soon as it has a free core."""
+        """Run a job as soon as a node has a free core."""
         future: Future[Ending] = Future()
         ref = self._task.remote(job.number, *self._arguments)
         ref.future().add_done_callback(lambda done: future.set_result(_ending(job, done)))
@@ -97,7 +98,7 @@ def _connected(address: str | None) -> Any:
 
 
 def _check_address(address: str | None) -> None:
-    """Raise InputError unless something answers at an address `host:port`: Ray would try for minutes."""
+    """Raise InputError unless a server answers at `host:port`, since Ray would try for minutes."""
     host, colon, port = (address or "").removeprefix("ray://").rpartition(":")
     if not colon:
         return
@@ -127,7 +128,8 @@ def _check_folder(ray: Any, out: Path) -> None:
                 fault = f"does not answer ({type(error).__name__}: {first}), to be asked for"
             ray.shutdown()
             raise InputError(
-                f"--ray: node {node['NodeManagerAddress']} {fault} {out}; choose an --out in a folder"
+                f"--ray: node {node['NodeManagerAddress']} {fault} {out}; choose an --out in a "
+                "folder"
                 " that all nodes share"
             )
     finally:
@@ -139,7 +141,7 @@ def _sees(path: str) -> bool:
 
 
 def _live(number: int, out: str, checkpoint_every: float, device: str) -> Ending:
-    """Live a job on a node; wait for a while if a node that has died still holds its lock."""
+    """Run a job on a node; wait for a while if a dead node still holds its lock."""
     from primordia.experiments.job import ending_of
     from primordia.experiments.plan import recorded
 
@@ -153,7 +155,7 @@ def _live(number: int, out: str, checkpoint_every: float, device: str) -> Ending
 
 
 def _ending(job: Job, done: "Future[Any]") -> Ending:
-    """Return what became of a task, also if Ray itself gave it up."""
+    """Return the outcome of a task, also of one that Ray gave up."""
     with suppress(Exception):
         return Ending(*done.result())
     error = done.exception()

@@ -22,10 +22,11 @@ def place_for(
     Args:
         out: the experiment's directory.
         left: number of jobs.
-        jobs: jobs at a time on this machine; None: one for each core, or one if they take all GPUs.
-        ray: address of a Ray cluster; "": that of this machine, or a new one; None: no cluster.
+        jobs: number of jobs that run at once on this machine; None: one for each core, or one if
+            jobs take all GPUs.
+        ray: address of a Ray cluster; "": this machine's cluster, or a new one; None: no cluster.
         checkpoint_every: seconds from one checkpoint to the next.
-        device: the device that jobs are computed on, `cpu` or `gpu`.
+        device: the device that computes the jobs, `cpu` or `gpu`.
 
     Raises:
         InputError: the cluster cannot be used.
@@ -34,5 +35,9 @@ def place_for(
         at_a_time = jobs or (cores.count() if device == "cpu" else 1)
         return Here(out, min(at_a_time, left), checkpoint_every, device)
     if jobs is not None:
-        raise InputError("--jobs is for this machine; with --ray the cluster's cores count")
+        raise InputError(
+            "--jobs is the number for this machine; with --ray the cluster's cores count, so "
+            "leave it "
+            "out"
+        )
     return OnRay(out, checkpoint_every, device, ray or None)

@@ -1,8 +1,8 @@
-"""The plan of an experiment: its question, its arms, and the jobs that their worlds are cut into.
+"""The plan of an experiment: its question, its arms, and the jobs that divide their worlds.
 
 OUT/experiment.toml      the plan, written once
     ARM/000-009/         a job: the run of an arm's worlds 0 to 9
-    jobs/000012.json     what is known of a job; see `ledger`
+    jobs/000012.json     the state of a job; see `ledger`
 """
 
 import os
@@ -24,9 +24,9 @@ from primordia.settings.fields import first_fault
 from primordia.settings.tables import flat, from_toml
 
 RESERVED = {"jobs", "figures"}
-"""Names of folders beside those of the arms."""
+"""Names of folders that no arm can have."""
 LARGEST = 100_000
-"""Most jobs of an experiment."""
+"""Largest number of jobs of an experiment."""
 
 
 class Source(Settings):
@@ -38,7 +38,7 @@ class Source(Settings):
 
 
 class Fork(Settings):
-    """What all arms go on from."""
+    """The source of all arms."""
 
     at: int = Field(ge=1, lt=2**63)
     sources: tuple[Source, ...] = Field(min_length=1, strict=False)
@@ -58,7 +58,7 @@ class ArmPlan(Settings):
 
 @dataclass(frozen=True)
 class Job:
-    """Some worlds of an arm, lived in one run."""
+    """Some worlds of an arm, in one run."""
 
     number: int
     arm: str
@@ -68,20 +68,20 @@ class Job:
     folder: str
     """the run's directory, relative to that of the experiment"""
     source: str | None = None
-    """the run that it forks, relative to the directory of the experiment"""
+    """the run that the job forks, relative to the directory of the experiment"""
 
 
 class Plan(Settings):
-    """An experiment, whole."""
+    """A complete experiment."""
 
     question: str
     worlds: int = Field(ge=1)
-    """worlds of a job"""
+    """number of worlds of a job"""
     fork: Fork | None = None
     arms: tuple[ArmPlan, ...] = Field(min_length=1, strict=False)
 
     def arm(self, name: str) -> ArmPlan:
-        """Return the arm of a name; raise InputError if there is none."""
+        """Return the arm with a name; raise InputError if there is none."""
         for each in self.arms:
             if each.name == name:
                 return each
@@ -89,7 +89,8 @@ class Plan(Settings):
         raise InputError(f"there is no arm {name!r}; the arms are {names}")
 
     def jobs(self) -> list[Job]:
-        """Return all jobs in the order in which they are lived: the first of each arm, the second, ..."""
+        """Return all jobs in the order in which they run: the first of each arm, the second of
+        each, ..."""
         by_arm = ([(arm.name, *cut) for cut in self._cut(arm)] for arm in self.arms)
         in_turn = filter(None, chain.from_iterable(zip_longest(*by_arm)))
         return [Job(number, *values) for number, values in enumerate(in_turn)]
@@ -126,7 +127,7 @@ def recorded(out: Path) -> Plan:
 
 
 def check(plan: Plan, out: Path) -> None:
-    """Raise InputError if a directory holds another experiment than this plan, or something else."""
+    """Raise InputError if a directory holds something other than the experiment of this plan."""
     files.check_name(out)
     if (out / EXPERIMENT).is_file():
         _refuse_other(plan, recorded(out), out)
@@ -135,7 +136,7 @@ def check(plan: Plan, out: Path) -> None:
 
 
 def write(plan: Plan, out: Path) -> None:
-    """Write a plan into an experiment's directory, unless it is there already.
+    """Write a plan into an experiment's directory, unless the directory has it.
 
     Raises:
         Trouble: it cannot be written.
@@ -147,7 +148,7 @@ def write(plan: Plan, out: Path) -> None:
 
 
 def _refuse_other(plan: Plan, there: Plan, out: Path) -> None:
-    """Raise InputError if two plans differ in more than the words of the question."""
+    """Raise InputError if two plans differ in more than the text of the question."""
     ours, theirs = _named(plan), _named(there)
     for name in (*ours, *theirs):
         if ours.get(name) != theirs.get(name):
@@ -158,7 +159,7 @@ def _refuse_other(plan: Plan, there: Plan, out: Path) -> None:
 
 
 def _named(plan: Plan) -> dict[str, Any]:
-    """Return all that two plans may differ in, by dotted name."""
+    """Return the values in which two plans may differ, by dotted name."""
     values = plan.model_dump(mode="json", exclude={"question", "arms"})
     arms = {arm.name: {**arm.settings, "about": ""} for arm in plan.arms}
     return flat({**values, "arms": arms, "order": [arm.name for arm in plan.arms]})

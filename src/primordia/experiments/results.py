@@ -1,4 +1,4 @@
-"""Results of an experiment: a table for people, a row for each world for programs, and a figure."""
+"""Results of an experiment: Markdown tables, a CSV file with a row for each world, and a figure."""
 
 import csv
 import datetime
@@ -32,8 +32,9 @@ from primordia.runs.directory import VERSIONS
 from primordia.runs.records import Records
 
 NOTE = (
-    "Medians over worlds (quartiles); a world that stopped unsaturated is known only to be at least"
-    " so late. Effects: Cliff's delta; ratio of medians (95 % interval over worlds). Crashes:"
+    "Medians over worlds (quartiles); a world that stopped unsaturated is treated as censored. "
+    "Effects: Cliff's delta; ratio of medians (95 % interval over worlds). "
+    "Crashes:"
     " extinctions after half of the cells were full of founders' descendants."
 )
 
@@ -44,7 +45,7 @@ COLUMNS = {
     "pace": "late_ticks_per_death",
     "food": "late_food",
 }
-"""Names in the CSV of outcomes that a comparison shows; of saturation, both counts are there anyway."""
+"""Names in the CSV of outcomes that a comparison shows; the CSV always has both counts of saturation."""
 
 
 def write(stem: Path, question: str, arms: Sequence[Records]) -> list[Path]:
@@ -71,7 +72,7 @@ def write(stem: Path, question: str, arms: Sequence[Records]) -> list[Path]:
 
 
 def counts(arm: Records) -> dict[str, np.ndarray]:
-    """Return the numbers of each world of an arm, (W,) each; NEVER where a world is not saturated."""
+    """Return the numbers of each world of an arm, each (W,); NEVER if a world is not saturated."""
 
     def counted(name: str) -> np.ndarray:
         return arm.count(f"world.worlds.{name}")
@@ -117,7 +118,7 @@ def summary(compared: Comparison, counted: list[dict[str, np.ndarray]]) -> str:
 
 
 def dying(compared: Comparison, ends: list[list[dict[str, float]]]) -> str:
-    """Return a table with a row for each arm: the figures of late deaths, of worlds that have any."""
+    """Return a table with a row for each arm: late deaths, in worlds that have any."""
     names = [name for name in late.COLUMNS if name in ends[0][0]]
     rows = [
         [arm.name, *(spread_text([world[name] for world in worlds]) for name in names)]
@@ -138,7 +139,8 @@ def effects(compared: Comparison) -> str:
 
 
 def _effect(against: Contrast, outcome: str) -> str:
-    """Write an effect in a few words: of all worlds, within seeds, of medians, and what it needs."""
+    """Return an effect as text: over all worlds, within seeds, of medians, and the worlds that it
+    needs."""
     within, needed = paired_text(against), needed_text(against)
     parts = [
         effect_text(against, outcome),
@@ -156,7 +158,7 @@ def table(head: list[str], rows: list[list[Any]]) -> str:
 
 
 def made(arm: Records) -> str:
-    """Say when the experiment was run, with which versions, and where it stopped."""
+    """Return the date and versions of the experiment, and the limits at which it stopped."""
     begun = datetime.date.fromtimestamp((arm.paths[0] / VERSIONS).stat().st_mtime)
     what = ", ".join(f"{name} {version}" for name, version in arm.versions.items())
     limits = [f"{name} {value}" for name, value in arm.progress.limits if value is not None]
@@ -166,7 +168,7 @@ def made(arm: Records) -> str:
 def world_rows(
     compared: Comparison, counted: list[dict[str, np.ndarray]], ends: list[list[dict[str, float]]]
 ) -> str:
-    """Return CSV with a row for each world of each arm; a cell is empty where its value is not known."""
+    """Return CSV with a row for each world of each arm; the cell of an unknown value is empty."""
     arms = compared.arms
     known = [name for name in COLUMNS if name in compared.outcomes]
     text = io.StringIO()

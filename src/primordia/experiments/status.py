@@ -1,4 +1,4 @@
-"""An experiment so far: the states of its jobs, and the figures of its arms, without opening a run."""
+"""The status of an experiment: states of jobs and numbers of arms, read without opening a run."""
 
 from collections import Counter
 from dataclasses import dataclass
@@ -21,13 +21,13 @@ class ArmStatus:
 
     name: str
     worlds: int
-    """all that the arm will have"""
+    """number of worlds that the arm will have"""
     begun: int
     saturated: int
     life: float | None
-    """ticks lived for each death, median over worlds begun; None if none has begun"""
+    """ticks lived for each death, median over the worlds that have begun; None if none has begun"""
     life_interval: tuple[float, float] | None
-    """95 % interval of the median over worlds; None of fewer than 5"""
+    """95 % interval of the median over worlds; None for fewer than 5 worlds"""
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ def _arm(name: str, count: int, worlds: list[WorldCounts]) -> ArmStatus:
 
 
 def _interval(lives: np.ndarray) -> tuple[float, float] | None:
-    """Return the interval of the median by ranks: the binomial law, approximated (Conover 1999, 3.2)."""
+    """Return the interval of the median by ranks: the normal approximation of Conover (1999, 3.2)."""
     if len(lives) < LEAST:
         return None
     outside = max(int(len(lives) / 2 - SIGMAS / 2 * np.sqrt(len(lives))), 0)

@@ -1,10 +1,10 @@
-"""A process that lives jobs one after another, so that jobs of one shape are compiled once.
+"""A process that runs jobs one after another, so that jobs of the same shape are compiled once.
 
     python -m primordia.experiments.worker OUT SECONDS DEVICE
 
-A line of standard input is the number of a job; the answer is a line of standard output: the number, and
-what became of the job. When standard input closes, because the experiment's command has ended in whatever
-way, the job under way writes a checkpoint and the process ends.
+A line of standard input is the number of a job. The answer is a line of standard output with the
+number and the outcome of the job. Standard input closes when the experiment's command ends in any
+way. Then the running job writes a checkpoint, and the process ends.
 """
 
 import json
@@ -21,11 +21,11 @@ Lines = queue.SimpleQueue[str]
 
 
 def main() -> None:
-    """Live the jobs that standard input names."""
+    """Run the jobs that standard input names."""
     interrupts.end_commands_at_once()
     out, checkpoint_every, device = Path(sys.argv[1]), float(sys.argv[2]), sys.argv[3]
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8", buffering=1)
-    os.dup2(2, 1)  # libraries may print, but not among the answers
+    os.dup2(2, 1)  # keeps the output of libraries apart from the answers
     lines: Lines = queue.SimpleQueue()
     threading.Thread(target=_read, args=(lines,), daemon=True).start()
 
@@ -42,7 +42,7 @@ def main() -> None:
 
 
 def _read(lines: Lines) -> None:
-    """Pass on the lines of standard input; when it closes, end this process as a signal would."""
+    """Pass on the lines of standard input. When it closes, end this process as a signal would."""
     for line in sys.stdin:
         lines.put(line)
     os.kill(os.getpid(), signal.SIGTERM)

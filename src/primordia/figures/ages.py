@@ -1,4 +1,4 @@
-"""The paper's figure of longer and longer lives: ages of the living, and lifespans of the dead."""
+"""The paper's figure of increasing lifespans: ages of the living, and lifespans of the dead."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,7 +12,7 @@ from primordia.runs.records import Records
 DOTS = 3000
 """Largest number of dots, for the dead and for the living."""
 BINS, ENOUGH = 40, 30
-"""Largest number of stretches of birth order with quartiles; about how many dead each of them needs."""
+"""Largest number of bins of birth order with quartiles, and the number of dead that a bin needs."""
 
 
 def draw(run: Records, world: int) -> Figure:
@@ -71,10 +71,10 @@ def _lifespans(axes: Axes, lives: Lives) -> None:
 
 
 def quartiles(number: np.ndarray, lifespan: np.ndarray) -> np.ndarray:
-    """Return quartiles of lifespans in stretches of birth order with equal numbers of dead.
+    """Return quartiles of lifespans in bins of birth order with equal numbers of dead.
 
     Returns:
-        Middle of each stretch, and its three quartiles, float64 (4, stretches).
+        the middle of each bin, and its three quartiles, float64 (4, bins).
     """
     order = np.argsort(number, kind="stable")
     parts = np.array_split(order, np.clip(len(order) // ENOUGH, 1, BINS))
@@ -84,5 +84,5 @@ def quartiles(number: np.ndarray, lifespan: np.ndarray) -> np.ndarray:
 
 
 def _positive(values: np.ndarray) -> np.ndarray:
-    """Return the values with NaN where a logarithmic axis cannot show them."""
+    """Return the values, with NaN for those that a logarithmic axis cannot show."""
     return np.where(values > 0, values, np.nan)

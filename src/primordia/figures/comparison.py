@@ -1,4 +1,4 @@
-"""Runs side by side: how long organisms live, and how soon worlds saturate."""
+"""Figures that compare runs: how long organisms live, and how soon worlds saturate."""
 
 from collections.abc import Callable, Iterator
 from itertools import cycle, islice, product
@@ -18,21 +18,21 @@ from primordia.comparison.resample import LEAST
 from primordia.figures import style
 
 STOPPED = "|"
-"""Mark of a world that stopped unsaturated, like the mark of censoring in survival curves."""
+"""Mark of a world that stopped unsaturated, as the mark of censoring in survival curves."""
 DASHES = "-", "--", ":"
 MAX_COLUMNS = 3
 """Largest number of panels side by side."""
 FEW_ARMS = 5
-"""Largest number of runs that are coloured from dark to light, and drawn with all their worlds."""
+"""Largest number of runs with colours from dark to light and curves of all their worlds."""
 FEW_WORLDS = 200
-"""Largest number of worlds of a run whose curves can be told apart at all."""
+"""Largest number of a run's worlds with separate curves."""
 
 
 def save(compared: Comparison, folder: Path) -> list[Path]:
-    """Write `compare.png` and `compare.svg` -> their paths.
+    """Write `compare.png` and `compare.svg`. Return their paths.
 
     Raises:
-        Trouble: they cannot be written.
+        Trouble: the files cannot be written.
     """
     with style.applied():
         return style.save(draw(compared), folder / "compare")
@@ -41,7 +41,7 @@ def save(compared: Comparison, folder: Path) -> list[Path]:
 def draw(compared: Comparison) -> Figure:
     """Draw survival, how soon worlds saturate, and the food gathered if there is any.
 
-    Where few worlds saturate, the pace of dying takes the place of saturation.
+    If few worlds saturate, the pace of dying is drawn in place of saturation.
     """
     panels = _panels(compared)
     rows, columns = (1, len(panels)) if len(panels) <= MAX_COLUMNS else (2, 2)
@@ -65,8 +65,8 @@ def _panels(compared: Comparison) -> list[Callable[[Axes, Comparison], None]]:
 def line_styles(arms: int) -> list[dict[str, Any]]:
     """Return the line style of each run.
 
-    The reference has the colour of ink. A few others go from dark to light, in order. Many have distinct
-    colours, and dashes once the colours are used up.
+    The reference is black. A few others go from dark to light, in order. Many others have distinct
+    colours, with dashes after the last colour.
     """
     if arms > FEW_ARMS:
         lines = product(DASHES, [style.INK, *style.PALETTE, style.SOFT])
@@ -80,7 +80,7 @@ def _styled(compared: Comparison) -> Iterator[tuple[ComparedArm, dict[str, Any]]
 
 
 def _alive(axes: Axes, compared: Comparison) -> None:
-    """Draw the Kaplan-Meier curve of each run; a few runs get a band over resamples of enough worlds."""
+    """Draw the Kaplan-Meier curve of each run; a few runs with enough worlds have an interval too."""
     for arm, line in _styled(compared):
         survived = arm.survival
         ages, curve = np.maximum(survived.steps, 1), survived.with_ends(survived.curve)
@@ -119,7 +119,7 @@ def _saturated(axes: Axes, compared: Comparison, unit: str) -> None:
         axes.step(at, share, where="post", **line)
         axes.plot(stopped, share_at_stop, STOPPED, color=line["color"], markersize=4)
     style.logarithmic(axes.xaxis)
-    if last / first < 100:  # too few powers of ten to read a value off
+    if last / first < 100:  # too few powers of ten to read values
         axes.xaxis.set_major_locator(LogLocator(subs=(1, 3)))
     axes.set(xlim=(first, last), ylim=(-0.03, 1.03))
 
@@ -138,7 +138,7 @@ def _gathering(axes: Axes, compared: Comparison) -> None:
 def _over_time(
     axes: Axes, compared: Comparison, curve: Callable[[ComparedArm], np.ndarray]
 ) -> None:
-    """Draw the median of the curves (W, WINDOWS) of each run, and each world's curve if they are few."""
+    """Draw the median of the curves (W, WINDOWS) of each run, and each world's curve if there are few."""
     most = max(arm.worlds for arm in compared.arms)
     few, edges = len(compared.arms) <= FEW_ARMS and most <= FEW_WORLDS, compared.arms[0].pace.edges
     middle = (edges[1:] + edges[:-1]) / 2

@@ -1,4 +1,4 @@
-"""A line of descent: the lives and mutations along it, and how far each ancestor's descendants spread."""
+"""The figure of a line of descent: lives, mutations, and the share of each ancestor's descendants."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -8,7 +8,7 @@ from primordia.figures import style
 from primordia.phylogeny.descent import Ancestors
 
 CURVES = 7
-"""Most ancestors whose descendants are followed."""
+"""Largest number of ancestors whose descendants are drawn."""
 
 
 def draw(found: Ancestors) -> Figure:
@@ -43,7 +43,7 @@ def _changes(axes: Axes, found: Ancestors) -> None:
     """Draw the size of each mutation in each block."""
     colours = [style.PALETTE[k % len(style.PALETTE)] for k in range(len(found.blocks))]
     if found.changes is None or not np.isfinite(found.changes).any():
-        style.remark(axes, "mutations are not known")
+        style.remark(axes, "mutations are unknown")
         style.title(axes, "Size of mutations")
         return
     for block, colour in zip(found.changes.T, colours, strict=True):
@@ -55,7 +55,7 @@ def _changes(axes: Axes, found: Ancestors) -> None:
 
 
 def _shares(axes: Axes, found: Ancestors) -> None:
-    """Draw which share of the living descends from some ancestors, each from its birth on."""
+    """Draw the share of the living that descends from each of some ancestors, since its birth."""
     places = np.unique(np.linspace(0, len(found.line) - 1, CURVES).astype(int))
     ticks, shares = found.census.ticks, found.shares(places)
     key = {}

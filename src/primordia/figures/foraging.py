@@ -1,4 +1,4 @@
-"""The food that organisms gather over time, and the food that keeps one alive."""
+"""The figure of foraging: the food that organisms gather over time, and the break-even."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -11,7 +11,8 @@ BREAK_EVEN = style.ORANGE
 
 
 def draw(run: Records, world: int) -> Figure | None:
-    """Draw the food an organism gathers, a second where the habitat knows of seconds, and the break-even.
+    """Draw an organism's food in a second, or in a tick if the habitat has no rate, and the
+    break-even.
 
     Returns:
         None for a run without a metabolism.

@@ -8,9 +8,9 @@ from primordia.figures import style
 from primordia.phylogeny.lines import BAND, WorldLines
 
 COLOURED = len(style.PALETTE)
-"""Most lines that have a colour of their own."""
+"""Largest number of lines with a separate colour."""
 DRAWN = 60
-"""Most lines that are drawn."""
+"""Largest number of lines that are drawn."""
 SHADOWS = "95 % of neutral shadows"
 
 
@@ -50,7 +50,7 @@ def _shares(axes: Axes, found: WorldLines) -> None:
 
 def _effective(axes: Axes, found: WorldLines) -> None:
     low, high = np.percentile(found.drift.effective, BAND, axis=0)
-    band = np.maximum(low, 1), np.maximum(high, 1)  # no line at all is left in an extinct world
+    band = np.maximum(low, 1), np.maximum(high, 1)  # an extinct world has no line left
     axes.fill_between(_time(found), *band, color=style.FAINT, linewidth=0)
     some = found.effective[2] > 0
     axes.plot(_time(found)[some], found.effective[2, some], color=style.BLUE)
@@ -81,5 +81,5 @@ def _pairs(axes: Axes, found: WorldLines) -> None:
     axes.set(ylim=(0, 1.02), xlim=(0, last), ylabel="share of pairs")
     style.linear(axes.xaxis)
     axes.set_xlabel("ticks back to their common ancestor")
-    key = {"recorded": style.BLUE, "expected of drift": style.SOFT}
+    key = {"recorded": style.BLUE, "expected from drift": style.SOFT}
     style.title(axes, "Coalescence of pairs of the living", key)

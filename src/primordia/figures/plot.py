@@ -1,7 +1,7 @@
-"""Measured of a run: what its records show, as PNG and SVG.
+"""Figures of a run's records, as PNG and SVG.
 
-A figure is a function `draw(run, world) -> Figure | None`; None if the run has nothing of the kind. It is
-one of those listed here, or `module:function` of your own.
+A figure is a function `draw(run, world) -> Figure | None`; None if the run has nothing to draw. It
+is one of those listed here, or your own `module:function`.
 """
 
 from collections.abc import Callable, Sequence
@@ -31,17 +31,17 @@ Draw: TypeAlias = Callable[[Records, int], Figure | None]
 def plot(
     run: Records, out: Path | None = None, world: int = 0, figures: Sequence[str] = ()
 ) -> list[Path]:
-    """Draw figures of a run, up to its newest checkpoint -> the files made.
+    """Draw figures of a run, up to its newest checkpoint. Return the files.
 
     Args:
         run: the run, opened for reading.
         out: folder for the figures; by default `figures` in the run.
-        world: whose lines of descent are drawn; all other figures show all worlds.
-        figures: those to draw, names of KNOWN or `module:function`; by default all of KNOWN.
+        world: the world of which lines of descent are drawn; all other figures show all worlds.
+        figures: the figures to draw, names in KNOWN or `module:function`; by default all in KNOWN.
 
     Raises:
-        InputError: this is no run, nothing has lived in it yet, or it has no such world; there is no
-            such figure.
+        InputError: this is not a run, nothing has lived in it yet, it has no such world, or there
+            is no such figure.
         Trouble: a figure cannot be written.
     """
     if not 0 <= world < run.config.seeds:
@@ -79,5 +79,5 @@ def find(name: str) -> Draw:
 
 
 def _file(name: str) -> str:
-    """Return the name of a figure's files, without what follows the dot: a function's own name."""
+    """Return the stem of the names of a figure's files; it is the function's name for your own figure."""
     return name.rpartition(":")[2]

@@ -23,7 +23,7 @@ LIVING = style.BLUE
 
 
 def draw(run: Records, world: int) -> Figure:
-    """Draw the population; what became of all who were born; births and deaths per tick."""
+    """Draw the population, the fates of all organisms born, and births and deaths per tick."""
     lives, cells = run.lives.since_fork(), run.config.cells
     figure = Figure(figsize=(style.PAGE, 2.4))
     living, fates, rates = figure.subplots(1, 3)
@@ -51,7 +51,7 @@ def _living(axes: Axes, lives: Lives, cells: int) -> None:
 
 
 def _fates(axes: Axes, lives: Lives, causes: list[Cause]) -> None:
-    """Draw the fates in all worlds together; the counts of a stopped world stay constant."""
+    """Draw the fates of organisms in all worlds together; the counts of a stopped world stay constant."""
     ticks = series.moments(int(lives.ended.max()))
     born = series.count_until(np.sort(lives.born), ticks)
     dead = [
@@ -81,7 +81,7 @@ def _rates(axes: Axes, lives: Lives, causes: list[Cause]) -> None:
 
 
 def _cause_key(heading: str, causes: list[Cause]) -> dict[str, str]:
-    """Return causes of death and their colours; the heading stands before the first cause."""
+    """Return causes of death and their colours; the first cause follows the heading."""
     return {
         cause.label if number else f"{heading}: {cause.label}": COLOURS[cause]
         for number, cause in enumerate(causes)

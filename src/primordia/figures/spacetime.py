@@ -13,7 +13,7 @@ from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 
 ROWS, COLUMNS = 800, 512
-"""Largest number of moments, and of cells, that are drawn; of more, every second or third is drawn."""
+"""Largest number of moments, and of cells, that are drawn; otherwise only every second, third, ..."""
 EMPTY = -1
 """Mark of an empty cell, in place of the row of an organism."""
 HUES = (
@@ -25,13 +25,14 @@ PALE = 0.7
 """Share of white in the colour of a line that died out."""
 COLOURS = np.concatenate([STRONG, [to_rgb(YOUNG)]])
 INKS = np.concatenate([COLOURS, 1 - (1 - COLOURS) * (1 - PALE)])
-"""All colours of lines, strong ones first, then their pale ones in the same order, float64 (30, 3)."""
+"""All colours of lines, float64 (30, 3): the strong ones, then the pale ones in the same order."""
 MAX_TAKEOVERS = 8
-"""Largest number of takeovers that are marked."""
+"""Largest number of takeovers with a mark."""
 
 
 def draw(run: Records, world: int) -> Figure:
-    """Draw one world. Time runs in births: a world that lives long is calm for most of its ticks."""
+    """Draw one world. The unit of time is births, since little happens in most ticks of a
+    long-lived world."""
     figure = Figure(figsize=(style.COLUMN, 4.8))
     axes = figure.subplots()
     here, config = run.lives.of_world(world), run.config
@@ -80,7 +81,8 @@ def picture(lives: Lives, clades: Clades, cells: np.ndarray, ticks: np.ndarray) 
 
 
 def line_inks(lives: Lives, clades: Clades, codes: np.ndarray, size: np.ndarray) -> np.ndarray:
-    """Return the place in INKS of each line, int64 (K,), by their `line_codes` and sizes in the picture.
+    """Return the index in INKS of each line, int64 (K,), by its `line_codes` and size in the
+    picture.
 
     Lines of one era take the colours in turn, the largest first. A line that lasts to the end of its era
     has a strong colour, any other a pale one. Organisms of the time before the first era are grey.
@@ -93,7 +95,7 @@ def line_inks(lives: Lives, clades: Clades, codes: np.ndarray, size: np.ndarray)
     order = np.lexsort((-size, ~lasted, era))
     turn = np.empty(len(codes), np.int64)
     turn[order] = np.arange(len(codes)) - np.searchsorted(era[order], era[order])
-    colour = (turn + era - 1) % len(STRONG)  # each era begins with another colour
+    colour = (turn + era - 1) % len(STRONG)  # each era begins with a different colour
     young = lives.born[line] > np.append(-1, clades.renewals)[era]
     colour[young] = len(STRONG)
     return np.where(lasted, colour, len(COLOURS) + colour)
@@ -123,7 +125,8 @@ def _label(axes: Axes, config: Config, world: int, shown: int) -> None:
 
 
 def _time_axis(axes: Axes, lives: Lives) -> None:
-    """Draw an axis on the right with round numbers of ticks, at the births by then."""
+    """Draw an axis on the right with round numbers of ticks, each at the number of births by that
+    tick."""
     right = axes.secondary_yaxis("right")
     powers = 10 ** np.arange(1, len(str(lives.born[-1])))
     places: dict[float, int] = {}
@@ -138,7 +141,7 @@ def _time_axis(axes: Axes, lives: Lives) -> None:
 
 
 def _mark_renewals(axes: Axes, lives: Lives, clades: Clades) -> None:
-    """Mark the first renewal of lines and the first takeovers, and say why lines began."""
+    """Mark the first renewal of lines and the first takeovers, and write why lines began."""
     takeovers = clades.by_takeover
     for number, (tick, takeover) in enumerate(zip(clades.renewals, takeovers, strict=True)):
         if number and (not takeover or takeovers[:number].sum() >= MAX_TAKEOVERS):

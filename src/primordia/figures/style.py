@@ -1,4 +1,4 @@
-"""The style of figures: sizes of a paper's columns, colours for the colour-blind, saving."""
+"""The style of figures: widths of a paper's columns, colours for the colour-blind, and saving."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -62,10 +62,10 @@ def applied() -> Iterator[None]:
 
 
 def save(figure: Figure, stem: Path) -> list[Path]:
-    """Write a figure as PNG and SVG, the same bytes each time -> the two paths.
+    """Write a figure as PNG and SVG, with the same bytes each time. Return the two paths.
 
     Raises:
-        Trouble: it cannot be written.
+        Trouble: a file cannot be written.
     """
     paths = [stem.with_suffix(".png"), stem.with_suffix(".svg")]
     for path in paths:
@@ -84,7 +84,7 @@ def time_label(lives: Lives) -> str:
 
 
 def time_axis(axes: Axes, last: int, label: str) -> None:
-    """Make the x axis logarithmic, from tick 1 to `last`, since most events come early."""
+    """Make the x axis logarithmic, from tick 1 to `last`, since most events are early."""
     logarithmic(axes.xaxis)
     axes.set_xlim(1, max(last, 10))
     axes.set_xlabel(label)
@@ -122,8 +122,8 @@ def short(value: float) -> str:
 def curves(axes: Axes, x: np.ndarray, ys: np.ndarray, colour: str = BLUE) -> None:
     """Draw a curve for each world, (W, X), without its NaN.
 
-    Several worlds are faint, behind their median and quartiles. These end where fewer than half of the
-    worlds have a value.
+    Several worlds are faint, behind their median and quartiles. Median and quartiles end when fewer
+    than half of the worlds have a value.
     """
     if len(ys) == 1:
         axes.plot(x, ys[0], color=colour)

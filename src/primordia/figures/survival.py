@@ -22,7 +22,7 @@ COHORTS = {
 
 
 def draw(run: Records, world: int) -> Figure:
-    """Draw survival over a table of numbers at risk, and risks of death. All worlds together."""
+    """Draw survival above a table of numbers at risk, and risks of death, of all worlds together."""
     lives = run.lives.since_fork()
     figure = Figure(figsize=(style.PAGE, 2.8))
     alive, by_age, over_time = figure.subplots(1, 3)
@@ -39,14 +39,15 @@ def draw(run: Records, world: int) -> Figure:
 
 
 def quarters(lives: Lives) -> list[Lives]:
-    """Return the lives of each quarter of their own world's births so far."""
+    """Return the lives of each quarter; a life's quarter is that of its world's births so far."""
     births = np.bincount(lives.world)[lives.world]
     quarter = lives.rank * len(COHORTS) // births
     return [lives.take(quarter == number) for number in range(len(COHORTS))]
 
 
 def hazard(start: np.ndarray, stop: np.ndarray, died: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    """Return deaths per tick lived in each bin of age or time, float64; NaN where deaths are too few."""
+    """Return deaths per tick lived in each bin of age or time, float64; NaN for bins with too few
+    deaths."""
     return series.per_tick(stop[died], series.exposure(start, stop, edges), edges)
 
 

@@ -1,4 +1,4 @@
-"""Whether good lines keep their ground against their mutants, as a run goes on."""
+"""The figure of the error threshold during a run."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -8,11 +8,11 @@ from primordia.history.threshold import Threshold, over_births
 from primordia.runs.records import Records
 
 WINDOWS, ENOUGH = 20, 200
-"""Most stretches of birth order, and births that each needs: a tenth of the parents are good."""
+"""Largest number of bins of birth order, and the births that a bin needs: a tenth of parents are good."""
 
 
 def draw(run: Records, world: int) -> Figure | None:
-    """Draw p, v and s (1 - p (1 - v)) over births; None if too few births tell v."""
+    """Draw p, v and s (1 - p (1 - v)) over births; None if there are too few births to measure v."""
     lives = run.lives.since_fork()
     worlds = [lives.of_world(each) for each in range(lives.worlds)]
     longest = max(map(len, worlds))
@@ -24,9 +24,9 @@ def draw(run: Records, world: int) -> Figure | None:
     middle = (edges[:-1] + edges[1:]) / 2
     figure = Figure(figsize=(style.PAGE, 2.4))
     panels = {
-        "mutated": "Children that mutate, p",
-        "as_good": "Mutants as good, v",
-        "held": "Does a good line keep its ground?",
+        "mutated": "p: children that mutate",
+        "as_good": "v: mutants as good",
+        "held": "Does a good line persist?",
     }
     for axes, (name, title) in zip(figure.subplots(1, 3), panels.items(), strict=True):
         values = np.array([[_value(each, name) for each in of_world] for of_world in found])

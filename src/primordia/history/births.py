@@ -1,4 +1,4 @@
-"""Recorded births as heredity sees them, and the genomes of organisms in a stored state."""
+"""Recorded births as inputs of heredity, and the genomes of organisms in a stored state."""
 
 from collections.abc import Mapping
 
@@ -26,7 +26,7 @@ def place_in(state: Mapping[str, np.ndarray], organism: int, world: int) -> int:
     """Return the cell, on the axis of all worlds, of an organism that is alive in a state.
 
     Raises:
-        Trouble: it is not there.
+        Trouble: the organism is not in the state.
     """
     number = read_count(state, "world.organisms.number")
     cells = len(number) // len(world_ticks(state))
@@ -38,7 +38,7 @@ def place_in(state: Mapping[str, np.ndarray], organism: int, world: int) -> int:
 
 
 def recorded(heredity: Heredity, counts: tuple, marks: tuple, climate: Climate) -> Birth:
-    """Return recorded births (K,) as heredity sees them.
+    """Return recorded births (K,) as inputs of heredity.
 
     Args:
         heredity: the heredity of the run.

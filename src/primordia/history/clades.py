@@ -18,12 +18,12 @@ class Clades:
     birth_line: np.ndarray
     """line that each organism was born into, int64 (L,)"""
     renewals: np.ndarray
-    """ticks after which each of the living began a line, int64 (K,), rising"""
+    """ticks after which each of the living began a line, int64 (K,), ascending"""
     by_takeover: np.ndarray
-    """whether each of them came about because one line had taken over, bool (K,)"""
+    """whether the reason was that one line had taken over, bool (K,)"""
 
     def lines_at(self, rows: np.ndarray, ticks: np.ndarray) -> np.ndarray:
-        """Return the line of each organism in `rows` after its tick, at which it must be alive, int64.
+        """Return the line of each organism in `rows` after a tick at which it is alive, int64.
 
         `rows` and `ticks` broadcast.
         """
@@ -39,8 +39,8 @@ def find_clades(
 
     Args:
         parent_row: row of each organism's parent, or -1; int64 (L,), parents before their children.
-        born: tick of birth, int64 (L,), not falling.
-        ended: tick of death, int64 (L,); not used where the organism has not died.
+        born: tick of birth, int64 (L,), in ascending order.
+        ended: tick of death, int64 (L,); not used for living organisms.
         died: whether the organism has died, bool (L,).
         crowd: number of living at which lines begin, at least 1.
     """

@@ -22,11 +22,11 @@ class PastClimate:
             self._metrics = {name: column[order] for name, column in metrics.items()}
 
     def of_lives(self, lives: Lives, ticks: np.ndarray) -> Climates:
-        """Return what is in force for n organisms, each in one tick (n,)."""
+        """Return the settings in force for n organisms, each in one tick (n,)."""
         return self.of_worlds(lives.world, ticks)
 
     def of_worlds(self, worlds: np.ndarray, ticks: np.ndarray) -> Climates:
-        """Return what is in force in n worlds, each in one tick (n,).
+        """Return the settings in force in n worlds, each in one tick (n,).
 
         A season that acts at the end of tick t is in force from tick t + 1 on; its sample has tick t.
         """
@@ -38,7 +38,7 @@ class PastClimate:
         return climates
 
     def _last_sample_before(self, worlds: np.ndarray, ticks: np.ndarray) -> np.ndarray:
-        """Return the row of the world's last sample before each tick, int64 (n,); -1: there is none."""
+        """Return the row of the world's last sample before each tick, int64 (n,); -1 if there is none."""
         assert self._metrics is not None
         row = np.full(len(ticks), -1)
         for world in np.unique(worlds):
@@ -50,7 +50,7 @@ class PastClimate:
 
 
 def _beginning(run: Records) -> Climates:
-    """Return the climates that the records of all worlds begin with, (W,) each."""
+    """Return the climate at the beginning of each world's records, each (W,)."""
     if (stored := run.origin) is None:
         worlds = run.config.seeds
         return {

@@ -1,10 +1,10 @@
-"""Extinctions told apart: founders that never rose, and crashes after a rise.
+"""Two kinds of extinctions: of founders that never established a population, and crashes.
 
-A world begins with founders, and again with others in the tick in which all have died. Most founders
-leave few descendants and die out; that says how hard a start is. A crash says that life which had
-established itself was lost. So an extinction is a crash if organisms with parents had filled half of the
-cells at the end of some tick since the founders. Founders do not count, since they may fill a world
-themselves.
+A world begins with founders, and begins again with new founders in the tick in which all organisms
+have died. Most founders leave few descendants and die out, which measures the difficulty of a
+start. A crash is the loss of an established population. An extinction is a crash if organisms with
+parents filled half of the cells at the end of a tick since the last founders. Founders do not
+count, since genesis may fill a world with them.
 """
 
 from typing import NamedTuple
@@ -20,12 +20,12 @@ NAME = "world.worlds.extinctions"
 
 
 class Extinctions(NamedTuple):
-    """The extinctions of W worlds, int64 (W,) each."""
+    """The extinctions of W worlds, each int64 (W,)."""
 
     total: np.ndarray
-    """all of them"""
+    """all extinctions"""
     crashes: np.ndarray
-    """those after a rise"""
+    """extinctions after a rise"""
 
     @property
     def text(self) -> str:
@@ -36,9 +36,9 @@ class Extinctions(NamedTuple):
 
 
 def extinctions(worlds: list[Lives], cells: int) -> Extinctions:
-    """Return the extinctions on record of some worlds, of a number of cells each.
+    """Return the recorded extinctions of worlds with this number of cells.
 
-    In the record of a fork, or one that is cut, a rise before its beginning is not seen.
+    A rise before the beginning of the records, as in a fork, is not counted.
     """
     starts = [_starts(lives) for lives in worlds]
     total = [len(each) - 1 for each in starts]
@@ -47,9 +47,9 @@ def extinctions(worlds: list[Lives], cells: int) -> Extinctions:
 
 
 def crashes(run: Records) -> np.ndarray:
-    """Return the crashes of each world of a run, int64 (W,): in a fork, those since it was forked.
+    """Return the crashes of each world of a run, int64 (W,); in a fork, only those since the fork.
 
-    If there were no extinctions, lives are not read.
+    Lives are read only if there were extinctions.
     """
     died_out = run.count(NAME).astype(np.int64)
     if run.origin is not None:
@@ -62,13 +62,13 @@ def crashes(run: Records) -> np.ndarray:
 
 
 def _starts(lives: Lives) -> np.ndarray:
-    """Return the ticks in which founders came into a world; the first is that of its first life."""
+    """Return the ticks in which founders were born in a world, from the first life on."""
     founded = lives.born[lives.parent < 0]
     return np.unique(np.append(founded, lives.born[:1]))
 
 
 def _crashes(lives: Lives, starts: np.ndarray, cells: int) -> int:
-    """Return how often a world fell to the last organism between two starts, after a rise."""
+    """Return the number of a world's extinctions after a rise."""
     if len(starts) < 2:
         return 0
     children = lives.take(np.flatnonzero(lives.parent >= 0))

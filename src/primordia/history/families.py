@@ -8,17 +8,17 @@ from primordia.law.world import BirthCause
 from primordia.runs.lives import LATE, Lives
 
 LEAST = 10
-"""Fewest pairs of parent and child for a slope or a share."""
+"""Smallest number of pairs of parent and child for a slope or a share."""
 
 
 @dataclass(frozen=True)
 class Families:
-    """Children of a world with their parents, (K,) each; founders are left out."""
+    """Children of a world with their parents, each (K,), without founders."""
 
     lives: Lives
     """all lives of the world"""
     born: np.ndarray
-    """row of each organism whose birth counts, founders too, int64"""
+    """row of each organism whose birth counts, founders included, int64"""
     child: np.ndarray
     """row of each child in `lives`, int64"""
     parent: np.ndarray
@@ -28,7 +28,7 @@ class Families:
 
     @property
     def lifespans(self) -> tuple[np.ndarray, np.ndarray]:
-        """Ticks lived so far by child and parent, int64 (K,) each."""
+        """Ticks lived so far by child and parent, each int64 (K,)."""
         return self.lives.lifespan[self.child], self.lives.lifespan[self.parent]
 
     @property
@@ -37,10 +37,12 @@ class Families:
         return self.lives.died[self.child] & self.lives.died[self.parent]
 
     def as_long(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return which children live at least as long as their parents, and for which that is known.
+        """Return which children live at least as long as their parents, and which results are
+        known.
 
-        A living child that is as old as its dead parent became lives as long. A dead child that was
-        younger than its living parent is does not. The other pairs with a living organism are unknown.
+        The result of a pair with a living organism is known in two cases. A living child that has
+        reached its dead parent's lifespan lives as long. A dead child whose lifespan is less than
+        its living parent's age does not.
         """
         child, parent = self.lifespans
         longer = (child >= parent) & self.lives.died[self.parent]

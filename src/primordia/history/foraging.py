@@ -10,27 +10,27 @@ from primordia.runs.arrays import read_count
 from primordia.runs.records import Records
 
 STRETCHES = 60
-"""Largest number of stretches that a world's time is cut into."""
+"""Largest number of intervals of a world's time."""
 
 
 class Foraging(NamedTuple):
-    """The foraging of W worlds in N successive stretches of time."""
+    """The foraging of W worlds in N successive intervals of time."""
 
     first_tick: int
-    """tick at the end of which the first stretch begins"""
+    """tick at the end of which the first interval begins"""
     middle: np.ndarray
-    """tick in the middle of each stretch, float64 (N,)"""
+    """tick in the middle of each interval, float64 (N,)"""
     food: np.ndarray
-    """mean food of an organism in a tick, float64 (W, N); NaN where no organism lived"""
+    """mean food of an organism in a tick, float64 (W, N); NaN if no organism lived"""
     break_even: np.ndarray
-    """food in a tick that kept energy constant, float64 (W, N); infinite where no food did"""
+    """food in a tick that kept energy constant, float64 (W, N); infinite if no food did"""
 
 
 class Harvest(NamedTuple):
-    """Running totals of one world at its beginning and at its S samples, (S + 1,) each."""
+    """Running totals of one world at its beginning and at its S samples, each (S + 1,)."""
 
     tick: np.ndarray
-    """int64, rising from 0 or from the tick of the fork"""
+    """int64, ascending from 0 or from the tick of the fork"""
     food: np.ndarray
     """food gathered, float64"""
     lived: np.ndarray
@@ -39,7 +39,7 @@ class Harvest(NamedTuple):
     def between(self, ticks: np.ndarray) -> np.ndarray:
         """Return the mean food of an organism in a tick between each two of `ticks`, float64.
 
-        It is NaN where no organism lived.
+        The mean is NaN if no organism lived.
         """
         food, lived = (np.diff(np.interp(ticks, self.tick, each)) for each in self[1:])
         return np.where(lived > 0, food / np.maximum(lived, 1), np.nan)
@@ -60,7 +60,7 @@ def harvests(run: Records, worlds: int) -> list[Harvest]:
 
 
 def _beginning(run: Records, worlds: int) -> list[np.ndarray]:
-    """Return tick, food and organism-ticks of each world before its first recorded tick, (W,) each."""
+    """Return tick, food and organism-ticks of each world before its first recorded tick, each (W,)."""
     if run.origin is None:
         return [np.zeros(worlds, np.int64)] * 3
     names = "tick", "food", "organism_ticks"
@@ -86,7 +86,7 @@ def foraging(run: Records) -> Foraging:
 
 
 def _break_even(climate: Climates) -> np.ndarray:
-    """Return the food in a tick that keeps energy constant, (n,); infinite where no food does."""
+    """Return the food in a tick that keeps energy constant, (n,); infinite if no food does."""
     pairs = zip(climate["metabolism.drain"], climate["metabolism.gain"], strict=True)
     foods = (break_even(float(drain), float(gain)) for drain, gain in pairs)
     return np.array([np.inf if food is None else food for food in foods])

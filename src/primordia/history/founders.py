@@ -1,4 +1,4 @@
-"""Founders that a world of a run might have had: made by its law, under keys that no run uses."""
+"""Alternative founders of a run's world, made by its law with keys that no run uses."""
 
 import jax.numpy as jnp
 import numpy as np
@@ -19,10 +19,10 @@ AT_ONCE = 128
 
 
 def founders(run: Records, world: int, count: int) -> np.ndarray:
-    """Return the genomes of founders, float32 (count, P), each other than the last.
+    """Return the genomes of different founders, float32 (count, P).
 
-    They are made in the climate that the world began with. Where a run's founders are given genomes,
-    these take the same ones in turn.
+    They are made in the climate that the world began with. If a run has ancestors, these founders
+    take the ancestors' genomes in turn.
     """
     device.prepare()
     make = shared(_made, run.heredity)
@@ -35,7 +35,7 @@ def founders(run: Records, world: int, count: int) -> np.ndarray:
 
 
 def _made(heredity: Heredity, seed: Wide, numbers: Wide, climate: Climate) -> Array:
-    """Make founders by their numbers (K,) -> genomes float32 (K, P)."""
+    """Return the genomes of founders by their numbers (K,), float32 (K, P)."""
     count = numbers.lo.shape[0]
     seeds = seed.map(lambda word: jnp.broadcast_to(word, (count,)))
     marks = jnp.zeros(count, jnp.int32), jnp.ones(count, bool)

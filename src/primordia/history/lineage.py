@@ -27,7 +27,7 @@ STEPS_AT_A_TIME = 64
 
 
 def rebuild(run: Records, organism: int, world: int = 0) -> np.ndarray:
-    """Return the genome of an organism, float32 (P,), blocks of weights in the brain's order.
+    """Return the genome of an organism, float32 (P,), with blocks of weights in the brain's order.
 
     Args:
         run: the organism's run.
@@ -71,10 +71,10 @@ def descent(lives: Lives, organism: int, world: int) -> np.ndarray:
 
 
 def changes(run: Records, organism: int, world: int = 0) -> np.ndarray:
-    """Return how far each genome on a line of descent is from its parent's, float64 (D, B).
+    """Return the distance of each genome on a line of descent from its parent's, float64 (D, B).
 
-    It is the Euclidean (L2) norm of the change in each block of weights; of two parents, the first
-    counts. It is NaN where the parent's genome is not known: of founders, and of organisms that were
+    The distance is the Euclidean (L2) norm of the change in each block of weights, from the first
+    of two parents. It is NaN if the parent's genome is unknown, as for founders and for organisms
     alive at a fork.
 
     Raises:
@@ -117,7 +117,7 @@ def _replayed(
 ) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     """Replay the births of a lineage (D,) in order, from a genome (P,), part by part.
 
-    Yields the last genome of each part, and how far each of its births changed a genome; see `changes`.
+    Yields the last genome of each part, and the change by each of its births; see `changes`.
     """
     replay = shared(_replay_births, run.heredity)
     notes, climate = run.notes_of(lineage), past.of_lives(lineage, lineage.born)
@@ -145,13 +145,13 @@ def _replay_births(
     climate: Climate,
     notes: Array,
 ) -> tuple[Array, Array]:
-    """Replay births (S,) one after another, without those that only fill the shape.
+    """Replay births (S,) one after another, except those that only pad the shape.
 
     Args:
         heredity: the heredity of the run.
         genome: genome of the first parent, (P,).
         counts: seed of the world, birth number and tick of each birth, Wide.
-        marks: cell within the world; whether it is a founder; whether it is real, no filling.
+        marks: cell within the world; whether it is a founder; whether it is real, not padding.
         climate: values of the settings at each birth.
         notes: the mutation's notes at each birth, int32 (S, n).
 

@@ -1,9 +1,9 @@
-"""Lines of descent, followed event by event: in a running world, or through the records of one.
+"""Lines of descent, followed event by event in a running world or in its records.
 
-A founder begins a line, and a child belongs to its parent's line. When a tick leaves a crowd alive for
-the first time since a founder, each of the living begins a line. Later, when a tick leaves all the living
-in one line, that line has taken over, and each of the living begins a line. So the lines descend from the
-population at one moment, and do not depend on the length of chunks.
+A founder begins a line, and a child belongs to its parent's line. After the first tick since a
+founder that leaves a crowd alive, each of the living begins a line. After a later tick that leaves
+all the living in one line, that line has taken over, and each of the living begins a line. So the
+lines descend from the population at one moment, and do not depend on the length of chunks.
 """
 
 from collections.abc import Iterator
@@ -16,7 +16,7 @@ from primordia.law.columns import Columns
 from primordia.law.events import BIRTHS, DEATHS, Events, Rows
 
 NO_PARENT, DIES = -1, -2
-"""Marks of a founder and of a death, in place of a parent's number."""
+"""Numbers for a founder and for a death, in place of a parent's number."""
 CROWD = 16
 """Number of living at which lines begin; half the cells if that is less."""
 
@@ -44,16 +44,16 @@ class Lines:
         self.line_of = {number: number for number in living}
         """birth number -> line, of each organism alive"""
         self.takeovers: list[int] = []
-        """ticks after which one line was all that was left"""
+        """ticks after which only one line was left"""
         self.renewals: list[int] = []
         """ticks after which each of the living began a line, takeovers included"""
         self._size = dict.fromkeys(living, 1)
         self._crowd, self._young = crowd, len(living) < crowd
 
     def follow(self, turnover: Turnover) -> list[int]:
-        """Follow births and deaths -> the line that each newborn was born into.
+        """Follow births and deaths. Return the line that each newborn was born into.
 
-        In a tick births come first, since a parent may die in it.
+        The births of a tick come first, since a parent may die in the same tick.
 
         Raises:
             Trouble: an organism has a child or dies while it is not alive.

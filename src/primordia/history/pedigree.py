@@ -1,8 +1,9 @@
-"""Pedigrees: the genomes of many organisms, made again from the records, or with all chance drawn again.
+"""Pedigrees: the genomes of many organisms, rebuilt from the records or with new random draws.
 
-The births of a pedigree are repeated generation by generation. As recorded they give the organisms' own
-genomes, as in `lineage`. Redrawn they give those of the neutral shadow: the same parents and times of
-birth, but founders and mutations that no life has ever tried (Bedau & Packard 1992).
+The births of a pedigree are repeated generation by generation. With the recorded draws they give
+the organisms' own genomes, as in `lineage`. With new draws they give the genomes of the neutral
+shadow: the same parents and times of birth, but other founders and mutations, which were never
+selected (Bedau & Packard 1992).
 """
 
 from collections import Counter
@@ -32,8 +33,9 @@ def genomes(run: Records, rows: np.ndarray, redrawn: bool = False) -> np.ndarray
     Args:
         run: the organisms' run.
         rows: their rows in the run's lives, int64 (K,).
-        redrawn: draw founders and mutations again, under keys that no run uses. Organisms that were alive
-            at a fork keep their genomes. Notes that depend on lives or on cells stay as recorded.
+        redrawn: draw founders and mutations again, with keys that no run uses. Organisms that were
+            alive at a fork keep their genomes. Notes that depend on lives or on cells stay as
+            recorded.
     """
     device.prepare()
     pedigree, worlds = _Pedigree(run, redrawn), run.lives.world[rows]
@@ -74,10 +76,10 @@ class _Pedigree:
         return genome_in(self._run.origin, self._run.layout, number, world)
 
     def _ancestry(self, rows: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Return the rows of organisms and all their ancestors, rising, (A,) each.
+        """Return the rows of organisms and all their ancestors, ascending, each (A,).
 
-        With them go the places of each one's parent and mate among them, -1 without one, and its
-        generation: 0 for founders, -1 for organisms that were alive at a fork.
+        Also return, for each row, the indices of its parent and mate among these rows (-1 for none)
+        and its generation: 0 for founders, -1 for organisms that were alive at a fork.
         """
         lives, known = self._lives, np.zeros(len(self._lives), bool)
         inherited = lives.born <= self._run.config.begins  # alive at the fork; at tick 0, founders
@@ -109,7 +111,9 @@ class _Pedigree:
         odd = (number >= 0) & ((rows < 0) | (number >= lives.id))
         if odd.any():
             raise Trouble(
-                f"the births are damaged: the mate of organism {lives.id[odd][0]} was not born before it"
+                f"the births are damaged: the mate of organism {lives.id[odd][0]} was not born "
+                "before "
+                "it"
             )
         return rows
 
@@ -140,10 +144,10 @@ class _Pedigree:
 
 
 class _Made:
-    """Genomes that have been made, each until its last child has been made too."""
+    """Genomes that have been made; each is kept until its last child has been made."""
 
     def __init__(self, length: int, wanted: np.ndarray, *parents: np.ndarray) -> None:
-        """`wanted`: places that are kept to the end; `parents`: places of all parents, -1 for none."""
+        """Keep the `wanted` indices to the end. `parents` are the indices of all parents, -1 for none."""
         self.genomes: dict[int, np.ndarray] = {}
         self._none = np.zeros(length, np.float32)
         self._uses = Counter(wanted.tolist())
@@ -155,11 +159,11 @@ class _Made:
         self.genomes.update(zip(places.tolist(), genomes.copy(), strict=True))
 
     def take(self, places: np.ndarray) -> np.ndarray:
-        """Return genomes (K, P); those of place -1 are zero."""
+        """Return genomes (K, P); the genome of index -1 is zero."""
         return np.stack([self.genomes.get(place, self._none) for place in places.tolist()])
 
     def release(self, places: np.ndarray) -> None:
-        """Forget genomes of which this was the last use."""
+        """Forget the genomes that are not used again."""
         for place in places[places >= 0].tolist():
             self._uses[place] -= 1
             if not self._uses[place]:
@@ -167,12 +171,12 @@ class _Made:
 
 
 def _places(members: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """Return the places of rows among the members, rising; -1 for row -1."""
+    """Return the indices of rows among the ascending members; -1 for row -1."""
     return np.where(rows < 0, -1, np.searchsorted(members, rows))
 
 
 def _inherits_notes(mutation: Mutation) -> bool:
-    """Return whether notes depend on parents' notes and chance alone, so that they can be drawn again."""
+    """Return whether notes depend only on parents' notes and chance, so that they can be drawn again."""
     return mutation.moments is None and mutation.notes_from == "parent"
 
 
@@ -185,11 +189,12 @@ def _repeat(
     of: tuple[Array, Array, Array],
     notes: Array,
 ) -> tuple[Array, Array]:
-    """Repeat K births -> genomes float32 (K, P) and notes int32 (K, n) of the newborn.
+    """Repeat K births. Return genomes, float32 (K, P), and notes, int32 (K, n), of the newborn.
 
     Args:
         heredity: the heredity of the run.
-        redraws_notes: whether the notes are the parents', and those of the newborn are drawn too.
+        redraws_notes: whether `notes` are the parents' notes, from which those of the newborn are
+            drawn.
         counts: seed of the world, birth number and tick of each birth, Wide.
         marks: cell within the world; whether it is a founder.
         climate: values of the settings at each birth.

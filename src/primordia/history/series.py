@@ -13,7 +13,7 @@ MIN_EVENTS = 3
 
 
 def moments(last: int) -> np.ndarray:
-    """Return ticks from 1 to `last`, evenly spread on a logarithmic axis; int64, rising."""
+    """Return ticks from 1 to `last`, evenly spaced on a logarithmic axis; int64, ascending."""
     return np.unique(np.geomspace(1, max(last, 1), POINTS).round().astype(np.int64))
 
 
@@ -45,7 +45,7 @@ def mean_age(lives: Lives, ticks: np.ndarray) -> np.ndarray:
 
 
 def exposure(start: np.ndarray, stop: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    """Return the ticks that lives from `start` to `stop` spent between each two of `edges`, int64."""
+    """Return the ticks of lives from `start` to `stop` between each two of `edges`, int64."""
     return np.diff(_lived_by(start, edges) - _lived_by(stop, edges))
 
 
@@ -67,7 +67,7 @@ def middle(edges: np.ndarray) -> np.ndarray:
 
 
 def count_until(rising: np.ndarray, ticks: np.ndarray) -> np.ndarray:
-    """Return how many of `rising` are no later than each tick, int64."""
+    """Return the number of `rising` values up to each tick, int64."""
     return np.searchsorted(rising, ticks, side="right")
 
 

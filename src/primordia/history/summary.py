@@ -101,7 +101,8 @@ def _all_worlds(worlds: list[dict[str, Any]]) -> list[str]:
     return [
         f"  seeds {worlds[0]['seed']} to {worlds[-1]['seed']}: {total('ticks'):,} ticks, "
         f"{total('births'):,} births, deaths: {_causes(worlds)}",
-        f"    {total('alive'):,} alive, oldest {oldest:,}; extinctions: {total('extinctions'):,}{risen}",
+        f"    {total('alive'):,} alive, oldest {oldest:,}; extinctions: "
+        f"{total('extinctions'):,}{risen}",
         f"    {_share(worlds, 'fixation', 'with one common ancestor')}",
         f"    {_share(worlds, 'saturation', 'saturated')}",
         *_threshold(worlds),
@@ -109,7 +110,7 @@ def _all_worlds(worlds: list[dict[str, Any]]) -> list[str]:
 
 
 def _threshold(worlds: list[dict[str, Any]]) -> list[str]:
-    """Return a line that says whether good lines keep their ground; none where it is not known."""
+    """Return a line on the error threshold, or none if it is unknown."""
     known = [each["threshold"] for each in worlds if each["threshold"]["held"] is not None]
     if not known:
         return []
@@ -120,8 +121,8 @@ def _threshold(worlds: list[dict[str, Any]]) -> list[str]:
     above = sum(each["held"] > 1 for each in known)
     numbers = f"p {p}, v {v}, s {s}: s (1 - p (1 - v)) is {held}"
     if len(worlds) == 1:
-        return [f"    good lines {'keep' if above else 'lose'} their ground: {numbers}"]
-    return [f"    good lines keep their ground in {above:,} of {len(known):,}; medians {numbers}"]
+        return [f"    good lines {'persist' if above else 'are lost'}: {numbers}"]
+    return [f"    good lines persist in {above:,} of {len(known):,}; medians {numbers}"]
 
 
 def _causes(worlds: list[dict[str, Any]]) -> str:

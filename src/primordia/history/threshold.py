@@ -1,8 +1,9 @@
-"""Does a good line keep its ground against its own mutants? The error threshold, from records.
+"""The error threshold: whether a good line can persist in spite of its mutants.
 
-A line with an advantage s, of whose copies a share p mutates, keeps its ground while s (1 - p (1 - v)) is
-above 1, where v is the share of mutants that are as good as their parent (Eigen 1971, rearranged for
-organisms that all replicate at one rate, so that a lifespan is what a line gains or loses).
+A good line has an advantage s in lifespan. A share p of its children mutate, and a share v of the
+mutants are as good as their parent. The line persists if s (1 - p (1 - v)) is above 1. This is
+Eigen's threshold (1971), rearranged for organisms that all replicate at the same rate and differ in
+lifespan.
 """
 
 from dataclasses import asdict, dataclass
@@ -21,19 +22,20 @@ BEST = 0.9
 
 @dataclass(frozen=True)
 class Threshold:
-    """The error threshold in one world, among children born late. None is a number that nothing tells."""
+    """The error threshold in one world, among children born late. None is an unknown number."""
 
     world: int
     mutated: float | None
     """p, the share of children that are mutants"""
     as_good: float | None
-    """v: the share of good parents' mutants that live as long as the parent, over that of their copies"""
+    """v: the share of good parents' mutants that live as long as the parent, divided by that of
+    their copies"""
     advantage: float | None
-    """s: ticks lived for each death among copies of good parents, over those among all that were born"""
+    """s: ticks lived for each death among copies of good parents, divided by those among all born"""
 
     @property
     def held(self) -> float | None:
-        """s (1 - p (1 - v)); above 1 a good line keeps its ground."""
+        """s (1 - p (1 - v)); above 1 a good line persists."""
         if self.mutated is None or self.as_good is None or self.advantage is None:
             return None
         return self.advantage * (1 - self.mutated * (1 - self.as_good))
@@ -46,9 +48,9 @@ class Threshold:
 def threshold(run: Records, after: float = LATE) -> list[Threshold]:
     """Measure the error threshold in each world of a run.
 
-    A parent is good if it lives at least as long as nine tenths of the organisms that were born late in
-    its world. Its lifespan may be luck. So its copies tell what its genome is worth, and its mutants
-    are held against them: in a deterministic game copies live exactly as long.
+    A parent is good if it lives at least as long as nine tenths of the organisms that were born
+    late in its world. Its lifespan may be luck. So its mutants are compared with its copies, which
+    have the same genome. In a deterministic game copies live exactly as long as the parent.
 
     Args:
         run: the run, or an arm.
@@ -59,13 +61,12 @@ def threshold(run: Records, after: float = LATE) -> list[Threshold]:
 
 
 def over_births(world: int, lives: Lives, edges: np.ndarray) -> list[Threshold]:
-    """Measure the error threshold of one world as it went on.
+    """Measure the error threshold of one world in successive bins of births.
 
     Args:
         world: number of the world.
-        lives: its lives.
-        edges: places in the order of birth, int64 (B + 1,), rising. Children born between two of them
-            count together.
+        lives: the world's lives.
+        edges: edges of the bins, in birth order, int64 (B + 1,), ascending.
     """
     return [
         _measured(world, families_of(lives, np.arange(low, min(high, len(lives)))))
@@ -98,6 +99,6 @@ def _share_as_long(found: Families, which: np.ndarray) -> float | None:
 
 
 def _ticks_per_death(lives: Lives, rows: np.ndarray) -> float | None:
-    """Return the ticks lived for each death, so that the living count with what they have lived."""
+    """Return the ticks lived for each death. The ticks of the living count too."""
     deaths = int(lives.died[rows].sum())
     return float(lives.lifespan[rows].sum() / deaths) if deaths else None

@@ -1,4 +1,4 @@
-"""The law of life, once, for every habitat: pure functions with the habitat between them.
+"""The law of life for every habitat: pure functions, between which the habitat is stepped.
 
     think(law, world, senses, keys)                                    -> thought
     judge(law, world, thought, bodies, outcome, keys, active)          -> world, fates
@@ -6,10 +6,10 @@
     settle(law, world, events, fates, ticks, running)                  -> world, events, newborn
 
 Every tick, brains think and fates are judged (`life` for organisms without neighbours, `tick` for all
-cells). A tick in which an organism dies or may be born, or in which something falls due, is settled:
-`rest` restores the organisms of cells that did not live, then births, deaths, counts and seasons are
-brought up to date (`population`, `turnover`). All other ticks only pass.
+cells). A tick is settled if an organism dies or may be born, or if a sample, season or other change
+is due. `rest` restores the organisms of cells that did not live. Then births, deaths, counts and
+seasons are brought up to date (`population`, `turnover`). All other ticks need no settling.
 
-A tick's number is the number of ticks that its world has lived at its end. An organism born in tick b
-that dies in tick d lived d - b ticks, and acted for the first time in tick b + 1.
+The number of a tick is the number of ticks that the world has lived at the tick's end. An organism
+born in tick b that dies in tick d lived d - b ticks, and acted for the first time in tick b + 1.
 """

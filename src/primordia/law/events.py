@@ -16,7 +16,7 @@ from primordia.law.law import Law
 from primordia.law.world import Cause
 
 BIRTHS = Columns(("cell", "id", "parent", "tick", "cause"), frozenset({"id", "parent", "tick"}))
-"""Columns of all births. The parent of a founder, and a mate that there is not, are 2^64 - 1."""
+"""Columns of all births. A founder's parent and a missing mate are 2^64 - 1."""
 DEATHS = Columns(("cell", "id", "tick", "cause", "energy", "food"), frozenset({"id", "tick"}))
 """Columns of a death."""
 TOTALS = (
@@ -35,13 +35,13 @@ organisms that ever lived. Energy and food are in 1/1024 units, two's complement
 
 
 def birth_columns(mates: bool, notes: tuple[str, ...]) -> Columns:
-    """Return the columns of a birth: those of all births, the mate if there are mates, and the notes."""
+    """Return the columns of a birth: the common ones, the mate if there are mates, and the notes."""
     own = ("mate",) if mates else ()
     return BIRTHS.plus(*own, *notes, pairs=own)
 
 
 def births_of(heredity: Heredity) -> Columns:
-    """Return the columns of the births that a heredity brings about."""
+    """Return the columns of births under a heredity."""
     return birth_columns(heredity.recombination is not None, heredity.mutation.notes)
 
 
@@ -87,12 +87,12 @@ def empty(law: Law) -> Events:
 
 
 def emptied(events: Events) -> Events:
-    """Return the same lists without their events."""
+    """Return the lists without their events."""
     return Events(*(rows._replace(filled=jnp.int32(0)) for rows in events))
 
 
 def have_room(law: Law, events: Events) -> Array:
-    """Return whether the lists have room for the most events that a tick can have: bool ()."""
+    """Return whether the lists have room for the largest number of events in a tick: bool ()."""
     cells = law.worlds * law.cells
     spare = batch(cells)
 

@@ -88,7 +88,7 @@ def initial_climate(law: Law, count: int) -> Climate:
 
 
 def initial_looks(law: Law, count: int, tick: int) -> Looks:
-    """Return the state of ratchets before their first look, in `count` worlds at a tick."""
+    """Return the state of ratchets before their first measurement, in `count` worlds at a tick."""
     periods = [ratchet.every for ratchet in ratchets(law.seasons)]
     wait = np.array([period - tick % period for period in periods], np.int32)
     shape = count, len(periods)

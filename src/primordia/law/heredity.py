@@ -29,7 +29,7 @@ class Birth(NamedTuple):
     """birth number within the world, (K,)"""
     draws: Draws
     founder: Array
-    """bool (K,): it inherits nothing from a parent"""
+    """bool (K,): the newborn is a founder"""
     rates: Mapping[str, Array]
     """the mutation's rates in the world, float32 (K,) each"""
 
@@ -66,7 +66,7 @@ class Heredity:
         return hash(self._content())
 
     def _content(self) -> tuple:
-        """Return what decides whether two are equal: of ancestors, which have no hash, their bytes."""
+        """Return the values that decide equality; ancestors, which have no hash, count by their bytes."""
         of = self.ancestors
         ancestors = None if of is None else (of.shape, of.dtype.str, of.tobytes())
         parts = self.layout, self.mutation, self.recombination
@@ -82,7 +82,7 @@ class Heredity:
         return {name: climate[f"mutation.{name}"] for name in self.mutation.rates(self.layout)}
 
     def recombined(self, birth: Birth, parents: Array, mates: Array, mated: Array) -> Array:
-        """Return what K newborn inherit from both parents, float32 (K, P).
+        """Return the genomes that K newborn inherit before mutation, float32 (K, P).
 
         Args:
             birth: the births.
@@ -100,7 +100,7 @@ class Heredity:
     ) -> Newborn:
         """Make K newborn from their parents' genomes float32 (K, P) and notes int32 (K, n).
 
-        `change` is what `Mutation.note` gets, None if the mutation needs no moments.
+        `change` is passed to `Mutation.note`; None if the mutation needs no moments.
         """
         mutation = self.mutation
         if mutation.notes:
@@ -127,20 +127,21 @@ class Heredity:
 
         if self.worlds == 1:
             return with_founders(), mutated & ~birth.founder
-        # What leaves a branch is stored. In 16 worlds of 32 cells that halves the time of a tick; in one
-        # world it would add a tenth.
+        # The results of a branch are stored. In 16 worlds of 32 cells that halves the time of a
+        # tick; in one world it would add a tenth.
         genome = lax.cond(birth.founder.any(), with_founders, lambda: children)
         return genome, mutated & ~birth.founder
 
     def _founders(self, birth: Birth) -> Array:
-        """Make random genomes, or take ancestors' in turn, beginning with another one in each world."""
+        """Make random genomes, or take the ancestors' genomes in turn from a start that differs by
+        world."""
         if self.ancestors is None:
             return self.mutation.founders(self.layout, birth.draws)
         return jnp.asarray(self.ancestors)[modulo(birth.seed + birth.number, len(self.ancestors))]
 
 
 def _one_noise(birth: Birth) -> Draws:
-    """Return draws in which noise has one stream: a founder's own, or a child's.
+    """Return draws with one stream of noise: the founder's, or the child's.
 
     No newborn needs both, so one noise is drawn for each: drawing both took a tenth of the time of a
     world with many births.

@@ -1,4 +1,4 @@
-"""The law: everything that is fixed for the worlds of a run."""
+"""The law: all settings that are fixed for the worlds of a run."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -35,7 +35,7 @@ class Law:
     placement: Placement
     metabolism: Metabolism | None
     beginning: tuple[tuple[str, float], ...]
-    """settings that seasons may change, by dotted name, with the values that worlds begin with"""
+    """settings that seasons may change: dotted name -> value at the beginning"""
     genesis: Literal["one", "fill"]
     seasons: tuple[Schedule | Ratchet, ...]
     saturation_ticks: int
@@ -44,7 +44,7 @@ class Law:
     """ticks between samples"""
 
     def by_world(self, per_cell: Array) -> Array:
-        """Return an array with an entry for each cell as worlds of cells: (C, ...) -> (W, N, ...)."""
+        """Return an array with an entry for each cell, split by world: (C, ...) -> (W, N, ...)."""
         return per_cell.reshape(self.worlds, self.cells, *per_cell.shape[1:])
 
     def per_cell(self, per_world: Array) -> Array:
@@ -54,7 +54,7 @@ class Law:
     def in_cells(
         self, climate: Mapping[str, Array], cells: Array | None = None
     ) -> dict[str, Array]:
-        """Return the settings in force in all cells (C,), or in some (K,), from those of worlds (W,)."""
+        """Return the settings in all cells (C,), or in some (K,), from the settings of worlds (W,)."""
         if cells is None:
             return {name: self.per_cell(values) for name, values in climate.items()}
         return {name: values[cells // self.cells] for name, values in climate.items()}
@@ -65,7 +65,8 @@ class Law:
         return tuple(name for name, _ in self.beginning)
 
     def governed(self, setting: str) -> list[str]:
-        """Return the names among `rates` that a season of a setting changes; [] if it is unknown."""
+        """Return the names among `rates` that a season of a setting changes; [] for an unknown
+        setting."""
         part, _, name_in_part = setting.partition(".")
         if part == "mutation":
             names = self.heredity.mutation.governed(name_in_part, self.heredity.layout)

@@ -1,7 +1,7 @@
 """One tick of N organisms without neighbours: brains think, motors act, outcomes are judged.
 
-Both engines, a life lived again and evaluations use these functions, so an organism's tick has one rule
-everywhere. `tick` and `turnover` add what depends on neighbours, worlds and chance.
+Both engines, revived lives and evaluations use these functions, so an organism's tick has the same
+rules everywhere. `tick` and `turnover` add neighbours, worlds and chance.
 """
 
 from typing import NamedTuple
@@ -37,7 +37,7 @@ class Thought(NamedTuple):
 
 
 class Vitals(NamedTuple):
-    """Energy of organisms, and the food of their whole lives: int32 (N,) each, fixed point."""
+    """Energy of organisms, and food of their whole lives: each int32 (N,), fixed point."""
 
     energy: Array
     eaten: Array
@@ -101,7 +101,7 @@ def judge(
 
 
 def has_failed(bodies: Bodies, outcome: Outcome) -> Array:
-    """Return whose simulation failed, bool (N,): by the habitat's report, or by a number not finite."""
+    """Return which bodies failed, bool (N,): the habitat reports it, or a number is not finite."""
     failed = not_finite(bodies)
     for number in (outcome.food, outcome.effort):
         failed = failed if number is None else failed | ~jnp.isfinite(number)

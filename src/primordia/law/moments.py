@@ -1,8 +1,8 @@
-"""Moments that organisms remember, by which a mutation can tell how far a child would act otherwise.
+"""Remembered moments, with which a mutation measures the change of a child's behaviour.
 
-A moment is what a brain thinks from: senses, and the memory that they meet. Each world remembers at the
-ticks that are multiples of `every`. A child begins with the moments of its parent. A moment is kept in
-the same place whatever happens between, so chunks, interruptions and other worlds change nothing.
+A moment is the input of a brain: senses and memory. Organisms remember at the ticks that are
+multiples of `every`. A child begins with the moments of its parent. The tick alone decides where a
+moment is stored, so chunks, interruptions and other worlds change nothing.
 """
 
 import operator
@@ -50,7 +50,7 @@ def remember(law: Law, world: World, senses: Array, live_worlds: Array) -> World
     Args:
         law: the law.
         world: the world at the end of a tick, with its newborn.
-        senses: of all cells, for the next tick, float32 (C, S).
+        senses: senses of all cells for the next tick, float32 (C, S).
         live_worlds: worlds that were running in the tick, bool (W,).
     """
     organisms, rule = world.organisms, law.heredity.mutation.moments
@@ -61,7 +61,7 @@ def remember(law: Law, world: World, senses: Array, live_worlds: Array) -> World
 
     def add(moments: Remembered) -> Remembered:
         cells = jnp.arange(len(organisms.alive))
-        where = law.per_cell(jnp.where(due, place, rule.kept))  # beyond the end: dropped
+        where = law.per_cell(jnp.where(due, place, rule.kept))  # indices beyond the end are dropped
         return Remembered(
             senses=moments.senses.at[cells, where].set(senses, mode="drop"),
             memory=moments.memory.at[cells, where].set(organisms.memory, mode="drop"),
@@ -73,12 +73,12 @@ def remember(law: Law, world: World, senses: Array, live_worlds: Array) -> World
 
 
 def change_in(law: Law, moments: Remembered, parents: Array) -> Change:
-    """Return how far genomes act otherwise than parents do, in what these remember.
+    """Return the change of behaviour between genomes and their parents, in the parents' moments.
 
-    Where actions are discrete it is the share of moments in which another is chosen. Where they are
-    continuous it is the root mean square change of the outputs, each by 1 at most. Of an action with
-    parts of both kinds it is the larger of the two. A parent that remembers nothing yet has infinite
-    changes, since nothing is known of its children.
+    For discrete actions it is the share of moments with another choice. For continuous actions it
+    is the root mean square change of the outputs, each at most 1. For an action with parts of both
+    kinds it is the larger of the two. It is infinite for a parent without moments, since nothing is
+    known about its children.
 
     Args:
         law: the law.
@@ -106,7 +106,7 @@ def change_in(law: Law, moments: Remembered, parents: Array) -> Change:
 
 
 def _chosen_otherwise(known: Array, before: Array, after: Array, choices: list[slice]) -> Array:
-    """Return the share of known moments (K, R) in which a discrete part is chosen otherwise, (K,)."""
+    """Return the share of known moments (K, R) in which the choice of a discrete part differs, (K,)."""
     other = [argmax(_flat(after)[:, own]) != argmax(_flat(before)[:, own]) for own in choices]
     return _share(
         jnp.where(known, reduce(operator.or_, other).reshape(known.shape), 0).sum(1), known
@@ -119,7 +119,7 @@ def _moved(known: Array, before: Array, after: Array) -> Array:
     # Squares, at most 1 each, are summed as whole numbers, so that no order of the sum matters.
     finest = 2 ** (30 - (known.shape[1] * size - 1).bit_length())
     square = jnp.square(after - before)
-    square = jnp.where(square < 1, square, 1) * np.float32(finest)  # what is no number too is 1
+    square = jnp.where(square < 1, square, 1) * np.float32(finest)  # a NaN counts as 1 too
     counted = jnp.where(known[..., None], square, 0).astype(jnp.int32)
     total = _share(counted.sum(axis=(1, 2)), known)
     return jnp.sqrt(total / np.float32(finest * size))

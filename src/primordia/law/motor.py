@@ -33,7 +33,8 @@ def outputs_of(action: Action) -> Iterator[tuple[Discrete | Continuous, slice]]:
 
 
 def chosen(action: Action, output: Array, moved: Array) -> Array:
-    """Return the action of outputs float32 (N, A): of a discrete part the argmax, else `moved` (N, A)."""
+    """Return the actions for outputs float32 (N, A): the argmax of discrete parts, else `moved` (N,
+    A)."""
     parts = [
         argmax(output[:, own]) if isinstance(part, Discrete) else moved[:, own]
         for part, own in outputs_of(action)

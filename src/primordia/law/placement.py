@@ -39,10 +39,16 @@ class Placement(Settings):
     """
 
     topology: Literal["ring", "torus4", "torus8", "well-mixed"] = Field(
-        "ring", description="neighbours: two on a ring, 4 or 8 on a torus, or any cell of the world"
+        "ring",
+        description="neighbours of a cell: two on a ring, 4 or 8 on a torus, or all "
+        "cells of the "
+        "world",
     )
     rule: Literal["blind", "empty-only", "replacing"] = Field(
-        "blind", description="an occupied cell that is picked: no birth; never picked; replaced"
+        "blind",
+        description="picked cells that are occupied. blind: no birth; empty-only: never "
+        "picked; replacing: the occupant "
+        "dies",
     )
     rows: int | None = Field(
         None, ge=2, description="rows of a torus (default: as nearly square as the cells allow)"
@@ -67,7 +73,8 @@ class Placement(Settings):
         return rows, cells // rows
 
     def room(self, occupied: Array) -> Array:
-        """Return which parents can have a child, bool (W, N): a cell within their reach takes one."""
+        """Return which parents can have a child, bool (W, N): a cell in their neighbourhood allows
+        a birth."""
         if self.rule == "replacing":
             return jnp.ones_like(occupied)
         if self.topology == "well-mixed":
@@ -136,7 +143,7 @@ class Placement(Settings):
     def _empty_target(self, word: Array, empty: Array) -> Array:
         """Return a random empty neighbour of each cell, all equally likely: int32 (W, N).
 
-        It is any cell where there is no empty neighbour.
+        The result is an arbitrary cell if there is no empty neighbour.
         """
         cells = _cells(word)
         if self.topology == "well-mixed":

@@ -60,9 +60,9 @@ def settle(
 
 
 def quiet_ticks(law: Law, world: World, running: Array) -> Array:
-    """Return the ticks until something falls due, int32 (), provided that none is eventful.
+    """Return the ticks until the next due change, int32 (), if no tick is eventful.
 
-    Before genesis it is 0.
+    It is 0 before genesis.
     """
     worlds, far = world.worlds, 2**31 - 1
     due = [worlds.sample_wait, *worlds.looks.wait.T]

@@ -1,8 +1,8 @@
 """Recombination: a child takes some of its weights from a second parent, the mate.
 
 The mate is drawn among the living neighbours of the child's cell, without the parent. On a ring that is
-the neighbour on the other side. A child without such a neighbour has one parent. The mate is recorded
-with the birth, so that genomes are rebuilt through both lines.
+the neighbour on the other side. A child without a neighbour other than the parent has no mate. The
+mate is recorded with the birth, so that genomes are rebuilt through both lines.
 """
 
 from typing import Literal
@@ -20,20 +20,22 @@ from primordia.settings.base import Settings
 
 
 class Recombination(Settings):
-    """What a child takes from its mate. It happens before mutation."""
+    """The exchange of weights between parent and mate. Recombination precedes mutation."""
 
     probability: float = Field(
         1.0,
         ge=0,
         le=1,
-        description="chance that a child whose cell has another neighbour recombines",
+        description="probability that a child recombines if its cell has a second neighbour",
     )
     unit: Literal["block", "row"] = Field(
-        "row", description="what comes from one parent as a whole: a block of weights, or each row"
+        "row",
+        description="unit that comes from one parent as a whole: a block of weights, or a row",
     )
 
     def recombined(self, layout: Layout, draws: Draws, parents: Array, mates: Array) -> Array:
-        """Return genomes float32 (K, P), each unit with the same chance from either parent.
+        """Return genomes float32 (K, P); each unit comes from either parent with the same
+        probability.
 
         A row is what a block holds at one index of its first axis: the weights into one neuron, where a
         layer has no fewer inputs than neurons. Blocks with the same number of rows take each row from the

@@ -1,4 +1,4 @@
-"""Samples: rows of a world's counts at fixed ticks, and when a season changes its climate."""
+"""Samples: rows of a world's counts, taken at fixed ticks and when a season changes its climate."""
 
 import jax.numpy as jnp
 import numpy as np

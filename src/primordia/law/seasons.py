@@ -25,18 +25,23 @@ class Schedule(Settings):
 
 
 class Ratchet(Settings):
-    """A setting that is multiplied when the population does well, so that life gets harder.
+    """A setting that is multiplied when the population meets a condition, so that life gets harder.
 
-    A ratchet looks at each world at regular ticks. `mean_age` is the mean age of the living in ticks,
-    `saturation` the share of cells occupied, `food` the food per organism-tick since the last look.
+    A ratchet measures each world at regular ticks. `mean_age` is the mean age of the living in
+    ticks. `saturation` is the share of cells that are occupied. `food` is the food per
+    organism-tick since the last measurement.
     """
 
     kind: Literal["ratchet"] = Field(description="change when the population meets a condition")
     setting: str = Field(min_length=1, description="the setting that changes")
-    when: Literal["mean_age", "saturation", "food"] = Field(description="the measure looked at")
-    above: float = Field(ge=0, description="the setting changes if the measure is above this")
+    when: Literal["mean_age", "saturation", "food"] = Field(
+        description="the quantity that is measured"
+    )
+    above: float = Field(
+        ge=0, description="the setting changes if the quantity is above this threshold"
+    )
     factor: float = Field(gt=0, description="factor by which the setting is then multiplied")
-    every: int = Field(ge=1, le=2**31 - 1, description="ticks from one look to the next")
+    every: int = Field(ge=1, le=2**31 - 1, description="ticks between two measurements")
 
 
 Season = Annotated[Schedule | Ratchet, Field(discriminator="kind")]
@@ -79,12 +84,12 @@ def apply_seasons(
 
 
 def ratchets(seasons: tuple[Schedule | Ratchet, ...]) -> list[Ratchet]:
-    """Return the ratchets among seasons, in order: ratchet s owns column s of `Looks`."""
+    """Return the ratchets among seasons, in order: ratchet s has column s of `Looks`."""
     return [season for season in seasons if isinstance(season, Ratchet)]
 
 
 def _measure(season: Ratchet, s: int, world: World) -> Array:
-    """Return the measure that ratchet s looks at, float32 (W,)."""
+    """Return the quantity that ratchet s measures, float32 (W,)."""
     worlds = world.worlds
     alive = world.organisms.alive.reshape(len(worlds.calm), -1)
     population = alive.sum(axis=1)
@@ -98,7 +103,7 @@ def _measure(season: Ratchet, s: int, world: World) -> Array:
 
 
 def _after_look(worlds: Worlds, season: Ratchet, s: int, looking: Array) -> Looks:
-    """Return the state of ratchets after ratchet s has looked at some worlds, bool (W,)."""
+    """Return the state of ratchets after ratchet s has measured some worlds, bool (W,)."""
     looks = worlds.looks
 
     def update(last: Wide, now: Wide) -> Wide:

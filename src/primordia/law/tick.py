@@ -1,4 +1,4 @@
-"""One tick of all cells: `life` for each organism, then accidents, replication and food of its world.
+"""One tick of all cells: `life` for each organism, then accidents, replication and worlds' food.
 
 Brains of empty cells and of stopped worlds think too, since selecting the others costs more. `rest` then
 restores the organisms that must not change.
@@ -98,7 +98,7 @@ def _food(law: Law, food: Array, active: Array) -> Wide:
 
 
 def _drawn(law: Law, key: Wide, probability: Array) -> Array:
-    """Draw an event for every cell, of the probability there (C,): bool (C,)."""
+    """Draw an event for every cell with its probability (C,): bool (C,)."""
     word = bits(key.take(np.s_[:, None]), jnp.arange(law.cells)[None]).hi
     return chance(word, law.by_world(probability)).ravel()
 

@@ -32,7 +32,7 @@ class Births(NamedTuple):
     founded: Array
     """bool: it is a founder of genesis, without a parent"""
     parent: Array
-    """int32, cell of the parent (on the axis of all worlds); it has no meaning where founded"""
+    """int32, cell of the parent (on the axis of all worlds); it has no meaning for founders"""
     number: Wide
     """birth number within the world"""
     survives: Array
@@ -40,7 +40,7 @@ class Births(NamedTuple):
 
 
 class _Inherited(NamedTuple):
-    """What organisms have from their parents, as in `Organisms`; first axis C, or the newborn."""
+    """The arrays that organisms inherit, as in `Organisms`; first axis C, or the newborn."""
 
     genome: Genome
     notes: Array
@@ -68,7 +68,7 @@ def turnover(
     Args:
         law: the law.
         world: the world; `worlds.tick` is the number of the tick that ends.
-        events: the lists to which they are added.
+        events: the lists to which births and deaths are added.
         running: worlds that run, bool (W,).
         wants: survivors that replicate if they find a cell, bool (C,).
         cause: cause of each organism's death, int32 (C,), or -1.
@@ -176,7 +176,7 @@ def _inherit(
 
 
 def _of_children(moments: Remembered | None, founder: Array) -> Remembered | None:
-    """Return the first moments of newborn (K,): those of their parents, and none for founders."""
+    """Return the first moments of newborn (K,): their parents' moments, or none for founders."""
     if moments is None:
         return None
     return moments._replace(known=moments.known & ~founder[:, None])
@@ -195,7 +195,8 @@ def _birth(law: Law, worlds: Worlds, births: Births, keys: Streams, cells: Array
 
 
 def _mates(law: Law, births: Births, keys: Streams, cells: Array, founder: Array) -> Array | None:
-    """Return the cell of each newborn's mate, (K,), on all worlds' axis, or -1; None without mates."""
+    """Return the cell of each newborn's mate, (K,), on the axis of all worlds, or -1; None without
+    mates."""
     if law.heredity.recombination is None:
         return None
     world, cell = cells // law.cells, cells % law.cells
@@ -235,7 +236,7 @@ def _birth_rows(
 def _begin_lives(
     law: Law, organisms: Organisms, worlds: Worlds, births: Births, alive: Array
 ) -> Organisms:
-    """Set everything of the newborn, except genome and notes."""
+    """Set all arrays of the newborn except genome and notes."""
     newborn = births.newborn
     parent_branch = organisms.branch.take(births.parent)
     founders_child = (parent_branch.hi | parent_branch.lo) == 0

@@ -44,14 +44,14 @@ class BirthCause(Named):
 
 
 class Remembered(NamedTuple):
-    """The latest moments that organisms and their lines of descent remember, R each; first axis C."""
+    """The latest R moments that each organism and its line of descent remember; first axis C."""
 
     senses: Array
     """float32 (C, R, S)"""
     memory: Array
-    """the memory that these senses met, float32 (C, R, M)"""
+    """the memory at the same moments, float32 (C, R, M)"""
     known: Array
-    """bool (C, R): a moment is kept in this place"""
+    """bool (C, R): a moment is stored at this index"""
 
 
 class Organisms(NamedTuple):
@@ -85,14 +85,14 @@ Climate: TypeAlias = dict[str, Array]
 
 
 class Looks(NamedTuple):
-    """The state of S ratchets, (W, S): their past and next looks at the worlds."""
+    """The state of S ratchets, (W, S): their last and next measurements of the worlds."""
 
     wait: Array
-    """int32, ticks until the next look"""
+    """int32, ticks until the next measurement"""
     food: Wide
-    """the world's food at the last look"""
+    """the world's food at the last measurement"""
     organism_ticks: Wide
-    """the world's organism-ticks at the last look"""
+    """the world's organism-ticks at the last measurement"""
 
 
 class Worlds(NamedTuple):

@@ -1,1 +1,1 @@
-"""Mutations, one file each: they make the genomes of children and of founders."""
+"""Mutations, one file each. A mutation makes the genomes of children and of founders."""

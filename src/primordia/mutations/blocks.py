@@ -9,7 +9,7 @@ from primordia.settings.base import Settings
 
 
 class FounderBlock(Settings):
-    """Founders' weights in one block; a setting of None has the whole genome's value."""
+    """Founders' weights in one block. None stands for the whole genome's value."""
 
     founder_scale: float | None = Field(
         None, ge=0, description="standard deviation of a founder's weights in the block"

@@ -1,4 +1,4 @@
-"""Calibrated mutation: noise as large as the behaviour of the child allows, in every game."""
+"""Calibrated mutation: noise with a given effect on the child's behaviour, in every game."""
 
 from typing import ClassVar
 
@@ -17,27 +17,31 @@ from primordia.rounding import rounded_product
 from primordia.settings.base import Rate
 
 STEPS = 7
-"""Halvings that find a length among the 96 from SHORTEST + 1 to 0."""
+"""Steps of the bisection among the 96 lengths from SHORTEST + 1 to 0."""
 
 
 class Calibrated(Mutation):
-    """Gaussian noise in the proportions of founders' weights, as large as the child's behaviour allows.
+    """Gaussian noise in the proportions of founders' weights, scaled by its effect on behaviour.
 
-    The direction is drawn: noise of the standard deviation that founders' weights have in each block. It
-    is taken times 2^(q / 4). Bisection finds the q from -96 to 0 at which the child acts otherwise than
-    its parent in at most a share `differs` of the moments that the parent remembers, and at q + 1 in
-    more. Where actions are continuous, `differs` is the root mean square change of the outputs (SM-R of
-    Lehman et al. 2018, arXiv:1712.06563, with a length of whole steps, so that genomes are rebuilt). The
-    note `quarters` is q, and 0 for a copy.
+    The direction is drawn: noise with the standard deviation of founders' weights in each block. It
+    is multiplied by 2^(q / 4). Bisection finds a q from -96 to 0: the child's action differs from
+    the parent's in at most a share `differs` of the parent's moments, and in more with q + 1. For
+    continuous actions, `differs` is the root mean square change of the outputs (SM-R of Lehman et
+    al. 2018, arXiv:1712.06563, with a length of whole steps, so that genomes are rebuilt). The note
+    `quarters` is q, and 0 for a copy.
     """
 
     notes: ClassVar = ("quarters",)
 
     probability: Rate = Field(0.5, ge=0, le=1, description="chance that a child is mutated")
     differs: Rate = Field(
-        0.02, ge=0, description="most change of behaviour: share of moments, or change of outputs"
+        0.02,
+        ge=0,
+        description="largest change of behaviour: share of moments, or change of outputs",
     )
-    remembered: int = Field(64, ge=1, le=256, description="moments that organisms remember")
+    remembered: int = Field(
+        64, ge=1, le=256, description="number of moments that organisms remember"
+    )
     every: int = Field(16, ge=1, le=256, description="ticks from one remembered moment to the next")
     founder_scale: float = Field(
         0.01, ge=0, description="standard deviation of a founder's weights around zero"
@@ -62,7 +66,7 @@ class Calibrated(Mutation):
     def note(self, layout: Layout, family: Family, change: Change | None) -> Array:
         """Return the children's q, int32 (K, 1)."""
         if change is None:
-            raise ValueError("a calibrated mutation needs what parents remember")
+            raise ValueError("a calibrated mutation needs the parents' moments")
 
         mutates = self._mutates(family)
 
@@ -81,7 +85,7 @@ class Calibrated(Mutation):
         return jnp.where(mutates, found, none)[:, None]
 
     def inherit(self, layout: Layout, family: Family) -> tuple[Array, Array]:
-        """Add noise of the lengths noted; see `Mutation.inherit`."""
+        """Add noise of the lengths in the notes; see `Mutation.inherit`."""
         mutates = self._mutates(family)
         mutants = self._mutants(layout, family, family.notes[:, 0])
         return jnp.where(mutates[:, None], mutants, family.parents), mutates

@@ -1,4 +1,4 @@
-"""The contract of mutations, which make the genomes of children and of founders.
+"""The contract of mutations. A mutation makes the genomes of children and of founders.
 
 A mutation is used twice: when an organism is born, and when its genome is rebuilt from the records of its
 line of descent. Both give the same bits on any device. So a mutation is made of integer draws, table
@@ -46,7 +46,7 @@ class Draws(NamedTuple):
 
 
 class Family(NamedTuple):
-    """What the genomes of K children are made of."""
+    """The inputs from which the genomes of K children are made."""
 
     parents: Array
     """genomes of the parents, float32 (K, P)"""
@@ -58,24 +58,25 @@ class Family(NamedTuple):
     """random words of the births"""
 
     def take(self, rows: Any) -> "Family":
-        """Return those in some rows."""
+        """Return the families of some children."""
         rates = {name: values[rows] for name, values in self.rates.items()}
         draws = Draws(self.draws.streams.take(rows), self.draws.cell[rows])
         return Family(self.parents[rows], self.notes[rows], rates, draws)
 
 
 class Moments(NamedTuple):
-    """Which moments of their lives organisms remember: senses, and the memory that they met."""
+    """The number and interval of the moments that organisms remember: senses and memory."""
 
     kept: int
-    """number of moments, the latest of a line of descent: a child begins with those of its parent"""
+    """number of moments; they are the latest of a line of descent, since a child begins with its
+    parent's"""
     every: int
-    """ticks from one to the next; kept x every is at most 2^16"""
+    """ticks between two moments; kept x every is at most 2^16"""
 
 
 Change: TypeAlias = Callable[[Array], Array]
-"""How far K genomes (K, P) act otherwise than the parents would in what these remember, float32 (K,);
-see `Mutation.moments`."""
+"""The change of behaviour of K genomes (K, P) in their parents' moments, float32 (K,); see
+`Mutation.moments`."""
 
 
 class Mutation(Settings, ABC):
@@ -92,12 +93,13 @@ class Mutation(Settings, ABC):
 
     @property
     def moments(self) -> Moments | None:
-        """Return which moments of their lives organisms remember for `note`; None: they need none."""
+        """Return the moments that organisms remember for `note`; None if `note` needs none."""
         return None
 
     @property
     def notes_from(self) -> Literal["parent", "cell"]:
-        """Return whose notes `note` gets: the parent's, or those of the last one born in the cell."""
+        """Return the source of the notes for `note`: the parent, or the last organism born in the
+        cell."""
         return "parent"
 
     def rates(self, layout: Layout) -> dict[str, float]:
@@ -105,7 +107,8 @@ class Mutation(Settings, ABC):
         return rates_of(self)
 
     def governed(self, setting: str, layout: Layout) -> list[str]:
-        """Return the names among `rates` that a season of a setting changes; [] if it is unknown."""
+        """Return the names among `rates` that a season of a setting changes; [] for an unknown
+        setting."""
         return [setting] if setting in self.rates(layout) else []
 
     def check(self, layout: Layout) -> None:
@@ -143,5 +146,5 @@ class Mutation(Settings, ABC):
 
 
 def find(name: object) -> type[Mutation]:
-    """Return the mutation class called `name`; LookupError says why there is none."""
+    """Return the mutation class called `name`; raise LookupError, with the reason, if there is none."""
     return parts.find("mutation", name, KNOWN, Mutation)

@@ -1,4 +1,4 @@
-"""Gaussian mutation: noise on every weight of a block, in a share of the births."""
+"""Gaussian mutation: noise on every weight of a block, at a share of the births."""
 
 from typing import Literal, TypeAlias
 
@@ -20,7 +20,7 @@ SEASONAL_FIELDS: tuple[BlockField, ...] = ("probability", "scale")
 
 
 class Block(FounderBlock):
-    """Mutation of one block of weights; a setting of None has the whole genome's value."""
+    """Mutation of one block of weights. None stands for the whole genome's value."""
 
     probability: float | None = Field(
         None, ge=0, le=1, description="chance that a child's block mutates"
@@ -32,7 +32,7 @@ class Gaussian(Mutation):
     """Gaussian noise of a fixed scale (Schmidgall & Hays 2021, "Mutation").
 
     One uniform draw a birth decides for all blocks: block b mutates if the draw is below
-    its probability. A child none of whose blocks mutates is a copy.
+    its probability. A child is a copy if none of its blocks mutates.
     """
 
     probability: Rate = Field(0.5, ge=0, le=1, description="chance that a child is mutated")

@@ -1,4 +1,4 @@
-"""Heritable mutation: the size of the mutations of its children is inherited, and mutates itself."""
+"""Heritable mutation: the size of mutations is inherited and mutates too."""
 
 from typing import ClassVar, Literal
 
@@ -14,26 +14,28 @@ from primordia.random.keys import Purpose, below
 
 
 class Heritable(Gaussian):
-    """Gaussian noise of a scale times 2^(q / 4), where q is a whole number that is inherited.
+    """Gaussian noise of a scale times 2^(q / 4), with a whole number q that is inherited.
 
     A mutant's q is its parent's plus a number from -stride to stride, all equally likely, within finest
-    and coarsest. Then its weights get noise of its own scale (Schwefel 1981; in steps as in Dang & Lehre
-    2016). The control `belongs = "cell"` has the same q wander by cell: a mutant takes that of the
-    organism that was last born in its cell, so that q is selected with no genome.
+    and coarsest. Then its weights get noise of the new scale (Schwefel 1981; in steps as in Dang &
+    Lehre 2016). In the control `belongs = "cell"` the same q belongs to a cell: a mutant starts
+    from the q of the organism that was last born in its cell. So q is not selected with a genome.
     """
 
     notes: ClassVar = ("quarters",)
 
-    stride: int = Field(4, ge=1, le=16, description="most quarters of an octave in one birth")
+    stride: int = Field(
+        4, ge=1, le=16, description="largest change of q in one birth, in quarters of an octave"
+    )
     finest: int = Field(-48, ge=SHORTEST, le=0, description="smallest q")
     coarsest: int = Field(16, ge=0, le=LONGEST, description="largest q")
     belongs: Literal["line", "cell"] = Field(
-        "line", description="line: q is inherited; cell: it stays where it is (the control)"
+        "line", description="line: q is inherited; cell: q stays in its cell (the control)"
     )
 
     @property
     def notes_from(self) -> Literal["parent", "cell"]:
-        """Return whose q is the first of a child's; see `Mutation.notes_from`."""
+        """Return where a child's first q comes from; see `Mutation.notes_from`."""
         return "cell" if self.belongs == "cell" else "parent"
 
     def note(self, layout: Layout, family: Family, change: Change | None) -> Array:

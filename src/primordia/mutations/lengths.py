@@ -1,4 +1,5 @@
-"""Lengths of mutations as whole numbers: quarters of an octave, so that rounding never adds up."""
+"""Lengths of mutations as whole numbers of quarters of an octave, so that rounding errors never add
+up."""
 
 import jax.numpy as jnp
 import numpy as np
@@ -7,7 +8,7 @@ from jax import Array
 SHORTEST, LONGEST = -96, 32
 """Quarters of an octave: lengths go from 2^-24 to 2^8."""
 WITHIN_OCTAVE = (1.0, 1.1892071, 1.4142135, 1.6817929)
-"""2^(0/4) to 2^(3/4). No library's power function takes part, so all machines have the same table."""
+"""2^(0/4) to 2^(3/4). No library's power function is used, so all machines have the same table."""
 LENGTHS = np.array(
     [np.ldexp(np.float32(WITHIN_OCTAVE[n % 4]), n // 4) for n in range(SHORTEST, LONGEST + 1)],
     np.float32,

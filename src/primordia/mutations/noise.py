@@ -19,7 +19,8 @@ def standard_noise(stream: Wide, cell: Array, length: int) -> Array:
 
 
 def noise_index(stream: Wide, cell: Array, length: int) -> Array:
-    """Return the place of each weight's noise in the table, for K streams and cells: int32 (K, length).
+    """Return the index of each weight's noise in the table, for K streams and cells: int32 (K,
+    length).
 
     With m = ceil(length / 4), weight i takes the (i // m)-th 16 bits of draw i % m.
     """

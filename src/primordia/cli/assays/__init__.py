@@ -1,1 +1,1 @@
-"""The commands `primordia assay ...`, which measure what is inherited and what limits evolution."""
+"""The commands `primordia assay ...`: heredity, limits of evolution, and the worth of genomes."""

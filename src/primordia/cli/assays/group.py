@@ -7,7 +7,7 @@ from primordia.cli.assays import of_lives, of_pairs, of_records, of_runs
 
 @click.group()
 def assay() -> None:
-    """Measure what is inherited, what limits evolution, and what a genome is worth."""
+    """Measure heredity, the limits of evolution, and the worth of single genomes."""
 
 
 for command in (

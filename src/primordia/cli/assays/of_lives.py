@@ -21,12 +21,12 @@ if TYPE_CHECKING:
     from primordia.assays.subjects import Subjects
 
 SUFFIX = ".safetensors"
-"""The end of the name of a genome file."""
+"""The suffix of a genome file."""
 
 source_argument = click.argument("run", type=click.Path(path_type=Path))
 organisms_argument = click.argument("organisms", type=int, nargs=-1, metavar="[ID]...")
 world_option = click.option("--world", type=int, help="The organisms' world [0].")
-task_option = click.option("--task", help="Task of a genome file [the one that it names].")
+task_option = click.option("--task", help="Task of a genome file [the task that the file names].")
 
 
 def assay_of_lives(short_help: str) -> Callable:
@@ -56,18 +56,18 @@ def assay_of_lives(short_help: str) -> Callable:
 
 @click.option(
     "--mutants", type=click.IntRange(min=1), default=24, show_default=True,
-    help="Mutants of an organism by each mutation.",
+    help="Number of mutants of an organism by each mutation.",
 )  # fmt: skip
 @click.option(
     "--scale", "scales", type=click.FloatRange(min=0, min_open=True), multiple=True,
-    help="Noise of this share of the founders' standard deviation; may be repeated"
-    " [0.001 0.003 0.01 0.03 0.1 0.3].",
+    help="Measure noise of this share of the founders' standard deviation; may be repeated "
+    "[0.001 0.003 0.01 0.03 0.1 0.3].",
 )  # fmt: skip
 @click.option(
     "--differs", type=click.FloatRange(min=0), multiple=True,
-    help="A calibrated mutation of this change of behaviour; may be repeated.",
+    help="Measure the calibrated mutation with this change of behaviour; may be repeated.",
 )  # fmt: skip
-@assay_of_lives("What mutations of several sizes do to an organism's life.")
+@assay_of_lives("Measure how mutations of several sizes change a life.")
 def effects(
     habitat: dict[str, Any],
     /,
@@ -80,11 +80,12 @@ def effects(
     as_json: bool,
     **chosen: Any,
 ) -> None:
-    """Let mutants of organisms live in the games of their parents, by several mutations.
+    """Let mutants of organisms play their parents' games, for several mutations.
 
-    RUN is a run, a genome file or a task. Without an ID the champion of each world has mutants; of a
-    file, each genome; of a task, the longest-lived 16 of 512 founders. The run's own mutation is the
-    first of the table. Any setting of the habitat can be changed by a flag, such as --sticky 0.25.
+    RUN is a run, a genome file or a task. Without an ID the parents are the champions of a run's
+    worlds, all genomes of a file, or the longest-lived 16 of 512 founders of a task. The first row
+    of the table is the run's own mutation. Any setting of the habitat can be changed by a flag,
+    such as --sticky 0.25.
     """
     from primordia.assays.effects import SCALES
     from primordia.assays.effects import effects as measure
@@ -94,8 +95,8 @@ def effects(
     tell("effects", {subjects.source: found}, as_json, out, tables.effects)
 
 
-@click.option("--each-sense", is_flag=True, help="Freeze each sense alone, too.")
-@assay_of_lives("What an organism needs of its senses, memory and weights.")
+@click.option("--each-sense", is_flag=True, help="Also freeze each sense alone.")
+@assay_of_lives("Measure which senses, memory and weights a life needs.")
 def ablate(
     habitat: dict[str, Any],
     /,
@@ -108,9 +109,9 @@ def ablate(
 ) -> None:
     """Let organisms live with frozen senses, without memory, and without each block of weights.
 
-    RUN is a run, a genome file or a task. Without an ID the champion of each world is measured; of a
-    file, each genome; of a task, the longest-lived 16 of 512 founders. Any setting of the habitat can be
-    changed by a flag, such as --sticky 0.25.
+    RUN is a run, a genome file or a task. Without an ID the organisms are the champions of a run's
+    worlds, all genomes of a file, or the longest-lived 16 of 512 founders of a task. Any setting of
+    the habitat can be changed by a flag, such as --sticky 0.25.
     """
     from primordia.assays.ablate import ablate as measure
 
@@ -137,11 +138,11 @@ def subjects_of(
     named = str(run) in tasks() or is_door(str(run))
     of_a_task = run.suffix == ".toml" or (named and not run.exists())
     if world is not None and (of_a_task or run.suffix == SUFFIX):
-        raise InputError(f"{run} has no worlds; leave out --world")
+        raise InputError(f"{run} is not a run, so it has no worlds; leave out --world")
     if run.suffix == SUFFIX:
         return of_file(run, organisms, task, habitat)
     if task is not None:
-        raise InputError(f"the task of {run} is known; leave out --task")
+        raise InputError(f"--task goes with a genome file, and {run} is none; leave out --task")
     if of_a_task:
         return of_task(str(run), organisms, habitat)
     opened = load(run, trust).opened()

@@ -19,14 +19,14 @@ NUMBERED = re.compile(r"(?P<place>.+):(?P<organism>\d+)(@(?P<world>\d+))?")
 """A run or genome file, an organism of it, and its world."""
 
 
-@click.command(cls=HabitatCommand, short_help="Two genomes in one world: which takes over?")
+@click.command(cls=HabitatCommand, short_help="Let two genomes compete in one world.")
 @click.argument("one")
 @click.argument("other")
-@click.option("--task", help="Task of a genome file [the one that it names].")
+@click.option("--task", help="Task of a genome file [the task that the file names].")
 @click.option("--worlds", type=click.IntRange(min=1), default=10, show_default=True, help="Worlds.")
 @click.option(
     "--ticks", type=click.IntRange(min=1), default=5_000, show_default=True,
-    help="Ticks of each world.",
+    help="Number of ticks of each world.",
 )  # fmt: skip
 @out_option
 @trust_option
@@ -45,12 +45,13 @@ def compete(
     out: Path | None,
     as_json: bool,
 ) -> None:
-    """Let two genomes share empty worlds, without mutation, and tell whose descendants take over.
+    """Let two genomes compete in empty worlds, without mutation. Measure whose descendants take
+    over.
 
-    ONE and OTHER are runs, for their champions, or genome files, for their first genome. `runs/a:17` is
-    organism 17 of world 0, `runs/a:17@2` of world 2, `some.safetensors:3` the fourth genome of a file,
-    `Pong-survival:5` a founder of a task. The law is that of ONE. Any setting of the habitat can be
-    changed by a flag.
+    ONE and OTHER are each a run (its champion) or a genome file (its first genome). `runs/a:17` is
+    organism 17 of world 0. `runs/a:17@2` is organism 17 of world 2. `some.safetensors:3` is the
+    fourth genome of a file. `Pong-survival:5` is a founder of a task. The law is that of ONE. Any
+    setting of the habitat can be changed by a flag.
     """
     from primordia.assays.compete import compete as measure
 
@@ -60,7 +61,7 @@ def compete(
 
 
 def _side(words: str, habitat: dict[str, Any], task: str | None, trust: bool) -> "Subjects":
-    """Return the one subject that some words name."""
+    """Return the subject that an argument names."""
     from primordia.api import load
 
     numbered = NUMBERED.fullmatch(words)

@@ -1,4 +1,4 @@
-"""Assays that read records, and let nothing live."""
+"""Assays that only read records: no organism lives again."""
 
 from pathlib import Path
 
@@ -9,7 +9,7 @@ from primordia.cli.assays.options import after_option, arms_of, json_option, out
 from primordia.cli.flags import runs_argument
 
 
-@click.command(short_help="Parents and offspring; the two terms of the Price equation.")
+@click.command(short_help="Measure how length of life is inherited.")
 @runs_argument
 @after_option
 @out_option
@@ -17,13 +17,13 @@ from primordia.cli.flags import runs_argument
 def heredity(runs: tuple[Path, ...], after: float, out: Path | None, as_json: bool) -> None:
     """Measure how length of life is inherited, from the records.
 
-    Several runs are one arm; of an experiment each arm is one.
+    Several runs are measured as one arm. Each arm of an experiment is measured.
     """
     found = {str(arm.path): arm.heredity(after) for arm in arms_of(runs)}
     tell("heredity", found, as_json, out, tables.heredity)
 
 
-@click.command(short_help="Does a good line keep its ground against its mutants?")
+@click.command(short_help="Measure the error threshold of mutation.")
 @runs_argument
 @after_option
 @out_option
@@ -31,9 +31,10 @@ def heredity(runs: tuple[Path, ...], after: float, out: Path | None, as_json: bo
 def threshold(runs: tuple[Path, ...], after: float, out: Path | None, as_json: bool) -> None:
     """Measure the error threshold s (1 - p (1 - v)), from the records.
 
-    P is the share of children that mutate, v the share of good parents' mutants that are as good, s how
-    much longer copies of good parents live than all organisms. Above 1 a good line keeps its ground.
-    Several runs are one arm; of an experiment each arm is one.
+    p is the share of children that mutate. v is the share of good parents' mutants that are as good
+    as the parents. s is the mean life of good parents' copies, divided by the mean life of all
+    organisms. Above 1 a good line persists. Several runs are measured as one arm. Each arm of an
+    experiment is measured.
     """
     found = {str(arm.path): arm.threshold(after) for arm in arms_of(runs)}
     tell("threshold", found, as_json, out, tables.threshold)

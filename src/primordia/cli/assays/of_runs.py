@@ -1,4 +1,4 @@
-"""Assays in which many organisms of a run live again: its oldest, and lines of descent."""
+"""Assays in which the oldest organisms of a run, or lines of descent, live again."""
 
 from pathlib import Path
 from typing import Any
@@ -20,11 +20,11 @@ from primordia.cli.cache import cache_option
 from primordia.cli.flags import HabitatCommand, trust_option
 
 
-@click.command(cls=HabitatCommand, short_help="Are the oldest good, or were they lucky?")
+@click.command(cls=HabitatCommand, short_help="Measure whether the oldest are good or were lucky.")
 @source_argument
 @click.option(
     "--each", type=click.IntRange(min=1), default=20, show_default=True,
-    help="Organisms of each group in each world.",
+    help="Number of organisms of each group in each world.",
 )  # fmt: skip
 @after_option
 @games_option
@@ -43,11 +43,11 @@ def garden(
     as_json: bool,
     **options: Any,
 ) -> None:
-    """Let the oldest organisms of each world be born again, beside other late-born ones and founders.
+    """Let the oldest organisms, other late-born organisms and founders of each world be born again.
 
-    The oldest of many lived long by luck too. In fresh games they live as long as their genomes deserve.
-    Of an experiment each arm is measured. Any setting of the habitat can be changed by a flag, such as
-    --sticky 0.25 --noops 30.
+    The oldest organisms were also lucky. Their lives in fresh games show what their genomes are
+    worth. Each arm of an experiment is measured. Any setting of the habitat can be changed by a
+    flag, such as --sticky 0.25 --noops 30.
     """
     from primordia.assays.garden import garden as measure
 
@@ -62,7 +62,7 @@ def garden(
     "--most", type=click.IntRange(min=2), default=200, show_default=True,
     help="Let at most this number of the line's genomes live.",
 )  # fmt: skip
-@assay_of_lives("When did a line of descent become good?")
+@assay_of_lives("Measure when a line of descent became good.")
 def line(
     habitat: dict[str, Any],
     /,
@@ -77,15 +77,17 @@ def line(
 ) -> None:
     """Let the ancestors of organisms live again, all in the same games.
 
-    Without an ID it is the line of the champion of the world, or of the whole run. Any setting of the
-    habitat can be changed by a flag, such as --sticky 0.25 --noops 30.
+    Without an ID the line is that of the champion of the world, or of the whole run. Any setting of
+    the habitat can be changed by a flag, such as --sticky 0.25 --noops 30.
     """
     from primordia.api import load
     from primordia.assays.line import line as measure
     from primordia.errors import InputError
 
     if task is not None or run.suffix == SUFFIX:
-        raise InputError("a genome file holds no ancestors; give the run that its genomes are from")
+        raise InputError(
+            "a genome file holds no ancestors; give the run that its genomes come from"
+        )
     opened = load(run, trust).opened()
     numbers = [(each, world or 0) for each in organisms]
     if not numbers:

@@ -1,4 +1,4 @@
-"""Options that assays share, and how they tell what they found."""
+"""The options that assays share, and the output of their results."""
 
 import json
 from collections.abc import Callable, Mapping
@@ -20,7 +20,7 @@ after_option = click.option(
     type=click.FloatRange(0, 1, max_open=True),
     default=0.5,
     show_default=True,
-    help="Share of a world's births after which a birth counts.",
+    help="Count only births after this share of a world's births.",
 )
 json_option = click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 out_option = click.option(
@@ -33,7 +33,7 @@ games_option = click.option(
     type=click.IntRange(min=1),
     default=5,
     show_default=True,
-    help="Games of each genome; one is enough where nothing is drawn at random.",
+    help="Number of games of each genome; one is enough if nothing in the habitat is random.",
 )
 ticks_option = click.option(
     "--ticks",
@@ -45,7 +45,7 @@ ticks_option = click.option(
 
 
 def arms_of(paths: tuple[Path, ...], trust: bool = False) -> "list[Run]":
-    """Return each arm of an experiment, or the runs named as one arm."""
+    """Return the arms of an experiment, or the named runs as one arm."""
     from primordia.api import Experiment, load
 
     loaded = load(paths, trust)
@@ -59,14 +59,14 @@ def tell(
     out: Path | None,
     table: Callable[[str, list[Any]], Told],
 ) -> None:
-    """Print a table for each arm or one JSON object for all, and draw figures if a folder is named.
+    """Print a table for each arm, or one JSON object for all; draw figures if a folder is given.
 
     Args:
         name: name of the assay, of the module of `figures.assays` that draws it, and of the files.
-        found: results of each arm, by its path.
+        found: the results of each arm, by its path.
         as_json: whether JSON is printed.
-        out: folder for figures; of several arms, each has a folder of its name in it.
-        table: makes a table of an arm's results.
+        out: folder for figures; each of several arms has a folder with its name there.
+        table: a function that makes a table of an arm's results.
     """
     if as_json:
         plain = {arm: [each.to_dict() for each in of] for arm, of in found.items()}

@@ -1,4 +1,4 @@
-"""What assays found, as tables for people."""
+"""Results of assays as tables for the terminal."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -9,7 +9,7 @@ from primordia.cli.table import spread
 
 
 class Told(NamedTuple):
-    """A table, its title, and what it says beside."""
+    """A table with its title and its notes."""
 
     title: str
     head: Sequence[str]
@@ -42,19 +42,19 @@ def threshold(name: str, found: list[Any]) -> Told:
     """Return the table of the error threshold in each world, `history.threshold`."""
     held = [each.held for each in found if each.held is not None]
     words = {
-        "mutated": "p, children that mutate",
-        "as_good": "v, mutants of good parents that are as good",
-        "advantage": "s, life of good parents' copies over all",
+        "mutated": "p, share of children that mutate",
+        "as_good": "v, share of good parents' mutants that are as good",
+        "advantage": "s, life of good parents' copies / life of all",
         "held": "s (1 - p (1 - v))",
     }
     rows = [(text, spread(getattr(each, field) for each in found)) for field, text in words.items()]
     above = f"{sum(value > 1 for value in held)} of {len(held)}"
-    last = ("worlds above 1, where a good line keeps its ground", above)
+    last = ("worlds above 1, in which a good line persists", above)
     return Told(_title(name, found), ("", "median"), [*rows, last])
 
 
 def effects(name: str, found: list[Any]) -> Told:
-    """Return the table of what mutations do, `assays.effects`."""
+    """Return the table of the effects of mutations, `assays.effects`."""
     words = {
         "as_long": "as long",
         "longer": "longer",
@@ -71,7 +71,8 @@ def effects(name: str, found: list[Any]) -> Told:
     lived = spread(each.lifespan for each in found if each.mutation == mutations[0])
     count = len(found) // len(mutations)
     return Told(
-        f"{name}: {_count(count, 'organism')}, {len(found[0].mutants)} mutants of each by each mutation",
+        f"{name}: {_count(count, 'organism')}, {len(found[0].mutants)} mutants of each by each "
+        "mutation",
         ("", *words.values(), "median life"),
         rows,
         (
@@ -82,7 +83,7 @@ def effects(name: str, found: list[Any]) -> Told:
 
 
 def ablate(name: str, found: list[Any]) -> Told:
-    """Return the table of what organisms live without, `assays.ablate`."""
+    """Return the table of lives after ablations, `assays.ablate`."""
     losses = list(dict.fromkeys(each.without for each in found))
     rows = []
     for loss in losses:
@@ -97,7 +98,7 @@ def ablate(name: str, found: list[Any]) -> Told:
 
 
 def garden(name: str, found: list[Any]) -> Told:
-    """Return the table of lives when born again, `assays.garden`."""
+    """Return the table of the common garden, `assays.garden`."""
     rows = []
     for group, count in Counter(each.group for each in found).items():
         own = [each for each in found if each.group == group]
@@ -113,7 +114,7 @@ def garden(name: str, found: list[Any]) -> Told:
             )
         )
     return Told(
-        f"{name}: mean ticks lived in a world, medians over worlds (quartiles)",
+        f"{name}: mean ticks lived; medians over worlds (quartiles)",
         ("", "worlds", "organisms", "in their world", "born again", "share kept"),
         rows,
     )
@@ -139,7 +140,7 @@ def line(name: str, found: list[Any]) -> Told:
         *("ticks that the last lives", "as good from", "largest step"),
     )
     head, *rows = zip(names, *columns, strict=True)
-    note = "As good: this and all later genomes live nine tenths of the last one's life, or more."
+    note = "As good: this genome and all later ones live at least nine tenths of the last genome's life."
     return Told(f"{name}: genomes of a line, born again in the same games", head, rows, (note,))
 
 
@@ -159,7 +160,7 @@ def compete(name: str, found: list[Any]) -> Told:
         for each in found
     ]
     ticks = f"{found[0].tick[-1]:,} ticks"
-    return Told(f"{name}: both fill half of each world, {ticks}, no mutation", head, rows, notes)
+    return Told(f"{name}: each fills half of each world, {ticks}, no mutation", head, rows, notes)
 
 
 def _birth_text(step: Any) -> str:

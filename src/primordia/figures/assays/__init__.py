@@ -1,1 +1,1 @@
-"""Figures of what assays found: each module has `draw(found) -> Figure`."""
+"""Figures of assays: each module has `draw(found) -> Figure`."""

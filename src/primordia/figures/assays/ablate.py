@@ -1,4 +1,4 @@
-"""What organisms live without."""
+"""The figure of ablations."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -8,7 +8,8 @@ from primordia.figures import style
 
 
 def draw(found: list[Ablation]) -> Figure:
-    """Draw the share of life that is left without each thing: a dot an organism, and the median."""
+    """Draw the share of life that is left after each ablation: a dot for each organism, and the
+    median."""
     losses = list(dict.fromkeys(each.without for each in found))
     figure = Figure(figsize=(style.COLUMN, 0.9 + 0.16 * len(losses)))
     axes = figure.subplots()

@@ -1,4 +1,4 @@
-"""Which of two genomes takes over."""
+"""The figure of two competing genomes."""
 
 from matplotlib.figure import Figure
 

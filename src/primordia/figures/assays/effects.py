@@ -1,4 +1,4 @@
-"""What mutations of several sizes do."""
+"""The figure of the effects of mutations."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -14,7 +14,7 @@ SHARES = {
 
 
 def draw(found: list[Effect]) -> Figure:
-    """Draw what share of mutants lives as long, longer and shorter, for each mutation.
+    """Draw the shares of mutants that live as long, longer and shorter, for each mutation.
 
     Lines and bands are means and quartiles over organisms.
     """
@@ -30,7 +30,7 @@ def draw(found: list[Effect]) -> Figure:
         axes.vlines(places, q1, q3, color=colour, alpha=0.3, linewidth=4)
         means = np.mean(values, axis=1)
         axes.plot(places, means, "o", color=colour, markersize=3)
-        for kind in ("scale", "differs"):  # sizes of one kind of mutation are joined
+        for kind in ("scale", "differs"):  # the sizes of one kind of mutation are joined by a line
             some = np.array([mutation.startswith(kind) for mutation in mutations])
             axes.plot(places[some], means[some], color=colour)
     axes.set_xticks(places, [mutation.replace(" ", "\n") for mutation in mutations])

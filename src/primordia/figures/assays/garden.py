@@ -1,4 +1,4 @@
-"""Recorded lives beside those of the same genomes born again."""
+"""The figure of the common garden: recorded lives beside lives of the same genomes born again."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -10,7 +10,7 @@ COLOURS = {"oldest": style.BLUE, "late-born": style.ORANGE}
 
 
 def draw(found: list[Bed]) -> Figure:
-    """Draw each organism's life in its world and when born again, and all lives when born again."""
+    """Draw each organism's recorded life against its life when born again, and the groups' lives."""
     figure = Figure(figsize=(style.PAGE, 2.8))
     pairs, again = figure.subplots(1, 2)
     for group, colour in COLOURS.items():
@@ -32,7 +32,9 @@ def draw(found: list[Bed]) -> Figure:
         again.step(np.maximum(lives, 1), left, where="pre", color=colour)
     style.logarithmic(again.xaxis)
     again.set(
-        xlabel="life when born again (ticks)", ylabel="share that live as long", ylim=(0, 1.02)
+        xlabel="life when born again (ticks)",
+        ylabel="share that live at least as long",
+        ylim=(0, 1.02),
     )
-    style.title(again, "All of each group", {**COLOURS, "founders": style.SOFT})
+    style.title(again, "All organisms of each group", {**COLOURS, "founders": style.SOFT})
     return figure

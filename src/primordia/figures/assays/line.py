@@ -1,4 +1,4 @@
-"""The lives that the genomes of lines of descent give."""
+"""The figure of the lives along lines of descent."""
 
 from matplotlib.figure import Figure
 
@@ -7,7 +7,7 @@ from primordia.figures import style
 
 
 def draw(found: list[Line]) -> Figure:
-    """Draw the life of each genome on each line over generations: as recorded, and born again."""
+    """Draw the life of each genome on each line over generations, as recorded and when born again."""
     figure = Figure(figsize=(style.PAGE, 2.4 * len(found)))
     for axes, line in zip(figure.subplots(len(found), squeeze=False).flat, found, strict=True):
         generation = [step.generation for step in line.steps]

@@ -1,4 +1,4 @@
-"""Strips: the values of worlds or organisms side by side, as dots, each strip with its median."""
+"""Strip plots: the values of worlds or organisms as dots, with their median."""
 
 from collections.abc import Mapping, Sequence
 
@@ -8,11 +8,11 @@ from matplotlib.axes import Axes
 from primordia.figures import style
 
 WIDTH = 0.5
-"""Width over which the dots of a strip are spread, of the distance between strips."""
+"""Width of a strip of dots, as a share of the distance between strips."""
 
 
 def strips(axes: Axes, values: Mapping[str, Sequence[float | None]]) -> None:
-    """Draw a strip of dots for each name, without what is unknown, and a line at its median."""
+    """Draw a strip of the known values for each name, and a line at its median."""
     for place, each in enumerate(values.values()):
         known = np.array([value for value in each if value is not None], float)
         known = known[np.isfinite(known)]

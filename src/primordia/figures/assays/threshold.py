@@ -1,4 +1,4 @@
-"""The error threshold in each world."""
+"""The figure of the error threshold in each world."""
 
 from matplotlib.figure import Figure
 
@@ -8,7 +8,7 @@ from primordia.history.threshold import Threshold
 
 
 def draw(found: list[Threshold]) -> Figure:
-    """Draw p, v and s of each world, and whether a good line keeps its ground."""
+    """Draw p, v and s of each world, and the error threshold."""
     figure = Figure(figsize=(style.PAGE, 2.6))
     shares, factors = figure.subplots(1, 2)
     key = {"worlds": style.SKY, "median": style.BLUE}
@@ -30,5 +30,5 @@ def draw(found: list[Threshold]) -> Figure:
     )
     style.logarithmic(factors.yaxis)
     factors.axhline(1, color=style.VERMILION, zorder=0)
-    style.title(factors, "Does a good line keep its ground?", {**key, "threshold": style.VERMILION})
+    style.title(factors, "Does a good line persist?", {**key, "threshold": style.VERMILION})
     return figure
