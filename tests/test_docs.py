@@ -18,7 +18,8 @@ from tests import commands
 
 pytestmark = pytest.mark.usefixtures("optimised")  # some runs are long
 HERE = Path(__file__).parent.parent
-PAGES = [HERE / "README.md", *sorted((HERE / "docs").glob("*.md"))]
+FOLDERS = (HERE / "docs", HERE / "docs" / "teach", HERE / "docs" / "gallery")
+PAGES = [HERE / "README.md", *(page for each in FOLDERS for page in sorted(each.glob("*.md")))]
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 FILE = re.compile(r"# ([\w-]+\.\w+)\n")
 """The first line of a block that is a file, with its name."""
