@@ -6,14 +6,16 @@ CONSTRAINTS ?= --constraint constraints.txt --build-constraint constraints.txt
 
 .PHONY: demo test quick slow check docs format figures bench mutants constraints clean
 
-demo: .venv/installed  ## evolve pole balancers, draw figures of the run, film the longest life, and write a page about it
+demo: .venv/installed  ## evolve pole balancers, draw and report them, and film the first life beside a long one
 	rm -rf runs/demo
 	$(BIN)/primordia run CartPole-survival --out runs/demo
 	$(BIN)/primordia plot runs/demo
-	$(BIN)/primordia replay runs/demo
 	$(BIN)/primordia report runs/demo
-	@echo 'Open runs/demo/report.html in a browser. `source .venv/bin/activate` puts `primordia` on the path.'
-	@echo 'docs/tutorial.md goes on from here in ten minutes.'
+	$(BIN)/primordia replay runs/demo --beside 0 --out runs/demo/videos/first-and-champion.mp4
+	@echo
+	@echo "Watch      runs/demo/videos/first-and-champion.mp4: the first death, and beside it the champion"
+	@echo "Explore    runs/demo/report.html in a browser: every organism, its line of descent, the film of its world"
+	@echo 'Read on    docs/tutorial.md, ten minutes; `source .venv/bin/activate` puts `primordia` on the path'
 
 test: .venv/installed-dev  ## run all tests: ten minutes on two cores
 	$(BIN)/python -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder

@@ -149,7 +149,7 @@ def test_changes_before_a_fork_are_left_out_if_the_code_there_is_untrusted(
     np.testing.assert_array_equal(found.size[late], whole.size[late])
     assert np.isnan(found.size[~late]).all()
     printed = here("ancestors", forked, "--world", 0).stdout
-    assert "The changes before a fork are not known: its code is not trusted." in printed
+    assert "The changes before a fork are unknown: its code is not trusted." in printed
 
 
 def test_lines_in_a_fork_are_founded_at_it(forked: Path) -> None:
