@@ -2,12 +2,7 @@
 
 import io
 import json
-import os
-import pty
 import re
-import select
-import subprocess
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -27,8 +22,8 @@ from primordia.live.panel import duration, with_prefix
 from primordia.live.watching import Plain
 from primordia.random.wide import Wide, wide
 from primordia.runs import loop
-from tests import commands
-from tests.commands import COMMAND, environment, here
+from tests.commands import here
+from tests.live.terminals import opened
 from tests.worlds import MEADOW, config
 
 # The picture.
@@ -243,40 +238,13 @@ def test_plain_lines_where_there_is_no_terminal(
 # A terminal, a process, and Ctrl-C.
 
 
-@pytest.fixture
-def terminal() -> Iterator[tuple[int, int]]:
-    """Open a pseudo-terminal of 80 x 24: our end, and the program's end."""
-    ours, theirs = pty.openpty()
-    yield ours, theirs
-    for end in (ours, theirs):
-        os.close(end)
-
-
-def read_until(end: int, *parts: str, seconds: float = 60.0) -> str:
-    """Return what is written until all parts are in it."""
-    read = ""
-    while not all(part in read for part in parts):
-        assert select.select([end], [], [], seconds)[0], f"nothing more after {read[-500:]!r}"
-        read += os.read(end, 65536).decode(errors="replace")
-    return read
-
-
-def test_a_terminal_shows_the_strip_and_control_c_saves(
-    terminal: tuple[int, int], tmp_path: Path
-) -> None:
-    ours, theirs = terminal
-    words = (*SMALL, "--until", "none", "--out", str(tmp_path / "run"))
-    settings = {"TERM": "xterm-256color", "COLUMNS": "80", "LINES": "24", "COLORTERM": "truecolor"}
-    variables = environment(commands.CACHE) | settings
-    variables.pop("NO_COLOR", None)
-    process = subprocess.Popen(
-        ["sh", "-c", 'exec <"$0" >"$0" 2>&1 "$@"', os.ttyname(theirs), *COMMAND, "run", *words],
-        env=variables,
-        start_new_session=True,  # so that the terminal it opens is the one that sends Ctrl-C
-    )
-    read_until(ours, "\x1b[?25l", "█", "line of descent", "takeovers", "\x1b[38;2")
-    os.write(ours, b"\x03")
-    read_until(ours, "\x1b[?25h", "Stopped and saved. Go on with: primordia resume")
-    assert process.wait(timeout=60) == 130
-    info = json.loads(here("info", tmp_path / "run", "--json").stdout)
+def test_a_terminal_shows_the_strip_and_control_c_saves(tmp_path: Path) -> None:
+    with opened() as terminal:
+        run = tmp_path / "run"
+        process = terminal.begin("run", *SMALL, "--until", "none", "--out", run)
+        terminal.read_until("\x1b[?25l", "█", "line of descent", "takeovers", "\x1b[38;2")
+        terminal.press(b"\x03")
+        terminal.read_until("\x1b[?25h", "Stopped and saved. Go on with: primordia resume")
+        assert process.wait(timeout=60) == 130
+    info = json.loads(here("info", run, "--json").stdout)
     assert info["births"] > 0

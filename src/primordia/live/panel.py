@@ -176,15 +176,15 @@ def keys(shown: str, width: int) -> Row:
     `shown` has the first characters of the keys that mean something now.
     """
     known = [(key, name) for key, name in KEYS if key[0] in shown]
-    for gap, bare in (("  ", ""), (" ", ""), (" ", "?"), (" ", "?s-wonq")):
+    everything = tuple(key for key, _ in KEYS)
+    for bare in ((), ("?",), ("?", "s"), ("?", "s", "n", "-+"), everything):
+        gap = "  " if not bare else " "
         row: Row = []
         for key, name in known:
-            row += [
-                Segment(key, STRONG),
-                Segment(gap if key[0] in bare else f" {name}{gap}", FAINT),
-            ]
-        if width_of(row) - len(gap) <= width:
-            return row
+            before = Segment(gap if row else "")
+            row += [before, Segment(key, STRONG), Segment("" if key in bare else f" {name}", FAINT)]
+        if width_of(row) <= width:
+            break
     return row
 
 

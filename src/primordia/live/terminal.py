@@ -61,7 +61,7 @@ class Keyboard:
                 self._before = None
 
     def pressed(self, seconds: float) -> str:
-        """Return the keys pressed since the last call; wait for one, so many seconds at most.
+        """Return the keys pressed since the last call; wait `seconds` for one at most.
 
         A signal does not end the wait.
         """
