@@ -40,6 +40,12 @@ trust_option = click.option(
 video_option = click.option(
     "--out", type=click.Path(path_type=Path), help="An .mp4 or .gif file [under RUN/videos]."
 )
+speed_option = click.option(
+    "--speed",
+    type=click.FloatRange(min=0, min_open=True, max=1e9),
+    metavar="TICKS",
+    help="Live at most this number of ticks a second.",
+)
 quiet_option = click.option("--quiet", is_flag=True, help="Print nothing while running.")
 
 LIMITS = {
