@@ -1,6 +1,6 @@
-"""Execute notebooks in this process, and write their outputs into them: `python notebooks/run.py [FILE...]`.
+"""Execute notebooks here, and write their outputs into them: `python notebooks/run.py [FILE...]`.
 
-Each is executed from top to bottom by a new IPython shell, in an empty folder. A test executes all of them and
+A new IPython shell executes each from top to bottom, in an empty folder. A test executes all of them, and
 compares the texts of the outputs with those in the files.
 """
 

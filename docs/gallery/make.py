@@ -1,7 +1,7 @@
 """Live and film the entries of gallery.toml: `python docs/gallery/make.py [NAME...]`, by default all.
 
-It writes gallery.json (what came out), a picture of each entry, and README.md. Commands run in the root of
-the clone, and their runs stay in `runs/gallery`.
+It writes gallery.json (what came out), a picture of each entry, and README.md. Commands run in the root
+of the clone, and their runs stay in `runs/gallery`.
 """
 
 import hashlib
@@ -114,21 +114,20 @@ def _gif(path: Path, pictures: list[np.ndarray]) -> None:
 
 def page() -> str:
     """Return the page, README.md."""
-    return "\n".join([*_head(), *(line for entry in entries() for line in _section(entry))])
+    return "\n".join([HEAD, *(line for entry in entries() for line in _section(entry))])
 
 
-def _head() -> list[str]:
-    return [
-        "<!-- docs/gallery/make.py writes this page from gallery.toml and gallery.json. -->",
-        "",
-        "# Gallery",
-        "",
-        "Each world and life here is lived again by the two commands below it, to the last bit: `primordia info RUN --json`",
-        "then gives the digest stated. The pictures are small copies of the films.",
-        "Commands are for the root of a clone. Games need `primordia[atari]`, robots `primordia[mujoco]`, MountainCar",
-        "`primordia[gymnasium]` and Asterix `primordia[gymnax]`.",
-        "",
-    ]
+HEAD = """\
+<!-- docs/gallery/make.py writes this page from gallery.toml and gallery.json. -->
+
+# Gallery
+
+The two commands below each world or life live it again, to the last bit, and film it.
+`primordia info RUN --json` then gives the digest, of which the page has the first 16 digits.
+The pictures are small copies of the films. Commands are for the root of a clone. Games need
+`primordia[atari]`, robots `primordia[mujoco]`, MountainCar `primordia[gymnasium]`, and Asterix
+`primordia[gymnax]`.
+"""
 
 
 def _section(entry: dict[str, Any]) -> Iterator[str]:
@@ -144,8 +143,9 @@ def _section(entry: dict[str, Any]) -> Iterator[str]:
     for words in commands(entry):
         yield f"    primordia {shlex.join(words)}"
     yield ""
-    yield f"{of['ticks']:,} ticks, {of['births']:,} births. Digest of the world: `{of['digest'][:16]}`."
-    yield f"Organism {of['organism']} lived {of['age']:,} ticks; SHA-256 of its genome: `{of['genome'][:16]}`."
+    yield f"{of['ticks']:,} ticks, {of['births']:,} births; digest of the world `{of['digest'][:16]}`."
+    genome = f"its genome has the SHA-256 `{of['genome'][:16]}`"
+    yield f"Organism {of['organism']} lived {of['age']:,} ticks; {genome}."
     yield ""
 
 
