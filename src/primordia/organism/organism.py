@@ -78,7 +78,7 @@ class Organism:
         return Cause(cause).label if self.lives.died[self.row] else None
 
     def descent(self) -> list[int]:
-        """Return the birth numbers of its ancestors, founder first, and of itself."""
+        """Return the birth numbers of the organism's ancestors, founder first, and of itself."""
         return [int(self.lives.id[row]) for row in descent(self.lives, self.id, self.world)]
 
     def genome(self) -> np.ndarray:
@@ -90,13 +90,13 @@ class Organism:
         return Policy(self.run.law, self.genome())
 
     def evaluate(self, **options: Any) -> Evaluation:
-        """Let it play games; see `evaluation.evaluate`."""
+        """Let the organism play games; see `evaluation.evaluate`."""
         return evaluate(self.run, [(self.id, self.world)], **options)[0]
 
     def replay(
         self, out: str | Path | None = None, ages: tuple[int | None, int | None] = (None, None)
     ) -> Path:
-        """Make a video of its life -> the path of the file; see `replay.replay`."""
+        """Make a video of the organism's life. Return the file; see `replay.replay`."""
         return replay(self.run, self.id, self.world, Path(out) if out is not None else None, ages)
 
     def revive(
@@ -105,6 +105,6 @@ class Organism:
         save: str | Path | None = None,
         film: str | Path | None = None,
     ) -> Revival:
-        """Live its life again and compare it with the record; see `revival.revive`."""
+        """Live the organism's life again and compare it with the record; see `revival.revive`."""
         save, film = (None if each is None else Path(each) for each in (save, film))
         return revive(self.run, self.id, self.world, since=since, save=save, film=film)

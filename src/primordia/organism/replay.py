@@ -36,7 +36,7 @@ def replay(
     ages: tuple[int | None, int | None] = (None, None),
     part: float | None = None,
 ) -> Path:
-    """Make a video of a life -> the path of the file.
+    """Make a video of a life. Return the path of the file.
 
     Args:
         run: the organism's run.
@@ -75,7 +75,7 @@ def film(life: RelivedLife, path: Path, parts: list[range]) -> None:
 
 
 def lacking(habitat: AnyHabitat) -> list[str]:
-    """Return the methods and properties that a habitat would have to define for videos of its lives."""
+    """Return the methods and properties that a habitat lacks for videos of its lives."""
     return [*habitat.lacks(Ability.PICTURE), *([] if habitat.rate else ["rate"])]
 
 
@@ -92,7 +92,7 @@ def parts_of(
     ages: tuple[int | None, int | None] = (None, None),
     seconds: float | None = None,
 ) -> list[range]:
-    """Return the ages to be shown, in ticks; of a long life `seconds` at each end, by default PART.
+    """Return the ages to show, in ticks; for a long life `seconds` at each end, by default PART.
 
     Raises:
         InputError: no age is left to show, or its habitat draws no pictures.
@@ -118,7 +118,7 @@ def _pictures(
 ) -> Iterator[Image.Image]:
     """Yield a picture of every `step`-th tick of the parts; the last one is repeated.
 
-    Between two parts comes a card with the time left out.
+    A card between two parts shows the time left out.
     """
     still, part, picture = max(1, round(STILL * rate)), 0, None
     for part_now, stretch, i in moments(life, parts, step):
@@ -132,7 +132,7 @@ def _pictures(
 
 
 def moments(life: RelivedLife, parts: list[range], step: int) -> Iterator[tuple[int, Stretch, int]]:
-    """Yield the number of the part, the stretch and the place in it of each tick that is shown."""
+    """Yield the number of the part, the stretch and the index in it of each tick that is shown."""
     for stretch in life.stretches(watched=True):
         ages = stretch.tick - life.record.born[0]
         for number, part in enumerate(parts):
