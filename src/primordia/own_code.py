@@ -1,9 +1,9 @@
-"""A user's own code: modules of habitats, brains and mutations that no installed package holds.
+"""A user's own code: modules of habitats, brains and mutations outside installed packages.
 
-The code is found on `sys.path`, in the current folder, or in a run, which holds a copy. It is imported
-from the bytes that were read when it was found: neither a file that changes later nor a cache of compiled
-code can take their place. Installed modules come before it, so a file `numpy.py` in the current folder is
-never imported.
+The code is found on `sys.path`, in the current folder, or in a run, which holds a copy. It is
+imported from the bytes that were read when it was found. A file that changes later, or a cache of
+compiled code, is not used. Installed modules have precedence, so a file `numpy.py` in the current
+folder is never imported.
 """
 
 import ast
@@ -46,11 +46,12 @@ class Source(NamedTuple):
 
 
 Sources = dict[str, Source]
-"""Files by their path below the folder that their imports begin in, such as `a/b.py`."""
+"""Files by their path below the root folder of their imports, such as `a/b.py`."""
 
 
 class _Loader(SourceLoader):
-    """Executes the bytes of a source; the base class finds no time of change, so it uses no cache."""
+    """Executes the bytes of a source. The base class uses no cache, since it finds no modification
+    time."""
 
     def __init__(self, source: Source) -> None:
         self.source = source
@@ -60,12 +61,12 @@ class _Loader(SourceLoader):
 
     def get_data(self, path: str | bytes) -> bytes:
         if path != str(self.source.file):
-            raise OSError(f"{path!r} is not read")
+            raise OSError(f"{path!r} cannot be read")
         return self.source.text
 
 
 class _Admitted(MetaPathFinder):
-    """Finds admitted modules, none of which has the name of an installed one."""
+    """Finds admitted modules; no admitted module has the name of an installed one."""
 
     def __init__(self) -> None:
         self.sources: dict[str, Source] = {}
@@ -75,7 +76,7 @@ class _Admitted(MetaPathFinder):
     def find_spec(
         self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        """Return where an admitted module, or a folder around one, lies."""
+        """Return the location of an admitted module, or of a folder around one."""
         around = [self.folders[name]] if name in self.folders else None
         if (source := self.sources.get(name)) is not None:
             return importlib.util.spec_from_file_location(
@@ -95,7 +96,7 @@ def load(module: str) -> ModuleType:
     """Import a module that is admitted, installed, on `sys.path`, or in the current folder.
 
     Raises:
-        Exception: anything that importing it raises.
+        Exception: any error of the import.
     """
     if module not in sys.modules and module not in _admitted.sources:
         admit(found(module))
@@ -103,16 +104,17 @@ def load(module: str) -> ModuleType:
 
 
 def admit(code: Sources) -> None:
-    """Let these files be imported.
+    """Allow these files to be imported.
 
     Raises:
-        LookupError: the process has imported another module of one of their names.
+        LookupError: the process has imported another module with one of their names.
     """
     for name, source in code.items():
         if (loaded := _loaded(_module(name))) is not None and loaded.text != source.text:
             raise LookupError(
-                f"{loaded.file} is imported already, and {source.file} is another module of that name;"
-                " use another process"
+                f"{loaded.file} is imported already, and {source.file} is another module with "
+                "that name; use another "
+                "process"
             )
     if code and _admitted not in sys.meta_path:
         sys.meta_path.insert(0, _admitted)
@@ -127,7 +129,7 @@ def admit(code: Sources) -> None:
 def admitted(modules: Iterable[str]) -> Sources:
     """Return the files of modules and of what they import, for another process to admit.
 
-    A module that a script or another module imported in the ordinary way is admitted here.
+    A module that was already imported in the ordinary way is admitted here.
     """
     waiting = list(modules)
     for module in waiting:
@@ -149,7 +151,7 @@ def admitted(modules: Iterable[str]) -> Sources:
 
 
 def is_loaded(code: Sources) -> bool:
-    """Return whether the process has imported all of these files already."""
+    """Return whether the process has already imported all of these files."""
     loaded = {name: _loaded(_module(name)) for name in code}
     return all(each is not None and each.text == code[name].text for name, each in loaded.items())
 
@@ -171,9 +173,9 @@ def found(module: str) -> Sources:
 
 
 def below(root: Path, module: str) -> Sources:
-    """Return the files of a module and of those beside it that it imports; {} if there are none.
+    """Return the files of a module and of its imports in the same root; {} if there are none.
 
-    Nothing is imported to find them.
+    Nothing is imported.
 
     Args:
         root: the folder in which its imports begin.
@@ -231,12 +233,12 @@ def _spec(name: str) -> ModuleSpec | None:
     except (
         ValueError,
         ImportError,
-    ):  # a module such as __main__ may say nothing of where it is from
+    ):  # a module such as __main__ may not state its file
         return None
 
 
 def _files(module: str, root: Path) -> Iterator[tuple[str, Path]]:
-    """Yield the files of a module below a folder: its own, and those of the packages around it."""
+    """Yield the files of a module below a folder, and of the packages around it."""
     parts = module.split(".")
     for end in range(1, len(parts) + 1):
         stem = "/".join(parts[:end])
@@ -254,7 +256,12 @@ def _imports(text: bytes, name: str) -> set[str]:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             tree = ast.parse(text)
-    except (SyntaxError, ValueError, RecursionError, MemoryError):  # importing it will say so
+    except (
+        SyntaxError,
+        ValueError,
+        RecursionError,
+        MemoryError,
+    ):  # the import will report the error
         return imported
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):

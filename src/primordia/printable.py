@@ -1,7 +1,7 @@
-"""Text as a terminal may show it: control characters are spelled out, so that no name can act on it."""
+"""Printable text: control characters are escaped, so that no name can act on a terminal."""
 
 KEPT = "\n\t"
-"""Control characters that pass: those that lay out text."""
+"""Control characters that are kept: those that lay out text."""
 
 
 def printable(text: str, kept: str = KEPT) -> str:

@@ -193,7 +193,7 @@ def test_births_and_ticks_count_from_the_fork(runs: list[Path], tmp_path: Path) 
     assert (firsts[0] <= whole.measured["births"].value).all()
     assert primordia.compare(source, fork, ticks=1).arms[1].saturated == 0
     printed = here("compare", source.path, fork.path, "--out", tmp_path).stdout
-    assert f"count from tick {AT}, that of the fork" in printed
+    assert f"count from tick {AT}, the tick of the fork" in printed
 
 
 def test_single_worlds_are_shown_without_intervals_and_words(tmp_path: Path) -> None:

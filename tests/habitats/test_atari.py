@@ -299,7 +299,10 @@ def after(run: primordia.Run, tick: int) -> list[dict[str, Any]]:
     [
         (["--habitat.game", "pongg"], "there is no game 'pongg'; did you mean pong"),
         (["--habitat.game", "xyzzy"], "known: adventure"),
-        (["--habitat.game", "combat"], "combat is refused: the emulator has it for several"),
+        (
+            ["--habitat.game", "combat"],
+            "combat is refused: the emulator has only a version for several",
+        ),
         (["--habitat.game", "qbert"], "qbert is refused: the emulator does not restore"),
         (["--habitat.senses", "[3, 128]"], "there is no address 128"),
         (["--habitat.fatal", "points <"], "'points <' cannot be read at column"),

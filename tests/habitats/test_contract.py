@@ -170,9 +170,9 @@ def test_organisms_live_in_habitats_of_every_form(name: str, options: dict[str, 
 @pytest.mark.parametrize(
     ("name", "parts"),
     [
-        ("Stranger", ["Stranger is no habitat", "JaxHabitat", "HostHabitat", "senses_size"]),
+        ("Stranger", ["Stranger is not a habitat", "JaxHabitat", "HostHabitat", "senses_size"]),
         ("Unfinished", ["Unfinished", "abstract", "sense", "step"]),
-        ("Senseless", ["Senseless is no habitat yet: it has no 'senses_size'"]),
+        ("Senseless", ["Senseless is not a complete habitat: it has no 'senses_size'"]),
         ("Proud", ["Proud names tallies", "HostHabitat's tally()"]),
         ("Nameless", ["Nameless names tallies", "tally()"]),
         ("Crowded", ["habitat: 16 cells are too many"]),

@@ -11,7 +11,7 @@ from primordia.habitats.gymnasium.check import measure
 from primordia.habitats.gymnasium.environment import make
 
 FAULTS = {
-    "Unseeded": ("restart", False, "another beginning: it ignores its seed"),
+    "Unseeded": ("restart", False, "another beginning: the environment ignores its seed"),
     "Hidden": ("restart", False, "the same seed and actions give another life"),
     "Worn": ("snapshot", True, "reset does not restore all"),
     "Grasping": ("snapshot", False, "step changes the action"),

@@ -314,7 +314,7 @@ def test_what_cannot_be_revived_is_refused(
     complains(here("revive", run, organism, "--from", 3), 2, "keeps no checkpoint of these ticks")
     opened = Archive(run)
     opened.lives.cause[opened.lives.row(dead(opened))] = Cause.RESTART
-    with pytest.raises(InputError, match="ended when its run was started again"):
+    with pytest.raises(InputError, match="ended when its run was resumed without its body"):
         revive(opened, int(opened.lives.id[opened.lives.cause == Cause.RESTART][0]))
     monkeypatch.setattr(Mirror, "exact", False, raising=False)
     older = Archive(chain[1])
@@ -343,7 +343,7 @@ def test_an_organism_that_was_just_born_agrees_and_has_nothing_to_save(
         "food",
         "memory",
     ]
-    with pytest.raises(InputError, match="has lived no tick"):
+    with pytest.raises(InputError, match="has not lived a tick yet"):
         unborn.revive(save=tmp_path / "a.npz")
 
 

@@ -119,7 +119,7 @@ def test_what_is_no_arm_is_refused(runs: Path, tmp_path: Path) -> None:
     start(tmp_path / "other", 9, 1, hazard=0.5)
     start(tmp_path / "again", 2, 2)
     one = runs / "arm" / "a"
-    with pytest.raises(InputError, match=r"not one arm: they differ in hazard"):
+    with pytest.raises(InputError, match=r"do not belong to one arm: they differ in hazard"):
         opened([one, tmp_path / "other"])
     with pytest.raises(InputError, match=r"both hold the world of seed 5"):
         opened([one, tmp_path / "again"])
@@ -127,7 +127,7 @@ def test_what_is_no_arm_is_refused(runs: Path, tmp_path: Path) -> None:
         opened([f"{tmp_path}/none-*"])
     with pytest.raises(InputError, match="given twice"):
         primordia.compare(runs / "arm", one)
-    single = f"is an arm of 2 runs, and this takes a single one, such as {one}"
+    single = f"is an arm of 2 runs, but a single run is needed here, such as {one}"
     complains(here("resume", runs / "arm"), 2, single)
     complains(here("verify", runs / "arm"), 2, "is an arm of 2 runs")
     complains(here("fork", runs / "arm", "--at", "9"), 2, "is an arm of 2 runs")

@@ -119,7 +119,7 @@ def test_a_bundle_executes_nothing_until_it_is_trusted(
         assert here(command[0], folder.parent / "sent.zip", *command[1:]).returncode == 0
     assert "pond" not in sys.modules
     stopped = here("revive", folder.parent / "sent.zip", 3)
-    complains(stopped, 2, "executes code that is not of an installed package")
+    complains(stopped, 2, "executes code from outside installed packages")
     assert "pond" not in sys.modules
     done = here("revive", folder.parent / "sent.zip", 3, "--trust")
     assert done.returncode == 0, done.stderr
@@ -269,7 +269,7 @@ def test_a_cache_of_compiled_code_is_not_executed(
     assert sorted(path.name for path in (run / "code").rglob("*")) == sorted(PARTS)
     shutil.copytree(cache.parent, run / "code" / "__pycache__")
     forget()
-    complains(here("verify", run), 1, "was not there when the run began")
+    complains(here("verify", run), 1, "was added after the run began")
 
 
 def test_edited_code_changes_no_life_on_record(folder: Path) -> None:
@@ -279,7 +279,7 @@ def test_edited_code_changes_no_life_on_record(folder: Path) -> None:
     forget()
     (folder / "pond.py").write_text(POND.replace("> 20", "> 5"))
     primordia.run(str(folder / "task.toml"), folder / "edited")
-    with pytest.raises(InputError, match="is another module of that name; use another process"):
+    with pytest.raises(InputError, match="is another module with that name; use another process"):
         primordia.load(run).policy()
     forget()
     life = RelivedLife.of(Archive(run), before.id, before.world)

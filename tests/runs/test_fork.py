@@ -325,5 +325,5 @@ def test_a_fork_cut_off_before_it_began_is_an_error_that_says_why(
 
 def test_a_fork_has_the_task_of_its_run(mill: Path, tmp_path: Path) -> None:
     words = ("fork", mill, "--at", 3, "--task", "mine", "--out", tmp_path / "fork")
-    complains(here(*words), 2, "no setting 'task'")
+    complains(here(*words), 2, "remove the setting 'task'")
     assert not (tmp_path / "fork").exists()

@@ -96,17 +96,17 @@ class Listed(Plain):
 @pytest.mark.parametrize(
     ("brain", "says"),
     [
-        (Tent(), "Tent gives other bits for organism .* when 1 instead of 32 think together; sum with"
+        (Tent(), "Tent gives different bits for organism .* when 1 instead of 32 think together; sum with"
          " brains.layers.matvec"),
-        (Fused(), "Fused gives other bits .* when compiled; .* rounding.rounded_product"),
+        (Fused(), "Fused gives different bits .* when compiled; .* rounding.rounded_product"),
         (Crowd(), "Crowd .* when organism 0 has another genome; sum nothing over the first axis"),
         (Counting(), "Counting .* when it is traced again, .* keep no counters"),
         (Halves(), r"gives its output as float16 \(32, 5\); the contract says float32 \(32, 5\)"),
         (Forgetful(), r"gives its memory as float32 \(32, 2\); the contract says float32 \(32, 3\)"),
         (Alone(), "does not return a pair; return memory and output"),
-        (Greedy(), "changes the genome that it is given"),
+        (Greedy(), "changes its genome argument"),
         (Misnamed(), "Misnamed: brain: 'my weights' cannot name a block .*; use letters"),
-        (Growing(), "has other blocks of weights at each call"),
+        (Growing(), "has different blocks of weights at each call"),
         (Half(), "has a memory of length 0.5; return a whole number"),
     ],
     ids=lambda each: type(each).__name__ if isinstance(each, Brain) else "",

@@ -111,12 +111,15 @@ class Scribble(Still):
 
 
 JAX_FAULTS: list[tuple[Any, str]] = [
-    (Coupled(), "body .* has another life at age 1 among 1 bodies than among 32; .* elementwise"),
+    (
+        Coupled(),
+        "body .* has a different life at age 1 among 1 bodies than among 32; .* elementwise",
+    ),
     (Moody(), "when it is traced again, so it draws from more than `words`"),
     (Sloppy(), r"gives outcome.food as float32 \(32, 1\); the contract says float32 \(32,\)"),
     (Wide(), r"gives senses as float32 \(32, 2\); the contract says float32 \(32, 3\)"),
     (Melting(), "gives bodies after a step as float16"),
-    (Changing(), "bodies of another form in step than in reset"),
+    (Changing(), "bodies of different forms in step and in reset"),
     (Shared(), "array float32 .3,.; its first axis must be bodies"),
     (Mute(), "reports .*; return an Outcome from step"),
     (Senseless(), "has no 'senses_size'; state it as an attribute"),
@@ -219,17 +222,20 @@ class Partial(Wagon):
 
 
 HOST_FAULTS: list[tuple[Any, str]] = [
-    (Restless(), "after a rest; leave bodies alone whose cells are not alive"),
-    (Amnesiac(), "at age 7 after `save` and `load`; save all that a body's future depends on"),
+    (Restless(), "after a rest; do not step bodies whose cells are not alive"),
+    (
+        Amnesiac(),
+        "at age 7 after `save` and `load`; save everything on which a body's future depends",
+    ),
     (Fixed(), "after `save` and `load`"),
-    (Heir(), "where another lived before; `reset` makes whole bodies"),
+    (Heir(), "if another lived in its cell before; let `reset` make complete bodies"),
     (Intruder(), "when others are born beside it"),
-    (Gambler(), "at age 0 when it begins again, .*; draw from `words` alone"),
+    (Gambler(), "at age 0 when it begins again, .*; draw only from `words`"),
     (Placed(), "at age 0 among 1 bodies than among 32"),
     (Doubled(), r"gives senses from step as float64 \(32, 1\); the contract says float32"),
     (Stored(), "defines save without load; define both, or neither"),
     (Scored(), "does not save its counts; save them as 'tally'"),
-    (Eaten(), r"counts \['food'\], which deaths have already"),
+    (Eaten(), r"counts \['food'\], which are columns of deaths already"),
     (Partial(), r"saves 'clock' as \(2,\); save NumPy arrays with cells as first axis"),
 ]
 

@@ -150,13 +150,19 @@ def test_the_mutations_without_these_faults(mutation: Mutation) -> None:
 @pytest.mark.parametrize(
     ("mutation", "says"),
     [
-        (Sociable(), "when 1 instead of 32 are born together; compute each birth by itself"),
+        (Sociable(), "when 1 instead of 32 are born together; compute each birth alone"),
         (Lazy(), "instead of 32 are born together"),
-        (Deaf(), "the same children whatever its rates; read them from `rates`"),
-        (Contracted(), "Contracted gives other bits .* when compiled; .* rounding.rounded_product"),
-        (Random(), "when it is traced again, .*; draw from `draws` only"),
-        (Liar(), "organism 0 though it is said to be a copy; give parents' weights as they are"),
-        (Cleaner(), "though it is said to be a copy"),
+        (Deaf(), "the same children for all rates; read rates from `rates`"),
+        (
+            Contracted(),
+            "Contracted gives different bits .* when compiled; .* rounding.rounded_product",
+        ),
+        (Random(), "when it is traced again, .*; draw only from `draws`"),
+        (
+            Liar(),
+            "organism 0 although it is marked as a copy; return the parent's weights unchanged",
+        ),
+        (Cleaner(), "although it is marked as a copy"),
         (Timed(), "notes 'tick', which cannot be a column of births; take a word other than"),
         (Real(), r"gives notes as float32 \(32, 1\); the contract says int32 \(32, 1\)"),
         (Ranked(), "gives founders different notes"),

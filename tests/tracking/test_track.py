@@ -123,7 +123,7 @@ def test_files_of_others_are_left_alone(run: Path, tmp_path: Path) -> None:
     before = event_rows(tmp_path / "seed-3")
     other = tmp_path / "other"
     loop.start(config({**SETTINGS, "hazard": 0.1}), other)
-    complains(here("track", other, "--tensorboard", tmp_path), 2, "is not of this world")
+    complains(here("track", other, "--tensorboard", tmp_path), 2, "belongs to another world")
     assert event_rows(tmp_path / "seed-3") == before
 
 

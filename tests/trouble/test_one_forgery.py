@@ -98,7 +98,7 @@ def test_a_manifest_names_all_tables(run: Path, part: str) -> None:
 def test_the_last_number_of_a_checkpoint_has_none_after_it(run: Path) -> None:
     last = newest(run).rename(run / "checkpoints" / "999999999")
     done = here("resume", run, "--ticks", TICKS, "--quiet")
-    complains(done, 1, f"{last.parent} has no number left for one more checkpoint")
+    complains(done, 1, f"{last.parent} has no free number for another checkpoint")
     assert newest(run) == last
 
 
@@ -129,14 +129,16 @@ def test_an_array_is_read_and_checked_when_it_is_needed(run: Path) -> None:
     assert large
     assert Archive(run).table("births") == births
     for command in ("info", "resume", "verify"):
-        complains(here(command, run), 1, f"{newest(run)} is no checkpoint of this run", "not fit")
+        complains(
+            here(command, run), 1, f"{newest(run)} is not a checkpoint of this run", "not fit"
+        )
 
 
 @pytest.mark.parametrize("name", ["world.organisms.wings", "tail.marriages", "other"])
 def test_an_array_that_no_run_has_is_refused(run: Path, name: str) -> None:
     rewrite(newest(run), lambda arrays: arrays.update({name: np.zeros((CELLS, 2), np.float32)}))
     for command in ("info", "resume", "verify"):
-        complains(here(command, run), 1, f"there is an array {name}, which no run has")
+        complains(here(command, run), 1, f"there is an unknown array {name}")
 
 
 class _Pickled:

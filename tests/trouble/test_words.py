@@ -48,7 +48,7 @@ WRONG = {
     (TASK, "--habitat.name", "no.such:Pond"): ["'no.such:Pond'", "No module named 'no'"],
     (TASK, "--habitat.name", "tests.toys:Pond"): ["'tests.toys:Pond'", "no attribute 'Pond'"],
     (TASK, "--habitat.name", "json:JSONDecoder"): [
-        "JSONDecoder is no habitat",
+        "JSONDecoder is not a habitat",
         "JaxHabitat",
         "senses_size",
     ],

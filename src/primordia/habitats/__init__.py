@@ -1,4 +1,4 @@
-"""Habitats: simulators in which organisms live, one folder each, and the contract that they keep."""
+"""Habitats: simulators in which organisms live, one folder each, and the contract of habitats."""
 
 from primordia.habitats.contract import (
     Ability,

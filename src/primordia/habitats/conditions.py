@@ -6,8 +6,8 @@ reads it. Only the operations listed here are executed, on arrays.
 
 Arithmetic is that of floats. Bytes and counts are taken as float64, in which whole numbers are exact up
 to 2^53 and products do not wrap. A quantity that is a float keeps its precision, so an expression of
-float32 quantities alone is computed in float32. Everything that can be wrong with an expression is found
-when it is parsed: names, kinds, lengths, numbers out of range, and nesting.
+float32 quantities alone is computed in float32. All faults of an expression are found when it is
+parsed: names, kinds, lengths, numbers out of range, and nesting.
 """
 
 import ast
@@ -24,9 +24,9 @@ from primordia.settings.values import LARGEST, shown
 Kind: TypeAlias = Literal["condition", "amount"] | int
 """A condition, an amount (one number), or the length of a list of numbers."""
 Names: TypeAlias = Mapping[str, Kind | Mapping[str, Kind]]
-"""The kind of each quantity that expressions can name; of one with parts, the kind of each part."""
+"""The kind of each quantity that expressions can name; for a quantity with parts, of each part."""
 Values: TypeAlias = Mapping[str, Any]
-"""Arrays by name: (N,) for a condition or an amount, (N, K) for a list; with parts, arrays by part."""
+"""Arrays by name: (N,) for a condition or an amount, (N, K) for a list, or arrays by part."""
 Compute: TypeAlias = Callable[[Values], Any]
 
 SUMS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul}
@@ -52,7 +52,7 @@ REDUCTIONS = {
 }
 """Functions of one list that return an amount."""
 LONGEST, DEEPEST = 10_000, 100
-"""Most characters of an expression, and most levels of its syntax tree; a sum of n terms has n + 1."""
+"""Largest length of an expression, and largest depth of its syntax tree; n terms have depth n + 1."""
 EXACT = 2**53
 """Largest whole number that can be written out; with a decimal point, it is the largest float32."""
 
@@ -64,7 +64,7 @@ class Expression:
     text: str
     kind: Kind
     names: frozenset[str]
-    """the names that it uses"""
+    """the names that the expression uses"""
     compute: Compute
 
     def __call__(self, values: Values) -> np.ndarray:
@@ -85,12 +85,13 @@ def parse(text: str, kind: Literal["condition", "amount", "numbers"], names: Nam
 
     Args:
         text: the expression.
-        kind: the required kind; "numbers" are an amount or a list. A condition is also an amount: 1 where
-            it is true, else 0.
+        kind: the required kind; "numbers" are an amount or a list. A condition is also an amount: 1
+            if it is true, else 0.
         names: the quantities that it may name.
 
     Raises:
-        ValueError: it is not of the grammar or of the required kind; the message says what, and where.
+        ValueError: the text is not in the grammar or not of the required kind; the message says
+            what, and where.
     """
     tree = _tree(text)
     actual, compute = _Reader(text, names).read(tree.body)
@@ -112,7 +113,7 @@ def _tree(text: str) -> ast.Expression:
         raise ValueError(f"an expression has at most {LONGEST:,} characters, not {len(text):,}")
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("error")  # such as that `1or` is hard to read
+            warnings.simplefilter("error")  # such as the warning that `1or` is hard to read
             tree = ast.parse(text.strip(), mode="eval")
     except SyntaxError as error:
         raise ValueError(f"{shown(text)} cannot be read at column {error.offset or 1}") from None
@@ -136,7 +137,7 @@ class _Reader:
         """Return the kind of a node, and a function that computes it."""
         method = getattr(self, f"_read_{type(node).__name__.lower()}", None)
         if method is None:
-            raise self._error(node, "this is not part of the grammar")
+            raise self._error(node, "this is not part of the grammar of expressions")
         return method(node)
 
     def _read_as(self, kind: Kind, node: ast.expr) -> Compute:
@@ -214,7 +215,7 @@ class _Reader:
         if isinstance(node.slice, ast.Slice):
             chosen = range(count)[self._limits(node.slice)]
             if not chosen or node.slice.step is not None:
-                raise self._error(node, f"this takes none of {name}, which has {count} numbers")
+                raise self._error(node, f"this slice is empty: {name} has {count} numbers")
             columns = slice(chosen.start, chosen.stop)
             return len(chosen), lambda values: _as_float(numbers(values)[:, columns])
         index = node.slice.value if isinstance(node.slice, ast.Constant) else None

@@ -47,7 +47,7 @@ class Discrete:
 
     @property
     def parts(self) -> "tuple[Discrete]":
-        """Return the action as the only part of itself."""
+        """Return the action as its only part."""
         return (self,)
 
 
@@ -57,11 +57,12 @@ class Continuous:
 
     size: int
     bounds: tuple[tuple[float, ...], tuple[float, ...]] | None = None
-    """least and largest numbers, `size` each, beyond which a change makes no difference; None: unknown"""
+    """least and largest effective numbers, `size` each: beyond them a change has no effect; None:
+    unknown"""
 
     @property
     def parts(self) -> "tuple[Continuous]":
-        """Return the action as the only part of itself."""
+        """Return the action as its only part."""
         return (self,)
 
 
@@ -89,10 +90,10 @@ Action: TypeAlias = Discrete | Continuous | Compound
 
 
 class Outcome(NamedTuple):
-    """What happened to the bodies in one tick; None if the habitat does not report it."""
+    """The results of one tick for the bodies; None for a result that the habitat does not report."""
 
     fatal: "Array"
-    """bool (N,): the body cannot live on"""
+    """bool (N,): the tick is fatal for the body"""
     food: "Array | None" = None
     """float32 (N,): food gathered, in the task's unit (metres, points, targets)"""
     effort: "Array | None" = None
@@ -109,9 +110,9 @@ class Ability(StrEnum):
     PICTURE = "picture"
     """draw bodies, for `primordia replay`"""
     TALLY = "tally"
-    """count what people want to know, such as a score, which the law never sees"""
+    """count numbers for people, such as a score; the law never sees them"""
     SAVE = "save"
-    """store bodies, so that they go on exactly"""
+    """save bodies, so that they go on exactly"""
 
 
 if not TYPE_CHECKING:
@@ -119,8 +120,8 @@ if not TYPE_CHECKING:
     class default:  # noqa: N801
         """A property that a subclass may replace by an attribute, a property or a setting.
 
-        The class itself does not show it. So pydantic neither takes it for the default of a setting with
-        the same name, nor warns that such a setting hides it.
+        The property is invisible on the class itself. So pydantic does not take it for the default
+        of a setting with the same name, and does not warn that the setting hides it.
         """
 
         def __init__(self, compute: Callable) -> None:
@@ -128,7 +129,11 @@ if not TYPE_CHECKING:
 
         def __get__(self, habitat: object, owner: type) -> Any:
             if habitat is None:
-                raise AttributeError("a default of habitats; ask a habitat, not its class")
+                raise AttributeError(
+                    "this default of habitats belongs to instances; read it from a habitat, not "
+                    "from its "
+                    "class"
+                )
             return self._compute(habitat)
 
 
@@ -136,7 +141,7 @@ class Habitat(ABC):
     """The common part of `JaxHabitat` and `HostHabitat`; subclass one of these two."""
 
     abilities: ClassVar[Mapping[Ability, tuple[str, ...]]]
-    """Methods that a class must define for each ability that it can have."""
+    """Methods that a class must define for each ability."""
 
     @default
     def senses_size(self) -> int:
@@ -186,7 +191,7 @@ class Habitat(ABC):
         return ability in self.abilities and not self.lacks(ability)
 
     def lacks(self, ability: Ability) -> list[str]:
-        """Return the methods that the class would have to define to have an ability."""
+        """Return the methods that the class lacks for an ability."""
         own, defaults = type(self), HostHabitat
         needed = self.abilities[ability]
         return [name for name in needed if getattr(own, name) is getattr(defaults, name)]
@@ -195,7 +200,8 @@ class Habitat(ABC):
         """Raise ValueError if these settings do not allow a run of `cells` cells."""
 
     def original(self) -> "AnyHabitat | None":
-        """Return the whole game as the standard benchmark scores it: food is the score, fatal its end."""
+        """Return the whole game as the standard benchmark scores it: food is the score, and its end
+        is fatal."""
         return None
 
     def picture(self, body: Bodies, action: np.ndarray) -> "Image":
@@ -284,8 +290,9 @@ AnyHabitat: TypeAlias = JaxHabitat | HostHabitat
 
 def _missing(habitat: Habitat, name: str) -> TypeError:
     return TypeError(
-        f"{type(habitat).__name__} is no habitat yet: it has no {name!r}; state it as an"
-        " attribute or a property of the class"
+        f"{type(habitat).__name__} is not a complete habitat: it has no {name!r}; state it as an "
+        "attribute or a property of the "
+        "class"
     )
 
 
@@ -293,13 +300,13 @@ def find(name: object) -> type[AnyHabitat]:
     """Return the habitat class called `name`.
 
     Raises:
-        LookupError: there is no such name, module or class, or the class is no habitat; the message
+        LookupError: there is no such name, module or class, or the class is not a habitat; the message
             says which.
     """
     kind = parts.find("habitat", name, KNOWN, object)
     if not issubclass(kind, JaxHabitat | HostHabitat):
         raise LookupError(
-            f"{kind.__name__} is no habitat: subclass JaxHabitat (with reset, sense and step) or"
+            f"{kind.__name__} is not a habitat: subclass JaxHabitat (with reset, sense and step) or"
             " HostHabitat (with open, reset and step) of primordia.habitats, and state senses_size,"
             " action and words"
         )

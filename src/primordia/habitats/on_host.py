@@ -42,7 +42,8 @@ class OnHost(HostHabitat):
         self.senses_size, self.action, self.words = inner.senses_size, inner.action, inner.words
         self.rate, self.versions = inner.rate, inner.versions
         self._embody, self._step = shared(_embody, inner), shared(_step, inner)
-        # In a call of their own: compiled together with a step, senses might be rounded otherwise.
+        # A separate call: senses that are compiled together with a step might be rounded
+        # differently.
         self._sense = shared(type(inner).sense, inner)
 
     def open(self, cells: int, watched: bool = False) -> None:
@@ -53,7 +54,7 @@ class OnHost(HostHabitat):
     def reset(self, cells: np.ndarray, words: np.ndarray) -> np.ndarray:
         """Make fresh bodies in cells (K,) from words uint32 (K, words); return their senses (K, S)."""
         count = len(cells)
-        # K is padded to a power of two, since JAX compiles every shape by itself.
+        # K is padded to a power of two, since JAX compiles each shape separately.
         padding = (1 << (count - 1).bit_length()) - count
         padded_cells = np.pad(cells, (0, padding), constant_values=self._cells)
         padded_words = np.pad(words, ((0, padding), (0, 0)))
@@ -79,7 +80,8 @@ class OnHost(HostHabitat):
         self._bodies = jax.tree.unflatten(jax.tree.structure(self._bodies), leaves)
 
     def lacks(self, ability: Ability) -> list[str]:
-        """Return the methods that are lacking for an ability; pictures are the JAX habitat's."""
+        """Return the methods that the habitat lacks for an ability; the JAX habitat draws the
+        pictures."""
         return self.inner.lacks(ability) if ability is Ability.PICTURE else super().lacks(ability)
 
     def picture(self, body: Bodies, action: np.ndarray) -> "Image":

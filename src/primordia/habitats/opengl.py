@@ -1,4 +1,4 @@
-"""Which OpenGL draws pictures of MuJoCo's robots without a screen."""
+"""The choice of OpenGL for pictures of MuJoCo's robots without a screen."""
 
 import os
 from ctypes.util import find_library

@@ -1,4 +1,4 @@
-"""What environments and their libraries print is kept out of the terminal."""
+"""Functions that keep the output of environments and their libraries out of the terminal."""
 
 import io
 import os
@@ -10,7 +10,7 @@ from contextlib import contextmanager, redirect_stderr, redirect_stdout
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """Keep what libraries in Python print and warn of out of the terminal."""
+    """Keep the output and warnings of Python libraries out of the terminal."""
     with warnings.catch_warnings(), redirect_stdout(io.StringIO()), redirect_stderr(io.StringIO()):
         warnings.simplefilter("ignore")
         yield
@@ -18,7 +18,7 @@ def quiet() -> Iterator[None]:
 
 @contextmanager
 def silent() -> Iterator[None]:
-    """Keep what libraries in C print out of the terminal."""
+    """Keep the output of C libraries out of the terminal."""
     sys.stdout.flush()
     sys.stderr.flush()
     kept = [os.dup(1), os.dup(2)]

@@ -1,4 +1,4 @@
-"""A life in a file, tick by tick: NumPy's .npz, Parquet or CSV."""
+"""Files of a life, tick by tick: NumPy's .npz, Parquet or CSV."""
 
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -20,7 +20,7 @@ Columns = dict[str, np.ndarray]
 
 
 def check_name(path: Path) -> None:
-    """Raise InputError unless the name ends as one of WRITERS, and is free or that of a regular file."""
+    """Raise InputError unless the suffix is in WRITERS, and the path is free or a regular file."""
     files.check_output(path)
     if path.suffix not in WRITERS:
         raise InputError(f"{path}: a life is saved as {', '.join(WRITERS)}")
@@ -30,9 +30,10 @@ def write(path: Path, stretches: Iterator[Stretch], counts: tuple[str, ...]) -> 
     """Write a life of one tick or more.
 
     Args:
-        path: an .npz, which is made in memory, or a .parquet or .csv, which grows stretch by stretch.
+        path: an .npz file, which is made in memory, or a .parquet or .csv file, which is written
+            stretch by stretch.
         stretches: the life, in order.
-        counts: names of what the habitat counts.
+        counts: names of the habitat's tallies.
 
     Raises:
         Trouble: the file cannot be written.
@@ -43,7 +44,7 @@ def write(path: Path, stretches: Iterator[Stretch], counts: tuple[str, ...]) -> 
 
 
 def _columns(stretch: Stretch, counts: tuple[str, ...]) -> Columns:
-    """Return the columns of a file; those of other names come after the ones that every life has."""
+    """Return the columns of a file; the columns that every life has come first."""
     own = {
         "tick": stretch.tick,
         "senses": stretch.senses,
@@ -89,4 +90,4 @@ WRITERS: dict[str, Callable[[Iterator[Columns], Path], None]] = {
     ".parquet": partial(_table, pq.ParquetWriter),
     ".csv": partial(_table, csv.CSVWriter),
 }
-"""What writes a life, by the suffix of the file."""
+"""The writers of a life, by the suffix of the file."""

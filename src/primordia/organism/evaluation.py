@@ -1,7 +1,7 @@
 """Evaluation: organisms play whole games with fresh keys, from other starts, or without senses.
 
-Organisms are selected for long life in their own world. Evaluation measures how they score in the game
-itself, and whether they react to it at all.
+Organisms are selected for long life in their own world. Evaluation measures their scores in the
+game itself, and whether they react to their senses.
 """
 
 from collections.abc import Mapping, Sequence
@@ -47,7 +47,7 @@ class Evaluation:
     world: int
     senses: Senses
     lived: Games
-    """games by the law of the task: a game is over when the organism dies"""
+    """games under the law of the task: a game is over when the organism dies"""
     whole: Games | None
     """whole games, in which food is the score; None if the habitat has no original task"""
 
@@ -94,12 +94,12 @@ def evaluate(
     Args:
         run: the organisms' run.
         organisms: birth number and world of each.
-        games: number of games of each organism; a single one where all would be the same.
+        games: number of games of each organism; one game if all would be the same.
         ticks: length at which a game is cut; whole games are also cut at the habitat's `episode`.
-        senses: `live`; `frozen`: they stay as they are when a game begins; `ignored`: each organism
-            repeats the actions of one game with its task's own settings, whatever happens.
+        senses: `live`; `frozen`: senses keep their values from the start of a game; `ignored`: each
+            organism repeats the actions of one game with its task's settings.
         habitat: changed settings of the habitat, such as `{"senses": [49, 50]}`.
-        changes: more of them, such as `sticky=0.25, noops=30`.
+        changes: further changed settings as keywords, such as `sticky=0.25, noops=30`.
 
     Raises:
         InputError: no such organism was born, the habitat has no such setting, or the brain does not fit
@@ -121,7 +121,7 @@ def judged(
     senses: Senses,
     habitat: Mapping[str, Any],
 ) -> list[Evaluation]:
-    """Let players of a run play games side by side, called by these numbers; see `evaluate`."""
+    """Let players of a run play games side by side; the numbers name them in results. See `evaluate`."""
     if games < 1 or ticks < 1:
         raise InputError("evaluate needs at least one game of at least one tick")
     players = own._replace(habitat=changed(run.config, habitat).build_habitat())
@@ -140,7 +140,7 @@ def judged(
 
 
 def all_senses(players: Players) -> Frozen:
-    """Return that all senses of players stay as they are at the start, and no memory does."""
+    """Return the mask that freezes all senses of players and no memory."""
     count = len(players.genomes)
     return Frozen(np.ones((count, players.law.senses), bool), np.zeros((count, 1), bool))
 
@@ -163,7 +163,9 @@ def changed(config: Config, changes: Mapping[str, Any]) -> Config:
     if (habitat.senses_size, habitat.action) != (before.senses_size, before.action):
         raise InputError(
             f"with changed {', '.join(changes)} the habitat has {habitat.senses_size} senses"
-            f" and {habitat.action.size} actions; the brain is made for {before.senses_size} senses and"
+            f" and {habitat.action.size} actions; the brain is made for {before.senses_size} "
+            "senses "
+            "and"
             f" {before.action.size} actions"
         )
     return after

@@ -1,4 +1,4 @@
-"""Export: organisms, rebuilt from the records, for other runs and other programs."""
+"""Export of rebuilt organisms for other runs and other programs."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -15,7 +15,7 @@ ONNX = ".onnx"
 def export(
     run: Records, out: Path, organisms: Sequence[int] = (), world: int = 0
 ) -> tuple[int, ...]:
-    """Write organisms to a file -> their birth numbers.
+    """Write organisms to a file. Return their birth numbers.
 
     The file is an ONNX model of one brain if its name ends with .onnx, see `onnx.write`; else it holds
     genomes in safetensors, see `genomes.write`.
@@ -27,7 +27,7 @@ def export(
         world: the organisms' world.
 
     Raises:
-        InputError: no such organism was born, or a model is to hold several.
+        InputError: no such organism was born, or an ONNX model was asked for several organisms.
         Trouble: the file cannot be written.
     """
     chosen = tuple(organisms) or (int(run.lives.id[run.lives.oldest(world)]),)

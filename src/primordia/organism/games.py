@@ -15,15 +15,15 @@ from primordia.organism.playing.seats import Frozen, Manner, Seats, Stretch
 from primordia.random.wide import Wide
 
 AT_ONCE = 128
-"""Games played side by side, if not told otherwise; the games of one player are never separated."""
+"""Default number of games played side by side; the games of one player are never separated."""
 AT_ONCE_IN_JAX = 1024
-"""The same in a habitat of arrays, where each game costs little more memory than a genome."""
+"""The same for a habitat in JAX, where a game needs little more memory than a genome."""
 MIX = np.uint64(0x9E3779B97F4A7C15)
-"""An odd number, which mixes the bits of courses."""
+"""An odd number that mixes the bits of courses."""
 
 
 class Players(NamedTuple):
-    """K organisms, and all else that their games are a function of."""
+    """K organisms, with all inputs that determine their games."""
 
     law: Law
     habitat: AnyHabitat
@@ -32,7 +32,7 @@ class Players(NamedTuple):
     keys: Wide
     """(K,), key of everything random in a player's games"""
     rates: Rates
-    """metabolism of each player, float32 (K,) each"""
+    """metabolism of each player, each float32 (K,)"""
 
     @property
     def deterministic(self) -> bool:
@@ -47,7 +47,7 @@ class Players(NamedTuple):
 
 
 class Games(NamedTuple):
-    """Results of E games of each of K players, (K, E) each; or of one player, (E,)."""
+    """Results of E games of each of K players, each (K, E); or of one player, each (E,)."""
 
     ticks: np.ndarray
     """int64: length until the game was over or cut"""
@@ -85,9 +85,10 @@ def play(
         players: the organisms.
         games: number of games of each player.
         ticks: length at which a game is cut.
-        frozen: what of each player stays as it is at the start of a game.
-        script: earlier games of the same players; their actions are repeated, whatever is perceived.
-        at_once: games played side by side.
+        frozen: the senses and memory of each player that keep their values from the start of a
+            game.
+        script: earlier games of the same players; their actions are repeated regardless of senses.
+        at_once: number of games played side by side.
     """
     size, parts = max((at_once or AT_ONCE) // games, 1), []
     for first in range(0, len(players.genomes), size):
@@ -113,7 +114,7 @@ def lifespans_in_games(
     at_once = AT_ONCE if players.habitat.kind == "host" else AT_ONCE_IN_JAX
     size, lived = max(at_once // games, 1), []
     for first in range(0, len(players.genomes), size):
-        # Part by part, since games keep all actions of their players.
+        # In parts, since games keep all actions of their players.
         some = slice(first, first + size)
         part = frozen and frozen.take(some)
         found = play(players.take(some), games, ticks, frozen=part, at_once=at_once)
@@ -133,7 +134,7 @@ def _play_at_once(
         playing = stretch.playing
         length += playing.sum(axis=0)
         if stretch.food is not None:
-            # Added tick by tick, since sums of floats depend on their order.
+            # Food is added tick by tick, since sums of floats depend on their order.
             food = np.cumsum([food, *np.where(playing, stretch.food, 0)], axis=0)[-1]
         factors = np.cumprod(np.full(len(playing), MIX)) * factor
         course += (np.where(playing, _marks(stretch), 0) * factors[:, None]).sum(axis=0)
@@ -150,7 +151,7 @@ def _play_at_once(
 def stretches(
     players: Players, games: int, manner: Manner, script: Games | None = None
 ) -> Iterator[Stretch]:
-    """Seat each of K players for each of its games, and play them in the manner given for each player."""
+    """Begin all games of K players, and play them in the manner given for each player."""
     law, habitat = players.law, players.habitat
     player = np.repeat(np.arange(len(players.genomes)), games)
     genomes, keys, rates = players.take(player)[2:]

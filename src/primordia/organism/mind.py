@@ -1,4 +1,4 @@
-"""A mind: all that an organism's actions depend on, beside the law and its senses."""
+"""A mind: the inputs of an organism's actions beside the law and its senses."""
 
 from typing import NamedTuple
 

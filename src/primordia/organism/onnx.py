@@ -20,14 +20,14 @@ def write(path: Path, law: Law, weights: dict[str, np.ndarray], about: dict[str,
     """Write a brain as an ONNX model of one tick, with `about` as its metadata.
 
     Its inputs are `senses`, float32 (S,), and `memory`, float32 (M,), zero at birth. Its outputs are
-    `action`, int32 () or float32 (K,), without the motor's noise, and `memory_after`, float32 (M,). A
-    brain without memory has `senses` and `action` alone.
+    `action`, int32 () or float32 (K,), without the motor's noise, and `memory_after`, float32 (M,).
+    A brain without memory has only `senses` and `action`.
 
     Args:
         path: the file.
         law: the law of the organism's run.
         weights: block of weights -> float32 (*shape).
-        about: names and values.
+        about: metadata, name -> value.
 
     Raises:
         InputError: jax2onnx is not installed, or cannot translate the brain.
@@ -50,7 +50,7 @@ def write(path: Path, law: Law, weights: dict[str, np.ndarray], about: dict[str,
     names = {"input_names": INPUTS[: len(shapes)], "output_names": OUTPUTS[: len(shapes)]}
     try:
         model = to_onnx(tick, shapes, model_name="primordia", opset=OPSET, **names)
-    except Exception as error:  # jax2onnx raises what its translators raise
+    except Exception as error:  # jax2onnx passes on any error of its translators
         kind = type(law.brain).__name__
         raise InputError(f"jax2onnx cannot translate the brain {kind}: {error}") from error
     set_model_props(model, about)

@@ -79,7 +79,7 @@ class Organism:
         return Cause(cause).label if self.lives.died[self.row] else None
 
     def descent(self) -> list[int]:
-        """Return the birth numbers of its ancestors, founder first, and of itself."""
+        """Return the birth numbers of the organism's ancestors, founder first, and of itself."""
         return [int(self.lives.id[row]) for row in descent(self.lives, self.id, self.world)]
 
     def genome(self) -> np.ndarray:
@@ -91,7 +91,7 @@ class Organism:
         return Policy(self.run.law, self.genome())
 
     def evaluate(self, **options: Any) -> Evaluation:
-        """Let it play games; see `evaluation.evaluate`."""
+        """Let the organism play games; see `evaluation.evaluate`."""
         return evaluate(self.run, [(self.id, self.world)], **options)[0]
 
     def replay(
@@ -100,7 +100,7 @@ class Organism:
         ages: tuple[int | None, int | None] = (None, None),
         beside: Sequence[int] = (),
     ) -> Path:
-        """Make a video of its life, or of several -> the path of the file; see `replay.replay`."""
+        """Make a video of its life, or of several. Return the file; see `replay.replay`."""
         path = Path(out) if out is not None else None
         return replay(self.run, self.id, self.world, path, ages, beside=beside)
 
@@ -110,6 +110,6 @@ class Organism:
         save: str | Path | None = None,
         film: str | Path | None = None,
     ) -> Revival:
-        """Live its life again and compare it with the record; see `revival.revive`."""
+        """Live the organism's life again and compare it with the record; see `revival.revive`."""
         save, film = (None if each is None else Path(each) for each in (save, film))
         return revive(self.run, self.id, self.world, since=since, save=save, film=film)

@@ -28,7 +28,7 @@ def players_of(run: Records, organisms: Sequence[tuple[int, int]]) -> Players:
 
 
 def founders_of(run: Records, worlds: np.ndarray, counts: np.ndarray) -> tuple[np.ndarray, Players]:
-    """Return founders that a world might have had, each with a key of its own.
+    """Return alternative founders of worlds, each with a different key.
 
     Args:
         run: the run, or an arm.
@@ -36,7 +36,7 @@ def founders_of(run: Records, worlds: np.ndarray, counts: np.ndarray) -> tuple[n
         counts: number of founders of each, int (V,).
 
     Returns:
-        the world of each, int (K,), and the players; they are numbered from 0 in each world.
+        the world of each founder, int (K,), and the players, numbered from 0 in each world.
     """
     world, number = np.repeat(worlds, counts), np.concatenate([np.arange(n) for n in counts])
     genomes = [founders(run, *each) for each in zip(worlds.tolist(), counts.tolist(), strict=True)]
@@ -46,7 +46,7 @@ def founders_of(run: Records, worlds: np.ndarray, counts: np.ndarray) -> tuple[n
 
 
 def evaluation_keys(run: Records, world: np.ndarray, number: np.ndarray) -> Wide:
-    """Return the keys under which organisms are evaluated, by world and birth number, (K,)."""
+    """Return the keys for evaluating organisms, by world and birth number, (K,)."""
     return stream(wide(run.world_seeds[world]), Purpose.EVALUATION, wide(number))
 
 

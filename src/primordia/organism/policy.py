@@ -1,4 +1,4 @@
-"""A brain without its world: `policy(senses) -> action`, for use in any other program."""
+"""A brain as a function `policy(senses) -> action`, for use in any other program."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -17,7 +17,7 @@ class Policy:
     """The brain of an organism as a function. A brain with memory remembers from call to call."""
 
     def __init__(self, law: Law, genome: np.ndarray) -> None:
-        """Take a genome, float32 (P,)."""
+        """Use a genome, float32 (P,)."""
         self._law = law
         self._genome = law.heredity.layout.split(jnp.asarray(genome, jnp.float32)[None])
         self._think = shared(type(law.brain).__call__, law.brain)
@@ -25,16 +25,16 @@ class Policy:
 
     @property
     def weights(self) -> dict[str, np.ndarray]:
-        """The weights by block, float32 (*shape) each, such as a state dictionary holds them."""
+        """The weights by block, each float32 (*shape), as in a state dictionary."""
         return {name: np.asarray(block)[0] for name, block in self._genome.items()}
 
     @property
     def memory(self) -> np.ndarray:
-        """What it remembers now, float32 (M,)."""
+        """The present memory, float32 (M,)."""
         return np.asarray(self._memory)[0]
 
     def to_onnx(self, path: str | Path, about: Mapping[str, str] | None = None) -> None:
-        """Write it as an ONNX model, with `about` as metadata; see `onnx.write`."""
+        """Write the brain as an ONNX model, with `about` as metadata; see `onnx.write`."""
         onnx.write(Path(path), self._law, self.weights, dict(about or {}))
 
     def reset(self) -> None:
@@ -45,7 +45,7 @@ class Policy:
         """Return the action for one tick.
 
         Args:
-            senses: senses as the habitat gives them, (S,).
+            senses: scaled senses as from the habitat, (S,).
 
         Returns:
             The chosen number if actions are discrete; else float32 (K,), without the motor's noise.

@@ -39,7 +39,7 @@ def replay(
     part: float | None = None,
     beside: Sequence[int] = (),
 ) -> Path:
-    """Make a video of a life, or of several side by side -> the path of the file.
+    """Make a video of a life, or of several side by side. Return the path of the file.
 
     Lives side by side begin together, in the order of their births; each is held at its last picture.
 
@@ -84,7 +84,7 @@ def film(path: Path, *shown: tuple[RelivedLife, list[range]]) -> None:
 
 
 def lacking(habitat: AnyHabitat) -> list[str]:
-    """Return the methods and properties that a habitat would have to define for videos of its lives."""
+    """Return the methods and properties that a habitat lacks for videos of its lives."""
     return [*habitat.lacks(Ability.PICTURE), *([] if habitat.rate else ["rate"])]
 
 
@@ -101,7 +101,7 @@ def parts_of(
     ages: tuple[int | None, int | None] = (None, None),
     seconds: float | None = None,
 ) -> list[range]:
-    """Return the ages to be shown, in ticks; of a long life `seconds` at each end, by default PART.
+    """Return the ages to show, in ticks; for a long life `seconds` at each end, by default PART.
 
     Raises:
         InputError: no age is left to show, or its habitat draws no pictures.
@@ -127,7 +127,7 @@ def _pictures(
 ) -> Iterator[Image.Image]:
     """Yield a picture of every `step`-th tick of the parts; the last one is repeated.
 
-    Between two parts comes a card with the time left out.
+    A card between two parts shows the time left out.
     """
     still, part, picture = max(1, round(STILL * rate)), 0, None
     for part_now, stretch, i in moments(life, parts, step):
@@ -157,7 +157,7 @@ def _side_by_side(films: list[Iterator[Image.Image]]) -> Iterator[Image.Image]:
 
 
 def moments(life: RelivedLife, parts: list[range], step: int) -> Iterator[tuple[int, Stretch, int]]:
-    """Yield the number of the part, the stretch and the place in it of each tick that is shown."""
+    """Yield the number of the part, the stretch and the index in it of each tick that is shown."""
     for stretch in life.stretches(watched=True):
         ages = stretch.tick - life.record.born[0]
         for number, part in enumerate(parts):

@@ -1,4 +1,4 @@
-"""A life revived: lived again, and compared with its record in every respect that the records hold."""
+"""Revival: a life is lived again and compared with its record."""
 
 from collections import deque
 from dataclasses import dataclass
@@ -19,12 +19,12 @@ from primordia.runs.records import Records
 
 @dataclass(frozen=True)
 class Respect:
-    """One thing in which a life and its record are compared."""
+    """One value of a life beside its recorded value."""
 
     name: str
     recorded: Value
     relived: Value
-    """None if the relived life has no such value, since it took another course"""
+    """None if the relived life has no such value, since its course was different"""
 
     @property
     def agrees(self) -> bool:
@@ -40,14 +40,14 @@ class Revival:
     """birth number"""
     world: int
     begin: str
-    """what it began with: `birth`, `fork` or `checkpoint`"""
+    """where the relived life began: `birth`, `fork` or `checkpoint`"""
     begins: int
-    """the tick at whose end it began"""
+    """the tick after which the relived life began"""
     ends: int
     """the last tick that was lived again"""
     respects: tuple[Respect, ...]
     notes: tuple[str, ...]
-    """what limits the comparison"""
+    """notes on limits of the comparison"""
     files: tuple[Path, ...]
     """the files that were written"""
 
@@ -83,15 +83,16 @@ def revive(
     """Live a life again, tick for tick, and compare it with its record.
 
     A living organism lives up to the run's newest checkpoint, which also holds its memory, and its body,
-    or its senses in a habitat on the host. A death by a neighbour's child repeats if the organism is
-    alive at its end, and a child was born in its cell in that tick. Other deaths repeat by themselves.
+    or its senses in a habitat on the host. Death by a neighbour's child counts as repeated if the
+    organism is alive at its last tick and the records have a child in its cell in that tick. Other
+    deaths happen again in the life itself.
 
     Args:
         run: the organism's run.
         organism: birth number.
         world: the organism's world.
-        since: begin with the newest state that the run keeps of this tick or an earlier one: one of the
-            newest two checkpoints, or what a fork began with. By default the life begins with the birth,
+        since: begin with the newest kept state of this tick or an earlier one: one of the two
+            newest checkpoints, or the state of the fork. By default the life begins with the birth,
             or with the fork if the organism is older.
         save: an .npz, .parquet or .csv file to write the life to; see `diary.write`.
         film: an .mp4 or .gif file to film the life to, if it agrees with its record.
@@ -110,7 +111,7 @@ def revive(
         life = RelivedLife.of(archive, organism, own, _stored(archive, organism, own, since))
         _refuse_restart(life)
         told = recorded(life)
-    except Trouble as error:  # so that status 1 has one meaning: the life is not as recorded
+    except Trouble as error:  # so that status 1 has one meaning: the life differs from the record
         raise InputError(f"organism {organism} cannot be revived: {error}") from None
     parts = replay.parts_of(life) if film is not None else []
     course = _lived(life, save)
@@ -128,19 +129,21 @@ def revive(
 
 
 def _lived(life: RelivedLife, save: Path | None) -> Course:
-    """Live a life, and write it to a file if one is named -> its course."""
+    """Live a life and return its course; write it to a file if one is named."""
     course = Course(life)
     if save is None:
         deque(course.stretches(), 0)
     elif life.begins == life.ends:
-        raise InputError(f"organism {life.record.id[0]} has lived no tick, so nothing can be saved")
+        raise InputError(
+            f"organism {life.record.id[0]} has not lived a tick yet, so nothing can be saved"
+        )
     else:
         diary.write(save, course.stretches(), life.run.schema.tallies)
     return course
 
 
 def _stored(run: Archive, organism: int, world: int, since: int | None) -> Arrays | None:
-    """Return the newest kept state of a life that is of tick `since` or an earlier one."""
+    """Return the newest kept state of a life at tick `since` or earlier."""
     if since is None:
         return None
     row, kept = run.lives.row(organism, world), []
@@ -156,7 +159,9 @@ def _stored(run: Archive, organism: int, world: int, since: int | None) -> Array
     if kept:
         raise InputError(f"--from {since}: {life}, and {run.path} keeps {' and '.join(kept)} of it")
     raise InputError(
-        f"--from {since}: {life}, and {run.path} keeps no checkpoint of these ticks (it keeps the newest"
+        f"--from {since}: {life}, and {run.path} keeps no checkpoint of these ticks (it keeps "
+        "the "
+        "newest"
         " two); without --from the life begins at birth"
     )
 
@@ -164,13 +169,14 @@ def _stored(run: Archive, organism: int, world: int, since: int | None) -> Array
 def _refuse_restart(life: RelivedLife) -> None:
     if life.cause is Cause.RESTART:
         raise InputError(
-            f"organism {life.record.id[0]} ended when its run was started again, which is no part of a"
-            " life, so it cannot be lived again"
+            f"organism {life.record.id[0]} ended when its run was resumed without its body, so "
+            "its life cannot be lived "
+            "again"
         )
 
 
 def _notes(run: Archive, course: Course) -> list[str]:
-    """Return what limits a comparison, in sentences."""
+    """Return notes on limits of a comparison, in sentences."""
     progress, (_, faults) = run.progress, run.newest
     notes = [f"{fault}; an older checkpoint was read" for fault in faults[:1]]
     if course.replaced:
@@ -186,7 +192,9 @@ def _notes(run: Archive, course: Course) -> list[str]:
     if times := progress.restarts:
         often = "once" if times == 1 else f"{times:,} times"
         notes.append(
-            f"the bodies of the living began again {often}, when the run went on; a life that was lived"
+            f"the bodies of the living began again {often}, when the run went on; a life that "
+            "was "
+            "lived"
             " then does not repeat"
         )
     return notes

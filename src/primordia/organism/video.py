@@ -1,4 +1,4 @@
-"""MP4 and GIF files made of pictures; the encoders come with PyAV's and Pillow's wheels."""
+"""MP4 and GIF files from pictures; the encoders are in PyAV's and Pillow's wheels."""
 
 from collections.abc import Iterator
 from fractions import Fraction
@@ -17,7 +17,7 @@ FASTEST = {".mp4": 60, ".gif": 25}
 
 
 def check_name(path: Path) -> None:
-    """Raise InputError unless the name ends in .mp4 or .gif, and is free or that of a regular file."""
+    """Raise InputError unless the suffix is .mp4 or .gif, and the path is free or a regular file."""
     files.check_output(path)
     if path.suffix not in FASTEST:
         raise InputError(f"{path}: a video is an .mp4 or a .gif")
@@ -35,7 +35,8 @@ def write(
         path: the file.
         pictures: one or more.
         rate: pictures in a second.
-        sample: a picture with the colours of all, of which a GIF can have 256; by default the first.
+        sample: a picture with the colours of all pictures (a GIF has at most 256); by default the
+            first picture.
 
     Raises:
         Trouble: the file cannot be written.

@@ -9,7 +9,7 @@ from typing import BinaryIO
 import numpy as np
 
 Field = tuple[str, tuple[int, ...]]
-"""dtype, and shape of one cell's part"""
+"""dtype and shape of an array for one cell"""
 
 STEP, RESET, SAVE, LOAD = b"s", b"r", b"g", b"l"
 """Commands to a worker."""
@@ -21,12 +21,12 @@ ALIGNMENT = 64
 
 
 def size(fields: dict[str, Field], cells: int) -> int:
-    """Return the bytes that arrays of these fields take."""
+    """Return the size of arrays of these fields, in bytes."""
     return sum(_bytes(field, cells) for field in fields.values())
 
 
 def arrays(memory: mmap.mmap, fields: dict[str, Field], cells: int) -> dict[str, np.ndarray]:
-    """Return the arrays in a piece of memory, (cells, *shape) each."""
+    """Return the arrays in a block of memory, each (cells, *shape)."""
     views, start = {}, 0
     for name, (dtype, shape) in fields.items():
         count = cells * int(np.prod(shape))

@@ -1,4 +1,4 @@
-"""What a pool of simulators promises a habitat, and what the simulators promise the pool."""
+"""The contracts between a habitat and its pool of simulators, and between the pool and a simulator."""
 
 from abc import ABC, abstractmethod
 from typing import Any, Protocol
@@ -7,13 +7,13 @@ import numpy as np
 
 
 class Pool(ABC):
-    """One simulator for each cell, and the arrays through which cells are given actions and seen.
+    """One simulator for each cell, and the arrays with the cells' actions and observations.
 
-    Whatever the kind of pool, the arrays hold the same numbers after the same calls.
+    All kinds of pools have the same numbers in their arrays after the same calls.
     """
 
     arrays: dict[str, np.ndarray]
-    """the fields by name, (N, ...) each"""
+    """the fields by name, each (N, ...)"""
 
     @abstractmethod
     def step(self, todo: np.ndarray) -> None:
@@ -46,7 +46,7 @@ class Simulator(Protocol):
     def __init__(self, arrays: dict[str, np.ndarray], **settings: Any) -> None: ...
 
     def make(self, cell: int) -> None:
-        """Make the simulator of one more cell."""
+        """Make a simulator for another cell."""
 
     def step(self, cells: list[int]) -> None:
         """Step each of these cells by one tick, with the actions in their rows."""

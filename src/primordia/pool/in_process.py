@@ -1,4 +1,4 @@
-"""Simulators in this process, for one core or a single life: no pipes, no waiting for the slower one."""
+"""Simulators in this process, for one core or a single life."""
 
 import traceback
 from collections.abc import Iterator
@@ -54,7 +54,7 @@ class InProcess(Pool):
                 self._simulator.load(cell, states[cell])
 
     def close(self) -> None:
-        """Forget the simulators; a pool may be closed twice."""
+        """Release the simulators; a pool may be closed twice."""
         with suppress(AttributeError):
             del self._simulator
 

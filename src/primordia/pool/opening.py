@@ -1,4 +1,4 @@
-"""Which pool a run gets."""
+"""The choice of a run's pool."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -22,13 +22,13 @@ def open_pool(
 
     Args:
         simulator: `module:Class` that keeps the contract of `contract.Simulator`.
-        settings: the simulator's settings, as JSON can hold them.
+        settings: the simulator's settings, in JSON's types.
         fields: dtype and shape of the arrays by name.
         cells: number of simulators.
         workers: number of worker processes, at most one for each cell; 0: the simulators are in this
-            process; None: one for each core, and none if there is one core or one simulator, since a
-            process takes a second to start.
-        modules: modules of the user's own that the simulators import.
+            process; None: one worker for each core, or none if there is one core or one simulator,
+            since a process takes a second to start.
+        modules: the user's own modules that the simulators import.
 
     Raises:
         Trouble: a simulator cannot be made, or a worker does not start.

@@ -2,8 +2,8 @@
 
     python -m primordia.pool.worker
 
-A command is one byte on standard input; the answer is one byte on standard output. When the run ends, in
-whatever way, standard input closes, and the worker ends. This file does not load JAX.
+A command is one byte on standard input; the answer is one byte on standard output. When the run
+ends in any way, standard input closes, and the worker ends. This file does not load JAX.
 """
 
 import json
@@ -34,7 +34,7 @@ def main() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the run handles Ctrl-C
     _yield_to_the_run()
     commands, answers = sys.stdin.buffer, os.fdopen(os.dup(1), "wb", buffering=0)
-    os.dup2(2, 1)  # libraries may print, but not among the answers
+    os.dup2(2, 1)  # keeps the output of libraries apart from the answers
     setup = json.loads(commands.readline())
     cells = range(setup["first"], setup["cells"], setup["every"])
     memory = mmap.mmap(setup["memory"], setup["size"])
@@ -51,7 +51,7 @@ def main() -> None:
 
 
 def _yield_to_the_run() -> None:
-    """Let the run keep its core when it wakes this worker, since it has other workers to wake.
+    """Let the run keep its core while it wakes workers, since it must wake the others too.
 
     Without this, the second worker began 0.4 ms after the first (128 games on two cores).
     """
@@ -86,11 +86,11 @@ def serve(
 
 
 def _next_command(poller: select.poll, commands: int) -> bytes:
-    """Return the next command, b"" at the end; wait actively at first, then asleep.
+    """Return the next command, b"" at the end. Wait actively at first, then sleep.
 
-    The run takes half a millisecond from one tick to the next. To put a core to sleep and wake it takes
-    longer, above all a virtual one: 32 games ran at 0.56 of the bare emulators' speed, and at 0.68 with
-    active waiting. The run gets the core whenever it needs it.
+    The run takes half a millisecond from one tick to the next. Putting a core to sleep and waking
+    it takes longer, above all on virtual machines: 32 games ran at 0.56 of the bare emulators'
+    speed, and at 0.68 with active waiting. The run gets the core whenever it needs it.
     """
     end = time.perf_counter() + BUSY_WAIT
     while not poller.poll(0) and time.perf_counter() < end:

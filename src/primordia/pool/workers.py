@@ -23,7 +23,7 @@ from primordia.pool.board import LOAD, READY, RESET, SAVE, STEP
 from primordia.pool.contract import Pool
 
 PATIENCE = 20.0
-"""Seconds without an answer after which a worker is given up; each simulator that it makes is one."""
+"""Longest wait for an answer of a worker, in seconds; each simulator that it makes is an answer."""
 
 
 class Workers(Pool):
@@ -104,7 +104,7 @@ class Workers(Pool):
             for cell in range(first, self._cells, self._count):
                 _send(worker, len(states[cell]).to_bytes(4, "little") + states[cell])
         for worker in self._workers:
-            _await_ready(worker, at_leisure=True)  # whole lives may have to be lived again
+            _await_ready(worker, at_leisure=True)  # the workers may have to live whole lives again
 
     def close(self) -> None:
         """Stop the workers."""
@@ -128,7 +128,7 @@ def _spawn(memory: int) -> subprocess.Popen:
         stdout=subprocess.PIPE,
         bufsize=0,
         pass_fds=[memory],
-        process_group=0,  # Ctrl-C in a terminal is for the run, which ends its workers
+        process_group=0,  # Ctrl-C in a terminal goes to the run, which ends its workers
         env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
     )
 
@@ -143,10 +143,12 @@ def _send(worker: subprocess.Popen, data: bytes) -> None:
 
 
 def _await_ready(worker: subprocess.Popen, times: int = 1, at_leisure: bool = False) -> None:
-    """Wait until a worker has answered `times` times that it is ready; see `_receive`."""
+    """Wait for `times` answers that a worker is ready; see `_receive`."""
     if _receive(worker, times * len(READY), at_leisure) != times * READY:
         raise Trouble(
-            f"worker process {worker.pid} gave an answer that is not part of the protocol; resume the"
+            f"worker process {worker.pid} gave an answer that is not part of the protocol; "
+            "resume "
+            "the"
             " run from its last checkpoint"
         )
 

@@ -9,7 +9,7 @@ WORD = 2**64
 
 
 def begin(high: int, low: int) -> int:
-    """Return the dice of a body born with these two words."""
+    """Return the state of the dice of a body born with these two words."""
     return high << 32 | low
 
 

@@ -13,7 +13,7 @@ _DRAWN = jax.jit(bits)
 
 
 def words(name: int, *shape: int) -> np.ndarray:
-    """Return random words, uint32 of a shape; those of another name are others."""
+    """Return random words, uint32 of a shape, that depend on a name."""
     count = math.prod(shape)
     return np.asarray(_DRAWN(wide(name), np.arange(count)).hi).reshape(shape)
 

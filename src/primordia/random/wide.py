@@ -44,9 +44,9 @@ class Wide(NamedTuple):
         return (self.hi > other.hi) | ((self.hi == other.hi) & (self.lo >= other.lo))
 
     def until(self, later: "Wide") -> Array:
-        """Return the ticks from this one to a later one, int32, at most 2^31 - 1.
+        """Return the ticks from this tick to a later one, int32, at most 2^31 - 1.
 
-        The result is 2^31 - 1 also where `later` is not later.
+        The result is also 2^31 - 1 if `later` is not later.
         """
         far = np.uint32(2**31 - 1)
         gap = later - self
@@ -119,7 +119,7 @@ def zero(shape: tuple[int, ...]) -> Wide:
 
 
 def never(shape: tuple[int, ...]) -> Wide:
-    """Return 2^64 - 1: a tick that does not come, or the number of no organism."""
+    """Return 2^64 - 1: a tick that never comes, or the missing number of an organism."""
     return Wide(*(jnp.full(shape, np.uint32(2**32 - 1)) for _ in range(2)))
 
 

@@ -1,1 +1,1 @@
-"""A run as one HTML page with figures to hover, zoom and scrub, from a file or live from a run."""
+"""Pages in HTML about runs, with interactive figures, as files or live from a running run."""

@@ -38,8 +38,9 @@ def arms(runs: Sequence[Records]) -> dict[str, Any]:
     return {
         "tables": [_outcomes(compared), *_effects(compared)],
         "notes": [
-            "Medians over worlds, with quartiles; a world that stopped unsaturated is known only to be at"
-            " least so late. Effects: Cliff's delta, and the ratio of medians.",
+            "Medians over worlds, with quartiles; a world that stopped unsaturated is treated as "
+            "censored. Effects: Cliff's delta, and the ratio of "
+            "medians.",
             *evidence_notes(compared),
         ],
         "panels": [_survival(compared, colours), *_over_time(runs, colours)],
@@ -117,7 +118,7 @@ def _worlds(lives: Lives) -> list[Lives]:
 
 
 def _median(values: np.ndarray, positive: bool) -> np.ndarray:
-    """Return the median of the worlds (W, X), where half of them have a value; NaN elsewhere."""
+    """Return the median of the worlds (W, X) if at least half of them have a value, else NaN."""
     enough = np.isfinite(values).mean(axis=0) >= 0.5
     middle = np.full(values.shape[1], np.nan)
     middle[enough] = np.nanmedian(values[:, enough], axis=0)

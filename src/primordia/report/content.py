@@ -1,4 +1,4 @@
-"""The content of a page about a run or an experiment, as values that JSON can hold."""
+"""The content of a page about a run or an experiment, as JSON values."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -26,7 +26,7 @@ def of_run(run: Records, filmed: bool = True) -> dict[str, Any]:
 
     Args:
         run: the run.
-        filmed: whether lives are lived again and filmed.
+        filmed: whether to live lives again and film them.
 
     Raises:
         InputError: nothing has lived in the run yet.

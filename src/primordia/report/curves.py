@@ -49,17 +49,17 @@ def panel(title: str, about: str, x: str, y: str, tables: Iterable[dict], **scal
 
     Args:
         title: the title.
-        about: what it shows, for people who do not see it.
+        about: a description for people who cannot see the panel.
         x: label of the x axis.
         y: label of the y axis.
         tables: curves that share x; see `table`.
-        scales: `log_x`, `log_y`: whether an axis is logarithmic.
+        scales: `log_x` and `log_y`, whether an axis is logarithmic.
     """
     return {"title": title, "about": about, "x": x, "y": y, "tables": list(tables), **scales}
 
 
 def table(x: np.ndarray, *curves: dict[str, Any]) -> dict[str, Any]:
-    """Return curves over the same x, which rises; of points of one x the last is kept."""
+    """Return curves over the same ascending x; among points with equal x the last is kept."""
     places, last = numbers(x, digits=9), np.append(np.diff(x) > 0, True)[: len(x)]
     keep = np.flatnonzero(last).tolist()
     kept = [{**each, "values": [each["values"][i] for i in keep]} for each in curves]
@@ -67,12 +67,12 @@ def table(x: np.ndarray, *curves: dict[str, Any]) -> dict[str, Any]:
 
 
 def curve(name: str, values: np.ndarray, colour: str, kind: Kind = "line") -> dict[str, Any]:
-    """Return a curve; NaN leaves a gap. An empty name is not in the key."""
+    """Return a curve; NaN leaves a gap. A curve with an empty name is not in the key."""
     return {"name": name, "values": numbers(values), "colour": colour, "kind": kind}
 
 
 def numbers(values: np.ndarray, digits: int = 5) -> list[float | None]:
-    """Return numbers for JSON; None for what is not finite."""
+    """Return numbers for JSON; None for numbers that are not finite."""
     rounded = (
         float(f"{value:.{digits}g}") if np.isfinite(value) else None for value in values.tolist()
     )
@@ -82,7 +82,7 @@ def numbers(values: np.ndarray, digits: int = 5) -> list[float | None]:
 def over_worlds(
     name: str, x: np.ndarray, values: np.ndarray, colour: str, each: bool = True
 ) -> dict[str, Any]:
-    """Return the table of a curve of each world, (W, X): themselves, median and quartiles."""
+    """Return the table of the worlds' curves, (W, X), with their median and quartiles."""
     if len(values) == 1:
         return table(x, curve(name, values[0], colour))
     enough = np.isfinite(values).mean(axis=0) >= 0.5
@@ -111,7 +111,7 @@ def _ages(worlds: list[Lives], time: str) -> Panel:
 
 def _deaths(lives: Lives) -> Panel:
     """Return lifespans by order of birth, with quartiles of those of the dead."""
-    number = lives.rank + 1 + lives.world / lives.worlds  # so that no two worlds share one
+    number = lives.rank + 1 + lives.world / lives.worlds  # so that no two worlds share a number
     lifespan, died, tables = lives.lifespan, lives.died, []
     for name, group, colour in (("dead", died, style.SKY), ("alive", ~died, style.ORANGE)):
         some = np.flatnonzero(group)[:: int(group.sum()) // DOTS + 1]
@@ -173,13 +173,14 @@ def _survival(lives: Lives) -> Panel:
             steps, alive = thinned(lived.steps.clip(1), lived.with_ends(lived.curve))
             tables.append(table(steps, curve(f"{name} of the births", alive, colour, "steps")))
     return panel(
-        "Alive at each age", "The share of organisms that reach each age, by quarter of the births.",
+        "Alive at each age", "The share of organisms that reach each age, by quarter of the "
+        "births.",
         "age (ticks)", "fraction alive", tables, log_x=True,
     )  # fmt: skip
 
 
 def thinned(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the points of a curve that can be told apart on a logarithmic axis, the last always."""
+    """Return the distinguishable points of a curve on a logarithmic axis, always with the last."""
     cut = np.floor(POINTS * np.log(x) / max(np.log(float(x[-1])), 1e-9))
     keep = np.flatnonzero(np.append(np.diff(cut), 1))
     return x[keep], y[keep]
@@ -192,7 +193,7 @@ def _foraging(run: Records) -> list[Panel]:
     rate = run.description.rate
     unit = "second" if rate else "tick"
     food, enough = (each * (rate or 1) for each in (found.food, found.break_even))
-    about = "The food that an organism gathers, and the food that keeps one alive."
+    about = "The food that an organism gathers, and the food that keeps an organism alive."
     tables = [
         over_worlds("food", found.middle, food, style.BLUE),
         over_worlds("break-even", found.middle, enough, style.ORANGE, each=False),
@@ -201,7 +202,7 @@ def _foraging(run: Records) -> list[Panel]:
 
 
 def _counts(run: Records) -> list[Panel]:
-    """Return what the habitat counts, such as a score: mean and best of the living."""
+    """Return the habitat's counts, such as a score: mean and best of the living."""
     metrics, found = run.metrics, []
     if not len(metrics):
         return []
@@ -218,7 +219,7 @@ def _counts(run: Records) -> list[Panel]:
             label = column.removeprefix(f"{name}_")
             tables.append(over_worlds(label, ticks, np.array(values), colour, each=False))
         title = f"Of the living: {name}"
-        about = f"What the habitat counts as {name}: mean and best of the living, over time."
+        about = f"The habitat's count {name}: mean and best of the living, over time."
         found.append(panel(title, about, "time (ticks)", name, tables))
     return found
 
@@ -232,5 +233,5 @@ def _at(ticks: np.ndarray, sampled: np.ndarray, values: np.ndarray) -> np.ndarra
 
 
 def _positive(values: np.ndarray) -> np.ndarray:
-    """Return the values with NaN where a logarithmic axis cannot show them."""
+    """Return the values, with NaN for those that a logarithmic axis cannot show."""
     return np.where(values > 0, values, np.nan)

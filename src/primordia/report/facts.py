@@ -1,4 +1,4 @@
-"""Facts at the end of a page: settings, versions, digests, and how to live the run again."""
+"""Facts at the end of a page: settings, versions, digests, and commands to repeat the run."""
 
 import shlex
 from pathlib import Path
@@ -38,7 +38,7 @@ def facts(run: Records, info: dict[str, Any]) -> dict[str, Any]:
 
 
 def _shown(run: Records) -> Config:
-    """Return the settings of a run with the limits now in force, and no more than names of files."""
+    """Return the settings of a run with the present limits, and file names without folders."""
     config = run.config
     fork = config.fork and config.fork.model_copy(update={"run": Path(config.fork.run).name})
     ancestors = tuple(Path(each).name for each in config.ancestors)
@@ -47,10 +47,10 @@ def _shown(run: Records) -> Config:
 
 
 def commands(config: Config, name: str, own_code: bool) -> list[str]:
-    """Return the commands that live a run again, and tell whether it came out the same.
+    """Return the commands that repeat a run and show whether the result is the same.
 
-    A run of a task of ours whose settings fit into flags needs nothing else, and other runs need the
-    `config.toml` in the page. A fork, and a run with genomes or code of its own, needs its directory.
+    A run of a built-in task whose settings fit into flags needs nothing else. Other runs need the
+    `config.toml` in the page. A fork, or a run with its own genomes or code, needs its directory.
 
     Args:
         config: the settings.
@@ -68,7 +68,7 @@ def commands(config: Config, name: str, own_code: bool) -> list[str]:
 
 
 def _flags(config: Config) -> list[str] | None:
-    """Return the flags by which a run differs from a task of ours; None if flags do not tell it."""
+    """Return the flags by which a run differs from a built-in task; None if flags cannot express it."""
     if config.task not in tasks():
         return None
     try:
@@ -83,7 +83,7 @@ def _flags(config: Config) -> list[str] | None:
 
 
 def _text(value: Any) -> str:
-    """Write a setting as flags and TOML do."""
+    """Return the text of a setting, as in flags and TOML."""
     if isinstance(value, bool):
         return str(value).lower()
     return NONE if value is None else str(value)

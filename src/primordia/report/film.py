@@ -22,12 +22,13 @@ def film(ground: Ground, config: Config) -> dict[str, Any] | None:
     """Return the film of a world for `film.js`; None if it is not on a torus, or too large.
 
     Returns:
-        `cells`: a byte for each picture and cell: 0 if it is empty, else ink + 1 in the lower 5 bits and
-        the shade of the age in the upper 3. `places`, `ticks`, `alive`: of each picture.
+        `cells`: a byte for each picture and cell: 0 for an empty cell, else ink + 1 in the lower 5
+        bits and the shade of the age in the upper 3. `places`, `ticks` and `alive` have a value for
+        each picture.
     """
     try:
         rows, columns = config.placement.shape(config.cells)
-    except ValueError:  # settings that no run begins with
+    except ValueError:  # no run begins with such settings
         return None
     count = min(PICTURES, BYTES // ground.share // config.cells, len(ground.lives))
     if rows == 1 or count < 2:

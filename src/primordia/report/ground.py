@@ -1,8 +1,8 @@
-"""The space-time picture of one world as data: who was in which cell, from which birth to which.
+"""The space-time picture of one world as data: the organism in each cell between each two births.
 
 Time runs in births, as in `figures.spacetime`: place p shows the cells after the tick of the p-th birth.
-A world of few births is given whole. Of a larger one the cells are looked at after some births only, and
-the organisms seen then are given.
+A world with few births is given completely. For a larger world, the cells are read only after some
+births, and only the organisms found there are given.
 """
 
 from dataclasses import dataclass
@@ -25,16 +25,16 @@ from primordia.report.packed import packed
 from primordia.runs.lives import Lives
 
 WHOLE = 100_000
-"""Largest number of births of a world that is given whole."""
+"""Largest number of births of a world that is given completely."""
 SEEN = 400_000
-"""Largest number of cells that are looked at in a larger world, all moments together."""
+"""Largest number of cells that are read in a larger world, over all moments."""
 MARKS = 12
 """Largest number of renewals of lines that are marked."""
 
 
 @dataclass(frozen=True)
 class Ground:
-    """The lives of one world, and how they are cut for a picture."""
+    """The lives of one world, and their segments in a picture."""
 
     lives: Lives
     cells: int
@@ -54,7 +54,7 @@ class Ground:
 
     @cached_property
     def moments(self) -> np.ndarray:
-        """The places of time at which the cells are looked at, int64 (T,), rising."""
+        """The places of time at which the cells are read, int64 (T,), ascending."""
         births = len(self.lives)
         if births <= WHOLE // self.share:
             return np.arange(births)
@@ -68,7 +68,7 @@ class Ground:
 
     @cached_property
     def rows(self) -> np.ndarray:
-        """The rows of the organisms that are given, int64 (R,), rising."""
+        """The rows of the organisms that are given, int64 (R,), ascending."""
         if self.whole:
             return np.arange(len(self.lives))
         seen = occupants(self.lives, self.shown, self.lives.born[self.moments])
@@ -78,10 +78,11 @@ class Ground:
 
     @cached_property
     def segments(self) -> dict[str, np.ndarray]:
-        """The lives in the shown cells, cut where new lines begin; sorted by cell and time, (S,) each.
+        """The lives in the shown cells, split at the begin of new lines; sorted by cell and time,
+        each (S,).
 
-        `row`: row of the organism; `start`, `stop`: the places of time between which it is there; `code`:
-        its line, see `line_codes`.
+        `row`: row of the organism; `start`, `stop`: the places of time at which it appears and
+        leaves; `code`: its line, see `line_codes`.
         """
         lives, births = self.lives, len(self.lives)
         rows = self.rows[np.isin(lives.cell[self.rows], self.shown)]
@@ -106,7 +107,7 @@ class Ground:
 
     @cached_property
     def _inked(self) -> tuple[np.ndarray, np.ndarray]:
-        """The lines in the picture by their codes, rising, and the ink of each."""
+        """The codes of the lines in the picture, ascending, and the ink of each."""
         segments = self.segments
         codes, place = np.unique(segments["code"], return_inverse=True)
         size = np.bincount(place, segments["stop"] - segments["start"], len(codes))
@@ -117,13 +118,13 @@ class Ground:
         known, inks = self._inked
         place = np.minimum(np.searchsorted(known, codes), len(known) - 1)
         found, other = inks[place], known[place] != codes
-        if other.any():  # lines that live in cells that are not shown
+        if other.any():  # lines that live only in cells that are not shown
             lines, which, size = np.unique(codes[other], return_inverse=True, return_counts=True)
             found[other] = line_inks(self.lives, self.clades, lines, size)[which]
         return found
 
     def data(self) -> dict[str, Any]:
-        """Return what `ground.js` draws."""
+        """Return the data for `ground.js`."""
         segments, lives = self.segments, self.lives
         column = np.searchsorted(self.shown, lives.cell[segments["row"]])
         return {

@@ -1,4 +1,4 @@
-"""Lives as short films in a page: that of the champion, and that of the first organism."""
+"""Short films of lives in a page: the lives of the champion and of the first organism."""
 
 import base64
 import shutil
@@ -27,8 +27,8 @@ def films(run: Records) -> dict[str, Any]:
     has trusted, is executed.
 
     Returns:
-        `films`: each with its `title`, what it shows (`about`), and `data`, an MP4 in base64; `missing`:
-        the reason why a life is not shown, or "".
+        `films`: each with its `title`, a description (`about`), and `data`, an MP4 in base64;
+        `missing`: the reason why a life is not shown, or "".
     """
     shown, reasons = [], []
     for title, row in chosen(run.lives).items():
@@ -42,7 +42,7 @@ def films(run: Records) -> dict[str, Any]:
 def chosen(lives: Lives) -> dict[str, int]:
     """Return the rows of the lives that are filmed, by title: the first organism and the champion."""
     rows = {"The first organism": 0}
-    with suppress(InputError):  # nothing was born since the fork
+    with suppress(InputError):  # no birth since the fork
         rows["The longest-lived of the later half"] = lives.oldest()
     return rows
 
@@ -52,7 +52,8 @@ def _film(run: Records, title: str, row: int) -> dict[str, str]:
     kind, ticks = run.habitat.kind, int(run.lives.lifespan[row])
     if ticks > LONGEST[kind]:
         raise InputError(
-            f"the life of organism {number} is {ticks:,} ticks long, too long for a page; `primordia"
+            f"the life of organism {number} is {ticks:,} ticks long, too long for a page; "
+            "`primordia"
             " replay` films it"
         )
     device.prepare()

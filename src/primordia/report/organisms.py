@@ -1,4 +1,4 @@
-"""Facts of the organisms in a picture: births, lives, parents, and lines of descent among them."""
+"""Facts of the organisms in a picture: births, lives, parents, and nearest ancestors."""
 
 from typing import Any
 
@@ -22,8 +22,8 @@ def organisms(lives: Lives, rows: np.ndarray) -> dict[str, Any]:
 
     Returns:
         Packed arrays (R,). `parent`: birth number of the parent plus 1, or 0. `ancestor`: place of the
-        nearest ancestor among these organisms plus 1, or 0. `cause`: of death plus 1; 0 if alive.
-        `born`: ticks from the first birth on record on, to which `first` is to be added.
+        nearest ancestor among these organisms plus 1, or 0. `cause`: cause of death plus 1; 0 if
+        alive. `born`: ticks from the first birth on record; add `first` to get the tick.
     """
     some = lives.take(rows)
     first = int(lives.born[0])
@@ -66,5 +66,5 @@ def nearest_among(parent_row: np.ndarray, rows: np.ndarray) -> np.ndarray:
         parent_row: row of each organism's parent, or -1; int64 (L,).
         rows: some organisms, int64 (R,), rising.
     """
-    known = np.append(nearest(parent_row, rows), -1)  # the last is that of no parent, -1
+    known = np.append(nearest(parent_row, rows), -1)  # the last entry is for a missing parent, -1
     return places_of(rows, known[parent_row[rows]])

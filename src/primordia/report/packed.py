@@ -8,16 +8,17 @@ import numpy as np
 
 
 def packed(values: np.ndarray, rising: bool = False) -> dict[str, Any]:
-    """Return an array of numbers that are no less than 0, as JSON can hold it.
+    """Return an array of non-negative numbers as JSON values.
 
     Args:
-        values: integers from 0 on, of any shape; those of 2^32 and more are kept as float64, which is
+        values: non-negative integers of any shape; values of 2^32 and more become float64, which is
             exact up to 2^53.
-        rising: whether they never fall; then their differences are kept, which are shorter.
+        rising: whether the values never decrease; then their differences are stored, which are
+            shorter.
 
     Returns:
-        `type`: uint8, uint16, uint32 or float64, little-endian; `rising`; `data`: the values in C order,
-        by gzip (RFC 1952), in base64 (RFC 4648).
+        `type`: uint8, uint16, uint32 or float64, little-endian; `rising`; `data`: the values in C
+        order, compressed by gzip (RFC 1952), in base64 (RFC 4648).
     """
     flat = np.asarray(values).ravel()
     kept = np.diff(flat, prepend=flat.dtype.type(0)) if rising else flat

@@ -1,7 +1,7 @@
 """The page: one HTML file with its style, scripts and content, which loads nothing.
 
-A Content-Security-Policy in the page lets the browser execute these scripts alone, by their hashes, and
-forbids all requests (W3C, Content Security Policy Level 3).
+A Content-Security-Policy in the page allows only these scripts, by their hashes, and forbids all
+requests (W3C, Content Security Policy Level 3).
 """
 
 import base64
@@ -20,17 +20,17 @@ SCRIPTS = (
     "ground_paint", "ground_axes", "ground_pointer", "ground", "organism", "film", "tree", "lives",
     "arms", "facts", "worlds", "main",
 )  # fmt: skip
-"""Our scripts in the order of their use, without `.js`; they become one."""
+"""Our scripts in the order of their use, without `.js`; they are joined into one."""
 LIVE = "live"
-"""The script of a page that is live."""
+"""The script of a live page."""
 
 
 def page(content: Mapping[str, Any], live: bool = False) -> str:
-    """Return the page that shows a content, see `content`; the same text for the same content.
+    """Return the page of a content; see `content`. Equal contents give the same text.
 
     Args:
-        content: what JSON can hold, with a `title`.
-        live: whether the page follows a run that goes on, from the server that it came from.
+        content: JSON values, with a `title`.
+        live: whether the page follows a running run through its server.
     """
     names = [*SCRIPTS, LIVE] if live else SCRIPTS
     style = "".join(map(_read, ("uplot/uPlot.min.css", "style.css")))
@@ -64,9 +64,9 @@ def policy(style: str, scripts: list[str], live: bool) -> str:
 
 
 def embedded(content: Any) -> str:
-    """Return JSON that can stand in a script element: it has no `<`, and ASCII characters only.
+    """Return JSON for a script element: only ASCII characters, without `<`.
 
-    Characters that cannot be shown are spelled out, as on a terminal.
+    Characters that cannot be shown are escaped, as on a terminal.
     """
     text = json.dumps(_shown(content), allow_nan=False, separators=(",", ":"))
     return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")

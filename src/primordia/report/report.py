@@ -15,14 +15,14 @@ NAME = "report.html"
 
 
 def report(shown: Records | Campaign, out: Path | None = None) -> Path:
-    """Write the page of a run, of several runs as one arm, or of an experiment -> its path.
+    """Write the page of a run, of several runs as one arm, or of an experiment. Return its path.
 
     Args:
-        shown: what the page shows, as of the newest checkpoints.
+        shown: the run, the arm or the experiment, read at its newest checkpoints.
         out: an .html file; by default `report.html` in the directory.
 
     Raises:
-        InputError: nothing has lived in the run yet, or the name is not that of an HTML file.
+        InputError: nothing has lived in the run yet, or the name does not end with .html.
         Trouble: a run is damaged, or the file cannot be written.
     """
     if out is None:
@@ -32,7 +32,7 @@ def report(shown: Records | Campaign, out: Path | None = None) -> Path:
         raise InputError(f"--out {path}: a report is an .html file")
     if out is None and not shown.path.is_dir():
         raise InputError(
-            f"{shown.path} is no directory; name the file of the report: --out FILE.html"
+            f"{shown.path} is not a directory; name the file of the report: --out FILE.html"
         )
     files.check_output(path)
     content = of_experiment(shown) if isinstance(shown, Campaign) else of_run(shown)

@@ -1,9 +1,9 @@
 """The page of a run, served on this machine alone while the run goes on.
 
 The server gives three things at fixed names and reads no path from a request: the page, its content as
-JSON, and events that say when the content has changed (server-sent events: WHATWG HTML, section 9.2). It
-answers requests that name this machine in the Host header only, so that no page of another site can read
-from it under a name of its own (DNS rebinding).
+JSON, and events that say when the content has changed (server-sent events: WHATWG HTML, section
+9.2). It answers only requests whose Host header names this machine. So no page of another site can
+read it through another name (DNS rebinding).
 """
 
 from collections.abc import Callable
@@ -15,11 +15,11 @@ from primordia.report.watched import Watched
 
 HERE = "127.0.0.1"
 PORT = 8321
-"""The port unless another is chosen."""
+"""The default port."""
 MOST_LISTENERS = 32
-"""Largest number of pages that wait for events at a time."""
+"""Largest number of pages that wait for events at the same time."""
 QUIET = 10.0
-"""Seconds after which a waiting page gets an empty line, so that one that is gone is noticed."""
+"""Seconds between empty lines to a waiting page, by which a closed page is noticed."""
 HEADERS = {
     "Cache-Control": "no-store",
     "Content-Security-Policy": "frame-ancestors 'none'",
@@ -30,7 +30,7 @@ HEADERS = {
 
 
 class Server(ThreadingHTTPServer):
-    """A server of one page, at this machine's own address."""
+    """A server of one page, reachable only from this machine."""
 
     daemon_threads = True
     block_on_close = False
@@ -39,11 +39,11 @@ class Server(ThreadingHTTPServer):
         """Begin to listen.
 
         Args:
-            watched: what is shown.
+            watched: the content of the page.
             port: the port, or 0 for any that is free.
 
         Raises:
-            InputError: the port is in use, or is not one that the user may take.
+            InputError: the port is in use, or the user may not use it.
         """
         self.watched, self.listeners = watched, 0
         try:
@@ -66,7 +66,7 @@ class Handler(BaseHTTPRequestHandler):
     timeout = 30
 
     def do_GET(self) -> None:
-        """Answer with what has this name."""
+        """Answer a request with the page, its content or its events."""
         answers: dict[str, Callable[[], None]] = {
             "/": self._page,
             "/data": self._data,
@@ -94,7 +94,7 @@ class Handler(BaseHTTPRequestHandler):
         self._answer("application/json", self.server.watched.data())
 
     def _events(self) -> None:
-        """Tell of each change of the content, until the page is gone."""
+        """Send an event at each change of the content, until the page is closed."""
         server = self.server
         if server.listeners >= MOST_LISTENERS:
             return self._refuse(HTTPStatus.SERVICE_UNAVAILABLE)
@@ -104,7 +104,7 @@ class Handler(BaseHTTPRequestHandler):
         server.listeners += 1
         try:
             self._tell()
-        except OSError:  # the page is gone
+        except OSError:  # the page is closed
             pass
         finally:
             server.listeners -= 1
@@ -135,4 +135,4 @@ class Handler(BaseHTTPRequestHandler):
         self.end_headers()
 
     def log_message(self, format: str, *args: object) -> None:
-        """Print nothing of a request."""
+        """Print nothing about a request."""

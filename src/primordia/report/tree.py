@@ -1,4 +1,4 @@
-"""The phylogeny of the living of one world: who descends from whom, and when lines parted.
+"""The phylogeny of the living of one world: ancestors, and the times at which lines parted.
 
 An ancestor is a node if it is alive, if two or more lines part at it, or if it has no parent on record.
 All other ancestors lie between two nodes. Each node is drawn as a bar on a level of its own or on that of
@@ -15,7 +15,7 @@ from primordia.figures.spacetime import line_codes
 from primordia.report.ground import Ground
 
 LEAVES = 300
-"""Largest number of the living that are shown; of more, some are, evenly spread over the cells."""
+"""Largest number of the living that are shown; otherwise a sample, evenly spaced over the cells."""
 
 
 @dataclass
@@ -25,12 +25,13 @@ class Node:
     row: int
     alive: bool
     left_by: int
-    """the organism whose birth parts its line from the parent's: an ancestor, or itself"""
+    """the organism whose birth separates this line from the parent's: an ancestor, or the node's
+    organism"""
     skipped: int = 0
-    """ancestors between it and its parent"""
+    """number of ancestors between the node and its parent"""
     parent: "Node | None" = None
     children: "list[Node]" = field(default_factory=list)
-    """by birth of `left_by`, the latest first"""
+    """child nodes by birth of `left_by`, the latest first"""
     level: int = 0
 
 

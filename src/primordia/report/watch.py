@@ -1,4 +1,4 @@
-"""A run watched in a browser on this machine."""
+"""The live page of a run in a browser on this machine."""
 
 import threading
 from collections.abc import Callable
@@ -14,9 +14,9 @@ def watch(
     """Serve the page of a run until the process ends, or Ctrl-C.
 
     Args:
-        open_: opens the run for reading; called again whenever it has a new checkpoint.
+        open_: a function that opens the run for reading; it is called again at each new checkpoint.
         port: the port at 127.0.0.1, or 0 for any that is free.
-        begun: called with the address of the page once it is served.
+        begun: a function that is called with the address of the page when it is served.
 
     Raises:
         InputError: there is no run, nothing has lived in it yet, or the port is in use.

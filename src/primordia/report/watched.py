@@ -1,4 +1,4 @@
-"""A run that goes on, as its page shows it: read again whenever it has a new checkpoint."""
+"""The content of a live page: the run is read again at each new checkpoint."""
 
 import json
 import threading
@@ -13,7 +13,7 @@ from primordia.runs.records import Records
 from primordia.tracking.reader import Version, newest_version
 
 EVERY = 0.5
-"""Seconds from one look at the run's directory to the next."""
+"""Seconds between two readings of the run's directory."""
 
 
 class Watched:
@@ -23,7 +23,7 @@ class Watched:
         """Read the runs.
 
         Args:
-            open_: opens the runs for reading.
+            open_: a function that opens the runs for reading.
 
         Raises:
             InputError: there is no run, or nothing has lived in it yet.
@@ -37,7 +37,7 @@ class Watched:
         self._count, self._going = 0, self._goes_on()
 
     def look(self) -> None:
-        """Look once whether there is more to show, and read it; keep the old content if that fails.
+        """Read the runs if they have new checkpoints; keep the old content if that fails.
 
         A run that is being written removes old checkpoints, perhaps while they are read.
         """
@@ -55,14 +55,15 @@ class Watched:
             self._changed.notify_all()
 
     def follow(self, ended: threading.Event) -> None:
-        """Look again and again until the event is set."""
+        """Read the runs at intervals until the event is set."""
         while not ended.wait(EVERY):
             self.look()
 
     def news(self, told: str | None, patience: float) -> str:
-        """Return the state as JSON once it differs from what was told, or after some seconds.
+        """Return the state as JSON when it differs from the last reported one, or after some
+        seconds.
 
-        `count` rises with the content; `going` is whether a process writes the run.
+        `count` increases with each new content; `going` is whether a process writes the run.
         """
         with self._changed:
             self._changed.wait_for(lambda: self._state() != told, patience)

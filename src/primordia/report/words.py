@@ -1,4 +1,4 @@
-"""What happened in a run, in words for people who do not know Primordia."""
+"""A summary of a run in words, for readers who do not know Primordia."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -41,7 +41,7 @@ def words(run: Records, info: dict[str, Any]) -> list[str]:
 
 
 def setting(config: Config) -> str:
-    """Say what lives in the worlds of a run, and by what rule."""
+    """Return a paragraph on the organisms of a run and their rules."""
     about = f"{config.about.rstrip('.')}. " if config.about else ""
     worlds = "The world has" if config.seeds == 1 else f"Each of {config.seeds:,} worlds has"
     taken = ", whose organism dies" if config.placement.rule == "replacing" else ""
@@ -49,7 +49,9 @@ def setting(config: Config) -> str:
     parts = [
         f"{about}{worlds} {config.cells:,} {WORLDS[config.placement.topology]}. In each cell lives"
         " at most one organism: a small neural network in a simulation of its own.",
-        "There is no goal and no reward. An organism lives until its world kills it, and while it lives"
+        "There is no goal and no reward. An organism lives until its world kills it, and while "
+        "it "
+        "lives"
         f" it copies itself into {room} cell{taken}.",
     ]
     if config.inheritance == "parent":
@@ -68,23 +70,29 @@ def _one_world(worlds: list[dict[str, Any]], run: Records, rate: float | None) -
     config = run.config
     parts = [
         f"In {world['ticks']:,} ticks{simulated(world['ticks'], rate)},"
-        f" {count(world['births'], 'organism')} {'was' if world['births'] == 1 else 'were'} born, and"
+        f" {count(world['births'], 'organism')} {'was' if world['births'] == 1 else 'were'} "
+        "born, "
+        "and"
         f" {_deaths(worlds)}.",
         *_extinct(world["extinctions"], config, "The world"),
     ]
     if fixed := world["fixation"]:
         parts.append(
-            f"Since tick {fixed['tick']:,} (birth {fixed['births']:,}) all that live descend from one"
-            " ancestor."
+            f"Since tick {fixed['tick']:,} (birth {fixed['births']:,}) all living organisms "
+            "descend from one "
+            "ancestor."
         )
     if saturated := world["saturation"]:
         parts.append(
-            f"At tick {saturated['tick']:,} the world was saturated: all {config.cells:,} cells were"
+            f"At tick {saturated['tick']:,} the world was saturated: all {config.cells:,} cells "
+            "were"
             f" full, and no organism had died for {config.saturation_ticks:,} ticks."
         )
     elif world["alive"]:
         parts.append(
-            f"{count(world['alive'], 'organism')} live{'s' if world['alive'] == 1 else ''} now in the"
+            f"{count(world['alive'], 'organism')} live{'s' if world['alive'] == 1 else ''} now "
+            "in "
+            "the"
             f" {config.cells:,} cells. The world is not saturated: organisms still die, and others"
             " follow."
         )
@@ -110,7 +118,7 @@ def _many_worlds(worlds: list[dict[str, Any]], run: Records, rate: float | None)
 
 
 def _deaths(worlds: Sequence[dict[str, Any]]) -> str:
-    """Write how many died, and of what."""
+    """Return the numbers of deaths by cause as text."""
     causes: dict[str, int] = {}
     for world in worlds:
         for cause, number in world["deaths_by_cause"].items():
@@ -134,7 +142,7 @@ def _extinct(times: int, config: Config, what: str) -> list[str]:
 
 
 def _lives(run: Records, rate: float | None) -> list[str]:
-    """Compare early and late lives, and name the longest."""
+    """Return sentences that compare early and late lives, and name the longest life."""
     lives = run.lives
     parts = []
     quarter = max(len(lives) // 4, 1)
@@ -142,7 +150,8 @@ def _lives(run: Records, rate: float | None) -> list[str]:
     early, late = (lives.take(rows) for rows in (order[:quarter], order[-quarter:]))
     if len(lives) >= 40:
         parts.append(
-            f"Half of the first quarter of the organisms lived {_median(early)}, and half of the last"
+            f"Half of the first quarter of the organisms lived {_median(early)}, and half of the "
+            "last"
             f" quarter {_median(late)} so far."
         )
     row = int(lives.lifespan.argmax())
@@ -162,10 +171,10 @@ def _median(lives: Lives) -> str:
 
 
 def simulated(ticks: int, rate: float | None) -> str:
-    """Write the time in the simulation, in brackets; nothing if the habitat has no clock."""
+    """Return the simulated time in brackets as text; "" if the habitat has no clock."""
     return f" ({duration(ticks / rate)} of simulated time)" if rate else ""
 
 
 def count(number: int, what: str) -> str:
-    """Write a number of things."""
+    """Return a number with its noun as text."""
     return f"{number:,} {what}{'' if number == 1 else 's'}"

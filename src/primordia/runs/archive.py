@@ -32,9 +32,10 @@ from primordia.settings.tables import PARTS
 class Archive(Records):
     """A run directory opened for reading; each part is read, checked or built once, at its first use.
 
-    Only the settings are read at once. The archive shows the run as of the checkpoint that was newest at
-    the first use; open a run again if it has gone on since. All files of that checkpoint, segments of the
-    tables included, are checked against their checksums before anything is read from it.
+    Only the settings are read at opening. The archive shows the run at the checkpoint that was
+    newest at the first use; open a run again to see newer ones. All files of that checkpoint,
+    segments of the tables included, are checked against their checksums before anything is read
+    from it.
     """
 
     def __init__(self, path: str | Path, edited: bool = False) -> None:
@@ -42,7 +43,7 @@ class Archive(Records):
 
         Args:
             path: the directory.
-            edited: execute the user's own code as it is now found, not the run's copy of it.
+            edited: execute the present version of the user's own code, not the run's copy.
 
         Raises:
             InputError: the directory holds no run, or one that this version cannot read.
@@ -50,21 +51,21 @@ class Archive(Records):
         self.path, self.edited = Path(path), edited
         self.config: Config = directory.read_config(self.path)
         self.fault_in = cache(files.fault_in)
-        """`files.fault_in`, with a memory: no file is read twice"""
-        self._fitting: set[Path] = set()  # checkpoints whose arrays fit the settings
+        """`files.fault_in`, which remembers results, so that no file is read twice"""
+        self._fitting: set[Path] = set()  # the checkpoints whose arrays fit the settings
 
     @property
     def paths(self) -> tuple[Path, ...]:
-        """The run's directory alone."""
+        """The run's directory, as the only one."""
         return (self.path,)
 
     def parts(self) -> "Iterator[Archive]":
-        """Yield the run itself."""
+        """Yield the run itself, its only part."""
         yield self
 
     @cached_property
     def description(self) -> Description:
-        """What the run's parts said of themselves when it began."""
+        """The description of the run's parts from its beginning."""
         about = description.read(self.path)
         rates = {*rates_of(self.config), *rates_of(Metabolism(), "metabolism.")}
         if not rates <= set(about.beginning):
@@ -72,12 +73,12 @@ class Archive(Records):
         return about
 
     def code(self, *parts: str) -> Sources:
-        """Return the files of the user's own code that these parts, or all, would execute here."""
+        """Return the files of the user's own code that these parts, or all parts, would execute here."""
         wanted = parts or tuple(PARTS)
         return code.of_run(self.path, self.config, self.description, wanted, self.edited)
 
     def admit(self, *parts: str) -> None:
-        """Let the code of these parts, or of all, be imported.
+        """Allow the code of these parts, or of all parts, to be imported.
 
         Raises:
             InputError: the user has not trusted it yet.
@@ -86,17 +87,18 @@ class Archive(Records):
 
     @cached_property
     def habitat(self) -> AnyHabitat:
-        """The habitat, for reading its properties; build another one to make bodies in.
+        """The habitat, only for reading its properties; build a new one to make bodies.
 
         Raises:
-            InputError: the user has not trusted its code yet; `law` and `heredity` raise it too.
+            InputError: the user has not trusted its code yet (`law` and `heredity` also raise this
+                error).
         """
         self.admit("habitat")
         return self.config.build_habitat()
 
     @cached_property
     def law(self) -> Law:
-        """The law that holds in the run's worlds."""
+        """The law of the run's worlds."""
         self.admit()
         law = self.config.build_law(self.habitat)
         if law.heredity.layout != self.layout:
@@ -105,7 +107,7 @@ class Archive(Records):
 
     @cached_property
     def heredity(self) -> Heredity:
-        """The part of the law that makes genomes, which needs neither habitat nor brain."""
+        """The part of the law that makes genomes. It needs neither habitat nor brain."""
         self.admit("mutation")
         heredity, about = self.config.build_heredity(self.layout), self.description
         rates = {f"mutation.{name}" for name in heredity.mutation.rates(self.layout)}
@@ -130,12 +132,12 @@ class Archive(Records):
 
     @property
     def changed_code(self) -> list[str]:
-        """A line for each file of the user's own code that is not as it was when the run began."""
+        """A line for each file of the user's own code that has changed since the run began."""
         return code.changes(self.config, self.description.code)
 
     @cached_property
     def newest(self) -> tuple[Checkpoint | None, list[str]]:
-        """The newest whole checkpoint or None, and what is wrong with each newer one."""
+        """The newest whole checkpoint or None, and the fault of each newer checkpoint."""
         return checkpoint.newest(self.path, self.fault_in)
 
     @property
@@ -175,16 +177,16 @@ class Archive(Records):
         """The arrays of the newest whole checkpoint.
 
         Raises:
-            Trouble: they do not fit the settings.
+            Trouble: the arrays do not fit the settings.
         """
         return self.arrays_of(self.last)
 
     @cached_property
     def origin(self) -> Arrays | None:
-        """The arrays that a fork began with; None if the run is no fork.
+        """The arrays of the state that a fork began with; None if the run is not a fork.
 
         Raises:
-            Trouble: they are damaged.
+            Trouble: the arrays are damaged.
         """
         return None if self._first is None else self.arrays_of(self._first)
 
@@ -194,9 +196,10 @@ class Archive(Records):
         return checkpoint.origin(self.path, self.fault_in)
 
     def release(self) -> None:
-        """Forget the arrays and the lives, which are read again at their next use.
+        """Release the arrays and the lives, which are read again at their next use.
 
-        The newest checkpoint is remembered and not checked again. Which files were checked is not.
+        The newest checkpoint is remembered and not checked again. The results of checked files are
+        forgotten.
         """
         self.fault_in.cache_clear()
         for name in ("state", "origin", "lives", "count", "ends", "metrics"):
@@ -206,7 +209,7 @@ class Archive(Records):
         """Open the arrays of a checkpoint of this run; each is checked when it is first read.
 
         Raises:
-            Trouble: they do not fit the settings.
+            Trouble: the arrays do not fit the settings.
         """
         expected = Expected(self.config, self.description)
         arrays = stored.arrays(expected.fault_of)
@@ -214,7 +217,7 @@ class Archive(Records):
             if fault := expected.fault(arrays):
                 raise arrays.unfit(fault)
             if any(len(each) != self.config.seeds for each in stored.digests.values()):
-                raise arrays.unfit("it has other worlds")
+                raise arrays.unfit("it has different worlds")
             self._fitting.add(stored.path)
         return arrays
 

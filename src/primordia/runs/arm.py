@@ -1,7 +1,7 @@
-"""Several runs read as one: an arm, whose worlds were lived in jobs, on any machine and in any order.
+"""Arms: several runs read as one. Their worlds ran as jobs, on any machine and in any order.
 
-The worlds of the first run come first. They keep their seeds, so a world has the same record and the same
-digest whether it was lived alone or beside others.
+The worlds of the first run come first. Worlds keep their seeds. So a world has the same record and
+digest in a separate run and beside other worlds.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -28,16 +28,16 @@ from primordia.runs.records import Records
 from primordia.settings.tables import flat
 
 OWN = ("about", "seed", "seeds", "stop", "fork")
-"""The settings that each run of an arm has for itself; but forks begin at the same tick."""
+"""The settings in which the runs of an arm may differ; but forks begin at the same tick."""
 MOST = 2**16
-"""Largest number of worlds that are read as one."""
+"""Largest number of worlds of an arm."""
 
 
 class Arm(Records):
-    """The worlds of several runs, which have the same settings and other seeds, and perhaps limits."""
+    """The worlds of several runs with the same settings, but different seeds and perhaps limits."""
 
     def __init__(self, path: Path, runs: Sequence[Archive]) -> None:
-        """Read runs as one.
+        """Open runs as one arm.
 
         Args:
             path: the arm's folder, or any name.
@@ -50,7 +50,7 @@ class Arm(Records):
         _refuse_others(self.runs)
         counts = [run.config.seeds for run in runs]
         self.firsts = np.concatenate([[0], np.cumsum(counts)[:-1]])
-        """the number that the first world of each run has among all, int64 (R,)"""
+        """number of each run's first world in the arm, int64 (R,)"""
         self.config: Config = runs[0].config.model_copy(update={"seeds": sum(counts)})
         _refuse_twice(self.runs, self.world_seeds)
 
@@ -60,7 +60,7 @@ class Arm(Records):
         return tuple(run.path for run in self.runs)
 
     def parts(self) -> Iterator[Archive]:
-        """Yield each run; what was read of it is forgotten afterwards."""
+        """Yield each run, and release its arrays and lives afterwards."""
         for number, run in enumerate(self.runs):
             yield run
             self.state.keep(number)
@@ -68,12 +68,12 @@ class Arm(Records):
 
     @property
     def description(self) -> Description:
-        """What the parts said of themselves, the same in all runs."""
+        """The description of the parts, the same in all runs."""
         return self.runs[0].description
 
     @cached_property
     def versions(self) -> dict[str, Any]:
-        """The versions of all runs; where they differ, each once, separated by commas."""
+        """The versions of all runs; different ones are separated by commas."""
         names = dict.fromkeys(name for run in self.runs for name in run.versions)
         return {name: self._one_or_all(name) for name in names}
 
@@ -88,7 +88,7 @@ class Arm(Records):
 
     @cached_property
     def progress(self) -> Progress:
-        """The seconds of all runs together, and the limits that all have in common."""
+        """The total seconds of all runs, and the limits that all runs share."""
         each = [run.progress for run in self.runs]
         wall_s, exact = sum(one.wall_s for one in each), all(one.exact for one in each)
         common = set.intersection(*(set(one.limits) for one in each))
@@ -112,7 +112,7 @@ class Arm(Records):
 
     @cached_property
     def origin(self) -> Mapping[str, np.ndarray] | None:
-        """The arrays that the forks began with, joined; None if these are no forks."""
+        """The arrays that the forks began with, joined; None if the runs are not forks."""
         return None if self.config.fork is None else _Joined(self.runs, self.firsts, "origin")
 
     @cached_property
@@ -127,7 +127,7 @@ class Arm(Records):
                 yield _shifted(part, first)
 
     def admit(self, *parts: str) -> None:
-        """Let the user's own code be imported, which is the same in all runs."""
+        """Allow the user's own code, which is the same in all runs, to be imported."""
         self.runs[0].admit(*parts)
 
     @property
@@ -137,7 +137,7 @@ class Arm(Records):
 
     @property
     def law(self) -> Law:
-        """The law that holds in the worlds."""
+        """The law of the worlds."""
         return self.runs[0].law
 
     @property
@@ -147,7 +147,7 @@ class Arm(Records):
 
 
 def run_of(records: Records, world: int) -> tuple[Archive, int]:
-    """Return the run that holds a world of some records, and the number that the world has in it."""
+    """Return the run that holds a world, and the number of the world in that run."""
     if isinstance(records, Archive):
         return records, world
     assert isinstance(records, Arm)
@@ -158,7 +158,8 @@ def run_of(records: Records, world: int) -> tuple[Archive, int]:
 class _Joined(Mapping[str, np.ndarray]):
     """The arrays of several states by name, joined along their first axis.
 
-    Those of worlds, which are small, are copied when a run is first open. Others are read when asked for.
+    Arrays of worlds are small and are copied when a run is first opened. Other arrays are read at
+    each use.
     """
 
     def __init__(
@@ -171,7 +172,7 @@ class _Joined(Mapping[str, np.ndarray]):
         self._kept, self._count = np.zeros(len(runs), bool), sum(run.config.seeds for run in runs)
 
     def keep(self, number: int) -> None:
-        """Copy the arrays of worlds of a run, given by its place among all."""
+        """Copy the arrays of worlds of a run, given by its index in the arm."""
         if self._kept[number]:
             return
         stored, first = self._of(self._runs[number]), self._firsts[number]
@@ -213,7 +214,7 @@ class _Joined(Mapping[str, np.ndarray]):
 
 
 def _shifted(part: pa.Table, first: int) -> pa.Table:
-    """Return rows whose worlds are numbered from `first` on."""
+    """Return rows with worlds numbered from `first`."""
     place = part.schema.get_field_index("world")
     if place < 0 or first == 0:
         return part
@@ -235,10 +236,11 @@ def _refuse_others(runs: Sequence[Archive]) -> None:
             names = own | reference
             if differing := [name for name in names if own.get(name) != reference.get(name)]:
                 raise InputError(
-                    f"{run.path} and {first.path} are not one arm: they differ in {differing[0]}"
+                    f"{run.path} and {first.path} do not belong to one arm: they differ in "
+                    f"{differing[0]}"
                 )
         own = {name: getattr(run.config, name) for name in OWN}
-        run.config = first.config.model_copy(update=own)  # held once, and the description too
+        run.config = first.config.model_copy(update=own)  # stored once, and the description too
         run.description = first.description
 
 

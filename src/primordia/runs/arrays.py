@@ -13,23 +13,23 @@ from numpy.lib import format as npy
 from primordia.errors import Trouble
 
 NEVER = 2**64 - 1
-"""The tick or count of an event that has not happened."""
+"""The value for the tick or count of an event that has not happened."""
 
 WORLDS = "world.worlds."
-"""Beginning of the names of arrays that have a row for each world, not for each cell."""
+"""Prefix of the names of arrays with a row for each world, not for each cell."""
 NPY = ".npy"
 SMALL = 2**20
 """Largest size, in bytes, of a file that is read at once."""
 FaultOf = Callable[[str, np.ndarray], str | None]
-"""Name and array -> what is wrong with it, or None."""
+"""A function of name and array that returns a fault, or None."""
 
 
 class Arrays(Mapping[str, np.ndarray]):
     """State and open tails of a checkpoint by name, each read and checked at its first use.
 
-    The arrays can be read even after the run has gone on and removed the file: a small one is read at
-    once, since an arm may be thousands of runs and a process opens about a thousand files; another stays
-    open. The arrays cannot be written to.
+    The arrays can be read even after the run has gone on and removed the file. A small file is read
+    at opening, since an arm may have thousands of runs, and a process can open about a thousand
+    files. A large file stays open. The arrays are read-only.
     """
 
     def __init__(self, file: Path, fault_of: FaultOf) -> None:
@@ -38,10 +38,12 @@ class Arrays(Mapping[str, np.ndarray]):
         try:
             small = file.stat().st_size <= SMALL
             self._archive = zipfile.ZipFile(io.BytesIO(file.read_bytes()) if small else file)
-        except Exception:  # zipfile raises errors of many kinds for what is no archive
+        except Exception:  # zipfile raises errors of many kinds for other files
             raise self._damaged() from None
         names = (name.removesuffix(NPY) for name in self._archive.namelist())
-        self._names = dict.fromkeys(map(sys.intern, names))  # runs of one arm share them
+        self._names = dict.fromkeys(
+            map(sys.intern, names)
+        )  # runs of the same arm share these texts
         self._read: dict[str, np.ndarray] = {}
 
     def __getitem__(self, name: str) -> np.ndarray:
@@ -50,7 +52,7 @@ class Arrays(Mapping[str, np.ndarray]):
         if name not in self._read:
             try:
                 array = _array(self._archive.read(name + NPY))
-            except Exception:  # as above, and NumPy
+            except Exception:  # zipfile and NumPy raise errors of many kinds
                 raise self._damaged() from None
             if fault := self._fault_of(name, array):
                 raise self.unfit(fault)
@@ -67,12 +69,12 @@ class Arrays(Mapping[str, np.ndarray]):
         return len(self._names)
 
     def unfit(self, fault: str) -> Trouble:
-        """Return the error for arrays that are not those of a checkpoint of their run."""
-        return Trouble(f"{self._file.parent} is no checkpoint of this run: {fault}")
+        """Return the error for arrays that do not fit their run."""
+        return Trouble(f"{self._file.parent} is not a checkpoint of this run: {fault}")
 
     def _damaged(self) -> Trouble:
         return Trouble(
-            f"{self._file} is damaged: it is no archive of arrays; restore it from a copy"
+            f"{self._file} is damaged: it is not an archive of arrays; restore it from a copy"
         )
 
 
@@ -86,7 +88,7 @@ def _array(content: bytes) -> np.ndarray:
 
 @lru_cache(maxsize=1024)
 def _header(content: bytes) -> tuple[tuple[int, ...], bool, np.dtype]:
-    """Return what the header of NumPy's format 1.0 says; many arrays have the same one."""
+    """Return the content of a header of NumPy's format 1.0; many arrays have equal headers."""
     file = io.BytesIO(content)
     if npy.read_magic(file) != (1, 0):
         raise ValueError

@@ -1,12 +1,12 @@
-"""A run in one file, to send to others: a zip of what its newest checkpoint names, and of nothing else.
+"""Bundles: a run in one file. It is a zip of the files that the newest checkpoint names.
 
     run/versions.json  config.toml  description.json  ...
     run/births/*.parquet  deaths/*.parquet  metrics/*.parquet
     run/checkpoints/000012/  origin/
 
-Equal runs make equal bytes. A bundle may come from anywhere, so it is read as the work of a forger: each
-file must be named by a manifest, with its size and checksum. Nothing is compressed, so no file is
-larger than it seems. Nothing in a bundle is executed.
+Equal runs make equal bytes. A bundle may come from a stranger and is not trusted: a manifest must
+name each file, with its size and checksum. Nothing is compressed, so unpacking cannot take more
+space than the bundle. Nothing in a bundle is executed.
 """
 
 import atexit
@@ -37,26 +37,26 @@ TOP = "run/"
 EPOCH = (1980, 1, 1, 0, 0, 0)
 """The time of all files in a bundle, the earliest that a zip can hold."""
 PIECE = 2**20
-"""Bytes that are copied at a time."""
+"""Number of bytes that are copied at once."""
 TRIES = 3
-"""Number of times that a run which goes on meanwhile is opened."""
+"""Number of attempts to read a run that goes on meanwhile."""
 MANIFESTS = re.compile(rf"({ORIGIN}|{FOLDER}/{NUMBER.pattern})/{re.escape(MANIFEST)}")
-"""Paths of manifests in a run, from whose folders they have their names."""
+"""Paths of manifests in a run, by the names of their folders."""
 Seals = dict[str, Seal | None]
 """Size and checksum of files by their path below the run; None for manifests and versions."""
 Entries = dict[str, zipfile.ZipInfo]
-"""What a zip says of its files, by their path below the run."""
+"""The entries of a zip, by the path of a file below the run."""
 _copies: dict[tuple, Path] = {}
-"""The copy that `opened` has made of each bundle, by path, size and time of the file."""
+"""The copy of each bundle made by `opened`, by path, size and time of the file."""
 _bundles: dict[Path, Path] = {}
-"""The bundle that each copy was made of."""
+"""The bundle of each copy."""
 
 
 def write(run: Path, file: Path) -> Archive:
-    """Write a run into a file, as of its newest whole checkpoint -> the run as it was written.
+    """Write a run at its newest whole checkpoint into a file. Return the run that was written.
 
     Raises:
-        InputError: the run has no checkpoint yet, or the path is that of something else than a file.
+        InputError: the run has no checkpoint yet, or the path exists and is not a file.
         Trouble: the run is damaged, or the file cannot be written.
     """
     files.check_output(file)
@@ -75,7 +75,7 @@ def write(run: Path, file: Path) -> Archive:
 
 
 def _named(run: Archive) -> Seals:
-    """Return the files of which a run consists at its newest whole checkpoint."""
+    """Return the files of a run at its newest whole checkpoint."""
     kept = [run.last, checkpoint.origin(run.path, run.fault_in)]
     manifests = {each.path: each.manifest for each in kept if each is not None}
     return _sealed({path.relative_to(run.path).as_posix(): manifests[path] for path in manifests})
@@ -85,7 +85,7 @@ def _sealed(manifests: dict[str, Manifest]) -> Seals:
     """Return the files that manifests name, given by their folders.
 
     Raises:
-        ValueError: two of them contradict each other.
+        ValueError: two manifests contradict each other.
     """
     seals: Seals = {VERSIONS: None}
     for folder, each in manifests.items():
@@ -103,7 +103,7 @@ def _sealed(manifests: dict[str, Manifest]) -> Seals:
 
 
 def _fill(sources: Mapping[str, IO[bytes]], path: Path) -> None:
-    """Write a zip without compression, whose bytes depend on names and contents alone."""
+    """Write a zip without compression, whose bytes depend only on names and contents."""
     with zipfile.ZipFile(path, "w", zipfile.ZIP_STORED) as bundle:
         for name, source in sources.items():
             entry = zipfile.ZipInfo(TOP + name, EPOCH)
@@ -114,11 +114,11 @@ def _fill(sources: Mapping[str, IO[bytes]], path: Path) -> None:
 
 
 def opened(file: Path) -> Path:
-    """Return a directory with the run of a bundle, which is removed when this process ends.
+    """Return a directory with the run of a bundle; it is removed when this process ends.
 
     Raises:
-        InputError: the file is no bundle, or not what its manifests say.
-        Trouble: the directory cannot be written.
+        InputError: the file is not a bundle, or differs from its manifests. Trouble: the directory
+            cannot be written.
     """
     about = file.stat()
     key = file.resolve(), about.st_ino, about.st_size, about.st_mtime_ns
@@ -133,15 +133,15 @@ def opened(file: Path) -> Path:
 
 
 def origin_of(path: Path) -> Path:
-    """Return the bundle of which `opened` made a copy; any other path is its own origin."""
+    """Return the bundle of a copy that `opened` made; any other path is returned unchanged."""
     return _bundles.get(path, path)
 
 
 def unbundle(file: Path, folder: Path) -> None:
-    """Make a run's directory of a bundle.
+    """Make a run's directory from a bundle.
 
     Raises:
-        InputError: the file is no bundle, or not what its manifests say; the folder is taken.
+        InputError: the file is not a bundle, or differs from its manifests; or the folder is taken.
         Trouble: the directory cannot be written.
     """
     files.check_name(folder)
@@ -163,24 +163,24 @@ def unbundle(file: Path, folder: Path) -> None:
 
 
 def refuse_changes(path: Path) -> None:
-    """Raise InputError if a path is that of a bundle, or of the copy that `opened` made of one."""
+    """Raise InputError if a path is a bundle, or the copy of a bundle that `opened` made."""
     if path.is_file() or path in _bundles:
         file = origin_of(path)
         raise InputError(
-            f"nothing is written into a bundle: `primordia unbundle {file} FOLDER` makes a run of it;"
-            " figures, films and pages need --out alone"
+            f"{file} is a bundle and cannot be changed; `primordia unbundle {file} FOLDER` makes a "
+            "run from it; figures, films and pages need only --out"
         )
 
 
 def _extract(file: Path, folder: Path) -> None:
-    """Write the files of a bundle into a new folder, after it is known which they must be."""
+    """Write the files that a bundle must hold into a new folder."""
     if not zipfile.is_zipfile(file):
-        raise InputError(f"{file} is not a run of primordia, and no bundle of one")
+        raise InputError(f"{file} is neither a run of primordia nor a bundle of one")
     try:
         with zipfile.ZipFile(file) as bundle:
             entries = _entries(bundle)
             if sum(each.file_size for each in entries.values()) > file.stat().st_size:
-                raise ValueError("its files are larger than itself")
+                raise ValueError("its files are larger than the bundle")
             seals = _seals(bundle, entries)
             for name in sorted(entries.keys() ^ seals.keys()):
                 held = "is named by no manifest" if name in entries else "is missing"
@@ -193,22 +193,22 @@ def _extract(file: Path, folder: Path) -> None:
                 _copy(_pieces(bundle, entries[name]), folder / name, seal)
     except (InputError, Trouble):
         raise
-    except Exception as error:  # zipfile raises errors of many kinds for what is no zip
-        raise InputError(f"{file} is no sound bundle: {error}") from None
+    except Exception as error:  # zipfile raises errors of many kinds for other files
+        raise InputError(f"{file} is not a valid bundle: {error}") from None
 
 
 def _entries(bundle: zipfile.ZipFile) -> Entries:
-    """Return what a zip says of its files.
+    """Return the entries of a zip.
 
     Raises:
-        ValueError: it holds something that no bundle holds.
+        ValueError: the zip holds something that no bundle holds.
     """
     entries: Entries = {}
     for entry in bundle.infolist():
         name, kind = entry.orig_filename.removeprefix(TOP), stat.S_IFMT(entry.external_attr >> 16)
         parts = name.split("/")
         if not entry.orig_filename.startswith(TOP) or not all(map(_is_plain, parts)):
-            raise ValueError(f"{entry.orig_filename!r} is no path of a file in a run")
+            raise ValueError(f"{entry.orig_filename!r} is not the path of a file in a run")
         if kind not in (0, stat.S_IFREG):
             raise ValueError(f"{name} is {files.KINDS.get(kind, 'no file')}")
         if entry.flag_bits & 1:
@@ -220,7 +220,7 @@ def _entries(bundle: zipfile.ZipFile) -> Entries:
         entries[name] = entry
     folded = {unicodedata.normalize("NFKC", name).casefold() for name in entries}
     if len(folded) != len(entries):
-        raise ValueError("two of its files have names that differ by case alone")
+        raise ValueError("two of its files have names that differ only in case")
     return entries
 
 
@@ -233,7 +233,7 @@ def _seals(bundle: zipfile.ZipFile, entries: Entries) -> Seals:
     """Return the files that a bundle must hold: those that its manifests name.
 
     Raises:
-        ValueError: it has no manifest or several, or one that was changed.
+        ValueError: the bundle has no manifest or several, or a manifest was changed.
     """
     found = [match for match in map(MANIFESTS.fullmatch, entries) if match]
     for name in (VERSIONS, *(match[0] for match in found)):
@@ -256,7 +256,7 @@ def _pieces(bundle: zipfile.ZipFile, entry: zipfile.ZipInfo) -> Iterator[bytes]:
 
 
 def _copy(pieces: Iterable[bytes], path: Path, seal: Seal | None) -> None:
-    """Write a new file; raise ValueError if it is not what was sealed."""
+    """Write a new file; raise ValueError if its size or checksum is wrong."""
     digest = hashlib.sha256()
     files.make_folder(path.parent)
     try:
@@ -267,4 +267,4 @@ def _copy(pieces: Iterable[bytes], path: Path, seal: Seal | None) -> None:
     except OSError as error:
         raise Trouble(f"{path} cannot be written: {error.strerror or error}") from None
     if seal is not None and digest.hexdigest() != seal.sha256:
-        raise ValueError(f"the checksum of {path.name} does not hold")
+        raise ValueError(f"the checksum of {path.name} differs")

@@ -1,4 +1,5 @@
-"""Checkpoints: all that a run needs to go on. A crash at any instant leaves a good one.
+"""Checkpoints: the files that a run needs to go on. A crash at any instant leaves a good
+checkpoint.
 
 RUN/checkpoints/000012/state.npz        the state's arrays, and `tail.*`: rows in no segment yet
                        manifest.json    written last: checksums, the segments that count, progress
@@ -25,7 +26,7 @@ from primordia.runs.record import Recorder
 from primordia.runs.schema import TABLES
 
 KEPT = 2
-"""Number of checkpoints kept; if the newest is damaged, the one before it is used."""
+"""Number of checkpoints that are kept; if the newest is damaged, the one before is used."""
 FOLDER, ORIGIN = "checkpoints", "origin"
 STATE, MANIFEST = "state.npz", "manifest.json"
 NUMBER = re.compile("[0-9]{6,9}")
@@ -38,7 +39,7 @@ FaultIn = Callable[[Path, int, str], str | None]
 
 @dataclass(frozen=True)
 class Checkpoint:
-    """A checkpoint whose checksums hold."""
+    """A checkpoint with correct checksums."""
 
     path: Path
     manifest: Manifest
@@ -58,11 +59,11 @@ def save(run: Path, arrays: dict[str, np.ndarray], recorder: Recorder, progress:
     """Write a checkpoint and remove old ones.
 
     Raises:
-        Trouble: it cannot be written; earlier checkpoints stay good.
+        Trouble: the checkpoint cannot be written; earlier checkpoints stay good.
     """
     number = 1 + max((int(path.name) for path in numbered(run)), default=-1)
     if not NUMBER.fullmatch(name := f"{number:06d}"):
-        raise Trouble(f"{run / FOLDER} has no number left for one more checkpoint")
+        raise Trouble(f"{run / FOLDER} has no free number for another checkpoint")
     final = run / FOLDER / name
     _write(run, final, arrays, recorder, progress)
     for old in numbered(run)[:-KEPT]:
@@ -119,7 +120,7 @@ def _fill(
 
 
 def _inputs(run: Path) -> list[str]:
-    """Return the files that a run needs to go on, beside its checkpoints, by their path below it."""
+    """Return the files that a run needs to go on, except checkpoints, by their path below the run."""
     code = sorted(path for path in (run / CODE).rglob("*.py") if path.is_file())
     paths = [run / name for name in INPUTS]
     return [path.relative_to(run).as_posix() for path in (*paths, *code) if path.exists()]
@@ -145,9 +146,9 @@ def numbered(run: Path) -> list[Path]:
 
 
 def newest(run: Path, fault_in: FaultIn = files.fault_in) -> tuple[Checkpoint | None, list[str]]:
-    """Return the newest whole checkpoint or None, and what is wrong with each newer one.
+    """Return the newest whole checkpoint or None, and the fault of each newer checkpoint.
 
-    A checkpoint is whole if its files and the segments it names are unchanged.
+    A checkpoint is whole if its files and the segments that it names are unchanged.
     """
     faults: list[str] = []
     for result in _newest_first(run, fault_in):
@@ -166,7 +167,7 @@ def origin(run: Path, fault_in: FaultIn = files.fault_in) -> Checkpoint | None:
     """Return the checkpoint that a fork began with; None if the run is no fork.
 
     Raises:
-        Trouble: it is damaged.
+        Trouble: the checkpoint is damaged.
     """
     if not (run / ORIGIN).exists():
         return None
@@ -184,10 +185,10 @@ def _newest_first(run: Path, fault_in: FaultIn) -> Iterator[Checkpoint | str]:
 
 
 def _read(run: Path, path: Path, fault_in: FaultIn) -> Checkpoint | str:
-    """Return a checkpoint, or what is wrong with it.
+    """Return a checkpoint, or its fault.
 
     Raises:
-        Trouble: one of INPUTS has changed, so that no checkpoint is of use.
+        Trouble: one of INPUTS has changed, so that no checkpoint can be used.
     """
     try:
         manifest = manifests.read(path / MANIFEST)
@@ -206,7 +207,7 @@ def _read(run: Path, path: Path, fault_in: FaultIn) -> Checkpoint | str:
 
 
 def remove_leftovers(run: Path, last: Checkpoint | None) -> None:
-    """Delete all files that the given checkpoint does not name, such as those half written in a crash."""
+    """Delete all files that the given checkpoint does not name, such as unfinished files of a crash."""
     before = numbered(run)
     kept = before[: before.index(last.path) + 1] if last and last.path in before else []
     for path in (run / FOLDER).iterdir():

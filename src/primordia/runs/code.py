@@ -1,8 +1,8 @@
-"""The user's own code in a run: a copy of it, which the run executes, if the user trusts it.
+"""The user's own code in a run: the run holds a copy, and executes it only if the user trusts it.
 
 RUN/code holds the files; their checksums are in the run's description. A run may come from a stranger,
-and so may its code. It is executed only after the user has trusted exactly these files, once on a
-machine. Code that a user has begun a run with is trusted.
+and so may its code. It is executed only after the user has trusted exactly these files, once on
+each machine. Code with which the user has begun a run is trusted.
 """
 
 from collections.abc import Iterable, Sequence
@@ -20,11 +20,11 @@ from primordia.runs.description import Description
 
 FOLDER = "code"
 _trusted: set[str] = set()
-"""Checksums of the files trusted in this process, also where none can be stored."""
+"""Checksums of the files trusted in this process, even if they cannot be stored."""
 
 
 def copy(config: Config, run: Path) -> dict[str, str]:
-    """Copy the user's own code into a new run, and trust it -> SHA-256 of each file, by its name.
+    """Copy the user's own code into a new run, and trust it. Return each file's SHA-256 by name.
 
     Raises:
         Trouble: a file cannot be written.
@@ -49,40 +49,41 @@ def found(modules: Iterable[str]) -> Sources:
 def of_run(
     run: Path, config: Config, about: Description, parts: Sequence[str], edited: bool
 ) -> Sources:
-    """Return the files of the user's own code that these parts of a run execute: the run's copy.
+    """Return the files of the user's own code in a run that these parts execute.
 
-    Modules that the run holds no copy of are looked for elsewhere. If `edited`, all are looked for there
-    first.
+    Modules without a copy in the run are found on `sys.path` or in the current folder. With
+    `edited`, all modules are looked up there first.
 
     Raises:
-        Trouble: the copy is not what the description says.
+        Trouble: the copy differs from the description.
     """
     folder, code = run / FOLDER, Sources()
     held = {each.relative_to(folder).as_posix() for each in folder.rglob("*") if not each.is_dir()}
     if held != set(about.code):
         odd = min(held ^ set(about.code))
-        raise Trouble(f"{folder / odd} is missing, or was not there when the run began")
+        raise Trouble(f"{folder / odd} is missing, or was added after the run began")
     for part in parts:
         for module in config.modules_of(part):
             ways = [partial(own_code.below, folder, module), partial(own_code.found, module)]
             code |= next(filter(None, (way() for way in (ways[::-1] if edited else ways))), {})
     for name, source in code.items():
         if source.file == folder / name and source.sha256 != about.code[name]:
-            raise Trouble(f"{source.file} was changed or damaged: its checksum does not hold")
+            raise Trouble(f"{source.file} was changed or damaged: its checksum differs")
     return code
 
 
 def admit(run: Path, code: Sources) -> None:
-    """Let the code of a run be imported.
+    """Allow the code of a run to be imported.
 
     Raises:
-        InputError: the user has not trusted it yet, or other modules of these names are imported.
+        InputError: the user has not trusted it yet, or other modules with these names are imported.
     """
     if not own_code.is_loaded(code) and not _is_trusted(code):
         names = ", ".join(str(source.file) for source in code.values())
         raise InputError(
-            f"{run} executes code that is not of an installed package: {names}. Read it; then add"
-            " --trust once, or call primordia.load(run, trust=True)"
+            f"{run} executes code from outside installed packages: {names}. Read it; then add "
+            "--trust once, or call primordia.load(run, "
+            "trust=True)"
         )
     try:
         own_code.admit(code)
@@ -93,7 +94,7 @@ def admit(run: Path, code: Sources) -> None:
 def changes(config: Config, recorded: dict[str, str]) -> list[str]:
     """Return a line for each file, on `sys.path` or in the current folder, that has changed.
 
-    A module that is found nowhere but in the run has not changed.
+    A module that exists only in the run has not changed.
     """
     return [
         f"{source.file} has changed" if name in recorded else f"{source.file} is new"

@@ -1,6 +1,6 @@
-"""The description of a run: what its habitat, brain and mutation say of themselves when it begins.
+"""The description of a run: properties of its habitat, brain and mutation at its beginning.
 
-It is written into the run, so that records can be read without the code of these parts.
+The description is written into the run, so that records can be read without these parts' code.
 """
 
 from pathlib import Path
@@ -17,12 +17,12 @@ FILE = "description.json"
 
 
 class Description(BaseModel):
-    """What a reader of the records must know."""
+    """The properties that a reader of the records needs."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
 
     rate: float | None = Field(gt=0, allow_inf_nan=False)
-    """ticks in a second of the habitat; None: it has no clock"""
+    """ticks in a second of the habitat; None if it has no clock"""
     tallies: tuple[str, ...]
     """names of the habitat's counts"""
     notes: tuple[str, ...]
@@ -32,7 +32,7 @@ class Description(BaseModel):
     moments: int = Field(0, ge=0, le=2**16)
     """number of moments that an organism remembers for the mutation"""
     beginning: dict[str, Annotated[float, Field(allow_inf_nan=False)]]
-    """the settings that seasons may change, with their values at the beginning"""
+    """the settings that seasons may change: dotted name -> value at the beginning"""
     blocks: dict[str, tuple[Annotated[int, Field(ge=1, lt=2**31)], ...]]
     """shape of each block of weights in a genome"""
     code: dict[str, str] = Field({})
@@ -55,7 +55,7 @@ class Description(BaseModel):
         )
 
     def write(self, run: Path) -> None:
-        """Write it into a run's directory.
+        """Write the description into a run's directory.
 
         Raises:
             Trouble: it cannot be written.
@@ -67,6 +67,6 @@ def read(run: Path) -> Description:
     """Return the description in a run's directory.
 
     Raises:
-        InputError: it is missing or damaged.
+        InputError: the description is missing or damaged.
     """
     return stored.read(run / FILE, Description, f"{run / FILE} is missing or damaged; put it back")

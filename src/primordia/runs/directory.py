@@ -24,26 +24,26 @@ from primordia.runs.schema import TABLES
 from primordia.settings.tables import flat, from_toml
 
 FORMAT = 2
-"""of run directories; others are refused"""
+"""format of run directories; other formats are refused"""
 VERSIONS, LOCK = "versions.json", "lock"
 FOLDERS = (*TABLES, checkpoint.FOLDER)
 GLANCE = 0.05
-"""Seconds in which a lock becomes free that `is_written` holds in another process, for a moment."""
+"""Seconds to wait for a lock that `is_written` holds in another process for a moment."""
 OWN = (VERSIONS, *FOLDERS, code.FOLDER, checkpoint.ORIGIN, *INPUTS, LOCK)
-"""What a new run's directory holds."""
+"""The names in a new run's directory."""
 
 
 @contextmanager
 def create(run: Path, config: Config, fill: Callable[[], object] | None = None) -> Iterator[None]:
     """Write settings, founders, code and versions into a new or empty directory, and hold its lock.
 
-    The versions come last: a directory that has them is a run. If the `with` block ends by an error or a
-    signal before the first checkpoint, nothing is left.
+    The versions come last: a directory that has them is a run. If the `with` block ends by an error
+    or a signal before the first checkpoint, all files are removed.
 
     Args:
         run: the directory.
         config: the run's settings.
-        fill: writes what a fork begins with.
+        fill: a function that writes the state with which a fork begins.
 
     Raises:
         InputError: the directory is taken.
@@ -57,7 +57,7 @@ def create(run: Path, config: Config, fill: Callable[[], object] | None = None) 
     with interrupts.undone_by(partial(_remove_empty, missing)):
         files.make_folder(run)
         with locked(run), interrupts.undone_by(partial(_remove_lock, run)):
-            refuse_if_taken(run)  # another process may have made it since
+            refuse_if_taken(run)  # another process may have made the directory since
             with held(run) as check, interrupts.undone_by(partial(_remove_unbegun, run, check)):
                 make_folders(run)
                 if (founders := law.heredity.ancestors) is not None:
@@ -72,7 +72,7 @@ def create(run: Path, config: Config, fill: Callable[[], object] | None = None) 
 
 
 def _remove_unbegun(run: Path, check: Callable[[], None]) -> None:
-    """Remove what `create` has written, unless there is a checkpoint, from which the run can go on."""
+    """Remove the files of `create`, unless there is a checkpoint from which the run can go on."""
     if (run / VERSIONS).exists() and checkpoint.exists(run):
         return
     with suppress(Trouble):
@@ -83,7 +83,7 @@ def _remove_unbegun(run: Path, check: Callable[[], None]) -> None:
 
 
 def clear_unbegun(run: Path) -> bool:
-    """Remove what a start that was killed has left -> whether the directory holds no run.
+    """Remove the files of a killed start. Return whether the directory holds no run.
 
     Raises:
         InputError: another process is starting a run there.
@@ -114,7 +114,7 @@ def _remove_empty(folders: list[Path]) -> None:
 
 
 def refuse_if_taken(run: Path) -> None:
-    """Raise InputError unless the path is free or a directory without files, but for a lock."""
+    """Raise InputError unless the path is free or a directory without files except a lock."""
     files.check_name(run)
     if (run / VERSIONS).exists():
         raise InputError(f"{run} exists already; choose another --out, or `primordia resume {run}`")
@@ -123,7 +123,7 @@ def refuse_if_taken(run: Path) -> None:
 
 
 def check_same_settings(config: Config, run: Path) -> None:
-    """Raise InputError if a run was begun with other settings than these; limits may differ."""
+    """Raise InputError if a run was begun with settings other than these; limits may differ."""
     ignored: Any = {"about", "stop", "ancestors"}
     here, there = (
         flat(each.model_dump(mode="json", exclude=ignored)) for each in (config, read_config(run))
@@ -148,21 +148,22 @@ def make_folders(run: Path) -> None:
 
 
 def read_config(run: Path) -> Config:
-    """Return the configuration of a run directory, which was checked as a whole when the run began.
+    """Return the configuration of a run directory. It was checked completely when the run began.
 
     Raises:
-        InputError: this is no run directory, or one that this version cannot read.
+        InputError: this is not a run directory, or this version cannot read it.
     """
     files.check_name(run)
     made_by = recorded_versions(run).format
     if made_by > FORMAT:
         raise InputError(
-            f"{run} was made by a newer primordia (format {made_by}, this one reads {FORMAT}); upgrade"
+            f"{run} was made by a newer primordia (format {made_by}, this one reads {FORMAT}); "
+            "upgrade"
         )
     if made_by < FORMAT:
         raise InputError(
             f"{run} has format {made_by}, and this primordia reads format {FORMAT} only;"
-            f" `primordia run {run / 'config.toml'}` lives it again from its beginning"
+            f" `primordia run {run / 'config.toml'}` repeats it from its beginning"
         )
     if not (file := run / "config.toml").is_file():
         raise InputError(f"{file} is missing; put it back")
@@ -170,13 +171,13 @@ def read_config(run: Path) -> Config:
 
 
 def versions_here(config: Config, habitat: AnyHabitat) -> dict[str, str]:
-    """Return the versions that a run begun here would depend on, by name."""
+    """Return the versions on which a new run here would depend, by name."""
     packages = own_code.packages(config.own_modules)
     return {**device.versions(), **habitat.versions, **packages}
 
 
 class Versions(BaseModel):
-    """The content of `versions.json`: the format, and what `versions_here` gave then."""
+    """The content of `versions.json`: the format, and the result of `versions_here` at the beginning."""
 
     model_config = ConfigDict(extra="allow", strict=True)
     __pydantic_extra__: dict[str, str]
@@ -188,7 +189,7 @@ def recorded_versions(run: Path) -> Versions:
     """Return the versions that a run was begun with.
 
     Raises:
-        InputError: this is no run directory.
+        InputError: this is not a run directory.
     """
     otherwise = f"{run} is not a run of primordia: it has no readable {VERSIONS}"
     return stored.read(run / VERSIONS, Versions, otherwise)
@@ -196,7 +197,7 @@ def recorded_versions(run: Path) -> Versions:
 
 @contextmanager
 def locked(run: Path) -> Iterator[None]:
-    """Hold the run's lock, which admits one writer at a time and is released even by kill -9.
+    """Hold the run's lock. It admits one writer at a time, and even kill -9 releases it.
 
     Raises:
         InUseError: another process holds it.
@@ -216,7 +217,7 @@ def locked(run: Path) -> Iterator[None]:
 
 
 def is_written(run: Path) -> bool:
-    """Return whether a process holds the run's lock; nothing is written, and no writer is refused."""
+    """Return whether a process holds the run's lock, without writing or refusing a writer."""
     try:
         handle = os.open(run / LOCK, os.O_RDONLY)
     except OSError:
@@ -232,8 +233,10 @@ def is_written(run: Path) -> bool:
 
 @contextmanager
 def held(run: Path) -> Iterator[Callable[[], None]]:
-    """Yield a check for a writer, which raises Trouble once the directory is removed or replaced."""
-    handle = os.open(run, os.O_RDONLY)  # while it is open, no other directory gets its number
+    """Yield a check for a writer; it raises Trouble if the directory was removed or replaced."""
+    handle = os.open(
+        run, os.O_RDONLY
+    )  # while the directory is open, no other directory gets its inode number
 
     def check() -> None:
         try:

@@ -1,6 +1,7 @@
 """RUN/faults.txt: why simulations of bodies failed, a line for each organism that died of it.
 
-It is for people, and not part of what a run repeats: after an interruption a line may be there twice.
+The file is for people and not part of a run's exact records: after an interruption a line may
+appear twice.
 """
 
 import os
@@ -16,7 +17,7 @@ def note(run: Path, lines: list[str]) -> None:
     """Append lines.
 
     Raises:
-        Trouble: they cannot be written, or the file is a link.
+        Trouble: the lines cannot be written, or the file is a link.
     """
     if not lines:
         return

@@ -1,7 +1,7 @@
-"""Forks: the tape of a run replayed from one of its ticks, with another seed or other settings.
+"""Forks: a run goes on from one of its ticks in a new run, with another seed or other settings.
 
 A fork is a run with its own directory. Its `origin` holds the whole state at that tick, in the form of a
-checkpoint. Its records begin with the births of the organisms then alive.
+checkpoint. Its records begin with the births of the organisms alive at that tick.
 """
 
 import time
@@ -29,13 +29,13 @@ from primordia.runs.manifest import Progress
 from primordia.settings.tables import from_toml, merged
 
 HARMLESS = {"stop", "fork", "about", "sample_every"}
-"""Settings that do not change what happens in a world."""
+"""Settings that do not change the course of a world."""
 OF_ANY_LENGTH = "bodies.states"
-"""The array whose rows are as long as the longest state in it (`habitats.states`)."""
+"""The array whose rows have the length of its longest state (`habitats.states`)."""
 OF_MUTATION = (".notes", ".moments.")
-"""Parts of the names of arrays that begin empty under another kind of mutation."""
+"""Parts of the names of arrays that begin empty if the kind of mutation changes."""
 RENEWED = (*OF_MUTATION, ".looks.", ".climate.")
-"""Parts of the names of arrays that a fork may begin with others."""
+"""Parts of the names of arrays in which a fork may differ from its source."""
 
 
 def fork(
@@ -45,14 +45,15 @@ def fork(
     settings: dict[str, Any],
     listen: Listener | None = None,
 ) -> None:
-    """Make a run that begins with the state of another at the end of tick `at`, without advancing it.
+    """Make a run that begins with another run's state at the end of tick `at`, without advancing
+    it.
 
     Args:
         source: the run to fork.
-        at: tick, lived through by all worlds.
-        out: directory to make.
-        settings: changed settings, as nested tables; a changed `seed` draws another future.
-        listen: called after each chunk that is lived again to reach the tick.
+        at: a tick that all worlds have lived through.
+        out: directory of the new run.
+        settings: changed settings, as nested tables; a changed `seed` gives different random draws.
+        listen: called after each repeated chunk on the way to the tick.
 
     Raises:
         InputError: no such tick, a setting that cannot change in a living world, or `out` is taken.
@@ -81,7 +82,7 @@ def fork(
 def _fork_config(source: Path, settings: dict[str, Any], at: int) -> Config:
     """Return the configuration of the fork."""
     if "task" in settings:
-        raise InputError("there is no setting 'task' of a fork: it has the task of its run")
+        raise InputError("a fork has the task of its run; remove the setting 'task'")
     values = merged(from_toml(source / "config.toml"), settings)
     values["fork"] = ForkedFrom(run=str(bundle.origin_of(source)), tick=at).model_dump()
     return validated(values, source=str(source))
@@ -111,7 +112,8 @@ def _engine_at(source: Archive, at: int, listen: Listener | None) -> Engine:
 
 
 def _living(lives: Lives, engine: Engine, config: Config, at: int) -> Lives:
-    """Return the lives under way at the end of a tick, after comparing them with the engine's world."""
+    """Return the lives of the living at the end of a tick, after comparing them with the engine's
+    world."""
     alive = (lives.born <= at) & ((lives.ended > at) | ~lives.died)
     living = lives.take(np.flatnonzero(alive))
     organisms = engine.state.world.organisms
@@ -127,7 +129,7 @@ def _living(lives: Lives, engine: Engine, config: Config, at: int) -> Lives:
 
 
 def _birth_rows(living: Lives, engine: Engine) -> np.ndarray:
-    """Return the births of the living as the law lists them, uint32 (n, words), in order of events."""
+    """Return the births of the living in the law's form, uint32 (n, words), in order of events."""
     living = living.take(np.lexsort((living.cell, living.world, living.born)))
     cell = living.world.astype(np.int64) * engine.law.cells + living.cell
     heredity, notes = engine.law.heredity, engine.state.world.organisms.notes
@@ -138,7 +140,7 @@ def _birth_rows(living: Lives, engine: Engine) -> np.ndarray:
         parent=living.parent,
         tick=living.born,
         cause=living.birth_cause,
-        **own,  # those who were alive at the fork are the roots of what follows
+        **own,  # organisms alive at the fork are the roots of later lines
         **dict(zip(heredity.mutation.notes, np.asarray(notes)[cell].T, strict=True)),
     )
 
@@ -160,13 +162,13 @@ def _transplant(before: Engine, old: Config, new: Config, at: int) -> Engine:
 
 
 def _form(name: str, arrays: dict[str, np.ndarray]) -> tuple[int, ...]:
-    """Return the part of an array's shape that settings fix; () if there is no such array."""
+    """Return the part of an array's shape that settings determine; () if there is no such array."""
     shape = np.shape(arrays.get(name, 0))
     return shape[:1] if name == OF_ANY_LENGTH else shape
 
 
 def _adapt(world: World, before: Engine, after: Engine, old: Config, new: Config, at: int) -> World:
-    """Return a world under new settings; unchanged settings keep the value that seasons gave them."""
+    """Return a world with new settings; unchanged settings keep the value that seasons gave them."""
     organisms, worlds = world
     worlds = worlds._replace(
         seed=wide(new.world_seeds),
@@ -178,7 +180,7 @@ def _adapt(world: World, before: Engine, after: Engine, old: Config, new: Config
         store = after.law.in_cells(worlds.climate)["metabolism.store"]
         organisms = organisms._replace(energy=to_fixed_point(store))
     if new.model_dump(exclude=HARMLESS) != old.model_dump(exclude=HARMLESS):
-        worlds = worlds._replace(  # the fork has to saturate again
+        worlds = worlds._replace(  # the fork must saturate again
             calm=jnp.zeros_like(worlds.calm),
             saturated=never(worlds.calm.shape),
             saturated_births=never(worlds.calm.shape),
@@ -187,7 +189,7 @@ def _adapt(world: World, before: Engine, after: Engine, old: Config, new: Config
 
 
 def _looks(worlds: Worlds, after: Engine, at: int) -> Looks:
-    """Return the counts of new ratchets, which look back as far as the fork."""
+    """Return the counts of new ratchets, which start at the fork."""
     fresh = initial_looks(after.law, len(worlds.calm), at)
 
     def now(count: Wide) -> Wide:
@@ -197,7 +199,7 @@ def _looks(worlds: Worlds, after: Engine, at: int) -> Looks:
 
 
 def _climate(now: Climate, before: Engine, after: Engine) -> Climate:
-    """Return the new settings where they differ from the old, elsewhere the values now in force."""
+    """Return the new value of each changed setting, and the present value of the others."""
     old = dict(before.law.beginning)
     return {
         name: now[name] if old.get(name) == value else jnp.full_like(now[name], value)

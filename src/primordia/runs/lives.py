@@ -1,4 +1,4 @@
-"""Births and deaths of a run joined: one row for each organism that ever lived in it."""
+"""Lives: the births and deaths of a run, joined into one row for each organism."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields, replace
@@ -18,7 +18,8 @@ ALIVE = -1
 
 @dataclass(frozen=True)
 class Lives:
-    """Arrays (L,), sorted by world and birth number. The living are censored at their world's end."""
+    """Lives as arrays (L,), sorted by world and birth number. The living are censored at their
+    world's end."""
 
     world: np.ndarray
     """int32"""
@@ -51,14 +52,14 @@ class Lives:
     def entered(self) -> np.ndarray:
         """Age from which the life is on record, int64 (L,): above 0 for organisms alive at a fork.
 
-        Organisms of their generation that died before the fork are not on record. So these lives tell
-        nothing about younger ages.
+        Organisms of their generation that died before the fork are not on record. So these lives
+        carry no information about younger ages.
         """
         return self.seen - self.born
 
     @property
     def rank(self) -> np.ndarray:
-        """Place in the world's order of birth, from 0, int64 (L,).
+        """Index in the world's order of birth, from 0, int64 (L,).
 
         It is the birth number, except in a fork, whose records leave out the deaths before it.
         """
@@ -80,12 +81,12 @@ class Lives:
         return self if rows == slice(0, len(self)) else self.take(rows)
 
     def recorded_since(self, tick: int) -> "Lives":
-        """Return the lives that a record begun at the end of a tick would hold."""
+        """Return the lives of a record that began at the end of a tick."""
         later = self.take(np.flatnonzero(~self.died | (self.ended > tick)))
         return replace(later, seen=np.maximum(later.seen, tick))
 
     def recorded_until(self, tick: int) -> "Lives":
-        """Return the lives that a record stopped at the end of a tick would hold."""
+        """Return the lives of a record that stopped at the end of a tick."""
         before = self.take(np.flatnonzero(self.born <= tick))
         late = before.ended > tick
         return replace(
@@ -95,7 +96,8 @@ class Lives:
         )
 
     def since_fork(self) -> "Lives":
-        """Return the lives with time counted from the fork; organisms alive at it are born before 0."""
+        """Return the lives with time counted from the fork; organisms alive at the fork are born
+        before 0."""
         inherited = self.entered > 0
         then = int(self.seen[inherited].min()) if inherited.any() else 0
         return replace(self, born=self.born - then, seen=self.seen - then, ended=self.ended - then)
@@ -107,17 +109,17 @@ class Lives:
         that were alive at a fork were born before it, so they are not late and do not count.
         """
         own = self.entered == 0
-        ordinal = np.cumsum(own) - 1  # among the births of all worlds
+        ordinal = np.cumsum(own) - 1  # index among the births of all worlds
         first, count = (np.zeros(self.worlds, np.int64) for _ in range(2))
         np.add.at(count, self.world[own], 1)
         first[1:] = np.cumsum(count)[:-1]
         return own & (ordinal - first[self.world] >= np.floor(after * count)[self.world])
 
     def oldest(self, world: int | None = None, after: float = LATE) -> int:
-        """Return the row of the longest of the late lives, in one world or in all; see `late`.
+        """Return the row of the longest late life, in one world or in all; see `late`.
 
-        Early organisms are left out: the longest-lived founder of a world is no product of its evolution.
-        Of equals it is the last-born, since limits of time cut many lives at the same age.
+        Early organisms do not count, since a long-lived founder is not a product of evolution.
+        Among equal lives the last-born wins, since time limits cut many lives at the same age.
 
         Raises:
             InputError: nothing was born there.
@@ -132,7 +134,7 @@ class Lives:
         return int(rows[len(rows) - 1 - np.argmax(lifespan[::-1])])
 
     def champions(self) -> np.ndarray:
-        """Return the row of the `oldest` of each world in which anything was born since the run began."""
+        """Return the row of the `oldest` of each world with a birth since the run began."""
         rows = np.flatnonzero(self.late())
         ranked = rows[np.lexsort((self.lifespan[rows], self.world[rows]))]
         return ranked[np.flatnonzero(np.diff(self.world[ranked], append=-1))]
@@ -155,11 +157,11 @@ class Lives:
 
     @cached_property
     def parent_row(self) -> np.ndarray:
-        """Row of each organism's parent, int64 (L,); -1 where the parent is not among these lives."""
+        """Row of each organism's parent, int64 (L,); -1 if the parent is not among these lives."""
         return self.rows_of(self.world, self.parent)
 
     def rows_of(self, world: np.ndarray, number: np.ndarray) -> np.ndarray:
-        """Return the rows of organisms by world and birth number, int64 (n,); -1 where there is none."""
+        """Return the rows of organisms by world and birth number, int64 (n,); -1 for missing ones."""
         return _rows(self.world, self.id, world, number)
 
     def rows_in(self, worlds: np.ndarray, numbers: np.ndarray) -> np.ndarray:
@@ -192,7 +194,7 @@ def join(
     """
     born = _concatenated([_columns(segment, BirthCause) for segment in births])
     _check_worlds(born, ends)
-    if len(ends) > 1:  # world by world; NumPy sorts numbers of 16 bits in linear time
+    if len(ends) > 1:  # sorted by world; NumPy sorts numbers of 16 bits in linear time
         order = np.argsort(born["world"].astype(np.uint16), kind="stable")
         born = {name: array[order] for name, array in born.items()}
     _check_births(born, ends, cells)
@@ -221,7 +223,7 @@ def join(
 
 
 def joined(parts: Sequence[Lives], firsts: np.ndarray) -> Lives:
-    """Return the lives of R runs, with the worlds of each numbered from its first on, int64 (R,)."""
+    """Join the lives of R runs; the first world of each gets its number in `first`, int64 (R,)."""
     columns = {
         each.name: np.concatenate([getattr(part, each.name) for part in parts])
         for each in fields(Lives)
@@ -260,7 +262,7 @@ def _check_deaths(
     born: np.ndarray,
     ended: np.ndarray,
 ) -> None:
-    """Check deaths, with the rows of those who died; the other arrays are of all organisms."""
+    """Check deaths and the rows of the dead; all other arrays are of all organisms."""
     if len(rows) and rows.min() < 0:
         raise ValueError(f"organism {dead['id'][rows.argmin()]} dies without having been born")
     early = (dead["tick"] < born[rows]) | (dead["tick"] > ended[rows])
@@ -272,11 +274,11 @@ def _check_deaths(
 def _rows(
     worlds: np.ndarray, numbers: np.ndarray, world: np.ndarray, number: np.ndarray
 ) -> np.ndarray:
-    """Return the row of each wanted organism among those given, int64 (n,); -1 where it is missing.
+    """Return the row of each wanted organism among the given ones, int64 (n,); -1 if it is missing.
 
     Args:
-        worlds: worlds of the given organisms, (L,), not falling.
-        numbers: birth numbers of the given organisms, (L,), rising within a world.
+        worlds: worlds of the given organisms, (L,), in ascending order.
+        numbers: birth numbers of the given organisms, (L,), ascending within a world.
         world: worlds of the wanted organisms, (n,).
         number: birth numbers of the wanted organisms, (n,).
     """
@@ -290,7 +292,7 @@ def _rows(
     there &= (numbers[row] == number) & (worlds[row] == world)
     row[~there] = -1
     rest = np.flatnonzero(~there & (number >= 0))
-    if len(rest):  # organisms alive at a fork, and lives that were left out
+    if len(rest):  # there are gaps at a fork, or if lives were left out
         keys, wanted = _key(worlds, numbers), _key(world[rest], number[rest])
         nearest = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
         row[rest] = np.where(keys[nearest] == wanted, nearest, -1)
@@ -303,7 +305,7 @@ def _key(world: np.ndarray, number: np.ndarray) -> np.ndarray:
 
 
 def _columns(segment: pa.Table, kind: type[Named]) -> dict[str, np.ndarray]:
-    """Return the columns of births or deaths as arrays; no parent is -1, causes are numbers of `kind`."""
+    """Return the columns of births or deaths as arrays; -1 for no parent, causes by number of `kind`."""
     arrays = {
         name: segment[name].fill_null(-1).to_numpy()
         for name in segment.column_names
@@ -313,11 +315,11 @@ def _columns(segment: pa.Table, kind: type[Named]) -> dict[str, np.ndarray]:
     codes = {each.label: each for each in kind}
     words = causes.dictionary.to_pylist()
     if not set(words) <= set(codes):
-        raise ValueError(f"{min(set(words) - set(codes), key=str)!r} is no cause")
+        raise ValueError(f"{min(set(words) - set(codes), key=str)!r} is not a cause")
     code_of_word = np.array([codes[word] for word in words], np.int8)
     return {**arrays, "cause": code_of_word[causes.indices.to_numpy()]}
 
 
 def _concatenated(parts: list[dict[str, np.ndarray]]) -> dict[str, np.ndarray]:
-    """Return the columns of all parts together; the parts are emptied, to save memory."""
+    """Return the joined columns of all parts. The parts are emptied to save memory."""
     return {name: np.concatenate([part.pop(name) for part in parts]) for name in list(parts[0])}

@@ -1,6 +1,6 @@
-"""The loop: advance, record, checkpoint; and how a run begins and goes on.
+"""The loop of a run: begin or resume, then advance, record and checkpoint.
 
-A run is a directory. Everything in it is a function of `config.toml`; see `record` and `checkpoint`.
+A run is a directory. Its content is a function of `config.toml`; see `record` and `checkpoint`.
 """
 
 import time
@@ -28,7 +28,7 @@ from primordia.runs.record import Recorder
 from primordia.runs.schema import Schema
 
 EARLY = (1.0, 4.0, 10.0)
-"""Seconds before each of the first checkpoints, after which a run can be looked at."""
+"""Seconds before each of the first checkpoints, so that a run can soon be read."""
 
 
 @dataclass
@@ -39,7 +39,7 @@ class Status:
     wall_s: float
     """seconds since this process started or resumed the run"""
     limits: Limits | None = None
-    """when each world stops; None if unknown"""
+    """the limits at which each world stops; None if unknown"""
 
 
 Listener = Callable[[Status], None]
@@ -62,7 +62,11 @@ def start(
     """
     _check_interval(checkpoint_every)
     if config.fork is not None:
-        raise InputError(f"these are the settings of a fork of {config.fork.run}; fork that again")
+        raise InputError(
+            f"these are the settings of a fork of {config.fork.run}; use `primordia fork` on "
+            "that "
+            "run"
+        )
     with interrupts.noting(), directory.create(run, config):
         engine = Engine(config)
         recorder = recorder_for(engine, run)
@@ -73,7 +77,7 @@ def start(
 def begin_or_resume(
     config: Config, run: Path, *, checkpoint_every: float = 60.0, listen: Listener | None = None
 ) -> list[str]:
-    """Begin a run, or go on with it if it has begun; see `start` and `resume`.
+    """Begin a run, or resume it if it has begun; see `start` and `resume`.
 
     Raises:
         InputError: the run was begun with other settings; limits may differ.
@@ -94,7 +98,7 @@ def resume(
     checkpoint_every: float = 60.0,
     listen: Listener | None = None,
 ) -> list[str]:
-    """Go on where a run stopped, was interrupted, or was killed.
+    """Go on with a run that stopped, was interrupted, or was killed.
 
     Args:
         run: the run's directory.
@@ -104,10 +108,11 @@ def resume(
         listen: called after each chunk.
 
     Returns:
-        Notes for the user: damaged checkpoints that were not used, or that there was nothing to do.
+        Notes for the user, about damaged checkpoints that were not used, or if nothing was to do.
 
     Raises:
-        InputError: this is no run, one in use, or one of other versions; a limit makes no sense.
+        InputError: this is not a run, it is in use, it was made by other versions, or a limit is
+            wrong.
         Trouble: a file cannot be written, or no checkpoint is whole.
     """
     _check_interval(checkpoint_every)
@@ -120,7 +125,9 @@ def resume(
     differ = archive.other_versions
     _check_same(run, differ, inexact)
     with interrupts.noting(), directory.locked(run):
-        last, damaged = archive.newest  # read under the lock, since another writer could change it
+        last, damaged = (
+            archive.newest
+        )  # read under the lock, so that no other writer can change the run
         if last is None and damaged:
             raise checkpoint.no_whole_checkpoint(run, damaged)
         if last is None and config.fork is not None:
@@ -145,7 +152,7 @@ def resume(
 
 
 def recorder_for(engine: Engine, run: Path | None) -> Recorder:
-    """Return a recorder for an engine's events; without a directory it keeps digests only."""
+    """Return a recorder for an engine's events; without a directory it keeps only digests."""
     config = engine.config
     return Recorder(run, config.seeds, Schema.of(engine.law, engine.tallies))
 
@@ -177,7 +184,7 @@ def drive(
 ) -> None:
     """Advance, record and checkpoint until every world stops or a signal comes; see `start`.
 
-    If a listener fails, there is a checkpoint before its error goes on.
+    If a listener fails, a checkpoint is written before its error is raised.
 
     Raises:
         KeyboardInterrupt: on Ctrl-C, SIGTERM or SIGHUP, after a checkpoint if the run has advanced.
@@ -185,7 +192,7 @@ def drive(
     limits = engine.limits(progress.limits.model_dump())
     with interrupts.noting() as noted, directory.held(run) as check:
         began, chunks = time.perf_counter(), _chunks(engine, limits, noted)
-        # The first chunk is compiled, which takes seconds; in these a command may be ended at once.
+        # Compiling the first chunk takes seconds, during which a signal may end a command at once.
         first = list(islice(chunks, 1))
         saver = Saver(engine, recorder, run, progress, checkpoint_every, began, check)
         with interrupts.deferred():
@@ -206,13 +213,13 @@ def drive(
 
 
 def _chunks(engine: Engine, limits: Limits, noted: list[int]) -> Iterator[Events]:
-    """Advance chunk by chunk -> the events of each, until every world stops or a signal comes."""
+    """Advance chunk by chunk and yield each one's events, until every world stops or a signal comes."""
     while engine.any_running(limits) and not noted:
         yield engine.advance(limits)
 
 
 class Saver:
-    """The checkpoints of a run that goes on: some soon after its first chunk, then one an interval."""
+    """The checkpoints of a running run: some soon after its first chunk, then one in each interval."""
 
     def __init__(
         self,
@@ -237,13 +244,13 @@ class Saver:
         return time.perf_counter() - self._began
 
     def save(self) -> None:
-        """Write a checkpoint, unless the run's folder is no longer there."""
+        """Write a checkpoint, unless the run's folder has been removed."""
         self._check()
         self._progress.wall_s = self._before + self.seconds
         checkpoint.save(self._run, self._engine.arrays(), self._recorder, self._progress)
 
     def save_if_due(self) -> None:
-        """Write a checkpoint if the time since the last one is up."""
+        """Write a checkpoint if the interval since the last one has passed."""
         if time.perf_counter() - self._saved >= self._wait:
             self.save()
             self._saved = time.perf_counter()

@@ -16,20 +16,20 @@ from primordia.runs.description import FILE as DESCRIPTION
 from primordia.runs.schema import TABLES
 
 INPUTS = ("config.toml", DESCRIPTION, FOUNDERS)
-"""Files that a run needs to go on, beside its checkpoints and the user's own code."""
+"""Files that a run needs to go on, except checkpoints and the user's own code."""
 Word = Annotated[int, Field(ge=0, lt=2**64)]
 
 
 def _is_input(name: str) -> str:
     folder, *parts = name.split("/")
     if name not in INPUTS and (folder != CODE or not parts or ".." in parts):
-        raise ValueError(f"{name} is not one of a run's files")
+        raise ValueError(f"{name} is not a file of a run")
     return name
 
 
 def _is_table(name: str) -> str:
     if name not in TABLES:
-        raise ValueError(f"{name} is no table")
+        raise ValueError(f"{name} is not a table")
     return name
 
 
@@ -47,7 +47,7 @@ class Part(BaseModel):
 class Seal:
     """Size and checksum of a file; see `files.seal`.
 
-    It has slots, since an arm of 10,000 runs holds 100,000 of them.
+    The class has slots, since an arm of 10,000 runs holds 100,000 seals.
     """
 
     bytes: int = Field(ge=0)
@@ -63,19 +63,19 @@ class Segment(Seal):
 
 
 class Progress(Part):
-    """What concerns the run as a whole."""
+    """The progress of a whole run."""
 
     limits: Stop
-    """ticks, births, until: as last requested"""
+    """the last requested ticks, births and until"""
     wall_s: float = Field(ge=0, allow_inf_nan=False)
     """seconds spent so far"""
     exact: bool
     """whether the whole run can be repeated bit for bit"""
     restarts: int = Field(0, ge=0)
-    """how often the bodies of the living began again at a resume, since the habitat cannot save them"""
+    """number of resumes at which the living got new bodies, since the habitat cannot save them"""
 
     def gone_on(self, exact: bool) -> "Progress":
-        """Return the progress of a run that goes on with its bodies as they were, or as at birth."""
+        """Return the progress of a resumed run, with its old bodies or with bodies as at birth."""
         return self.model_copy(update={"restarts": self.restarts + (not exact)})
 
 
@@ -84,7 +84,7 @@ class Manifest(Part):
 
     progress: Progress
     inputs: dict[Input, Seal]
-    """files that a run needs to go on, beside its checkpoints, by their path below the run"""
+    """files that a run needs to go on, except checkpoints, by their path below the run"""
     state: Seal
     segments: dict[Table, list[Segment]] = Field(min_length=len(TABLES))
     digests: dict[Table, list[tuple[Word, Word]]] = Field(min_length=len(TABLES))
@@ -101,13 +101,13 @@ def read(path: Path) -> Manifest:
 
     Raises:
         OSError: the file cannot be read.
-        ValueError: it holds no manifest, or was changed.
+        ValueError: the file holds no manifest, or was changed.
     """
     return parsed(files.read(path))
 
 
 def parsed(text: bytes) -> Manifest:
-    """Return the manifest in a text; raise ValueError if it holds none, or was changed."""
+    """Return the manifest in a text; raise ValueError if the text holds none, or was changed."""
     try:
         content = json.loads(text)
         recorded = content.pop("sha256")
@@ -118,7 +118,7 @@ def parsed(text: bytes) -> Manifest:
     try:
         return Manifest.model_validate_json(json.dumps(content))
     except ValueError:
-        raise ValueError("a manifest is not one of a run") from None
+        raise ValueError("a manifest does not belong to a run") from None
 
 
 def _checksum(content: dict[str, Any]) -> str:

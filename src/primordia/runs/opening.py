@@ -1,4 +1,4 @@
-"""Opening what a user names: a run, an arm's folder of runs, or several runs as one arm."""
+"""Opening of places that a user names: a run, an arm's folder of runs, or several runs as one arm."""
 
 import re
 from collections.abc import Sequence
@@ -13,7 +13,7 @@ from primordia.runs.arm import Arm
 from primordia.runs.records import Records
 
 EXPERIMENT = "experiment.toml"
-"""The file that tells the folder of an experiment from others; its arms are folders beside it."""
+"""The file that marks the folder of an experiment; its arms are folders beside this file."""
 
 
 def opened(places: Sequence[str | Path], name: str | None = None) -> Records:
@@ -24,7 +24,7 @@ def opened(places: Sequence[str | Path], name: str | None = None) -> Records:
         name: the arm's name.
 
     Raises:
-        InputError: there is no run; the runs are not of one arm.
+        InputError: there is no run, or the runs do not belong to one arm.
     """
     paths = [path for place in places for path in run_paths(Path(place))]
     if [Path(place) for place in places] == paths and len(paths) == 1 and name is None:
@@ -34,12 +34,13 @@ def opened(places: Sequence[str | Path], name: str | None = None) -> Records:
 
 
 def only(places: Sequence[str | Path]) -> Archive:
-    """Open the one run at some places; raise InputError if there are several, or none."""
+    """Open the single run at some places; raise InputError if there are several, or none."""
     paths = [path for place in places for path in run_paths(Path(place))]
     if len(paths) > 1:
         raise InputError(
-            f"{places[0]} is an arm of {len(paths)} runs, and this takes a single one, such as"
-            f" {paths[0]}"
+            f"{places[0]} is an arm of {len(paths)} runs, but a single run is needed here, such "
+            "as "
+            f"{paths[0]}"
         )
     return archive(paths[0])
 
@@ -50,7 +51,7 @@ def archive(path: Path) -> Archive:
 
 
 def run_paths(place: Path) -> list[Path]:
-    """Return the directories and bundles of the runs at a place, in the order of their names.
+    """Return the directories and bundles of the runs at a place, in order of names.
 
     Raises:
         InputError: there is none.
@@ -72,7 +73,7 @@ def run_paths(place: Path) -> list[Path]:
 
 
 def arm_paths(experiment: Path) -> list[Path]:
-    """Return the folders of an experiment that hold runs, in the order of their names."""
+    """Return the folders of an experiment that hold runs, in order of names."""
     folders = (path for path in sorted(experiment.iterdir()) if path.is_dir())
     return [path for path in folders if any(map(_is_run, path.iterdir()))]
 

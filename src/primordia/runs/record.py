@@ -1,7 +1,7 @@
 """Records: births, deaths and metrics as Parquet tables in closed, immutable segments.
 
-A segment is closed when it has 2^20 rows, or when a run ends. Rows that are in no segment yet (the open
-tail) are part of each checkpoint.
+A segment is closed when it has 2^20 rows, or when a run ends. Later rows, the open tail, are part
+of each checkpoint.
 """
 
 from dataclasses import dataclass, field
@@ -32,10 +32,10 @@ class Table:
 
 
 class Recorder:
-    """The writer of a run's tables: takes events, closes segments."""
+    """The writer of a run's tables: it takes events and closes segments."""
 
     def __init__(self, run: Path | None, worlds: int, schema: Schema) -> None:
-        """Begin empty tables in a run's directory; without one, keep digests only."""
+        """Begin empty tables in a run's directory; without a directory, keep only digests."""
         self._run, self.schema = run, schema
         self.tables = [Table(name, np.zeros((worlds, 2), np.uint64)) for name in TABLES]
 
@@ -47,7 +47,7 @@ class Recorder:
         """
         for table, rows in zip(self.tables, events, strict=True):
             count = int(rows.filled)
-            if count:  # cut on the host: JAX would compile a slice for every new count
+            if count:  # sliced on the host, since JAX would compile a slice for every new count
                 self._add(table, np.asarray(rows.rows)[:count].copy())
 
     def add(self, name: str, rows: np.ndarray) -> None:

@@ -1,6 +1,7 @@
-"""The records of worlds, through which all figures and numbers are made, wherever they are held.
+"""The records of worlds, from which all figures and numbers are made.
 
-`archive.Archive` reads those of one run directory, `arm.Arm` those of several runs as if they were one.
+`archive.Archive` reads the records of one run directory. `arm.Arm` reads the records of several
+runs as one.
 """
 
 from abc import ABC, abstractmethod
@@ -25,10 +26,10 @@ from primordia.runs.schema import Schema
 
 
 class Records(ABC):
-    """The records of W worlds that live by one law; each part is read or built at its first use."""
+    """The records of W worlds with the same law; each part is read or built at its first use."""
 
     path: Path
-    """the directory in which figures and videos are put"""
+    """the directory for figures and videos"""
     config: Config
     """the settings; `seeds` is W"""
 
@@ -39,17 +40,17 @@ class Records(ABC):
 
     @abstractmethod
     def parts(self) -> "Iterator[Records]":
-        """Yield the records of each run, world by world in the same order; each is read in its turn."""
+        """Yield the records of each run, in the order of the worlds; a run is read when it is yielded."""
 
     @property
     @abstractmethod
     def description(self) -> Description:
-        """What the parts said of themselves when the run began."""
+        """The description of the parts from the beginning of the run."""
 
     @property
     @abstractmethod
     def versions(self) -> dict[str, Any]:
-        """The format, package versions and device that the worlds were begun with."""
+        """The format, package versions and device with which the worlds began."""
 
     @property
     @abstractmethod
@@ -59,7 +60,7 @@ class Records(ABC):
     @property
     @abstractmethod
     def progress(self) -> Progress:
-        """Seconds spent, the limits now in force, and whether everything repeats bit for bit."""
+        """Seconds spent, the present limits, and whether everything repeats bit for bit."""
 
     @property
     @abstractmethod
@@ -74,7 +75,7 @@ class Records(ABC):
     @property
     @abstractmethod
     def origin(self) -> Mapping[str, np.ndarray] | None:
-        """The arrays that a fork began with, as in `state`; None if this is no fork."""
+        """The arrays that a fork began with, as in `state`; None if this is not a fork."""
 
     @property
     @abstractmethod
@@ -92,7 +93,7 @@ class Records(ABC):
 
     @abstractmethod
     def admit(self, *parts: str) -> None:
-        """Let the user's own code of these parts, or of all, be imported.
+        """Allow the user's own code of these parts, or of all parts, to be imported.
 
         Raises:
             InputError: the user has not trusted it yet.
@@ -101,21 +102,22 @@ class Records(ABC):
     @property
     @abstractmethod
     def habitat(self) -> AnyHabitat:
-        """The habitat, for reading its properties; build another one to make bodies in.
+        """The habitat, only for reading its properties; build a new one to make bodies.
 
         Raises:
-            InputError: the user has not trusted its code yet; `law` and `heredity` raise it too.
+            InputError: the user has not trusted its code yet (`law` and `heredity` also raise this
+                error).
         """
 
     @property
     @abstractmethod
     def law(self) -> Law:
-        """The law that holds in the worlds."""
+        """The law of the worlds."""
 
     @property
     @abstractmethod
     def heredity(self) -> Heredity:
-        """The part of the law that makes genomes, which needs neither habitat nor brain."""
+        """The part of the law that makes genomes. It needs neither habitat nor brain."""
 
     @cached_property
     def layout(self) -> Layout:
@@ -124,7 +126,7 @@ class Records(ABC):
 
     @cached_property
     def count(self) -> Callable[[str], np.ndarray]:
-        """Numbers of 64 bits in the state by their name, as uint64; each is read once."""
+        """Return numbers of 64 bits in the state by their name, as uint64; each is read once."""
         return cache(partial(read_count, self.state))
 
     @cached_property
@@ -147,17 +149,18 @@ class Records(ABC):
         return self.table("metrics")
 
     def notes_of(self, lives: Lives) -> np.ndarray:
-        """Return what the mutation noted at the births of some lives, int32 (L, n)."""
+        """Return the mutation's notes at the births of some lives, int32 (L, n)."""
         if not self.schema.notes:
             return np.zeros((len(lives), 0), np.int32)
         return np.stack(self._of_births(lives, *self.schema.notes), axis=1)
 
     def mates_of(self, lives: Lives) -> np.ndarray:
-        """Return the birth number of the mate of each of some lives, int64 (L,); -1 without one."""
+        """Return the birth number of the mate at the births of some lives, int64 (L,); -1 without a
+        mate."""
         return self._of_births(lives, "mate")[0] if self.schema.mates else np.full(len(lives), -1)
 
     def _of_births(self, lives: Lives, *columns: str) -> list[np.ndarray]:
-        """Return columns of the births of some lives, (L,) each; no value is -1."""
+        """Return columns of the births of some lives, each (L,); -1 for a missing value."""
         births = self.table("births", ("world", "id", *columns))
         world, number = births["world"].to_numpy(), births["id"].to_numpy()
         order = np.lexsort((number, world))

@@ -1,4 +1,4 @@
-"""The columns of a run's tables, from the words that the law writes to Arrow columns."""
+"""The schema of a run's tables: the law's words become Arrow columns."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -44,7 +44,7 @@ class Schema:
         return cls(cells, about.mates, about.notes, tuple(about.beginning), about.tallies)
 
     def columns(self, table: str) -> Columns:
-        """Return the columns of a table's rows, as the law and the tallies write them."""
+        """Return the columns of a table's rows in the form of the law and the tallies."""
         if table == "births":
             return birth_columns(self.mates, self.notes)
         if table == "deaths":

@@ -1,4 +1,4 @@
-"""A closed segment of a table: a Parquet file, which is read only if it has the table's columns."""
+"""Closed segments of a table: a Parquet file is read only if it has the table's columns."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -9,29 +9,29 @@ import pyarrow.parquet as pq
 from primordia.errors import Trouble
 
 NULLABLE = ("parent", "mate")
-"""Columns that may have no value: those of a founder, and of a child without a mate."""
+"""Columns that may have no value, for a founder or a child without a mate."""
 MANY = 2**16
-"""Number of rows from which several threads read a segment sooner than one."""
+"""Number of rows from which several threads read a segment faster than one thread."""
 
 
 def read(path: Path, rows: int, schema: pa.Schema, columns: Sequence[str] | None) -> pa.Table:
     """Return a segment, all columns or some.
 
     Args:
-        path: its file.
+        path: the segment's file.
         rows: the number of rows that it must have.
         schema: the columns that it must have.
-        columns: names of those that are wanted.
+        columns: names of the wanted columns.
 
     Raises:
-        Trouble: the file is no segment of this table.
+        Trouble: the file is not a segment of this table.
     """
     try:
         with pq.ParquetFile(path, pre_buffer=False) as file:
             found = {field.name: field.type for field in file.schema_arrow}
             wanted = {field.name: field.type for field in schema}
             if len(file.schema_arrow) != len(found) or found != wanted:
-                raise Trouble(f"{path} is damaged: it has other columns than this table")
+                raise Trouble(f"{path} is damaged: its columns are not those of this table")
             table = file.read(columns, use_threads=rows >= MANY)
             names = list(columns) if columns else schema.names
             table = table.select(names).cast(pa.schema([schema.field(name) for name in names]))
@@ -41,5 +41,5 @@ def read(path: Path, rows: int, schema: pa.Schema, columns: Sequence[str] | None
     if table.num_rows != rows:
         raise Trouble(f"{path} is damaged: it has {table.num_rows} rows instead of {rows}")
     if any(table[name].null_count for name in table.column_names if name not in NULLABLE):
-        raise Trouble(f"{path} is damaged: it lacks values")
+        raise Trouble(f"{path} is damaged: values are missing")
     return table

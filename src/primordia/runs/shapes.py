@@ -1,4 +1,4 @@
-"""The arrays that a checkpoint must hold, known from a run's settings and description alone."""
+"""The arrays that a checkpoint must hold, by a run's settings and description."""
 
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
@@ -13,7 +13,7 @@ from primordia.runs.description import Description
 from primordia.runs.schema import TABLES, Schema
 
 Kind = tuple[str, tuple[int | None, ...]]
-"""Type and shape of an array; None is a length that nothing tells."""
+"""Type and shape of an array; None is an unknown length."""
 
 Blocks = tuple[tuple[str, tuple[int, ...]], ...]
 
@@ -23,7 +23,7 @@ COUNTS = (
 )
 """Numbers of 64 bits of each world."""
 BODIES = "bodies"
-"""Beginning of the names of a habitat's arrays, which have a row for each cell."""
+"""Prefix of the names of a habitat's arrays, which have a row for each cell."""
 
 
 class Expected:
@@ -38,16 +38,17 @@ class Expected:
         self._tally: Kind = "int32", (self._cells, len(about.tallies))
 
     def fault(self, arrays: Mapping[str, np.ndarray]) -> str | None:
-        """Return which array is missing or unknown, or which number of a world no run can reach.
+        """Return a fault: an array is missing or unknown, or a world's number is impossible; else
+        None.
 
-        It reads the numbers of worlds alone; `fault_of` checks every array when it is read.
+        Only the numbers of worlds are read; `fault_of` checks every other array when it is read.
         """
         for name in self._kinds:
             if name not in arrays:
                 return f"there is no array {name}"
         for name in arrays:
             if name not in self._kinds and not name.startswith(BODIES):
-                return f"there is an array {name}, which no run has"
+                return f"there is an unknown array {name}"
         for name in set(COUNTS) - {"seed", "food"}:
             count = read_count(arrays, f"world.worlds.{name}")
             if ((count >= 2**63) & (count != NEVER)).any():
@@ -55,7 +56,7 @@ class Expected:
         return None
 
     def fault_of(self, name: str, array: np.ndarray) -> str | None:
-        """Return what is wrong with one array: type, shape, or a row; None if it fits the settings."""
+        """Return the fault of an array (type, shape, or a row); None if it fits the settings."""
         kind = self._tally if name == f"{BODIES}.tally" else self._kinds.get(name)
         if not (array.shape[:1] == (self._cells,) if kind is None else _fits(array, kind)):
             return f"{name} is {array.dtype} {array.shape}, which does not fit the settings"
@@ -63,7 +64,8 @@ class Expected:
         return self._odd_row(table, array) if folder == "tail" else None
 
     def _odd_row(self, table: str, tail: np.ndarray) -> str | None:
-        """Return what an open tail names that does not exist: a world, a cell or a cause."""
+        """Return the fault of an open tail that names a missing world, cell or cause; None without
+        one."""
         most = {
             "births": {"cell": self._cells, "cause": len(BirthCause)},
             "deaths": {"cell": self._cells, "cause": len(Cause)},
@@ -92,14 +94,15 @@ def _count(name: str, *shape: int) -> Iterator[tuple[str, Kind]]:
 def _kinds(
     schema: Schema, blocks: Blocks, moments: int, worlds: int, looks: int
 ) -> dict[str, Kind]:
-    """Return the kind of each array but the habitat's, by name; runs of one arm share it.
+    """Return the kind of each array except the habitat's, by name; runs of one arm share the
+    result.
 
     Args:
         schema: the columns of the tables.
         blocks: name and shape of each block of weights in a genome.
         moments: number of moments that an organism remembers.
         worlds: number of worlds.
-        looks: number of ratchets, which look at the world from time to time.
+        looks: number of ratchets.
     """
     tails = {f"tail.{each}": schema.columns(each).width for each in TABLES}
     return {

@@ -1,4 +1,4 @@
-"""The JSON files of a run directory, each of which has a model that says what it may hold."""
+"""The JSON files of a run directory; a model defines the content of each."""
 
 from pathlib import Path
 from typing import TypeVar
@@ -12,7 +12,7 @@ Model = TypeVar("Model", bound=BaseModel)
 
 
 def read(path: Path, model: type[Model], otherwise: str) -> Model:
-    """Return the content of a file; raise InputError with the words of `otherwise` if it has no such."""
+    """Return the content of a file; raise InputError with the text `otherwise` if it is not valid."""
     try:
         return model.model_validate_json(files.read(path))
     except (OSError, ValidationError):

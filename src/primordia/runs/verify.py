@@ -1,4 +1,4 @@
-"""Verification: a run is repeated from its beginning and compared with its record."""
+"""Verification: a run is repeated from its beginning and compared with its records."""
 
 import time
 
@@ -12,10 +12,10 @@ from primordia.runs.loop import Listener, Status, recorder_for, restore
 
 
 def verify(run: Archive, listen: Listener | None = None) -> list[str]:
-    """Repeat a run from its beginning, without writing, and compare -> what differs, if anything.
+    """Repeat a run from its beginning, without writing. Return the differences from its records.
 
     Raises:
-        InputError: the run has no checkpoint yet, or is not exact, so that it need not repeat.
+        InputError: the run has no checkpoint yet, or it is not exact, so it may not repeat.
     """
     config = run.config
     last, faults = run.newest
@@ -24,7 +24,9 @@ def verify(run: Archive, listen: Listener | None = None) -> list[str]:
     if last is None:
         raise InputError(f"{run.path} has no checkpoint yet, so there is nothing to verify")
     if not last.manifest.progress.exact:
-        raise InputError(f"{run.path} is not exact (see `primordia info`): nothing can be verified")
+        raise InputError(
+            f"{run.path} is not exact (see `primordia info`), so it cannot be verified"
+        )
     run.admit()
     engine = Engine(config)
     limits = engine.limits({}, world_ticks(run.state))

@@ -1,4 +1,4 @@
-"""Doors: tasks that are made from the name of an environment alone, such as `gym:LunarLander-v3`."""
+"""Doors: tasks made from only the name of an environment, such as `gym:LunarLander-v3`."""
 
 from textwrap import fill
 from typing import Any
@@ -8,22 +8,22 @@ import tomli_w
 from primordia.settings import parts
 
 DOORS = {"gym": "primordia.habitats.gymnasium.task", "gymnax": "primordia.habitats.gymnax.task"}
-"""Module of each door, by the word before the colon. It has functions `values` and `report`."""
+"""Module of each door, by the word before the colon. A door has functions `values` and `report`."""
 LEAST, MOST = 0.001, 0.5
-"""Bounds of the probability to replicate that is chosen."""
+"""Bounds of the default probability of replication."""
 WIDTH = 100
-"""Columns of comments."""
+"""Width of comments, in characters."""
 DEFAULT = "gym"
-"""The door of a name without one, where a name can be nothing else than an environment's."""
+"""The door of an environment's name without a door."""
 
 
 def is_door(task: str) -> bool:
-    """Return whether a task is the name of an environment behind a door."""
+    """Return whether a task is the name of an environment with a door."""
     return task.partition(":")[0] in DOORS and ":" in task
 
 
 def full(env: str) -> str:
-    """Return the name of an environment with that of its door."""
+    """Return the name of an environment with its door."""
     return env if is_door(env) else f"{DEFAULT}:{env}"
 
 
@@ -37,7 +37,7 @@ def values(task: str) -> dict[str, Any]:
 
 
 def replication(lifespan: float) -> float:
-    """Return a probability to replicate in a tick for a mean life of random actions, in ticks.
+    """Return a probability of replication in a tick, for a mean life of random actions in ticks.
 
     An organism replicates about once in such a life, since the paper makes the probability "loosely
     proportional to the average lifespan of the initial organisms".
@@ -54,14 +54,16 @@ def text(env: str) -> str:
         *facts,
         *(f"Found: {fault}." for fault in faults),
         f"fatal is a condition that ends a life, such as: {fatal} or obs[0] < -1.",
-        "food is an amount, such as: max(reward, 0); it needs a [metabolism] with store, drain and gain.",
+        "food is an amount, such as: max(reward, 0); it needs a [metabolism] with store, drain "
+        "and "
+        "gain.",
     ]
     comments = [fill(line, WIDTH, initial_indent="# ", subsequent_indent="#   ") for line in lines]
     return "\n".join([*comments, "", tomli_w.dumps(table)])
 
 
 def report(env: str) -> tuple[list[str], list[str]]:
-    """Return what is known of an environment, and what was found to be wrong with it, a line each."""
+    """Return the known facts of an environment and its faults, each in a line."""
     return _through("report", env)
 
 

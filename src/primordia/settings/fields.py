@@ -12,7 +12,7 @@ from primordia.settings.values import shown
 
 
 def setting_fields(model: type, prefix: str = "") -> dict[str, Any]:
-    """Return every single setting of a model, dotted path -> pydantic field; {} if it has none."""
+    """Return all single settings of a model: dotted path -> pydantic field."""
     fields: dict[str, Any] = {}
     if not issubclass(model, BaseModel):
         return fields
@@ -26,7 +26,7 @@ def setting_fields(model: type, prefix: str = "") -> dict[str, Any]:
 
 
 def rates_of(group: Settings, prefix: str = "") -> dict[str, float]:
-    """Return the values of a group's own settings declared as `Rate`, by name with a prefix."""
+    """Return the values of a group's settings declared as `Rate`, by name with a prefix."""
     fields = type(group).model_fields.items()
     return {
         prefix + name: getattr(group, name) for name, field in fields if SEASONAL in field.metadata
@@ -34,7 +34,7 @@ def rates_of(group: Settings, prefix: str = "") -> dict[str, float]:
 
 
 def choices(annotation: Any) -> tuple[Any, ...]:
-    """Return the values of a setting that is a choice, or a list of choices; () if it is neither."""
+    """Return the possible values of a choice, or of a list of choices; () for other settings."""
     if annotation is bool:
         return False, True
     if get_origin(annotation) is Literal:
@@ -72,7 +72,7 @@ def first_fault(
         return f"there is no setting {shown(path)}{did_you_mean(path, known)}{more}"
     if fault["type"] == "missing":
         return f"{path} is missing{more}"
-    if fault["type"] == "value_error":  # raised by our own validators, so its message is complete
+    if fault["type"] == "value_error":  # an error of our validators, whose message is complete
         return f"{path}: {fault['ctx']['error']}{more}"
     message = fault["msg"][0].lower() + fault["msg"][1:]
     return f"{path}: {message}, not {shown(fault['input'])}{more}"

@@ -17,7 +17,7 @@ def make(what: str, table: Mapping[str, Any], find: Callable[[object], type[Part
 
     Args:
         what: the kind of part and the name of its table, one of PARTS.
-        table: settings by name; a table that names no part describes the one of DEFAULTS.
+        table: settings by name; a table that names no part describes the part in DEFAULTS.
         find: name -> the part's class; LookupError if there is none.
 
     Raises:

@@ -16,15 +16,15 @@ def find(what: str, name: object, known: Mapping[str, str], base: type) -> type:
         base: the class that parts of this kind subclass.
 
     Raises:
-        LookupError: there is no such name, module or class, or the class is no part of this kind; the
-            message says which.
+        LookupError: there is no such name, module or class, or the class is not a part of this
+            kind; the message says which.
     """
     found = load(what, name, known)
     if not isinstance(found, type):
         raise LookupError(f"{what} {name!r} is not a class")
     if not issubclass(found, base):
         raise LookupError(
-            f"{found.__name__} is no {what}: subclass {base.__name__} of {base.__module__}"
+            f"{found.__name__} is not a {what}: subclass {base.__name__} of {base.__module__}"
         )
     return found
 
@@ -37,5 +37,5 @@ def load(what: str, name: object, known: Mapping[str, str]) -> Any:
         raise LookupError(f"no {what} named {name!r}; known: {', '.join(known)}, or module:Class")
     try:
         return getattr(own_code.load(module), attribute)
-    except (Exception, SystemExit) as error:  # the module is the user's, and may raise anything
+    except (Exception, SystemExit) as error:  # the user's module may raise any error
         raise LookupError(f"{what} {name!r} cannot be loaded: {error}") from error

@@ -1,9 +1,9 @@
-"""Settings as nested tables, not yet validated: those of tasks and files, and their merger."""
+"""Settings of tasks and files as nested tables that are not yet validated."""
 
 import difflib
 import tomllib
 from importlib import resources
-from os.path import isfile  # false, not an error, for a name that is too long
+from os.path import isfile  # False, and no error, for a name that is too long
 from pathlib import Path
 from typing import Any
 
@@ -13,16 +13,16 @@ from primordia.settings import doors
 from primordia.settings.values import check_values
 
 NONE = "none"
-"""None, as TOML and flags write it."""
+"""The text for None in TOML and flags."""
 
 PARTS = {"habitat": "name", "brain": "kind", "mutation": "kind"}
 """Tables of replaceable parts, and the setting of each that names the part."""
 DEFAULTS = {"brain": "recurrent", "mutation": "gaussian"}
-"""Parts of tables that name none: those of the paper."""
+"""Default parts of tables that name no part: those of the paper."""
 
 
 CODE = ("env", "food")
-"""Settings of a part, beside its own name, that may be `module:name`."""
+"""Settings of a part, beside its name, that may be `module:name`."""
 IMPORTS = "imports"
 """The setting of a part that lists modules."""
 
@@ -91,7 +91,7 @@ def parsed_toml(text: str) -> dict[str, Any]:
 def merged(base: dict[str, Any], change: dict[str, Any]) -> dict[str, Any]:
     """Return `base` with the values of `change`, table by table.
 
-    A table of `change` that names another part replaces the whole table of `base`.
+    If a table of `change` names another part, it replaces the whole table of `base`.
     """
     result = dict(base)
     for name, value in change.items():
@@ -104,7 +104,7 @@ def merged(base: dict[str, Any], change: dict[str, Any]) -> dict[str, Any]:
 
 
 def modules_of(table: dict[str, Any], key: str) -> list[str]:
-    """Return the modules that a part's table names: its class, what it calls, and what it imports."""
+    """Return the modules that a part's table names: for its class, its functions and its imports."""
     named = [str(table.get(each, "")).partition(":") for each in (key, *CODE)]
     modules = [module for module, colon, name in named if colon and name and _is_dotted(module)]
     imports = table.get(IMPORTS, ())
@@ -117,7 +117,7 @@ def _is_dotted(text: str) -> bool:
 
 
 def with_full_paths(folder: Path, values: dict[str, Any]) -> dict[str, Any]:
-    """Return values in which the habitat's files that are in the folder have full paths."""
+    """Return values with full paths of the habitat's files that are in the folder."""
     habitat = values.get("habitat")
     if not isinstance(habitat, dict):
         return values
@@ -125,7 +125,7 @@ def with_full_paths(folder: Path, values: dict[str, Any]) -> dict[str, Any]:
 
 
 def _full_paths(folder: Path, table: dict[str, Any]) -> dict[str, Any]:
-    """Return a table in which each `file`, also of inner tables, has its full path."""
+    """Return a table with the full path of each `file`, also in inner tables."""
     changed = {}
     for name, value in table.items():
         file = folder / str(value)
@@ -135,7 +135,7 @@ def _full_paths(folder: Path, table: dict[str, Any]) -> dict[str, Any]:
 
 
 def replaced(values: Any, old: Any, new: Any) -> Any:
-    """Return nested tables and lists in which `new` stands for each `old`."""
+    """Return nested tables and lists with each `old` replaced by `new`."""
     if isinstance(values, dict):
         return {name: replaced(value, old, new) for name, value in values.items()}
     if isinstance(values, list | tuple):
@@ -144,7 +144,7 @@ def replaced(values: Any, old: Any, new: Any) -> Any:
 
 
 def flat(values: dict[str, Any], prefix: str = "") -> dict[str, Any]:
-    """Return nested tables as one, with dotted names."""
+    """Return nested tables as one table with dotted names."""
     one: dict[str, Any] = {}
     for name, value in values.items():
         inner = isinstance(value, dict)

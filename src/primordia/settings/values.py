@@ -1,4 +1,4 @@
-"""Single values of settings, before any setting is validated: what arrays and files can hold."""
+"""Checks of single values before settings are validated: arrays and files must be able to hold them."""
 
 import math
 from typing import Any
@@ -6,11 +6,11 @@ from typing import Any
 from primordia.errors import InputError
 
 DEEPEST = 16
-"""Most levels of nested tables and lists."""
+"""Largest number of levels of nested tables and lists."""
 LARGEST = 3.4028234663852886e38
 """Largest float32."""
 SHOWN = 100
-"""Most characters of a value in a message."""
+"""Largest number of characters of a value in a message."""
 
 
 def check_values(values: Any, path: str = "", depth: int = 0) -> None:
@@ -18,7 +18,7 @@ def check_values(values: Any, path: str = "", depth: int = 0) -> None:
 
     Args:
         values: a value, or a table or list of values.
-        path: its dotted name, for messages.
+        path: the value's dotted name, for messages.
         depth: the number of tables and lists around it.
 
     Raises:
@@ -39,7 +39,7 @@ def check_values(values: Any, path: str = "", depth: int = 0) -> None:
         unfit = "does not fit into float32" if math.isfinite(values) else "is not a finite number"
         raise InputError(f"{path}: {values} {unfit}")
     elif isinstance(values, str) and ("\0" in values or not _writable(values)):
-        raise InputError(f"{path}: {shown(values)} has a character that no text file can hold")
+        raise InputError(f"{path}: {shown(values)} has a character that a text file cannot hold")
 
 
 def _writable(text: str) -> bool:
@@ -51,6 +51,6 @@ def _writable(text: str) -> bool:
 
 
 def shown(value: object) -> str:
-    """Return a value as Python writes it, shortened for a message."""
+    """Return the `repr` of a value, shortened for a message."""
     text = hex(value) if isinstance(value, int) and value.bit_length() > SHOWN else repr(value)
     return text if len(text) <= SHOWN else f"{text[: SHOWN - 3]}..."

@@ -1,1 +1,1 @@
-"""One TOML file a task: the paper's experiments as data."""
+"""Tasks, one TOML file each: the paper's experiments as data."""

@@ -1,7 +1,7 @@
-"""Checks for parts of your own: does a brain, a habitat or a mutation keep its contract?
+"""Checks for your own brains, habitats and mutations: do they keep their contracts?
 
 A test of a part is one call, such as `check_brain(Leaky(neurons=8))`. A check raises `ContractError`; its
-message says what is wrong and what to do. It warns where something is merely slow.
+message says what is wrong and what to do. It warns if a part is only slow.
 """
 
 from primordia.testing.brain import check_brain

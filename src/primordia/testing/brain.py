@@ -18,7 +18,7 @@ def check_brain(brain: Brain, senses: int = 33, outputs: int = 5) -> None:
     """Check types, purity, and the same bits for every number of organisms, compiled or not.
 
     Args:
-        brain: with the settings to be checked.
+        brain: the brain with its settings.
         senses: S, numbers that an organism perceives.
         outputs: A, numbers that its motor takes.
 
@@ -33,7 +33,9 @@ def check_brain(brain: Brain, senses: int = 33, outputs: int = 5) -> None:
     for count in COUNTS:
         few = think(*last((genome, memory, seen[0]), count))
         says = (
-            f"when {count} instead of {ALL} think together; sum with brains.layers.matvec instead of"
+            f"when {count} instead of {ALL} think together; sum with brains.layers.matvec "
+            "instead "
+            "of"
             " (w * x).sum(-1)"
         )
         same(brain, last(whole, count), few, says, ALL - count)
@@ -47,7 +49,7 @@ def check_brain(brain: Brain, senses: int = 33, outputs: int = 5) -> None:
 
 
 def _minds(brain: Brain, senses: int, outputs: int) -> tuple[Genome, Array, Array]:
-    """Return genomes and memories of ALL organisms, and what they perceive (TICKS, ALL, S)."""
+    """Return genomes and memories of ALL organisms, and their senses (TICKS, ALL, S)."""
     try:
         layout = brain.layout(senses, outputs)
     except InputError as error:
@@ -55,7 +57,9 @@ def _minds(brain: Brain, senses: int, outputs: int) -> tuple[Genome, Array, Arra
     need(
         layout == brain.layout(senses, outputs),
         brain,
-        "has other blocks of weights at each call; blocks depend on settings, senses and outputs only",
+        "has different blocks of weights at each call; blocks depend on settings, senses and "
+        "outputs "
+        "only",
     )
     length = brain.memory(senses, outputs)
     need(
@@ -85,14 +89,14 @@ def _types(brain: Brain, genome: Genome, memory: Array, seen: Array, outputs: in
     need(
         list(given) == list(genome) and all(given[name] is genome[name] for name in given),
         brain,
-        "changes the genome that it is given; put new arrays into variables of their own",
+        "changes its genome argument; put new arrays into new variables",
     )
 
 
 def _depends_on_its_own_only(
     brain: Brain, whole: tuple, genome: Genome, memory: Array, seen: Array
 ) -> None:
-    """Compare with a second trace, and with what others think beside an organism that is broken."""
+    """Compare with a second trace, and with a batch in which one organism has a broken genome."""
     again = jax.jit(lambda *given: brain(*given))(genome, memory, seen)
     says = (
         "when it is traced again, so it depends on more than genome, memory and senses; keep no"
@@ -108,5 +112,5 @@ def _depends_on_its_own_only(
 
 
 def _thoughts(brain: Brain, genome: Genome, memory: Array, seen: Array) -> tuple[Array, Array]:
-    """Think for TICKS ticks in one loop -> memory (N, M), outputs (TICKS, N, A)."""
+    """Think for TICKS ticks in one loop. Return memory (N, M) and outputs (TICKS, N, A)."""
     return lax.scan(lambda memory, senses: brain(genome, memory, senses), memory, seen)

@@ -25,11 +25,11 @@ from primordia.testing.trial import ALL, COUNTS
 
 
 def check_habitat(habitat: AnyHabitat) -> None:
-    """Check types, purity, lives that depend on nothing but words and actions, saving and pictures.
+    """Check types, purity, exact lives, saving and pictures of a habitat.
 
     Args:
-        habitat: with the settings to be checked; one on the host must not have been opened. It is
-            not changed: copies of it are opened.
+        habitat: the habitat with its settings; a habitat on the host must not be open. The habitat
+            is not changed, since copies of it are opened.
 
     Raises:
         ContractError: the habitat does not keep the contract of `habitats.contract`.
@@ -45,29 +45,31 @@ def check_habitat(habitat: AnyHabitat) -> None:
     lives.compare(
         expected,
         lives.whole(),
-        "when it begins again, so it depends on more than words and actions; draw from `words` alone,"
-        " and let `open` begin from nothing",
+        "when it begins again, so it depends on more than words and actions; draw only from "
+        "`words`, and let `open` begin from "
+        "nothing",
     )
     for count in COUNTS:
-        says = f"among {count} bodies than among {ALL}; compute each body by itself, elementwise"
+        says = f"among {count} bodies than among {ALL}; compute each body alone, elementwise"
         lives.compare(expected, lives.among(count), says)
-    says = "after a rest; leave bodies alone whose cells are not alive"
+    says = "after a rest; do not step bodies whose cells are not alive"
     lives.compare(expected, lives.interrupted(), says)
     says = (
-        "when others are born beside it, or where another lived before; `reset` makes whole bodies, in"
-        " the cells given and in no others"
+        "when others are born beside it, or if another lived in its cell before; let `reset` "
+        "make complete bodies, only in the given "
+        "cells"
     )
     lives.compare(expected, lives.born_late(), says)
     if habitat.can(Ability.SAVE):
         for rows in (slice(None), slice(2, 3)):
-            says = "after `save` and `load`; save all that a body's future depends on"
+            says = "after `save` and `load`; save everything on which a body's future depends"
             lives.compare(expected, lives.restored(rows), says)
     if habitat.can(Ability.PICTURE):
         lives.drawn()
 
 
 def _stated(habitat: AnyHabitat) -> None:
-    """Check what it says of itself."""
+    """Check the habitat's properties."""
     try:
         complete(habitat)
     except TypeError as error:
@@ -85,14 +87,15 @@ def _stated(habitat: AnyHabitat) -> None:
         and all(part.size > isinstance(part, Discrete) for part in action.parts)
         and action.size > 0,
         habitat,
-        f"has action = {action!r}; it must be Discrete(2) or more, Continuous(1) or more, or a Compound"
+        f"has action = {action!r}; it must be Discrete(2) or more, Continuous(1) or more, or a "
+        "Compound"
         " of such parts",
     )
     _abilities(habitat)
 
 
 def _abilities(habitat: AnyHabitat) -> None:
-    """Check what may be left out."""
+    """Check optional properties and methods."""
     need(
         habitat.rate is None or habitat.rate > 0,
         habitat,
@@ -104,7 +107,11 @@ def _abilities(habitat: AnyHabitat) -> None:
         f"has versions = {habitat.versions!r}; names and versions must be strings",
     )
     taken = sorted({"world", *DEATHS.names} & set(habitat.tallies))
-    need(not taken, habitat, f"counts {taken}, which deaths have already; give tallies other names")
+    need(
+        not taken,
+        habitat,
+        f"counts {taken}, which are columns of deaths already; give tallies other names",
+    )
     for ability, methods in habitat.abilities.items():
         lacking = habitat.lacks(ability)
         need(
@@ -139,7 +146,7 @@ def _types(habitat: JaxHabitat) -> None:
     need(
         len({jax.tree.structure(each) for each in (stepped[0], bodies)}) == 1,
         habitat,
-        "makes bodies of another form in step than in reset; return the same tree of arrays",
+        "makes bodies of different forms in step and in reset; return the same tree of arrays",
     )
     for after, before in zip(jax.tree.leaves(stepped[0]), jax.tree.leaves(bodies), strict=True):
         typed(habitat, "bodies after a step", after, before.shape, before.dtype)
@@ -147,19 +154,19 @@ def _types(habitat: JaxHabitat) -> None:
 
 
 def _in_a_loop(habitat: JaxHabitat, lives: Lives, expected: list[Past]) -> None:
-    """Compare lives in two loops, traced apart, and lives that were stepped tick by tick."""
+    """Compare lives in two loops with separate traces, and lives that were stepped tick by tick."""
     one, other = (
         jax.jit(lambda words, actions: _looped(habitat, words, actions))(lives.words, lives.actions)
         for _ in range(2)
     )
-    says = "when it is traced again, so it draws from more than `words`; keep no generator in it"
+    says = "when it is traced again, so it draws from more than `words`; keep no random generator in it"
     lives.compare(_pasts(one), _pasts(other), says)
     says = f"inside a compiled loop than stepped tick by tick{ROUNDED}"
     lives.compare(expected, _pasts(one), says)
 
 
 def _looped(habitat: JaxHabitat, words: Array, actions: Array) -> tuple[Array, Array, Outcome]:
-    """Live TICKS ticks -> senses at birth (N, S), senses (TICKS, N, S) and outcomes afterwards."""
+    """Live TICKS ticks. Return senses at birth (N, S), later senses (TICKS, N, S), and outcomes."""
 
     def tick(bodies: Bodies, action: Array) -> tuple[Bodies, tuple[Array, Outcome]]:
         bodies, outcome = habitat.step(bodies, action)
@@ -176,7 +183,7 @@ def _pasts(looped: tuple[Array, Array, Outcome]) -> list[Past]:
     for body in range(ALL):
         past: Past = [(first[body],)]
         for tick in range(TICKS):
-            reported = outcomes[:4]  # without faults, which the law finds in a loop
+            reported = outcomes[:4]  # without faults, which the law detects in a loop
             outcome = [None if each is None else each[tick, body] for each in reported]
             past.append((senses[tick, body], *outcome))
         pasts.append(past)

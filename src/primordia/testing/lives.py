@@ -1,4 +1,4 @@
-"""Lives to compare: the same words and actions, beside other bodies, with pauses, in other cells."""
+"""Lives to compare: equal words and actions beside other bodies, with pauses, or in other cells."""
 
 import copy
 from collections.abc import Iterator
@@ -28,11 +28,11 @@ TICKS = 12
 HALF = TICKS // 2
 
 Past: TypeAlias = list[tuple[Any, ...]]
-"""At each age from birth on: senses, then the outcome and the tally; None for what is not reported."""
+"""For each age from birth on: senses, outcome and tally; None for a value that is not reported."""
 
 
 def judged(habitat: object, outcome: Any, count: int) -> None:
-    """Raise ContractError if what a step reports is no Outcome of `count` bodies."""
+    """Raise ContractError if a step does not report an Outcome of `count` bodies."""
     need(isinstance(outcome, Outcome), habitat, f"reports {outcome!r}; return an Outcome from step")
     for name, each in outcome._asdict().items():
         if each is not None or name == "fatal":
@@ -41,7 +41,7 @@ def judged(habitat: object, outcome: Any, count: int) -> None:
 
 
 def actions(kind: Action) -> np.ndarray:
-    """Return actions of a kind that look random, for TICKS ticks of ALL bodies."""
+    """Return pseudo-random actions of a kind, for TICKS ticks of ALL bodies."""
     if isinstance(kind, Discrete):
         return (words(1, TICKS, ALL) % np.uint32(kind.size)).astype(np.int32)
     if isinstance(kind, Continuous):
@@ -55,7 +55,7 @@ def actions(kind: Action) -> np.ndarray:
 
 
 class Lives:
-    """The lives of ALL bodies of a habitat; in whatever way they are played, they must be the same."""
+    """The lives of ALL bodies of a habitat. They must be the same in every order of play."""
 
     def __init__(self, habitat: AnyHabitat) -> None:
         self.habitat = habitat
@@ -78,7 +78,7 @@ class Lives:
         return self._played(np.arange(ALL))
 
     def among(self, count: int) -> list[Past]:
-        """Play the last lives by themselves, in reversed order."""
+        """Play only the last lives, in reversed order."""
         return self._played(np.arange(ALL)[::-1][:count])
 
     def interrupted(self) -> list[Past]:
@@ -91,7 +91,7 @@ class Lives:
             return stage.pasts
 
     def born_late(self) -> list[Past]:
-        """Play with every third body born a second time, where it has lived for a while."""
+        """Play with every third body born a second time in the cell where it has lived for a while."""
         with self.opened(np.arange(ALL), ALL) as stage:
             stage.bear()
             for tick in range(TICKS):
@@ -101,7 +101,8 @@ class Lives:
             return stage.pasts
 
     def restored(self, rows: slice) -> list[Past]:
-        """Play half, and the rest of some of the lives in a habitat that takes what was saved."""
+        """Play half of the lives' ticks, and the rest of some lives in a habitat that loads the
+        saved state."""
         with self.opened(np.arange(ALL), ALL) as stage:
             stage.play(HALF)
             saved = stage.saved()
@@ -113,7 +114,7 @@ class Lives:
             return stage2.pasts
 
     def drawn(self) -> None:
-        """Check pictures of one body, and what is said of it."""
+        """Check the pictures and the captions of one body."""
         with self.opened(np.arange(2), 2, watched=True) as stage:
             stage.play(1)
             body = jax.tree.map(lambda leaf: np.array(leaf)[1], stage.habitat.seen())
@@ -130,13 +131,15 @@ class Lives:
             )
 
     def compare(self, expected: list[Past], found: list[Past], says: str) -> None:
-        """Raise ContractError where a life is not what is expected, up to the shorter end."""
+        """Raise ContractError if a life differs from the expected one, up to the shorter end."""
         for body, (one, other) in enumerate(zip(expected, found, strict=True)):
             for age, (a, b) in enumerate(zip(one, other, strict=False)):
                 pairs = zip(a, b, strict=False)
                 if any(np.asarray(x).tobytes() != np.asarray(y).tobytes() for x, y in pairs):
                     name = type(self.habitat).__name__
-                    raise ContractError(f"{name}: body {body} has another life at age {age} {says}")
+                    raise ContractError(
+                        f"{name}: body {body} has a different life at age {age} {says}"
+                    )
 
     def _played(self, who: np.ndarray) -> list[Past]:
         with self.opened(who, len(who)) as stage:
@@ -190,7 +193,7 @@ class Stage:
             self.tick()
 
     def saved(self) -> dict[str, np.ndarray]:
-        """Return what the habitat saves, checked."""
+        """Return the saved state of the habitat, checked."""
         part, arrays = self.lives.habitat, self.habitat.save()
         for name, array in arrays.items():
             need(
@@ -203,7 +206,7 @@ class Stage:
         return {name: array.copy() for name, array in arrays.items()}
 
     def take_over(self, other: "Stage", arrays: dict[str, np.ndarray]) -> None:
-        """Go on with what another stage saved."""
+        """Go on with the saved state of another stage."""
         self.habitat.load(arrays)
         self.age[:], self.alive[:] = other.age[self.who], other.alive[self.who]
         self.pasts = [[*past] if body in self.who else [] for body, past in enumerate(other.pasts)]

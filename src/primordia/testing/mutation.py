@@ -20,7 +20,7 @@ from primordia.testing.report import ROUNDED, ContractError, advise, need, same,
 from primordia.testing.trial import ALL, COUNTS, last
 
 LAYOUT = Layout((("input", (3, 7)), ("recurrent", (7, 7)), ("output", (2, 7))))
-"""What mutations are checked with unless another layout is given: the blocks of the default brain."""
+"""The default layout for checks of mutations: the blocks of the default brain."""
 GENERATIONS = 8
 TAKEN = {"world", *BIRTHS.names}
 """Columns that every births table has."""
@@ -36,11 +36,11 @@ class Made(NamedTuple):
 
 
 def check_mutation(mutation: Mutation, layout: Layout | None = None) -> None:
-    """Check types, births that do not depend on each other, and the same bits when they are replayed.
+    """Check types, independent births, and equal bits of replayed births.
 
     Args:
-        mutation: with the settings to be checked.
-        layout: of genomes; by default blocks named input, recurrent and output.
+        mutation: the mutation with its settings.
+        layout: layout of the genomes; by default blocks named input, recurrent and output.
 
     Raises:
         ContractError: the mutation does not keep the contract of `mutations.contract`.
@@ -52,13 +52,14 @@ def check_mutation(mutation: Mutation, layout: Layout | None = None) -> None:
     births: Callable[[Family], Made] = partial(_births, mutation, layout)
     made = jax.jit(births)(family)
     says = (
-        "when it is traced again, so a birth depends on more than parents, notes, rates and draws;"
-        " draw from `draws` only"
+        "when it is traced again, so a birth depends on more than parents, notes, rates and "
+        "draws; draw only from "
+        "`draws`"
     )
     same(mutation, made, jax.jit(lambda each: births(each))(family), says)
     for count in COUNTS:
         few = jax.jit(births)(family.take(np.s_[ALL - count :]))
-        says = f"when {count} instead of {ALL} are born together; compute each birth by itself"
+        says = f"when {count} instead of {ALL} are born together; compute each birth alone"
         same(mutation, last(made, count), few, says, ALL - count)
     same(mutation, made, births(family), f"when compiled{ROUNDED}")
     same(mutation, made, jax.jit(partial(_one_by_one, births))(family), f"when rebuilt{ROUNDED}")
@@ -68,12 +69,13 @@ def check_mutation(mutation: Mutation, layout: Layout | None = None) -> None:
 
 
 def _stated(mutation: Mutation, layout: Layout) -> None:
-    """Check what it says of itself: its notes, and the settings that seasons may change."""
+    """Check the mutation's notes and the settings that seasons may change."""
     try:
         mutation.check(layout)
     except ValueError as error:
         raise ContractError(
-            f"{type(mutation).__name__} does not fit the layout: {error}; give check_mutation a layout"
+            f"{type(mutation).__name__} does not fit the layout: {error}; give check_mutation a "
+            "layout"
         ) from None
     for name in mutation.notes:
         need(
@@ -99,7 +101,9 @@ def _stated(mutation: Mutation, layout: Layout) -> None:
         need(
             not unknown,
             mutation,
-            f"says that a season of {setting} changes {', '.join(sorted(unknown))}, which `rates` lacks",
+            f"says that a season of {setting} changes {', '.join(sorted(unknown))}, which "
+            "`rates` "
+            "lacks",
         )
     need(
         not mutation.governed("no-such-setting", layout),
@@ -130,12 +134,12 @@ def _births(mutation: Mutation, layout: Layout, family: Family) -> Made:
 
 
 def _change(parents: Array) -> Change:
-    """Return what stands for a change of behaviour here: the largest change of a weight."""
+    """Return a stand-in for a change of behaviour: the largest change of a weight."""
     return lambda children: jnp.abs(children - parents).max(axis=1)
 
 
 def _one_by_one(births: Callable[[Family], Made], family: Family) -> Made:
-    """Make the same births in a loop, as a line of descent is replayed."""
+    """Make the same births in a loop, as in the replay of a line of descent."""
 
     def birth(_: None, row: Array) -> tuple[None, Made]:
         return None, jax.tree.map(lambda leaf: leaf[0], births(family.take(row[None])))
@@ -169,13 +173,15 @@ def _types(mutation: Mutation, layout: Layout, family: Family) -> None:
 
 
 def _copies(mutation: Mutation, layout: Layout, made: Made, family: Family) -> None:
-    """Compare children that are no mutants with parents whose weights have any bits."""
+    """Compare children that are copies with parents whose weights have arbitrary bits."""
     parents = jnp.asarray(words(1, ALL, layout.length).view(np.float32))
     odd = jax.jit(partial(_births, mutation, layout))(family._replace(parents=parents))
     for children, of in ((made, family.parents), (odd, parents)):
         copy = ~np.asarray(children.mutated)[:, None]
         says = (
-            "though it is said to be a copy; give parents' weights as they are, or call it a mutant"
+            "although it is marked as a copy; return the parent's weights unchanged, or mark it "
+            "as a "
+            "mutant"
         )
         same(mutation, of, np.where(copy, children.genome, of), says)
 
@@ -191,6 +197,7 @@ def _obeys_rates(mutation: Mutation, layout: Layout, family: Family) -> None:
     need(
         not family.rates or not np.array_equal(none.genome, full.genome, equal_nan=True),
         mutation,
-        "makes the same children whatever its rates; read them from `rates`, not from the settings, or"
-        " seasons have no effect",
+        "makes the same children for all rates; read rates from `rates`, not from the settings, "
+        "or seasons have no "
+        "effect",
     )

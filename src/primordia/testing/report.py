@@ -1,4 +1,4 @@
-"""What checks have in common: comparisons bit for bit, and what is said of a part that fails."""
+"""Functions for all checks: comparisons bit for bit, and messages about a part that fails."""
 
 import warnings
 from typing import Any
@@ -8,7 +8,8 @@ import numpy as np
 
 ROUNDED = (
     "; compilers round a product and a sum together, or not, and sum in other orders: take"
-    " rounding.rounded_product for a product that is added to something, and brains.layers for brains"
+    " rounding.rounded_product for a product that is added to something, and brains.layers for "
+    "brains"
 )
 
 
@@ -17,13 +18,13 @@ class ContractError(AssertionError):
 
 
 def need(holds: object, part: object, says: str) -> None:
-    """Raise ContractError unless something holds."""
+    """Raise ContractError unless a condition holds."""
     if not holds:
         raise ContractError(f"{type(part).__name__} {says}")
 
 
 def typed(part: object, what: str, array: Any, shape: tuple[int, ...], dtype: Any) -> None:
-    """Raise ContractError if an array, or the shape of one, is not of a shape and dtype."""
+    """Raise ContractError if an array has another shape or dtype than these."""
     wanted = f"{np.dtype(dtype)} {shape}"
     is_array = isinstance(array, np.ndarray | jax.Array | jax.ShapeDtypeStruct)
     found = f"{array.dtype} {tuple(array.shape)}" if is_array else f"{array!r}"
@@ -41,12 +42,12 @@ def same(part: object, one: Any, other: Any, says: str, first: int = 0) -> None:
     ]
     if differ:
         raise ContractError(
-            f"{type(part).__name__} gives other bits for organism {first + min(differ)} {says}"
+            f"{type(part).__name__} gives different bits for organism {first + min(differ)} {says}"
         )
 
 
 def advise(part: object) -> None:
-    """Warn if a part shares its compiled code with no equal part."""
+    """Warn if equal parts do not share their compiled code."""
     try:
         hash(part)
         shares = type(part).__eq__ is not object.__eq__
@@ -55,6 +56,7 @@ def advise(part: object) -> None:
     if not shares:
         warnings.warn(
             f"{type(part).__name__} is not hashed by its values, so each run compiles it again;"
-            " subclass Settings, without dictionaries or lists among the settings, or define __hash__",
+            " subclass Settings, without dictionaries or lists among the settings, or define "
+            "__hash__",
             stacklevel=3,
         )

@@ -1,4 +1,4 @@
-"""What parts are tried with."""
+"""Inputs for checks of parts."""
 
 from typing import Any
 
@@ -6,7 +6,7 @@ import jax
 import numpy as np
 
 ALL, COUNTS = 32, (1, 2, 31)
-"""Organisms of a whole batch, and numbers of them that must come out the same by themselves."""
+"""Number of organisms of a whole batch, and numbers in smaller batches that must give the same."""
 
 
 def last(tree: Any, count: int) -> Any:

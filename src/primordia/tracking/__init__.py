@@ -1,1 +1,1 @@
-"""Metrics of runs for dashboards, written beside the run by another process, also while it goes on."""
+"""Metrics of runs for dashboards, written by a separate process, also during the run."""

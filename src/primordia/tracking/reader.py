@@ -1,4 +1,4 @@
-"""The rows of metrics of several runs, read again and again while these go on; each is given once."""
+"""The metrics of several runs, read at intervals while the runs go on. Each row is given once."""
 
 import hashlib
 import json
@@ -24,14 +24,14 @@ Version = tuple[str, int] | None
 
 @dataclass(frozen=True)
 class World:
-    """A world as dashboards name it."""
+    """A world with its names in dashboards."""
 
     name: str
     """such as `seed-3`, or `heredity/seed-3` in one of several arms"""
     identity: str
-    """16 hexadecimal digits that follow from all that the world's life follows from"""
+    """16 hexadecimal digits, a hash of all inputs of the world"""
     group: str
-    """the name that all worlds share which are looked at together"""
+    """the group of all worlds that are shown together"""
     settings: dict[str, Any]
 
 
@@ -39,27 +39,28 @@ class Reader:
     """The rows of metrics of several runs."""
 
     def __init__(self, group: str) -> None:
-        """Begin to read for dashboards on which all worlds are of one group."""
+        """Prepare to read; all worlds belong to the group."""
         self._group = group
         self._given: dict[str, int] = {}
         """last tick of each world whose row was given"""
         self._seen: dict[Path, Version] = {}
         """newest checkpoint of each run when it was last read"""
         self._fault_in = cache(files.fault_in)
-        """no file is read twice; that of a segment never changes"""
+        """results of checked files: no file is read twice, since segments never change"""
 
     def new(
         self, runs: Mapping[str, Sequence[Path]], patient: bool
     ) -> Iterator[tuple[World, list[Row]]]:
-        """Read the runs as of their newest checkpoints -> each world that has new rows, with these.
+        """Read the runs at their newest checkpoints. Return each world that has new rows, with the
+        rows.
 
-        A run that was cut off goes on from an earlier tick and repeats its rows to the last bit; these
-        are not new.
+        A resumed run repeats its rows since the last checkpoint to the last bit; these rows are not
+        new.
 
         Args:
-            runs: directories of runs by arm; "" names an arm that is alone.
-            patient: leave out for this time a run that has no checkpoint, or none that is whole: its
-                writer may have removed what is being read.
+            runs: directories of runs by arm; "" is the name of a single arm.
+            patient: skip a run that has no whole checkpoint this time, since its writer may have
+                removed the files.
 
         Raises:
             InputError: a directory holds no run.
@@ -70,7 +71,7 @@ class Reader:
                 try:
                     version = newest_version(path)
                     if (patient or path in self._seen) and version == self._seen.get(path):
-                        continue  # it has no checkpoint yet, or none since the last look
+                        continue  # the run has no checkpoint yet, or no new one
                     found = list(self._of_run(arm, path))
                 except (Trouble, OSError):
                     if not patient:
@@ -108,12 +109,12 @@ def newest_version(path: Path) -> Version:
 
 
 def _settings(run: Archive) -> dict[str, Any]:
-    """Return the settings of a run that all worlds of its arm have in common."""
+    """Return the settings that a run shares with all worlds of its arm."""
     return run.config.model_dump(mode="json", exclude={"seed", "seeds"})
 
 
 def _identity(run: Archive, arm: str) -> str:
-    """Return a text that differs for runs of other worlds, wherever they are; limits do not count."""
+    """Return a text that identifies a run's worlds on any machine; limits do not count."""
     settings = {name: value for name, value in _settings(run).items() if name != "stop"}
     begun = (run.path / FOUNDERS, run.path / checkpoint.ORIGIN / checkpoint.MANIFEST)
     seals = [files.seal(path)["sha256"] for path in begun if path.exists()]

@@ -1,8 +1,9 @@
-"""Event files for TensorBoard: a run of it, which is a folder, for each world.
+"""Event files for TensorBoard: each world is a folder, which TensorBoard calls a run.
 
 FOLDER/seed-3/events.out.tfevents.TIME.HOST.primordia-IDENTITY
 
-A file is known by the world's identity, so that another call replaces the files of the same world alone.
+The name of a file has the world's identity, so that a later call replaces only files of the same
+world.
 """
 
 import time
@@ -19,7 +20,7 @@ class TensorBoard:
     """A folder that `tensorboard --logdir` shows; values are kept in single precision there."""
 
     def __init__(self, folder: Path) -> None:
-        """Prepare to write into a folder; nothing is made yet.
+        """Prepare to write into a folder, without making it.
 
         Raises:
             InputError: tensorboardX is not installed.
@@ -37,11 +38,12 @@ class TensorBoard:
         self._open: dict[str, Any] = {}
 
     def add(self, world: World, rows: list[Row]) -> None:
-        """Append rows of a world, with the time of now; at the first call, replace its earlier files.
+        """Append rows of a world, with the present time; at the first call, replace its earlier
+        files.
 
         Raises:
-            InputError: the world's folder holds files of others.
-            Trouble: it cannot be written.
+            InputError: the world's folder holds files of other worlds. Trouble: the folder cannot
+                be written.
         """
         try:
             if world.identity not in self._open:
@@ -72,7 +74,7 @@ class TensorBoard:
         earlier = sorted(folder.iterdir())
         for path in earlier:
             if not (path.name.startswith("events.out.tfevents.") and path.name.endswith(ending)):
-                raise InputError(f"{path} is not of this world; choose another --tensorboard")
+                raise InputError(f"{path} belongs to another world; choose another --tensorboard")
         for path in earlier:
             files.remove(path)
         return self._writer_at(str(folder / "events"), ending)

@@ -1,7 +1,7 @@
 """Metrics of runs, written for dashboards by a reader beside them.
 
-Runs are read as `info` reads them: from their files, as of their newest checkpoints. The process that
-lives them is not asked, and none of their code is executed.
+Runs are read from their files, at their newest checkpoints. The process of a run is not disturbed,
+and no code of a run is executed.
 """
 
 import time
@@ -18,28 +18,28 @@ from primordia.tracking.tensorboard import TensorBoard
 from primordia.tracking.weights_and_biases import WeightsAndBiases
 
 MOMENT = 0.2
-"""Longest time, in seconds, after which a signal is noticed."""
+"""Longest time until a signal is noticed, in seconds."""
 
 
 class Dashboard(Protocol):
-    """Files that a program for looking at curves reads."""
+    """A writer of files for a program that shows curves."""
 
     def add(self, world: World, rows: list[Row]) -> None:
         """Append rows of a world."""
 
     def finish(self) -> None:
-        """Complete the files of all worlds so far; no row of these follows."""
+        """Complete the files of all worlds so far, which get no more rows."""
 
     def close(self) -> None:
-        """Finish, and release everything."""
+        """Finish, and release all resources."""
 
 
 @dataclass(frozen=True)
 class Sources:
-    """The runs that are to be read."""
+    """The runs to read."""
 
     runs: Mapping[str, Sequence[Path]]
-    """directories by arm; "" names an arm that is alone"""
+    """directories by arm; "" is the name of a single arm"""
     go_on: bool
     """whether there may be more to read later"""
 
@@ -56,23 +56,23 @@ def track(
 ) -> None:
     """Write the metrics of runs for dashboards, one series for each column, over ticks.
 
-    What an earlier call has written of a world into the same folder is replaced.
+    The output of an earlier call for the same world in the same folder is replaced.
 
     Args:
-        look: returns the runs as they stand.
-        group: a name for them all.
+        look: a function that returns the present runs.
+        group: a name for all runs.
         tensorboard: folder for TensorBoard, in which each world has a folder.
-        wandb: folder for Weights & Biases, whose runs are then in the folder `wandb` there. It never
-            connects to the network; its reports of its own errors are switched off in this process.
-        follow: go on as the runs go on, until they have stopped.
-        every: seconds from one look to the next.
-        seen: called after each look with the number of rows written so far.
+        wandb: folder for Weights & Biases; its runs are in the subfolder `wandb`. Nothing connects
+            to the network: wandb's error reports are switched off in this process.
+        follow: read again until all runs have stopped.
+        every: seconds between two readings.
+        seen: a function that is called after each reading with the number of rows written so far.
 
     Raises:
         InputError: no folder is given, a package is missing, there is nothing to write, or a folder holds
             files of others.
         Trouble: a run is damaged, or a folder cannot be written.
-        KeyboardInterrupt: on Ctrl-C; what was read until then is written.
+        KeyboardInterrupt: on Ctrl-C; all rows read so far are written.
     """
     if not every > 0:
         raise InputError(f"--every: seconds, more than 0, not {every}")
@@ -99,7 +99,7 @@ def track(
                 raise KeyboardInterrupt
     if not count:
         raise InputError(
-            f"{group} has no row of metrics yet: there is one every `sample_every` ticks"
+            f"{group} has no row of metrics yet; there is one row in `sample_every` ticks"
         )
 
 
@@ -115,7 +115,7 @@ def _opened(tensorboard: str | Path | None, wandb: str | Path | None) -> list[Da
 
 
 def _wait(seconds: float, noted: list[int]) -> None:
-    """Wait, but not longer than until a signal comes."""
+    """Wait until the time is over or a signal comes."""
     end = time.monotonic() + seconds
     while not noted and (left := end - time.monotonic()) > 0:
         time.sleep(min(left, MOMENT))

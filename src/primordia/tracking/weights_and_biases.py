@@ -2,7 +2,8 @@
 
 FOLDER/wandb/offline-run-TIME-IDENTITY
 
-A run of it is known by the world's identity, so that another call replaces that of the same world alone.
+The name of an offline run has the world's identity, so that a later call replaces only the same
+world's run.
 """
 
 import os
@@ -24,22 +25,22 @@ NOTHING_ELSE: dict[str, Any] = {
     "x_disable_stats": True,
     "x_save_requirements": False,
 }
-"""Settings of wandb by which it records nothing of this process or machine, and prints nothing."""
+"""Settings with which wandb records nothing about this process or machine, and prints nothing."""
 
 SERVICE = "WANDB_SERVICE"
-"""The variable by which wandb finds its own process, if there is one."""
+"""The environment variable with which wandb finds its service process."""
 
 
 class WeightsAndBiases:
     """A folder of offline runs."""
 
     def __init__(self, folder: Path) -> None:
-        """Prepare to write into a folder; nothing is made yet.
+        """Prepare to write into a folder, without making it.
 
         Raises:
             InputError: wandb is not installed.
         """
-        # Otherwise wandb connects to the network to report its own errors, also when it is offline.
+        # Otherwise wandb connects to the network to report its own errors, even in offline mode.
         os.environ["WANDB_ERROR_REPORTING"] = "false"
         try:
             import wandb
@@ -53,7 +54,7 @@ class WeightsAndBiases:
         """Append rows of a world; at the first call, replace its earlier run.
 
         Raises:
-            Trouble: it cannot be written.
+            Trouble: the run cannot be written.
         """
         try:
             if world.identity not in self._open:
@@ -65,13 +66,14 @@ class WeightsAndBiases:
             raise Trouble(f"{self._folder} cannot be written by wandb: {first}") from None
 
     def finish(self) -> None:
-        """Finish all runs; wandb's own process completes their files a moment later, or at `close`."""
+        """Finish all runs; wandb's service process completes their files a moment later, or at
+        `close`."""
         while self._open:
             _, run = self._open.popitem()
             run.finish()
 
     def close(self) -> None:
-        """Finish all runs, and end wandb's own process unless it has served this one before."""
+        """Finish all runs, and end wandb's service process unless this process used it before."""
         self.finish()
         if self._alone:
             self._wandb.teardown()

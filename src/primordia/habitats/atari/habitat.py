@@ -37,7 +37,7 @@ NAMES: Names = {
     "lives_lost": "amount",
     "game_over": "condition",
 }
-"""Names in conditions and amounts: RAM and lives after the tick, points and lives lost in it."""
+"""Names in conditions and amounts: RAM and lives after the tick; points and lost lives of the tick."""
 SCALED = (np.arange(256, dtype=np.float32) - 128) / 128
 """The sense of each value of a byte."""
 FRAME_RATE = 60
@@ -51,7 +51,7 @@ class Atari(HostHabitat, Settings):
     senses: tuple[int, ...] = Field(
         (), strict=False, description="addresses perceived, 0 to 127; none given: all 128"
     )
-    blind: bool = Field(False, description="senses are constant (a control)")
+    blind: bool = Field(False, description="true: senses are constant (a control)")
     fatal: str = Field("game_over", description="condition that ends a life")
     food: str = Field("0", description="amount gathered in a tick")
     actions: str = Field(
@@ -161,7 +161,8 @@ class Atari(HostHabitat, Settings):
         """Raise ValueError if there are more workers than cells."""
         if self.workers is not None and self.workers > cells:
             raise ValueError(
-                f"workers: {self.workers} workers are more than the {cells} cells; use at most {cells}"
+                f"workers: {self.workers} workers are more than the {cells} cells; use at most "
+                f"{cells}"
             )
 
     def open(self, cells: int, watched: bool = False) -> None:
@@ -218,7 +219,7 @@ class Atari(HostHabitat, Settings):
         return self._tally
 
     def original(self) -> "Atari":
-        """Return the game until it is over; food is its points."""
+        """Return the whole game as the benchmark scores it: food is its points."""
         return Atari(**{**self.model_dump(), "fatal": "game_over", "food": "points"})
 
     def seen(self) -> dict[str, np.ndarray]:

@@ -32,11 +32,11 @@ NOOP = 0
 REFUSED = {
     **dict.fromkeys(
         ("combat", "joust", "maze_craze", "warlords"),
-        "the emulator has it for several players only",
+        "the emulator has only a version for several players",
     ),
     **dict.fromkeys(
         ("miniature_golf", "qbert", "tetris"),
-        "the emulator does not restore its states exactly, so no run of it could be repeated",
+        "the emulator does not restore its states exactly, so no run could be repeated",
     ),
 }
 """Games that cannot be habitats, and why. All others are exact (measured with ale-py 0.12.1)."""
@@ -68,9 +68,9 @@ def console(
 Game = tuple[str, int | None, int | None]
 """A game, its mode and its difficulty."""
 _SPARE: "defaultdict[Game, list[ALEInterface]]" = defaultdict(list)
-"""Emulators that no cell needs any more. To make one takes as long as thousands of frames."""
+"""Spare emulators. Making an emulator takes as long as thousands of frames."""
 SPARES = 256
-"""the most of a game that are kept; each takes about a megabyte"""
+"""largest number of spare emulators of a game; each takes about a megabyte"""
 
 
 @cache
@@ -107,7 +107,7 @@ class Arcade:
         self._held: dict[int, int] = {}
 
     def make(self, cell: int) -> None:
-        """Make the emulator of one more cell."""
+        """Make an emulator for another cell."""
         # A screen is not part of a state, so an emulator that has played before is not watched.
         spare = [] if SCREEN in self._arrays else _SPARE[self._game]
         ale = spare.pop() if spare else console(*self._game)

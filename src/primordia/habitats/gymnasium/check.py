@@ -1,7 +1,7 @@
-"""What can be relied upon in an environment, measured: whether lives repeat, and how they can go on.
+"""Measurements of an environment: whether lives repeat, and how they can go on.
 
-Some lives of random actions are lived several times, and compared bit for bit: in one environment after
-the other, in environments that are new, and from states that were saved on the way.
+Some lives with random actions are lived several times and compared bit for bit: in the same
+environment, in new environments, and from states saved on the way.
 """
 
 from collections.abc import Mapping, Sequence
@@ -17,36 +17,36 @@ from primordia.habitats.gymnasium.spaces import Acting, Observation
 from primordia.habitats.silence import quiet
 
 TICKS, LIVES = 1000, 8
-"""Steps that are compared, and the least number of lives among which they are divided."""
+"""Number of steps that are compared, and the smallest number of their lives."""
 SAVED = 4
-"""States of each life that are saved and gone on from."""
+"""Number of states of each life that are saved and continued."""
 
 
 ENDED, GOING_ON = b"\1", b"\0"
-"""The last byte of what is seen at an age."""
+"""The last byte of the record of an age."""
 
 
 @dataclass
 class Measured:
-    """What was found out about an environment."""
+    """The results for an environment."""
 
     saving: Literal["snapshot", "replay", "restart"] = "replay"
     """how lives go on after an interruption"""
     fresh: bool = False
-    """whether a life repeats in a new environment only"""
+    """whether a life repeats only in a new environment"""
     lifespan: float = 0.0
-    """mean ticks of the lives of random actions; those that did not end count as they are"""
+    """mean ticks of lives with random actions; lives that did not end count with their length so far"""
     ended: int = 0
-    """lives that the environment ended"""
+    """number of lives that the environment ended"""
     faults: list[str] = field(default_factory=list)
-    """what is wrong, a sentence each"""
+    """the faults, each in a sentence"""
     why: str = ""
-    """why states cannot be saved, if so"""
+    """why states cannot be saved; "" if they can"""
 
 
 @dataclass
 class _Life:
-    """A life of random actions, and what was seen in it."""
+    """A life with random actions, and its record."""
 
     seed: int
     rows: np.ndarray
@@ -57,7 +57,7 @@ class _Life:
 
 
 class _Trial:
-    """Environments of one kind, and the lives that are lived in them."""
+    """Environments of the same kind, and lives in them."""
 
     def __init__(self, env: str, options: Mapping[str, Any], imports: Sequence[str]) -> None:
         self._making = env, options, imports
@@ -70,7 +70,7 @@ class _Trial:
         return environment.make(*self._making)
 
     def lives(self) -> list[_Life]:
-        """Live the lives that the others are compared with."""
+        """Live the lives with which all others are compared."""
         lives: list[_Life] = []
         self.first.action_space.seed(0)
         while len(lives) < LIVES:
@@ -96,7 +96,7 @@ class _Trial:
         return self._acting.rows(np.concatenate(columns, axis=1))
 
     def live(self, env: Env, life: _Life, watched: bool = False) -> list[bytes]:
-        """Live a life to its end -> what was seen at each age; an error ends it too."""
+        """Live a life to its end, or to an error. Return the record of each age."""
         try:
             observation, _ = env.reset(seed=life.seed)
         except Exception as error:
@@ -105,7 +105,7 @@ class _Trial:
         return [self._seen(observation, 0.0, False, False), *self.steps(env, life.rows, watched)]
 
     def steps(self, env: Env, rows: np.ndarray, watched: bool = False) -> list[bytes]:
-        """Step an environment until a life ends -> what was seen."""
+        """Step an environment until a life ends. Return the record."""
         seen: list[bytes] = []
         for row in rows:
             try:
@@ -118,7 +118,7 @@ class _Trial:
         return seen
 
     def _step(self, env: Env, row: np.ndarray, watched: bool) -> bytes:
-        """Step an environment -> what was seen; note what is wrong if it is watched."""
+        """Step an environment and return the record; note faults if it is watched."""
         action = self._acting.build(row)
         before = repr(action)
         observation, reward, terminated, truncated, _ = env.step(action)
@@ -151,7 +151,7 @@ class _Trial:
 
 
 def measure(env: str, options: Mapping[str, Any], imports: Sequence[str]) -> Measured:
-    """Return what was found out about an environment.
+    """Return the results for an environment.
 
     Raises:
         ValueError: it cannot be made, or raises an error; the message says which.
@@ -175,7 +175,7 @@ def measure(env: str, options: Mapping[str, Any], imports: Sequence[str]) -> Mea
 
 
 def _repeat(trial: _Trial, lives: list[_Life], found: Measured) -> None:
-    """Live the lives again, in new environments and in one that has been used."""
+    """Live the lives again, in new environments and in a used one."""
     used, again, new = trial.new(), [], []
     for life in reversed(lives):
         again.append(trial.live(used, life) == life.seen)
@@ -185,24 +185,26 @@ def _repeat(trial: _Trial, lives: list[_Life], found: Measured) -> None:
         begins = all(a[0] == b[0] for a, b in zip(new, twice, strict=True))
         found.saving = "restart"
         found.faults.append(
-            "the same seed and actions give another life: it draws from outside, or keeps something"
-            " between environments"
+            "the same seed and actions give another life: the environment draws from outside, or "
+            "keeps something between "
+            "environments"
             if begins
-            else "a reset with the same seed gives another beginning: it ignores its seed, or keeps"
-            " something between environments"
+            else "a reset with the same seed gives another beginning: the environment "
+            "ignores its seed, or keeps something between environments"
         )
     elif not all(again) or new != [life.seen for life in reversed(lives)]:
         found.fresh = True
         for life, seen in zip(reversed(lives), new, strict=True):
             life.seen = seen
         found.faults.append(
-            "a life depends on earlier lives in the same environment, since reset does not restore all;"
-            " so each life needs a new environment (fresh = true)"
+            "a life depends on earlier lives in the same environment, since reset does not "
+            "restore everything; set fresh = true, so that each life has a new "
+            "environment"
         )
 
 
 def _go_on(trial: _Trial, lives: list[_Life], fresh: bool) -> str:
-    """Save states on the way and go on from them elsewhere -> why that is not exact, or ""."""
+    """Save states on the way and go on from them elsewhere. Return why that is not exact, or ""."""
     elsewhere = trial.new()
     for life in lives:
         if len(life.seen) == 1:

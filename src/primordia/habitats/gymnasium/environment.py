@@ -26,8 +26,8 @@ def make(
     Args:
         env: its registered name, or `module:NAME`, whose module registers it.
         options: keyword arguments.
-        imports: modules that are imported before, such as those that register it.
-        watched: whether it must be able to draw pictures.
+        imports: modules to import first, such as those that register the environment.
+        watched: whether the environment must be able to draw pictures.
 
     Raises:
         ValueError: it cannot be made; the message says why, in one line.
@@ -43,13 +43,13 @@ def make(
             made = gymnasium.make(
                 env, max_episode_steps=-1, disable_env_checker=True, **options, **drawing
             )
-    except (Exception, SystemExit) as error:  # modules and environments are anyone's
+    except (Exception, SystemExit) as error:  # an error of a module or environment of the user's
         raise ValueError(f"env: {env} cannot be made: {line(error)}") from None
     return made
 
 
 def spec(env: str) -> EnvSpec:
-    """Return what is registered of an environment that has been made."""
+    """Return the registration of an environment that has been made."""
     return gymnasium.spec(env.rpartition(":")[2])
 
 
@@ -72,12 +72,12 @@ def food_function(name: str) -> Callable[..., float]:
     except (Exception, SystemExit) as error:  # the module is the user's
         raise ValueError(f"food: {name} cannot be loaded: {line(error)}") from None
     if not callable(found):
-        raise ValueError(f"food: {name} is no function")
+        raise ValueError(f"food: {name} is not a function")
     return found
 
 
 def versions(env: str) -> dict[str, str]:
-    """Return the versions of the packages that an environment comes from, as far as they are known."""
+    """Return the known versions of the packages that an environment comes from."""
     entry = spec(env).entry_point
     path = str(entry).split(":")[0] if isinstance(entry, str) else getattr(entry, "__module__", "")
     engines = {"gymnasium.envs.box2d": ["box2d"], "gymnasium.envs.mujoco": ["mujoco"]}

@@ -1,8 +1,8 @@
 """Any Gymnasium environment as a habitat (Towers et al. 2024; extra `primordia[gymnasium]`).
 
 Settings define death, food and effort by expressions of the observation, reward, ends and `info`. The
-environment's own time limit is off. Every birth resets an environment with a seed of its own, which is
-the birth's random word. Environments are in worker processes, or in this one.
+environment's own time limit is off. Every birth resets an environment with a different seed, the
+birth's random word. Environments are in worker processes, or in this one.
 """
 
 from functools import cached_property
@@ -32,17 +32,17 @@ NOT_INSTALLED = "this needs Gymnasium: pip install 'primordia[gymnasium]'"
 
 
 class Gymnasium(HostHabitat, Settings):
-    """An environment as a habitat; its observation, flattened and scaled, is what organisms perceive."""
+    """An environment as a habitat; the senses are its observation, flattened and scaled."""
 
     env: str = Field(min_length=1, description="registered name, or module:NAME")
     options: dict[str, Any] = Field({}, description="keyword arguments of the environment")
     imports: tuple[str, ...] = Field(
         (),
         strict=False,
-        description="modules that are imported first, such as those that register it",
+        description="modules to import first, such as those that register the environment",
     )
     fatal: str = Field(
-        "terminated", description="condition that ends a life; none given: nothing does"
+        "terminated", description="condition that ends a life; if none is given, no life ends"
     )
     food: str = Field("0", description="amount gathered in a tick, or module:function")
     effort: str = Field("0", description="amount exerted in a tick")
@@ -58,12 +58,14 @@ class Gymnasium(HostHabitat, Settings):
     )
     saving: Literal["snapshot", "replay", "restart"] = Field(
         "replay",
-        description="how a life goes on after an interruption: from its state, by living it again, or"
-        " with a body as at birth; `primordia check` measures which",
+        description="how a life goes on after an interruption: from its state, by living it "
+        "again, or with a body as at birth; `primordia check` measures which of them work",
     )
     fresh: bool = Field(False, description="make a new environment for each life; slow")
     faults: int = Field(
-        100, ge=0, description="deaths by errors in the environment after which the run stops"
+        100,
+        ge=0,
+        description="largest number of deaths by errors in the environment; more stop the run",
     )
     workers: int | None = Field(
         None,
@@ -182,7 +184,8 @@ class Gymnasium(HostHabitat, Settings):
         """Raise ValueError if there are more workers than cells."""
         if self.workers is not None and self.workers > cells:
             raise ValueError(
-                f"workers: {self.workers} workers are more than the {cells} cells; use at most {cells}"
+                f"workers: {self.workers} workers are more than the {cells} cells; use at most "
+                f"{cells}"
             )
 
     def original(self) -> "Gymnasium":
@@ -270,13 +273,15 @@ class Gymnasium(HostHabitat, Settings):
         """Count errors in the environments, and stop the run if there are too many.
 
         Raises:
-            Trouble: there are; the message has the latest one.
+            Trouble: there are too many; the message has the latest error.
         """
         self._failed += int(fault.sum())
         if self._failed > self.faults:
             last = self.message(int(np.flatnonzero(fault)[-1]))
             raise Trouble(
-                f"{self._failed} organisms died of errors in {self.env}, the last of: {last}. Mend the"
+                f"{self._failed} organisms died of errors in {self.env}, the last of: {last}. "
+                "Mend "
+                "the"
                 " environment, or allow more with habitat.faults"
             )
 

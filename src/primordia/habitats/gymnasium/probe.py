@@ -1,4 +1,4 @@
-"""What an environment says of itself before a run: its spaces, info, time limit and pictures."""
+"""The description of an environment before a run: spaces, info, time limit and pictures."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -14,11 +14,11 @@ from primordia.habitats.silence import quiet
 TICKS = 200
 """Random steps in which keys of `info` are looked for."""
 LONGEST = 64
-"""Most numbers of a value of `info` that settings can name."""
+"""Largest number of numbers in a value of `info` that settings can name."""
 
 
 PICTURES_S = 30.0
-"""Steps in a second of an environment that draws and does not say how many."""
+"""Default steps in a second of an environment with pictures."""
 
 
 class Probe(NamedTuple):
@@ -29,9 +29,9 @@ class Probe(NamedTuple):
     limit: int | None
     """its registered time limit in steps"""
     rate: float | None
-    """steps in a second, as it states them"""
+    """steps in a second, as the environment states"""
     pictures: bool
-    """whether it says that it can draw"""
+    """whether the environment states that it can draw"""
 
 
 def probe(env: str, options: Mapping[str, Any], imports: Sequence[str]) -> Probe:
@@ -68,9 +68,10 @@ def _probe(env: str, options: str, imports: tuple[str, ...]) -> Probe:
 
 
 def info_of(env: str, options: Mapping[str, Any], imports: Sequence[str]) -> dict[str, int]:
-    """Return the keys of an environment's `info` whose values are numbers, with how many they are.
+    """Return the keys of an environment's `info` with numbers as values, and the count of the
+    numbers.
 
-    They are those seen at a reset and in random play.
+    The keys are those that appear at a reset and in random play.
     """
     return dict(_info(env, json.dumps(options, sort_keys=True), tuple(imports)))
 

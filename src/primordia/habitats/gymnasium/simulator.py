@@ -1,8 +1,8 @@
 """Environments of some cells, in one process. A life begins with a reset whose seed is the birth's word.
 
-Two ways lead back to a state that was saved (`saving`): the environment's attributes as plain data
-(`snapshot`), or the seed and the actions of the life, which is then lived again and must end in the same
-observation (`replay`).
+A saved state is restored in one of two ways (`saving`). `snapshot`: the environment's attributes
+are saved as plain data. `replay`: the seed and the actions are saved, and the life is lived again;
+it must end in the same observation.
 """
 
 import json
@@ -24,7 +24,7 @@ SCREEN = "screen"
 
 
 def fields(observation: Observation, acting: Acting, info: dict[str, int]) -> dict[str, Any]:
-    """Return dtype and shape of what environments and the run share of each cell."""
+    """Return dtype and shape of the arrays that environments and the run share, for one cell."""
     return {
         "seed": ("uint32", ()),
         "action": ("float64", (acting.columns,)),
@@ -40,7 +40,7 @@ def fields(observation: Observation, acting: Acting, info: dict[str, int]) -> di
 
 
 class _Life:
-    """An environment, and what has happened in it since the life in it began."""
+    """An environment, and the course of the present life in it."""
 
     def __init__(self, env: Env) -> None:
         self.env = env
@@ -69,14 +69,14 @@ class Environments:
         self._food = environment.food_function(food) if food else None
 
     def make(self, cell: int) -> None:
-        """Make the environment of one more cell."""
+        """Make an environment for another cell."""
         env = environment.make(*self._making)
         self._observation = Observation(env.observation_space)
         self._acting = Acting(env.action_space)
         self._lives[cell] = _Life(env)
 
     def reset(self, cell: int) -> None:
-        """Begin a new life. An environment that cannot is at fault in the first tick."""
+        """Begin a new life. If the environment fails, its fault counts in the first tick."""
         with quiet():
             self._begin(cell, int(self._arrays["seed"][cell]) >> 1)
 
@@ -89,7 +89,7 @@ class Environments:
     def _begin(self, cell: int, seed: int) -> None:
         life = self._lives[cell]
         if life.failed is not None or (self._fresh and life.seed is not None):
-            with suppress(Exception):  # an environment that has failed may not close either
+            with suppress(Exception):  # a failed environment may also fail to close
                 life.env.close()
             life.env = environment.make(*self._making)
         life.seed, life.actions, life.failed = seed, [], None
@@ -105,7 +105,7 @@ class Environments:
 
     def _act(self, cell: int, row: np.ndarray) -> None:
         life, arrays = self._lives[cell], self._arrays
-        if life.failed is not None:  # it could not begin
+        if life.failed is not None:  # the life could not begin
             self._fail(cell, life.failed)
             return
         if self._saving == "replay":
@@ -123,7 +123,7 @@ class Environments:
             self._fail(cell, environment.line(error))
 
     def _tell(self, cell: int, observation: Any, info: dict[str, Any]) -> None:
-        """Write down what is perceived, and the numbers of `info` that are needed; a missing one is 0."""
+        """Store the observation and the needed numbers of `info`; a missing number is 0."""
         self._observation.fill(self._arrays["obs"][cell], observation)
         place = 0
         for key, width in self._info.items():
@@ -142,7 +142,7 @@ class Environments:
         self._arrays["message"][cell, : len(text)] = np.frombuffer(text, np.uint8)
 
     def save(self, cell: int) -> bytes:
-        """Return what leads back to the present state; nothing where no life has begun."""
+        """Return the saved form of the present state; empty if no life has begun."""
         life = self._lives[cell]
         if life.seed is None or life.failed is not None:
             return json.dumps({"seed": life.seed, "failed": life.failed}).encode()
@@ -182,6 +182,8 @@ class Environments:
             self._act(cell, np.frombuffer(one, row.dtype))
         if observed.tobytes() != before:
             raise Trouble(
-                f"the environment of cell {cell} did not repeat its life of {head['ticks']} ticks, which"
-                " depends on more than seed and actions; begin a new run with --habitat.saving restart"
+                f"the environment of cell {cell} did not repeat its life of {head['ticks']} "
+                "ticks, since it depends on more than seed and actions; begin a new run with "
+                "--habitat.saving "
+                "restart"
             )

@@ -1,7 +1,7 @@
 """Spaces of Gymnasium as numbers: observations become a row, and rows of actions become actions.
 
-Dict and Tuple spaces are walked in their own order, so a row holds their parts one after the other. Of an
-observation a row holds one number for a Discrete part, and all numbers of any other.
+Dict and Tuple spaces are walked in their own order, so a row holds their parts one after the other.
+A row of an observation holds one number for a Discrete part, and all numbers of any other part.
 """
 
 from collections.abc import Callable, Iterator
@@ -19,7 +19,7 @@ UNBOUNDED = 1e6
 
 Builder = Callable[[np.ndarray], Any]
 Block = tuple[slice, int | None]
-"""Numbers of a row that become as many senses, or one number that is one of n choices."""
+"""A block of numbers that are each one sense, or one number that is one of n choices."""
 
 
 class Leaf(NamedTuple):
@@ -30,7 +30,7 @@ class Leaf(NamedTuple):
 
     @property
     def width(self) -> int:
-        """The numbers that it has in a row."""
+        """The number of numbers of this part in a row."""
         if isinstance(self.space, spaces.Discrete):
             return 1
         return int(np.prod(self.space.shape or ()))
@@ -58,14 +58,15 @@ def leaves(space: Space, what: str, path: tuple[Any, ...] = ()) -> Iterator[Leaf
     else:
         place = "".join(f"[{key!r}]" for key in path)
         raise ValueError(
-            f"its {what} space{place} is a {type(space).__name__}, which has no fixed number of values;"
+            f"its {what} space{place} is a {type(space).__name__}, which has no fixed number of "
+            "values;"
             " wrap the environment so that it is a Box, Discrete, MultiDiscrete, MultiBinary, or a"
             " Dict or Tuple of these"
         )
 
 
 class Observation:
-    """How observations become rows, and rows become senses."""
+    """The conversion of observations to rows, and of rows to senses."""
 
     def __init__(self, space: Space) -> None:
         """Raise ValueError if the space cannot be perceived."""
@@ -76,7 +77,7 @@ class Observation:
         kinds = [leaf.space.dtype or np.dtype(np.int64) for leaf in self._leaves]
         exact = np.result_type(np.float32, *kinds) == np.float32
         self.dtype = "float32" if exact else "float64"
-        """dtype of a row: float32 if that holds all values exactly"""
+        """dtype of a row: float32 if it holds all values exactly"""
         if not self.width:
             raise ValueError("its observation space is empty, so there is nothing to perceive")
 
@@ -92,11 +93,11 @@ class Observation:
             row[own] = (np.asarray(value) - leaf.first).reshape(-1)
 
     def unbounded(self) -> np.ndarray:
-        """Return which numbers of a row have no bounds, bool (R,)."""
+        """Return which numbers of a row are unbounded, bool (R,)."""
         return ~np.isfinite(self._bounds()).all(axis=0)
 
     def senses(self, scale: np.ndarray, squash: bool) -> "Senses":
-        """Return how rows become senses; see `Senses`."""
+        """Return the conversion of rows to senses; see `Senses`."""
         low, high = self._bounds()
         bounded = np.isfinite(low) & np.isfinite(high) & (high > low)
         low, high = np.where(bounded, low, -scale), np.where(bounded, high, scale)
@@ -120,9 +121,9 @@ class Observation:
 class Senses:
     """The senses of rows of observations.
 
-    A number x of a box from a to b becomes 2 (x - a) / (b - a) - 1. One without bounds is divided by its
-    scale s; with `squash`, x / s becomes (x / s) / (1 + |x / s|). One of n choices becomes n senses, 1
-    for the choice and 0 for the others. A binary number becomes -1 or 1.
+    A number x of a box from a to b becomes 2 (x - a) / (b - a) - 1. An unbounded number is divided
+    by its scale s; with `squash`, x / s becomes (x / s) / (1 + |x / s|). One of n choices becomes n
+    senses: 1 for the choice and 0 for the others. A binary number becomes -1 or 1.
     """
 
     def __init__(
@@ -147,7 +148,7 @@ class Senses:
 
 
 class Acting:
-    """How the law's actions become the environment's."""
+    """The conversion of the law's actions to the environment's."""
 
     def __init__(self, space: Space) -> None:
         """Raise ValueError if the environment cannot be acted upon."""
@@ -171,14 +172,15 @@ class Acting:
     def rows(self, action: np.ndarray) -> np.ndarray:
         """Return rows float64 (N, K) of actions of the law, int32 (N,) or float32 (N, K).
 
-        Outputs from -1 to 1 cover a number with bounds. Choices and other numbers are as they are.
+        Outputs from -1 to 1 cover a number with bounds. Choices and unbounded numbers are
+        unchanged.
         """
         values = np.asarray(action, float).reshape(len(action), -1)
         inside = np.where(self._bounded, np.clip(values, -1, 1), values)
         return np.clip(self._middle + self._half * inside, self._low, self._high)
 
     def _bounds(self) -> np.ndarray:
-        """Return the bounds of each column, infinite where there is none or it is a choice: (2, K)."""
+        """Return the bounds of each column, infinite for choices and unbounded columns: (2, K)."""
         rows = []
         for leaf in self._leaves:
             low, high = (
@@ -197,7 +199,7 @@ def _slices(parts: list[Leaf]) -> list[slice]:
 
 
 def _sizes(leaf: Leaf) -> list[int]:
-    """Return the number of choices of each number of a part that is no Box."""
+    """Return the number of choices of each number of a part that is not a Box."""
     space = leaf.space
     if isinstance(space, spaces.Discrete):
         return [int(space.n)]
@@ -205,7 +207,7 @@ def _sizes(leaf: Leaf) -> list[int]:
 
 
 def _choices(leaf: Leaf, own: slice) -> "list[Block]":
-    """Return the blocks of senses of a part that is no Box; a binary number is a sense itself."""
+    """Return the blocks of senses of a part that is not a Box; a binary number is one sense."""
     blocks: list[Block] = []
     for place, size in enumerate(_sizes(leaf), own.start):
         one = slice(place, place + 1)

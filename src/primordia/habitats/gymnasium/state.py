@@ -1,9 +1,9 @@
-"""The state of an environment as plain data: what its attributes hold, and no code.
+"""The state of an environment as plain data: the values of its attributes, without code.
 
-An environment is a tree of objects. Numbers, text, arrays, containers and random generators in it are
-written down; objects are entered, and are not made anew when a state is restored: the same class must
-stand in the same place of the environment that takes the state. So nothing that is read can execute
-anything. Whether an environment goes on exactly from such a state is measured, in `check`.
+An environment is a tree of objects. Numbers, text, arrays, containers and random generators in it
+are stored. Other objects are not stored, only their attributes: the environment that takes a state
+must have an object of the same class in the same place. So reading a state executes nothing.
+Whether an environment goes on exactly from such a state is measured, in `check`.
 """
 
 import base64
@@ -29,18 +29,18 @@ KINDS = {own: kind for kind, own in CONTAINERS.items()}
 KEPT = (
     Enum, Space, EnvSpec, type, ModuleType, FunctionType, BuiltinFunctionType, MethodType, range, slice,
 )  # fmt: skip
-"""Values that are taken not to change in a life."""
+"""Kinds of values that are assumed constant during a life."""
 
 
 class UnknownStateError(Exception):
-    """A part of an environment cannot be written down; the message says which."""
+    """A part of an environment cannot be stored; the message says which."""
 
 
 def encode(env: object) -> bytes:
     """Return the state of an environment.
 
     Raises:
-        UnknownStateError: it holds what cannot be written down.
+        UnknownStateError: a part of it cannot be stored.
     """
     return zlib.compress(json.dumps(_Writer().write(env, "env")).encode(), level=1)
 
@@ -49,7 +49,7 @@ def decode(env: object, state: bytes) -> None:
     """Give an environment, made with the same settings and reset, the state that `encode` returned.
 
     Raises:
-        UnknownStateError: the state is not one of such an environment.
+        UnknownStateError: the state does not fit the environment.
     """
     _Reader().read(json.loads(zlib.decompress(state)), env, "env")
 
@@ -60,15 +60,15 @@ class _Writer:
         self._alive: list[object] = []
 
     def write(self, value: Any, place: str) -> Any:
-        """Return a value as JSON can hold it: a plain value itself, anything else as [kind, ...]."""
+        """Return a value in JSON's types: a plain value unchanged, any other as [kind, ...]."""
         if type(value) in PLAIN:
             return value
         if isinstance(value, KEPT) or _kind(value) == "mujoco.MjModel":
-            return ["kept"]  # and not numbered, neither here nor by the reader
+            return ["kept"]  # neither the writer nor the reader numbers it
         if id(value) in self._seen:
             return ["same", self._seen[id(value)]]
         self._seen[id(value)] = len(self._seen)
-        self._alive.append(value)  # or another object could get its id
+        self._alive.append(value)  # keeps the object alive, so that no other object gets its id
         return self._written(value, place)
 
     def _written(self, value: Any, place: str) -> Any:
@@ -86,7 +86,7 @@ class _Writer:
             return [kind, inner, getattr(value, "maxlen", None)]
         if _kind(value) == "mujoco.MjData":
             return ["fields", self._fields(value, place)]
-        # A class that says how it is pickled keeps something that its attributes do not show.
+        # A class with its own pickling has a state beside its attributes.
         pickled = getattr(type(value), "__reduce_ex__")  # noqa: B009
         if hasattr(value, "__dict__") and pickled is object.__reduce_ex__:
             attributes = sorted(vars(value).items())
@@ -110,7 +110,7 @@ class _Reader:
         self._made: list[Any] = []
 
     def read(self, stored: Any, now: Any, place: str) -> Any:
-        """Return a stored value; `now` is what stands in its place."""
+        """Return a stored value; `now` is the present value in its place."""
         if not isinstance(stored, list):
             return stored
         kind, *rest = stored
@@ -134,7 +134,7 @@ class _Reader:
 
     def _read_generator(self, number: int, stored: list, now: Any, place: str) -> Any:
         if _kind(now) not in GENERATORS:
-            raise UnknownStateError(f"{place} is no random generator here")
+            raise UnknownStateError(f"{place} is not a random generator here")
         bits = self.read(stored[1], None, place)
         if _kind(now) == OLD_GENERATOR:
             now.set_state(bits)
@@ -197,7 +197,7 @@ def _text(data: bytes) -> str:
 def _fixed(data: Any) -> list[str]:
     """Return the names of the arrays of MuJoCo's data that it has before any contact.
 
-    The others are computed in each step, from these.
+    The other arrays are computed from these in each step.
     """
     fresh = type(data)(data.model)
     arrays = ((name, getattr(fresh, name, None)) for name in dir(fresh) if name[0] != "_")

@@ -9,7 +9,7 @@ from primordia.errors import InputError
 from primordia.settings.doors import replication
 
 PLAIN = 5.0
-"""Observations without bounds that stay below this in random play are perceived as they are."""
+"""Unbounded observations that stay below this in random play are not scaled."""
 SAVING = {
     "snapshot": "After an interruption lives go on exactly from their state",
     "replay": "After an interruption lives are lived again from their seed and actions, exactly",
@@ -27,7 +27,7 @@ def values(env: str) -> dict[str, Any]:
 
 
 def report(env: str) -> tuple[list[str], list[str]]:
-    """Return what is known of an environment, and what was found to be wrong with it, a line each.
+    """Return the known facts of an environment and its faults, each in a line.
 
     Raises:
         InputError: see `values`.
@@ -38,7 +38,7 @@ def report(env: str) -> tuple[list[str], list[str]]:
 
 @cache
 def _measured(env: str) -> tuple[dict[str, Any], list[str], list[str]]:
-    """Return the settings of a task, what is known of its environment, and what is wrong with it."""
+    """Return the settings of a task, and the description and the faults of its environment."""
     try:
         from primordia.habitats.gymnasium.check import measure
         from primordia.habitats.gymnasium.probe import info_of, probe
@@ -72,9 +72,10 @@ def _measured(env: str) -> tuple[dict[str, Any], list[str], list[str]]:
 
 
 def _scale(env: str) -> list[float]:
-    """Return a number for each of the observation's by which random play is brought within about 1.
+    """Return a divisor for each number of the observation that brings random play within about 1.
 
-    It is 1 where there are bounds, or where observations stay small. All ones are given as none.
+    The divisor is 1 if there are bounds, or if observations stay small. The result is empty if all
+    are 1.
     """
     from primordia.habitats.gymnasium.probe import probe, random_play
 
@@ -86,7 +87,7 @@ def _scale(env: str) -> list[float]:
 
 
 def _facts(env: str, about: Any, found: Any, keys: dict[str, int]) -> list[str]:
-    """Return what a task can build on, a line each."""
+    """Return the facts of an environment for the author of a task, each in a line."""
     from primordia.habitats.gymnasium.environment import make
     from primordia.habitats.gymnasium.spaces import described
 
@@ -97,9 +98,11 @@ def _facts(env: str, about: Any, found: Any, keys: dict[str, int]) -> list[str]:
         f"Observation: {one_line[0]}; obs[0] to obs[{about.observation.width - 1}] in conditions.",
         f"Action: {one_line[1]}.",
         f"Numbers in info: {named}.",
-        f"Its own limit of {about.limit} steps is off; time_limit = {about.limit} keeps it."
+        f"The environment's limit of {about.limit} steps is off; time_limit = {about.limit} "
+        "keeps "
+        "it."
         if about.limit
-        else "It has no time limit of its own.",
+        else "The environment has no time limit.",
         SAVING[found.saving] + (f" ({found.why})." if found.why else "."),
         f"Random actions live {found.lifespan:,.0f} ticks on average."
         if found.ended

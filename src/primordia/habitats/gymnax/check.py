@@ -1,4 +1,4 @@
-"""What can be relied upon in an environment, measured in lives of random actions."""
+"""Measurements of an environment in lives with random actions."""
 
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -13,25 +13,25 @@ from primordia.habitats.gymnax.habitat import Body, Gymnax
 from primordia.random import trials
 
 BODIES, TICKS = 32, 500
-"""Lives, and the ticks of each at most."""
+"""Number of lives, and largest number of ticks of each."""
 
 
 @dataclass(frozen=True)
 class Measured:
-    """What was found out about an environment."""
+    """The results for an environment."""
 
     lifespan: float
-    """mean ticks of the lives; those that did not end count as they are"""
+    """mean ticks of the lives; lives that did not end count with their length so far"""
     ended: int
-    """lives that the environment ended"""
+    """number of lives that the environment ended"""
     largest: np.ndarray
     """largest size of each number of the observation, float32 (S,)"""
     faults: list[str]
-    """what is wrong, a sentence each"""
+    """the faults, each in a sentence"""
 
 
 class _Seen(NamedTuple):
-    """What was seen in a tick, of the living."""
+    """The record of a tick, of the living."""
 
     alive: Array
     """before the tick, bool (N,)"""
@@ -57,8 +57,8 @@ def measure(habitat: Gymnax) -> Measured:
         "an observation is outside the declared space": not seen.inside.all(),
         "a reward is not finite": not seen.rewarded.all(),
         "step changes the state that it is given": habitat.simulator.changes_state(),
-        "its functions are others when they are traced again: they draw from outside JAX, or keep"
-        " something between calls": not habitat.simulator.repeats(),
+        "its functions differ when they are traced again: they draw from outside JAX, "
+        "or keep something between calls": not habitat.simulator.repeats(),
     }
     return Measured(
         lifespan=seen.alive.sum(axis=0).mean(),
@@ -69,7 +69,7 @@ def measure(habitat: Gymnax) -> Measured:
 
 
 def _lived(habitat: Gymnax, words: Array, actions: Array) -> _Seen:
-    """Return what was seen in each tick of lives from words uint32 (N, 2)."""
+    """Return the record of each tick of lives from words uint32 (N, 2)."""
 
     def tick(carry: tuple[Body, Array], action: Array) -> tuple[tuple[Body, Array], _Seen]:
         bodies, alive = carry
@@ -94,7 +94,7 @@ def _seen(habitat: Gymnax, values: dict[str, Any], alive: Array) -> _Seen:
 
 
 def _actions(habitat: Gymnax) -> np.ndarray:
-    """Return what brains put out at random, int32 (TICKS, BODIES) or float32 (TICKS, BODIES, size)."""
+    """Return random outputs of brains, int32 (TICKS, BODIES) or float32 (TICKS, BODIES, size)."""
     kind = habitat.action
     if isinstance(kind, Discrete):
         return (trials.words(1, TICKS, BODIES) % np.uint32(kind.size)).astype(np.int32)

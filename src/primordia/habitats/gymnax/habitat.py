@@ -1,7 +1,7 @@
 """Any environment with the interface of gymnax as a habitat, fused with the law.
 
 The key of a tick is made of the words of the body's birth and its age, so a life depends on nothing
-else. The environment never resets itself, and its own time limit ends no life unless it is kept.
+else. The environment never resets itself. Its time limit ends no life unless `time_limit` is true.
 """
 
 import json
@@ -32,9 +32,9 @@ if TYPE_CHECKING:
 
 
 class Body(NamedTuple):
-    """Bodies: the environment's states, what they sense, the words of their births, and their ages.
+    """Bodies: the environment's states, their senses, the words of their births, and their ages.
 
-    Where nothing is drawn after a birth, ages stay zero.
+    Ages stay zero if the environment draws nothing after a birth.
     """
 
     packed: Packed
@@ -55,11 +55,14 @@ class Gymnax(JaxHabitat, Settings):
         {}, description="parameters of the environment that are replaced"
     )
     time_limit: bool = Field(False, description="true: the environment's own time limit ends lives")
-    fatal: str = Field("done", description='condition that ends a life; "": none does')
+    fatal: str = Field("done", description='condition that ends a life; "": no life ends')
     food: str = Field(
-        "", description="amount gathered in a tick, such as reward; left out: none is"
+        "",
+        description="amount gathered in a tick, such as reward; if it is left out, there is "
+        "no "
+        "food",
     )
-    squash: bool = Field(False, description="true: a sense x without bounds is x / (1 + |x|)")
+    squash: bool = Field(False, description="true: an unbounded sense x becomes x / (1 + |x|)")
 
     rate: float = Field(20.0, gt=0, description="ticks in a second of videos")
 
@@ -87,13 +90,13 @@ class Gymnax(JaxHabitat, Settings):
 
     @cached_property
     def senses(self) -> Senses:
-        """How observations become senses."""
+        """The conversion of observations to senses."""
         space, example = self.simulator.observation_space, self.simulator.example.observation
         return Senses(space, example, self.squash)
 
     @cached_property
     def names(self) -> Names:
-        """The kinds of all that expressions can name."""
+        """The kinds of all quantities that expressions can name."""
         return _kind(jax.eval_shape(_values, self.simulator.example))
 
     @cached_property
@@ -120,12 +123,12 @@ class Gymnax(JaxHabitat, Settings):
         return self._actions.kind
 
     def original(self) -> "Gymnax":
-        """Return the environment as it is scored: food is the reward, and its time limit holds."""
+        """Return the environment as the benchmark scores it: food is the reward, with its time limit."""
         changed = {"time_limit": True, "fatal": "done", "food": "reward"}
         return Gymnax(**{**self.model_dump(), **changed})
 
     def picture(self, body: Body, action: np.ndarray) -> "Image":
-        """Return a picture by the environment's library, or of what the body senses."""
+        """Return a picture by the environment's library, or else a picture of the body's senses."""
         from primordia.habitats.gymnax.picture import draw, rendered
 
         about, packed = self.simulator, body.packed
@@ -151,7 +154,7 @@ class Gymnax(JaxHabitat, Settings):
         return bodies, Outcome(fatal, food)
 
     def tick(self, bodies: Body, action: Array) -> tuple[Body, dict[str, Any]]:
-        """Return bodies after a tick, and all that expressions can name, of each."""
+        """Return bodies after a tick, and all quantities that expressions can name."""
         one = Wide(jnp.uint32(0), jnp.uint32(1))
         age = bodies.age + one if self._draws else bodies.age
         key = _key(bodies.root, age)
@@ -202,7 +205,7 @@ def _values(stepped: Step) -> dict[str, Any]:
 
 
 def _kind(value: Any) -> Any:
-    """Return the kind of a quantity of one body; of one with parts, the kind of each."""
+    """Return the kind of a quantity of one body, or the kinds of its parts."""
     if isinstance(value, dict):
         return {name: _kind(each) for name, each in value.items()}
     if value.shape:

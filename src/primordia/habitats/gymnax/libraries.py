@@ -1,4 +1,4 @@
-"""Environments by name: those of libraries in JAX, and your own."""
+"""Environments by name, from libraries in JAX or from your own modules."""
 
 from collections.abc import Callable
 from functools import cache, partial
@@ -24,13 +24,13 @@ LIBRARIES = {
     "octax": ("octax", "flax"),
     "playground": ("playground", "mujoco-mjx", "mujoco", "flax"),
 }
-"""The packages that environments of a library are computed by."""
+"""The packages that compute the environments of a library."""
 NEVER = 2**31 - 1
 """A time limit that is never reached."""
 
 
 def package_of(name: str) -> str:
-    """Return the package that an environment's name is looked for in."""
+    """Return the package in which an environment is looked up."""
     package, colon, _ = name.partition(":")
     if colon:
         return package
@@ -41,8 +41,8 @@ def make(name: str, time_limit: bool) -> Any:
     """Return an environment with the interface of gymnax.
 
     Args:
-        name: of an environment of gymnax or Craftax, `package:NAME` of another library, or `module:Class`
-            or `module:function` of your own.
+        name: an environment of gymnax or Craftax, `package:NAME` for another library, or your own
+            `module:Class` or `module:function`.
         time_limit: keep a time limit that can be set only when the environment is made.
 
     Raises:
@@ -58,7 +58,7 @@ def make(name: str, time_limit: bool) -> Any:
     if package not in makers:
         return _own(name)
     try:
-        with quiet():  # Craftax says where its textures are from
+        with quiet():  # Craftax prints the source of its textures
             return makers[package](wanted)
     except ImportError as error:
         raise ValueError(
@@ -97,7 +97,9 @@ def _of_playground(name: str) -> Any:
     robots = import_module("mujoco_playground._src.mjx_env").MENAGERIE_PATH
     if name not in registry.dm_control_suite.ALL_ENVS and not robots.exists():
         raise ValueError(
-            f"env: {name} needs the models of robots that MuJoCo Playground downloads; load it once with"
+            f"env: {name} needs the models of robots that MuJoCo Playground downloads; load it "
+            "once "
+            "with"
             f" `mujoco_playground.registry.load({name!r})`"
         )
     return Playground(registry.load(name, config_overrides={"impl": "jax"}))
@@ -114,7 +116,7 @@ def _own(name: str) -> Any:
     module, _, attribute = name.partition(":")
     try:
         env = getattr(own_code.load(module), attribute)()
-    except (Exception, SystemExit) as error:  # the module is the user's, and may raise anything
+    except (Exception, SystemExit) as error:  # the user's module may raise any error
         raise ValueError(f"env: {name!r} cannot be made: {error}") from error
     if is_playground(env):
         return Playground(env)
@@ -132,5 +134,5 @@ def _own(name: str) -> Any:
 
 @cache
 def versions(name: str) -> dict[str, str]:
-    """Return the versions of the packages that an environment of a library is computed by."""
+    """Return the versions of the packages that compute an environment of a library."""
     return {each: version(each) for each in LIBRARIES.get(package_of(name), ())}

@@ -1,4 +1,4 @@
-"""Senses and state of a body in few arrays: a tick with one array for each number took twice the time."""
+"""Senses and state of a body in few arrays, since one array for each number doubled a tick's time."""
 
 from typing import Any, NamedTuple
 
@@ -8,7 +8,7 @@ import numpy as np
 from jax import Array, lax
 
 WORDS = (np.float32, np.int32, np.uint32)
-"""Types of which a number is one word of 32 bits; a truth value is one too."""
+"""Types whose numbers are one word of 32 bits; a truth value is one too."""
 
 
 class Packed(NamedTuple):
@@ -17,7 +17,7 @@ class Packed(NamedTuple):
     words: Array
     """uint32 (K,): the bits of the senses, then of the state's single numbers"""
     arrays: list[Array]
-    """all else of the state"""
+    """the rest of the state"""
 
     def senses(self, size: int) -> Array:
         """Return the senses (..., size)."""

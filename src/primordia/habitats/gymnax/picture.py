@@ -1,4 +1,4 @@
-"""Pictures of bodies: drawn by the environment's library, or else of what they sense.
+"""Pictures of bodies, drawn by the environment's library, or else of their senses.
 
 A grid has a colour for each channel; other senses have a bar each.
 """
@@ -27,7 +27,7 @@ BLOCK = 64
 
 
 def rendered(env: Any, state: Any, params: Any) -> Image.Image | None:
-    """Return what the environment's library draws of a state; None if it cannot draw it.
+    """Return the picture of a state by the environment's library; None if it cannot draw it.
 
     Raises:
         InputError: this machine cannot draw robots.

@@ -1,6 +1,6 @@
 """Tasks with the interface of MuJoCo Playground: `reset(key)` and `step(state, action)`, without a key.
 
-Many are computed by MJX, which is made for GPUs: on a CPU a body of a cheetah takes 8 ms a step.
+MJX computes many of them. It is made for GPUs: on a CPU a cheetah's body takes 8 ms a step.
 """
 
 from collections.abc import Mapping
@@ -13,7 +13,7 @@ from jax import Array
 
 MEMBERS = ("reset", "step", "action_size")
 PERCEIVED = "state"
-"""The part of an observation that a policy gets, where others are for training alone."""
+"""The part of an observation for the policy, if other parts are only for training."""
 
 
 def is_playground(env: Any) -> bool:

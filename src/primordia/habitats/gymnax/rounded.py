@@ -1,4 +1,4 @@
-"""Functions of JAX computed with every product and sum rounded alike, in every program.
+"""Functions of JAX whose products and sums are rounded in the same way in every program.
 
 A compiler may contract a product and a sum into a fused multiply-add, which rounds once. Whether it does
 depends on what else the program computes: gymnax's Pendulum had other bits in a loop than tick by tick.
@@ -18,7 +18,7 @@ from jax import Array, lax
 from jax.extend.core import ClosedJaxpr, Jaxpr, Literal
 
 INLINED = {"jit": "jaxpr", "closed_call": "call_jaxpr", "custom_jvp_call": "call_jaxpr"}
-"""Primitives that only call a function, and the parameter that is this function."""
+"""Primitives that only call a function, with the name of the function's parameter."""
 
 PRODUCTS = {"mul", "square"}
 NO_SUM = {
@@ -35,8 +35,8 @@ NO_SUM = {
     "floor",
     "ceil",
 }
-"""Primitives that add nothing to what they are given, so a product before them is not contracted. Others,
-such as the sine, may be computed by compilers as sums."""
+"""Primitives that add nothing to their arguments, so a product before them is not contracted.
+Others, such as the sine, may be computed by compilers as sums."""
 
 
 def rounded(function: Callable, zero: Array) -> Callable:
@@ -186,7 +186,7 @@ def _may_be_added(function: Jaxpr) -> set[Any]:
 
 def _summed(a: Array, axes: int) -> Array:
     """Return the sum over the first axes, in the same order for arrays of all shapes."""
-    a = a.reshape(prod(a.shape[:axes]), *a.shape[axes:])  # also where an axis is empty
+    a = a.reshape(prod(a.shape[:axes]), *a.shape[axes:])  # also for an empty axis
     while (count := len(a)) > 1:
         half = (count + 1) // 2
         a = jnp.concatenate([a[: count // 2] + a[half:], a[count // 2 : half]])

@@ -1,4 +1,4 @@
-"""Environments as pure functions of one body: reset and step, without resets of their own.
+"""Environments as pure functions of one body: reset and step, without automatic resets.
 
 An environment has the interface of gymnax: `default_params`, `reset_env(key, params)`,
 `step_env(key, state, action, params)`, `action_space(params)` and `observation_space(params)`.
@@ -25,20 +25,20 @@ from primordia.habitats.gymnax.libraries import NEVER
 from primordia.settings.tables import did_you_mean
 
 TIME_LIMITS = ("max_steps_in_episode", "max_timesteps")
-"""Parameters after whose number of steps an environment ends, whatever happens in it."""
+"""Parameters that are time limits: the number of steps after which an environment ends."""
 ADDRESS = re.compile("0x[0-9a-f]+")
-"""Where in memory a function is, which JAX shows of some."""
+"""A pattern for addresses in memory, which JAX prints for some functions."""
 
 
 class Step(NamedTuple):
-    """What a tick does to a body."""
+    """The result of a tick for a body."""
 
     observation: Any
     state: Any
     reward: Array
     """float32 ()"""
     done: Array
-    """bool (): the environment has ended, by its time limit only if that is kept"""
+    """bool (): the environment has ended; its time limit counts only if it is kept"""
     info: Any
 
 
@@ -75,7 +75,7 @@ class Simulator:
         return observation, self._typed(state)
 
     def step(self, key: Array, state: Any, action: Array) -> Step:
-        """Return what a tick does for a key uint32 (2,) and an action of the environment's space."""
+        """Return the result of a tick for a key uint32 (2,) and an action of the environment's space."""
         observation, state, reward, done, info = self._step(key, state, action)
         if self._truncates:
             done = jnp.asarray(done) | self.env.is_truncated(state, self.params)
@@ -84,7 +84,7 @@ class Simulator:
 
     @cached_property
     def example(self) -> Step:
-        """Shapes and types of what `step` returns."""
+        """Shapes and types of the results of `step`."""
         with traced():
             return jax.eval_shape(self.step, KEY, self._state, self._action)
 
@@ -103,7 +103,7 @@ class Simulator:
         if trees[0] != trees[1] or any(
             a.shape != b.shape for a, b in zip(*map(jax.tree.leaves, (born, later)), strict=True)
         ):
-            raise ValueError("env: its state has another form after a step than after a reset")
+            raise ValueError("env: its state has a different form after a step than after a reset")
         return jax.tree.map(
             lambda a, b: jax.ShapeDtypeStruct(a.shape, jnp.promote_types(a.dtype, b.dtype)),
             born,
@@ -114,7 +114,7 @@ class Simulator:
         return self.env.step_env(key, state, action, self.params)
 
     def repeats(self) -> bool:
-        """Return whether its functions are the same when JAX traces them again."""
+        """Return whether the environment's functions are the same when JAX traces them again."""
         before = self._traced()
         jax.clear_caches()
         return self._traced() == before
@@ -153,7 +153,7 @@ KEY = jax.ShapeDtypeStruct((2,), jnp.uint32)
 
 @contextmanager
 def traced() -> Iterator[None]:
-    """Let JAX make and split keys in one way, whatever the user has set; and keep warnings to itself."""
+    """Let JAX make and split keys in the same way for all user settings, and suppress warnings."""
     with (
         jax.threefry_partitionable(True),
         jax.default_prng_impl("threefry2x32"),
@@ -177,13 +177,13 @@ def simulator(name: str, params: str, time_limit: bool) -> Simulator:
 
 
 def _params(env: Any, name: str, changed: dict[str, Any], time_limit: bool) -> Any:
-    """Return the parameters, some of them replaced, and without a time limit unless it is kept."""
+    """Return the parameters, with replaced ones, and without a time limit unless it is kept."""
     params = env.default_params
     known = [each.name for each in dataclasses.fields(params)] if is_dataclass(params) else []
     for each in changed:
         if each not in known:
             raise ValueError(f"params: {name} has no parameter {each!r}{did_you_mean(each, known)}")
-    # The steps of gymnax's own environments never end by time, and some let time be observed.
+    # Steps of gymnax's own environments never end by time, but some observations include the time.
     if not time_limit and not type(env).__module__.startswith("gymnax."):
         changed = {**dict.fromkeys(set(TIME_LIMITS) & set(known), NEVER), **changed}
     typed = {each: _as(getattr(params, each), value, each) for each, value in changed.items()}

@@ -1,4 +1,4 @@
-"""Spaces of environments: actions made from what a brain puts out, and observations as senses."""
+"""Spaces of environments: a brain's outputs become actions, and observations become senses."""
 
 from typing import Any
 
@@ -10,14 +10,14 @@ from jax import Array
 from primordia.habitats.contract import Continuous, Discrete
 
 BOUNDED = 1e6
-"""Bounds from here on are nominal, such as the largest float; what they bound is taken as unbounded."""
+"""A number with a bound of this size or more, such as the largest float, counts as unbounded."""
 
 
 class Actions:
     """The actions of a space: one of n choices, or numbers within bounds."""
 
     def __init__(self, space: Any, env: str) -> None:
-        """Raise ValueError if the space is neither."""
+        """Raise ValueError if the space is of neither kind."""
         self.kind: Discrete | Continuous
         self._shape: tuple[int, ...] = ()
         if isinstance(count := getattr(space, "n", None), int) and count > 1:
@@ -26,8 +26,9 @@ class Actions:
         low, high = (getattr(space, name, None) for name in ("low", "high"))
         if low is None or high is None:
             raise ValueError(
-                f"env: the actions of {env} are {space!r}; a brain chooses one of two or more, or puts"
-                " out the numbers of a box"
+                f"env: the actions of {env} are {space!r}; a brain needs two or more choices, or "
+                "the numbers of a "
+                "box"
             )
         self._shape = tuple(space.shape)
         self.kind = Continuous(int(np.prod(self._shape)))
@@ -38,7 +39,8 @@ class Actions:
     def of(self, output: Array) -> Array:
         """Return the action of one body for an output of a brain: int32 (), or float32 (size,).
 
-        Within bounds, -1 is the least number and 1 the largest; without, a number is taken as it is.
+        Outputs -1 and 1 give the lower and upper bound of a number; an unbounded number is
+        unchanged.
         """
         if isinstance(self.kind, Discrete):
             return output
@@ -50,7 +52,7 @@ class Senses:
     """Observations as senses: flat, float32, and scaled to -1 to 1 where their space has bounds."""
 
     def __init__(self, space: Any, example: Any, squash: bool) -> None:
-        """Take the space, or None, and an observation's shapes and types."""
+        """Use the space, or None, and an observation's shapes and types."""
         self._choices = count if isinstance(count := getattr(space, "n", None), int) else 0
         self._squash = squash
         leaves = jax.tree.leaves(example)
@@ -72,8 +74,8 @@ class Senses:
     def of(self, observation: Any) -> Array:
         """Return the senses of one body, float32 (size,).
 
-        A choice of n is n numbers, of which one is 1. A number without bounds is x, or x / (1 + |x|) if
-        asked for.
+        One of n choices becomes n numbers: 1 for the choice, 0 for the others. An unbounded number
+        x stays x, or becomes x / (1 + |x|) with `squash`.
         """
         flat = flattened(observation)
         if self._choices:
@@ -103,7 +105,7 @@ def flattened(observation: Any) -> Array:
 
 
 def _grid(shape: tuple[int, ...]) -> tuple[int, ...] | None:
-    """Return the (height, width, channels) of an observation of this shape; None if it is no grid."""
+    """Return the (height, width, channels) of an observation of this shape; None if it is not a grid."""
     return (*shape, 1)[:3] if len(shape) in (2, 3) else None
 
 

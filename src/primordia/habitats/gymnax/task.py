@@ -10,7 +10,7 @@ from primordia.settings.doors import replication
 from primordia.settings.making import make
 
 PLAIN = 5.0
-"""Observations without bounds that stay below this in random play are perceived as they are."""
+"""Unbounded observations that stay below this in random play are not scaled."""
 
 
 def values(env: str) -> dict[str, Any]:
@@ -38,7 +38,7 @@ def values(env: str) -> dict[str, Any]:
 
 
 def report(env: str) -> tuple[list[str], list[str]]:
-    """Return what is known of an environment, and what was found to be wrong with it, a line each.
+    """Return the known facts of an environment and its faults, each in a line.
 
     Raises:
         InputError: see `values`.
@@ -53,9 +53,9 @@ def report(env: str) -> tuple[list[str], list[str]]:
         f"Observation: {named['obs']} numbers, obs[0] to obs[{named['obs'] - 1}] in conditions.",
         f"Action: {what}.",
         *(f"Numbers in {part}: {_listed(part, named[part])}." for part in ("state", "info")),
-        f"Its own time limit ({limits}) is off; time_limit = true keeps it."
+        f"The environment's time limit ({limits}) is off; time_limit = true keeps it."
         if limits
-        else "It has no time limit of its own.",
+        else "The environment has no time limit.",
         "After an interruption lives go on exactly from their state.",
         f"Random actions live {found.lifespan:,.0f} ticks on average."
         if found.ended
@@ -66,14 +66,14 @@ def report(env: str) -> tuple[list[str], list[str]]:
 
 
 def _listed(part: str, kinds: dict[str, Any]) -> str:
-    """List names, without private parts, of which states of MJX have dozens."""
+    """List names without private parts; states of MJX have dozens of these."""
     public = (name for name in kinds if not name.startswith("_") and "._" not in name)
     return ", ".join(f'{part}["{name}"]' for name in public) or "none"
 
 
 @cache
 def _measured(env: str) -> tuple[Gymnax, Measured]:
-    """Return the habitat of an environment, and what was found out about it."""
+    """Return the habitat of an environment, and the measurements."""
     habitat = make("habitat", {"name": "gymnax", "env": env}, find)
     assert isinstance(habitat, Gymnax)
     return habitat, measure(habitat)

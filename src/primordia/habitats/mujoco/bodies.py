@@ -1,4 +1,4 @@
-"""The bodies of a run: MuJoCo's batch, and what is observed of it after a tick."""
+"""The bodies of a run: MuJoCo's batch, and its observables after a tick."""
 
 from collections.abc import Collection
 from typing import Any
@@ -13,11 +13,11 @@ DERIVED = {"xpos", "site", "height", "pitch", "travelled", "com_forward", "reach
 
 
 class Bodies:
-    """A batch of bodies of one model; habitats are settings, and this is what they step."""
+    """A batch of bodies of one model, which a habitat steps."""
 
     def __init__(self, model: Any, cells: int, observed: Collection[str]) -> None:
         """Allocate the bodies, and observe those of `simulator.observables` that are named."""
-        # One thread is the one that calls: the batch then starts none.
+        # With one thread the batch starts none: the calling thread steps the bodies.
         self.batch = package().batch.Batch(model, cells, nthread=cores.count())
         bind, wanted = self.batch.bind, set(observed)
         self.views: dict[str, Any] = {name: bind(name) for name in ("qpos", "qvel", "ctrl")}

@@ -1,4 +1,4 @@
-"""Any MuJoCo model as a habitat: bodies, stepped in parallel on all cores that the process may use.
+"""Any MuJoCo model as a habitat. Bodies are stepped in parallel on all cores of the process.
 
 Schmidgall & Hays 2021, "Reacher", "HalfCheetah", "Walker". Settings define senses, death, food and effort
 by expressions of named parts of the state. The simulator is MuJoCo's batch (extra `primordia[mujoco]`).
@@ -38,7 +38,7 @@ class MuJoCo(HostHabitat, Settings):
     """A model as a habitat; actions are its controls, kept within their ranges."""
 
     file: str = Field(description="an MJCF file, or gymnasium:NAME.xml for one of Gymnasium's")
-    timestep: float | None = Field(None, gt=0, description="seconds a substep, if not the model's")
+    timestep: float | None = Field(None, gt=0, description="seconds of a substep [the model's]")
     substeps: int = Field(1, ge=1, le=1000, description="steps of the simulator in a tick")
     senses: tuple[str, ...] = Field(
         ("qpos", "qvel"), strict=False, description="numbers perceived, such as qpos[1:] or qvel"
@@ -52,15 +52,15 @@ class MuJoCo(HostHabitat, Settings):
     velocity_sd: float = Field(
         0.0, ge=0, description="velocities at birth are Gaussian with this standard deviation"
     )
-    fatal: str = Field("", description="condition that ends a life; none: nothing does")
+    fatal: str = Field("", description="condition that ends a life; none: no life ends")
     food: str = Field("0", description="amount gathered in a tick")
     effort: str = Field("0", description="amount exerted in a tick")
-    target: Target | None = Field(None, description="an object to be reached")
+    target: Target | None = Field(None, description="an object that the robot must reach")
     episode: int | None = Field(
         None, ge=1, description="ticks after which an evaluation ends a game; no life ends there"
     )
     scored: dict[str, Any] = Field(
-        {}, description="settings of the standard benchmark that differ; food is then its score"
+        {}, description="settings that differ in the standard benchmark, in which food is the score"
     )
 
     _bodies: Bodies = PrivateAttr()
@@ -161,7 +161,7 @@ class MuJoCo(HostHabitat, Settings):
 
     def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
         """Step the bodies of the living by one tick."""
-        bodies = self._bodies  # pydantic takes some time to find a private attribute
+        bodies = self._bodies  # pydantic finds a private attribute slowly
         np.clip(action, *self._range, out=bodies.views["ctrl"])
         before, fault = bodies.positions(), bodies.step(alive, self.substeps)
         values = self._observe(before)
@@ -213,7 +213,7 @@ class MuJoCo(HostHabitat, Settings):
         return self.target.joint_addresses(self._model) if self.target else []
 
     def original(self) -> "MuJoCo | None":
-        """Return the game as the standard benchmark scores it, if `scored` describes it."""
+        """Return the game as the standard benchmark scores it; None without `scored`."""
         changed = {**self.model_dump(), "scored": {}, **self.scored}
         return MuJoCo(**changed) if self.scored else None
 

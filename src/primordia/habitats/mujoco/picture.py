@@ -38,11 +38,14 @@ class Renderer:
         self._scene = mujoco.MjvScene(model, MOST_SHAPES)
         self._scene.flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = 0
         self._context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100)
-        atexit.register(weakref.finalize(self, self._context.free))  # before OpenGL's is released
+        atexit.register(
+            weakref.finalize(self, self._context.free)
+        )  # before OpenGL's context is released
         self._camera = self._make_camera()
 
     def _make_camera(self) -> Any:
-        """Return the model's CAMERA; else one that follows the robot, or looks down on a fixed one."""
+        """Return the model's CAMERA, or a camera that follows a moving robot or looks down on a
+        fixed one."""
         mujoco, model, camera = self._mujoco, self._model, self._mujoco.MjvCamera()
         model_camera = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_CAMERA, CAMERA)
         mujoco.mjv_defaultFreeCamera(model, camera)
@@ -81,12 +84,12 @@ def _gl_context() -> Any:
     try:
         context = import_module(f"mujoco.{name}").GLContext(LARGE_WIDTH, LARGE_HEIGHT)
         context.make_current()
-    except Exception:  # every library raises other errors
+    except Exception:  # each library raises different errors
         raise InputError(
             f"pictures of robots need OpenGL without a screen, and {name} cannot be used:"
             " `apt-get install libosmesa6`, or set MUJOCO_GL to egl or osmesa"
         ) from None
-    # What is registered last is released first: renderers, then this, then the display that EGL has
-    # registered above. A context without its display cannot be released.
+    # Handlers run in reverse order: first renderers, then this context, then EGL's display from
+    # above. A context without its display cannot be released.
     atexit.register(_gl_context.cache_clear)
     return context

@@ -59,7 +59,7 @@ def load_model(file: str, timestep: float | None) -> Any:
         raise ValueError(f"file: {path} has no actuators, so a brain could do nothing")
     if timestep is not None:
         model.opt.timestep = timestep
-    # A state that is not finite must stay so, not be reset: its body then dies of a fault.
+    # A state that is not finite must not be reset, so that its body dies of a fault.
     model.opt.disableflags |= package().mjtDisableBit.mjDSBL_AUTORESET
     return model
 

@@ -14,10 +14,12 @@ from primordia.settings.base import Settings
 class Target(Settings):
     """An object to be reached; it then moves to a random position in a disc of the plane x, y."""
 
-    body: str = Field(description="the body to be reached")
-    by: str = Field(description="the body that reaches it")
-    within: float = Field(gt=0, description="distance of the two at which it is reached, metres")
-    joints: tuple[str, str] = Field(strict=False, description="its slide joints, x and y")
+    body: str = Field(description="the target's body")
+    by: str = Field(description="the robot's body that must reach the target")
+    within: float = Field(
+        gt=0, description="distance between the two bodies at which the target is reached, metres"
+    )
+    joints: tuple[str, str] = Field(strict=False, description="the target's slide joints, x and y")
     radius: float = Field(gt=0, description="radius of the disc around the origin, metres")
 
     def check(self, model: Any) -> None:

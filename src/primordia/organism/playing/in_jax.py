@@ -30,19 +30,19 @@ from primordia.random.wide import Wide, wide
 STRETCH = 64
 """Ticks of one compiled loop."""
 FEWEST = 16
-"""The fewest games of a loop. Their number is padded, since JAX compiles for every new shape."""
+"""Smallest number of games of a loop. The number is padded, since JAX compiles for every new shape."""
 FEWER = 8
-"""Once this many times fewer games go on, the others leave the loop."""
+"""Games that are over leave the loop when the number of games has fallen by this factor."""
 
 
 class _Table(NamedTuple):
-    """All that the loop needs of N games."""
+    """The inputs of the loop for N games."""
 
     mind: Mind
     rates: Rates
     frozen: Frozen | None
     first: Array | None
-    """the senses at the start, float32 (N, S), if any stays as it is then"""
+    """the senses at the start, float32 (N, S), if any sense is frozen"""
     bodies: Bodies
     memory: Array
     vitals: Vitals
@@ -99,7 +99,7 @@ def _padded(tree: Any, size: int) -> Any:
 
 
 def _in_full(part: Array, rows: np.ndarray, count: int) -> np.ndarray:
-    """Return T ticks of all games: those of the first rows of a part (T, N, ...), and zeros."""
+    """Return T ticks of all games: the first rows of a part (T, N, ...), then zeros."""
     whole = np.zeros((len(part), count, *part.shape[2:]), part.dtype)
     whole[:, rows] = np.asarray(part)[:, : len(rows)]
     return whole
@@ -119,7 +119,7 @@ def _advance(
     table: _Table,
     ticks: tuple[Wide, Array, Array | None],
 ) -> tuple[_Table, tuple]:
-    """Play ticks, T in a loop: their numbers (T, 1), whether they count (T,), and actions if given."""
+    """Play T ticks in a loop, by their numbers (T, 1), whether they count (T,), and actions if given."""
     mind, rates, frozen, first, *own = table
 
     def play(own: tuple, now: tuple[Wide, Array, Array | None]) -> tuple[tuple, tuple]:

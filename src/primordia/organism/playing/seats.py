@@ -1,4 +1,4 @@
-"""Seats of games: what a game begins with, and what is known of a stretch of its ticks."""
+"""Seats of games: the inputs of a game, and the record of a stretch of its ticks."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -16,19 +16,19 @@ from primordia.random.keys import Purpose, stream
 from primordia.random.wide import Wide, wide
 
 ODD = np.array([0x9E3779B1, 0x85EBCA77], np.uint32)
-"""Odd numbers, which mix the bits of senses."""
+"""Odd numbers that mix the bits of senses."""
 
 Script = Callable[[int], np.ndarray]
 """The actions of all games at a tick: int32 (N,) or float32 (N, A)"""
 
 
 class Frozen(NamedTuple):
-    """What of N players stays as it is when a game begins."""
+    """The senses and memory of N players that keep their values from the start of a game."""
 
     senses: np.ndarray
     """bool (N, S)"""
     memory: np.ndarray
-    """bool (N, 1): of a brain that remembers, all zeros"""
+    """bool (N, 1): the memory, which is all zeros at the start"""
 
     def take(self, index: Any) -> "Frozen":
         """Return the rows at an index."""
@@ -36,15 +36,15 @@ class Frozen(NamedTuple):
 
 
 class Manner(NamedTuple):
-    """How N games are played."""
+    """The manner in which N games are played."""
 
     ticks: int
-    """length at which they are cut"""
+    """length at which games are cut"""
     frozen: Frozen | None = None
     script: Script | None = None
-    """actions that are repeated, whatever is perceived"""
+    """actions that are repeated regardless of senses"""
     watched: bool = False
-    """whether stretches tell what brains think from"""
+    """whether stretches record the brains' inputs"""
 
 
 class Stretch(NamedTuple):
@@ -61,11 +61,11 @@ class Stretch(NamedTuple):
     alive: np.ndarray
     """bool (N,): which games go on after the last tick"""
     met: "Thinking | None" = None
-    """if the games are watched"""
+    """the brains' inputs, if they are recorded"""
 
 
 class Thinking(NamedTuple):
-    """What N brains think from in T ticks, before anything is frozen."""
+    """The inputs of N brains in T ticks, before any is frozen."""
 
     senses: Any
     """float32 (T, N, S)"""
@@ -83,7 +83,7 @@ class Seats(NamedTuple):
     cells: np.ndarray
     """int32 (N,): number that tells games of one key apart"""
     rates: Rates
-    """metabolism, float32 (N,) each"""
+    """metabolism, each float32 (N,)"""
 
 
 class Begun(NamedTuple):

@@ -1,4 +1,4 @@
-"""What is compared of a life: as the records hold it, and as it turned out when it was lived again."""
+"""The compared values of a life: as recorded, and as found when it was lived again."""
 
 import hashlib
 from collections.abc import Iterator, Mapping
@@ -15,16 +15,17 @@ Value: TypeAlias = int | float | str | None
 ALIVE = "alive"
 """The word in place of a cause of death."""
 OWN = tuple(f"world.organisms.{name}" for name in ("memory", "energy", "eaten"))
-"""The names of an organism's own arrays in a state, as far as they change in its life."""
+"""The names of an organism's arrays in a state that change in its life."""
 BODIES, SENSES, COUNTS = "bodies", ("bodies.senses",), "bodies.tally"
-"""The beginning of the names of a body's arrays in a state; its senses and counts, of one on the host."""
+"""Prefix of the names of a body's arrays in a state, and names of a host body's senses and counts."""
 
 
 def recorded(life: RelivedLife) -> dict[str, Value]:
-    """Return what the records hold of a life, by name.
+    """Return the recorded values of a life, by name.
 
-    Of the dead: tick and cause of death, energy left, food eaten, and what the habitat counts. Of the
-    living: the same at the newest checkpoint, and digests of the memory, and of the body or its senses.
+    For the dead: tick and cause of death, energy left, food eaten, and the habitat's counts. For
+    the living: energy, food and counts at the newest checkpoint, and digests of the memory and of
+    the body or its senses.
     """
     names = life.run.schema.tallies
     if life.cause is not None:
@@ -42,10 +43,10 @@ def recorded(life: RelivedLife) -> dict[str, Value]:
 
 
 class Course:
-    """The course that a life takes when it is lived again, whatever the record says."""
+    """The course of a life that is lived again, regardless of the record."""
 
     def __init__(self, life: RelivedLife) -> None:
-        """Prepare to live; `stretches` lives."""
+        """Prepare the life; `stretches` lives it."""
         self._life = life
         self._held: dict[str, np.ndarray] = {}
         self._last: Stretch | None = None
@@ -65,7 +66,7 @@ class Course:
 
     @property
     def replaced(self) -> bool:
-        """Whether the life ended as the record says: a child was born in its cell, where it was alive."""
+        """Whether the organism was still alive when the record says that a child took its cell."""
         life, lives = self._life, self._life.run.lives
         if life.cause is not Cause.REPLACED or self._cause >= 0:
             return False
@@ -77,7 +78,7 @@ class Course:
         return -1 if self._last is None else int(self._last.cause[-1])
 
     def found(self) -> dict[str, Value]:
-        """Return what was found of the life, under the names of `recorded`, as far as it was found."""
+        """Return the values found in the life, by the names of `recorded`."""
         if self._cause < 0 and not self.replaced:
             ended = {"cause": ALIVE} | ({"tick": self.tick} if self._life.cause is None else {})
             held = _of_living(self._held)
@@ -96,7 +97,7 @@ def _vitals(energy: int, eaten: int) -> dict[str, Value]:
 
 
 def _of_living(held: Mapping[str, np.ndarray]) -> dict[str, Value]:
-    """Return energy, food and digests of memory and body, of arrays (1, ...) of a state."""
+    """Return energy, food and digests of memory and body, from arrays (1, ...) of a state."""
     memory, energy, eaten = (held[name] for name in OWN)
     body = {name: held[name] for name in sorted(held) if name.startswith(BODIES)}
     name = "senses" if list(body) == list(SENSES) else "body"
@@ -105,6 +106,6 @@ def _of_living(held: Mapping[str, np.ndarray]) -> dict[str, Value]:
 
 
 def _digest(*arrays: np.ndarray) -> str:
-    """Return the first figures of a checksum of arrays, bit for bit."""
+    """Return the first digits of a checksum of the bits of arrays."""
     content = b"".join(np.ascontiguousarray(each).tobytes() for each in arrays)
     return hashlib.sha256(content).hexdigest()[:12]

@@ -40,7 +40,7 @@ class LifeInJax:
     def live(
         self, now: Instant, ticks: np.ndarray, rates: Rates, count: int
     ) -> tuple[Instant, Stretch]:
-        """Live the first `count` of TICKS ticks, with their rates (TICKS,); ignore the others."""
+        """Live the first `count` of TICKS ticks with their rates (TICKS,), and ignore the other ticks."""
         real = np.arange(len(ticks)) < count
         now, lived = self._lived(self._mind, now, (wide(ticks), rates, real))
         columns = jax.tree.map(lambda each: np.asarray(each)[:count, 0], lived)
@@ -57,9 +57,10 @@ class LifeInJax:
 def _lived(
     law: Law, habitat: JaxHabitat, mind: Mind, now: Instant, ticks: tuple[Wide, Rates, Array]
 ) -> tuple[Instant, tuple]:
-    """Live ticks (n,) -> the life's state after them; the columns of a Stretch, (n, 1, ...) each.
+    """Live ticks (n,). Return the state after them, and the columns of a Stretch, each (n, 1, ...).
 
-    `ticks` holds their numbers, their rates, and which are real, bool; the state skips the others.
+    `ticks` holds their numbers, their rates, and whether each is real; padding leaves the state
+    unchanged.
     """
 
     def step(now: Instant, given: tuple[Wide, Rates, Array]) -> tuple[Instant, tuple]:

@@ -16,7 +16,7 @@ class Instant(NamedTuple):
     memory: Array
     vitals: Vitals
     bodies: Bodies
-    """the body; in a habitat on the host, which holds the body itself, its senses"""
+    """the body; for a habitat on the host, which holds the body itself, the senses"""
 
 
 class Stretch(NamedTuple):
@@ -29,15 +29,15 @@ class Stretch(NamedTuple):
     action: np.ndarray
     """int32 (n,) or float32 (n, A)"""
     bodies: Bodies
-    """after the tick; in a habitat on the host, what `seen` returns, None if it shows nothing"""
+    """bodies after the tick; for a habitat on the host, the result of `seen`, or None"""
     energy: np.ndarray
-    """int32 after the tick, fixed point; without a metabolism it has no meaning"""
+    """int32, energy after the tick, fixed point; it has no meaning without a metabolism"""
     eaten: np.ndarray
     """int32, fixed point: food since birth"""
     cause: np.ndarray
-    """int32: cause of a death by brain, body, store or accident in the tick, or -1"""
+    """int32: cause of death in the tick (by brain, body, store or accident), or -1"""
     counts: np.ndarray
-    """int32 (n, K): what the habitat counts, after the tick"""
+    """int32 (n, K): the habitat's counts after the tick"""
 
     def take(self, ticks: slice) -> "Stretch":
         """Return some of the ticks."""

@@ -31,11 +31,11 @@ class LifeOnHost:
         self._think, self._judged = shared(think, law), shared(_judged, law)
 
     def embody(self, words: Array) -> np.ndarray:
-        """Make a fresh body from random words uint32 (1, words) -> senses (1, S)."""
+        """Make a fresh body from random words uint32 (1, words). Return senses (1, S)."""
         return self._habitat.reset(ONLY, np.asarray(words))
 
     def restore(self, stored: dict[str, np.ndarray]) -> np.ndarray:
-        """Load the body from a checkpoint's arrays whose names begin with `bodies.` -> senses (1, S)."""
+        """Load the body from a checkpoint's arrays with the prefix `bodies.`. Return senses (1, S)."""
         bodies = {name.removeprefix("bodies."): array for name, array in stored.items()}
         senses = bodies.pop("senses")
         self._habitat.load(bodies)
@@ -65,11 +65,11 @@ class LifeOnHost:
         return Instant(memory, Vitals(energy, eaten), senses), stretch
 
     def stored_as(self, bodies: np.ndarray) -> dict[str, np.ndarray]:
-        """Return senses (1, S) as a checkpoint holds them; the habitat itself holds the body."""
+        """Return senses (1, S) as in a checkpoint; the habitat itself holds the body."""
         return {"bodies.senses": np.asarray(bodies)}
 
     def _counts(self) -> np.ndarray:
-        """Return what the habitat counts, int32 (1, K)."""
+        """Return the habitat's counts, int32 (1, K)."""
         return self._habitat.tally() if self._habitat.tallies else np.zeros((1, 0), np.int32)
 
     def close(self) -> None:
@@ -94,7 +94,7 @@ def _padded(lived: Any, count: int) -> Any:
 
 
 def _judged(law: Law, vitals: Vitals, lived: tuple, rates: Rates) -> tuple[Vitals, Array]:
-    """Judge successive ticks -> vitals and cause after each, int32 (n, 1).
+    """Judge successive ticks. Return vitals and cause of death after each, int32 (n, 1).
 
     `lived` holds faulty (n, 1), senses after the tick (n, 1, S), and the outcome, (n, 1) each.
     """

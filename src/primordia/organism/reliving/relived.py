@@ -1,7 +1,7 @@
 """A life lived again, tick for tick.
 
-It is a function of the organism's genome, the world's seed, and the tick and cell of birth (the first
-promise), so the neighbours need not live again.
+A life is a function of the organism's genome, the world's seed, and the tick and cell of birth (the
+first promise). So the neighbours need not live again.
 """
 
 from collections.abc import Generator, Mapping
@@ -40,7 +40,7 @@ from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 
 ALONE = (*BODILY, Cause.HAZARD)
-"""Causes of death that a life shows when it is lived alone; others are acts of neighbours."""
+"""Causes of death that are found when a life is lived alone; other causes are acts of neighbours."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class RelivedLife:
     config: Config
     law: Law
     habitat: AnyHabitat
-    """the habitat that draws pictures; each time the life is lived, it gets a new habitat"""
+    """the habitat that draws pictures; each time the life is lived, a new habitat is used"""
     genome: Genome
     """a single genome, first axis 1"""
     record: Lives
@@ -86,7 +86,8 @@ class RelivedLife:
             stored, begin = run.origin, "the fork"
         if stored is not None and not habitat.exact:
             raise InputError(
-                f"{run.path}: organism {organism} is older than {begin}, and its habitat cannot save"
+                f"{run.path}: organism {organism} is older than {begin}, and its habitat cannot "
+                "save"
                 " bodies"
             )
         genome = law.heredity.layout.split(jnp.asarray(rebuild(run, organism, world)[None]))
@@ -99,7 +100,7 @@ class RelivedLife:
 
     @property
     def begins(self) -> int:
-        """The tick at whose end the relived life begins: that of the birth, or of the stored state."""
+        """The tick after which the relived life begins: that of the birth, or of the stored state."""
         if self.stored is None:
             return int(self.record.born[0])
         return int(world_ticks(self.stored)[self.world])
@@ -131,7 +132,7 @@ class RelivedLife:
     def instants(
         self, watched: bool = False
     ) -> Generator[tuple[dict[str, np.ndarray], Stretch | None], None, None]:
-        """Live the life until it ends as recorded, or until it ends before; compare it with nothing.
+        """Live the life up to its recorded end or an earlier death, without comparing it.
 
         Yields:
             The memory, the energy, the food, and the body or its senses, (1, ...) each, by the names
@@ -153,7 +154,7 @@ class RelivedLife:
                     return
 
     def _with_accidents(self, stretch: Stretch, ticks: np.ndarray, climate: Climate) -> Stretch:
-        """Return a stretch with the accidents that the world's seed has for this cell."""
+        """Return a stretch with the accidents of this cell, drawn from the world's seed."""
         if not self.law.has_hazard:
             return stretch
         cell = jnp.asarray(self.record.cell)
@@ -162,7 +163,7 @@ class RelivedLife:
         return stretch._replace(cause=np.where(struck, np.int32(Cause.HAZARD), stretch.cause))
 
     def _alone(self, watched: bool) -> LifeInJax | LifeOnHost:
-        """Return what steps brain and body, in a new habitat."""
+        """Return the stepper of brain and body, with a new habitat."""
         mind = Mind(self.genome, self._seed, jnp.asarray(self.record.cell))
         habitat = self.config.build_habitat()
         if habitat.kind == "host":
@@ -202,7 +203,8 @@ class RelivedLife:
             same &= (stretch.energy[-1], stretch.eaten[-1]) == self.at_death
         if not same:
             raise Trouble(
-                f"{self.run.path}: the life of organism {self.record.id[0]} did not repeat as recorded;"
+                f"{self.run.path}: the life of organism {self.record.id[0]} did not repeat as "
+                "recorded;"
                 " `primordia verify` tells whether this machine gives the run's bits"
             )
 
@@ -242,5 +244,5 @@ def _as_stored(alone: LifeInJax | LifeOnHost, instant: Instant) -> dict[str, np.
 
 
 def _struck(seed: Wide, ticks: Wide, cell: Array, hazard: Array) -> Array:
-    """Return whether an accident strikes the cell in each tick (n,), bool; see `law.tick.judge`."""
+    """Return whether an accident hits the cell in each tick (n,), bool; see `law.tick.judge`."""
     return chance(bits(stream(seed, Purpose.HAZARD, ticks), cell).hi, hazard)
