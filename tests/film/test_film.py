@@ -60,3 +60,11 @@ def test_what_cannot_be_filmed_is_one_line(poles: primordia.Run, tmp_path: Path)
     ):
         complains(here("film", poles.path, *words), 2, line)
     assert not list(tmp_path.iterdir())
+
+
+def test_a_film_that_cannot_begin_leaves_no_folder(tmp_path: Path) -> None:
+    run = primordia.run("CartPole-survival", tmp_path / "run", cells=4, stop={"ticks": 20}).path
+    before = sorted(run.iterdir())
+    complains(here("film", run, "--organism", 10**6), 2, "no organism")
+    complains(here("film", run, "--world", 3), 2, "has no world 3")
+    assert sorted(run.iterdir()) == before

@@ -1,0 +1,35 @@
+"""Runs whose organisms die in every way, for all tests of revived lives."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import primordia
+from primordia.runs import loop
+from tests.worlds import MILL, config
+
+WAYS: dict[str, Any] = {
+    **MILL,
+    "cells": 16,
+    "hazard": 0.02,
+    "brain": {"hidden": 2},
+    "placement": {"topology": "torus4", "rule": "replacing"},
+    "replication": 0.06,
+}
+"""A world in which organisms die in every way: hunger, broken wheels, accidents, neighbours."""
+CLOCKED = {"name": "tests.toys:Clocked", "inner": "mill"}
+
+
+@pytest.fixture(scope="package", params=["in JAX", "on the host"])
+def chain(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
+    """Make a run of two worlds with seeds of its own, a fork of it, and a fork of the fork."""
+    folder = tmp_path_factory.mktemp("chain")
+    habitat = CLOCKED if request.param == "on the host" else MILL["habitat"]
+    settings = config({**WAYS, "habitat": habitat, "seeds": 2, "seed": 77, "stop": {"ticks": 120}})
+    loop.start(settings, folder / "run")
+    loop.resume(folder / "run", {"ticks": 150})
+    run = primordia.load(folder / "run")
+    fork = run.fork(100, folder / "fork", seed=9, stop={"ticks": 200})
+    again = fork.fork(180, folder / "again", seed=300, stop={"ticks": 260})
+    return [run.path, fork.path, again.path]

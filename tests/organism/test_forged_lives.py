@@ -1,0 +1,104 @@
+"""A record that was changed does not agree with the life that is lived again."""
+
+import json
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+
+from primordia.law.metabolism import ONE
+from primordia.law.world import Cause
+from primordia.organism.revival import revive
+from primordia.runs.archive import Archive
+from tests.commands import complains, here
+from tests.trouble import newest, reseal
+
+Row = dict[str, Any]
+
+
+def later(row: Row) -> None:
+    row["tick"] += 1
+
+
+def earlier(row: Row) -> None:
+    row["tick"] -= 1
+
+
+def otherwise(row: Row) -> None:
+    row["cause"] = "fault" if row["cause"] != "fault" else "fatal"
+
+
+def replaced(row: Row) -> None:
+    row["cause"] = "replaced"
+
+
+def richer(row: Row) -> None:
+    row["energy"] += 1 / ONE
+
+
+def hungrier(row: Row) -> None:
+    row["food"] -= 1 / ONE
+
+
+FORGERIES: list[tuple[Callable[[Row], None], set[str]]] = [
+    (later, {"tick"}),
+    (earlier, {"tick", "cause"}),
+    (otherwise, {"cause"}),
+    (replaced, {"cause"}),
+    (richer, {"energy"}),
+    (hungrier, {"food"}),
+]
+"""Changes of the row of a death, and what then differs at least."""
+
+
+@pytest.mark.parametrize(("change", "respects"), FORGERIES)
+def test_a_forged_death_is_noticed(
+    chain: list[Path], tmp_path: Path, change: Callable[[Row], None], respects: set[str]
+) -> None:
+    """The forger has changed one number of a closed segment, and computed all checksums again."""
+    run = Path(shutil.copytree(chain[0], tmp_path / "run"))
+    lives = Archive(run).lives.of_world(0)
+    likely = (lives.lifespan > 3) & (lives.ended < 149)
+    chosen = [
+        int(lives.id[likely & (lives.cause == cause)][0]) for cause in (Cause.STARVED, Cause.HAZARD)
+    ]
+    for path in run.glob("deaths/*.parquet"):
+        before = pq.read_table(path)
+        rows = before.to_pylist()
+        for row in rows:
+            if row["world"] == 0 and row["id"] in chosen:
+                change(row)
+        pq.write_table(pa.Table.from_pylist(rows, schema=before.schema), path)
+    reseal(newest(run))
+    for number in chosen:
+        done = here("revive", run, number, "--json")
+        complains(done, 1, f"organism {number} of world 0 did not live as recorded")
+        found = json.loads(done.stdout)
+        assert not found["agrees"]
+        assert {row["name"] for row in found["respects"] if not row["agrees"]} >= respects
+    shown = here("revive", run, chosen[0])
+    assert shown.returncode == 1
+    assert "NO" in shown.stdout
+
+
+@pytest.mark.parametrize("name", ["energy", "eaten", "memory"])
+def test_a_forged_state_of_the_living_is_noticed(
+    chain: list[Path], tmp_path: Path, name: str
+) -> None:
+    run = Path(shutil.copytree(chain[0], tmp_path / "run"))
+    lives = Archive(run).lives.of_world(0)
+    row = int(np.flatnonzero(~lives.died & (lives.lifespan > 3))[0])
+    with np.load(newest(run) / "state.npz") as stored:
+        arrays = dict(stored)
+    array = arrays[f"world.organisms.{name}"]
+    array[lives.cell[row]] += array.dtype.type(1)
+    np.savez(newest(run) / "state.npz", allow_pickle=False, **arrays)
+    reseal(newest(run))
+    respect = {"energy": "energy", "eaten": "food", "memory": "memory"}[name]
+    found = revive(Archive(run), int(lives.id[row]))
+    assert [each.name for each in found.respects if not each.agrees] == [respect]

@@ -1,0 +1,282 @@
+"""What a forger makes of a bundle is refused in one line, or makes no difference."""
+
+import json
+import os
+import struct
+import tempfile
+import warnings
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import primordia
+from primordia.errors import InputError
+from primordia.runs import bundle, loop, manifest
+from tests.bundles import SETTINGS, temporary_files  # noqa: F401, which pytest calls
+from tests.commands import complains, here
+from tests.trouble import contents
+from tests.worlds import config
+
+Entry = tuple[zipfile.ZipInfo, bytes]
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Make a bundle of a run."""
+    run = tmp_path_factory.mktemp("made") / "run"
+    loop.start(config(SETTINGS), run)
+    return primordia.load(run).bundle(run.with_name("run.zip"))
+
+
+def entries(file: Path) -> list[Entry]:
+    with zipfile.ZipFile(file) as zipped:
+        return [(plain(each.filename), zipped.read(each)) for each in zipped.infolist()]
+
+
+def plain(name: str, mode: int = 0o100644) -> zipfile.ZipInfo:
+    entry = zipfile.ZipInfo(name, bundle.EPOCH)
+    entry.create_system, entry.external_attr = 3, mode << 16
+    return entry
+
+
+def zipped(parts: list[Entry], path: Path) -> Path:
+    with warnings.catch_warnings(), zipfile.ZipFile(path, "w") as file:
+        warnings.simplefilter("ignore")  # of names that are there twice
+        for entry, content in parts:
+            file.writestr(entry, content)
+    return path
+
+
+def adding(name: str, mode: int = 0o100644, content: bytes = b"x") -> Callable[[list[Entry]], Any]:
+    return lambda parts: parts.append((plain(name, mode), content))
+
+
+def renaming(end: str, name: str) -> Callable[[list[Entry]], None]:
+    def change(parts: list[Entry]) -> None:
+        for place, (entry, content) in enumerate(parts):
+            if entry.filename.endswith(end):
+                parts[place] = plain(name), content
+
+    return change
+
+
+def dropping(end: str) -> Callable[[list[Entry]], None]:
+    def change(parts: list[Entry]) -> None:
+        parts[:] = [each for each in parts if not each[0].filename.endswith(end)]
+
+    return change
+
+
+def replacing(end: str, with_: Callable[[bytes], bytes]) -> Callable[[list[Entry]], None]:
+    def change(parts: list[Entry]) -> None:
+        parts[:] = [
+            (entry, with_(content) if entry.filename.endswith(end) else content)
+            for entry, content in parts
+        ]
+
+    return change
+
+
+def compressing(parts: list[Entry]) -> None:
+    for entry, _ in parts:
+        entry.compress_type = zipfile.ZIP_DEFLATED
+
+
+def bombing(parts: list[Entry]) -> None:
+    entry = plain("run/births/000000.parquet")
+    entry.compress_type = zipfile.ZIP_DEFLATED
+    parts[0] = entry, bytes(10**7)
+
+
+def doubling(parts: list[Entry]) -> None:
+    parts.append(parts[0])
+
+
+def second_checkpoint(parts: list[Entry]) -> None:
+    for entry, content in list(parts):
+        if "checkpoints/" in entry.filename:
+            parts.append((plain(entry.filename.replace("checkpoints/0", "checkpoints/9")), content))
+
+
+def contradicting(parts: list[Entry]) -> None:
+    """Add an origin that names other bytes of the settings."""
+    for entry, content in list(parts):
+        if entry.filename.endswith("manifest.json"):
+            told = json.loads(content)
+            del told["sha256"]
+            told["inputs"]["config.toml"]["bytes"] += 1
+            told["sha256"] = manifest._checksum(told)
+            parts.append((plain("run/origin/manifest.json"), json.dumps(told).encode()))
+
+
+HOSTILE: dict[str, tuple[Callable[[list[Entry]], Any], str]] = {
+    "outside": (adding("evil"), "'evil' is no path of a file in a run"),
+    "above": (adding("run/../evil"), "no path of a file in a run"),
+    "above, late": (adding("run/code/../../../evil"), "no path of a file"),
+    "absolute": (adding("/tmp/evil"), "no path of a file"),
+    "absolute, inside": (adding("run//tmp/evil"), "no path of a file"),
+    "a drive": (adding("run/C:/evil"), "no path of a file"),
+    "backslashes": (adding("run/..\\evil"), "no path of a file"),
+    "control characters": (adding("run/code/\x1b[2J.py"), "no path of a file"),
+    "a folder": (adding("run/code/", 0o040755, b""), "no path of a file"),
+    "a link": (
+        adding("run/code/evil.py", 0o120777, b"/etc/passwd"),
+        "code/evil.py is a symbolic link",
+    ),
+    "a device": (adding("run/code/evil.py", 0o020666), "code/evil.py is a device"),
+    "a pipe": (adding("run/code/evil.py", 0o010666), "code/evil.py is a pipe"),
+    "two of a name": (doubling, "is there twice"),
+    "names that differ by case": (adding("run/CONFIG.toml"), "differ by case alone"),
+    "names that differ by form": (adding("run/\uff43onfig.toml"), "differ by case alone"),
+    "more than is named": (adding("run/births/000077.parquet"), "is named by no manifest"),
+    "code": (adding("run/code/evil.py"), "code/evil.py is named by no manifest"),
+    "less than is named": (dropping("000000.parquet"), "births/000000.parquet is missing"),
+    "no settings": (dropping("config.toml"), "config.toml is missing"),
+    "no versions": (dropping("versions.json"), "versions.json is missing"),
+    "no manifest": (dropping("manifest.json"), "it has no checkpoints instead of one"),
+    "two checkpoints": (second_checkpoint, "it has 2 checkpoints instead of one"),
+    "manifests at odds": (contradicting, "contradict each other about config.toml"),
+    "another size": (replacing("config.toml", lambda content: content + b"\n"), "another size"),
+    "another content": (
+        replacing("config.toml", lambda content: b"#" + content[1:]),
+        "the checksum",
+    ),
+    "a changed manifest": (
+        replacing("t.json", lambda content: content.replace(b": 0", b": 1")),
+        "was changed",
+    ),
+    "no JSON": (replacing("manifest.json", lambda content: b"\xff" + content), "cannot be read"),
+    "deep JSON": (replacing("manifest.json", lambda _: b"[" * 10**5), "cannot be read"),
+    "compressed": (compressing, "is compressed"),
+    "a bomb": (bombing, "is compressed"),
+}
+
+
+@pytest.mark.parametrize("kind", HOSTILE)
+def test_a_hostile_bundle_is_refused_in_one_line(file: Path, tmp_path: Path, kind: str) -> None:
+    change, words = HOSTILE[kind]
+    parts = entries(file)
+    change(parts)
+    forged = zipped(parts, tmp_path / "forged.zip")
+    before = os.listdir(tempfile.gettempdir()), os.listdir(tmp_path.parent)
+    for command in (["info"], ["revive", "1"], ["unbundle", str(tmp_path / "new")]):
+        complains(here(command[0], forged, *command[1:]), 2, words)
+    assert (os.listdir(tempfile.gettempdir()), os.listdir(tmp_path.parent)) == before
+    assert os.listdir(tmp_path) == ["forged.zip"]
+
+
+CENTRAL, LOCAL = b"PK\x01\x02", b"PK\x03\x04"
+"""Signatures of what a zip says of a file at its end, and before the file."""
+
+
+def marked(content: bytearray, signature: bytes, offset: int, value: bytes) -> None:
+    """Change bytes of the header of the last file."""
+    at = content.rindex(signature) + offset
+    content[at : at + len(value)] = value
+
+
+def encrypted(content: bytearray) -> None:
+    marked(content, CENTRAL, 8, b"\x01")
+
+
+def other_name(content: bytearray) -> None:
+    marked(content, LOCAL, 30, b"RUN")
+
+
+def huge(content: bytearray) -> None:
+    marked(content, CENTRAL, 20, struct.pack("<II", 10**9, 10**9))
+
+
+def unknown_method(content: bytearray) -> None:
+    marked(content, CENTRAL, 10, struct.pack("<H", 98))
+
+
+def far_away(content: bytearray) -> None:
+    marked(content, CENTRAL, 42, struct.pack("<I", 2**31))
+
+
+def upon_another(content: bytearray) -> None:
+    """The last file lies where the first one does."""
+    marked(content, CENTRAL, 42, struct.pack("<I", 0))
+
+
+def cut(content: bytearray) -> None:
+    del content[len(content) // 2 :]
+
+
+def headless(content: bytearray) -> None:
+    del content[: len(content) // 2]
+
+
+def name_with_nul(content: bytearray) -> None:
+    marked(content, CENTRAL, 46 + 8, b"\0")
+
+
+ODD: dict[Callable[[bytearray], None], str] = {
+    encrypted: "is encrypted",
+    other_name: "differ",
+    huge: "its files are larger than itself",
+    unknown_method: "is compressed",
+    far_away: "is no sound bundle",
+    upon_another: "differ",
+    cut: "is not a run of primordia, and no bundle of one",
+    headless: "is no sound bundle",
+    name_with_nul: "no path of a file",
+}
+
+
+@pytest.mark.parametrize("change", ODD)
+def test_an_odd_zip_is_refused_in_one_line(
+    file: Path, tmp_path: Path, change: Callable[[bytearray], None]
+) -> None:
+    content = bytearray(file.read_bytes())
+    change(content)
+    (tmp_path / "odd.zip").write_bytes(content)
+    before = os.listdir(tempfile.gettempdir())
+    complains(here("info", tmp_path / "odd.zip"), 2, ODD[change])
+    assert os.listdir(tempfile.gettempdir()) == before
+    (tmp_path / "text.zip").write_text("no zip")
+    complains(here("info", tmp_path / "text.zip"), 2, "is not a run of primordia, and no bundle")
+
+
+CHANGES = st.lists(
+    st.tuples(st.floats(0, 1, exclude_max=True), st.integers(0, 255)), min_size=1, max_size=4
+)
+
+
+@settings(max_examples=60)
+@given(CHANGES, st.booleans())
+def test_any_change_of_bytes_is_refused_or_makes_no_difference(
+    file: Path, changes: list[tuple[float, int]], late: bool
+) -> None:
+    """Whatever is read of a changed bundle has the content of the bundle, since checksums hold."""
+    content = bytearray(file.read_bytes())
+    first = (
+        content.index(CENTRAL) if late else 0
+    )  # headers at the end are a small share of a bundle
+    for share, value in changes:
+        content[first + int(share * (len(content) - first))] = value
+    with tempfile.TemporaryDirectory() as folder:
+        changed, out = Path(folder, "changed.zip"), Path(folder, "run")
+        changed.write_bytes(content)
+        try:
+            bundle.unbundle(changed, out)
+        except InputError:
+            assert os.listdir(folder) == ["changed.zip"]
+        else:
+            bundle.unbundle(file, Path(folder, "good"))
+            same = [
+                {
+                    path.removeprefix(f"{folder}/{name}"): each
+                    for path, each in contents(Path(folder, name)).items()
+                }
+                for name in ("run", "good")
+            ]
+            told = [each.pop("/versions.json") for each in same]
+            assert same[0] == same[1]
+            assert len(told) == 2
