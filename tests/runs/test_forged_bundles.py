@@ -115,7 +115,7 @@ def contradicting(parts: list[Entry]) -> None:
 
 
 HOSTILE: dict[str, tuple[Callable[[list[Entry]], Any], str]] = {
-    "outside": (adding("evil"), "'evil' is no path of a file in a run"),
+    "outside": (adding("evil"), "'evil' is not the path of a file in a run"),
     "above": (adding("run/../evil"), "no path of a file in a run"),
     "above, late": (adding("run/code/../../../evil"), "no path of a file"),
     "absolute": (adding("/tmp/evil"), "no path of a file"),
@@ -131,8 +131,8 @@ HOSTILE: dict[str, tuple[Callable[[list[Entry]], Any], str]] = {
     "a device": (adding("run/code/evil.py", 0o020666), "code/evil.py is a device"),
     "a pipe": (adding("run/code/evil.py", 0o010666), "code/evil.py is a pipe"),
     "two of a name": (doubling, "is there twice"),
-    "names that differ by case": (adding("run/CONFIG.toml"), "differ by case alone"),
-    "names that differ by form": (adding("run/\uff43onfig.toml"), "differ by case alone"),
+    "names that differ by case": (adding("run/CONFIG.toml"), "differ only in case"),
+    "names that differ by form": (adding("run/\uff43onfig.toml"), "differ only in case"),
     "more than is named": (adding("run/births/000077.parquet"), "is named by no manifest"),
     "code": (adding("run/code/evil.py"), "code/evil.py is named by no manifest"),
     "less than is named": (dropping("000000.parquet"), "births/000000.parquet is missing"),
@@ -220,12 +220,12 @@ def name_with_nul(content: bytearray) -> None:
 ODD: dict[Callable[[bytearray], None], str] = {
     encrypted: "is encrypted",
     other_name: "differ",
-    huge: "its files are larger than itself",
+    huge: "its files are larger than the bundle",
     unknown_method: "is compressed",
-    far_away: "is no sound bundle",
+    far_away: "is not a valid bundle",
     upon_another: "differ",
-    cut: "is not a run of primordia, and no bundle of one",
-    headless: "is no sound bundle",
+    cut: "is neither a run of primordia nor a bundle of one",
+    headless: "is not a valid bundle",
     name_with_nul: "no path of a file",
 }
 
@@ -241,7 +241,7 @@ def test_an_odd_zip_is_refused_in_one_line(
     complains(here("info", tmp_path / "odd.zip"), 2, ODD[change])
     assert os.listdir(tempfile.gettempdir()) == before
     (tmp_path / "text.zip").write_text("no zip")
-    complains(here("info", tmp_path / "text.zip"), 2, "is not a run of primordia, and no bundle")
+    complains(here("info", tmp_path / "text.zip"), 2, "is neither a run of primordia nor a bundle")
 
 
 CHANGES = st.lists(
