@@ -116,14 +116,14 @@ def contradicting(parts: list[Entry]) -> None:
 
 HOSTILE: dict[str, tuple[Callable[[list[Entry]], Any], str]] = {
     "outside": (adding("evil"), "'evil' is not the path of a file in a run"),
-    "above": (adding("run/../evil"), "no path of a file in a run"),
-    "above, late": (adding("run/code/../../../evil"), "no path of a file"),
-    "absolute": (adding("/tmp/evil"), "no path of a file"),
-    "absolute, inside": (adding("run//tmp/evil"), "no path of a file"),
-    "a drive": (adding("run/C:/evil"), "no path of a file"),
-    "backslashes": (adding("run/..\\evil"), "no path of a file"),
-    "control characters": (adding("run/code/\x1b[2J.py"), "no path of a file"),
-    "a folder": (adding("run/code/", 0o040755, b""), "no path of a file"),
+    "above": (adding("run/../evil"), "not the path of a file in a run"),
+    "above, late": (adding("run/code/../../../evil"), "not the path of a file"),
+    "absolute": (adding("/tmp/evil"), "not the path of a file"),
+    "absolute, inside": (adding("run//tmp/evil"), "not the path of a file"),
+    "a drive": (adding("run/C:/evil"), "not the path of a file"),
+    "backslashes": (adding("run/..\\evil"), "not the path of a file"),
+    "control characters": (adding("run/code/\x1b[2J.py"), "not the path of a file"),
+    "a folder": (adding("run/code/", 0o040755, b""), "not the path of a file"),
     "a link": (
         adding("run/code/evil.py", 0o120777, b"/etc/passwd"),
         "code/evil.py is a symbolic link",
@@ -226,7 +226,7 @@ ODD: dict[Callable[[bytearray], None], str] = {
     upon_another: "differ",
     cut: "is neither a run of primordia nor a bundle of one",
     headless: "is not a valid bundle",
-    name_with_nul: "no path of a file",
+    name_with_nul: "not the path of a file",
 }
 
 
