@@ -64,7 +64,7 @@ def replay(
 
 
 def film(life: RelivedLife, path: Path, parts: list[range]) -> None:
-    """Make a video of parts of a life, `parts_of` it, in an .mp4 or .gif.
+    """Make a video, .mp4 or .gif, of the parts of a life that `parts_of` returns.
 
     Raises:
         Trouble: the video cannot be written, or the life does not repeat as recorded.
