@@ -4,14 +4,18 @@ BIN := .venv/bin
 # These versions are tested. `make CONSTRAINTS= demo` takes the newest releases instead.
 CONSTRAINTS ?= --constraint constraints.txt --build-constraint constraints.txt
 
-.PHONY: demo test quick slow check format figures bench mutants constraints clean
+.PHONY: demo test quick slow check docs format figures bench mutants constraints clean
 
-demo: .venv/installed  ## evolve pole balancers, draw figures of the run, film the longest life, and write a page about it
+demo: .venv/installed  ## evolve pole balancers, draw and report them, and film the first life beside a long one
 	rm -rf runs/demo
 	$(BIN)/primordia run CartPole-survival --out runs/demo
 	$(BIN)/primordia plot runs/demo
-	$(BIN)/primordia replay runs/demo
 	$(BIN)/primordia report runs/demo
+	$(BIN)/primordia replay runs/demo --beside 0 --out runs/demo/videos/first-and-champion.mp4
+	@echo
+	@echo "Watch      runs/demo/videos/first-and-champion.mp4: the first death, and beside it the champion"
+	@echo "Explore    runs/demo/report.html in a browser: every organism, its line of descent, the film of its world"
+	@echo 'Read on    docs/tutorial.md, ten minutes; `source .venv/bin/activate` puts `primordia` on the path'
 
 test: .venv/installed-dev  ## run all tests: ten minutes on two cores
 	$(BIN)/python -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder
@@ -22,11 +26,14 @@ quick: .venv/installed-dev  ## test each promise once, with the tests in tests/q
 slow: .venv/installed-dev  ## run the tests marked slow: an hour of kills, forged runs, generated inputs and all goldens
 	$(BIN)/python -m pytest --numprocesses 2 -m slow
 
-check: .venv/installed-dev  ## check format, lint and types, and run all tests
+check: .venv/installed-dev  ## check format, lint and types, run all tests, and build the site
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
-	$(MAKE) test
+	$(MAKE) test docs
+
+docs: .venv/installed-docs  ## build the site into build/site; broken links and anchors fail
+	$(BIN)/python docs/site.py
 
 format: .venv/installed-dev
 	$(BIN)/ruff format .
@@ -43,7 +50,7 @@ mutants: .venv/installed-mutants  ## plant faults and count those noticed, hours
 
 constraints:  ## write the newest releases into constraints.txt; run `make check` before you commit it
 	rm -rf .venv
-	$(MAKE) CONSTRAINTS= .venv/installed-mutants
+	$(MAKE) CONSTRAINTS= .venv/installed-mutants .venv/installed-docs
 	sed -n '/^#/p' constraints.txt > .venv/constraints
 	$(BIN)/python -m pip freeze --exclude-editable | sed 's/$$/; python_version < "3.14"/' >> .venv/constraints
 	mv .venv/constraints constraints.txt
@@ -68,4 +75,8 @@ clean:
 
 .venv/installed-mutants: .venv/installed-dev
 	$(BIN)/python -m pip install --quiet $(CONSTRAINTS) --group mutants
+	@touch $@
+
+.venv/installed-docs: .venv/installed-dev
+	$(BIN)/python -m pip install --quiet $(CONSTRAINTS) --group docs
 	@touch $@

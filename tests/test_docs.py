@@ -10,6 +10,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+import duckdb
 import pytest
 
 from primordia.config import load
@@ -24,6 +25,8 @@ PAGES = [
     *sorted(page for page in (HERE / "docs").rglob("*.md") if TEMPLATES not in page.parents),
 ]
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+RECIPES = ("brain", "habitat", "mutation", "figure")
+"""How-to pages whose first block is a file, which is all that a reader writes."""
 FILE = re.compile(r"# ([\w-]+\.\w+)\n")
 """The first line of a block that is a file, with its name."""
 
@@ -37,12 +40,16 @@ def name(page: Path) -> str:
 
 
 def with_blocks() -> list[Any]:
-    """Return the pages that have blocks; those that live the longest runs are slow."""
-    marks = dict.fromkeys(("tutorial", "experiments", "gymnax", "report"), pytest.mark.slow)
+    """Return the pages that have blocks; those that live the longest runs are slow.
+
+    `tests/test_recipes.py` follows the pages in RECIPES.
+    """
+    slow = ("tutorial", "experiments", "gymnax", "one-run", "report", "selection")
+    marks = dict.fromkeys(slow, pytest.mark.slow)
     return [
         pytest.param(page, id=name(page), marks=marks.get(page.stem, ()))
         for page in PAGES
-        if blocks(page)
+        if blocks(page) and page.stem not in RECIPES
     ]
 
 
@@ -64,10 +71,10 @@ def try_out(kind: str, text: str, where: Path) -> None:
         (where / named[1]).write_text(text)
     if kind == "sh":
         for line in text.splitlines():
-            program, *words = shlex.split(line, comments=True)
+            program, *words = shlex.split(line, comments=True) or [""]
             if program == "make":
                 run(["make", "-n", "-C", str(HERE), *words], where)
-            else:
+            elif program:
                 assert program == "primordia", line
                 done = commands.here(*words)
                 assert done.returncode == 0, f"{line}\n{done.stdout}{done.stderr}"
@@ -76,6 +83,8 @@ def try_out(kind: str, text: str, where: Path) -> None:
         file.write_text(text, encoding="utf-8")
         runpy.run_path(str(file), run_name="__main__")
         file.unlink()
+    elif kind == "sql":
+        duckdb.connect().execute(text)
     elif kind == "toml":
         file = where / "block.toml"
         file.write_text(text)

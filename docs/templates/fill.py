@@ -10,12 +10,13 @@ another figure than its table. A table is named by its folder below `experiments
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
 import pandas as pd
+import reference
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from primordia import config
@@ -26,6 +27,9 @@ from primordia.settings.tables import tasks
 HERE = Path(__file__).parent
 ROOT = HERE.parent.parent
 HEAD = "<!-- `make figures` makes this page from docs/templates/{}; edit that file. -->\n\n"
+UNSEEN = 1_000
+"""Settings were chosen on worlds of smaller seeds."""
+IN_WORDS = {5: "five"}
 SPREAD = re.compile(r"(.+?) \((.+?) to (.+?)\)")
 
 
@@ -122,10 +126,93 @@ def least_of_best(mutation: str, tasks: Sequence[str]) -> float:
     return min(share(task, mutation) / most for task, most in best.items() if most > 0.003)
 
 
+MISSING = "not measured"
+"""What a table of standings says where a group did not play."""
+
+
+def games(name: str, who: str, way: str, outcome: str = "lifespan") -> pd.Series:
+    """Return each world's median organism's median game; empty if they did not play."""
+    found = rows(f"{name}-games").query("who == @who and way == @way")
+    return found.groupby("seed" if "seed" in found else "world")[outcome].median()
+
+
 def played(name: str, who: str, way: str, outcome: str = "lifespan") -> Cell:
     """Return the median and quartiles over worlds of an outcome of games."""
-    games = rows(f"{name}-games")
-    return Cell(spread_text(games[(games.who == who) & (games.way == way)][outcome]))
+    found = games(name, who, way, outcome)
+    return Cell(spread_text(found) if len(found) else MISSING)
+
+
+class Standings(NamedTuple):
+    """How four groups play: the rows that every evaluation shows."""
+
+    champion: Cell
+    alive: Cell
+    best: Cell
+    """of as many founders"""
+    founder: Cell
+
+
+def standings(
+    name: str,
+    way: str,
+    arm: str = "heredity",
+    control: str = "no-heredity",
+    outcome: str = "lifespan",
+) -> Standings:
+    """Return how the four groups of an experiment play.
+
+    Tables of the first seeds name groups otherwise, and have the longest-lived of the arm without
+    heredity as the best of founders, mostly chosen from more of them than heredity had births.
+    """
+    new = ("{arm}: champion", "{arm}: all alive", "best founder", "founder")
+    old = ("{arm}", "{arm}, all alive", control, "a founder")
+    groups = new if "seed" in rows(f"{name}-games") else old
+    return Standings(*(played(name, who.format(arm=arm), way, outcome) for who in groups))
+
+
+def unseen(name: str) -> bool:
+    """Say whether an experiment was lived on seeds that nothing had been tried on."""
+    return int(rows(name).seed.min()) >= UNSEEN
+
+
+def worlds(name: str) -> str:
+    """Say how many worlds each arm of an experiment has, and of which seeds."""
+    count = rows(name).seed.nunique()
+    kind = "unseen seeds" if unseen(name) else "the first seeds, on which settings were chosen"
+    return f"{IN_WORDS.get(count, count)} worlds of {kind}"
+
+
+def seeds(name: str) -> str:
+    """Say the same in a table: `20, unseen seeds`, or `5, first seeds`."""
+    return f"{rows(name).seed.nunique()}, {'unseen' if unseen(name) else 'first'} seeds"
+
+
+def seeds_of_games(name: str) -> str:
+    """Say the same of the worlds whose organisms play."""
+    found = rows(f"{name}-games")
+    number = found["seed" if "seed" in found else "world"]
+    return f"{number.nunique()}, {'unseen' if number.min() >= UNSEEN else 'first'} seeds"
+
+
+def listed(values: Iterable[float]) -> str:
+    """Return some values, such as one of each world, in their order."""
+    return "; ".join(map(number_text, values))
+
+
+def share(part: float, whole: float) -> str:
+    """Return a share in per cent."""
+    return f"{100 * part / whole:.0f} %"
+
+
+def ratio(name: str, arm: str, to: str, column: str) -> str:
+    """Return how many times the median of another arm that of an arm is."""
+    own, others = (float(cell(name, each, column).median.replace(",", "")) for each in (arm, to))
+    return f"{own / others:.1f}"
+
+
+def budget(name: str, task: str) -> str:
+    """Return the organism-ticks of a world whose cells are full all the time, in millions."""
+    return f"{int(rows(name).ticks.max()) * config.load(task).cells / 1e6:.2g}"
 
 
 def chosen(habitat: str) -> dict[str, config.Config]:
@@ -150,9 +237,23 @@ def pages() -> dict[Path, str]:
         largest=largest,
         least_worlds=least,
         played=played,
+        standings=standings,
+        games=games,
+        share=share,
+        ratio=ratio,
+        budget=budget,
+        unseen=unseen,
+        worlds=worlds,
+        seeds=seeds,
+        seeds_of_games=seeds_of_games,
+        listed=listed,
         against=against,
         least_of_best=least_of_best,
         chosen=chosen,
+        commands=reference.commands,
+        settings=reference.settings,
+        parts=reference.parts,
+        seasons=reference.seasons,
     )
     filler.filters.update(number=number_text)
     names = sorted(path.relative_to(HERE).as_posix() for path in HERE.rglob("*.md"))

@@ -65,6 +65,11 @@ def noting() -> Iterator[list[int]]:
             _noted.clear()
 
 
+def came() -> bool:
+    """Return whether a signal has been noted, so that whatever waits should stop waiting."""
+    return bool(_noted)
+
+
 def deferred() -> AbstractContextManager[None]:
     """Do not end the process at once in a `with` block, which checks `noted`."""
     return _entry(_deferred, True)

@@ -27,5 +27,5 @@ def test_the_script_of_a_job_array_lives_all_jobs(tmp_path: Path) -> None:
 
 
 def test_the_page_shows_the_script() -> None:
-    page = (ROOT / "docs" / "how-to" / "experiments.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "how-to" / "cluster.md").read_text(encoding="utf-8")
     assert SCRIPT.read_text(encoding="utf-8") in page

@@ -2,12 +2,7 @@
 
 import io
 import json
-import os
-import pty
 import re
-import select
-import subprocess
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -24,10 +19,11 @@ from primordia.live import view as live
 from primordia.live.census import Census, Speed
 from primordia.live.paint import EMPTY, Cells, Row, field, skyline, strip
 from primordia.live.panel import duration, with_prefix
+from primordia.live.watching import Plain
 from primordia.random.wide import Wide, wide
 from primordia.runs import loop
-from tests import commands
-from tests.commands import COMMAND, environment, here
+from tests.commands import here
+from tests.live.terminals import opened
 from tests.worlds import MEADOW, config
 
 # The picture.
@@ -75,7 +71,7 @@ def test_numbers_are_written_in_short_form() -> None:
 WORLDS: dict[str, dict[str, Any]] = {
     "ring": {"cells": 30},
     "torus": {"cells": 48, "placement": {"topology": "torus8"}},
-    "worlds": {"cells": 20, "seeds": 30},
+    "worlds": {"cells": 20, "seeds": 60},
     "big": {"cells": 17_000, "genesis": "fill"},
 }
 
@@ -138,12 +134,18 @@ def test_the_view_shows_time_population_and_lines(running: tuple[str, Engine]) -
     assert "\x1b[38;2" in written
     assert written.endswith("\x1b[?25h"), "the cursor is back"
     census = Census.of(made.state.world)
-    for what in (f"{census.births.sum():,}", "died of", "oldest", "organism-ticks/s", "saturated"):
+    for what in (
+        f"{census.births.sum():,}",
+        "died of",
+        "oldest",
+        "organism-ticks/s",
+        "calm",
+    ):
         assert what in text
+    assert "saturated" not in text, "only when it is"
     assert ("shown: the first" in text) == (name in ("worlds", "big"))
     assert ("takeovers" in text) == (name in ("ring", "torus")), "only if all are followed"
-    colours = "branch of the founder" if name == "big" else "line of descent"
-    assert f"colour: {colours}" in text
+    assert f"colour: {'branch of the founder' if name == 'big' else 'line of descent'}" in text
     assert int(made.state.world.organisms.alive.sum()) == census.alive.sum()
 
 
@@ -173,10 +175,11 @@ def test_the_view_follows_the_living(running: tuple[str, Engine]) -> None:
     for _ in range(3):
         made._ticks = 30
         made.advance(made.limits({}))
-        view._follow(loop.Status(made, 1.0))
-    assert len(view._lines) == {"worlds": 24, "big": 0}.get(name, 1), "at most one for each row"
+        view(loop.Status(made, 1.0))
+    followed = view._descent.lines
+    assert len(followed) == {"worlds": 24, "big": 0}.get(name, 1), "at most one for each row"
     organisms, cells = made.state.world.organisms, made.law.cells
-    for world, lines in enumerate(view._lines):
+    for world, lines in followed.items():
         here = slice(world * cells, (world + 1) * cells)
         alive, number = np.asarray(organisms.alive)[here], np.asarray(organisms.number.lo)[here]
         assert set(lines.line_of) == set(number[alive].tolist())
@@ -221,7 +224,7 @@ SMALL = ("CartPole-survival", "--cells", "8", "--hazard", "0.002", "--sample_eve
 def test_plain_lines_where_there_is_no_terminal(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(live.Plain, "EVERY", 0.0)
+    monkeypatch.setattr(Plain, "EVERY", 0.0)
     monkeypatch.setenv("FORCE_COLOR", "1")
     done = here("run", *SMALL, "--ticks", 2000, "--out", tmp_path / "run")
     assert (done.returncode, done.stderr) == (0, "")
@@ -235,40 +238,13 @@ def test_plain_lines_where_there_is_no_terminal(
 # A terminal, a process, and Ctrl-C.
 
 
-@pytest.fixture
-def terminal() -> Iterator[tuple[int, int]]:
-    """Open a pseudo-terminal of 80 x 24: our end, and the program's end."""
-    ours, theirs = pty.openpty()
-    yield ours, theirs
-    for end in (ours, theirs):
-        os.close(end)
-
-
-def read_until(end: int, *parts: str, seconds: float = 60.0) -> str:
-    """Return what is written until all parts are in it."""
-    read = ""
-    while not all(part in read for part in parts):
-        assert select.select([end], [], [], seconds)[0], f"nothing more after {read[-500:]!r}"
-        read += os.read(end, 65536).decode(errors="replace")
-    return read
-
-
-def test_a_terminal_shows_the_strip_and_control_c_saves(
-    terminal: tuple[int, int], tmp_path: Path
-) -> None:
-    ours, theirs = terminal
-    words = (*SMALL, "--until", "none", "--out", str(tmp_path / "run"))
-    settings = {"TERM": "xterm-256color", "COLUMNS": "80", "LINES": "24", "COLORTERM": "truecolor"}
-    variables = environment(commands.CACHE) | settings
-    variables.pop("NO_COLOR", None)
-    process = subprocess.Popen(
-        ["sh", "-c", 'exec <"$0" >"$0" 2>&1 "$@"', os.ttyname(theirs), *COMMAND, "run", *words],
-        env=variables,
-        start_new_session=True,  # so that the terminal it opens is the one that sends Ctrl-C
-    )
-    read_until(ours, "\x1b[?25l", "█", "line of descent", "takeovers", "\x1b[38;2")
-    os.write(ours, b"\x03")
-    read_until(ours, "\x1b[?25h", "Stopped and saved. Go on with: primordia resume")
-    assert process.wait(timeout=60) == 130
-    info = json.loads(here("info", tmp_path / "run", "--json").stdout)
+def test_a_terminal_shows_the_strip_and_control_c_saves(tmp_path: Path) -> None:
+    with opened() as terminal:
+        run = tmp_path / "run"
+        process = terminal.begin("run", *SMALL, "--until", "none", "--out", run)
+        terminal.read_until("\x1b[?25l", "█", "line of descent", "takeovers", "\x1b[38;2")
+        terminal.press(b"\x03")
+        terminal.read_until("\x1b[?25h", "Stopped and saved. Go on with: primordia resume")
+        assert process.wait(timeout=60) == 130
+    info = json.loads(here("info", run, "--json").stdout)
     assert info["births"] > 0

@@ -271,6 +271,28 @@ def test_a_video_shows_the_beginning_and_the_end_of_a_long_life(
     assert len(frames(Path(done.stdout.strip()))) == 200 + 50 + 200 + 50
 
 
+def test_lives_are_shown_side_by_side_in_the_order_of_birth(poles: Path) -> None:
+    lives = Archive(poles).lives
+    short = np.flatnonzero(lives.died & (lives.lifespan < 60))
+    first, second = short[0], short[np.argmax(lives.lifespan[short] != lives.lifespan[short[0]])]
+    numbers = lives.id[[first, second]].tolist()
+    both = here("replay", poles, "--organism", numbers[1], "--beside", numbers[0])
+    assert both.returncode == 0, both.stderr
+    path = poles / "videos" / f"world0-organism{numbers[0]}-{numbers[1]}.mp4"
+    assert both.stdout.strip() == str(path)
+    seen = frames(path)
+    assert len(seen) == max(lives.lifespan[[first, second]]) + 50
+    assert seen[0].size == (2 * 640 + replay.GAP, 360)
+    one = Path(here("replay", poles, "--organism", numbers[0]).stdout.strip())
+    left, right = (
+        np.asarray(seen[5].crop((place, 0, place + 640, 360)), float)
+        for place in (0, 640 + replay.GAP)
+    )
+    alone = np.asarray(frames(one)[5], float)  # compressed too, so not equal
+    assert 10 * np.square(left - alone).mean() < np.square(right - alone).mean()
+    complains(here("replay", poles, "--beside", 10**6), 2, "no organism 1000000")
+
+
 def test_a_part_of_a_life_is_written_as_a_gif(poles: Path, tmp_path: Path) -> None:
     path = tmp_path / "life.gif"
     done = here("replay", poles, "--from", 10, "--to", 49, "--out", path)

@@ -4,6 +4,8 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from PIL import Image
 
 from primordia.organism import replay
@@ -47,3 +49,26 @@ def test_the_words_of_a_card_are_in_its_middle() -> None:
     left, top, right, bottom = ink
     assert (left + right) / 2 == pytest.approx(200, abs=5)
     assert (top + bottom) / 2 == pytest.approx(50, abs=5)
+
+
+@given(st.lists(st.integers(1, 5), min_size=1, max_size=7))
+def test_lives_side_by_side_pass_together_and_each_is_held_at_its_last_picture(
+    lengths: list[int],
+) -> None:
+    films = [
+        [Image.new("RGB", (6, 4), (1 + number, 1 + moment, 0)) for moment in range(length)]
+        for number, length in enumerate(lengths)
+    ]
+    wholes = list(replay._side_by_side([iter(film) for film in films]))
+    assert len(wholes) == max(lengths)
+    columns, rows = (
+        (side + replay.GAP) // (own + replay.GAP)
+        for side, own in zip(wholes[0].size, (6, 4), strict=True)
+    )
+    assert (columns - 1) * rows < len(lengths) <= columns * rows
+    assert columns - 1 <= rows <= columns
+    for moment, whole in enumerate(wholes):
+        for number, length in enumerate(lengths):
+            row, column = divmod(number, columns)
+            place = (column * (6 + replay.GAP) + 5, row * (4 + replay.GAP) + 3)
+            assert whole.getpixel(place) == (1 + number, 1 + min(moment, length - 1), 0)

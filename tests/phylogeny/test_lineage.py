@@ -134,7 +134,10 @@ def test_a_fork_that_has_not_begun_is_what_was_alive_and_before(
     family: Path, tmp_path: Path
 ) -> None:
     fork(Archive(family / "run"), 200, tmp_path / "fork", {})
-    past, run = whole_past(Archive(tmp_path / "fork"), pytest.fail), Archive(family / "run").lives
+    past, run = (
+        whole_past(Archive(tmp_path / "fork"), pytest.fail).whole,
+        Archive(family / "run").lives,
+    )
     until = run.recorded_until(200)
     for name in ("world", "id", "parent", "born", "ended", "cause"):
         np.testing.assert_array_equal(getattr(past.lives, name), getattr(until, name))
@@ -149,6 +152,22 @@ def test_a_fork_is_found_beside_its_source(family: Path, tmp_path: Path) -> None
         assert lineage(moved / "again").equals(whole)
     finally:
         (tmp_path / "away").rename(family)
+
+
+def test_the_source_of_a_fork_may_be_a_bundle(family: Path, tmp_path: Path) -> None:
+    """So may the fork, and then its source is looked for beside its file."""
+    file = primordia.load(family / "run").bundle(tmp_path / "run.zip")
+    forked = primordia.load(file).fork(100, tmp_path / "fork", stop={"ticks": 300})
+    whole = lineage(family / "run")
+    assert lineage(forked.path).equals(whole)
+    sent = forked.bundle(tmp_path / "sent" / "fork.zip")
+    assert lineage(sent).equals(whole)
+    file.rename(sent.with_name("run.zip"))
+    assert lineage(sent).equals(whole)
+    last = int(Archive(family / "run").lives.of_world(0).id[-1])
+    assert primordia.load(sent).ancestors(last).to_dict() == (
+        primordia.load(family / "run").ancestors(last).to_dict()
+    )
 
 
 def test_without_its_source_a_fork_begins_with_roots(tmp_path: Path) -> None:

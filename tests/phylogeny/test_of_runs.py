@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 import primordia
 from primordia.errors import InputError
+from primordia.history.lineage import changes
 from primordia.history.pedigree import genomes
 from primordia.law.world import BirthCause
 from primordia.phylogeny.descent import Ancestors
@@ -53,7 +54,7 @@ def mated(run: Path) -> Path:
     return run.parent / "mated"
 
 
-@pytest.mark.parametrize("which", ["run", "forked", "mated"])
+@pytest.mark.parametrize("which", ["run", "mated"])
 def test_a_line_has_its_lives_and_the_changes_of_its_genomes(
     which: str, request: pytest.FixtureRequest
 ) -> None:
@@ -64,29 +65,94 @@ def test_a_line_has_its_lives_and_the_changes_of_its_genomes(
     opened = Archive(path)
     rows = np.array([opened.lives.row(each, found.world) for each in found.line.id])
     assert found.children.tolist() == [(opened.lives.parent_row == row).sum() for row in rows]
-    begins = opened.config.begins
     made, blocks = genomes(opened, rows), np.cumsum(opened.layout.sizes)[:-1]
     assert found.changes is not None
     for place in range(1, len(rows)):
         parts = np.split(made[place].astype(float) - made[place - 1], blocks)
-        if found.line.born[place] > begins:
-            norms = [np.linalg.norm(part) for part in parts]
-            assert found.changes[place] == pytest.approx(norms, rel=1e-5)
+        norms = [np.linalg.norm(part) for part in parts]
+        assert found.changes[place] == pytest.approx(norms, rel=1e-5)
     known = np.isfinite(found.changes).all(axis=1)
     founder = found.line.birth_cause == BirthCause.FOUNDER
     if which != "mated":
-        assert (known == (~founder & (found.line.born > begins))).all()
+        assert (known == ~founder).all()
         copies = known & (found.line.birth_cause == BirthCause.COPY)
         assert not found.changes[copies].any()
     assert known.sum() > 3
 
 
-def test_a_line_in_a_fork_begins_with_an_organism_alive_at_it(forked: Path, run: Path) -> None:
-    in_fork = primordia.load(forked).ancestors(world=1)
-    whole = primordia.load(forked.parent / "run").organism(in_fork.line.id[0], 1).descent()
-    assert in_fork.line.entered[0] > 0
-    assert len(whole) > 1
-    assert in_fork.common is None or in_fork.common.generation >= 0
+@pytest.mark.parametrize("world", [0, 1])
+def test_a_line_goes_on_through_forks(run: Path, forked: Path, world: int) -> None:
+    """A fork of a fork without changes lives on as the run does, so their lines are the same."""
+    again = run.parent / "again"
+    if not again.exists():
+        primordia.load(forked).fork(250, again, stop={"ticks": 300})
+    last = int(primordia.load(run).lives().of_world(world).id[-1])
+    whole = primordia.load(run).ancestors(last, world)
+    assert np.histogram(whole.line.born, [0, 200, 250, 300])[0].min() > 0
+    assert primordia.load(again).ancestors(last, world).to_dict() == whole.to_dict()
+    older = int(whole.line.id[whole.line.born <= 200][-1])
+    part = primordia.load(again).ancestors(older, world).to_dict()
+    assert part == primordia.load(run).ancestors(older, world).to_dict()
+
+
+def test_a_line_in_a_fork_with_another_future_has_the_changes_of_both(
+    run: Path, tmp_path: Path
+) -> None:
+    """The fork mutates more, and the genomes along the line are those that both runs make again."""
+    other = primordia.load(run).fork(
+        200, tmp_path / "other", seed=8, mutation={"scale": 3.0}, stop={"ticks": 300}
+    )
+    found = other.ancestors(world=0)
+    late = found.line.born > 200
+    assert min(late.sum(), (~late).sum()) > 1
+    made = [
+        (other if new else primordia.load(run)).rebuild(int(number))
+        for number, new in zip(found.line.id, late, strict=True)
+    ]
+    assert found.size is not None
+    norms = [np.linalg.norm(part) for part in np.diff(made, axis=0).astype(float)]
+    assert found.size[1:] == pytest.approx(norms, rel=1e-5)
+    assert found.unknown is None
+
+
+def test_without_its_source_a_line_ends_at_the_fork(run: Path, tmp_path: Path) -> None:
+    fork = primordia.load(run).fork(200, tmp_path / "fork", stop={"ticks": 320})
+    whole = fork.ancestors(world=1)
+    kept = run.rename(run.parent / "kept")
+    try:
+        said: list[str] = []
+        own = fork.ancestors(world=1, say=lambda line: said.append(str(line)))
+        (line,) = said
+        assert "which is not there or is another run now: the organisms alive at tick 200" in line
+        assert own.line.entered[0] > 0
+        assert own.line.id.tolist() == whole.line.id[-len(own.line) :].tolist()
+        done = here("ancestors", fork.path, "--world", 1)
+        assert (done.returncode, done.stderr) == (0, f"primordia: {line}\n")
+    finally:
+        kept.rename(run)
+
+
+def test_changes_before_a_fork_are_left_out_if_the_code_there_is_untrusted(
+    run: Path, forked: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(opened: Archive, organism: int, world: int) -> np.ndarray:
+        if opened.path == run:
+            raise InputError("its code is not trusted")
+        return changes(opened, organism, world)
+
+    whole = primordia.load(forked).ancestors(world=0)
+    monkeypatch.setattr("primordia.phylogeny.descent.changes", refuse)
+    found = primordia.load(forked).ancestors(world=0)
+    assert found.size is not None
+    assert whole.size is not None
+    late = found.line.born > 200
+    np.testing.assert_array_equal(found.size[late], whole.size[late])
+    assert np.isnan(found.size[~late]).all()
+    printed = here("ancestors", forked, "--world", 0).stdout
+    assert "The changes before a fork are unknown: its code is not trusted." in printed
+
+
+def test_lines_in_a_fork_are_founded_at_it(forked: Path) -> None:
     (lines,) = primordia.load(forked).lines(world=1)
     assert lines.ticks[0] == 200
     assert sorted(lines.lives.id[lines.founders]) == sorted(lines.lives.id[lines.lives.entered > 0])

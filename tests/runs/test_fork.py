@@ -144,7 +144,7 @@ def test_ctrl_c_before_a_fork_has_begun_leaves_an_empty_folder(
     def interrupt(_: object, __: loop.Status) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("primordia.live.view.Plain.__call__", interrupt)
+    monkeypatch.setattr("primordia.live.watching.Plain.__call__", interrupt)
     done = here("fork", mill, "--at", 700, "--out", tmp_path)  # the folder is empty and may be used
     assert (done.returncode, list(tmp_path.iterdir())) == (130, [])
     assert done.stderr.strip() == f"Stopped before {tmp_path} had begun"

@@ -194,7 +194,7 @@ def test_a_run_whose_output_fails_stops_with_a_checkpoint(
 ) -> None:
     """The reader ends early, as `| head -1` does, or a log's disk is full."""
     run, loud = tmp_path / "run", [word for word in SMALL if word != "--quiet"]
-    monkeypatch.setattr("primordia.live.view.Plain.EVERY", 0.0)
+    monkeypatch.setattr("primordia.live.watching.Plain.EVERY", 0.0)
     monkeypatch.setattr(
         sys, "argv", ["primordia", "run", *loud, "--ticks", str(TICKS), "--out", str(run)]
     )

@@ -14,8 +14,8 @@ from typing import Any
 
 from primordia import config
 from primordia import device as devices
-from primordia.api.experiment import Experiment
-from primordia.api.run import Run, fresh_directory
+from primordia.api.experiments import Experiment
+from primordia.api.runs import Run, fresh_directory
 from primordia.comparison import comparison
 from primordia.errors import InputError, Trouble
 from primordia.experiments import campaign as campaigns

@@ -15,7 +15,7 @@ from primordia import interrupts
 from primordia.experiments.ledger import Entry
 from primordia.experiments.status import ArmStatus, CampaignStatus
 from primordia.live.panel import duration, with_prefix
-from primordia.live.view import show_cursor
+from primordia.live.terminal import show_cursor
 
 SHARE = 0.02
 """Largest share of the time that the display takes."""

@@ -13,6 +13,7 @@ from primordia import files
 from primordia.cli.assays.options import json_option, out_option
 from primordia.cli.cache import cache_option
 from primordia.cli.flags import run_argument, trust_option
+from primordia.cli.streams import report
 from primordia.cli.table import show_table
 from primordia.errors import InputError
 
@@ -45,7 +46,7 @@ def ancestors(
     """
     from primordia.api import load
 
-    found = load(run, trust).ancestors(organism, world)
+    found = load(run, trust).ancestors(organism, world, report)
     if as_json:
         click.echo(json.dumps(found.to_dict()))
     else:
@@ -110,7 +111,8 @@ def _show_ancestors(run: Path, found: "Ancestors") -> None:
             "all."
         )
     if found.unknown:
-        notes.append(f"The changes are unknown: {found.unknown}.")
+        which = "The changes" if found.changes is None else "The changes before a fork"
+        notes.append(f"{which} are unknown: {found.unknown}.")
     show_table(
         f"{run}: the line of organism {found.organism:,} of world {found.world}",
         ("organism", "line", "born", "lived", "death", "children", "change", "10 %", "50 %", "all"),

@@ -18,6 +18,7 @@ from primordia.cli.flags import (
     quiet_option,
     run_argument,
     set_value,
+    speed_option,
     take_limits,
     trust_option,
 )
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
 @checkpoint_option
 @device_option
 @cache_option
+@speed_option
 @quiet_option
 @click.pass_obj
 def run(
@@ -52,6 +54,7 @@ def run(
     out: Path | None,
     ancestor: tuple[str, ...],
     quiet: bool,
+    speed: float | None,
     **options: Any,
 ) -> None:
     """Evolve in a new run directory.
@@ -67,7 +70,9 @@ def run(
     if ancestor:
         set_value(settings, "ancestors", [str(file) for file in ancestor])
     path = out or api.fresh_directory(api.default_name(config.load(task, settings)))
-    _drive(path, quiet, lambda listen: api.run(task, path, settings, listen=listen, **options))
+    _drive(
+        path, quiet, speed, lambda listen: api.run(task, path, settings, listen=listen, **options)
+    )
 
 
 @click.command()
@@ -78,8 +83,9 @@ def run(
 @cache_option
 @click.option("--inexact", is_flag=True, help="Go on even if versions, code or machine differ.")
 @trust_option
+@speed_option
 @quiet_option
-def resume(run: Path, quiet: bool, trust: bool, **options: Any) -> None:
+def resume(run: Path, quiet: bool, speed: float | None, trust: bool, **options: Any) -> None:
     """Go on with a run that stopped, was interrupted, or was killed."""
     from primordia.api import load
 
@@ -89,7 +95,7 @@ def resume(run: Path, quiet: bool, trust: bool, **options: Any) -> None:
         for note in load(run, trust).resume(listen=listen, **options, **limits):
             report(note)
 
-    _drive(run, quiet, drive)
+    _drive(run, quiet, speed, drive)
 
 
 @click.command(
@@ -103,6 +109,7 @@ def resume(run: Path, quiet: bool, trust: bool, **options: Any) -> None:
 @device_option
 @cache_option
 @trust_option
+@speed_option
 @quiet_option
 @click.pass_obj
 def fork(
@@ -113,6 +120,7 @@ def fork(
     out: Path | None,
     trust: bool,
     quiet: bool,
+    speed: float | None,
     **options: Any,
 ) -> None:
     """Begin a new run from a tick of a RUN, with another --seed or other settings.
@@ -128,14 +136,15 @@ def fork(
     _drive(
         path,
         quiet,
+        speed,
         lambda listen: load(run, trust).fork(at, path, settings, listen=listen, **options),
     )
 
 
-def _drive(path: Path, quiet: bool, go: Callable[[Any], object]) -> None:
+def _drive(path: Path, quiet: bool, speed: float | None, go: Callable[[Any], object]) -> None:
     from primordia.api import Run
     from primordia.history.summary import summary
-    from primordia.live.view import watching
+    from primordia.live.watching import watching
     from primordia.organism.replay import lacking
 
     def stopped(saved: str = "") -> str:
@@ -145,7 +154,7 @@ def _drive(path: Path, quiet: bool, go: Callable[[Any], object]) -> None:
 
     with interrupts.last_words(stopped):
         try:
-            with watching(quiet) as listen:
+            with watching(quiet, speed) as listen:
                 go(listen and _while_shown(listen, partial(stopped, " and saved")))
         except KeyboardInterrupt:
             click.echo(stopped(" and saved"), err=True)

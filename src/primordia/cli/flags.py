@@ -27,13 +27,24 @@ device_option = click.option(
     help="Devices that compute: cpu or gpu, all that JAX has.",
 )
 checkpoint_option = click.option(
-    "--checkpoint-every", type=float, default=60.0, show_default=True, metavar="SECONDS"
+    "--checkpoint-every",
+    type=float,
+    default=60.0,
+    show_default=True,
+    metavar="SECONDS",
+    help="Time from one checkpoint to the next.",
 )
 trust_option = click.option(
     "--trust", is_flag=True, help="Allow the run's own code to be executed from now on."
 )
 video_option = click.option(
     "--out", type=click.Path(path_type=Path), help="An .mp4 or .gif file [under RUN/videos]."
+)
+speed_option = click.option(
+    "--speed",
+    type=click.FloatRange(min=0, min_open=True, max=1e9),
+    metavar="TICKS",
+    help="Live at most this number of ticks a second.",
 )
 quiet_option = click.option("--quiet", is_flag=True, help="Print nothing while running.")
 

@@ -68,18 +68,30 @@ def plot(runs: tuple[Path, ...], out: Path | None, world: int, figures: tuple[st
 @run_argument
 @click.option("--organism", type=int, help=f"Birth number [{CHAMPION}].")
 @click.option("--world", type=int, help="The organism's world [0, or that of the champion].")
+@click.option(
+    "--beside", type=int, multiple=True, metavar="ID", help="Show this life too; may be repeated."
+)
 @click.option("--from", "begin", type=int, help="First age shown, in ticks.")
 @click.option("--to", "end", type=int, help="Last age shown, in ticks.")
 @video_option
 @trust_option
 @cache_option
-def replay(run: Path, begin: int | None, end: int | None, out: Path | None, **chosen: Any) -> None:
+def replay(
+    run: Path,
+    beside: tuple[int, ...],
+    begin: int | None,
+    end: int | None,
+    out: Path | None,
+    **chosen: Any,
+) -> None:
     """Make a video of a life: the whole life, or the first and last 30 seconds of a long one.
 
     Without --organism the life is that of the champion: the longest-lived of the later half of the
     births.
+    With --beside, lives of its world are shown side by side, each from its birth, in the order of birth.
+    A life that has ended is held at its last picture.
     """
-    click.echo(chosen_organism(run, **chosen).replay(out, (begin, end)))
+    click.echo(chosen_organism(run, **chosen).replay(out, (begin, end), beside))
 
 
 @click.command(short_help="Write genomes to a file that runs can start from, or a brain as ONNX.")

@@ -36,10 +36,12 @@ class Engine:
         self.law = config.build_law(habitat)
         devices = device.sharing(config.seeds) if habitat.kind == "jax" else [device.default()]
         memory.check(self.law, habitat, devices)
-        self.tallies = habitat.tallies
+        self.habitat, self.tallies = habitat, habitat.tallies
         self.chunks: FusedChunks | HostedChunks = _chunks(self.law, habitat, devices)
         self.state: State = self.chunks.begin(config.world_seeds)
         self._ticks = 1
+        self.longest: int | None = None
+        """most ticks of a chunk, for someone who watches; None: as many as take CHUNK_SECONDS"""
 
     @property
     def events(self) -> Events:
@@ -54,7 +56,8 @@ class Engine:
     def advance(self, limits: Limits) -> Events:
         """Advance by a chunk of about CHUNK_SECONDS, and return its events."""
         start = time.perf_counter()
-        self.state, done = self.chunks.advance(self.state, limits, self._ticks)
+        ticks = min(self._ticks, self.longest or self._ticks)
+        self.state, done = self.chunks.advance(self.state, limits, ticks)
         spent = time.perf_counter() - start
         if done:
             fitting = int(done * CHUNK_SECONDS / spent)

@@ -3,6 +3,7 @@
 from collections import deque
 from dataclasses import dataclass
 
+import jax
 import numpy as np
 
 from primordia.engine.state import Limits
@@ -31,13 +32,17 @@ class Census:
     """age of the oldest organism of all worlds, in ticks; 0 if none live"""
 
     @classmethod
-    def of(cls, world: World) -> "Census":
-        """Count the organisms of all worlds; every cell is read once."""
+    def of(cls, world: World, alone: int | None = None) -> "Census":
+        """Count the organisms of all worlds, or of a single one; every cell is read once."""
         organisms, worlds = world
-        alive = np.asarray(organisms.alive)
-        cells, tick = np.flatnonzero(alive), _count(worlds.tick)
-        high, low = (np.asarray(words)[cells].astype(np.int64) for words in organisms.born)
-        ages = tick[cells // (len(alive) // len(tick))] - (high << 32 | low)
+        cells, own = len(organisms.alive) // len(worlds.calm), slice(None)
+        if alone is not None:
+            worlds = jax.tree.map(lambda leaf: np.asarray(leaf)[alone : alone + 1], worlds)
+            own = slice(alone * cells, (alone + 1) * cells)
+        alive, tick = np.asarray(organisms.alive)[own], _count(worlds.tick)
+        living = np.flatnonzero(alive)
+        high, low = (np.asarray(words)[own][living].astype(np.int64) for words in organisms.born)
+        ages = tick[living // cells] - (high << 32 | low)
         return cls(
             tick=tick,
             alive=np.count_nonzero(alive.reshape(len(tick), -1), axis=1),
@@ -73,6 +78,13 @@ class Speed:
             return None
         (then, before), (now, after) = self._censuses[0], self._censuses[-1]
         return float((after.organism_ticks - before.organism_ticks).sum()) / (now - then)
+
+    def ticks_per_s(self) -> float | None:
+        """Return the ticks of a world in a second, of the fastest; None before the second census."""
+        if len(self._censuses) < 2:
+            return None
+        (then, before), (now, after) = self._censuses[0], self._censuses[-1]
+        return float((after.tick - before.tick).max()) / (now - then)
 
     def seconds_left(self, limits: Limits) -> float | None:
         """Return the seconds until the last world reaches a limit on ticks or births; None if unknown.

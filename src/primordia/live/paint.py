@@ -1,9 +1,9 @@
 """Cells as characters: colour or letter shows the line of descent, height or light the age."""
 
 import colorsys
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from itertools import groupby
 from math import log1p
 
@@ -14,8 +14,8 @@ from rich.style import Style
 
 Row = list[Segment]
 """One row of characters in the terminal."""
-EMPTY = -1
-"""Mark of an empty cell, in place of the number of a line of descent."""
+EMPTY, OUTSIDE = -1, -2
+"""Marks of an empty cell, in place of the number of a line of descent, and of no cell."""
 HUES = 64
 EIGHTHS = " ▁▂▃▄▅▆▇█"
 FAINT = Style(color="grey50")
@@ -85,14 +85,51 @@ def field(cells: Cells, columns: int, scale: int, letters: bool) -> list[Row]:
     rows = [slice(at, at + columns) for at in range(0, len(cells.line), columns)]
     if letters:
         return [strip(cells.take(row), letters) for row in rows]
-    shades = np.where(cells.line == EMPTY, EMPTY, cells.line % HUES * 4 + (cells.age * 3.99) // 1)
-    picture = np.kron(shades.reshape(-1, columns), np.ones((scale, scale))).astype(int)
-    if len(picture) % 2:
-        picture = np.vstack([picture, np.full_like(picture[:1], EMPTY - 1)])
+    return mosaic(np.kron(shades(cells).reshape(-1, columns), np.ones((scale, scale), int)))
+
+
+def shades(cells: Cells) -> np.ndarray:
+    """Return a number for the colour and light of each cell, int64 (n,): 4 x hue + light, or EMPTY."""
+    lights = np.minimum((cells.age * 4).astype(np.int64), 3)
+    return np.where(cells.line == EMPTY, EMPTY, cells.line % HUES * 4 + lights)
+
+
+def mosaic(numbers: np.ndarray) -> list[Row]:
+    """Draw rows of shades, int64 (rows, columns), two in a row of characters."""
+    return _halves(numbers, _pixels)
+
+
+def photograph(pixels: np.ndarray) -> list[Row]:
+    """Draw a picture, uint8 (rows, columns, 3), two of its rows in a row of characters."""
+    # A few thousand colours look the same, and their styles are then kept.
+    red, green, blue = np.moveaxis(pixels.astype(np.int64) >> 4, -1, 0)
+    return _halves(red << 8 | green << 4 | blue, _points)
+
+
+def _halves(numbers: np.ndarray, style: Callable[[int, int], Style]) -> list[Row]:
+    """Draw numbers as upper and lower halves of characters, in the style of each two."""
+    if len(numbers) % 2:
+        numbers = np.vstack([numbers, np.full_like(numbers[:1], OUTSIDE)])
     return [
-        _joined(["▀"] * len(upper), map(_pixels, upper, lower))
-        for upper, lower in zip(picture[::2].tolist(), picture[1::2].tolist(), strict=True)
+        _joined(["▀"] * len(upper), map(style, upper, lower))
+        for upper, lower in zip(numbers[::2].tolist(), numbers[1::2].tolist(), strict=True)
     ]
+
+
+def levels(values: np.ndarray) -> str:
+    """Return a bar for each of some numbers, lowest at -1 and highest at 1."""
+    heights = np.rint((np.clip(np.nan_to_num(values), -1, 1) + 1) * 3.5).astype(int) + 1
+    return "".join(EIGHTHS[height] for height in heights.tolist())
+
+
+def width_of(row: Row) -> int:
+    """Return the columns of a row."""
+    return sum(len(segment.text) for segment in row)
+
+
+def padded(row: Row, width: int) -> Row:
+    """Return a row with spaces up to a width."""
+    return [*row, Segment(" " * max(width - width_of(row), 0))]
 
 
 def _joined(glyphs: list[str], styles: Iterable[Style]) -> Row:
@@ -127,9 +164,20 @@ def _hue(line: int) -> Style:
 
 @cache
 def _pixels(upper: int, lower: int) -> Style:
-    """Return the style of two cells above each other: 4 x hue + shade, EMPTY, or less if outside."""
-    below = None if lower < EMPTY else Color.from_rgb(*_shade(lower))
+    """Return the style of two cells above each other, of these shades."""
+    below = None if lower == OUTSIDE else Color.from_rgb(*_shade(lower))
     return Style(color=Color.from_rgb(*_shade(upper)), bgcolor=below)
+
+
+@lru_cache(2**14)
+def _points(upper: int, lower: int) -> Style:
+    """Return the style of two points of a picture above each other, of 4 bits for each colour."""
+    below = None if lower == OUTSIDE else Color.from_rgb(*_point(lower))
+    return Style(color=Color.from_rgb(*_point(upper)), bgcolor=below)
+
+
+def _point(number: int) -> tuple[int, int, int]:
+    return (number >> 8) * 17, (number >> 4 & 15) * 17, (number & 15) * 17
 
 
 def _shade(code: int) -> tuple[float, float, float]:

@@ -1,5 +1,6 @@
-"""The numbers of the live view, laid out for any width."""
+"""The numbers of the live view, laid out for any room."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -10,12 +11,14 @@ from primordia.config import Config
 from primordia.law.world import Cause
 from primordia.live.census import Census
 from primordia.live.ground import Medians
-from primordia.live.paint import FAINT, Row
+from primordia.live.paint import FAINT, Row, width_of
 
 STRONG = Style(bold=True)
 FILLED = Style(color="green")
 CELL = 26
 """Smallest number of columns for one number with its name."""
+MOST = 5
+"""Most numbers side by side."""
 SHORTEST, LONGEST = 8, 24
 """Columns of a bar; a shorter one is left out."""
 TOPOLOGIES = {"ring": "on a ring", "torus4": "on a torus", "torus8": "on a torus"}
@@ -28,14 +31,14 @@ class Outlook(NamedTuple):
     seconds_left: float | None
 
 
-def heading(config: Config, seconds: float, width: int) -> Row:
-    """Return task, size and seeds of a run, and the seconds since its start."""
+def heading(config: Config, pace: str, seconds: float, width: int) -> Row:
+    """Return task, size and seeds of a run, its pace, and the seconds since its start."""
     last = config.seed + config.seeds - 1
     one = f"  seed {config.seed}, {config.cells:,} cells"
     many = f"  {config.seeds:,} worlds, seeds {config.seed} to {last}, {config.cells:,} cells each"
     size = one if config.seeds == 1 else many
     topology = TOPOLOGIES.get(config.placement.topology, "well-mixed")
-    task, clock = config.task, duration(seconds)
+    task, clock = config.task, ", ".join(filter(None, (pace, duration(seconds))))
     spare = width - len(task) - len(clock) - 2
     about = next((text for text in (f"{size} {topology}", size) if len(text) <= spare), "")
     gap = max(width - len(task) - len(about) - len(clock), 1)
@@ -48,9 +51,8 @@ def numbers(
     outlook: Outlook,
     takeovers: int | None,
     ground: Medians | None,
-    width: int,
-) -> list[Row]:
-    """Return counts in columns, and causes of death.
+) -> dict[str, str]:
+    """Return counts by name, the most telling first; those that are unknown are left out.
 
     Args:
         census: the counts.
@@ -58,7 +60,6 @@ def numbers(
         outlook: speed and remaining time.
         takeovers: number of takeovers in all worlds; None if lines of descent are not followed.
         ground: whether good lines keep their ground; None if unknown.
-        width: columns of the terminal.
     """
     worlds = len(census.tick)
     values = {
@@ -68,16 +69,21 @@ def numbers(
         "births": f"{census.births.sum():,}",
         "deaths": f"{census.deaths.sum():,}",
         "oldest": f"{census.oldest:,}",
-        "extinctions": f"{census.extinctions.sum():,}",
+        "organism-ticks/s": with_prefix(outlook.organism_ticks_per_s),
+        "time left": duration(outlook.seconds_left) if outlook.seconds_left else "",
         "takeovers": "" if takeovers is None else f"{takeovers:,}",
+        "extinctions": f"{census.extinctions.sum():,}",
         "children mutate": f"{ground.mutated:.0%}" if ground else "",
         "mutants as good": f"{ground.as_good:.0%}" if ground else "",
         "good lines hold": f"{ground.held:.2f}" if ground else "",
-        "organism-ticks/s": with_prefix(outlook.organism_ticks_per_s),
-        "time left": duration(outlook.seconds_left) if outlook.seconds_left else "",
     }
-    rows = _columns({name: value for name, value in values.items() if value}, width)
-    return [*rows, _causes(census, width)]
+    return {name: value for name, value in values.items() if value}
+
+
+def panel(values: dict[str, str], census: Census, bar: Row, width: int, height: int) -> list[Row]:
+    """Return names and values side by side, causes of death and a bar, in `height` rows at most."""
+    rows = _columns(values, width)[: max(height - 2, 1)]
+    return [*rows, _causes(census, width), bar][:height]
 
 
 def _share(part: int, whole: int) -> str:
@@ -88,7 +94,7 @@ def _share(part: int, whole: int) -> str:
 
 def _columns(values: dict[str, str], width: int) -> list[Row]:
     """Return names and values side by side, as many in a row as fit."""
-    across = min(max(width // CELL, 1), 3)
+    across = min(max(width // CELL, 1), MOST)
     column, gap = min(width // across, CELL + 6), 3 if across > 1 else 0
     pairs = list(values.items())
     rows = []
@@ -102,34 +108,84 @@ def _columns(values: dict[str, str], width: int) -> list[Row]:
 
 
 def _causes(census: Census, width: int) -> Row:
-    counts = census.deaths.sum(axis=0).tolist()
-    causes = [f"{n:,} {cause.label}" for cause, n in zip(Cause, counts, strict=True) if n]
-    return [Segment("died of  ", FAINT), Segment((", ".join(causes) or "nothing yet")[: width - 9])]
+    """Return the causes of death, the most frequent first, as many as fit."""
+    counts = zip(census.deaths.sum(axis=0).tolist(), Cause, strict=True)
+    known = sorted((each for each in counts if each[0]), reverse=True)
+    texts = [
+        ", ".join([*(f"{count:,} {cause.label}" for count, cause in known[:most]), *more])
+        for most in range(len(known), 0, -1)
+        for more in ([] if most == len(known) else ["..."],)
+    ]
+    return [Segment("died of  ", FAINT), Segment(fitting(texts or ["nothing yet"], width - 9))]
 
 
 def saturation(census: Census, cells: int, calm_needed: int, width: int) -> Row:
     """Return a bar: how close one world is to saturation, or how many of several are saturated."""
     worlds, done = len(census.tick), int((census.saturated >= 0).sum())
-    if worlds > 1:
-        return _bar(done / worlds, f"{done:,} of {worlds:,} worlds saturated", width)
+    if done and worlds == 1:
+        tick = f"{census.saturated[0]:,}"
+        return _bar(1.0, [f"saturated since tick {tick}", f"saturated at {tick}"], width)
     if done:
-        return _bar(1.0, f"saturated at tick {census.saturated[0]:,}", width)
-    if census.alive[0] < cells:
-        return _bar(0.0, f"saturated after {calm_needed:,} full, calm ticks", width)
-    calm = min(int(census.calm[0]), calm_needed)
-    return _bar(calm / calm_needed, f"full and calm for {calm:,} of {calm_needed:,} ticks", width)
+        texts = [f"{done:,} of {worlds:,} worlds saturated", f"{done:,} saturated"]
+        return _bar(done / worlds, texts, width)
+    calm = np.where(census.alive == cells, census.calm, 0)
+    longest, needed = min(int(calm.max()), calm_needed), f"{calm_needed:,}"
+    subject = "" if worlds == 1 else "one world "
+    texts = [
+        f"{subject}full and calm for {longest:,} of {needed} ticks",
+        f"{subject}calm {longest:,} of {needed}",
+        f"calm {longest / calm_needed:.0%}",
+    ]
+    if worlds > 1 and not longest:
+        texts = [f"no world full and calm for {needed} ticks", "no world full and calm"]
+    return _bar(longest / calm_needed, texts, width)
 
 
-def _bar(share: float, text: str, width: int) -> Row:
+def fitting(texts: Sequence[str], width: int) -> str:
+    """Return the first of some texts that fits, or the beginning of the last."""
+    return next((text for text in texts if len(text) <= width), texts[-1][: max(width, 0)])
+
+
+def _bar(share: float, texts: Sequence[str], width: int) -> Row:
+    text = fitting(texts, width)
     length = min(width - len(text) - 2, LONGEST)
     length = length if length >= SHORTEST else 0
     filled = int(share * length)
-    label = f"  {text}" if length else text
     return [
         Segment("━" * filled, FILLED),
         Segment("╌" * (length - filled), FAINT),
-        Segment(label[: width - length]),
+        Segment(f"  {text}" if length else text),
     ]
+
+
+KEYS = (
+    ("space", "pause"),
+    ("s", "step"),
+    ("-+", "speed"),
+    ("w", "world"),
+    ("o", "organism"),
+    ("n", "next"),
+    ("?", "words"),
+    ("q", "quit"),
+)
+
+
+def keys(shown: str, width: int) -> Row:
+    """Return the keys with their names, or without the names where these do not fit.
+
+    `shown` has the first characters of the keys that mean something now.
+    """
+    known = [(key, name) for key, name in KEYS if key[0] in shown]
+    everything = tuple(key for key, _ in KEYS)
+    for bare in ((), ("?",), ("?", "s"), ("?", "s", "n", "-+"), everything):
+        gap = "  " if not bare else " "
+        row: Row = []
+        for key, name in known:
+            before = Segment(gap if row else "")
+            row += [before, Segment(key, STRONG), Segment("" if key in bare else f" {name}", FAINT)]
+        if width_of(row) <= width:
+            break
+    return row
 
 
 def with_prefix(value: float | None) -> str:

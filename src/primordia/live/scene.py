@@ -1,5 +1,8 @@
-"""Drawings of worlds: a ring as a skyline, a torus as a picture, many worlds as strips."""
+"""Drawings of worlds: one in the form of its places, several as tiles."""
 
+from collections import deque
+from collections.abc import Callable
+from itertools import zip_longest
 from typing import NamedTuple
 
 import numpy as np
@@ -8,22 +11,12 @@ from rich.segment import Segment
 from primordia.history.lines import Lines
 from primordia.law.law import Law
 from primordia.law.world import World
-from primordia.live.paint import EMPTY, FAINT, Cells, Row, field, skyline, strip
+from primordia.live.forms import Form, Ring, Room, form_of, part_of
+from primordia.live.paint import EMPTY, FAINT, Cells, Row, padded, shades
 from primordia.random.wide import Wide, to_host
 
-TALLEST = 4
-"""Largest number of rows of a skyline."""
-WIDEST = 4
-"""Largest number of columns of a cell."""
-
-
-class Room(NamedTuple):
-    """The room for a drawing, in characters, and its means."""
-
-    width: int
-    height: int
-    letters: bool
-    """whether lines of descent are letters, since the terminal has too few colours"""
+KEPT = 512
+"""moments of the past of a ring that are kept"""
 
 
 class Scene(NamedTuple):
@@ -35,99 +28,165 @@ class Scene(NamedTuple):
     """the part of the worlds that is shown; empty if all are"""
 
 
-def scene(law: Law, world: World, lines: list[Lines], room: Room) -> Scene:
-    """Draw the worlds.
+class Grid(NamedTuple):
+    """Tiles of equal size, one for each world that is shown."""
 
-    Args:
-        law: the law of the run.
-        world: all worlds.
-        lines: lines of descent of the first worlds; without any, colours show the founder's branch.
-        room: the room for the drawing.
-    """
-    if law.worlds > 1:
-        return _strips(law, world, lines, room)
-    if law.placement.shape(law.cells)[0] > 1:
-        return _picture(law, world, lines, room)
-    return _skylines(law, world, lines, room)
+    across: int
+    shown: int
+    each: Room
+    """the room for the drawing of a world"""
+    gap: int
+    """empty rows below a tile"""
 
+    @classmethod
+    def of(cls, form: Form, worlds: int, edge: int, room: Room) -> "Grid":
+        """Return the tiles in which cells are largest; if not all worlds fit, as many as do.
 
-def _skylines(law: Law, world: World, lines: list[Lines], room: Room) -> Scene:
-    """Draw one world as skylines below each other, the cells in order."""
-    wide = min(max(room.width // law.cells, 1), WIDEST)
-    letter_rows = 1 if room.letters else 0
-    most = max(room.height // (1 + letter_rows), 1)
-    count = min(-(-law.cells * wide // (room.width // wide * wide)), most)
-    across = min(-(-law.cells // count), room.width // wide)
-    shown = min(across * count, law.cells)
-    gap = 1 if count > 1 else 0
-    tall = min(max(room.height // count - gap - letter_rows, 1), TALLEST)
-    with_gaps = count > 1 and count * (tall + letter_rows + 1) - 1 <= room.height
-    cells = _cells(law, world, lines, np.arange(shown))
-    rows: list[Row] = []
-    for at in range(0, shown, across):
-        if with_gaps and rows:
-            rows.append([])
-        rows += skyline(cells.take(slice(at, at + across)), wide, tall, room.letters)
-    part = f"shown: the first {shown:,} of {law.cells:,} cells" if shown < law.cells else ""
-    return Scene(rows, f"height: age, {_line_legend(lines, room)}", part)
+        Beside each drawing are `edge` columns for its label and mark.
+        """
+        found = []
+        for across in range(1, min(worlds, max(room.width // (edge + 1), 1)) + 1):
+            down = -(-worlds // across)
+            if down <= room.height:
+                grid = cls._filling(room, across, down, worlds, edge)
+                found.append((form.scale(grid.each), -across, grid))
+        best = max(found, key=lambda each: each[:2], default=None)
+        if best is not None and best[0] > 0:
+            return best[2]
+        wide, high = form.least
+        across = max(room.width // (wide + edge), 1)
+        down = max(room.height // (high if high == 1 else high + 1), 1)
+        shown = min(across * down, worlds)
+        return cls._filling(room, across, -(-shown // across), shown, edge)
 
-
-def _picture(law: Law, world: World, lines: list[Lines], room: Room) -> Scene:
-    """Draw one world as a picture of its torus."""
-    rows, columns = law.placement.shape(law.cells)
-    pixels_high = room.height if room.letters else 2 * room.height
-    scale = 1 if room.letters else min(room.width // columns, pixels_high // rows, WIDEST)
-    scale = max(scale, 1)
-    high, across = min(rows, pixels_high // scale), min(columns, room.width // scale)
-    index = np.arange(high)[:, None] * columns + np.arange(across)
-    drawn = field(_cells(law, world, lines, index.ravel()), across, scale, room.letters)
-    part = ""
-    if high * across < law.cells:
-        part = f"shown: {high:,} x {across:,} of {rows:,} x {columns:,} cells"
-    age = "capitals: old" if room.letters else "light: age"
-    return Scene(drawn, f"{age}, {_line_legend(lines, room)}", part)
+    @classmethod
+    def _filling(cls, room: Room, across: int, down: int, shown: int, edge: int) -> "Grid":
+        high = room.height // down
+        gap = 1 if high > 2 and down > 1 else 0
+        each = Room(max(room.width // across - edge, 1), max(high - gap, 1), room.letters)
+        return cls(across, shown, each, gap)
 
 
-def _strips(law: Law, world: World, lines: list[Lines], room: Room) -> Scene:
-    """Draw a strip for each world."""
+def cell_width(law: Law, alone: int | None, room: Room) -> int:
+    """Return the columns of a cell in a room; 0 if not all cells of the shown worlds fit."""
+    form = form_of(law, room.letters)
+    if law.worlds == 1 or alone is not None:
+        return form.scale(room)
+    grid = Grid.of(form, law.worlds, len(f"{law.worlds}") + 3, room)
+    return form.scale(grid.each) if grid.shown == law.worlds else 0
+
+
+class Stage:
+    """The drawings of a run's worlds. It remembers the past of rings."""
+
+    def __init__(self) -> None:
+        self._past: dict[int, deque[np.ndarray]] = {}
+        self._ticks: dict[int, int] = {}
+
+    def scene(
+        self, law: Law, world: World, lines: dict[int, Lines], alone: int | None, room: Room
+    ) -> Scene:
+        """Draw the worlds.
+
+        Args:
+            law: the law of the run.
+            world: all worlds.
+            lines: lines of descent by number of the world; in others, colours show the branch of the
+                founder.
+            alone: the only world that is shown; None for all.
+            room: the room for the drawing.
+        """
+        form, tick = form_of(law, room.letters), to_host(world.worlds.tick)
+
+        def draw(number: int, room: Room) -> tuple[list[Row], str]:
+            cells = cells_of(law, world, lines.get(number), number)
+            past = (
+                self._remember(number, int(tick[number]), cells) if isinstance(form, Ring) else []
+            )
+            return form.draw(cells, past, room)
+
+        if law.worlds == 1 or alone is not None:
+            number = alone or 0
+            rows, part = draw(number, room)
+            return Scene(rows, _legend(form, number in lines, room), part)
+        return _tiles(world, form, draw, bool(lines), room)
+
+    def follow(self, law: Law, world: World, lines: dict[int, Lines], number: int) -> None:
+        """Remember a world that is a ring as it is now."""
+        if law.placement.shape(law.cells)[0] == 1:
+            tick = int(to_host(world.worlds.tick)[number])
+            self._remember(number, tick, cells_of(law, world, lines.get(number), number))
+
+    def _remember(self, number: int, tick: int, cells: Cells) -> list[np.ndarray]:
+        """Remember this moment of a world, and return the earlier ones, the latest first."""
+        past = self._past.setdefault(number, deque(maxlen=KEPT))
+        if self._ticks.get(number) != tick:
+            past.appendleft(shades(cells).astype(np.int16))
+            self._ticks[number] = tick
+        return list(past)[1:]
+
+
+def _tiles(
+    world: World,
+    form: Form,
+    draw: Callable[[int, Room], tuple[list[Row], str]],
+    followed: bool,
+    room: Room,
+) -> Scene:
+    """Draw worlds side by side and below each other, each with its seed and a mark if saturated."""
     seeds = to_host(world.worlds.seed).tolist()
     saturated = to_host(world.worlds.saturated).astype(np.int64) >= 0
     digits = len(str(seeds[-1]))
-    shown = min(law.worlds, room.height)
-    across = min(law.cells, max(room.width - digits - 3, 1))
+    grid = Grid.of(form, len(seeds), digits + 3, room)
+    tiles, parts = [], dict[str, None]()
+    for number in range(grid.shown):
+        drawn, part = draw(number, grid.each)
+        parts[part] = None
+        mark, label = " ✓" if saturated[number] else "", f"{seeds[number]:>{digits}} "
+        tiles.append(_labelled(drawn, label, mark, grid))
     rows: list[Row] = []
-    for number in range(shown):
-        cells = _cells(law, world, lines, number * law.cells + np.arange(across))
-        label = Segment(f"{seeds[number]:>{digits}} ", FAINT)
-        mark = Segment(" ✓" if saturated[number] else "")
-        rows.append([label, *strip(cells, room.letters), mark])
-    parts = []
-    if shown < law.worlds:
-        parts.append(f"{shown:,} of {law.worlds:,} worlds")
-    if across < law.cells:
-        parts.append(f"{across:,} of {law.cells:,} cells of each")
-    part = f"shown: the first {' and '.join(parts)}" if parts else ""
-    age = "capitals: old" if room.letters else "height: age"
-    return Scene(rows, f"{age}, {_line_legend(lines, room)}, ✓: saturated", part)
+    for at in range(0, grid.shown, grid.across):
+        for row in zip_longest(*tiles[at : at + grid.across], fillvalue=[]):
+            rows.append([segment for tile in row for segment in tile])
+        rows += [[]] * grid.gap
+    legend = _legend(form, followed, grid.each)
+    if saturated[: grid.shown].any():
+        legend += ", ✓: saturated"
+    shown = (part_of(grid.shown, len(seeds), "worlds"), *parts)
+    return Scene(rows[: room.height], legend, "; ".join(filter(None, shown)))
 
 
-def _line_legend(lines: list[Lines], room: Room) -> str:
+def _labelled(drawn: list[Row], label: str, mark: str, grid: Grid) -> list[Row]:
+    """Return a tile: a drawing after a label and before a mark, as wide as all tiles of the grid."""
+    rows = []
+    for number, row in enumerate(drawn):
+        first = number == 0
+        left = Segment(label if first else " " * len(label), FAINT)
+        own: Row = [left, *row, Segment(mark if first else "")]
+        width = grid.each.width + len(label) + 2
+        rows.append(padded(own, width) if grid.across > 1 else own)
+    return rows
+
+
+def _legend(form: Form, followed: bool, room: Room) -> str:
+    """Return the meanings of what is drawn."""
     mark = "letter" if room.letters else "colour"
-    return f"{mark}: {'line of descent' if lines else 'branch of the founder'}"
+    branch = "line of descent" if followed else "branch of the founder"
+    return f"{form.age(room)}, {mark}: {branch}"
 
 
-def _cells(law: Law, world: World, lines: list[Lines], index: np.ndarray) -> Cells:
-    """Return the cells at an index (n,) into the cells of all worlds; all must be of one world."""
-    organisms = world.organisms
-    alive, number = np.asarray(organisms.alive)[index], int(index[0]) // law.cells
+def cells_of(law: Law, world: World, lines: Lines | None, number: int) -> Cells:
+    """Return the cells of one world, with its lines of descent if they are followed."""
+    organisms, here = world.organisms, slice(number * law.cells, (number + 1) * law.cells)
+    alive = np.asarray(organisms.alive)[here]
 
     def read(value: Wide) -> np.ndarray:
-        high, low = (np.asarray(words)[index].astype(np.int64) for words in value)
+        high, low = (np.asarray(words)[here].astype(np.int64) for words in value)
         return high << 32 | low
 
-    line = np.full(len(index), EMPTY)
-    if lines:
-        line_of = lines[number].line_of
+    line = np.full(law.cells, EMPTY)
+    if lines is not None:
+        line_of = lines.line_of
         line[alive] = [line_of[organism] for organism in read(organisms.number)[alive].tolist()]
     else:
         line[alive] = read(organisms.branch)[alive]

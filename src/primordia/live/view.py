@@ -1,10 +1,8 @@
-"""The display of a run that advances: a view in a terminal, plain lines elsewhere."""
+"""The view in a terminal of a run that advances."""
 
-import os
 import sys
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
+from signal import SIGINT, raise_signal
 from types import TracebackType
 
 import numpy as np
@@ -12,83 +10,46 @@ from rich.console import Console, ConsoleOptions, RenderResult
 from rich.live import Live
 from rich.segment import Segment
 
-from primordia import interrupts
-from primordia.history.lines import CROWD, Lines, Turnover, turnovers
 from primordia.live.census import Census, Speed
+from primordia.live.companion import Companion
+from primordia.live.descent import Descent
+from primordia.live.forms import Room
 from primordia.live.ground import Ground, medians
+from primordia.live.pace import Pace
 from primordia.live.paint import FAINT, Row
-from primordia.live.panel import Outlook, heading, numbers, saturation, with_prefix
-from primordia.live.scene import Room, scene
+from primordia.live.panel import Outlook, heading, keys, numbers, panel, saturation
+from primordia.live.scene import Scene, Stage, cell_width
+from primordia.live.screen import composed
+from primordia.live.terminal import Keyboard
+from primordia.live.words import pages
 from primordia.printable import printable
 from primordia.random.wide import to_host
-from primordia.runs.loop import Listener, Status
-
-
-@contextmanager
-def watching(quiet: bool) -> Iterator[Listener | None]:
-    """Yield the listener that suits this terminal, or plain lines without a terminal."""
-    console = Console(
-        highlight=False, file=sys.__stdout__
-    )  # not the stream that spells out escapes
-    if quiet:
-        yield None
-    elif not sys.stdout.isatty() or console.is_dumb_terminal:
-        yield Plain()
-    else:
-        with interrupts.before_end(show_cursor), View(console) as view:
-            yield view
-
-
-def show_cursor() -> None:
-    """Write the escape sequence that shows the cursor, without any lock."""
-    os.write(1, b"\x1b[?25h\r\n")
-
-
-class Plain:
-    """A listener that prints a plain line from time to time."""
-
-    EVERY = 2.0
-    """seconds between two lines"""
-
-    def __init__(self) -> None:
-        self._speed, self._due = Speed(), 0.0
-
-    def __call__(self, status: Status) -> None:
-        """Print the counts if a line is due; the first chunk, which compiles, is not counted."""
-        now = time.perf_counter()
-        if now < self._due:
-            return
-        census = Census.of(status.engine.state.world)
-        self._speed.add(now, census)
-        self._due = now + self.EVERY
-        if (speed := self._speed.organism_ticks_per_s()) is not None:
-            print(
-                f"{status.wall_s:6.1f} s  tick {census.tick.max():,}  alive {census.alive.sum():,}"
-                f"  births {census.births.sum():,}  {with_prefix(speed)} organism-ticks/s",
-                flush=True,
-            )
+from primordia.runs.loop import Status
 
 
 class View:
-    """A listener that draws the living and the counts in place, in a `with` block.
+    """A listener that draws the living and the counts in place, in a `with` block, and obeys keys.
 
-    It follows the births of every chunk, and draws as often as SHARE of the time allows.
+    It follows the births of every chunk, and draws as often as SHARE of the time allows; more often if
+    the run waits in any case.
     """
 
     SHARE = 0.01
     """share of the time that drawing may take"""
-    CELLS, EVENTS = 2**14, 2**15
-    """most cells, and most births and deaths in a second, in which lines of descent are followed"""
 
-    def __init__(self, console: Console) -> None:
-        self._console = console
+    def __init__(
+        self, console: Console, pace: Pace | None = None, keyboard: Keyboard | None = None
+    ) -> None:
+        self._console, self._pace, self._keyboard = console, pace or Pace(), keyboard
         self._letters = console.no_color or console.color_system in (None, "standard")
         self._live = Live(console=console, auto_refresh=False, redirect_stderr=sys.stderr.isatty())
-        self._speed, self._lines = Speed(), list[Lines]()
-        self._ground: Ground | None = None
-        self._followed, self._missed = 0, False
-        self._size, self._due = console.size, 0.0
+        self._speed, self._stage, self._descent = Speed(), Stage(), Descent()
+        self._ground = Ground(0, 0)
+        self._size, self._due, self._cost, self._stale = console.size, 0.0, 0.0, False
         self._status: Status | None = None
+        self._alone: int | None = None
+        self._companion: Companion | None = None
+        self._page: int | None = None
 
     def __enter__(self) -> "View":
         waiting = Segment("Compiling, which takes some seconds", FAINT)
@@ -106,78 +67,137 @@ class View:
         if self._status is None:
             self._live.update("")
         else:
+            self._keyboard, self._page = None, None
             self._draw(self._status)
         self._live.stop()
 
     def __call__(self, status: Status) -> None:
-        """Follow a chunk, and draw if a frame is due."""
-        self._status = status
-        if self._console.size != self._size:
-            self._console.clear()  # a terminal reflows its lines when its width changes
-            self._size, self._due = self._console.size, 0.0
-        self._follow(status)
-        self._ground = self._ground or Ground(status.engine.law.cells, status.engine.law.worlds)
+        """Follow a chunk, draw if a frame is due, and wait as the pace demands."""
+        law = status.engine.law
+        self._descent.follow(status, min(law.worlds, self._console.size.height))
+        if self._status is None:
+            self._ground = Ground(law.cells, law.worlds)
         self._ground.follow(status.engine.events)
-        began = time.perf_counter()
-        if began >= self._due:
+        self._status, self._stale = status, True
+        if law.worlds == 1 or self._alone is not None:
+            world, lines = status.engine.state.world, self._descent.lines
+            self._stage.follow(law, world, lines, self._alone or 0)
+        if time.perf_counter() >= self._due:
             self._draw(status)
-            now = time.perf_counter()
-            self._due = now + (now - began) / self.SHARE
+        self._react(0.0)
+        self._pace(status, self._react)
 
-    def _follow(self, status: Status) -> None:
-        """Follow the lines of descent of the worlds that may be shown, if they are not too busy."""
-        law, events = status.engine.law, status.engine.events
-        shown = min(law.worlds, self._size.height)
-        if shown * law.cells > self.CELLS:
-            self._lines, self._missed = [], True
-            return
-        happened = turnovers(events, law.cells, shown)
-        count = sum(len(each.born) + len(each.dead) for each in happened)
-        if self._followed + count > self.EVENTS * (1 + status.wall_s):
-            self._lines, self._missed = [], True
-            return
-        self._followed += count
-        for lines, turnover in zip(self._lines, happened, strict=False):
-            lines.follow(turnover)
-        for world in range(len(self._lines), shown):
-            self._lines.append(_first_lines(status, world, happened[world]))
-        del self._lines[shown:]
+    def _react(self, seconds: float) -> None:
+        """Spend some seconds of waiting on a frame and on keys; draw what keys change."""
+        assert self._status is not None
+        if self._stale and seconds > self._cost:
+            self._draw(self._status)
+        pressed = self._keyboard.pressed(seconds) if self._keyboard else _no_keys(seconds)
+        for key in pressed:
+            self._obey(key, self._status)
+        if pressed or self._console.size != self._size:
+            self._draw(self._status)
+
+    def _obey(self, key: str, status: Status) -> None:
+        """Do what a key means; see `words.KEYS`."""
+        engine, pace = status.engine, self._pace
+        if key == " ":
+            pace.pause()
+            self._speed = Speed()
+        elif key == "s":
+            pace.step()
+        elif key == "-":
+            pace.slower(self._speed.ticks_per_s())
+        elif key in "+=":
+            pace.faster()
+        elif key == "w":
+            following = 0 if self._alone is None else self._alone + 1
+            self._alone = following if following < engine.law.worlds > 1 else None
+        elif key == "o":
+            self._companion = None if self._companion else Companion()
+        elif key == "n" and self._companion:
+            self._companion.find(engine, self._alone, step=1)
+        elif key == "?":
+            self._page = 0 if self._page is None else self._page + 1
+        elif key == "q":
+            raise_signal(SIGINT)
 
     def _draw(self, status: Status) -> None:
+        began = time.perf_counter()
+        if self._console.size != self._size:
+            self._console.clear()  # a terminal reflows its lines when its width changes
+            self._size = self._console.size
         self._live.update(Frame(self._rows(status)), refresh=True)
+        now = time.perf_counter()
+        self._cost, self._stale = now - began, False
+        self._due = now + self._cost / self.SHARE
 
     def _rows(self, status: Status) -> list[Row]:
-        law, world = status.engine.law, status.engine.state.world
         width, height = self._size.width, self._size.height - 1
+        room = Room(width, max(height - (2 if self._keyboard else 1), 1), self._letters)
+        rows = [heading(status.engine.config, str(self._pace), status.wall_s, width)]
+        rows += self._words(room) or self._world(status, room)
+        if self._keyboard:
+            rows += [[]] * (height - 1 - len(rows))
+            rows = [*rows[: height - 1], self._keys(status, width)]
+        return rows[:height]
+
+    def _words(self, room: Room) -> list[Row]:
+        """Return the page of words that is shown; nothing if the world is."""
+        if self._page is None:
+            return []
+        found = pages(room.width, room.height)
+        if self._page >= len(found):
+            self._page = None
+            return []
+        return found[self._page]
+
+    def _keys(self, status: Status, width: int) -> Row:
+        """Return the keys that mean something now."""
+        many = "w" if status.engine.law.worlds > 1 else ""
+        return keys(f"s-{many}{'on' if self._companion else 'o'}?q", width)
+
+    def _world(self, status: Status, room: Room) -> list[Row]:
+        engine, alone = status.engine, self._alone
+        law, world, lines = engine.law, engine.state.world, self._descent.lines
         census = Census.of(world)
         self._speed.add(time.perf_counter(), census)
+        if alone is not None:
+            census = Census.of(world, alone)
+        values = self._numbers(status, census)
+
+        def draw(room: Room) -> Scene:
+            return self._stage.scene(law, world, lines, alone, room)
+
+        def counts(room: Room) -> list[Row]:
+            bar = saturation(census, law.cells, law.saturation_ticks, room.width)
+            return panel(values, census, bar, room.width, room.height)
+
+        def organism(room: Room) -> list[Row]:
+            return self._companion.rows(engine, alone, room) if self._companion else []
+
+        def measure(room: Room) -> int:
+            return cell_width(law, alone, room)
+
+        return composed(measure, draw, counts, organism if self._companion else None, room)
+
+    def _numbers(self, status: Status, census: Census) -> dict[str, str]:
+        """Return the counts of the worlds that are shown."""
+        law, alone = status.engine.law, self._alone
         left = self._speed.seconds_left(status.limits) if status.limits else None
         outlook = Outlook(self._speed.organism_ticks_per_s(), left)
-        known = len(self._lines) == law.worlds and not self._missed
-        takeovers = sum(len(lines.takeovers) for lines in self._lines) if known else None
-        ground = medians(self._ground.measured(census.tick)) if self._ground else None
-        below = numbers(census, law.cells, outlook, takeovers, ground, width)
-        below.append(saturation(census, law.cells, law.saturation_ticks, width))
-        spare = height - len(below) - 3
-        space: list[Row] = [[]] if spare > 4 else []
-        room = Room(width, max(spare - 2 * len(space), 1), self._letters)
-        drawn = scene(law, world, self._lines, room)
-        legend: list[Row] = [[Segment(text, FAINT)] for text in (drawn.part, drawn.legend) if text]
-        top = heading(status.engine.config, status.wall_s, width)
-        return [top, *space, *drawn.rows, *legend, *space, *below][:height]
+        shown = range(law.worlds) if alone is None else [alone]
+        takeovers = self._descent.takeovers(shown)
+        ticks = to_host(status.engine.state.world.worlds.tick).astype(np.int64)
+        measured = self._ground.measured(ticks)
+        ground = medians([each for each in measured if each.world in shown])
+        return numbers(census, law.cells, outlook, takeovers, ground)
 
 
-def _first_lines(status: Status, world: int, turnover: Turnover) -> Lines:
-    """Return the lines of a world after its first chunk, followed from genesis if that was in it."""
-    organisms, cells = status.engine.state.world.organisms, status.engine.law.cells
-    crowd = min(CROWD, max(cells // 2, 1))
-    if len(turnover.born) and turnover.born[0] == 0:
-        lines = Lines([], crowd)
-        lines.follow(turnover)
-        return lines
-    here = slice(world * cells, (world + 1) * cells)
-    alive, number = np.asarray(organisms.alive)[here], to_host(organisms.number)[here]
-    return Lines(number[alive].tolist(), crowd)
+def _no_keys(seconds: float) -> str:
+    """Wait, and return that no key was pressed."""
+    time.sleep(seconds)
+    return ""
 
 
 class Frame:

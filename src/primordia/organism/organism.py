@@ -1,5 +1,6 @@
 """One organism of a run: its record, and all that can be derived from the record."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -94,10 +95,14 @@ class Organism:
         return evaluate(self.run, [(self.id, self.world)], **options)[0]
 
     def replay(
-        self, out: str | Path | None = None, ages: tuple[int | None, int | None] = (None, None)
+        self,
+        out: str | Path | None = None,
+        ages: tuple[int | None, int | None] = (None, None),
+        beside: Sequence[int] = (),
     ) -> Path:
-        """Make a video of the organism's life. Return the file; see `replay.replay`."""
-        return replay(self.run, self.id, self.world, Path(out) if out is not None else None, ages)
+        """Make a video of its life, or of several. Return the file; see `replay.replay`."""
+        path = Path(out) if out is not None else None
+        return replay(self.run, self.id, self.world, path, ages, beside=beside)
 
     def revive(
         self,

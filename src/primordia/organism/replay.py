@@ -1,9 +1,9 @@
 """Videos of lives that are lived again."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cache
-from itertools import repeat
-from math import ceil
+from itertools import chain, repeat, zip_longest
+from math import ceil, isqrt
 from pathlib import Path
 
 import jax
@@ -26,6 +26,8 @@ PART = 30.0
 STILL = 1.0
 """Seconds for which a card, and the last picture, are shown."""
 SIZE, INK = 16, "#333333"
+GAP = 16
+"""pixels between lives that are shown side by side"""
 
 
 def replay(
@@ -35,8 +37,11 @@ def replay(
     out: Path | None = None,
     ages: tuple[int | None, int | None] = (None, None),
     part: float | None = None,
+    beside: Sequence[int] = (),
 ) -> Path:
-    """Make a video of a life. Return the path of the file.
+    """Make a video of a life, or of several side by side. Return the path of the file.
+
+    Lives side by side begin together, in the order of their births; each is held at its last picture.
 
     Args:
         run: the organism's run.
@@ -46,6 +51,7 @@ def replay(
         ages: first and last age shown, in ticks. By default the whole life is shown, or the first and
             last 30 seconds of a life longer than a minute.
         part: seconds shown at each end of a long life, other than 30.
+        beside: birth numbers of others of its world, whose lives are shown too.
 
     Raises:
         InputError: no such organism was born, its habitat draws no pictures, or no age is left to show.
@@ -53,25 +59,28 @@ def replay(
     """
     if out is None:
         bundle.refuse_changes(run.path)
-    path = out or run.path / "videos" / f"world{world}-organism{organism}.mp4"
+    numbers = sorted({organism, *beside})
+    name = f"world{world}-organism{'-'.join(map(str, numbers))}.mp4"
+    path = out or run.path / "videos" / name
     video.check_name(path)
-    life = RelivedLife.of(run, organism, world)
-    parts = parts_of(life, ages, part)
+    lives = [RelivedLife.of(run, number, world) for number in numbers]
+    shown = [(life, parts_of(life, ages, part)) for life in lives]
     if out is None:
         files.own_folder(path.parent)
-    film(life, path, parts)
+    film(path, *shown)
     return path
 
 
-def film(life: RelivedLife, path: Path, parts: list[range]) -> None:
-    """Make a video, .mp4 or .gif, of the parts of a life that `parts_of` returns.
+def film(path: Path, *shown: tuple[RelivedLife, list[range]]) -> None:
+    """Make a video, .mp4 or .gif, of parts of lives of one run, side by side; see `parts_of`.
 
     Raises:
-        Trouble: the video cannot be written, or the life does not repeat as recorded.
+        Trouble: the video cannot be written, or a life does not repeat as recorded.
     """
-    rate = picture_rate(life)
+    rate = picture_rate(shown[0][0])
     step = ceil(rate / video.FASTEST[path.suffix])
-    video.write(path, _pictures(life, parts, step, rate / step), rate / step)
+    films = [_pictures(life, parts, step, rate / step) for life, parts in shown]
+    video.write(path, _side_by_side(films), rate / step)
 
 
 def lacking(habitat: AnyHabitat) -> list[str]:
@@ -129,6 +138,22 @@ def _pictures(
         yield picture
     assert picture is not None
     yield from repeat(picture, still)
+
+
+def _side_by_side(films: list[Iterator[Image.Image]]) -> Iterator[Image.Image]:
+    """Yield the pictures of films of one size in one, in rows; an ended film holds its last picture."""
+    columns = isqrt(len(films) - 1) + 1
+    rows = ceil(len(films) / columns)
+    held = [next(film) for film in films]
+    width, height = held[0].size
+    for pictures in chain([held], zip_longest(*films)):
+        held = [old if new is None else new for old, new in zip(held, pictures, strict=True)]
+        size = (columns * (width + GAP) - GAP, rows * (height + GAP) - GAP)
+        whole = Image.new("RGB", size, PAPER)
+        for number, picture in enumerate(held):
+            row, column = divmod(number, columns)
+            whole.paste(picture, (column * (width + GAP), row * (height + GAP)))
+        yield whole
 
 
 def moments(life: RelivedLife, parts: list[range], step: int) -> Iterator[tuple[int, Stretch, int]]:

@@ -119,7 +119,7 @@ def revive(
     respects = tuple(Respect(name, value, found.get(name)) for name, value in told.items())
     written = [] if save is None else [save]
     if film is not None and all(each.agrees for each in respects):
-        replay.film(life, film, parts)
+        replay.film(film, (life, parts))
         written.append(film)
     elif film is not None:
         notes.append(f"{film} was not made, since the life is not as recorded")

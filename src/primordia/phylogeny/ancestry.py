@@ -4,6 +4,8 @@ import numpy as np
 
 ROWS = 4096
 """Organisms that are looked at together."""
+FEW = 8
+"""Lines up to which Python follows each sooner than NumPy all of them."""
 
 
 def nearest(parent_row: np.ndarray, marked: np.ndarray) -> np.ndarray:
@@ -25,6 +27,28 @@ def nearest(parent_row: np.ndarray, marked: np.ndarray) -> np.ndarray:
         before = np.where(found[first + own] >= 0, first + own, found[parent])
         found[first + own] = before[start]
     return found[:-1]
+
+
+def with_ancestors(rows: np.ndarray, *parents: np.ndarray) -> np.ndarray:
+    """Return the rows of some organisms and all their ancestors, rising, int64.
+
+    Args:
+        rows: rows of the organisms, int64.
+        parents: row of each one's first parent, or -1, int64 (L,); then those of further parents.
+    """
+    known = np.zeros(len(parents[0]) + 1, bool)
+    known[-1] = True  # no parent
+    new = np.unique(rows)
+    while len(new) > FEW:
+        known[new] = True
+        older = np.unique(np.concatenate([each[new] for each in parents]))
+        new = older[~known[older]]
+    lines = new.tolist()
+    while lines:
+        if not known[row := lines.pop()]:
+            known[row] = True
+            lines += [int(each[row]) for each in parents]
+    return np.flatnonzero(known[:-1])
 
 
 def places_of(rising: np.ndarray, rows: np.ndarray) -> np.ndarray:

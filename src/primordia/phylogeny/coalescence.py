@@ -10,6 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
+from primordia.phylogeny.ancestry import places_of, with_ancestors
 from primordia.phylogeny.living import Turnover
 from primordia.runs.lives import Lives
 
@@ -31,9 +32,8 @@ class Genealogy:
     @classmethod
     def of(cls, lives: Lives) -> "Genealogy":
         """Trace the genealogy of the living of one world."""
-        rows = _with_ancestors(lives)
-        above = lives.parent_row[rows]
-        parent = np.where(above < 0, -1, np.searchsorted(rows, above))
+        rows = with_ancestors(np.flatnonzero(~lives.died), lives.parent_row)
+        parent = places_of(rows, lives.parent_row[rows])
         size = (~lives.died[rows]).astype(int).tolist()
         merges = [0] * len(rows)
         for place, of in reversed(list(enumerate(parent.tolist()))):
@@ -78,24 +78,6 @@ class Genealogy:
         pairs = np.zeros(len(falling), np.int64)
         np.add.at(pairs, place, self.merges[parted])
         return -falling, pairs
-
-
-def _with_ancestors(lives: Lives) -> np.ndarray:
-    """Return the rows of the living and all their ancestors, rising, int64."""
-    known = np.zeros(len(lives), bool)
-    new = np.flatnonzero(~lives.died)
-    while len(new) > 1:
-        known[new] = True
-        older = lives.parent_row[new]
-        new = np.unique(older[older >= 0])
-        new = new[~known[new]]
-    row = int(new[0]) if len(new) else -1
-    while (
-        row >= 0 and not known[row]
-    ):  # one line is left; it is the trunk below the common ancestor
-        known[row] = True
-        row = int(lives.parent_row[row])
-    return np.flatnonzero(known)
 
 
 @dataclass(frozen=True)

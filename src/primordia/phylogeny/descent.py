@@ -1,5 +1,7 @@
 """The line of descent of an organism: its ancestors, their mutations, and how far each line spread."""
 
+import warnings
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import Any
@@ -12,8 +14,11 @@ from primordia.law.world import BirthCause, Cause
 from primordia.phylogeny.ancestry import children, nearest
 from primordia.phylogeny.coalescence import Genealogy
 from primordia.phylogeny.fixation import UNKNOWN, branches, first_ticks
+from primordia.phylogeny.forks import Say, whole_past
 from primordia.phylogeny.frequencies import instants
 from primordia.phylogeny.living import Census, Turnover
+from primordia.runs.archive import Archive
+from primordia.runs.arm import run_of
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 
@@ -49,7 +54,7 @@ class Ancestors:
     changes: np.ndarray | None
     """size of each one's mutation by block, float64 (D, B); see `lineage.changes`. None: not known"""
     unknown: str | None
-    """why they are not known"""
+    """why they, or those before a fork, are not known"""
     ticks: dict[str, np.ndarray]
     """for each of SHARES, the first tick after which more of the living were descendants, int64 (D,), or
     UNKNOWN"""
@@ -125,25 +130,31 @@ class Ancestors:
         }
 
 
-def ancestors(run: Records, organism: int, world: int = 0) -> Ancestors:
+def ancestors(run: Records, organism: int, world: int = 0, say: Say = warnings.warn) -> Ancestors:
     """Follow the line of descent of an organism, from the records alone.
 
-    A line ends with a founder, or with an organism that was alive at the fork that the run began with.
+    A line ends with a founder. It goes on through forks into the runs that they were made from.
 
     Args:
         run: the organism's run, or an arm.
         organism: birth number.
         world: the organism's world.
+        say: called if a run that was forked is not there, or is another one. Then the line ends with an
+            organism that was alive at that fork.
 
     Raises:
         InputError: no such organism was born.
     """
-    rows = descent(run.lives, organism, world)
-    lives = run.lives.of_world(world)
-    line = rows - np.searchsorted(run.lives.world, world)
+    archive, own = run_of(run, world)
+    lives, runs = archive.lives, [archive]
+    if archive.config.fork is not None:
+        past = whole_past(archive, say)
+        lives, runs = past.whole.lives, past.runs
+    lives = lives.of_world(own)
+    line = descent(lives, organism, own)
     turnover, branch = Turnover.of(lives), branches(lives.parent_row, line)
     ticks = first_ticks(turnover, branch, len(line), tuple(SHARES.values()))
-    known, unknown = _changes(run, organism, world)
+    known, unknown = _changes(runs, lives.take(line), own)
     genealogy = Genealogy.of(lives)
     begin = max(int(lives.born[line[0]]), int(lives.seen.min()))
     return Ancestors(
@@ -151,7 +162,7 @@ def ancestors(run: Records, organism: int, world: int = 0) -> Ancestors:
         world=world,
         line=lives.take(line),
         children=children(lives.parent_row)[line],
-        blocks=run.layout.names,
+        blocks=archive.layout.names,
         changes=known,
         unknown=unknown,
         ticks=dict(zip(SHARES, ticks, strict=True)),
@@ -162,12 +173,27 @@ def ancestors(run: Records, organism: int, world: int = 0) -> Ancestors:
     )
 
 
-def _changes(run: Records, organism: int, world: int) -> tuple[np.ndarray | None, str | None]:
-    """Return the sizes of mutations, or why they are not known: no code of the run is executed."""
-    try:
-        return changes(run, organism, world), None
-    except InputError as error:
-        return None, str(error)
+def _changes(
+    runs: Sequence[Archive], line: Lives, world: int
+) -> tuple[np.ndarray | None, str | None]:
+    """Return the sizes of mutations on a line, and why some are not known; each run tells its own part.
+
+    No code of a run is executed that the user has not trusted.
+    """
+    found, until = np.full((len(line), len(runs[0].layout.names)), np.nan), len(line)
+    for run in runs:
+        before = int((line.born <= run.config.begins).sum())
+        if before == until and run is not runs[-1]:
+            continue  # all are alive at its fork, or older
+        try:
+            own = changes(run, int(line.id[until - 1]), world)
+        except InputError as error:
+            return None if until == len(line) else found, str(error)
+        found[until - len(own) : until] = own
+        if not before:
+            break
+        until = before
+    return found, None
 
 
 def _common(genealogy: Genealogy) -> CommonAncestor | None:
@@ -175,12 +201,13 @@ def _common(genealogy: Genealogy) -> CommonAncestor | None:
     row, lives = genealogy.common_ancestor, genealogy.lives
     if row is None:
         return None
-    others = nearest(lives.parent_row, np.array([row])) < 0  # all are dead
+    younger = np.maximum(lives.parent_row[row:] - row, -1)  # its descendants are among them
+    others = np.append(lives.ended[:row], lives.ended[row:][nearest(younger, np.zeros(1, int)) < 0])
     above = genealogy.rows[: np.searchsorted(genealogy.rows, row)]  # all its ancestors
     return CommonAncestor(
         organism=int(lives.id[row]),
         born=int(lives.born[row]),
-        since=int(max(lives.born[row], lives.ended[others].max(initial=0))),
+        since=int(max(lives.born[row], others.max(initial=0))),  # all others are dead
         generation=len(above),
     )
 

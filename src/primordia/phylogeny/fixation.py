@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from primordia.phylogeny.ancestry import nearest, places_of
-from primordia.phylogeny.living import Turnover
+from primordia.phylogeny.living import NEVER, Turnover
 
 SPANS = 256, 2048
 """Fewest and most births and deaths that are looked at together."""
@@ -43,17 +43,18 @@ def first_ticks(
     Returns:
         For each share, ticks int64 (D,), UNKNOWN where it has not happened.
     """
-    at = branch[turnover.row]
-    change = np.where(turnover.birth, np.int32(1), np.int32(-1))
     looks = [_Look(turnover, share, length) for share in shares]
     alive = np.zeros(length + 1, np.int32)  # of one type with `change`: add.at is fast then
     # Each look at a part tells of one ancestor, so parts have a few ancestors each.
-    span = int(np.clip(4 * len(at) // max(length, 1), *SPANS))
-    for first in range(0, len(at), span):
+    events = len(turnover.row)
+    span = int(np.clip(4 * events // max(length, 1), *SPANS))
+    for first in range(0, events, span):
         part = slice(first, first + span)
+        at = branch[turnover.row[part]]
+        change = np.where(turnover.birth[part], np.int32(1), np.int32(-1))
         for look in looks:
-            look.follow(part, at[part], change[part], alive)
-        np.add.at(alive, at[part], change[part])  # place -1 is the last, which is never read
+            look.follow(part, at, change, alive)
+        np.add.at(alive, at, change)  # place -1 is the last, which is never read
     return [look.ticks for look in looks]
 
 
@@ -61,17 +62,13 @@ class _Look:
     """Follows which ancestor is the next to reach a share of the living."""
 
     def __init__(self, turnover: Turnover, share: float, length: int) -> None:
-        living = turnover.living.astype(np.int32)
-        needed = living if share == 1 else np.floor(share * living).astype(np.int32) + 1
-        never = np.int32(2**31 - 1)
-        self._needed = np.where(turnover.closes & (living > 0), needed, never)
-        self._tick = turnover.tick
+        self._turnover, self._share = turnover, share
         self.ticks = np.full(length, UNKNOWN)
         self._next, self._above = 0, 0  # the next ancestor, and its descendants before a part
 
     def follow(self, part: slice, at: np.ndarray, change: np.ndarray, alive: np.ndarray) -> None:
         """Follow a part of the births and deaths; `alive`: how many leave at each place, before it."""
-        needed, next_ = self._needed[part], self._next
+        needed, next_ = self._needed(part), self._next
         while next_ < len(self.ticks):
             own = at >= next_
             counts = np.cumsum(change * own, dtype=np.int32)
@@ -80,7 +77,13 @@ class _Look:
             if not reached[first]:
                 self._above += int(counts[-1])
                 break
-            self.ticks[next_] = self._tick[part.start + first]
+            self.ticks[next_] = self._turnover.tick[part.start + first]
             self._above -= int(alive[next_])
             next_ += 1
         self._next = next_
+
+    def _needed(self, part: slice) -> np.ndarray:
+        """Return how many descendants exceed the share after each birth or death, if it ends its tick."""
+        living = self._turnover.living[part]
+        needed = living if self._share == 1 else np.floor(self._share * living).astype(np.int64) + 1
+        return np.where(self._turnover.closes[part] & (living > 0), needed, NEVER)

@@ -7,14 +7,17 @@ before, are on record in the run that was forked.
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from primordia.errors import InputError, Trouble
 from primordia.phylogeny.phylogeny import Phylogeny, recorded, stacked, taken
+from primordia.runs import bundle
 from primordia.runs.archive import Archive
 from primordia.runs.arrays import read_count
 from primordia.runs.lives import Lives
+from primordia.runs.opening import archive
 
 AS_INHERITED = ("world", "id", "parent", "cell", "birth_cause", "born")
 """What a fork copies of the births of the organisms that were alive at it."""
@@ -22,8 +25,16 @@ Say = Callable[[str], object]
 """Called with a line for the user."""
 
 
-def whole_past(run: Archive, say: Say) -> Phylogeny:
-    """Return all organisms of a run, those before its fork included, through forks of forks.
+class Past(NamedTuple):
+    """All organisms of a run, those before its fork included, through forks of forks."""
+
+    whole: Phylogeny
+    runs: list[Archive]
+    """the run, the one that it was forked from, and so on"""
+
+
+def whole_past(run: Archive, say: Say) -> Past:
+    """Return all organisms of a run, and the runs that have them on record.
 
     Args:
         run: the run, read as of its newest checkpoint.
@@ -34,34 +45,36 @@ def whole_past(run: Archive, say: Say) -> Phylogeny:
         InputError: nothing has lived in the run yet.
         Trouble: its records are damaged.
     """
-    past, seen = recorded(run), {run.path.resolve()}
-    while (fork := run.config.fork) is not None:
+    past, runs, seen = recorded(run), [run], {bundle.origin_of(run.path).resolve()}
+    while (fork := runs[-1].config.fork) is not None:
+        run = runs[-1]
         for place in _places(run):
             if place.resolve() in seen:
                 continue
             try:
-                source = Archive(place)
+                source = archive(place)
                 longer = _joined(_until(source, fork.tick), past, run)
             except (InputError, Trouble):
                 continue
             if longer is not None:
-                past, run = longer, source
+                past = longer
+                runs.append(source)
                 break
         else:
             say(
-                f"{run.path} was forked from {fork.run}, which is not there or is another run now: the"
-                f" organisms alive at tick {fork.tick} are roots"
+                f"{bundle.origin_of(run.path)} was forked from {fork.run}, which is not there or is"
+                f" another run now: the organisms alive at tick {fork.tick} are roots"
             )
             break
         seen.add(place.resolve())
-    return past.rooted()
+    return Past(past.rooted(), runs)
 
 
 def _places(run: Archive) -> list[Path]:
     """Return the paths at which the run that was forked may be: as named, or beside the fork."""
     assert run.config.fork is not None
     named = Path(run.config.fork.run)
-    return [named, run.path.resolve().parent / named.name]
+    return [named, bundle.origin_of(run.path).resolve().parent / named.name]
 
 
 def _until(run: Archive, tick: int) -> Phylogeny:

@@ -1,15 +1,12 @@
 """Parts of a phylogeny: the ancestors of some organisms, and the branching points alone."""
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 
 from primordia.errors import InputError
+from primordia.phylogeny.ancestry import children, nearest, with_ancestors
 from primordia.phylogeny.phylogeny import Phylogeny
-
-AT_ONCE = 2**16
-"""Rows that are Python numbers at the same time."""
 
 
 def chosen(
@@ -56,7 +53,7 @@ def of_world(whole: Phylogeny, world: int) -> Phylogeny:
 
 def living_lines(whole: Phylogeny) -> Phylogeny:
     """Return the living and all their ancestors."""
-    return whole.take(np.flatnonzero(_with_ancestors(whole, ~whole.lives.died)))
+    return _with_ancestors(whole, np.flatnonzero(~whole.lives.died))
 
 
 def line_of(whole: Phylogeny, organism: int, world: int) -> Phylogeny:
@@ -65,9 +62,7 @@ def line_of(whole: Phylogeny, organism: int, world: int) -> Phylogeny:
     Raises:
         InputError: no such organism was born.
     """
-    chosen = np.zeros(len(whole), bool)
-    chosen[whole.lives.row(organism, world)] = True
-    return whole.take(np.flatnonzero(_with_ancestors(whole, chosen)))
+    return _with_ancestors(whole, np.array([whole.lives.row(organism, world)]))
 
 
 def collapsed(whole: Phylogeny) -> Phylogeny:
@@ -81,30 +76,13 @@ def collapsed(whole: Phylogeny) -> Phylogeny:
             "--collapse is for runs without recombination: here a child has two parents"
         )
     lives, parent = whole.lives, whole.lives.parent_row
-    children = np.bincount(parent[parent >= 0], minlength=len(whole))
-    passed = lives.died & (parent >= 0) & (children == 1)
-    nearest = np.where(passed, parent, np.arange(len(whole)))
-    while passed[nearest].any():  # each round doubles the number of steps
-        nearest = nearest[nearest]
-    ancestor = np.where(parent < 0, -1, lives.id[nearest[parent]])
+    passed = lives.died & (parent >= 0) & (children(parent) == 1)
+    ancestor = np.where(parent < 0, -1, lives.id[nearest(parent, np.flatnonzero(~passed))[parent]])
     kept = replace(whole, lives=replace(lives, parent=ancestor))
     return kept.take(np.flatnonzero(~passed))
 
 
-def _with_ancestors(whole: Phylogeny, chosen: np.ndarray) -> np.ndarray:
-    """Return which organisms are chosen or ancestors of chosen ones, bool (L,)."""
-    kept = bytearray(chosen.tobytes())
+def _with_ancestors(whole: Phylogeny, rows: np.ndarray) -> Phylogeny:
+    """Return organisms and all their ancestors, by either parent."""
     parents = [whole.lives.parent_row, *([] if whole.mate_row is None else [whole.mate_row])]
-    for rows in _from_last(len(whole)):
-        for row, *older in zip(rows, *(each[rows].tolist() for each in parents), strict=True):
-            if kept[row]:
-                for parent in older:
-                    if parent >= 0:
-                        kept[parent] = True
-    return np.frombuffer(kept, bool)
-
-
-def _from_last(count: int) -> Iterator[range]:
-    """Yield the rows from the last to the first, some at a time."""
-    for stop in range(count, 0, -AT_ONCE):
-        yield range(stop - 1, max(stop - AT_ONCE, 0) - 1, -1)
+    return whole.take(with_ancestors(rows, *parents))

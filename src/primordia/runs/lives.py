@@ -77,7 +77,8 @@ class Lives:
 
     def of_world(self, world: int) -> "Lives":
         """Return the lives of one world."""
-        return self.take(self._rows_of_world(world))
+        rows = self._rows_of_world(world)
+        return self if rows == slice(0, len(self)) else self.take(rows)
 
     def recorded_since(self, tick: int) -> "Lives":
         """Return the lives of a record that began at the end of a tick."""

@@ -28,8 +28,8 @@ def opened(places: Sequence[str | Path], name: str | None = None) -> Records:
     """
     paths = [path for place in places for path in run_paths(Path(place))]
     if [Path(place) for place in places] == paths and len(paths) == 1 and name is None:
-        return _archive(paths[0])
-    runs = sorted(map(_archive, paths), key=lambda run: run.config.seed)
+        return archive(paths[0])
+    runs = sorted(map(archive, paths), key=lambda run: run.config.seed)
     return Arm(Path(name if name is not None else str(places[0])), runs)
 
 
@@ -42,10 +42,10 @@ def only(places: Sequence[str | Path]) -> Archive:
             "as "
             f"{paths[0]}"
         )
-    return _archive(paths[0])
+    return archive(paths[0])
 
 
-def _archive(path: Path) -> Archive:
+def archive(path: Path) -> Archive:
     """Open a run by its directory or its bundle."""
     return Archive(bundle.opened(path) if path.is_file() else path)
 

@@ -46,8 +46,12 @@ class MuJoCo(HostHabitat, Settings):
     position_noise: float = Field(
         0.0, ge=0, description="largest deviation of positions at birth from the model's"
     )
-    velocity_noise: float = Field(0.0, ge=0, description="largest velocity at birth, or")
-    velocity_sd: float = Field(0.0, ge=0, description="standard deviation of velocities at birth")
+    velocity_noise: float = Field(
+        0.0, ge=0, description="velocities at birth are uniform within +-this"
+    )
+    velocity_sd: float = Field(
+        0.0, ge=0, description="velocities at birth are Gaussian with this standard deviation"
+    )
     fatal: str = Field("", description="condition that ends a life; none: no life ends")
     food: str = Field("0", description="amount gathered in a tick")
     effort: str = Field("0", description="amount exerted in a tick")

@@ -141,14 +141,21 @@ class Run:
         """Measure in each world whether a good line can persist; see `history.threshold`."""
         return threshold(self.opened(), after)
 
-    def ancestors(self, organism: int | None = None, world: int | None = None) -> Ancestors:
-        """Follow the line of descent of an organism, by default the `oldest`; see
-        `descent.ancestors`."""
+    def ancestors(
+        self,
+        organism: int | None = None,
+        world: int | None = None,
+        say: Callable[[str], object] = warnings.warn,
+    ) -> Ancestors:
+        """Follow the line of descent of an organism, by default the `oldest`; see `descent.ancestors`.
+
+        `say` is called with a line if the line ends at a fork because its source is not there.
+        """
         run = self.opened()
         if organism is not None:
-            return ancestors(run, organism, world or 0)
+            return ancestors(run, organism, world or 0, say)
         oldest = Organism(run, run.lives.oldest(world))
-        return ancestors(run, oldest.id, oldest.world)
+        return ancestors(run, oldest.id, oldest.world, say)
 
     def lines(self, world: int | None = None, at: int | None = None) -> list[WorldLines]:
         """Measure evolution in lines, in one world or in all; see `phylogeny.lines`."""
@@ -178,7 +185,7 @@ class Run:
         """
         if out is not None:
             formats.check_suffix(Path(out))
-        part = chosen(whole_past(self.only(), say), organism, **choice)
+        part = chosen(whole_past(self.only(), say).whole, organism, **choice)
         if out is None:
             return table(part)
         formats.save(part, Path(out), say)

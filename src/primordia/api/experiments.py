@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from primordia.api import notebook
-from primordia.api.run import Run
+from primordia.api.runs import Run
 from primordia.comparison.comparison import Comparison, compare
 from primordia.experiments import campaign
 from primordia.experiments.status import CampaignStatus

@@ -1,0 +1,164 @@
+"""Live and film the entries of gallery.toml: `python docs/gallery/make.py [NAME...]`, by default all.
+
+It writes gallery.json (what came out), a picture of each entry, and README.md. Commands run in the root
+of the clone, and their runs stay in `runs/gallery`.
+"""
+
+import hashlib
+import json
+import shlex
+import subprocess
+import sys
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import av
+import numpy as np
+from PIL import Image
+
+import primordia
+from primordia import device
+from primordia.files import write, write_text
+
+HERE = Path(__file__).parent
+ROOT = HERE.parent.parent
+RUNS = Path("runs", "gallery")
+FOUND = HERE / "gallery.json"
+WIDTH, PICTURES, RATE, COLOURS = 400, 72, 12, 48
+"""of a small picture: pixels, pictures at most, pictures in a second, colours"""
+LEAST = 4000
+"""milliseconds that a small picture lasts"""
+NOISE = 14
+"""change of a pixel, of 255, that may be due to the compression of a film"""
+MOST = 380_000
+"""bytes of a small picture"""
+
+
+def entries() -> list[dict[str, Any]]:
+    """Return the entries of gallery.toml."""
+    return tomllib.loads((HERE / "gallery.toml").read_text(encoding="utf-8"))["entries"]
+
+
+def found() -> dict[str, Any]:
+    """Return what came out, by the name of the entry."""
+    return json.loads(FOUND.read_text(encoding="utf-8")) if FOUND.exists() else {}
+
+
+def commands(entry: dict[str, Any]) -> tuple[list[str], list[str]]:
+    """Return the words after `primordia` that live an entry again, and those that film it."""
+    run, (film, *options) = RUNS / entry["name"], shlex.split(entry["film"])
+    return (
+        ["run", *shlex.split(entry["run"]), "--out", str(run)],
+        [film, str(run), *options, "--out", f"{run}.mp4"],
+    )
+
+
+def outcome(run: Path, entry: dict[str, Any]) -> dict[str, Any]:
+    """Return the digests of a run's worlds, and of the genome of the organism that is shown."""
+    opened = primordia.load(run)
+    worlds = opened.info()["worlds"]
+    words = shlex.split(entry["film"])
+    named = "--organism" in words
+    shown = opened.organism(int(words[words.index("--organism") + 1])) if named else opened.oldest()
+    return {
+        "digest": worlds[0]["digest"],
+        "ticks": worlds[0]["ticks"],
+        "births": worlds[0]["births"],
+        "organism": shown.id,
+        "age": shown.age,
+        "genome": hashlib.sha256(shown.genome().astype("<f4").tobytes()).hexdigest(),
+    }
+
+
+def make(entry: dict[str, Any]) -> dict[str, Any]:
+    """Live and film an entry, write its small picture, and return what came out."""
+    for words in commands(entry):
+        subprocess.run([sys.executable, "-m", "primordia", *words], cwd=ROOT, check=True)
+    run = ROOT / RUNS / entry["name"]
+    shrink(run.with_suffix(".mp4"), HERE / f"{entry['name']}.gif")
+    return outcome(run, entry)
+
+
+def shrink(film: Path, out: Path) -> None:
+    """Write an MP4 as a GIF of at most MOST bytes: of fewer pictures, until it is so small."""
+    with av.open(str(film)) as container:
+        pictures = [_small(frame.to_image()) for frame in container.decode(video=0)]
+    for count in range(PICTURES, 1, -4):
+        places = np.unique(np.linspace(0, len(pictures) - 1, count).astype(int))
+        write(out, lambda path, chosen=places: _gif(path, [pictures[k] for k in chosen]))
+        if out.stat().st_size <= MOST:
+            return
+
+
+def _small(picture: Image.Image) -> np.ndarray:
+    size = (WIDTH, round(WIDTH * picture.height / picture.width))
+    return np.asarray(picture.resize(size, Image.Resampling.LANCZOS))
+
+
+def _gif(path: Path, pictures: list[np.ndarray]) -> None:
+    """Write pictures in a few colours; what hardly changes stays, so that it takes no room."""
+    steady = [pictures[0]]
+    for picture in pictures[1:]:
+        change = np.abs(picture.astype(int) - steady[-1]).max(axis=2, keepdims=True)
+        steady.append(np.where(change > NOISE, picture, steady[-1]))
+    some = Image.fromarray(np.concatenate(steady[:: max(1, len(steady) // 5)]))
+    palette = some.quantize(COLOURS, dither=Image.Dither.NONE)
+    first, *others = (
+        Image.fromarray(each).quantize(palette=palette, dither=Image.Dither.NONE) for each in steady
+    )
+    each = max(1000 // RATE, LEAST // len(steady))
+    first.save(path, "GIF", save_all=True, append_images=others, duration=each, loop=0)
+
+
+def page() -> str:
+    """Return the page, README.md."""
+    return "\n".join([HEAD, *(line for entry in entries() for line in _section(entry))])
+
+
+HEAD = """\
+<!-- docs/gallery/make.py writes this page from gallery.toml and gallery.json. -->
+
+# Gallery
+
+The two commands below each world or life live it again, to the last bit, and film it.
+`primordia info RUN --json` then gives the digest, of which the page has the first 16 digits.
+The pictures are small copies of the films. Commands are for the root of a clone. Games need
+`primordia[atari]`, robots `primordia[mujoco]`, MountainCar `primordia[gymnasium]`, and Asterix
+`primordia[gymnax]`.
+"""
+
+
+def _section(entry: dict[str, Any]) -> Iterator[str]:
+    of = found().get(entry["name"])
+    if of is None:
+        return
+    yield f"## {entry['title']}"
+    yield ""
+    yield f'<img src="{entry["name"]}.gif" width="{WIDTH}" alt="{entry["title"]}">'
+    yield ""
+    yield entry["about"].strip()
+    yield ""
+    for words in commands(entry):
+        yield f"    primordia {shlex.join(words)}"
+    yield ""
+    yield f"{of['ticks']:,} ticks, {of['births']:,} births; digest of the world `{of['digest'][:16]}`."
+    genome = f"its genome has the SHA-256 `{of['genome'][:16]}`"
+    yield f"Organism {of['organism']} lived {of['age']:,} ticks; {genome}."
+    yield ""
+
+
+def main(names: list[str]) -> None:
+    """Make the entries with these names, or all."""
+    known = found()
+    for entry in entries():
+        if not names or entry["name"] in names:
+            known[entry["name"]] = make(entry)
+    known["instruction set"] = device.instruction_set()
+    write_text(FOUND, json.dumps(known, indent=1) + "\n")
+    write_text(HERE / "README.md", page())
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,148 @@
+"""One organism beside its world: a picture of its body, or else bars, and what it does next."""
+
+from typing import Any, NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from PIL import Image
+from rich.segment import Segment
+
+from primordia.compiled import shared
+from primordia.engine.engine import Engine
+from primordia.habitats.contract import Bodies, JaxHabitat
+from primordia.habitats.framed import MARGIN, PAPER
+from primordia.law.metabolism import ONE
+from primordia.live.forms import Room
+from primordia.live.paint import FAINT, Row, levels, photograph
+from primordia.live.panel import STRONG, fitting
+from primordia.organism.mind import Mind, think
+from primordia.random.wide import to_host, wide
+
+LABEL = 11
+"""columns of a name, with the gap after it"""
+
+
+class Body(NamedTuple):
+    """What a habitat draws of one organism."""
+
+    body: Bodies
+    """the body alone, no first axis"""
+    action: np.ndarray
+    """the action that its brain chooses next"""
+
+
+class Companion:
+    """The organism that is shown: the oldest, or another one, until it dies."""
+
+    def __init__(self) -> None:
+        self._who: tuple[int, int] | None = None
+        self._draws = True
+
+    def find(self, engine: Engine, alone: int | None, step: int = 0) -> int | None:
+        """Return the cell of the organism, of all cells; None if nothing is alive.
+
+        Args:
+            engine: the run.
+            alone: the world in which it lives; None for any.
+            step: 1 for the next younger one in place of the present one.
+        """
+        law, organisms = engine.law, engine.state.world.organisms
+        here = (
+            slice(0, None) if alone is None else slice(alone * law.cells, (alone + 1) * law.cells)
+        )
+        cells = here.start + np.flatnonzero(np.asarray(organisms.alive)[here])
+        if not len(cells):
+            self._who = None
+            return None
+        world, number = cells // law.cells, to_host(organisms.number)[cells].astype(np.int64)
+        age = to_host(engine.state.world.worlds.tick)[world] - to_host(organisms.born)[cells]
+        order = np.lexsort((cells, -age.astype(np.int64)))
+        place = 0
+        if self._who is not None:
+            same = (world[order] == self._who[0]) & (number[order] == self._who[1])
+            place = (int(same.argmax()) + step) % len(cells) if same.any() else 0
+        chosen = order[place]
+        self._who = int(world[chosen]), int(number[chosen])
+        return int(cells[chosen])
+
+    def rows(self, engine: Engine, alone: int | None, room: Room) -> list[Row]:
+        """Draw the organism as it is now."""
+        cell = self.find(engine, alone)
+        if cell is None:
+            return [[Segment(fitting(["nothing is alive"], room.width), FAINT)]]
+        law, (organisms, worlds) = engine.law, engine.state.world
+        world, number = self._who or (0, 0)
+        where = f" of world {world}" if law.worlds > 1 else ""
+        title = f"organism {number:,} in cell {cell % law.cells:,}{where}"
+        age = int(to_host(worlds.tick)[world]) - int(to_host(organisms.born)[cell])
+        senses, memory, body = _perceived(engine, cell, world)
+        facts = {"age": f"{age:,} ticks"}
+        if law.metabolism is not None:
+            facts["energy"] = f"{int(np.asarray(organisms.energy)[cell]) / ONE:,.1f}"
+        if eaten := int(np.asarray(organisms.eaten)[cell]):
+            facts["food eaten"] = f"{eaten / ONE:,.1f}"
+        facts |= {"does next": self._caption(engine, body), "senses": levels(senses)}
+        facts["memory"] = levels(memory)
+        below = [_fact(name, text, room.width) for name, text in facts.items() if text]
+        below = below[: max(room.height - 1, 0)]
+        left = room.height - 1 - len(below)
+        picture = self._picture(engine, body, Room(room.width, left, room.letters))
+        return [[Segment(title[: room.width], STRONG)], *picture, *below]
+
+    def _caption(self, engine: Engine, body: Body) -> str:
+        try:
+            return engine.habitat.caption(*body)
+        except Exception:  # see _picture
+            return np.array2string(body.action, precision=2)
+
+    def _picture(self, engine: Engine, body: Body, room: Room) -> list[Row]:
+        """Return a picture of the body; no rows if the habitat draws none of it.
+
+        Emulators and many environments draw only bodies that are watched from birth. Drawing is the code
+        of others, and an error in it must not end the run.
+        """
+        if room.letters or room.height < 4 or not self._draws:
+            return []
+        try:
+            pixels = np.asarray(engine.habitat.picture(*body).convert("RGB"))
+        except Exception:
+            self._draws = False
+            return []
+        if (pixels[:MARGIN] == np.array([*bytes.fromhex(PAPER[1:])], np.uint8)).all():
+            pixels = pixels[MARGIN:]
+        high, wide = pixels.shape[:2]
+        zoom = min(room.width / wide, 2 * room.height / high)
+        size = max(int(wide * zoom), 1), max(int(high * zoom) // 2 * 2, 2)
+        small = Image.fromarray(pixels).resize(size, Image.Resampling.BOX)
+        return photograph(np.asarray(small))
+
+
+def _fact(name: str, text: str, width: int) -> Row:
+    return [Segment(f"{name:<{LABEL}}", FAINT), Segment(text[: max(width - LABEL, 0)])]
+
+
+def _perceived(engine: Engine, cell: int, world: int) -> tuple[np.ndarray, np.ndarray, Body]:
+    """Return senses (S,), memory (M,), and the body of a cell's organism with its next action."""
+    law, habitat, (organisms, worlds) = engine.law, engine.habitat, engine.state.world
+
+    def own(tree: Any) -> Any:
+        """Copy the part of arrays (C, ...) that is the organism's, (1, ...)."""
+        return jax.tree.map(lambda leaf: np.array(np.asarray(leaf)[cell : cell + 1]), tree)
+
+    bodies = own(engine.state.bodies)
+    if isinstance(habitat, JaxHabitat):
+        senses, seen = shared(_sense, habitat)(bodies), bodies
+    else:
+        senses, seen = bodies, own(habitat.seen())
+    seed, tick = (to_host(each)[world : world + 1] for each in (worlds.seed, worlds.tick))
+    mind = Mind(own(organisms.genome), wide(seed), jnp.array([cell % law.cells], jnp.int32))
+    memory = own(organisms.memory)
+    thought = shared(think, law)(mind, memory, senses, wide(tick + np.uint64(1)))
+    alone = jax.tree.map(lambda leaf: np.asarray(leaf)[0], (senses, memory, seen, thought.action))
+    return alone[0], alone[1], Body(alone[2], alone[3])
+
+
+def _sense(habitat: JaxHabitat, bodies: Bodies) -> jax.Array:
+    """Return the senses of bodies."""
+    return habitat.sense(bodies)

@@ -1,0 +1,61 @@
+"""Lines of descent of the worlds that may be shown, followed as long as they are not too busy."""
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from primordia.history.lines import CROWD, Lines, Turnover, turnovers
+from primordia.random.wide import to_host
+from primordia.runs.loop import Status
+
+
+class Descent:
+    """The lines of the first worlds of a run."""
+
+    CELLS, EVENTS = 2**14, 2**15
+    """most cells, and most births and deaths in a second, in which lines of descent are followed"""
+
+    def __init__(self) -> None:
+        self.lines: dict[int, Lines] = {}
+        """lines of descent by number of the world; none of a world that is not followed"""
+        self._followed, self._missed = 0, False
+
+    def follow(self, status: Status, shown: int) -> None:
+        """Take the births and deaths of a chunk, for the first `shown` worlds."""
+        law, events = status.engine.law, status.engine.events
+        if shown * law.cells > self.CELLS:
+            return self._give_up()
+        happened = turnovers(events, law.cells, shown)
+        count = sum(len(each.born) + len(each.dead) for each in happened)
+        if self._followed + count > self.EVENTS * (1 + status.wall_s):
+            return self._give_up()
+        self._followed += count
+        for world, turnover in enumerate(happened):
+            if world in self.lines:
+                self.lines[world].follow(turnover)
+            else:
+                self.lines[world] = _first_lines(status, world, turnover)
+        for world in [each for each in self.lines if each >= shown]:
+            del self.lines[world]
+
+    def takeovers(self, worlds: Iterable[int]) -> int | None:
+        """Return the takeovers in some worlds; None if one was not followed throughout."""
+        if self._missed or not all(world in self.lines for world in worlds):
+            return None
+        return sum(len(self.lines[world].takeovers) for world in worlds)
+
+    def _give_up(self) -> None:
+        self.lines, self._missed = {}, True
+
+
+def _first_lines(status: Status, world: int, turnover: Turnover) -> Lines:
+    """Return the lines of a world after its first chunk, followed from genesis if that was in it."""
+    organisms, cells = status.engine.state.world.organisms, status.engine.law.cells
+    crowd = min(CROWD, max(cells // 2, 1))
+    if len(turnover.born) and turnover.born[0] == 0:
+        lines = Lines([], crowd)
+        lines.follow(turnover)
+        return lines
+    here = slice(world * cells, (world + 1) * cells)
+    alive, number = np.asarray(organisms.alive)[here], to_host(organisms.number)[here]
+    return Lines(number[alive].tolist(), crowd)

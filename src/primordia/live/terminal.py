@@ -1,0 +1,91 @@
+"""The user's terminal: keys without Enter, and a cursor, both given back however a command ends."""
+
+import os
+import re
+import select
+import sys
+import termios
+import time
+import tty
+from types import TracebackType
+from typing import Any
+
+SEQUENCE = re.compile(r"\x1b(\[[0-9;?]*[@-~]|O.|.)?", re.DOTALL)
+"""What a key such as an arrow sends; none of these keys has a meaning here."""
+
+
+def show_cursor() -> None:
+    """Write the escape sequence that shows the cursor, without any lock."""
+    os.write(1, b"\x1b[?25h\r\n")
+
+
+class Keyboard:
+    """The keys that are pressed, in a `with` block; none where the input is no terminal.
+
+    The terminal hands over each key at once and does not print it. Ctrl-C still sends SIGINT. A command
+    in the background leaves the terminal alone, since the system would stop it.
+    """
+
+    def __init__(self) -> None:
+        self._before: list[Any] | None = None
+
+    def __enter__(self) -> "Keyboard":
+        try:
+            self._file = sys.__stdin__.fileno() if sys.__stdin__ else -1
+            self._before = termios.tcgetattr(self._file)
+            if self._in_front():
+                self._take()
+        except (termios.error, ValueError):
+            self._before = None
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.restore()
+
+    @property
+    def there(self) -> bool:
+        """Whether there are keys."""
+        return self._before is not None
+
+    def restore(self) -> None:
+        """Give the terminal back as it was, without any lock; a terminal that is gone is no error."""
+        if self._before is not None and self._in_front():
+            try:
+                termios.tcsetattr(self._file, termios.TCSANOW, self._before)
+            except termios.error:
+                self._before = None
+
+    def pressed(self, seconds: float) -> str:
+        """Return the keys pressed since the last call; wait `seconds` for one at most.
+
+        A signal does not end the wait.
+        """
+        if self._before is None or not self._in_front():
+            time.sleep(seconds)
+            return ""
+        try:
+            self._take()
+            if not select.select([self._file], [], [], seconds)[0] or not self._in_front():
+                return ""
+            keys = os.read(self._file, 1024)
+        except (OSError, termios.error):
+            keys = b""
+        if not keys:  # the terminal is gone
+            self._before = None
+        return SEQUENCE.sub("", keys.decode(errors="ignore"))
+
+    def _take(self) -> None:
+        """Take the terminal, also again after Ctrl-Z and `fg`, when the shell has changed it."""
+        if termios.tcgetattr(self._file)[3] & termios.ICANON:
+            tty.setcbreak(self._file, termios.TCSANOW)
+
+    def _in_front(self) -> bool:
+        try:
+            return os.tcgetpgrp(self._file) == os.getpgrp()
+        except OSError:
+            return False

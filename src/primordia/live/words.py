@@ -1,0 +1,70 @@
+"""The words of the live view, explained."""
+
+from textwrap import wrap
+
+from rich.segment import Segment
+
+from primordia.live.paint import FAINT, Row
+from primordia.live.panel import STRONG
+
+NAME = 18
+"""columns of a word, with the gap after it"""
+WIDE = 100
+"""most columns of an explanation with its word"""
+KEYS = {
+    "space": "Pause, or go on.",
+    "s": "Live one tick, and pause.",
+    "- and +": "Go slower or faster. Full speed has no limit.",
+    "w": "Show one world alone, then the next one, then all again.",
+    "o": "Show the oldest organism beside the world, or hide it.",
+    "n": "Show the next organism, from the oldest to the youngest.",
+    "?": "Show these words, their next page, or the world again.",
+    "q": "Write a checkpoint and stop, as Ctrl-C does.",
+}
+WORDS = {
+    "tick": "One step of time: each organism senses and acts once.",
+    "alive": "Organisms that live now, of all cells. A cell holds one organism at most.",
+    "births": "Organisms born so far, founders included.",
+    "deaths": "Organisms that have died so far. The causes are listed with them.",
+    "mean age": "Mean age of the living, in ticks.",
+    "oldest": "Age of the oldest of the living, in ticks.",
+    "line of descent": "Organisms that descend from one organism at an earlier moment. A line has"
+    " one colour or letter.",
+    "branch": "Organisms that descend from one child of a founder.",
+    "takeovers": "Times at which one line was left, so that all the living descend from one ancestor.",
+    "extinctions": "Times at which nothing was alive. A new founder then begins life again.",
+    "children mutate": "Share of the latest births whose genome differs from the parent's.",
+    "mutants as good": "Share of good parents' mutants that live as long as the parent, compared with"
+    " copies.",
+    "good lines hold": "Above 1, a long-lived line keeps its ground against its own mutants. Below 1,"
+    " mutation takes more than long lives give.",
+    "organism-ticks/s": "Ticks lived by all organisms together in a second of your time.",
+    "time left": "Time until the last world reaches its limit, at the present speed.",
+    "calm": "Without births and deaths.",
+    "saturated": "The world has been full and calm for the number of ticks that the task demands.",
+    "fatal": "A death by the body: the task's own condition, such as a fallen pole.",
+    "starved": "A death because the energy reached 0.",
+    "hazard": "A death by chance, at the rate of the setting `hazard`.",
+    "replaced": "A death because a neighbour's child took the cell.",
+    "time-limit": "A death because the task ends a life after some ticks.",
+    "fault": "A death because the simulation of the body failed.",
+    "restart": "A death because the task began the world again.",
+    "energy": "What an organism lives on. It is spent by living and acting, and gained from food.",
+    "senses": "What the organism perceives: a bar for each sense, lowest at -1, highest at 1.",
+    "memory": "What the brain keeps from tick to tick, drawn as the senses are.",
+    "does next": "The action that the brain chooses from these senses.",
+}
+
+
+def pages(width: int, height: int) -> list[list[Row]]:
+    """Return keys and words with their explanations, `height` rows at most on each page."""
+    room = max(min(width, WIDE) - NAME, 8)
+    found: list[list[Row]] = [[]]
+    for name, text in {**KEYS, **WORDS}.items():
+        lines = wrap(text, room)
+        if len(found[-1]) + len(lines) > height and found[-1]:
+            found.append([])
+        for number, line in enumerate(lines):
+            left = name if number == 0 else ""
+            found[-1].append([Segment(f"{left:<{NAME}}", STRONG), Segment(line, FAINT)])
+    return found

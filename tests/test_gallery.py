@@ -1,0 +1,71 @@
+"""The gallery: its commands are well-formed, and live the worlds again that it states."""
+
+import tomllib
+from importlib import import_module
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+
+from primordia import config, device
+from primordia.cli.commands import commands
+from primordia.cli.flags import take_limits
+from tests.commands import HERE, here
+
+pytestmark = pytest.mark.usefixtures("optimised")
+HOME = HERE / "docs" / "gallery"
+
+
+@pytest.fixture(name="make")
+def _make(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    monkeypatch.syspath_prepend(str(HOME))
+    return import_module("make")
+
+
+ENTRIES: list[dict[str, Any]] = tomllib.loads((HOME / "gallery.toml").read_text("utf-8"))["entries"]
+
+
+def test_the_page_is_made_of_the_table(make: ModuleType) -> None:
+    assert (HOME / "README.md").read_text(encoding="utf-8") == make.page()
+    assert {entry["name"] for entry in ENTRIES} == set(make.found()) - {"instruction set"}
+
+
+@pytest.mark.parametrize("entry", ENTRIES, ids=lambda entry: entry["name"])
+def test_the_commands_of_an_entry_are_well_formed(
+    entry: dict[str, Any], make: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(HERE)
+    for name, *words in make.commands(entry):
+        context = commands.commands[name].make_context(name, words)
+        if name == "run":
+            given = {"stop": take_limits(context.params)}
+            chosen = config.load(context.params["task"], {**context.obj, **given})
+            assert chosen.stop.ticks is not None or chosen.stop.until is not None
+            for file in context.params["ancestor"]:
+                assert Path(file).exists()
+
+
+@pytest.mark.parametrize(
+    "entry",
+    [
+        pytest.param(entry, id=entry["name"], marks=() if entry.get("quick") else pytest.mark.slow)
+        for entry in ENTRIES
+    ],
+)
+def test_an_entry_lives_as_it_did(
+    entry: dict[str, Any], make: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if make.found()["instruction set"] != device.instruction_set():
+        pytest.skip(f"the digests are of {make.found()['instruction set']}")
+    monkeypatch.chdir(HERE)  # ancestors are named from there
+    words, _ = make.commands(entry)
+    done = here(*words[:-1], tmp_path / "run", "--quiet")
+    assert done.returncode == 0, done.stderr
+    assert make.outcome(tmp_path / "run", entry) == make.found()[entry["name"]]
+
+
+def test_pictures_are_small(make: ModuleType) -> None:
+    sizes = [(HOME / f"{entry['name']}.gif").stat().st_size for entry in ENTRIES]
+    assert max(sizes) < 400_000
+    assert sum(sizes) < 3_000_000
