@@ -63,7 +63,7 @@ def selected(name: str) -> Iterator[None]:
         prepare()
         first = jax.local_devices(backend=name)[0]
     except RuntimeError:
-        raise InputError(f"--device: JAX finds no {name!r} device here") from None
+        raise InputError(f"--device: JAX finds no {name!r} device on this machine") from None
     with jax.default_device(first):
         yield
 

@@ -21,7 +21,7 @@ class Gated(Brain):
         y  = V h'
 
     Cho et al. 2014, "Learning phrase representations using RNN encoder-decoder", sec. 2.3, there
-    without biases. With biases each of r, z, c and y has one.
+    without biases. With biases, one is added in each of r, z, c and y.
     """
 
     hidden: Hidden = 32

@@ -55,7 +55,7 @@ def gate(x: Array) -> Array:
 
 
 def mix(share: Array, a: Array, b: Array) -> Array:
-    """Return `share a + (1 - share) b`, share from 0 to 1, each product rounded by itself.
+    """Return `share a + (1 - share) b`, share from 0 to 1, with each product rounded separately.
 
     Without the separate rounding, five of six memories differed between compiled and uncompiled ticks.
     """

@@ -11,9 +11,9 @@ from primordia.brains.layout import Shape
 class Recurrent(Brain):
     """One hidden layer that feeds back into itself: `h' = tanh(W1 x + R h)`, `y = W2 h'`.
 
-    Schmidgall & Hays 2021, "CartPole-survival": fully connected, recurrent, one hidden layer of
-    32; the formula, without biases, is that of the published code. With biases it is
-    `h' = tanh(W1 x + b + R h)`, `y = W2 h' + c`.
+    Schmidgall & Hays 2021, "CartPole-survival", describe it as fully connected and recurrent with
+    one hidden layer of 32. This formula, without biases, is that of the published code. With biases
+    it is `h' = tanh(W1 x + b + R h)`, `y = W2 h' + c`.
     """
 
     hidden: Hidden = 32

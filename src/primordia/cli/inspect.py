@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 @runs_argument
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 def info(runs: tuple[Path, ...], as_json: bool) -> None:
-    """Summarise a run so far, several runs as one arm, or an experiment."""
+    """Summarise a run so far, an arm, or an experiment."""
     from primordia.api import Experiment, load
     from primordia.history.summary import summary
 

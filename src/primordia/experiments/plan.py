@@ -139,8 +139,7 @@ def write(plan: Plan, out: Path) -> None:
     """Write a plan into an experiment's directory, unless the directory has it.
 
     Raises:
-        Trouble: it cannot be written.
-    """
+        Trouble: the plan cannot be written."""
     files.make_folder(out)
     if not (out / EXPERIMENT).is_file():
         values = plan.model_dump(mode="json", exclude_none=True)

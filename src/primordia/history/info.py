@@ -17,7 +17,7 @@ TALLY = "bodies.tally"
 
 
 def info(run: Records) -> dict[str, Any]:
-    """Return a run in numbers, as one dictionary that JSON can hold.
+    """Return a run in numbers, as one dictionary in JSON's types.
 
     `crashes` are the extinctions after a rise; see `extinctions`. `threshold` is the error threshold
     among the later half of the births; see `threshold`.

@@ -1,8 +1,8 @@
 """Lines of descent, followed event by event in a running world or in its records.
 
 A founder begins a line, and a child belongs to its parent's line. After the first tick since a
-founder that leaves a crowd alive, each of the living begins a line. After a later tick that leaves
-all the living in one line, that line has taken over, and each of the living begins a line. So the
+founder that leaves a crowd alive, each of the living begins a line. If all the living are in one
+line after a later tick, that line has taken over, and each of the living begins a new line. So the
 lines descend from the population at one moment, and do not depend on the length of chunks.
 """
 

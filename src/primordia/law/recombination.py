@@ -37,9 +37,9 @@ class Recombination(Settings):
         """Return genomes float32 (K, P); each unit comes from either parent with the same
         probability.
 
-        A row is what a block holds at one index of its first axis: the weights into one neuron, where a
-        layer has no fewer inputs than neurons. Blocks with the same number of rows take each row from the
-        same parent, so that a neuron keeps all of its weights.
+        A row is the part of a block at one index of its first axis. It holds the weights into one
+        neuron if the layer has at least as many inputs as neurons. Blocks with the same number of
+        rows take each row from the same parent, so that a neuron keeps all of its weights.
         """
         units = self.units(layout)
         count = int(units.max()) + 1

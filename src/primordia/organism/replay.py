@@ -72,7 +72,7 @@ def replay(
 
 
 def film(path: Path, *shown: tuple[RelivedLife, list[range]]) -> None:
-    """Make a video of parts of lives of one run, `parts_of` each, side by side, in an .mp4 or .gif.
+    """Make a video, .mp4 or .gif, of parts of lives of one run, side by side; see `parts_of`.
 
     Raises:
         Trouble: the video cannot be written, or a life does not repeat as recorded.

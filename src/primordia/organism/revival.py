@@ -57,7 +57,7 @@ class Revival:
         return all(each.agrees for each in self.respects)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return everything as JSON can hold it."""
+        """Return all values in JSON's types."""
         respects = [
             {"name": each.name, "recorded": each.recorded, "relived": each.relived,
              "agrees": each.agrees}

@@ -165,7 +165,7 @@ class Lives:
         return _rows(self.world, self.id, world, number)
 
     def rows_in(self, worlds: np.ndarray, numbers: np.ndarray) -> np.ndarray:
-        """Return the row of each of these lives among births sorted by world and number, int64 (L,)."""
+        """Return each life's row in births that are sorted by world and number, int64 (L,)."""
         return _rows(worlds, numbers, self.world, self.id)
 
     def _rows_of_world(self, world: int) -> slice:

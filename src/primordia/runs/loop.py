@@ -108,7 +108,8 @@ def resume(
         listen: called after each chunk.
 
     Returns:
-        Notes for the user, about damaged checkpoints that were not used, or if nothing was to do.
+        Notes for the user: on damaged checkpoints that were not used, or on a run that was already
+        done.
 
     Raises:
         InputError: this is not a run, it is in use, it was made by other versions, or a limit is
@@ -275,4 +276,6 @@ def _check_same(run: Path, differ: list[str], inexact: bool) -> None:
 
 def _check_interval(checkpoint_every: float) -> None:
     if not checkpoint_every >= 0:
-        raise InputError(f"--checkpoint-every: seconds, 0 or more, not {checkpoint_every}")
+        raise InputError(
+            f"--checkpoint-every must be a number of seconds, 0 or more, not {checkpoint_every}"
+        )

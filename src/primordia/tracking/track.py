@@ -75,7 +75,7 @@ def track(
         KeyboardInterrupt: on Ctrl-C; all rows read so far are written.
     """
     if not every > 0:
-        raise InputError(f"--every: seconds, more than 0, not {every}")
+        raise InputError(f"--every must be a number of seconds above 0, not {every}")
     with interrupts.noting() as noted, interrupts.deferred(), ExitStack() as stack:
         dashboards = [stack.enter_context(closing(each)) for each in _opened(tensorboard, wandb)]
         reader, count = Reader(group), 0

@@ -7,7 +7,7 @@ from primordia.cli.assays import of_lives, of_pairs, of_records, of_runs
 
 @click.group()
 def assay() -> None:
-    """Measure heredity, the limits of evolution, and the worth of single genomes."""
+    """Measure heredity, mutations, and what a genome is worth."""
 
 
 for command in (

@@ -142,7 +142,7 @@ def subjects_of(
     if run.suffix == SUFFIX:
         return of_file(run, organisms, task, habitat)
     if task is not None:
-        raise InputError(f"--task goes with a genome file, and {run} is none; leave out --task")
+        raise InputError(f"--task is for genome files, and {run} is not one; leave out --task")
     if of_a_task:
         return of_task(str(run), organisms, habitat)
     opened = load(run, trust).opened()

@@ -22,5 +22,5 @@ def draw(found: list[Ablation]) -> Figure:
     axes.set(ylim=(len(losses) - 0.5, -0.5), xlabel="share of the intact life")
     axes.set_xlim(0, None)
     key = {"organisms": style.SKY, "median": style.BLUE}
-    style.title(axes, "Life without", key)
+    style.title(axes, "Life without each part", key)
     return figure

@@ -158,4 +158,4 @@ def check_food(env: str, options: Mapping[str, Any], imports: Sequence[str], fun
         except Exception as error:
             raise ValueError(f"food: {function} fails: {environment.line(error)}") from None
     if not isinstance(amount, int | float | np.number):
-        raise ValueError(f"food: {function} gives {amount!r}, which is no number")
+        raise ValueError(f"food: {function} gives {amount!r}, which is not a number")

@@ -79,7 +79,7 @@ class Observation:
         self.dtype = "float32" if exact else "float64"
         """dtype of a row: float32 if it holds all values exactly"""
         if not self.width:
-            raise ValueError("its observation space is empty, so there is nothing to perceive")
+            raise ValueError("its observation space is empty, so organisms would have no senses")
 
     def fill(self, row: np.ndarray, observation: Any) -> None:
         """Write an observation into a row (R,)."""
