@@ -62,6 +62,9 @@ def run(
     TASK is one of `primordia tasks`; a FILE.toml names a `task` and the settings that differ from it;
     gym:NAME is an environment of Gymnasium, and gymnax:NAME one in JAX. Any setting below can be given
     as a flag, such as --seed 3, --cells 64 or --mutation.scale 0.02.
+
+    Keys in a terminal: space pauses, s lives one tick, - and + change the speed, w shows another world,
+    o one organism beside it and n the next one, ? explains all words, q saves and stops.
     """
     from primordia import api, config
 
@@ -86,7 +89,10 @@ def run(
 @speed_option
 @quiet_option
 def resume(run: Path, quiet: bool, speed: float | None, trust: bool, **options: Any) -> None:
-    """Go on with a run that stopped, was interrupted, or was killed."""
+    """Go on with a run that stopped, was interrupted, or was killed.
+
+    The keys are those of `primordia run`.
+    """
     from primordia.api import load
 
     limits = take_limits(options)
@@ -124,7 +130,7 @@ def fork(
     """Replay the tape from a tick of a RUN: a new run, with another --seed or other settings.
 
     Without either it repeats the RUN. Any setting can be changed that leaves brains, senses and cells
-    unchanged.
+    unchanged. The keys are those of `primordia run`.
     """
     from primordia.api import fresh_directory, load
 
