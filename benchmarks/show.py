@@ -39,6 +39,7 @@ def _cost(phase: str, made: Engine, size: tuple[int, int], keys: str = "") -> di
     """Measure one world with and without the view, in turn; `keys` are pressed after the first chunk."""
     alone, watched, ratios, shares = [], [], [], []
     width, height = size
+    _rate(made, lambda _: None)  # which compiles
     with open(os.devnull, "w") as nowhere:
         for _ in range(ROUNDS):
             console = Console(

@@ -138,7 +138,9 @@ class Pressed(Keyboard):
 
 def watch(keys: str, run: Path) -> list[str]:
     """Live a small run while keys are pressed -> the digest of each world."""
-    console = Console(file=io.StringIO(), force_terminal=True, width=100, height=30)
+    # rich keeps the codes of a style for the first terminal that it meets, so all have the same colours
+    colours: Any = {"force_terminal": True, "color_system": "truecolor"}
+    console = Console(file=io.StringIO(), width=100, height=30, **colours)
     settings = {**MEADOW, "brain": {"hidden": 3}, "hazard": 0.05, "replication": 0.3, "seeds": 2}
     with View(console, Pace(), Pressed(keys)) as view:
         loop.start(config(settings, stop={"ticks": 400}), run, listen=view)

@@ -123,8 +123,8 @@ def test_a_habitat_that_fails_to_draw_is_not_asked_again(monkeypatch: pytest.Mon
         asked.append(1)
         raise RuntimeError
 
-    made.habitat = SimpleNamespace(picture=picture, caption=made.habitat.caption)  # type: ignore[assignment]
-    made.habitat.seen = lambda: made.state.bodies  # type: ignore[union-attr]
+    made.habitat = SimpleNamespace(picture=picture, caption=made.habitat.caption)
+    made.habitat.seen = lambda: made.state.bodies
     view, status = View(terminal(80, 24)), Status(made, 1.0)
     view._obey("o", status)
     for _ in range(3):

@@ -62,6 +62,9 @@ def run(
     TASK is one of `primordia tasks`, a FILE.toml with a `task` and the settings that differ from
     it, an environment of Gymnasium (gym:NAME), or an environment in JAX (gymnax:NAME). Any setting
     below can be given as a flag, such as --seed 3, --cells 64 or --mutation.scale 0.02.
+
+    Keys in a terminal: space pauses, s lives one tick, - and + change the speed, w shows another world,
+    o one organism beside it and n the next one, ? explains all words, q saves and stops.
     """
     from primordia import api, config
 
@@ -86,7 +89,10 @@ def run(
 @speed_option
 @quiet_option
 def resume(run: Path, quiet: bool, speed: float | None, trust: bool, **options: Any) -> None:
-    """Go on with a run that stopped, was interrupted, or was killed."""
+    """Go on with a run that stopped, was interrupted, or was killed.
+
+    The keys are those of `primordia run`.
+    """
     from primordia.api import load
 
     limits = take_limits(options)
@@ -126,7 +132,7 @@ def fork(
     """Begin a new run from a tick of a RUN, with another --seed or other settings.
 
     With the same seed and settings it repeats the RUN. Settings that change brains, senses or cells
-    cannot be changed.
+    cannot be changed. The keys are those of `primordia run`.
     """
     from primordia.api import fresh_directory, load
 

@@ -75,6 +75,7 @@ class Companion:
         world, number = self._who or (0, 0)
         where = f" of world {world}" if law.worlds > 1 else ""
         title = f"organism {number:,} in cell {cell % law.cells:,}{where}"
+        titles = [title, f"{number:,} in cell {cell % law.cells:,}{where}", f"organism {number:,}"]
         age = int(to_host(worlds.tick)[world]) - int(to_host(organisms.born)[cell])
         senses, memory, body = _perceived(engine, cell, world)
         facts = {"age": f"{age:,} ticks"}
@@ -88,7 +89,7 @@ class Companion:
         below = below[: max(room.height - 1, 0)]
         left = room.height - 1 - len(below)
         picture = self._picture(engine, body, Room(room.width, left, room.letters))
-        return [[Segment(title[: room.width], STRONG)], *picture, *below]
+        return [[Segment(fitting(titles, room.width), STRONG)], *picture, *below]
 
     def _caption(self, engine: Engine, body: Body) -> str:
         try:

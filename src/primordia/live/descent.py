@@ -12,7 +12,7 @@ from primordia.runs.loop import Status
 class Descent:
     """The lines of the first worlds of a run."""
 
-    CELLS, EVENTS = 2**14, 2**15
+    CELLS, EVENTS = 2**14, 2**12
     """most cells, and most births and deaths in a second, in which lines of descent are followed"""
 
     def __init__(self) -> None:

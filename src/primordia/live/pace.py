@@ -69,7 +69,8 @@ class Pace:
             status: the run.
             react: called again and again; waits for some seconds, and may change this pace.
         """
-        self._note(to_host(status.engine.state.world.worlds.tick))
+        if self.limited:
+            self._note(to_host(status.engine.state.world.worlds.tick))
         while (left := self._wait()) > 0 and not interrupts.came():
             react(min(left, NAP))
         if self.paused:
@@ -79,6 +80,11 @@ class Pace:
             status.engine.longest = max(int(self.limit * FRAME), 1)
         else:
             status.engine.longest = None
+
+    @property
+    def limited(self) -> bool:
+        """Whether the run waits, or may wait."""
+        return self.paused or self.limit is not None
 
     def _wait(self) -> float:
         """Return the seconds until the next chunk may begin, 0 or less if it may."""
@@ -99,3 +105,4 @@ class Pace:
 
     def _restart(self) -> None:
         self._began, self._lived, self._late = time.perf_counter(), 0, False
+        self._ticks = None

@@ -66,7 +66,8 @@ class Keyboard:
         A signal does not end the wait.
         """
         if self._before is None or not self._in_front():
-            time.sleep(seconds)
+            if seconds:
+                time.sleep(seconds)
             return ""
         try:
             self._take()

@@ -36,6 +36,8 @@ class View:
 
     SHARE = 0.01
     """share of the time that drawing may take"""
+    MOMENT, LONGEST = 0.1, 2.0
+    """seconds between moments of the past of a ring at least, and between frames at most"""
 
     def __init__(
         self, console: Console, pace: Pace | None = None, keyboard: Keyboard | None = None
@@ -46,6 +48,7 @@ class View:
         self._speed, self._stage, self._descent = Speed(), Stage(), Descent()
         self._ground = Ground(0, 0)
         self._size, self._due, self._cost, self._stale = console.size, 0.0, 0.0, False
+        self._moment = 0.0
         self._status: Status | None = None
         self._alone: int | None = None
         self._companion: Companion | None = None
@@ -79,10 +82,13 @@ class View:
             self._ground = Ground(law.cells, law.worlds)
         self._ground.follow(status.engine.events)
         self._status, self._stale = status, True
-        if law.worlds == 1 or self._alone is not None:
+        now = time.perf_counter()
+        alone = law.worlds == 1 or self._alone is not None
+        if alone and (now >= self._moment or self._pace.limited):
+            self._moment = now + self.MOMENT
             world, lines = status.engine.state.world, self._descent.lines
             self._stage.follow(law, world, lines, self._alone or 0)
-        if time.perf_counter() >= self._due:
+        if now >= self._due:
             self._draw(status)
         self._react(0.0)
         self._pace(status, self._react)
@@ -130,7 +136,7 @@ class View:
         self._live.update(Frame(self._rows(status)), refresh=True)
         now = time.perf_counter()
         self._cost, self._stale = now - began, False
-        self._due = now + self._cost / self.SHARE
+        self._due = now + min(self._cost / self.SHARE, self.LONGEST)
 
     def _rows(self, status: Status) -> list[Row]:
         width, height = self._size.width, self._size.height - 1
@@ -196,7 +202,8 @@ class View:
 
 def _no_keys(seconds: float) -> str:
     """Wait, and return that no key was pressed."""
-    time.sleep(seconds)
+    if seconds:
+        time.sleep(seconds)
     return ""
 
 
