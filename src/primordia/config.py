@@ -92,8 +92,7 @@ class Config(Settings):
     genesis: Literal["one", "fill"] = Field(
         "one",
         description="how life starts and restarts: one founder in a random cell, or a "
-        "founder in every cell "
-        "(fill)",
+        "founder in every cell (fill)",
     )
     hazard: Rate = Field(
         0.0, ge=0, le=1, description="probability that an organism dies by accident in a tick"
@@ -307,9 +306,8 @@ def _check(config: Config) -> None:
         )
     if config.cells * config.seeds > 2**26:
         raise InputError(
-            f"cells x seeds: {config.cells * config.seeds} cells are more than 2^26; spread them "
-            "over"
-            " several runs"
+            f"cells x seeds: {config.cells * config.seeds} cells are more than 2^26; spread them"
+            " over several runs"
         )
     try:
         habitat.check(config.cells * config.seeds)
@@ -318,8 +316,8 @@ def _check(config: Config) -> None:
     continuous = any(isinstance(part, Continuous) for part in habitat.action.parts)
     if config.motor.kind == "gaussian" and not continuous:
         raise InputError(
-            "motor.kind: this habitat's actions are discrete, so a gaussian motor cannot be used; "
-            "set direct"
+            "motor.kind: this habitat's actions are discrete, so a gaussian motor cannot be used;"
+            " set direct"
         )
     law = config.build_law(habitat)
     try:

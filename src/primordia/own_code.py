@@ -112,9 +112,8 @@ def admit(code: Sources) -> None:
     for name, source in code.items():
         if (loaded := _loaded(_module(name))) is not None and loaded.text != source.text:
             raise LookupError(
-                f"{loaded.file} is imported already, and {source.file} is another module with "
-                "that name; use another "
-                "process"
+                f"{loaded.file} is imported already, and {source.file} is another module with that"
+                " name; use another process"
             )
     if code and _admitted not in sys.meta_path:
         sys.meta_path.insert(0, _admitted)

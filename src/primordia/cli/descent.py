@@ -101,14 +101,13 @@ def _show_ancestors(run: Path, found: "Ancestors") -> None:
     places = found.telling(ROWS).tolist()
     notes = [
         "change: L2 norm of the genome's change by mutation.",
-        "10 %, 50 %, all: first tick after which more than this share of the living were "
-        "descendants.",
+        "10 %, 50 %, all: first tick after which more than this share of the living were"
+        " descendants.",
     ]
     if left_out := len(found.line) - len(places):
         notes.append(
-            f"{left_out:,} ancestors are left out. The table shows the first, the last, those "
-            "that outlived their parents most, and others evenly spaced. --json shows "
-            "all."
+            f"{left_out:,} ancestors are left out. The table shows the first, the last, those that"
+            " outlived their parents most, and others evenly spaced. --json shows all."
         )
     if found.unknown:
         which = "The changes" if found.changes is None else "The changes before a fork"
@@ -178,9 +177,8 @@ def _notes(found: "WorldLines", told: dict[str, Any]) -> list[str]:
         notes.append(f"{left_out:,} smaller lines are left out; --json shows all.")
     now, (low, high) = found.effective[2, -1], (e[-1] for e in told["bands"]["effective_lines"])
     notes += [
-        "s: slope of ln(x / (1 - x)) over time while the share x is between 5 and 95 %. p: "
-        "two-sided,"
-        " beside neutral shadows with the same births, deaths and population.",
+        "s: slope of ln(x / (1 - x)) over time while the share x is between 5 and 95 %. p:"
+        " two-sided, beside neutral shadows with the same births, deaths and population.",
         f"Effective number of lines at the end: {now:.2f}; in 95 % of {told['shadows']:,} shadows"
         f" {low:.2f} to {high:.2f}. Over all instants: p = {told['p_of_effective_lines']:.2g}.",
         _sweeps_text(found.sweeps),
@@ -188,9 +186,8 @@ def _notes(found: "WorldLines", told: dict[str, Any]) -> list[str]:
     ]
     if found.pairs.mean is not None and found.neutral_pairs.mean is not None:
         notes.append(
-            f"{found.pairs.share[-1]:.0%} of the pairs of the living have a common ancestor on "
-            "record,"
-            f" {found.pairs.mean:,.0f} ticks ago in the mean. Drift alone would give"
+            f"{found.pairs.share[-1]:.0%} of the pairs of the living have a common ancestor on"
+            f" record, {found.pairs.mean:,.0f} ticks ago in the mean. Drift alone would give"
             f" {found.neutral_pairs.share[-1]:.0%} and {found.neutral_pairs.mean:,.0f} ticks."
         )
     return notes

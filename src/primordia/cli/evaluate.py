@@ -141,9 +141,8 @@ def _notes(standings: "list[Standing]") -> list[str]:
         notes.append("Medians over worlds (quartiles) of the median organism of each world.")
     if all(each.evaluations[0].distinct == 1 for each in standings):
         notes.append(
-            "All games of an organism are the same, so champions are judged by the game that "
-            "chose them. Change a setting, such as --sticky 0.25, to make games "
-            "differ."
+            "All games of an organism are the same, so champions are judged by the game that chose"
+            " them. Change a setting, such as --sticky 0.25, to make games differ."
         )
     return notes
 

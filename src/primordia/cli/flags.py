@@ -108,8 +108,8 @@ class SettingsCommand(click.Command):
             options.update(parameter.opts)
         if flag in arguments:
             raise InputError(
-                f"there is no flag {flag}; give the argument without it: {ctx.command_path} "
-                f"{arguments[flag]}"
+                f"there is no flag {flag}; give the argument without it: {ctx.command_path}"
+                f" {arguments[flag]}"
             )
         hyphenated = flag.replace("_", "-") in options or ("-" in flag[2:] and "." not in flag)
         return flag.startswith("--") and not hyphenated

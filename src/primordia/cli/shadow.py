@@ -47,9 +47,8 @@ def shadow_text(found: "Shadow") -> str:
     told = found.to_dict()
     longer, shorter = found.longer
     head = (
-        f"{found.name}: {told['organisms']:,} of {found.births:,} births in {told['worlds']} "
-        "worlds,"
-        f" born again alone; {2 * told['organisms']:,} lives, {told['ticks']:,} ticks"
+        f"{found.name}: {told['organisms']:,} of {found.births:,} births in {told['worlds']}"
+        f" worlds, born again alone; {2 * told['organisms']:,} lives, {told['ticks']:,} ticks"
     )
     lines = [f"{'':12}{'mean life':>12}{f'reach {found.cut:,} ticks':>24}"]
     for line in ("original", "shadow"):

@@ -156,25 +156,20 @@ def evidence_notes(compared: Comparison) -> list[str]:
     notes = []
     if any(each.paired for each in against):
         notes.append(
-            "Within seeds: delta within pairs of worlds with equal seeds. Intervals resample "
-            "these "
-            "pairs."
+            "Within seeds: delta within pairs of worlds with equal seeds. Intervals resample these"
+            " pairs."
         )
     if len(against) > 1 and any(each.interval for each in against):
         notes.append(
-            f"All intervals of an outcome hold simultaneously in {100 * (1 - MISSED):.0f} % of "
-            "cases, "
-            "each"
-            f" alone in {100 * against[0].coverage:.4g} % (Bonferroni, for {len(against)} "
-            "contrasts)."
+            f"All intervals of an outcome hold simultaneously in {100 * (1 - MISSED):.0f} % of"
+            f" cases, each alone in {100 * against[0].coverage:.4g} % (Bonferroni, for"
+            f" {len(against)} contrasts)."
         )
     if any(each.worlds >= LEAST for each in against):
         level = f"{100 * (1 - against[0].coverage):.3g} %"
         notes.append(
-            "Needs: the number of worlds in each arm at which 80 % of experiments find an effect "
-            "of "
-            "this"
-            f" size, at a level of {level} (Noether 1987)."
+            "Needs: the number of worlds in each arm at which 80 % of experiments find an effect"
+            f" of this size, at a level of {level} (Noether 1987)."
         )
     return notes
 
@@ -185,8 +180,8 @@ def _table(*columns: str) -> Table:
 
 def _notes(compared: Comparison) -> list[str]:
     notes = [
-        "Medians and intervals are over worlds. A world that stopped unsaturated is treated as "
-        "censored."
+        "Medians and intervals are over worlds. A world that stopped unsaturated is treated as"
+        " censored."
     ]
     notes += _too_few(compared) + evidence_notes(compared)
     if any(arm.extinctions.crashes.any() for arm in compared.arms):
@@ -203,10 +198,8 @@ def _notes(compared: Comparison) -> list[str]:
         *notes,
         f"A long life: {compared.age:,} ticks. Mean lifespan: ticks in each world, up to that age"
         " (Kaplan-Meier).",
-        "Delta: Cliff's delta, the share of pairs of worlds in which the run's value is larger "
-        "than "
-        "the"
-        " reference's,",
+        "Delta: Cliff's delta, the share of pairs of worlds in which the run's value is larger"
+        " than the reference's,",
         "less the share in which it is smaller.",
     ]
 

@@ -27,9 +27,8 @@ def check(law: Law, habitat: AnyHabitat, devices: list[jax.Device]) -> None:
         cells = law.worlds * law.cells
         raise InputError(
             f"cells x seeds: {cells:,} cells need {_gigabytes(needed)} of memory or more,"
-            f" {_gigabytes(available)} are available; choose fewer cells, fewer seeds or a "
-            "smaller "
-            "brain"
+            f" {_gigabytes(available)} are available; choose fewer cells, fewer seeds or a smaller"
+            " brain"
         )
 
 

@@ -128,9 +128,8 @@ def _check_folder(ray: Any, out: Path) -> None:
                 fault = f"does not answer ({type(error).__name__}: {first}), to be asked for"
             ray.shutdown()
             raise InputError(
-                f"--ray: node {node['NodeManagerAddress']} {fault} {out}; choose an --out in a "
-                "folder"
-                " that all nodes share"
+                f"--ray: node {node['NodeManagerAddress']} {fault} {out}; choose an --out in a"
+                " folder that all nodes share"
             )
     finally:
         mark.unlink()

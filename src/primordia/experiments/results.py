@@ -32,10 +32,9 @@ from primordia.runs.directory import VERSIONS
 from primordia.runs.records import Records
 
 NOTE = (
-    "Medians over worlds (quartiles); a world that stopped unsaturated is treated as censored. "
-    "Effects: Cliff's delta; ratio of medians (95 % interval over worlds). "
-    "Crashes:"
-    " extinctions after half of the cells were full of founders' descendants."
+    "Medians over worlds (quartiles); a world that stopped unsaturated is treated as censored."
+    " Effects: Cliff's delta; ratio of medians (95 % interval over worlds). Crashes: extinctions"
+    " after half of the cells were full of founders' descendants."
 )
 
 COLUMNS = {

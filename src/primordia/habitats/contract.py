@@ -130,9 +130,8 @@ if not TYPE_CHECKING:
         def __get__(self, habitat: object, owner: type) -> Any:
             if habitat is None:
                 raise AttributeError(
-                    "this default of habitats belongs to instances; read it from a habitat, not "
-                    "from its "
-                    "class"
+                    "this default of habitats belongs to instances; read it from a habitat, not"
+                    " from its class"
                 )
             return self._compute(habitat)
 
@@ -290,9 +289,8 @@ AnyHabitat: TypeAlias = JaxHabitat | HostHabitat
 
 def _missing(habitat: Habitat, name: str) -> TypeError:
     return TypeError(
-        f"{type(habitat).__name__} is not a complete habitat: it has no {name!r}; state it as an "
-        "attribute or a property of the "
-        "class"
+        f"{type(habitat).__name__} is not a complete habitat: it has no {name!r}; state it as an"
+        " attribute or a property of the class"
     )
 
 

@@ -111,9 +111,8 @@ class _Pedigree:
         odd = (number >= 0) & ((rows < 0) | (number >= lives.id))
         if odd.any():
             raise Trouble(
-                f"the births are damaged: the mate of organism {lives.id[odd][0]} was not born "
-                "before "
-                "it"
+                f"the births are damaged: the mate of organism {lives.id[odd][0]} was not born"
+                " before it"
             )
         return rows
 

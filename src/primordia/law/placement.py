@@ -41,14 +41,12 @@ class Placement(Settings):
     topology: Literal["ring", "torus4", "torus8", "well-mixed"] = Field(
         "ring",
         description="neighbours of a cell: two on a ring, 4 or 8 on a torus, or all "
-        "cells of the "
-        "world",
+        "cells of the world",
     )
     rule: Literal["blind", "empty-only", "replacing"] = Field(
         "blind",
         description="picked cells that are occupied. blind: no birth; empty-only: never "
-        "picked; replacing: the occupant "
-        "dies",
+        "picked; replacing: the occupant dies",
     )
     rows: int | None = Field(
         None, ge=2, description="rows of a torus (default: as nearly square as the cells allow)"

@@ -162,10 +162,8 @@ def changed(config: Config, changes: Mapping[str, Any]) -> Config:
     habitat = after.build_habitat()
     if (habitat.senses_size, habitat.action) != (before.senses_size, before.action):
         raise InputError(
-            f"with changed {', '.join(changes)} the habitat has {habitat.senses_size} senses"
-            f" and {habitat.action.size} actions; the brain is made for {before.senses_size} "
-            "senses "
-            "and"
+            f"with changed {', '.join(changes)} the habitat has {habitat.senses_size} senses and"
+            f" {habitat.action.size} actions; the brain is made for {before.senses_size} senses and"
             f" {before.action.size} actions"
         )
     return after

@@ -159,19 +159,16 @@ def _stored(run: Archive, organism: int, world: int, since: int | None) -> Array
     if kept:
         raise InputError(f"--from {since}: {life}, and {run.path} keeps {' and '.join(kept)} of it")
     raise InputError(
-        f"--from {since}: {life}, and {run.path} keeps no checkpoint of these ticks (it keeps "
-        "the "
-        "newest"
-        " two); without --from the life begins at birth"
+        f"--from {since}: {life}, and {run.path} keeps no checkpoint of these ticks (it keeps the"
+        " newest two); without --from the life begins at birth"
     )
 
 
 def _refuse_restart(life: RelivedLife) -> None:
     if life.cause is Cause.RESTART:
         raise InputError(
-            f"organism {life.record.id[0]} ended when its run was resumed without its body, so "
-            "its life cannot be lived "
-            "again"
+            f"organism {life.record.id[0]} ended when its run was resumed without its body, so its"
+            " life cannot be lived again"
         )
 
 
@@ -192,9 +189,7 @@ def _notes(run: Archive, course: Course) -> list[str]:
     if times := progress.restarts:
         often = "once" if times == 1 else f"{times:,} times"
         notes.append(
-            f"the bodies of the living began again {often}, when the run went on; a life that "
-            "was "
-            "lived"
-            " then does not repeat"
+            f"the bodies of the living began again {often}, when the run went on; a life that was"
+            " lived then does not repeat"
         )
     return notes

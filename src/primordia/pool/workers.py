@@ -146,10 +146,8 @@ def _await_ready(worker: subprocess.Popen, times: int = 1, at_leisure: bool = Fa
     """Wait for `times` answers that a worker is ready; see `_receive`."""
     if _receive(worker, times * len(READY), at_leisure) != times * READY:
         raise Trouble(
-            f"worker process {worker.pid} gave an answer that is not part of the protocol; "
-            "resume "
-            "the"
-            " run from its last checkpoint"
+            f"worker process {worker.pid} gave an answer that is not part of the protocol; resume"
+            " the run from its last checkpoint"
         )
 
 

@@ -25,8 +25,7 @@ def quantiles() -> np.ndarray:
     table = np.concatenate([-upper[::-1], upper])
     if hashlib.sha256(table.astype("<f4").tobytes()).hexdigest() != QUANTILES_SHA256:
         raise RuntimeError(
-            "this machine's C library gives different Gaussian quantiles, so genomes would "
-            "differ from those of other machines; use another Python or C "
-            "library"
+            "this machine's C library gives different Gaussian quantiles, so genomes would differ"
+            " from those of other machines; use another Python or C library"
         )
     return table

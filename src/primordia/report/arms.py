@@ -38,9 +38,8 @@ def arms(runs: Sequence[Records]) -> dict[str, Any]:
     return {
         "tables": [_outcomes(compared), *_effects(compared)],
         "notes": [
-            "Medians over worlds, with quartiles; a world that stopped unsaturated is treated as "
-            "censored. Effects: Cliff's delta, and the ratio of "
-            "medians.",
+            "Medians over worlds, with quartiles; a world that stopped unsaturated is treated as"
+            " censored. Effects: Cliff's delta, and the ratio of medians.",
             *evidence_notes(compared),
         ],
         "panels": [_survival(compared, colours), *_over_time(runs, colours)],

@@ -52,9 +52,8 @@ def _film(run: Records, title: str, row: int) -> dict[str, str]:
     kind, ticks = run.habitat.kind, int(run.lives.lifespan[row])
     if ticks > LONGEST[kind]:
         raise InputError(
-            f"the life of organism {number} is {ticks:,} ticks long, too long for a page; "
-            "`primordia"
-            " replay` films it"
+            f"the life of organism {number} is {ticks:,} ticks long, too long for a page;"
+            " `primordia replay` films it"
         )
     device.prepare()
     with (

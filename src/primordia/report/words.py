@@ -49,10 +49,8 @@ def setting(config: Config) -> str:
     parts = [
         f"{about}{worlds} {config.cells:,} {WORLDS[config.placement.topology]}. In each cell lives"
         " at most one organism: a small neural network in a simulation of its own.",
-        "There is no goal and no reward. An organism lives until its world kills it, and while "
-        "it "
-        "lives"
-        f" it copies itself into {room} cell{taken}.",
+        "There is no goal and no reward. An organism lives until its world kills it, and while it"
+        f" lives it copies itself into {room} cell{taken}.",
     ]
     if config.inheritance == "parent":
         parts.append("Copies differ from their parent by small random changes.")
@@ -70,31 +68,25 @@ def _one_world(worlds: list[dict[str, Any]], run: Records, rate: float | None) -
     config = run.config
     parts = [
         f"In {world['ticks']:,} ticks{simulated(world['ticks'], rate)},"
-        f" {count(world['births'], 'organism')} {'was' if world['births'] == 1 else 'were'} "
-        "born, "
-        "and"
-        f" {_deaths(worlds)}.",
+        f" {count(world['births'], 'organism')} {'was' if world['births'] == 1 else 'were'} born,"
+        f" and {_deaths(worlds)}.",
         *_extinct(world["extinctions"], config, "The world"),
     ]
     if fixed := world["fixation"]:
         parts.append(
-            f"Since tick {fixed['tick']:,} (birth {fixed['births']:,}) all living organisms "
-            "descend from one "
-            "ancestor."
+            f"Since tick {fixed['tick']:,} (birth {fixed['births']:,}) all living organisms descend"
+            " from one ancestor."
         )
     if saturated := world["saturation"]:
         parts.append(
-            f"At tick {saturated['tick']:,} the world was saturated: all {config.cells:,} cells "
-            "were"
-            f" full, and no organism had died for {config.saturation_ticks:,} ticks."
+            f"At tick {saturated['tick']:,} the world was saturated: all {config.cells:,} cells"
+            f" were full, and no organism had died for {config.saturation_ticks:,} ticks."
         )
     elif world["alive"]:
         parts.append(
-            f"{count(world['alive'], 'organism')} live{'s' if world['alive'] == 1 else ''} now "
-            "in "
-            "the"
-            f" {config.cells:,} cells. The world is not saturated: organisms still die, and others"
-            " follow."
+            f"{count(world['alive'], 'organism')} live{'s' if world['alive'] == 1 else ''} now in"
+            f" the {config.cells:,} cells. The world is not saturated: organisms still die, and"
+            " others follow."
         )
     else:
         parts.append("Nothing lives there now.")
@@ -150,9 +142,8 @@ def _lives(run: Records, rate: float | None) -> list[str]:
     early, late = (lives.take(rows) for rows in (order[:quarter], order[-quarter:]))
     if len(lives) >= 40:
         parts.append(
-            f"Half of the first quarter of the organisms lived {_median(early)}, and half of the "
-            "last"
-            f" quarter {_median(late)} so far."
+            f"Half of the first quarter of the organisms lived {_median(early)}, and half of the"
+            f" last quarter {_median(late)} so far."
         )
     row = int(lives.lifespan.argmax())
     which = f"organism {lives.id[row]:,}"

@@ -236,8 +236,8 @@ def _refuse_others(runs: Sequence[Archive]) -> None:
             names = own | reference
             if differing := [name for name in names if own.get(name) != reference.get(name)]:
                 raise InputError(
-                    f"{run.path} and {first.path} do not belong to one arm: they differ in "
-                    f"{differing[0]}"
+                    f"{run.path} and {first.path} do not belong to one arm: they differ in"
+                    f" {differing[0]}"
                 )
         own = {name: getattr(run.config, name) for name in OWN}
         run.config = first.config.model_copy(update=own)  # stored once, and the description too

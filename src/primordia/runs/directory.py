@@ -157,8 +157,8 @@ def read_config(run: Path) -> Config:
     made_by = recorded_versions(run).format
     if made_by > FORMAT:
         raise InputError(
-            f"{run} was made by a newer primordia (format {made_by}, this one reads {FORMAT}); "
-            "upgrade"
+            f"{run} was made by a newer primordia (format {made_by}, this one reads {FORMAT});"
+            " upgrade"
         )
     if made_by < FORMAT:
         raise InputError(

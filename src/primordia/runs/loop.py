@@ -63,9 +63,8 @@ def start(
     _check_interval(checkpoint_every)
     if config.fork is not None:
         raise InputError(
-            f"these are the settings of a fork of {config.fork.run}; use `primordia fork` on "
-            "that "
-            "run"
+            f"these are the settings of a fork of {config.fork.run}; use `primordia fork` on that"
+            " run"
         )
     with interrupts.noting(), directory.create(run, config):
         engine = Engine(config)
@@ -126,15 +125,13 @@ def resume(
     differ = archive.other_versions
     _check_same(run, differ, inexact)
     with interrupts.noting(), directory.locked(run):
-        last, damaged = (
-            archive.newest
-        )  # read under the lock, so that no other writer can change the run
+        # Read under the lock, so that no other writer can change the run.
+        last, damaged = archive.newest
         if last is None and damaged:
             raise checkpoint.no_whole_checkpoint(run, damaged)
         if last is None and config.fork is not None:
-            raise InputError(
-                f"{run} is a fork that was cut off before it began; remove it and fork again"
-            )
+            fault = "is a fork that was cut off before it began; remove it and fork again"
+            raise InputError(f"{run} {fault}")
         directory.make_folders(run)
         checkpoint.remove_leftovers(run, last)
         engine = Engine(config)

@@ -38,9 +38,8 @@ def only(places: Sequence[str | Path]) -> Archive:
     paths = [path for place in places for path in run_paths(Path(place))]
     if len(paths) > 1:
         raise InputError(
-            f"{places[0]} is an arm of {len(paths)} runs, but a single run is needed here, such "
-            "as "
-            f"{paths[0]}"
+            f"{places[0]} is an arm of {len(paths)} runs, but a single run is needed here, such as"
+            f" {paths[0]}"
         )
     return archive(paths[0])
 

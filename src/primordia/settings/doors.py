@@ -54,9 +54,8 @@ def text(env: str) -> str:
         *facts,
         *(f"Found: {fault}." for fault in faults),
         f"fatal is a condition that ends a life, such as: {fatal} or obs[0] < -1.",
-        "food is an amount, such as: max(reward, 0); it needs a [metabolism] with store, drain "
-        "and "
-        "gain.",
+        "food is an amount, such as: max(reward, 0); it needs a [metabolism] with store, drain"
+        " and gain.",
     ]
     comments = [fill(line, WIDTH, initial_indent="# ", subsequent_indent="#   ") for line in lines]
     return "\n".join([*comments, "", tomli_w.dumps(table)])

@@ -33,10 +33,8 @@ def check_brain(brain: Brain, senses: int = 33, outputs: int = 5) -> None:
     for count in COUNTS:
         few = think(*last((genome, memory, seen[0]), count))
         says = (
-            f"when {count} instead of {ALL} think together; sum with brains.layers.matvec "
-            "instead "
-            "of"
-            " (w * x).sum(-1)"
+            f"when {count} instead of {ALL} think together; sum with brains.layers.matvec instead"
+            " of (w * x).sum(-1)"
         )
         same(brain, last(whole, count), few, says, ALL - count)
     same(brain, whole, brain(genome, memory, seen[0]), f"when compiled{ROUNDED}")
@@ -57,9 +55,8 @@ def _minds(brain: Brain, senses: int, outputs: int) -> tuple[Genome, Array, Arra
     need(
         layout == brain.layout(senses, outputs),
         brain,
-        "has different blocks of weights at each call; blocks depend on settings, senses and "
-        "outputs "
-        "only",
+        "has different blocks of weights at each call; blocks depend on settings, senses and"
+        " outputs only",
     )
     length = brain.memory(senses, outputs)
     need(

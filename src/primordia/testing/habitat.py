@@ -45,9 +45,8 @@ def check_habitat(habitat: AnyHabitat) -> None:
     lives.compare(
         expected,
         lives.whole(),
-        "when it begins again, so it depends on more than words and actions; draw only from "
-        "`words`, and let `open` begin from "
-        "nothing",
+        "when it begins again, so it depends on more than words and actions; draw only from"
+        " `words`, and let `open` begin from nothing",
     )
     for count in COUNTS:
         says = f"among {count} bodies than among {ALL}; compute each body alone, elementwise"
@@ -55,9 +54,8 @@ def check_habitat(habitat: AnyHabitat) -> None:
     says = "after a rest; do not step bodies whose cells are not alive"
     lives.compare(expected, lives.interrupted(), says)
     says = (
-        "when others are born beside it, or if another lived in its cell before; let `reset` "
-        "make complete bodies, only in the given "
-        "cells"
+        "when others are born beside it, or if another lived in its cell before; let `reset` make"
+        " complete bodies, only in the given cells"
     )
     lives.compare(expected, lives.born_late(), says)
     if habitat.can(Ability.SAVE):
@@ -87,9 +85,8 @@ def _stated(habitat: AnyHabitat) -> None:
         and all(part.size > isinstance(part, Discrete) for part in action.parts)
         and action.size > 0,
         habitat,
-        f"has action = {action!r}; it must be Discrete(2) or more, Continuous(1) or more, or a "
-        "Compound"
-        " of such parts",
+        f"has action = {action!r}; it must be Discrete(2) or more, Continuous(1) or more, or a"
+        " Compound of such parts",
     )
     _abilities(habitat)
 

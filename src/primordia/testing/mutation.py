@@ -52,9 +52,8 @@ def check_mutation(mutation: Mutation, layout: Layout | None = None) -> None:
     births: Callable[[Family], Made] = partial(_births, mutation, layout)
     made = jax.jit(births)(family)
     says = (
-        "when it is traced again, so a birth depends on more than parents, notes, rates and "
-        "draws; draw only from "
-        "`draws`"
+        "when it is traced again, so a birth depends on more than parents, notes, rates and draws;"
+        " draw only from `draws`"
     )
     same(mutation, made, jax.jit(lambda each: births(each))(family), says)
     for count in COUNTS:
@@ -74,8 +73,7 @@ def _stated(mutation: Mutation, layout: Layout) -> None:
         mutation.check(layout)
     except ValueError as error:
         raise ContractError(
-            f"{type(mutation).__name__} does not fit the layout: {error}; give check_mutation a "
-            "layout"
+            f"{type(mutation).__name__} does not fit the layout: {error}; give check_mutation a layout"
         ) from None
     for name in mutation.notes:
         need(
@@ -101,9 +99,7 @@ def _stated(mutation: Mutation, layout: Layout) -> None:
         need(
             not unknown,
             mutation,
-            f"says that a season of {setting} changes {', '.join(sorted(unknown))}, which "
-            "`rates` "
-            "lacks",
+            f"says that a season of {setting} changes {', '.join(sorted(unknown))}, which `rates` lacks",
         )
     need(
         not mutation.governed("no-such-setting", layout),
@@ -179,9 +175,8 @@ def _copies(mutation: Mutation, layout: Layout, made: Made, family: Family) -> N
     for children, of in ((made, family.parents), (odd, parents)):
         copy = ~np.asarray(children.mutated)[:, None]
         says = (
-            "although it is marked as a copy; return the parent's weights unchanged, or mark it "
-            "as a "
-            "mutant"
+            "although it is marked as a copy; return the parent's weights unchanged, or mark it as"
+            " a mutant"
         )
         same(mutation, of, np.where(copy, children.genome, of), says)
 
@@ -197,7 +192,6 @@ def _obeys_rates(mutation: Mutation, layout: Layout, family: Family) -> None:
     need(
         not family.rates or not np.array_equal(none.genome, full.genome, equal_nan=True),
         mutation,
-        "makes the same children for all rates; read rates from `rates`, not from the settings, "
-        "or seasons have no "
-        "effect",
+        "makes the same children for all rates; read rates from `rates`, not from the settings,"
+        " or seasons have no effect",
     )

@@ -8,8 +8,8 @@ import numpy as np
 
 ROUNDED = (
     "; compilers round a product and a sum together, or not, and sum in other orders: take"
-    " rounding.rounded_product for a product that is added to something, and brains.layers for "
-    "brains"
+    " rounding.rounded_product for a product that is added to something, and brains.layers for"
+    " brains"
 )
 
 
@@ -56,7 +56,7 @@ def advise(part: object) -> None:
     if not shares:
         warnings.warn(
             f"{type(part).__name__} is not hashed by its values, so each run compiles it again;"
-            " subclass Settings, without dictionaries or lists among the settings, or define "
-            "__hash__",
+            " subclass Settings, without dictionaries or lists among the settings, or define"
+            " __hash__",
             stacklevel=3,
         )

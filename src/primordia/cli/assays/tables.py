@@ -71,13 +71,13 @@ def effects(name: str, found: list[Any]) -> Told:
     lived = spread(each.lifespan for each in found if each.mutation == mutations[0])
     count = len(found) // len(mutations)
     return Told(
-        f"{name}: {_count(count, 'organism')}, {len(found[0].mutants)} mutants of each by each "
-        "mutation",
+        f"{name}: {_count(count, 'organism')}, {len(found[0].mutants)} mutants of each by each"
+        " mutation",
         ("", *words.values(), "median life"),
         rows,
         (
-            f"The organisms lived {lived} ticks. Shares are means over organisms; lives are medians"
-            " (quartiles).",
+            f"The organisms lived {lived} ticks. Shares are means over organisms; lives are"
+            " medians (quartiles).",
         ),
     )
 

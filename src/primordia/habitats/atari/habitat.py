@@ -161,8 +161,8 @@ class Atari(HostHabitat, Settings):
         """Raise ValueError if there are more workers than cells."""
         if self.workers is not None and self.workers > cells:
             raise ValueError(
-                f"workers: {self.workers} workers are more than the {cells} cells; use at most "
-                f"{cells}"
+                f"workers: {self.workers} workers are more than the {cells} cells; use at most"
+                f" {cells}"
             )
 
     def open(self, cells: int, watched: bool = False) -> None:

@@ -185,9 +185,8 @@ def _repeat(trial: _Trial, lives: list[_Life], found: Measured) -> None:
         begins = all(a[0] == b[0] for a, b in zip(new, twice, strict=True))
         found.saving = "restart"
         found.faults.append(
-            "the same seed and actions give another life: the environment draws from outside, or "
-            "keeps something between "
-            "environments"
+            "the same seed and actions give another life: the environment draws from outside, or"
+            " keeps something between environments"
             if begins
             else "a reset with the same seed gives another beginning: the environment "
             "ignores its seed, or keeps something between environments"
@@ -197,9 +196,8 @@ def _repeat(trial: _Trial, lives: list[_Life], found: Measured) -> None:
         for life, seen in zip(reversed(lives), new, strict=True):
             life.seen = seen
         found.faults.append(
-            "a life depends on earlier lives in the same environment, since reset does not "
-            "restore everything; set fresh = true, so that each life has a new "
-            "environment"
+            "a life depends on earlier lives in the same environment, since reset does not restore"
+            " everything; set fresh = true, so that each life has a new environment"
         )
 
 

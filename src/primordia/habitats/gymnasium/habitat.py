@@ -184,8 +184,8 @@ class Gymnasium(HostHabitat, Settings):
         """Raise ValueError if there are more workers than cells."""
         if self.workers is not None and self.workers > cells:
             raise ValueError(
-                f"workers: {self.workers} workers are more than the {cells} cells; use at most "
-                f"{cells}"
+                f"workers: {self.workers} workers are more than the {cells} cells; use at most"
+                f" {cells}"
             )
 
     def original(self) -> "Gymnasium":
@@ -279,10 +279,8 @@ class Gymnasium(HostHabitat, Settings):
         if self._failed > self.faults:
             last = self.message(int(np.flatnonzero(fault)[-1]))
             raise Trouble(
-                f"{self._failed} organisms died of errors in {self.env}, the last of: {last}. "
-                "Mend "
-                "the"
-                " environment, or allow more with habitat.faults"
+                f"{self._failed} organisms died of errors in {self.env}, the last of: {last}. Mend"
+                " the environment, or allow more with habitat.faults"
             )
 
     def message(self, cell: int) -> str:

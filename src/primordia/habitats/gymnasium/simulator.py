@@ -182,8 +182,7 @@ class Environments:
             self._act(cell, np.frombuffer(one, row.dtype))
         if observed.tobytes() != before:
             raise Trouble(
-                f"the environment of cell {cell} did not repeat its life of {head['ticks']} "
-                "ticks, since it depends on more than seed and actions; begin a new run with "
-                "--habitat.saving "
-                "restart"
+                f"the environment of cell {cell} did not repeat its life of {head['ticks']} ticks,"
+                " since it depends on more than seed and actions; begin a new run with"
+                " --habitat.saving restart"
             )

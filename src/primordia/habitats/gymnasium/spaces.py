@@ -58,10 +58,9 @@ def leaves(space: Space, what: str, path: tuple[Any, ...] = ()) -> Iterator[Leaf
     else:
         place = "".join(f"[{key!r}]" for key in path)
         raise ValueError(
-            f"its {what} space{place} is a {type(space).__name__}, which has no fixed number of "
-            "values;"
-            " wrap the environment so that it is a Box, Discrete, MultiDiscrete, MultiBinary, or a"
-            " Dict or Tuple of these"
+            f"its {what} space{place} is a {type(space).__name__}, which has no fixed number of"
+            " values; wrap the environment so that it is a Box, Discrete, MultiDiscrete,"
+            " MultiBinary, or a Dict or Tuple of these"
         )
 
 

@@ -98,9 +98,8 @@ def _facts(env: str, about: Any, found: Any, keys: dict[str, int]) -> list[str]:
         f"Observation: {one_line[0]}; obs[0] to obs[{about.observation.width - 1}] in conditions.",
         f"Action: {one_line[1]}.",
         f"Numbers in info: {named}.",
-        f"The environment's limit of {about.limit} steps is off; time_limit = {about.limit} "
-        "keeps "
-        "it."
+        f"The environment's limit of {about.limit} steps is off; time_limit = {about.limit} keeps"
+        " it."
         if about.limit
         else "The environment has no time limit.",
         SAVING[found.saving] + (f" ({found.why})." if found.why else "."),

@@ -59,8 +59,7 @@ class Gymnax(JaxHabitat, Settings):
     food: str = Field(
         "",
         description="amount gathered in a tick, such as reward; if it is left out, there is "
-        "no "
-        "food",
+        "no food",
     )
     squash: bool = Field(False, description="true: an unbounded sense x becomes x / (1 + |x|)")
 

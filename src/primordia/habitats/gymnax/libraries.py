@@ -97,10 +97,8 @@ def _of_playground(name: str) -> Any:
     robots = import_module("mujoco_playground._src.mjx_env").MENAGERIE_PATH
     if name not in registry.dm_control_suite.ALL_ENVS and not robots.exists():
         raise ValueError(
-            f"env: {name} needs the models of robots that MuJoCo Playground downloads; load it "
-            "once "
-            "with"
-            f" `mujoco_playground.registry.load({name!r})`"
+            f"env: {name} needs the models of robots that MuJoCo Playground downloads; load it once"
+            f" with `mujoco_playground.registry.load({name!r})`"
         )
     return Playground(registry.load(name, config_overrides={"impl": "jax"}))
 

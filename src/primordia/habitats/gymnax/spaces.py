@@ -26,9 +26,8 @@ class Actions:
         low, high = (getattr(space, name, None) for name in ("low", "high"))
         if low is None or high is None:
             raise ValueError(
-                f"env: the actions of {env} are {space!r}; a brain needs two or more choices, or "
-                "the numbers of a "
-                "box"
+                f"env: the actions of {env} are {space!r}; a brain needs two or more choices, or"
+                " the numbers of a box"
             )
         self._shape = tuple(space.shape)
         self.kind = Continuous(int(np.prod(self._shape)))

@@ -86,9 +86,8 @@ class RelivedLife:
             stored, begin = run.origin, "the fork"
         if stored is not None and not habitat.exact:
             raise InputError(
-                f"{run.path}: organism {organism} is older than {begin}, and its habitat cannot "
-                "save"
-                " bodies"
+                f"{run.path}: organism {organism} is older than {begin}, and its habitat cannot"
+                " save bodies"
             )
         genome = law.heredity.layout.split(jnp.asarray(rebuild(run, organism, world)[None]))
         return cls(run, run.config, law, habitat, genome, record, stored)
@@ -203,9 +202,8 @@ class RelivedLife:
             same &= (stretch.energy[-1], stretch.eaten[-1]) == self.at_death
         if not same:
             raise Trouble(
-                f"{self.run.path}: the life of organism {self.record.id[0]} did not repeat as "
-                "recorded;"
-                " `primordia verify` tells whether this machine gives the run's bits"
+                f"{self.run.path}: the life of organism {self.record.id[0]} did not repeat as"
+                " recorded; `primordia verify` tells whether this machine gives the run's bits"
             )
 
     @cached_property
