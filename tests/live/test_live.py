@@ -26,7 +26,6 @@ from primordia.live.paint import EMPTY, Cells, Row, field, skyline, strip
 from primordia.live.panel import duration, with_prefix
 from primordia.random.wide import Wide, wide
 from primordia.runs import loop
-from tests import commands
 from tests.commands import COMMAND, environment, here
 from tests.worlds import MEADOW, config
 
@@ -259,7 +258,7 @@ def test_a_terminal_shows_the_strip_and_control_c_saves(
     ours, theirs = terminal
     words = (*SMALL, "--until", "none", "--out", str(tmp_path / "run"))
     settings = {"TERM": "xterm-256color", "COLUMNS": "80", "LINES": "24", "COLORTERM": "truecolor"}
-    variables = environment(commands.CACHE) | settings
+    variables = environment() | settings
     variables.pop("NO_COLOR", None)
     process = subprocess.Popen(
         ["sh", "-c", 'exec <"$0" >"$0" 2>&1 "$@"', os.ttyname(theirs), *COMMAND, "run", *words],
