@@ -16,27 +16,21 @@ HERE = Path(__file__).parent.parent
 TREE = os.pathsep.join([str(HERE / "src"), str(HERE)])
 """The import path of this tree's package and of the tests."""
 COMMAND = [sys.executable, "-m", "primordia"]
+AFRESH = {"JAX_ENABLE_COMPILATION_CACHE": "false"}
+"""The variable of a process that compiles everything itself. JAX keeps code by what it computes, not by
+the number of threads that it was compiled for."""
 
 
-def environment(cache: Path | None = None) -> dict[str, str]:
-    """Return variables under which a process finds this tree's package and the habitats of the tests.
-
-    `cache` is the folder in which processes share compiled code.
-    """
-    extra = {"PYTHONPATH": TREE}
-    if cache is not None:
-        extra |= {
-            "JAX_COMPILATION_CACHE_DIR": str(cache),
-            "JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS": "0",
-        }
-    return {**os.environ, **extra}
+def environment() -> dict[str, str]:
+    """Return variables under which a process finds this tree's package and the habitats of the tests."""
+    return {**os.environ, "PYTHONPATH": TREE}
 
 
 def begin(*words: object, session: bool = False) -> subprocess.Popen[str]:
     """Start a command in another process, if asked in a session of its own, and return while it runs."""
     pipes: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     return subprocess.Popen(
-        [*COMMAND, *map(str, words)], env=environment(CACHE), start_new_session=session, **pipes
+        [*COMMAND, *map(str, words)], env=environment(), start_new_session=session, **pipes
     )
 
 
@@ -58,6 +52,3 @@ def complains(done: subprocess.CompletedProcess[str], status: int, *parts: str) 
     assert done.stderr.startswith("primordia: ")
     for part in parts:
         assert part in done.stderr, done.stderr
-
-
-CACHE: Path | None = None

@@ -2,7 +2,6 @@
 
 import os
 from collections.abc import Iterator
-from pathlib import Path
 
 import jax
 import pytest
@@ -59,16 +58,21 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.fixture(autouse=True, scope="session")
 def _compiled_code(tmp_path_factory: pytest.TempPathFactory) -> None:
-    """Share one cache of compiled code among all test processes and all commands that they run.
+    """Share one cache of compiled code among all test processes, and all processes that they start.
 
-    The tests themselves keep it for the next time if JAX_COMPILATION_CACHE_DIR names a folder. Commands
-    do not, since some are killed while they write.
+    The tests themselves keep it for the next time if JAX_COMPILATION_CACHE_DIR names a folder. Processes
+    that they start do not, since some are killed while they write.
     """
     root = tmp_path_factory.getbasetemp()
     shared = root.parent if root.name.startswith("popen") else root
-    commands.CACHE = Path(shared) / "compiled"
-    kept = os.environ.get("JAX_COMPILATION_CACHE_DIR", str(commands.CACHE))
+    of_others = str(shared / "compiled")
+    kept = os.environ.get("JAX_COMPILATION_CACHE_DIR", of_others)
     jax.config.update("jax_compilation_cache_dir", kept)
+    jax.config.update("jax_persistent_cache_min_compile_time_secs", 0)
+    os.environ["JAX_COMPILATION_CACHE_DIR"] = of_others
+    os.environ["JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS"] = "0"
+    # With a limit, which commands set, JAX writes nothing into a folder that has entries of a process
+    # without one: each command then compiled everything again.
+    os.environ["JAX_COMPILATION_CACHE_MAX_SIZE"] = "-1"
     os.environ["XDG_STATE_HOME"] = str(shared / "state")
     os.environ["XDG_CACHE_HOME"] = str(shared / "cache")
-    jax.config.update("jax_persistent_cache_min_compile_time_secs", 0)

@@ -54,7 +54,7 @@ def with_blocks() -> list[Any]:
 
 
 def environment() -> dict[str, str]:
-    here = commands.environment(commands.CACHE)
+    here = commands.environment()
     return {**here, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
 
 

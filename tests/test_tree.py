@@ -24,10 +24,9 @@ def environments() -> Iterator[dict[str, str] | None]:
     """Yield the variables of processes that tests start; None: those of this process."""
     yield None
     yield commands.environment()
-    yield commands.environment(commands.CACHE)
 
 
-@pytest.mark.parametrize("number", range(3))
+@pytest.mark.parametrize("number", range(2))
 def test_processes_import_this_tree_from_any_folder(number: int, tmp_path: Path) -> None:
     variables = [*environments()][number]
     command = [sys.executable, "-c", WHERE]

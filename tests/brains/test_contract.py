@@ -15,7 +15,7 @@ from primordia.brains.contract import KNOWN, Brain, find
 from primordia.errors import InputError
 from primordia.settings.making import make
 from primordia.testing import check_brain
-from tests.commands import environment
+from tests.commands import AFRESH, environment
 from tests.toys import Sliding
 from tests.worlds import MILL, config
 
@@ -159,7 +159,8 @@ def test_brains_think_the_same_on_any_number_of_threads() -> None:
     if not hasattr(os, "sched_setaffinity") or len(os.sched_getaffinity(0)) < 2:
         pytest.skip("needs Linux and two processors")
     command = [sys.executable, "-c", PROGRAM, str(min(os.sched_getaffinity(0)))]
-    done = subprocess.run(command, env=environment(), capture_output=True, text=True, check=True)
+    variables = environment() | AFRESH
+    done = subprocess.run(command, env=variables, capture_output=True, text=True, check=True)
     assert done.stdout.strip() == fingerprint()
 
 

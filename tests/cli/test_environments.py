@@ -114,7 +114,7 @@ def execute(words: list[str], folder: Path) -> "subprocess.CompletedProcess[str]
     return subprocess.run(
         words,
         cwd=folder,
-        env=environment(commands.CACHE),
+        env=environment(),
         capture_output=True,
         text=True,
         check=False,

@@ -11,8 +11,7 @@ import pytest
 
 from primordia.brains.contract import KNOWN, find
 from primordia.habitats.cartpole.habitat import CartPole
-from tests import commands
-from tests.commands import environment
+from tests.commands import AFRESH, environment
 from tests.toys import Mill
 from tests.worlds import MILL, Lived, config
 
@@ -136,7 +135,7 @@ print(Lived(config(cells=64, seeds=8, seed=3), 600).digests())
 def test_a_run_is_the_same_on_any_number_of_threads() -> None:
     def run(*processors: int) -> str:
         command = [sys.executable, "-c", PROGRAM, *map(str, processors)]
-        variables = environment(commands.CACHE)
+        variables = environment() | AFRESH
         return subprocess.run(
             command, env=variables, capture_output=True, text=True, check=True
         ).stdout

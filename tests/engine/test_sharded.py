@@ -33,7 +33,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def told(folder: Path, optimised: None) -> dict[int, dict[str, Any]]:
     """Return what processes with different numbers of devices print."""
-    variables, command = commands.environment(commands.CACHE), [sys.executable, "-m"]
+    variables, command = commands.environment(), [sys.executable, "-m"]
     flags, results = variables.get("XLA_FLAGS", ""), {}
     for count in COUNTS:
         variables["XLA_FLAGS"] = f"{flags} --xla_force_host_platform_device_count={count}"

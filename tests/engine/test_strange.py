@@ -142,7 +142,7 @@ ENVIRONMENT = {
 
 @pytest.mark.slow
 def test_a_run_does_not_depend_on_the_environment(tmp_path: Path) -> None:
-    variables = commands.environment(commands.CACHE) | ENVIRONMENT
+    variables = commands.environment() | commands.AFRESH | ENVIRONMENT
     done = subprocess.run(
         [sys.executable, "-c", PROGRAM], env=variables, cwd=tmp_path, capture_output=True,
         text=True, check=True, encoding="utf-8",

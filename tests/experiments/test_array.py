@@ -15,7 +15,7 @@ SCRIPT = ROOT / "examples" / "array.sh"
 
 def test_the_script_of_a_job_array_lives_all_jobs(tmp_path: Path) -> None:
     write(tmp_path, "heredity", arms=[{"name": "all"}], seeds=2, jobs={"worlds": 1})
-    here = commands.environment(commands.CACHE)
+    here = commands.environment()
     path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
     for entry in (1, 0):
         variables = {**here, "PATH": path, "SLURM_ARRAY_TASK_ID": str(entry)}

@@ -269,7 +269,7 @@ def test_code_of_a_folder_from_elsewhere_is_not_executed(
     loop.start(config.model_copy(update={"stop": stop}), chosen.path / job.folder)
     (tmp_path / "reader").mkdir()
     Path("strange_toys.py").unlink()
-    here_ = {**commands.environment(commands.CACHE), "XDG_STATE_HOME": str(tmp_path / "state")}
+    here_ = {**commands.environment(), "XDG_STATE_HOME": str(tmp_path / "state")}
 
     def lived(*options: str) -> subprocess.CompletedProcess[str]:
         words = ["primordia", "experiment", str(chosen.path), "--job", "0", *options]

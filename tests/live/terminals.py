@@ -10,7 +10,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from tests import commands
 from tests.commands import COMMAND, environment
 
 SETTINGS = {"TERM": "xterm-256color", "COLUMNS": "80", "LINES": "24", "COLORTERM": "truecolor"}
@@ -24,7 +23,7 @@ class Terminal:
 
     def begin(self, *words: object) -> subprocess.Popen[bytes]:
         """Start a command whose controlling terminal this is, so that it gets keys and Ctrl-C."""
-        variables = environment(commands.CACHE) | SETTINGS
+        variables = environment() | SETTINGS
         variables.pop("NO_COLOR", None)
         shell = ["sh", "-c", 'exec <"$0" >"$0" 2>&1 "$@"', os.ttyname(self.theirs)]
         return subprocess.Popen(

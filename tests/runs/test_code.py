@@ -18,7 +18,6 @@ from primordia.errors import InputError
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import code
 from primordia.runs.archive import Archive
-from tests import commands
 from tests.commands import COMMAND, complains, environment, here
 
 POND = """
@@ -224,7 +223,7 @@ def test_no_file_of_the_current_folder_takes_the_place_of_an_installed_one(
     done = subprocess.run(
         [*start, "run", task, *small],
         cwd=tmp_path,
-        env={**environment(commands.CACHE), "PRIMORDIA_CORES": "2"},
+        env={**environment(), "PRIMORDIA_CORES": "2"},
         capture_output=True,
         text=True,
     )

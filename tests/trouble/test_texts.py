@@ -22,7 +22,6 @@ from primordia.cli.commands import execute
 from primordia.cli.streams import Printable
 from primordia.errors import InputError
 from primordia.printable import printable
-from tests import commands
 from tests.commands import COMMAND, complains, environment, here
 from tests.trouble import SMALL, TASK, TICKS, digest, goes_on
 
@@ -146,7 +145,7 @@ def test_files_and_streams_are_in_utf_8_whatever_the_locale(tmp_path: Path) -> N
     words = ("run", file, "--ticks", "50", "--out", run)
     done = subprocess.run(
         [*COMMAND, *map(str, words)],
-        env=environment(commands.CACHE) | LOCALE,
+        env=environment() | LOCALE,
         capture_output=True,
         check=False,
     )
@@ -166,7 +165,7 @@ def test_streams_that_are_closed_at_the_start_are_not_taken_by_files(
     run = Path(shutil.copytree(half, tmp_path / "run"))
     words = [*COMMAND, "resume", str(run), "--ticks", str(TICKS)]
     shell = ["sh", "-c", '"$@" <&- >&- 2>&-', "sh", *words]
-    done = subprocess.run(shell, env=environment(commands.CACHE), check=False)
+    done = subprocess.run(shell, env=environment(), check=False)
     assert done.returncode == 0
     assert digest(run) == through
 

@@ -10,7 +10,6 @@ import pytest
 
 from primordia import device
 from primordia.errors import InputError
-from tests import commands
 from tests.commands import COMMAND, complains, environment, here
 from tests.trouble import TASK
 
@@ -129,9 +128,7 @@ def test_a_pipe_is_not_opened(words: tuple[str, ...], part: str, tmp_path: Path)
     pipe, out = tmp_path / "mine.toml", tmp_path / "run"
     os.mkfifo(pipe)
     command = [*COMMAND, "run", *(word.replace("PIPE", str(pipe)) for word in words), "--out", out]
-    done = subprocess.run(
-        command, env=environment(commands.CACHE), capture_output=True, text=True, timeout=120
-    )
+    done = subprocess.run(command, env=environment(), capture_output=True, text=True, timeout=120)
     complains(done, 2, part.replace("PIPE", str(pipe)))
     assert not out.exists()
 
@@ -190,7 +187,6 @@ def test_the_python_interface_raises_input_errors(run: Path, tmp_path: Path) -> 
         name: value for name, value in primordia.Run(run).info()["versions"].items()
         if name != "format"
     }  # fmt: skip
-    assert commands.CACHE is not None
 
 
 LONG = "9" * 300
