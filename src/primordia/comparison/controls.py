@@ -94,7 +94,7 @@ class Group:
         """Let each organism play; those that were not chosen play one game. See `evaluation.evaluate`."""
         each = games if self.chosen_from > 1 else min(games, 1)
         evaluations = judged(
-            self.run,
+            self.run.config,
             self.players,
             self.numbers,
             games=each,
