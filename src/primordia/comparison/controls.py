@@ -96,7 +96,7 @@ class Group:
         `evaluation.evaluate`."""
         each = games if self.chosen_from > 1 else min(games, 1)
         evaluations = judged(
-            self.run,
+            self.run.config,
             self.players,
             self.numbers,
             games=each,

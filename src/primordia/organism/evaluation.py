@@ -108,11 +108,13 @@ def evaluate(
     if not organisms:
         return []
     wanted, own = {**(habitat or {}), **changes}, players_of(run, organisms)
-    return judged(run, own, organisms, games=games, ticks=ticks, senses=senses, habitat=wanted)
+    return judged(
+        run.config, own, organisms, games=games, ticks=ticks, senses=senses, habitat=wanted
+    )
 
 
 def judged(
-    run: Records,
+    config: Config,
     own: Players,
     numbers: Sequence[tuple[int, int]],
     *,
@@ -121,10 +123,10 @@ def judged(
     senses: Senses,
     habitat: Mapping[str, Any],
 ) -> list[Evaluation]:
-    """Let players of a run play games side by side; the numbers name them in results. See `evaluate`."""
+    """Let players of a task play games side by side; the numbers name them in results. See `evaluate`."""
     if games < 1 or ticks < 1:
         raise InputError("evaluate needs at least one game of at least one tick")
-    players = own._replace(habitat=changed(run.config, habitat).build_habitat())
+    players = own._replace(habitat=changed(config, habitat).build_habitat())
     script = play(own, 1, ticks) if senses == "ignored" else None
     count = 1 if players.deterministic else games
     frozen = all_senses(players) if senses == "frozen" else None
