@@ -172,17 +172,12 @@ def rows_of(trial: Trial) -> list[dict[str, Any]]:
     players = search.players(METHODS[trial.method](search)[None])
     who = {"who": trial.method, "seed": trial.seed, "lives": search.lives, "ticks": search.lived}
     rows = []
-    for way, options in ways_of(config).items():
+    for way, options in WAYS[str(config.habitat["name"])].items():
         how = {"senses": "live", "habitat": {}, "games": GAMES, "ticks": LONGEST} | options
         found = judged(config, players, [(0, 0)], **how)[0].to_dict()
         medians = {name: round(found[name]["median"], 2) for name in COLUMNS if name in found}
         rows.append({**who, "way": way, **medians})
     return rows
-
-
-def ways_of(config: Config) -> dict[str, dict[str, Any]]:
-    """Return the ways of playing in a habitat; habitats that `games.py` does not know have one."""
-    return WAYS.get(str(config.habitat["name"]), {"fresh starts": {}})
 
 
 def reference(file: Path) -> Config:

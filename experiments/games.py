@@ -5,8 +5,8 @@
 The experiments must have been run (`primordia experiment`). An Atari player plays in four ways: the game
 of its task; games with sticky buttons and no-ops at the start; the game of its task with frozen senses;
 and the games with sticky buttons blindly, with the buttons that it pressed in the game of its task. The
-games of robots all begin differently. A robot plays fresh games in three ways: seeing, with frozen
-senses, and blindly.
+games of robots and poles all begin differently. A robot plays fresh games in three ways: seeing, with
+frozen senses, and blindly. A pole balancer plays fresh games.
 
 The longest-lived of many may be as good by luck as by descent. So all organisms that are alive at the
 end play one unknown game each. As many founders as each world of the reference had births live one life;
@@ -38,13 +38,14 @@ WAYS: dict[str, dict[str, dict[str, Any]]] = {
         "senses frozen": {"senses": "frozen"},
         "blindly, sticky, no-ops": {"senses": "ignored", "habitat": NOISE},
     },
+    "cartpole": {"fresh starts": {}},
     "mujoco": {
         "fresh starts": {},
         "senses frozen": {"senses": "frozen"},
         "blindly": {"senses": "ignored"},
     },
 }
-UNKNOWN = {"atari": "sticky, no-ops", "mujoco": "fresh starts"}
+UNKNOWN = {"atari": "sticky, no-ops", "cartpole": "fresh starts", "mujoco": "fresh starts"}
 """the way in which organisms that were not chosen play"""
 
 
@@ -75,7 +76,8 @@ def played(name: str, run: Records, group: Group) -> list[dict[str, Any]]:
 
 def worlds_of(standing: Standing, run: Records) -> list[dict[str, Any]]:
     """Return a row for each world: its seed, and the median organism's median game."""
-    outcomes = {name: standing.by_world(name) for name in OUTCOMES}
+    found = {name: standing.by_world(name) for name in OUTCOMES}
+    outcomes = {name: of for name, of in found.items() if of}
     rows = []
     for world in outcomes["lifespan"]:
         each = [one for one in standing.evaluations if one.world == world]
@@ -100,10 +102,10 @@ def write_rows(stem: Path, rows: list[dict[str, Any]], summary_text: str) -> Non
 
 def summary(rows: list[dict[str, Any]]) -> str:
     """Return a table of medians and quartiles over worlds of the median organism's median game."""
-    lines = []
+    lines, outcomes = [], [name for name in OUTCOMES if name in rows[0]]
     for name, way in dict.fromkeys((row["who"], row["way"]) for row in rows):
         worlds = [row for row in rows if (row["who"], row["way"]) == (name, way)]
-        cells = [spread_text([row[column] for row in worlds]) for column in OUTCOMES]
+        cells = [spread_text([row[column] for row in worlds]) for column in outcomes]
         lines.append([name, way, len(worlds), sum(row["organisms"] for row in worlds), *cells])
     note = (
         f"Medians over worlds (quartiles) of the median organism's median game. Champions and best"
@@ -112,7 +114,7 @@ def summary(rows: list[dict[str, Any]]) -> str:
         " had births there. Where nothing is drawn at random, the own game of a champion or best founder"
         f" is the one that chose it; the others are not. Games were cut after {TICKS:,} ticks."
     )
-    return f"{table(['who', 'plays', 'worlds', 'organisms', *OUTCOMES], lines)}\n\n{note}"
+    return f"{table(['who', 'plays', 'worlds', 'organisms', *outcomes], lines)}\n\n{note}"
 
 
 if __name__ == "__main__":
