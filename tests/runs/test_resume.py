@@ -162,7 +162,7 @@ def test_verify_finds_no_difference_in_a_good_run(tmp_path: Path) -> None:
     assert here("run", *WHAT, "--ticks", 1_200, "--out", run).returncode == 0
     done = here("verify", run)
     assert (done.returncode, done.stderr) == (0, "")
-    assert "holds" in done.stdout
+    assert "is verified" in done.stdout
 
 
 def test_a_script_begins_a_run_or_goes_on_with_it(tmp_path: Path) -> None:
@@ -186,7 +186,7 @@ def test_what_a_killed_start_has_left_is_no_obstacle(tmp_path: Path) -> None:
         "CartPole-survival", tmp_path / "run", cells=4, stop={"ticks": 5}, resume=True
     )
     assert run.info()["ticks"] == 5
-    with pytest.raises(InputError, match="name its directory"):
+    with pytest.raises(InputError, match="needs the directory of the run"):
         primordia.run("CartPole-survival", resume=True)
     (tmp_path / "other").mkdir()
     (tmp_path / "other" / "mine.txt").touch()

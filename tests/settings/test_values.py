@@ -266,5 +266,5 @@ def test_what_is_accepted_can_be_lived(
         assert not run.exists()
         return
     assert (done.returncode, done.stderr) == (0, "")
-    assert f"{run} holds" in here("verify", run).stdout
+    assert f"{run} is verified" in here("verify", run).stdout
     shutil.rmtree(folder)

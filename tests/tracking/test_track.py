@@ -230,7 +230,7 @@ def test_what_cannot_be_written_is_one_clear_line(
     complains(here("track", run), 2, "--tensorboard DIR, --wandb DIR, or both")
     complains(here("track", tmp_path, "--wandb", tmp_path), 2, "is not a run")
     words = ("--tensorboard", tmp_path / "tb", "--every", "0")
-    complains(here("track", run, *words), 2, "--every: seconds, more than 0")
+    complains(here("track", run, *words), 2, "--every must be a number of seconds above 0")
     early = tmp_path / "early"
     loop.start(config({**SETTINGS, "stop": {"ticks": 5}}), early)
     complains(here("track", early, *words[:2]), 2, "no row of metrics yet")
