@@ -40,8 +40,10 @@ def test_a_directory_that_is_taken_is_refused(run: Path, tmp_path: Path) -> None
 def test_a_directory_that_is_no_run_is_an_error(command: str, tmp_path: Path) -> None:
     (tmp_path / "mine.txt").write_text("mine")
     before = contents(tmp_path)
-    for path in (tmp_path, tmp_path / "nothing", tmp_path / "mine.txt"):
+    for path in (tmp_path, tmp_path / "nothing"):
         complains(here(command, path), 2, str(path), "is not a run of primordia")
+    file = tmp_path / "mine.txt"
+    complains(here(command, file), 2, str(file), "is neither a run of primordia nor a bundle")
     assert contents(tmp_path) == before
 
 
