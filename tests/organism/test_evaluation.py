@@ -122,7 +122,7 @@ def test_an_organism_starves_by_the_metabolism_of_its_task(tmp_path: Path) -> No
 def test_the_command_prints_figures_and_json(pong: Path) -> None:
     organism = "--organism", str(primordia.load(pong).oldest().id)
     one = here("evaluate", pong, *organism).stdout
-    assert "1 distinct game; nothing is drawn at random" in one
+    assert "1 distinct game; nothing is random" in one
     sticky = "--games", "3", "--sticky", "0.25", "--ticks", "300"
     many = here("evaluate", pong, *organism, *sticky).stdout
     assert "3 games, sticky 0.25" in many

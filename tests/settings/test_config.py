@@ -224,8 +224,8 @@ def test_help_without_a_task_shows_what_all_tasks_have() -> None:
 def test_help_shows_the_values_of_a_file_or_else_the_defaults(tmp_path: Path) -> None:
     file = tmp_path / "mine.toml"
     file.write_text(f'task = "{TASK}"\nhazard = 0.25\n')
-    assert "for all organisms [0.25]" in " ".join(help_text(file).split())
-    assert "for all organisms [0.0]" in " ".join(help_text().split())
+    assert "by accident in a tick [0.25]" in " ".join(help_text(file).split())
+    assert "by accident in a tick [0.0]" in " ".join(help_text().split())
     assert "values of" not in help_text("--out", tmp_path)
     file.write_text('task = "own"\n[habitat]\nname = "no.such:Habitat"\n')
     assert "--cells" in help_text(file)
