@@ -131,7 +131,7 @@ def test_lists_of_numbers_are_read(text: str, means: np.ndarray) -> None:
         ("speed < 1", "'speed' has 3 numbers; say which"),
         ("speed[1:] < 1", "this is a list of 2 numbers, where a number is needed"),
         ("sum(speed[3:]) < 1", "this slice is empty: speed has 3 numbers"),
-        ("sum(speed[::2]) < 1", "this slice is empty"),
+        ("sum(speed[::2]) < 1", "without a step"),
         ("sum(speed[:points]) < 1", "column 12: a slice is"),
         ("sum(points) < 1", "column 5: this is a number, where a list of numbers is needed"),
         ("place < 1", "'place' has parts; say which: place\\[\"hand\"\\]"),

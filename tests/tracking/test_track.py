@@ -116,7 +116,7 @@ def test_files_of_others_are_left_alone(run: Path, tmp_path: Path) -> None:
     (tmp_path / "seed-3").mkdir()
     own = tmp_path / "seed-3" / "events.out.tfevents.1"
     own.write_text("mine")
-    complains(here("track", run, "--tensorboard", tmp_path), 2, "events.out.tfevents.1 belongs")
+    complains(here("track", run, "--tensorboard", tmp_path), 2, "events.out.tfevents.1 belongs to")
     assert own.read_text() == "mine"
     own.unlink()
     primordia.load(run).track(tensorboard=tmp_path)

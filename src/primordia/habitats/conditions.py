@@ -213,8 +213,10 @@ class _Reader:
     ) -> tuple[Kind, Compute]:
         """Read one number of a list, or a slice of it."""
         if isinstance(node.slice, ast.Slice):
+            if node.slice.step is not None:
+                raise self._error(node, "a slice is [2:], [:5] or [2:5], without a step")
             chosen = range(count)[self._limits(node.slice)]
-            if not chosen or node.slice.step is not None:
+            if not chosen:
                 raise self._error(node, f"this slice is empty: {name} has {count} numbers")
             columns = slice(chosen.start, chosen.stop)
             return len(chosen), lambda values: _as_float(numbers(values)[:, columns])
