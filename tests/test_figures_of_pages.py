@@ -13,7 +13,7 @@ import pytest
 HERE = Path(__file__).parent.parent
 TEMPLATES = HERE / "docs" / "templates"
 PAGES = sorted(
-    page for part in ("results", "explanation") for page in (TEMPLATES / part).glob("*.md")
+    page for part in ("results", "explanation", "teach") for page in (TEMPLATES / part).glob("*.md")
 )
 """Templates of pages that report what was measured."""
 

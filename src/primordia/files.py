@@ -50,9 +50,8 @@ def write(path: Path, fill: Callable[[Path], object]) -> None:
             temporary.unlink()
 
     try:
-        temporary.unlink(
-            missing_ok=True
-        )  # the temporary path could be a link, which `fill` would follow
+        # The temporary path could be a link, which `fill` would follow.
+        temporary.unlink(missing_ok=True)
         with interrupts.undone_by(undo):
             fill(temporary)
             sync(temporary)

@@ -21,11 +21,15 @@ class Terminal:
     def __init__(self, ours: int, theirs: int) -> None:
         self.ours, self.theirs = ours, theirs
 
-    def begin(self, *words: object) -> subprocess.Popen[bytes]:
-        """Start a command whose controlling terminal this is, so that it gets keys and Ctrl-C."""
+    def begin(self, *words: object, keys: str | None = None) -> subprocess.Popen[bytes]:
+        """Start a command whose controlling terminal this is, so that it gets keys and Ctrl-C.
+
+        `keys` is a file that it reads in place of the terminal.
+        """
         variables = environment() | SETTINGS
         variables.pop("NO_COLOR", None)
-        shell = ["sh", "-c", 'exec <"$0" >"$0" 2>&1 "$@"', os.ttyname(self.theirs)]
+        take = 'exec <"$0" >"$0" 2>&1 "$@"' if keys is None else f'exec >"$0" 2>&1 "$@" <{keys}'
+        shell = ["sh", "-c", take, os.ttyname(self.theirs)]
         return subprocess.Popen(
             [*shell, *COMMAND, *map(str, words)], env=variables, start_new_session=True
         )

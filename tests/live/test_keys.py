@@ -122,6 +122,16 @@ def test_without_a_terminal_there_are_no_keys(monkeypatch: pytest.MonkeyPatch) -
         assert keys.pressed(0.0) == ""
 
 
+def test_keys_are_named_only_where_there_are_keys(terminal: Terminal, tmp_path: Path) -> None:
+    """Standard input may be a file while the screen is a terminal."""
+    process = terminal.begin("run", *SMALL, "--out", tmp_path / "run", keys=os.devnull)
+    written = terminal.read_until("\x1b[?25l", "line of descent", "takeovers")
+    assert "quit" not in written
+    process.send_signal(signal.SIGINT)
+    terminal.read_until("Stopped and saved.")
+    assert process.wait(timeout=60) == 130
+
+
 # Nothing that is lived.
 
 

@@ -256,9 +256,8 @@ def test_any_change_of_bytes_is_refused_or_makes_no_difference(
 ) -> None:
     """Whatever is read of a changed bundle has the content of the bundle, since checksums hold."""
     content = bytearray(file.read_bytes())
-    first = (
-        content.index(CENTRAL) if late else 0
-    )  # headers at the end are a small share of a bundle
+    # Headers at the end are a small share of a bundle.
+    first = content.index(CENTRAL) if late else 0
     for share, value in changes:
         content[first + int(share * (len(content) - first))] = value
     with tempfile.TemporaryDirectory() as folder:

@@ -106,8 +106,7 @@ class Run:
         return Organism(run, run.lives.oldest(world, after))
 
     def champions(self) -> list[Organism]:
-        """Return the `oldest` organism of each world in which anything was born since the run
-        began."""
+        """Return the `oldest` organism of each world in which anything was born since the run began."""
         run = self.opened()
         return [Organism(run, row) for row in run.lives.champions().tolist()]
 
@@ -198,8 +197,7 @@ class Run:
     def plot(
         self, out: str | Path | None = None, world: int = 0, figures: Sequence[str] = ()
     ) -> list[Path]:
-        """Draw the figures in a folder, by default the run's own. Return the files; see
-        `plot.plot`."""
+        """Draw the figures in a folder, by default the run's own. Return the files; see `plot.plot`."""
         from primordia.figures.plot import plot  # Matplotlib takes a second to load
 
         return plot(self.opened(), Path(out) if out is not None else None, world, figures)
@@ -211,8 +209,7 @@ class Run:
         return film(self.opened(), Path(out) if out is not None else None, world, **options)
 
     def report(self, out: str | Path | None = None) -> Path:
-        """Write a page about the run, by default `report.html` in its directory; see
-        `report.report`."""
+        """Write a page about the run, by default `report.html` in its directory; see `report.report`."""
         from primordia.report.report import report  # Matplotlib takes a second to load
 
         return report(self.opened(), Path(out) if out is not None else None)
@@ -246,8 +243,7 @@ class Run:
         listen: Listener | None = None,
         **more: Any,
     ) -> "Run":
-        """Make a run that goes on from the end of tick `at`, with changed settings; see
-        `runs.fork`."""
+        """Make a run that goes on from the end of tick `at`, with changed settings; see `runs.fork`."""
         path = Path(out) if out is not None else fresh_directory(f"{self.path.name}-at{at}")
         with devices.selected(device):
             fork(self.only(), at, path, {**(settings or {}), **more}, listen)

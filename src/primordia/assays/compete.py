@@ -43,8 +43,7 @@ class Competition:
 
     @property
     def late_share(self) -> np.ndarray:
-        """Mean of `share` over the later half of the ticks, float64 (W,); NaN if nothing lives
-        then."""
+        """Mean of `share` over the later half of the ticks, float64 (W,); NaN if nothing lives then."""
         late = self.share[:, self.share.shape[1] // 2 :]
         known = np.isfinite(late)
         total = np.where(known, late, 0).sum(axis=1)

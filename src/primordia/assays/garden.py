@@ -105,8 +105,7 @@ def _beds(
 
 
 def _oldest(rows: np.ndarray, lifespan: np.ndarray, count: int) -> np.ndarray:
-    """Return the rows of the longest-lived; among equals the last-born come first, as with
-    champions."""
+    """Return the rows of the longest-lived; among equals the last-born come first, as with champions."""
     return rows[np.argsort(lifespan[rows], kind="stable")[::-1][:count]]
 
 

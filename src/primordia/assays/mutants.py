@@ -35,8 +35,7 @@ class Operator(NamedTuple):
 
     @classmethod
     def of(cls, name: str, mutation: Mutation, subjects: Subjects) -> "Operator":
-        """Return the operator of a mutation with its configured rates, for parents without
-        notes."""
+        """Return the operator of a mutation with its configured rates, for parents without notes."""
         count = len(subjects.organism)
         rates = mutation.rates(subjects.law.heredity.layout).items()
         values = {rate: np.full(count, value, np.float32) for rate, value in rates}

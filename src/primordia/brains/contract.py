@@ -70,6 +70,5 @@ class Brain(Settings, ABC):
 
 
 def find(name: object) -> type[Brain]:
-    """Return the brain class called `name`; raise LookupError, with the reason, if there is
-    none."""
+    """Return the brain class called `name`; raise LookupError, with the reason, if there is none."""
     return parts.find("brain", name, KNOWN, Brain)

@@ -28,8 +28,7 @@ class Gated(Brain):
     biases: Biases = False
 
     def blocks(self, senses: int, outputs: int) -> dict[str, Shape]:
-        """Return `UNIT_input` and `UNIT_recurrent` for each of UNITS (Wr, Ur, ...), and `output`
-        (V)."""
+        """Return `UNIT_input` and `UNIT_recurrent` for each of UNITS (Wr, Ur, ...), and `output` (V)."""
         blocks: dict[str, Shape] = {}
         for unit in UNITS:
             blocks |= layer(f"{unit}_input", senses, self.hidden, self.biases)

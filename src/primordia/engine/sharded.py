@@ -60,9 +60,8 @@ class ShardedChunks(FusedChunks):
         Returns:
             state; the number of ticks advanced on the device that advanced most.
         """
-        state = jax.device_put(
-            state, self._split
-        )  # the template stays on its devices, unless it was changed
+        # The template stays on its devices, unless it was changed.
+        state = jax.device_put(state, self._split)
         state, self._lists, done = self._advance(state, self._lists, limits, np.int32(ticks))
         self.events = self._joined()
         return state, int(np.asarray(done).max())

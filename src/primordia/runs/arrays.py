@@ -41,9 +41,8 @@ class Arrays(Mapping[str, np.ndarray]):
         except Exception:  # zipfile raises errors of many kinds for other files
             raise self._damaged() from None
         names = (name.removesuffix(NPY) for name in self._archive.namelist())
-        self._names = dict.fromkeys(
-            map(sys.intern, names)
-        )  # runs of the same arm share these texts
+        # Runs of the same arm share these texts.
+        self._names = dict.fromkeys(map(sys.intern, names))
         self._read: dict[str, np.ndarray] = {}
 
     def __getitem__(self, name: str) -> np.ndarray:

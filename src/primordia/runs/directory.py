@@ -234,9 +234,8 @@ def is_written(run: Path) -> bool:
 @contextmanager
 def held(run: Path) -> Iterator[Callable[[], None]]:
     """Yield a check for a writer; it raises Trouble if the directory was removed or replaced."""
-    handle = os.open(
-        run, os.O_RDONLY
-    )  # while the directory is open, no other directory gets its inode number
+    # While the directory is open, no other directory gets its inode number.
+    handle = os.open(run, os.O_RDONLY)
 
     def check() -> None:
         try:

@@ -38,9 +38,8 @@ class Renderer:
         self._scene = mujoco.MjvScene(model, MOST_SHAPES)
         self._scene.flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = 0
         self._context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100)
-        atexit.register(
-            weakref.finalize(self, self._context.free)
-        )  # before OpenGL's context is released
+        # It is freed before OpenGL's context is released.
+        atexit.register(weakref.finalize(self, self._context.free))
         self._camera = self._make_camera()
 
     def _make_camera(self) -> Any:
