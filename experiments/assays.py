@@ -1,4 +1,4 @@
-"""Measure in every world of experiments what is inherited, and whether a good line keeps its ground.
+"""Measure in every world of experiments what is inherited, and whether a good line persists.
 
     python experiments/assays.py experiments/atari/pong-forager.toml
 

@@ -36,7 +36,7 @@ WORDS = {
     "children mutate": "Share of the latest births whose genome differs from the parent's.",
     "mutants as good": "Share of good parents' mutants that live as long as the parent, compared with"
     " copies.",
-    "good lines hold": "Above 1, a long-lived line keeps its ground against its own mutants. Below 1,"
+    "good lines hold": "Above 1, a long-lived line persists against its own mutants. Below 1,"
     " mutation takes more than long lives give.",
     "organism-ticks/s": "Ticks lived by all organisms together in a second of your time.",
     "time left": "Time until the last world reaches its limit, at the present speed.",
