@@ -1,4 +1,4 @@
-"""Whether good lines keep their ground, in the latest births that a view has seen."""
+"""Whether good lines persist, in the latest births that a view has seen."""
 
 from collections.abc import Sequence
 from typing import Any, NamedTuple

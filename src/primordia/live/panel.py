@@ -59,7 +59,7 @@ def numbers(
         cells: number of cells of one world.
         outlook: speed and remaining time.
         takeovers: number of takeovers in all worlds; None if lines of descent are not followed.
-        ground: whether good lines keep their ground; None if unknown.
+        ground: whether good lines persist; None if unknown.
     """
     worlds = len(census.tick)
     values = {
