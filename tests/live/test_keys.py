@@ -5,6 +5,7 @@ import os
 import signal
 import sys
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -20,9 +21,10 @@ from primordia.live import pace as paces
 from primordia.live.pace import FRAME, LEVELS, Pace
 from primordia.live.terminal import Keyboard
 from primordia.live.view import View
+from primordia.live.watching import watching
 from primordia.random.wide import Wide
 from primordia.runs import loop
-from primordia.runs.loop import Status
+from primordia.runs.loop import Listener, Status
 from tests.live.terminals import Terminal, opened
 from tests.worlds import MEADOW, config
 
@@ -191,8 +193,8 @@ class Clock:
         self.now += seconds + 1e-9
 
 
-def lived(pace: Pace, clock: Clock, capacity: float, seconds: float) -> tuple[int, float]:
-    """Live at a pace on a machine that can live `capacity` ticks a second -> ticks, seconds."""
+def lived(listen: Listener, clock: Clock, capacity: float, seconds: float) -> tuple[int, float]:
+    """Live while a listener keeps the pace, on a machine of `capacity` ticks a second -> ticks, seconds."""
     engine: Any = SimpleNamespace(longest=None)
     tick, began = 0, clock.now
     while clock.now - began < seconds:
@@ -202,7 +204,7 @@ def lived(pace: Pace, clock: Clock, capacity: float, seconds: float) -> tuple[in
         words = Wide(*np.array([[0, 0], [tick, 3]], np.uint32))
         worlds = SimpleNamespace(worlds=SimpleNamespace(tick=words))
         engine.state = SimpleNamespace(world=worlds)
-        pace(Status(engine, clock.now), clock.sleep)
+        listen(Status(engine, clock.now))
     return tick, clock.now - began
 
 
@@ -214,7 +216,7 @@ def test_no_more_ticks_a_second_than_the_limit(limit: float, capacity: float) ->
     clock = Clock()
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(paces, "time", clock)
-        ticks, seconds = lived(Pace(limit), clock, capacity, 20.0)
+        ticks, seconds = lived(partial(Pace(limit), react=clock.sleep), clock, capacity, 20.0)
         first = max(int(0.2 * capacity), 1)  # the first chunk knows no limit
         assert ticks - first <= limit * seconds + max(limit * FRAME, 1)
         assert ticks >= 0.8 * min(limit, capacity) * 20.0 - 1, "and hardly fewer"
@@ -232,8 +234,28 @@ def test_slower_and_faster_go_through_levels(monkeypatch: pytest.MonkeyPatch) ->
     pace.faster()
     pace.faster()
     assert pace.limit == 10
-    lived(pace, clock, 5.0, 10.0)
+    lived(partial(pace, react=clock.sleep), clock, 5.0, 10.0)
     pace.faster()
     assert pace.limit is None, "a higher limit would make no difference"
     pace.faster()
     assert str(pace) == ""
+
+
+@pytest.mark.parametrize("quiet", [True, False])
+def test_a_speed_holds_also_where_nothing_is_drawn(
+    quiet: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a quiet run, and of one that prints plain lines, since its output is no terminal."""
+    clock = Clock()
+    monkeypatch.setattr(paces, "time", clock)
+    monkeypatch.setattr("primordia.live.watching.Plain._print", lambda *_: None)
+    monkeypatch.setattr(Pace.__call__, "__defaults__", (clock.sleep,))
+    with watching(quiet, 50.0) as listen:
+        assert listen is not None
+        ticks, seconds = lived(listen, clock, 1000.0, 20.0)
+    assert 0.8 * 50 * seconds <= ticks <= 50 * seconds + 200
+
+
+def test_a_quiet_run_without_a_speed_is_not_listened_to() -> None:
+    with watching(quiet=True) as listen:
+        assert listen is None

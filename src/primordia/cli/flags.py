@@ -24,7 +24,7 @@ device_option = click.option(
     "--device",
     default="cpu",
     show_default=True,
-    help="Devices that compute: cpu or gpu, all that JAX has.",
+    help="Compute on cpu, or on gpu: all GPUs that JAX finds.",
 )
 checkpoint_option = click.option(
     "--checkpoint-every",
