@@ -194,7 +194,7 @@ class Clock:
 
 
 def lived(listen: Listener, clock: Clock, capacity: float, seconds: float) -> tuple[int, float]:
-    """Live while a listener keeps the pace, on a machine of `capacity` ticks a second -> ticks, seconds."""
+    """Live at a pace on a machine of `capacity` ticks a second -> ticks, seconds."""
     engine: Any = SimpleNamespace(longest=None)
     tick, began = 0, clock.now
     while clock.now - began < seconds:
