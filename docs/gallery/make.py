@@ -122,11 +122,11 @@ HEAD = """\
 
 # Gallery
 
-The two commands below each world or life live it again, to the last bit, and film it.
-`primordia info RUN --json` then gives the digest, of which the page has the first 16 digits.
-The pictures are small copies of the films. Commands are for the root of a clone. Games need
-`primordia[atari]`, robots `primordia[mujoco]`, MountainCar `primordia[gymnasium]`, and Asterix
-`primordia[gymnax]`.
+Each entry has two commands: the first runs the world again, to the last bit, and the second films
+it. To compare, `primordia info RUN --json` prints the digest of the world, a hash of its whole
+history; this page has its first 16 digits. The pictures are small copies of the films. Type the
+commands in the root of a clone. Games need the [extra](../how-to/install.md) `atari`, robots `mujoco`,
+MountainCar `gymnasium`, and Asterix `gymnax`.
 """
 
 
