@@ -215,7 +215,7 @@ def validated(values: dict[str, Any], source: str) -> Config:
     """Return a Config of these values, checked as a whole.
 
     Raises:
-        InputError: a value is wrong; the message names it and the source, in one line.
+        InputError: a value is wrong; the message, one line, names the setting and the source.
     """
     config = _parsed(values, source, partial(_settings_of_parts, values))
     return checked(_completed(config, source), source)
@@ -225,7 +225,7 @@ def parsed(values: dict[str, Any], source: str) -> Config:
     """Return a Config of these values. Each value is checked alone; no code of a part is executed.
 
     Raises:
-        InputError: a value is wrong; the message names it and the source, in one line.
+        InputError: a value is wrong; the message, one line, names the setting and the source.
     """
     return _parsed(values, source, list)
 

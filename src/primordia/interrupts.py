@@ -72,7 +72,8 @@ def came() -> bool:
 
 
 def deferred() -> AbstractContextManager[None]:
-    """Keep signals from ending the process in a `with` block; the block checks the list of `noting`."""
+    """Keep a first signal from ending the process in a `with` block, which checks the list of
+    `noting`."""
     return _entry(_deferred, True)
 
 

@@ -23,7 +23,7 @@ class Clades:
     """whether the reason for a renewal was the takeover of one line, bool (K,)"""
 
     def lines_at(self, rows: np.ndarray, ticks: np.ndarray) -> np.ndarray:
-        """Return the line of each organism in `rows` after one of `ticks`, int64; it must be alive then.
+        """Return the line of each organism in `rows` after a tick of its life, int64.
 
         `rows` and `ticks` are broadcast against each other.
         """

@@ -41,8 +41,8 @@ class Families:
         known.
 
         The result of a pair with a living organism is known in two cases. A living child lives as
-        long if it has reached the lifespan of its dead parent. A dead child does not if it died
-        younger than its living parent is now.
+        long if it has reached the lifespan of its dead parent. A dead child lives less long if it
+        died younger than its living parent is now.
         """
         child, parent = self.lifespans
         longer = (child >= parent) & self.lives.died[self.parent]

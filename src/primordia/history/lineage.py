@@ -100,7 +100,7 @@ def changes(run: Records, organism: int, world: int = 0) -> np.ndarray:
 def _starting_point(run: Records, lineage: Lives) -> tuple[np.ndarray, Lives]:
     """Return the genome from which a lineage starts, (P,), and the births to replay after it.
 
-    In a fork it is the genome of the lineage's youngest organism at the fork, if there is one.
+    In a fork the lineage starts from its youngest organism at the fork, if there is one.
     Otherwise the genome is all zeros, and the founder's birth is the first to be replayed.
     """
     fork = run.config.fork
@@ -151,7 +151,7 @@ def _replay_births(
         heredity: the heredity of the run.
         genome: genome of the first parent, (P,).
         counts: seed of the world, birth number and tick of each birth, Wide.
-        marks: cell within the world; whether the newborn is a founder; false for padding.
+        marks: cell within the world; whether the newborn is a founder; whether the birth is real.
         climate: values of the settings at each birth.
         notes: the mutation's notes at each birth, int32 (S, n).
 

@@ -1,7 +1,7 @@
 """Lines of descent, followed event by event in a running world or in its records.
 
-A founder begins a line, and a child belongs to its parent's line. Once a crowd of CROWD organisms
-is alive at the end of a tick after a founder's birth, each of the living begins a line. If all the
+A founder begins a line, and a child belongs to its parent's line. As soon as a crowd (see CROWD) is
+alive at the end of a tick after a founder's birth, each of the living begins a line. If all the
 living are in one line after a later tick, that line has taken over, and each of the living begins a
 new line. So the lines descend from the population at one moment, and do not depend on the length of
 chunks.

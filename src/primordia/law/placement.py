@@ -174,8 +174,8 @@ def _cells(like: Array) -> Array:
 
 
 def _contest(wants: Array, target: Array, priority: Array) -> Array:
-    """Return the parent that wins each cell, or -1. Of its contestants the smallest (priority,
-    cell) wins."""
+    """Return the parent that wins each cell, or -1. The contestant with the smallest priority wins,
+    and among equal ones the smallest cell."""
     worlds, cells = wants.shape
     nowhere = worlds * cells
     slot = target + cells * lax.broadcasted_iota(jnp.int32, wants.shape, 0)

@@ -39,7 +39,7 @@ def no_fates(law: Law) -> Fates:
 
 
 def keys_of(worlds: Worlds, ticks: Array) -> Streams:
-    """Return the keys of `think` and `judge` for the tick that is `ticks` after the last settled one.
+    """Return the keys of `think` and `judge` in a tick; `ticks` counts from the last settled tick.
 
     Each key is (W,), and `ticks` is int32 ().
     """

@@ -1,4 +1,4 @@
-"""One organism beside its world: a picture of its body, bars for its senses, and its next action."""
+"""One organism beside its world: its picture, bars for its senses and memory, and its next action."""
 
 from typing import Any, NamedTuple
 

@@ -1,4 +1,4 @@
-"""Lines of descent of the worlds that may be shown, followed unless there are too many births."""
+"""Lines of descent of the worlds that may be shown, followed unless cells or births are too many."""
 
 from collections.abc import Iterable
 

@@ -75,8 +75,8 @@ class Moments(NamedTuple):
 
 
 Change: TypeAlias = Callable[[Array], Array]
-"""A function of K genomes: their change of behaviour in the parents' moments, float32 (K,) from (K,
-P); see `Mutation.moments`."""
+"""A function of K genomes: their change of behaviour in the parents' moments (`Mutation.moments`),
+float32 (K,) from (K, P)."""
 
 
 class Mutation(Settings, ABC):

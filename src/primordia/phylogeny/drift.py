@@ -73,7 +73,7 @@ class Deal(NamedTuple):
 
     @property
     def parts(self) -> Iterator[tuple[int, int, int, int]]:
-        """For each instant: its place, begin and end of the events since the last, and the living."""
+        """For each instant: its place, begin and end of its events, and the number of living."""
         begin = np.append(0, self.places[:-1])
         rows = np.array([np.arange(len(begin)), begin, self.places, self.living])
         return map(tuple, rows.T.tolist())
