@@ -1,4 +1,4 @@
-"""`python -m primordia`: it imports modules of the current folder only if a task names them."""
+"""Run `python -m primordia`; modules of the current folder are imported only if a task names them."""
 
 import sys
 

@@ -7,7 +7,7 @@ from typing import Any
 import jax
 
 KEPT = 64
-"""number of the last used compiled functions that are kept, each with its code for all shapes of a
+"""number of compiled functions that are kept: those used last, each with its code for all shapes of a
 call"""
 
 
@@ -19,8 +19,8 @@ def shared(function: Callable, *fixed: Any, donate: tuple[int, ...] = ()) -> Cal
 
     Args:
         function: a pure function of a module or a class.
-        fixed: its first arguments, which never change.
-        donate: positions among the other arguments whose memory a call may reuse; see
+        fixed: the function's first arguments, which never change.
+        donate: positions, among the other arguments, of those whose memory a call may reuse; see
             `donate_argnums`.
     """
     try:

@@ -46,7 +46,7 @@ CONTRACTS: dict[str, Any] = {"habitat": habitats, "brain": brains, "mutation": m
 
 
 class Stop(Settings):
-    """The limits of a world; a stopped world is frozen while others of the run go on."""
+    """The limits of a world; a stopped world is frozen while the run's other worlds go on."""
 
     ticks: int | None = Field(None, ge=1, lt=2**63, description="ticks after which a world stops")
     births: int | None = Field(
@@ -66,8 +66,7 @@ class ForkedFrom(Settings):
 
 
 class Config(Settings):
-    """All settings of a run. A run depends on them, package versions and the device, and on nothing
-    else."""
+    """All settings of a run. A run depends only on its settings, package versions and the device."""
 
     task: str = Field(min_length=1, description="name of the task")
     about: str = Field("", description="the task, in one line")
@@ -119,7 +118,7 @@ class Config(Settings):
         """Return the habitat, made from its class and settings.
 
         Raises:
-            InputError: there is no such habitat, or it does not take these settings.
+            InputError: there is no such habitat, or the habitat does not take these settings.
         """
         habitat = make("habitat", self.habitat, habitats.find)
         try:
@@ -192,7 +191,7 @@ class Config(Settings):
 
     @property
     def begins(self) -> int:
-        """Return the tick after which the records begin: that of the fork, or 0."""
+        """Return the tick after which the records begin: the tick of the fork, or 0 without a fork."""
         return 0 if self.fork is None else self.fork.tick
 
     def to_toml(self) -> str:
@@ -216,17 +215,17 @@ def validated(values: dict[str, Any], source: str) -> Config:
     """Return a Config of these values, checked as a whole.
 
     Raises:
-        InputError: a value is wrong; the message names it and the source, in one line.
+        InputError: a value is wrong; the message, one line, names the setting and the source.
     """
     config = _parsed(values, source, partial(_settings_of_parts, values))
     return checked(_completed(config, source), source)
 
 
 def parsed(values: dict[str, Any], source: str) -> Config:
-    """Return a Config of these values, each checked alone; no code of a part is executed.
+    """Return a Config of these values. Each value is checked alone; no code of a part is executed.
 
     Raises:
-        InputError: a value is wrong; the message names it and the source, in one line.
+        InputError: a value is wrong; the message, one line, names the setting and the source.
     """
     return _parsed(values, source, list)
 
@@ -257,7 +256,7 @@ def _completed(config: Config, source: str) -> Config:
 
 
 def _settings_of_parts(values: dict[str, Any]) -> list[str]:
-    """Return the dotted names of the settings of the parts that a task names, if they are found."""
+    """Return the dotted names of the settings of a task's parts; parts not found are left out."""
     names: list[str] = []
     for part, contract in CONTRACTS.items():
         table = values.get(part, {})
@@ -271,7 +270,7 @@ def checked(config: Config, source: str) -> Config:
     """Return the same Config, checked as a whole.
 
     Raises:
-        InputError: settings do not fit together; the message names them and the source, in one line.
+        InputError: settings do not fit together; one line names the settings and the source.
     """
     try:
         _check(config)

@@ -16,7 +16,7 @@ OF_XLA = "NPROC"
 
 
 def count() -> int:
-    """Return the number of cores that PRIMORDIA_CORES gives, or else that of the system.
+    """Return the number in PRIMORDIA_CORES; without it, the number of `available` cores.
 
     Raises:
         InputError: PRIMORDIA_CORES is not a number of cores.

@@ -1,4 +1,7 @@
-"""The device, the instruction set and the versions that a run depends on. Equal ones give equal bits."""
+"""The device, the instruction set and the versions that a run depends on.
+
+If all three are equal, the results are equal to the last bit.
+"""
 
 import os
 import platform
@@ -31,7 +34,7 @@ def prepare() -> None:
 
     XLA is limited to AVX2, so that x86-64 machines with and without AVX-512 give the same bits
     (measured: no slower). A limit that is already in XLA_FLAGS is kept. XLA reads the flag once in
-    a process, and ignores it as a compiler option of `jax.jit`. If the program has already used
+    a process, and ignores the flag as a compiler option of `jax.jit`. If the program has already used
     JAX, nothing is changed, and the run records the instruction set that XLA_FLAGS allow.
     """
     if backends_are_initialized():
@@ -39,7 +42,7 @@ def prepare() -> None:
     cores.limit_threads()
     flags = os.environ.get("XLA_FLAGS", "")
     if ISA_FLAG not in flags:
-        # The flag stays set: JAX's cache of compiled code tells code for AVX2 from other code by it.
+        # The flag stays set: by this flag JAX's cache tells code compiled for AVX2 from other code.
         os.environ["XLA_FLAGS"] = f"{flags} {ISA_FLAG}=AVX2".strip()
     # A small call is computed by the thread that makes it. Passing it to another thread would cost
     # a third of the time of a tick. JAX reads this option when it starts.
@@ -76,7 +79,7 @@ def default() -> jax.Device:
 
 
 def sharing(worlds: int) -> list[jax.Device]:
-    """Return the devices that share a run's worlds: the default one, and others of its kind.
+    """Return the devices that share a run's worlds: the default device, and others of its kind.
 
     All devices take the same number of worlds. So the number of devices is the largest possible
     divisor of `worlds`.
@@ -93,7 +96,7 @@ def sharing(worlds: int) -> list[jax.Device]:
 
 
 def instruction_set() -> str:
-    """Return the architecture, XLA's newest vector instructions, and the flags that may change bits."""
+    """Return the architecture, the limit of XLA's vector instructions, and flags that may change bits."""
     flags = os.environ.get("XLA_FLAGS", "").split()
     others = sorted(flag for flag in flags if not flag.startswith((ISA_FLAG, *SAME_BITS)))
     machine = platform.machine()

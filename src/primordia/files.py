@@ -1,4 +1,6 @@
-"""Atomic files, either whole or absent: temporary name, fsync, rename, fsync of the folder.
+"""Atomic files, either whole or absent.
+
+A file is written under a temporary name and synced. Then it is renamed, and its folder is synced.
 
 Only regular files are ever replaced. No link is followed in the folders of a run.
 """
@@ -20,7 +22,7 @@ from primordia.errors import InputError, Trouble
 READABLE = 2**26
 """Largest size, in bytes, of a file of settings or of a manifest."""
 LONGEST_NAME = 240
-"""Largest length of a name, in bytes. A disk allows 255, and an unfinished file has a longer name."""
+"""Largest length of a name, in bytes. A disk allows 255; the name of an unfinished file has a prefix."""
 TEMPORARY = ".writing-"
 """Prefix of the names of unfinished files."""
 
@@ -128,7 +130,7 @@ def remove(path: Path) -> None:
     """Remove a file, a folder with its content, or a link (but not its target).
 
     Raises:
-        Trouble: it cannot be removed.
+        Trouble: the path cannot be removed.
     """
     try:
         if path.is_dir() and not path.is_symlink():
@@ -149,10 +151,9 @@ def _kind(path: Path) -> str | None:
 
 
 def check_name(path: Path) -> None:
-    """Raise InputError unless a path is UTF-8, as libraries need it, without a NUL, and short
-    enough.
+    """Raise InputError if a path is not in UTF-8, holds a NUL, or has a name that is too long.
 
-    Python represents bytes that are not UTF-8 by halves of surrogate pairs.
+    Libraries need UTF-8. Python represents other bytes by halves of surrogate pairs.
     """
     name = str(path)
     if "\0" in name or name != name.encode(errors="replace").decode():

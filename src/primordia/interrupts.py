@@ -1,13 +1,14 @@
 """Interrupts: the effects of Ctrl-C, SIGTERM and SIGHUP on commands and runs.
 
 Python's own handler raises KeyboardInterrupt between any two instructions of the main thread. Then
-a library's callback may swallow it, an import may break halfway, and a C++ compiler delays it. So
-signals are only noted here, and take effect in one of two ways:
+a library's callback may swallow the exception, and an import may break halfway. While C++ code
+compiles, the exception has to wait. So signals are only noted here, and take effect in one of two ways:
 
 - A run checks `noted` between two chunks, and writes a checkpoint before it stops. If a chunk does
 not end, since a simulator hangs, a second signal ends the process.
-- At all other times a signal ends the process at once, since a run survives even kill -9. A thread
-does this, which the system wakes whatever the main thread does (`end_commands_at_once`).
+- At all other times a signal ends the process at once, since a run survives even kill -9. The
+process is ended by a thread, which the system wakes whatever the main thread does
+(`end_commands_at_once`).
 """
 
 import atexit
@@ -66,20 +67,22 @@ def noting() -> Iterator[list[int]]:
 
 
 def came() -> bool:
-    """Return whether a signal has been noted, so that whatever waits should stop waiting."""
+    """Return whether a signal has been noted. If so, a function that waits should stop waiting."""
     return bool(_noted)
 
 
 def deferred() -> AbstractContextManager[None]:
-    """Do not end the process at once in a `with` block, which checks `noted`."""
+    """Keep a first signal from ending the process in a `with` block, which checks the list of
+    `noting`."""
     return _entry(_deferred, True)
 
 
 @contextmanager
 def giving_way() -> Iterator[None]:
-    """Never leave the `with` block while the process is being ended, even by an error.
+    """Wait at the end of the `with` block, even after an error, while the process is being ended.
 
-    Meanwhile the main thread goes on, and may fail because one of its files has been removed.
+    Another thread ends the process. Until then the main thread goes on, and may fail because one of
+    its files has been removed.
     """
     try:
         yield
@@ -89,13 +92,13 @@ def giving_way() -> Iterator[None]:
 
 
 def before_end(undo: Callable[[], object]) -> AbstractContextManager[None]:
-    """Call `undo` before the process is ended at once in a `with` block. `undo` must not take a lock."""
+    """Call `undo` before a signal ends the process in a `with` block. `undo` must not take a lock."""
     return _entry(_undo, undo)
 
 
 @contextmanager
 def undone_by(undo: Callable[[], object]) -> Iterator[None]:
-    """Call `undo` if the `with` block fails, or before the process is ended at once in it."""
+    """Call `undo` if the `with` block fails, or before a signal ends the process in the block."""
     try:
         with before_end(undo):
             yield
@@ -105,7 +108,7 @@ def undone_by(undo: Callable[[], object]) -> Iterator[None]:
 
 
 def last_words(words: Callable[[], str]) -> AbstractContextManager[None]:
-    """Print `words()` if the process is ended at once in a `with` block; `words` must not take a lock."""
+    """Print `words()` if a signal ends the process in a `with` block; `words` must not take a lock."""
     return _entry(_last_words, words)
 
 
@@ -123,11 +126,11 @@ def _note(number: int, _: object) -> None:
 
 
 def _handle(handler: Callable[[int, object], None] | signal.Handlers) -> list:
-    """Handle the signals and return their earlier handlers. SIGHUP stays ignored under `nohup`."""
+    """Set the handler of all SIGNALS and return the earlier ones. SIGHUP stays ignored under `nohup`."""
     before = [(each, signal.getsignal(each)) for each in SIGNALS]
     before = [
         (each, own) for each, own in before if own is not None
-    ]  # a handler that Python did not set
+    ]  # None: Python did not set this handler
     if before[-1] == (signal.SIGHUP, signal.SIG_IGN):
         before.pop()
     for each, _ in before:
@@ -153,7 +156,7 @@ def _wait_and_end(woken: int) -> None:
 def _end() -> None:
     _ending.append(True)
     try:
-        # The main thread goes on meanwhile. It may make one more file, or leave a block of `before_end`.
+        # The main thread goes on meanwhile, and may make one more file or leave a block of `before_end`.
         for undo in [*reversed(_undo)] * 3:
             with suppress(Exception):
                 undo()

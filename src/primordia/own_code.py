@@ -1,8 +1,8 @@
 """A user's own code: modules of habitats, brains and mutations outside installed packages.
 
-The code is found on `sys.path`, in the current folder, or in a run, which holds a copy. It is
-imported from the bytes that were read when it was found. A file that changes later, or a cache of
-compiled code, is not used. Installed modules have precedence, so a file `numpy.py` in the current
+The code is found on `sys.path`, in the current folder, or in the copy that a run holds. The bytes
+that were read when the code was found are imported. Later changes of a file and caches of compiled
+code are not used. Installed modules have precedence, so a file `numpy.py` in the current
 folder is never imported.
 """
 
@@ -126,7 +126,7 @@ def admit(code: Sources) -> None:
 
 
 def admitted(modules: Iterable[str]) -> Sources:
-    """Return the files of modules and of what they import, for another process to admit.
+    """Return the files of modules and of their imports, for another process to admit.
 
     A module that was already imported in the ordinary way is admitted here.
     """
@@ -177,7 +177,7 @@ def below(root: Path, module: str) -> Sources:
     Nothing is imported.
 
     Args:
-        root: the folder in which its imports begin.
+        root: the folder in which the module's imports begin.
         module: dotted name.
     """
     code: Sources = {}
@@ -210,12 +210,12 @@ def packages(modules: Iterable[str]) -> dict[str, str]:
 
 
 def _module(name: str) -> str:
-    """Return the dotted name of the module that a file is."""
+    """Return the dotted name of the module in a file, such as `a.b` for `a/b.py`."""
     return name.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
 
 
 def _loaded(module: str) -> Source | None:
-    """Return the source of a module that the process has imported; None if it has not."""
+    """Return the source of a module; None if the process has not imported the module."""
     spec = getattr(sys.modules.get(module), "__spec__", None)
     if isinstance(loader := getattr(spec, "loader", None), _Loader):
         return loader.source
@@ -248,7 +248,7 @@ def _files(module: str, root: Path) -> Iterator[tuple[str, Path]]:
 
 
 def _imports(text: bytes, name: str) -> set[str]:
-    """Return the names of modules that a file may import; some of them may be names of other things."""
+    """Return the names of modules that a file may import; some may be names of functions or classes."""
     package = name.removesuffix(".py").split("/")[:-1]
     imported: set[str] = set()
     try:

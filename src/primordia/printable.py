@@ -1,7 +1,7 @@
 """Printable text: control characters are escaped, so that no name can act on a terminal."""
 
 KEPT = "\n\t"
-"""Control characters that are kept: those that lay out text."""
+"""Control characters that are kept, since they lay out text."""
 
 
 def printable(text: str, kept: str = KEPT) -> str:

@@ -17,8 +17,8 @@ LARGEST = 2**30
 
 
 def keep_compiled_code() -> None:
-    """Set JAX's folder for compiled code, unless the environment does. Call it before JAX is
-    imported.
+    """Set JAX's folder for compiled code, unless the environment sets it. Call this before
+    importing JAX.
 
     Each kind of processor has a separate folder. Machines may share a home folder, and code that
     was compiled for one machine may crash another.

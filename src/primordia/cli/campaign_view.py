@@ -1,4 +1,4 @@
-"""The display of a running experiment: a table in a terminal, elsewhere one line a minute."""
+"""The display of a running experiment: a table in a terminal, elsewhere a line each minute."""
 
 import sys
 import time
@@ -44,7 +44,7 @@ def watching(quiet: bool, read: Callable[[], CampaignStatus]) -> Iterator[Callab
 
 
 class Clock:
-    """The time since the command began, and the jobs done in it."""
+    """The time since the command began, and the number of jobs that were done before."""
 
     def __init__(self) -> None:
         self._began, self._done = time.perf_counter(), -1
@@ -54,7 +54,7 @@ class Clock:
         return time.perf_counter() - self._began
 
     def left(self, status: CampaignStatus) -> float | None:
-        """Return the seconds until all jobs are done, if they take as long as those done since."""
+        """Return the seconds until all jobs are done, from the jobs done so far or under way."""
         done = status.jobs["done"]
         if self._done < 0:
             self._done = done

@@ -47,7 +47,7 @@ def check(env: str) -> None:
 
 
 def _broken_contract(env: str) -> list[str]:
-    """Return how an environment in JAX breaks the contract of habitats; None if it keeps it."""
+    """Return how an environment in JAX breaks the contract of habitats; [] if it does not."""
     import warnings
 
     from primordia.config import load

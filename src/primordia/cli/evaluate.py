@@ -117,7 +117,7 @@ def evaluation_text(result: "Evaluation", changes: dict[str, Any]) -> str:
 
 
 def show_standings(standings: "list[Standing]", title: str) -> None:
-    """Print a row for each group of organisms, and notes on how to read it."""
+    """Print a row for each group of organisms, and notes on how to read the rows."""
     from primordia.comparison.controls import OUTCOMES
 
     outcomes = [name for name in OUTCOMES if standings[0].over_worlds(name)]

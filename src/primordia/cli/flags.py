@@ -63,7 +63,7 @@ def limit_options(command: Any) -> Any:
 
 
 def take_limits(options: dict[str, Any]) -> dict[str, Any]:
-    """Remove the limits from a command's options. Return those that were given."""
+    """Remove the limits from a command's options. Return the limits that were given."""
     given = {name: options.pop(name) for name in LIMITS}
     return {name: _value(text) for name, text in given.items() if text is not None}
 

@@ -29,7 +29,7 @@ def show_table(
 
 
 def spread(values: Iterable[float | None]) -> str:
-    """Return the median and the quartiles of the known values as text; a dash if there are none."""
+    """Return the median and the quartiles of the known values as text; a dash if no value is known."""
     from primordia.comparison.tables import spread_text
 
     return spread_text(float("nan") if value is None else value for value in values)

@@ -43,7 +43,7 @@ def recorded(heredity: Heredity, counts: tuple, marks: tuple, climate: Climate) 
     Args:
         heredity: the heredity of the run.
         counts: seed of the world, birth number and tick of each birth, Wide.
-        marks: cell within the world; whether it is a founder.
+        marks: cell within the world; whether the newborn is a founder.
         climate: values of the settings at each birth.
     """
     (seed, number, tick), (cell, founder) = counts, marks

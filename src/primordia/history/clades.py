@@ -18,14 +18,14 @@ class Clades:
     birth_line: np.ndarray
     """line that each organism was born into, int64 (L,)"""
     renewals: np.ndarray
-    """ticks after which each of the living began a line, int64 (K,), ascending"""
+    """ticks after which each of the living began a line, int64 (K,), in ascending order"""
     by_takeover: np.ndarray
-    """whether the reason was that one line had taken over, bool (K,)"""
+    """whether the reason for a renewal was the takeover of one line, bool (K,)"""
 
     def lines_at(self, rows: np.ndarray, ticks: np.ndarray) -> np.ndarray:
-        """Return the line of each organism in `rows` after a tick at which it is alive, int64.
+        """Return the line of each organism in `rows` after a tick of its life, int64.
 
-        `rows` and `ticks` broadcast.
+        `rows` and `ticks` are broadcast against each other.
         """
         passed = np.searchsorted(self.renewals, ticks, side="right")
         latest = np.append(self.renewals, -1)[passed - 1]
@@ -52,6 +52,6 @@ def find_clades(
 
 
 def crowd_size(lives: Lives) -> int:
-    """Return the number of living at which lines begin: CROWD, or half the largest population."""
+    """Return the number of living at which lines begin: CROWD, or less in a small population."""
     most = int(series.population(lives, lives.born).max())
     return min(CROWD, max(most // 2, 1))

@@ -1,10 +1,10 @@
 """Two kinds of extinctions: of founders that never established a population, and crashes.
 
 A world begins with founders, and begins again with new founders in the tick in which all organisms
-have died. Most founders leave few descendants and die out, which measures the difficulty of a
-start. A crash is the loss of an established population. An extinction is a crash if organisms with
-parents filled half of the cells at the end of a tick since the last founders. Founders do not
-count, since genesis may fill a world with them.
+have died. Most founders leave few descendants and die out. The number of these extinctions measures the
+difficulty of a start. A crash is the loss of an established population. An extinction is a crash if
+it follows a rise: since the last founders were born, organisms with parents have filled half of the
+cells at the end of a tick. Founders do not count, since genesis may fill a world with founders.
 """
 
 from typing import NamedTuple
@@ -29,7 +29,7 @@ class Extinctions(NamedTuple):
 
     @property
     def text(self) -> str:
-        """The number of crashes, and of the worlds that had any."""
+        """The number of crashes, and the number of worlds with a crash."""
         worlds = int((self.crashes > 0).sum())
         many = "1 world" if worlds == 1 else f"{worlds:,} worlds"
         return f"{self.crashes.sum():,} in {many}" if worlds else "0"
@@ -62,7 +62,7 @@ def crashes(run: Records) -> np.ndarray:
 
 
 def _starts(lives: Lives) -> np.ndarray:
-    """Return the ticks in which founders were born in a world, from the first life on."""
+    """Return the ticks in which founders were born in a world, and the tick of the first birth."""
     founded = lives.born[lives.parent < 0]
     return np.unique(np.append(founded, lives.born[:1]))
 

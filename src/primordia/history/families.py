@@ -22,7 +22,7 @@ class Families:
     child: np.ndarray
     """row of each child in `lives`, int64"""
     parent: np.ndarray
-    """row of its parent, int64"""
+    """row of the child's parent, int64"""
     mutant: np.ndarray
     """bool: the child is a mutant, otherwise a copy"""
 
@@ -40,9 +40,9 @@ class Families:
         """Return which children live at least as long as their parents, and which results are
         known.
 
-        The result of a pair with a living organism is known in two cases. A living child that has
-        reached its dead parent's lifespan lives as long. A dead child whose lifespan is less than
-        its living parent's age does not.
+        The result of a pair with a living organism is known in two cases. A living child lives as
+        long if it has reached the lifespan of its dead parent. A dead child lives less long if it
+        died younger than its living parent is now.
         """
         child, parent = self.lifespans
         longer = (child >= parent) & self.lives.died[self.parent]

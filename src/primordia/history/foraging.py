@@ -23,7 +23,7 @@ class Foraging(NamedTuple):
     food: np.ndarray
     """mean food of an organism in a tick, float64 (W, N); NaN if no organism lived"""
     break_even: np.ndarray
-    """food in a tick that kept energy constant, float64 (W, N); infinite if no food did"""
+    """food in a tick that kept energy constant, float64 (W, N); infinite if no amount did"""
 
 
 class Harvest(NamedTuple):
@@ -37,7 +37,7 @@ class Harvest(NamedTuple):
     """organism-ticks, float64"""
 
     def between(self, ticks: np.ndarray) -> np.ndarray:
-        """Return the mean food of an organism in a tick between each two of `ticks`, float64.
+        """Return the mean food of an organism in a tick, between successive `ticks`, float64.
 
         The mean is NaN if no organism lived.
         """
@@ -86,7 +86,7 @@ def foraging(run: Records) -> Foraging:
 
 
 def _break_even(climate: Climates) -> np.ndarray:
-    """Return the food in a tick that keeps energy constant, (n,); infinite if no food does."""
+    """Return the food in a tick that keeps energy constant, (n,); infinite if no amount does."""
     pairs = zip(climate["metabolism.drain"], climate["metabolism.gain"], strict=True)
     foods = (break_even(float(drain), float(gain)) for drain, gain in pairs)
     return np.array([np.inf if food is None else food for food in foods])

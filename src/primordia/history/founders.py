@@ -21,8 +21,8 @@ AT_ONCE = 128
 def founders(run: Records, world: int, count: int) -> np.ndarray:
     """Return the genomes of different founders, float32 (count, P).
 
-    They are made in the climate that the world began with. If a run has ancestors, these founders
-    take the ancestors' genomes in turn.
+    The founders are made in the climate that the world began with. If the run has ancestors, the
+    founders take the ancestors' genomes in turn.
     """
     device.prepare()
     make = shared(_made, run.heredity)

@@ -21,13 +21,14 @@ def info(run: Records) -> dict[str, Any]:
 
     `crashes` are the extinctions after a rise; see `extinctions`. `threshold` is the error threshold
     among the later half of the births; see `threshold`.
-    `saturation` and `fixation` are None, or their tick and number of births (founders included).
-    `restarts` is the number of times that the run was resumed with bodies as at birth, since its
-    habitat cannot save them. Ages, in ticks, and the habitat's counts (`tallies`) are those of the
-    living. `break_even` is the food in a tick, and in a second, that keeps energy constant under
-    the present climate. `tries_per_life` is the number of an organism's tries to copy itself in a
-    life of mean length, at the present replication; below one a lineage dies out. The fields of a
-    single world also appear at the top level.
+    `saturation` and `fixation` are a tick with the number of births until then (founders included),
+    or None if they have not happened. `restarts` is the number of times that the run was resumed
+    with bodies as at birth, since its habitat cannot save them. Ages, in ticks, and the habitat's
+    counts (`tallies`) are those of the living. `break_even` is the food in a tick, and in a second,
+    that keeps energy constant under the present climate. `tries_per_life` tells how often an
+    organism tries to copy itself in a life of mean length, at the present replication. If the
+    number is below one, lineages die out. The fields of a single world also appear at the top
+    level.
     """
     config, progress = run.config, run.progress
     worlds = [
@@ -123,7 +124,7 @@ def _tallies(names: tuple[str, ...], tally: np.ndarray) -> dict[str, dict[str, f
 def _break_even(
     arrays: Mapping[str, np.ndarray], world: int, rate: float | None
 ) -> dict[str, float | None]:
-    """Return the food that keeps energy constant; None if no food does, or `rate` is unknown."""
+    """Return the food that keeps energy constant; None if no amount does, or `rate` is unknown."""
     climate = _climate(arrays, world)
     tick = break_even(climate["metabolism.drain"], climate["metabolism.gain"])
     second = tick * rate if tick is not None and rate is not None else None

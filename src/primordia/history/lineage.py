@@ -56,7 +56,7 @@ def rebuild_all(run: Records, organisms: Sequence[tuple[int, int]]) -> np.ndarra
 
 
 def descent(lives: Lives, organism: int, world: int) -> np.ndarray:
-    """Return the rows of an organism's ancestors, oldest first, then of itself, int64 (D,).
+    """Return the rows of an organism's ancestors, oldest first, then its own row, int64 (D,).
 
     Raises:
         InputError: no such organism was born.
@@ -71,11 +71,11 @@ def descent(lives: Lives, organism: int, world: int) -> np.ndarray:
 
 
 def changes(run: Records, organism: int, world: int = 0) -> np.ndarray:
-    """Return the distance of each genome on a line of descent from its parent's, float64 (D, B).
+    """Return the distance from the parent's genome to each genome on a line of descent, float64 (D, B).
 
-    The distance is the Euclidean (L2) norm of the change in each block of weights, from the first
-    of two parents. It is NaN if the parent's genome is unknown, as for founders and for organisms
-    alive at a fork.
+    The distance is the Euclidean (L2) norm of the change in each block of weights. If there are two
+    parents, the first one is meant. The distance is NaN if the parent's genome is unknown, as for
+    founders and for organisms alive at a fork.
 
     Raises:
         InputError: no such organism was born, or the mutation is code that the user has not trusted.
@@ -98,10 +98,10 @@ def changes(run: Records, organism: int, world: int = 0) -> np.ndarray:
 
 
 def _starting_point(run: Records, lineage: Lives) -> tuple[np.ndarray, Lives]:
-    """Return the genome (P,) to start a lineage from, and the births to replay from there.
+    """Return the genome from which a lineage starts, (P,), and the births to replay after it.
 
-    In a fork this is the genome of the lineage's youngest organism at the fork, if there is one.
-    Elsewhere it is all zeros, and the founder's birth is the first to be replayed.
+    In a fork the lineage starts from its youngest organism at the fork, if there is one.
+    Otherwise the genome is all zeros, and the founder's birth is the first to be replayed.
     """
     fork = run.config.fork
     older = int((lineage.born <= fork.tick).sum()) if fork is not None else 0
@@ -117,7 +117,7 @@ def _replayed(
 ) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     """Replay the births of a lineage (D,) in order, from a genome (P,), part by part.
 
-    Yields the last genome of each part, and the change by each of its births; see `changes`.
+    Yields the last genome of each part, and the change in each birth of the part; see `changes`.
     """
     replay = shared(_replay_births, run.heredity)
     notes, climate = run.notes_of(lineage), past.of_lives(lineage, lineage.born)
@@ -151,7 +151,7 @@ def _replay_births(
         heredity: the heredity of the run.
         genome: genome of the first parent, (P,).
         counts: seed of the world, birth number and tick of each birth, Wide.
-        marks: cell within the world; whether it is a founder; whether it is real, not padding.
+        marks: cell within the world; whether the newborn is a founder; whether the birth is real.
         climate: values of the settings at each birth.
         notes: the mutation's notes at each birth, int32 (S, n).
 

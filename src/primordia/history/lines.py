@@ -1,9 +1,10 @@
 """Lines of descent, followed event by event in a running world or in its records.
 
-A founder begins a line, and a child belongs to its parent's line. After the first tick since a
-founder that leaves a crowd alive, each of the living begins a line. If all the living are in one
-line after a later tick, that line has taken over, and each of the living begins a new line. So the
-lines descend from the population at one moment, and do not depend on the length of chunks.
+A founder begins a line, and a child belongs to its parent's line. As soon as a crowd (see CROWD) is
+alive at the end of a tick after a founder's birth, each of the living begins a line. If all the
+living are in one line after a later tick, that line has taken over, and each of the living begins a
+new line. So the lines descend from the population at one moment, and do not depend on the length of
+chunks.
 """
 
 from collections.abc import Iterator
@@ -40,7 +41,8 @@ class Lines:
     """Lines of the living of one world; a line's number is the birth number of its first organism."""
 
     def __init__(self, living: list[int], crowd: int) -> None:
-        """Begin a line with each of the `living`, by birth number; before genesis there are none."""
+        """Begin a line with each of the `living` (birth numbers), of whom there are none before
+        genesis."""
         self.line_of = {number: number for number in living}
         """birth number -> line, of each organism alive"""
         self.takeovers: list[int] = []
@@ -101,7 +103,7 @@ class Lines:
 
 
 def _in_order(turnover: Turnover) -> Iterator[tuple[int, int, int]]:
-    """Yield tick, birth number, and parent or DIES of each birth and death, by tick, births first."""
+    """Yield each birth and death as (tick, birth number, parent or DIES), by tick, births first."""
     born, parent, born_at, dead, dead_at = turnover
     ticks = np.concatenate([born_at, dead_at])
     order = np.argsort(ticks, kind="stable")

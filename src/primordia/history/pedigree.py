@@ -1,9 +1,9 @@
 """Pedigrees: the genomes of many organisms, rebuilt from the records or with new random draws.
 
-The births of a pedigree are repeated generation by generation. With the recorded draws they give
-the organisms' own genomes, as in `lineage`. With new draws they give the genomes of the neutral
-shadow: the same parents and times of birth, but other founders and mutations, which were never
-selected (Bedau & Packard 1992).
+The births of a pedigree are repeated generation by generation. With the recorded draws, the results
+are the organisms' own genomes, as in `lineage`. With new draws, the results are the genomes of the
+neutral shadow: the same parents and times of birth, but other founders and mutations, which were
+never selected (Bedau & Packard 1992).
 """
 
 from collections import Counter
@@ -32,7 +32,7 @@ def genomes(run: Records, rows: np.ndarray, redrawn: bool = False) -> np.ndarray
 
     Args:
         run: the organisms' run.
-        rows: their rows in the run's lives, int64 (K,).
+        rows: the organisms' rows in the run's lives, int64 (K,).
         redrawn: draw founders and mutations again, with keys that no run uses. Organisms that were
             alive at a fork keep their genomes. Notes that depend on lives or on cells stay as
             recorded.
@@ -46,7 +46,7 @@ def genomes(run: Records, rows: np.ndarray, redrawn: bool = False) -> np.ndarray
 
 
 class _Pedigree:
-    """The births of a run, repeated."""
+    """Repeats the births of a run from its records."""
 
     def __init__(self, run: Records, redrawn: bool) -> None:
         self._run, self._lives, self._past = run, run.lives, PastClimate(run)
@@ -98,13 +98,13 @@ class _Pedigree:
         )
         in_origin = inherited if self._run.origin is not None else np.zeros(len(lives), bool)
         generation = np.where(in_origin[members], -1, 0)
-        for place in np.flatnonzero(parents >= 0):  # both have lower rows than their children
+        for place in np.flatnonzero(parents >= 0):  # parents have lower rows than children
             both = generation[parents[place]], generation[mates[place]] if mates[place] >= 0 else 0
             generation[place] = max(*both, 0) + 1
         return members, parents, mates, generation
 
     def _mate_rows(self) -> np.ndarray:
-        """Return the row of each organism's mate, int64 (L,); -1 without one."""
+        """Return the row of each organism's mate, int64 (L,); -1 without a mate."""
         lives = self._lives
         number = self._run.mates_of(lives)
         rows = lives.rows_of(lives.world, number)
@@ -146,7 +146,7 @@ class _Made:
     """Genomes that have been made; each is kept until its last child has been made."""
 
     def __init__(self, length: int, wanted: np.ndarray, *parents: np.ndarray) -> None:
-        """Keep the `wanted` indices to the end. `parents` are the indices of all parents, -1 for none."""
+        """Keep the genomes at the `wanted` indices. `parents` are the indices of all parents, or -1."""
         self.genomes: dict[int, np.ndarray] = {}
         self._none = np.zeros(length, np.float32)
         self._uses = Counter(wanted.tolist())
@@ -162,7 +162,7 @@ class _Made:
         return np.stack([self.genomes.get(place, self._none) for place in places.tolist()])
 
     def release(self, places: np.ndarray) -> None:
-        """Forget the genomes that are not used again."""
+        """Note that genomes were used once, and forget those that are not used again."""
         for place in places[places >= 0].tolist():
             self._uses[place] -= 1
             if not self._uses[place]:
@@ -192,10 +192,10 @@ def _repeat(
 
     Args:
         heredity: the heredity of the run.
-        redraws_notes: whether `notes` are the parents' notes, from which those of the newborn are
+        redraws_notes: whether `notes` are the parents' notes, from which the newborn's notes are
             drawn.
         counts: seed of the world, birth number and tick of each birth, Wide.
-        marks: cell within the world; whether it is a founder.
+        marks: cell within the world; whether the newborn is a founder.
         climate: values of the settings at each birth.
         of: genomes of parents and mates, float32 (K, P) each; which newborn have a mate, bool (K,).
         notes: notes of the newborn as recorded, or of their parents, int32 (K, n).

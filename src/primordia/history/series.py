@@ -45,12 +45,12 @@ def mean_age(lives: Lives, ticks: np.ndarray) -> np.ndarray:
 
 
 def exposure(start: np.ndarray, stop: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    """Return the ticks of lives from `start` to `stop` between each two of `edges`, int64."""
+    """Return the ticks lived in each bin between `edges`, by lives from `start` to `stop`, int64."""
     return np.diff(_lived_by(start, edges) - _lived_by(stop, edges))
 
 
 def bins(last: int) -> np.ndarray:
-    """Return bin edges 0, 1, 2, 3, 4, 6, 10, ..., `last`: five to a factor of ten; int64."""
+    """Return bin edges 0, 1, 2, 3, 4, 6, 10, ..., `last`: five for each factor of ten; int64."""
     edges = 10 ** (np.arange(5 * np.log10(max(last, 1))) / 5)
     return np.unique(np.concatenate([[0], edges.round(), [max(last, 1)]]).astype(np.int64))
 
@@ -67,12 +67,12 @@ def middle(edges: np.ndarray) -> np.ndarray:
 
 
 def count_until(rising: np.ndarray, ticks: np.ndarray) -> np.ndarray:
-    """Return the number of `rising` values up to each tick, int64."""
+    """Return how many of the ascending values `rising` are at most each tick, int64."""
     return np.searchsorted(rising, ticks, side="right")
 
 
 def _lived_by(start: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    """Return the ticks from each of `start` to an edge, summed over those before it."""
+    """Return the sum of the ticks from each earlier `start` to an edge, for each of `edges`."""
     start = np.sort(start)
     past = count_until(start, edges)
     return past * edges - _sum_first(start, past)

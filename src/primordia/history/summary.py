@@ -10,7 +10,7 @@ MAX_LISTED = 4
 
 
 def summary(info: dict[str, Any]) -> str:
-    """Return the summary of a run in numbers (`info.info`)."""
+    """Return the summary of a run from its numbers (`info.info`)."""
     worlds = info["worlds"]
     count = "1 world" if len(worlds) == 1 else f"{len(worlds):,} worlds"
     control = "" if info["inheritance"] == "parent" else ", no heredity"
@@ -59,7 +59,7 @@ def _extinct(world: dict[str, Any]) -> str:
 
 
 def _break_even(worlds: list[dict[str, Any]]) -> list[str]:
-    """Return a line with the food that keeps an organism alive, from the least world to the most."""
+    """Return a line with the food that keeps an organism alive: the range over all worlds."""
     amounts = []
     for unit in ("tick", "second"):
         food = [world.get("break_even", {}).get(f"food_per_{unit}") for world in worlds]
@@ -110,7 +110,7 @@ def _all_worlds(worlds: list[dict[str, Any]]) -> list[str]:
 
 
 def _threshold(worlds: list[dict[str, Any]]) -> list[str]:
-    """Return a line on the error threshold, or none if it is unknown."""
+    """Return a line on the error threshold, or no line if the threshold is unknown."""
     known = [each["threshold"] for each in worlds if each["threshold"]["held"] is not None]
     if not known:
         return []
@@ -131,7 +131,7 @@ def _causes(worlds: list[dict[str, Any]]) -> str:
 
 
 def _share(worlds: list[dict[str, Any]], name: str, what: str) -> str:
-    """Return how many worlds passed a moment, and after how many births; the others count as later."""
+    """Return how many worlds passed a moment, and after how many births; other worlds count as later."""
     births = [world[name]["births"] if world[name] else np.inf for world in worlds]
     share = f"{np.isfinite(births).sum():,} of {len(worlds):,} {what}"
     q1, median, q3 = np.percentile(births, [25, 50, 75], method="lower")

@@ -28,10 +28,11 @@ class Threshold:
     mutated: float | None
     """p, the share of children that are mutants"""
     as_good: float | None
-    """v: the share of good parents' mutants that live as long as the parent, divided by that of
-    their copies"""
+    """v: the share of good parents' mutants that live as long as the parent, divided by the same
+    share of the parents' copies"""
     advantage: float | None
-    """s: ticks lived for each death among copies of good parents, divided by those among all born"""
+    """s: ticks lived for each death among copies of good parents, divided by the same ratio among all
+    born"""
 
     @property
     def held(self) -> float | None:
@@ -49,8 +50,9 @@ def threshold(run: Records, after: float = LATE) -> list[Threshold]:
     """Measure the error threshold in each world of a run.
 
     A parent is good if it lives at least as long as nine tenths of the organisms that were born
-    late in its world. Its lifespan may be luck. So its mutants are compared with its copies, which
-    have the same genome. In a deterministic game copies live exactly as long as the parent.
+    late in its world. A long lifespan may be luck. So the parent's mutants are compared with its
+    copies, which have the same genome. In a deterministic game copies live exactly as long as the
+    parent.
 
     Args:
         run: the run, or an arm.

@@ -1,6 +1,6 @@
 """Columns of the lists that the law writes and records keep; rows are packed and unpacked by name.
 
-A row is made of uint32 words. A 64-bit number takes two, high word first.
+A row is made of uint32 words. A 64-bit number takes two words, the high word first.
 """
 
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ class Columns:
         return len(self.names) + len(self.pairs)
 
     def words(self, **values: Array | Wide) -> Array:
-        """Return rows uint32 (K, width) from the values (K,) of all columns, by name.
+        """Return rows from the values of all columns by name, uint32 (K, width) from (K,).
 
         Signed integers and float32 numbers keep their bits.
         """
@@ -38,7 +38,8 @@ class Columns:
         return jnp.stack(words, axis=1)
 
     def rows(self, **values: np.ndarray) -> np.ndarray:
-        """Return the same rows on the host, from integers (K,); values of 64 bits are int64 or uint64."""
+        """Return the rows of `words` on the host, from integers (K,); values of 64 bits are int64
+        or uint64."""
         assert set(values) == set(self.names)
         words: list[np.ndarray] = []
         for name in self.names:
@@ -47,7 +48,7 @@ class Columns:
         return np.stack(words, axis=1).astype(np.uint32)
 
     def unpacked(self, rows: np.ndarray) -> dict[str, np.ndarray]:
-        """Return the columns of rows uint32 (K, width): int64 for pairs, else uint32 words, (K,)."""
+        """Return the columns of rows: int64 for pairs, otherwise uint32, (K,) from (K, width)."""
         columns, word = {}, 0
         for name in self.names:
             if name in self.pairs:
@@ -60,7 +61,7 @@ class Columns:
         return columns
 
     def plus(self, *names: str, pairs: tuple[str, ...] = ()) -> "Columns":
-        """Return these columns, followed by more, of which `pairs` have 64 bits."""
+        """Return these columns, followed by `names`; the `pairs` among `names` have 64 bits."""
         return Columns((*self.names, *names), self.pairs.union(pairs))
 
 

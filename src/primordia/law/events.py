@@ -30,7 +30,7 @@ TOTALS = (
     "energy_total",
     "food_total",
 )
-"""Numbers of 64 bits in a sample. Totals are over the living, except that of food, which is over all
+"""Numbers of 64 bits in a sample. Totals are over the living; the total of food is over all
 organisms that ever lived. Energy and food are in 1/1024 units, two's complement."""
 
 
@@ -51,7 +51,7 @@ def sample_columns(rates: tuple[str, ...]) -> Columns:
 
 
 class Rows(NamedTuple):
-    """A list of events: rows uint32 (capacity, fields), of which the first `filled` are valid."""
+    """A list of events. The first `filled` of its rows are valid; uint32 (capacity, fields)."""
 
     rows: Array
     filled: Array
@@ -110,11 +110,12 @@ def for_each(mask: Array, carry: tuple, act: Callable[[Array, Array, tuple], tup
     Args:
         mask: bool (C,).
         carry: passed to the first call of `act`, and from each call to the next.
-        act: takes cells int32 (K,), which of them are valid, bool (K,), and the carry; returns the carry.
-            The last batch is padded with cells that are not valid.
+        act: takes cells, int32 (K,), a mask of the valid cells, bool (K,), and the carry; returns
+            the carry. The last batch is padded with cells that are not valid.
 
     Returns:
-        carry after the last batch. The cost is per batch, and one running sum over the mask.
+        carry after the last batch. The cost is one running sum over the mask, and one call for each
+        batch.
     """
     rank = jnp.cumsum(mask, dtype=jnp.int32)
     slots = jnp.arange(batch(len(mask)), dtype=jnp.int32)
@@ -130,6 +131,6 @@ def for_each(mask: Array, carry: tuple, act: Callable[[Array, Array, tuple], tup
 
 
 def append(list_: Rows, block: Array, valid: Array) -> Rows:
-    """Append a batch of rows uint32 (K, fields); the next batch overwrites those that are not valid."""
+    """Append a batch of rows, uint32 (K, fields). The next batch overwrites rows that are not valid."""
     rows = lax.dynamic_update_slice(list_.rows, block, (list_.filled, jnp.int32(0)))
     return Rows(rows, list_.filled + valid.sum(dtype=jnp.int32))

@@ -20,13 +20,14 @@ def begin(law: Law, seeds: np.ndarray, tick: int = 0, births: int = 0) -> World:
         law: the law.
         seeds: seed of each world, uint64 (W,).
         tick: the first value of the worlds' tick counts.
-        births: the first value of their birth counts.
+        births: the first value of the worlds' birth counts.
     """
     return shared(empty_worlds, law, tick, births)(wide(seeds))
 
 
 def empty_worlds(law: Law, tick: int, births: int, seed: Wide) -> World:
-    """Return the worlds of `begin`. Callers compile it: single operations take three times as long."""
+    """Return the worlds of `begin`. Callers compile this function: single operations take three
+    times as long."""
     count, cells, mutation = len(seed.lo), law.worlds * law.cells, law.heredity.mutation
     worlds = Worlds(
         seed=seed,
@@ -64,7 +65,7 @@ def empty_worlds(law: Law, tick: int, births: int, seed: Wide) -> World:
 
 
 def birth_words(law: Law, worlds: Worlds, needed: Array, words: int) -> Array:
-    """Return random words for bodies born in this tick, uint32 (C, words); zeros unless needed."""
+    """Return random words for bodies born in this tick, or zeros if not `needed`; uint32 (C, words)."""
     key = stream(worlds.seed, Purpose.BODY, worlds.tick).map(law.per_cell)
     return lax.cond(
         needed,
@@ -75,7 +76,7 @@ def birth_words(law: Law, worlds: Worlds, needed: Array, words: int) -> Array:
 
 
 def body_words(key: Wide, cells: Array, words: int) -> Array:
-    """Return random words for bodies: uint32 (N, words), for keys (N,) and cells (N,) within worlds."""
+    """Return random words for bodies, from keys (N,) and cells within worlds (N,): uint32 (N, words)."""
     draws = jnp.arange(-(-words // 2), dtype=jnp.uint32)[:, None]
     # Cells are the last axis, which compilers turn into vector instructions.
     pairs = bits(key, cells, draws)

@@ -2,7 +2,7 @@
 
 Births use `make_newborn`. A genome is rebuilt from its line of descent by `rebuild_genomes`. Both use
 `_genomes`, so they cannot differ. Heredity knows no habitat and no brain, so genomes can be rebuilt
-without them.
+without a habitat or a brain.
 """
 
 from collections.abc import Mapping
@@ -66,7 +66,8 @@ class Heredity:
         return hash(self._content())
 
     def _content(self) -> tuple:
-        """Return the values that decide equality; ancestors, which have no hash, count by their bytes."""
+        """Return the values that decide equality. Arrays have no hash, so ancestors are compared by
+        bytes."""
         of = self.ancestors
         ancestors = None if of is None else (of.shape, of.dtype.str, of.tobytes())
         parts = self.layout, self.mutation, self.recombination
@@ -98,9 +99,9 @@ class Heredity:
     def make_newborn(
         self, birth: Birth, parents: Array, notes: Array, change: Change | None
     ) -> Newborn:
-        """Make K newborn from their parents' genomes float32 (K, P) and notes int32 (K, n).
+        """Make K newborn from the genomes and notes of their parents, float32 (K, P) and int32 (K, n).
 
-        `change` is passed to `Mutation.note`; None if the mutation needs no moments.
+        `change` is passed to `Mutation.note`; it is None if the mutation needs no moments.
         """
         mutation = self.mutation
         if mutation.notes:
@@ -112,7 +113,7 @@ class Heredity:
         return Newborn(genome, notes, mutated)
 
     def rebuild_genomes(self, birth: Birth, parents: Array, notes: Array) -> Array:
-        """Return the genomes (K, P) of recorded births, whose recorded notes are (K, n)."""
+        """Return the genomes of recorded births from the recorded notes, (K, P) and (K, n)."""
         return self._genomes(birth, parents, notes)[0]
 
     def _genomes(self, birth: Birth, parents: Array, notes: Array) -> tuple[Array, Array]:
@@ -127,8 +128,8 @@ class Heredity:
 
         if self.worlds == 1:
             return with_founders(), mutated & ~birth.founder
-        # The results of a branch are stored. In 16 worlds of 32 cells that halves the time of a
-        # tick; in one world it would add a tenth.
+        # In 16 worlds of 32 cells this branch halves the time of a tick. In one world it would add
+        # a tenth, since the results of a branch are stored.
         genome = lax.cond(birth.founder.any(), with_founders, lambda: children)
         return genome, mutated & ~birth.founder
 
@@ -141,10 +142,10 @@ class Heredity:
 
 
 def _one_noise(birth: Birth) -> Draws:
-    """Return draws with one stream of noise: the founder's, or the child's.
+    """Return draws with one stream of noise for each newborn: a founder's, or a child's.
 
-    No newborn needs both, so one noise is drawn for each: drawing both took a tenth of the time of a
-    world with many births.
+    No newborn needs both streams. Drawing both took a tenth of the time of a world with many
+    births.
     """
     streams, cell = birth.draws
     noise = select(birth.founder, streams[Purpose.FOUNDER], streams[Purpose.NOISE])

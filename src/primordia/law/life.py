@@ -62,7 +62,7 @@ def think(
 
 
 def act(law: Law, key: Wide, cell: Array, output: Array) -> Array:
-    """Return the actions for outputs float32 (N, A) of brains; see `think`."""
+    """Return the actions for the outputs of brains, float32 (N, A); see `think`."""
     if law.motor.kind == "direct":
         return chosen(law.action, output, output)
     table = jnp.asarray(quantiles() * np.float32(law.motor.sd))

@@ -1,7 +1,7 @@
 """Metabolism: all energy arithmetic.
 
 Energy is fixed point, int32 in steps of 1/1024 unit, and saturates. In float32, an energy of 2^24 would
-not change when 1 is subtracted, and the organism would seem immortal.
+not change when 1 is subtracted, and the organism would never starve.
 """
 
 from collections.abc import Mapping
@@ -17,8 +17,8 @@ from primordia.settings.base import Rate, Settings
 ONE = 1024
 """Fixed-point steps in one unit of energy or food."""
 MOST = 2**30 - 64
-"""Largest energy or change, in steps: 1,048,575.9 units. It is exact in float32, and the sum of two fits
-in int32."""
+"""Largest energy or change, in steps: 1,048,575.9 units. It is exact in float32, and the sum of two
+such energies fits in int32."""
 
 
 class Metabolism(Settings):
@@ -47,7 +47,7 @@ def add(a: Array, b: Array) -> Array:
 
 
 def break_even(drain: float, gain: float) -> float | None:
-    """Return the food a tick that keeps energy constant without effort; None if no food does."""
+    """Return the food in a tick that keeps energy constant without effort; None if no amount does."""
     return drain / gain if gain > 0 else None
 
 
@@ -67,7 +67,7 @@ class Rates(NamedTuple):
 
 
 def metabolise(energy: Array, food: Array | None, effort: Array | None, rates: Rates) -> Array:
-    """Return the energy of organisms after one tick, int32 (N,); starvation is judged from it."""
+    """Return the energy of organisms after one tick, int32 (N,); an organism starves at 0 or less."""
     change = -to_fixed_point(rates.drain)
     if effort is not None:
         change = add(change, -to_fixed_point(rates.effort_cost * effort))

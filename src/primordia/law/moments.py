@@ -37,7 +37,7 @@ def until_due(rule: Moments, worlds: Worlds) -> Array:
 
 
 def moment_due(law: Law, worlds: Worlds, live_worlds: Array) -> Array:
-    """Return which of the worlds that ran in a tick remember at its end, bool (W,)."""
+    """Return which of the worlds that ran in a tick remember at the end of the tick, bool (W,)."""
     rule = law.heredity.mutation.moments
     if rule is None:
         return jnp.zeros_like(live_worlds)
@@ -45,7 +45,7 @@ def moment_due(law: Law, worlds: Worlds, live_worlds: Array) -> Array:
 
 
 def remember(law: Law, world: World, senses: Array, live_worlds: Array) -> World:
-    """Let organisms remember, in running worlds where a moment is due.
+    """Store a moment of every organism, in the running worlds in which a moment is due.
 
     Args:
         law: the law.
@@ -73,17 +73,17 @@ def remember(law: Law, world: World, senses: Array, live_worlds: Array) -> World
 
 
 def change_in(law: Law, moments: Remembered, parents: Array) -> Change:
-    """Return the change of behaviour between genomes and their parents, in the parents' moments.
+    """Return a function of genomes: their change of behaviour from the parents, in the parents' moments.
 
     For discrete actions it is the share of moments with another choice. For continuous actions it
     is the root mean square change of the outputs, each at most 1. For an action with parts of both
-    kinds it is the larger of the two. It is infinite for a parent without moments, since nothing is
-    known about its children.
+    kinds, the larger of the two changes is returned. The change is infinite for a parent without
+    moments, since nothing is known about its children.
 
     Args:
         law: the law.
         moments: moments of K parents.
-        parents: their genomes, float32 (K, P).
+        parents: genomes of the parents, float32 (K, P).
     """
     before = _outputs(law, moments, parents)
 
@@ -114,9 +114,9 @@ def _chosen_otherwise(known: Array, before: Array, after: Array, choices: list[s
 
 
 def _moved(known: Array, before: Array, after: Array) -> Array:
-    """Return the root mean square change of outputs (K, R, A) in known moments (K, R), (K,)."""
+    """Return the root mean square change of outputs in known moments, (K,) from (K, R, A) and (K, R)."""
     size = before.shape[-1]
-    # Squares, at most 1 each, are summed as whole numbers, so that no order of the sum matters.
+    # Squares, at most 1 each, are summed as whole numbers, so that the order of the sum is irrelevant.
     finest = 2 ** (30 - (known.shape[1] * size - 1).bit_length())
     square = jnp.square(after - before)
     square = jnp.where(square < 1, square, 1) * np.float32(finest)  # a NaN counts as 1 too
@@ -126,7 +126,7 @@ def _moved(known: Array, before: Array, after: Array) -> Array:
 
 
 def _share(count: Array, known: Array) -> Array:
-    """Return counts (K,) for each known moment, float32."""
+    """Return counts (K,) divided by the number of known moments, float32; infinite without moments."""
     of = known.sum(axis=1)
     return jnp.where(of > 0, count.astype(jnp.float32) / jnp.maximum(of, 1), jnp.inf)
 

@@ -26,7 +26,8 @@ OFFSETS = {
 }
 
 Draw = Callable[[Array], Wide]
-"""Two random words for every cell (W, N) in a given round of one tick's placement."""
+"""A function of the number of a round in one tick's placement; it returns two random words for
+every cell, (W, N)."""
 
 
 class Placement(Settings):
@@ -71,8 +72,7 @@ class Placement(Settings):
         return rows, cells // rows
 
     def room(self, occupied: Array) -> Array:
-        """Return which parents can have a child, bool (W, N): a cell in their neighbourhood allows
-        a birth."""
+        """Return which cells have a neighbour in which a birth is allowed, bool (W, N)."""
         if self.rule == "replacing":
             return jnp.ones_like(occupied)
         if self.topology == "well-mixed":
@@ -80,7 +80,7 @@ class Placement(Settings):
         return jnp.stack(self._neighbours(~occupied)).any(axis=0)
 
     def near(self, cells: Array, count: int) -> Array:
-        """Return which of a world's `count` cells are neighbours of some cells (K,), bool (K, count)."""
+        """Return the neighbours of K cells as a mask over a world's `count` cells, bool (K, count)."""
         every = jnp.arange(count)
         if self.topology == "well-mixed":
             return every != cells[:, None]
@@ -174,7 +174,8 @@ def _cells(like: Array) -> Array:
 
 
 def _contest(wants: Array, target: Array, priority: Array) -> Array:
-    """Return the parent that wins each cell, or -1: the smallest (priority, cell) that targets it."""
+    """Return the parent that wins each cell, or -1. The contestant with the smallest priority wins,
+    and among equal ones the smallest cell."""
     worlds, cells = wants.shape
     nowhere = worlds * cells
     slot = target + cells * lax.broadcasted_iota(jnp.int32, wants.shape, 0)

@@ -29,7 +29,7 @@ def settle(
         world: the world with its organisms after those ticks, as `rest` returns them.
         events: lists with room for one tick (`events.have_room`).
         fates: fates of the last tick.
-        ticks: int32 (), at most `quiet_ticks`; 0 for genesis.
+        ticks: number of these ticks, at most `quiet_ticks`, 0 for genesis; int32 ().
         running: worlds that run, bool (W,); the others do not change.
 
     Returns:
@@ -60,9 +60,9 @@ def settle(
 
 
 def quiet_ticks(law: Law, world: World, running: Array) -> Array:
-    """Return the ticks until the next due change, int32 (), if no tick is eventful.
+    """Return the number of ticks until the next due change, if no tick is eventful: int32 ().
 
-    It is 0 before genesis.
+    The number is 0 before genesis.
     """
     worlds, far = world.worlds, 2**31 - 1
     due = [worlds.sample_wait, *worlds.looks.wait.T]

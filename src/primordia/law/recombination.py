@@ -1,8 +1,8 @@
 """Recombination: a child takes some of its weights from a second parent, the mate.
 
-The mate is drawn among the living neighbours of the child's cell, without the parent. On a ring that is
-the neighbour on the other side. A child without a neighbour other than the parent has no mate. The
-mate is recorded with the birth, so that genomes are rebuilt through both lines.
+The mate is drawn among the living neighbours of the child's cell, without the parent. On a ring the
+mate is the neighbour on the other side. A child without a neighbour other than the parent has no
+mate. The mate is recorded with the birth, so that genomes are rebuilt through both lines.
 """
 
 from typing import Literal
@@ -37,9 +37,9 @@ class Recombination(Settings):
         """Return genomes float32 (K, P); each unit comes from either parent with the same
         probability.
 
-        A row is the part of a block at one index of its first axis. It holds the weights into one
-        neuron if the layer has at least as many inputs as neurons. Blocks with the same number of
-        rows take each row from the same parent, so that a neuron keeps all of its weights.
+        A row is the part of a block at one index of its first axis. A row holds the weights into
+        one neuron if the layer has at least as many inputs as neurons. Blocks with the same number
+        of rows take each row from the same parent, so that a neuron keeps all of its weights.
         """
         units = self.units(layout)
         count = int(units.max()) + 1
@@ -62,11 +62,11 @@ class Recombination(Settings):
         )
 
     def mates(self, word: Wide, candidates: Array) -> Array:
-        """Return the cell of each of K children's mates, or -1: int32 (K,).
+        """Return the cell of each child's mate, or -1: int32 (K,).
 
         Args:
             word: two random words for each child, (K,).
-            candidates: cells whose organisms may be its mate, bool (K, N).
+            candidates: cells whose organisms may be the child's mate, bool (K, N).
         """
         rank = jnp.cumsum(candidates, axis=1, dtype=jnp.int32)
         chosen = (rank > below(word.hi, rank[:, -1])[:, None]).argmax(axis=1)

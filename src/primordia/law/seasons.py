@@ -1,4 +1,4 @@
-"""Seasons: settings of the law that change while a run goes on; they are part of the world's state."""
+"""Seasons: settings of the law that change in a run. Their values are part of the world's state."""
 
 from collections.abc import Callable
 from itertools import count
@@ -62,7 +62,7 @@ def apply_seasons(
         running: worlds that run, bool (W,).
 
     Returns:
-        worlds; those whose climate changed, bool (W,).
+        worlds; which worlds changed their climate, bool (W,).
     """
     worlds = world.worlds
     changed = jnp.zeros(running.shape, bool)
@@ -103,7 +103,7 @@ def _measure(season: Ratchet, s: int, world: World) -> Array:
 
 
 def _after_look(worlds: Worlds, season: Ratchet, s: int, looking: Array) -> Looks:
-    """Return the state of ratchets after ratchet s has measured some worlds, bool (W,)."""
+    """Return the state of ratchets after ratchet s has measured the worlds `looking`, bool (W,)."""
     looks = worlds.looks
 
     def update(last: Wide, now: Wide) -> Wide:

@@ -1,7 +1,7 @@
 """One tick of all cells: `life` for each organism, then accidents, replication and worlds' food.
 
-Brains of empty cells and of stopped worlds think too, since selecting the others costs more. `rest` then
-restores the organisms that must not change.
+Brains of empty cells and of stopped worlds think too, since it costs more to select the other
+brains. `rest` then restores the organisms that must not change.
 """
 
 from typing import NamedTuple
@@ -39,7 +39,10 @@ def no_fates(law: Law) -> Fates:
 
 
 def keys_of(worlds: Worlds, ticks: Array) -> Streams:
-    """Return the keys of `think` and `judge`, (W,), int32 () `ticks` after the last settled tick."""
+    """Return the keys of `think` and `judge` in a tick; `ticks` counts from the last settled tick.
+
+    Each key is (W,), and `ticks` is int32 ().
+    """
     tick = worlds.tick.plus(jnp.full_like(worlds.calm, ticks))
     return streams(worlds.seed, tick, Purpose.MOTOR, Purpose.HAZARD, Purpose.REPLICATE)
 
@@ -98,13 +101,13 @@ def _food(law: Law, food: Array, active: Array) -> Wide:
 
 
 def _drawn(law: Law, key: Wide, probability: Array) -> Array:
-    """Draw an event for every cell with its probability (C,): bool (C,)."""
+    """Draw whether an event happens in each cell, from the cell's probability (C,): bool (C,)."""
     word = bits(key.take(np.s_[:, None]), jnp.arange(law.cells)[None]).hi
     return chance(word, law.by_world(probability)).ravel()
 
 
 def rest(before: Organisms, after: Organisms, active: Array) -> Organisms:
-    """Return organisms after some ticks; those that are not active, bool (C,), are unchanged."""
+    """Return organisms after some ticks. Organisms that are not `active`, bool (C,), are unchanged."""
 
     def keep(new: Array, old: Array) -> Array:
         return jnp.where(active.reshape(-1, *[1] * (new.ndim - 1)), new, old)

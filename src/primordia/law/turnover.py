@@ -1,7 +1,7 @@
 """Turnover: the dead are removed, the newborn are added, and extinct worlds begin again.
 
-It runs only in ticks in which an organism dies or may be born. Work on the weights of genomes is done per
-birth. All other work is cheap enough to be done for all cells at once.
+Turnover runs only in ticks in which an organism dies or may be born. Work on the weights of genomes
+is done per birth. All other work is cheap enough to be done for all cells at once.
 """
 
 from typing import NamedTuple
@@ -30,7 +30,7 @@ class Births(NamedTuple):
     newborn: Array
     """bool: an organism is born in this cell"""
     founded: Array
-    """bool: it is a founder of genesis, without a parent"""
+    """bool: the newborn is a founder of genesis, without a parent"""
     parent: Array
     """int32, cell of the parent (on the axis of all worlds); it has no meaning for founders"""
     number: Wide
@@ -71,7 +71,7 @@ def turnover(
         events: the lists to which births and deaths are added.
         running: worlds that run, bool (W,).
         wants: survivors that replicate if they find a cell, bool (C,).
-        cause: cause of each organism's death, int32 (C,), or -1.
+        cause: cause of each organism's death, or -1: int32 (C,).
         keys: `birth_keys` of the tick.
 
     Returns:
@@ -195,8 +195,10 @@ def _birth(law: Law, worlds: Worlds, births: Births, keys: Streams, cells: Array
 
 
 def _mates(law: Law, births: Births, keys: Streams, cells: Array, founder: Array) -> Array | None:
-    """Return the cell of each newborn's mate, (K,), on the axis of all worlds, or -1; None without
-    mates."""
+    """Return the cell of each newborn's mate on the axis of all worlds, or -1: int32 (K,).
+
+    The result is None without recombination.
+    """
     if law.heredity.recombination is None:
         return None
     world, cell = cells // law.cells, cells % law.cells

@@ -68,16 +68,16 @@ class Organisms(NamedTuple):
     energy: Array
     """int32, fixed point"""
     eaten: Array
-    """food of its life so far, int32, fixed point, saturating"""
+    """food of the organism's life so far, int32, fixed point, saturating"""
     born: Wide
     """tick of birth"""
     number: Wide
     """birth number within its world, from 0"""
     branch: Wide
-    """1 + birth number of the founder's child from which it descends; 0 for a founder. Once a population
-    has fixed, it is equal, and not 0, in all the living"""
+    """1 + birth number of the founder's child from which the organism descends; 0 for a founder.
+    After fixation all the living have the same branch, not 0"""
     moments: Remembered | None
-    """None if the mutation needs none; see `Mutation.moments`"""
+    """None if the mutation needs no moments; see `Mutation.moments`"""
 
 
 Climate: TypeAlias = dict[str, Array]
@@ -115,12 +115,12 @@ class Worlds(NamedTuple):
     saturated: Wide
     """tick at which the world was first saturated; `wide.never` before that"""
     saturated_births: Wide
-    """births until then; `wide.never` before that"""
+    """births until saturation; `wide.never` before that"""
     fixed: Wide
     """tick of fixation, at which all the living first descended from one child of a founder;
     `wide.never` before that, and again after an extinction"""
     fixed_births: Wide
-    """births until then; `wide.never` before that"""
+    """births until fixation; `wide.never` before that"""
     climate: Climate
     looks: Looks
 

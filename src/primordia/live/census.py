@@ -33,7 +33,7 @@ class Census:
 
     @classmethod
     def of(cls, world: World, alone: int | None = None) -> "Census":
-        """Count the organisms of all worlds, or of a single one; every cell is read once."""
+        """Count the organisms of all worlds, or of the world `alone`; every cell is read once."""
         organisms, worlds = world
         cells, own = len(organisms.alive) // len(worlds.calm), slice(None)
         if alone is not None:
@@ -61,7 +61,7 @@ class Speed:
     """The speed of a run over the last seconds, measured between two censuses."""
 
     WINDOW = 2.0
-    """seconds between the two censuses, at least"""
+    """least number of seconds between the two censuses"""
 
     def __init__(self) -> None:
         self._censuses: deque[tuple[float, Census]] = deque()
@@ -80,7 +80,7 @@ class Speed:
         return float((after.organism_ticks - before.organism_ticks).sum()) / (now - then)
 
     def ticks_per_s(self) -> float | None:
-        """Return the ticks of a world in a second, of the fastest; None before the second census."""
+        """Return the ticks of the fastest world in a second; None before the second census."""
         if len(self._censuses) < 2:
             return None
         (then, before), (now, after) = self._censuses[0], self._censuses[-1]
@@ -105,9 +105,9 @@ class Speed:
 
 
 def _needed(before: np.ndarray, after: np.ndarray, limit: Wide, seconds: float) -> np.ndarray:
-    """Return the seconds that each world needs to reach a limit, if it went on as fast, float64 (W,).
+    """Return the seconds that each world needs to reach a limit at its present speed, float64 (W,).
 
-    Counts went from `before` to `after` in the given seconds. Without a limit it is infinite.
+    Counts went from `before` to `after` in the given seconds. Without a limit the time is infinite.
     """
     ends = to_host(limit)
     to_go = np.maximum(ends.astype(float) - after, 0.0)

@@ -1,4 +1,4 @@
-"""One organism beside its world: a picture of its body, or else bars, and what it does next."""
+"""One organism beside its world: its picture, bars for its senses and memory, and its next action."""
 
 from typing import Any, NamedTuple
 
@@ -40,12 +40,12 @@ class Companion:
         self._draws = True
 
     def find(self, engine: Engine, alone: int | None, step: int = 0) -> int | None:
-        """Return the cell of the organism, of all cells; None if nothing is alive.
+        """Return the organism's cell, on the axis of all worlds; None if nothing is alive.
 
         Args:
             engine: the run.
             alone: the world in which it lives; None for any.
-            step: 1 for the next younger one in place of the present one.
+            step: 1 for the next younger organism in place of the present one.
         """
         law, organisms = engine.law, engine.state.world.organisms
         here = (
@@ -98,10 +98,10 @@ class Companion:
             return np.array2string(body.action, precision=2)
 
     def _picture(self, engine: Engine, body: Body, room: Room) -> list[Row]:
-        """Return a picture of the body; no rows if the habitat draws none of it.
+        """Return a picture of the body; no rows if the habitat cannot draw the body.
 
-        Emulators and many environments draw only bodies that are watched from birth. Drawing is the code
-        of others, and an error in it must not end the run.
+        Emulators and many environments draw only bodies that are watched from birth. Other people
+        wrote the code that draws, and an error in this code must not end the run.
         """
         if room.letters or room.height < 4 or not self._draws:
             return []
@@ -128,7 +128,7 @@ def _perceived(engine: Engine, cell: int, world: int) -> tuple[np.ndarray, np.nd
     law, habitat, (organisms, worlds) = engine.law, engine.habitat, engine.state.world
 
     def own(tree: Any) -> Any:
-        """Copy the part of arrays (C, ...) that is the organism's, (1, ...)."""
+        """Copy the organism's part of arrays, (1, ...) from (C, ...)."""
         return jax.tree.map(lambda leaf: np.array(np.asarray(leaf)[cell : cell + 1]), tree)
 
     bodies = own(engine.state.bodies)

@@ -1,4 +1,4 @@
-"""Lines of descent of the worlds that may be shown, followed as long as they are not too busy."""
+"""Lines of descent of the worlds that may be shown, followed unless cells or births are too many."""
 
 from collections.abc import Iterable
 
@@ -13,11 +13,11 @@ class Descent:
     """The lines of the first worlds of a run."""
 
     CELLS, EVENTS = 2**14, 2**12
-    """most cells, and most births and deaths in a second, in which lines of descent are followed"""
+    """largest numbers of cells, and of births and deaths in a second, for which lines are followed"""
 
     def __init__(self) -> None:
         self.lines: dict[int, Lines] = {}
-        """lines of descent by number of the world; none of a world that is not followed"""
+        """lines of descent by number of the world, without the worlds that are not followed"""
         self._followed, self._missed = 0, False
 
     def follow(self, status: Status, shown: int) -> None:
@@ -39,7 +39,7 @@ class Descent:
             del self.lines[world]
 
     def takeovers(self, worlds: Iterable[int]) -> int | None:
-        """Return the takeovers in some worlds; None if one was not followed throughout."""
+        """Return the takeovers in some worlds; None if a world was not followed throughout."""
         if self._missed or not all(world in self.lines for world in worlds):
             return None
         return sum(len(self.lines[world].takeovers) for world in worlds)
@@ -49,7 +49,7 @@ class Descent:
 
 
 def _first_lines(status: Status, world: int, turnover: Turnover) -> Lines:
-    """Return the lines of a world after its first chunk, followed from genesis if that was in it."""
+    """Return the lines of a world after its first chunk, from genesis on if it was in the chunk."""
     organisms, cells = status.engine.state.world.organisms, status.engine.law.cells
     crowd = min(CROWD, max(cells // 2, 1))
     if len(turnover.born) and turnover.born[0] == 0:

@@ -16,7 +16,7 @@ WIDEST = 8
 
 
 class Room(NamedTuple):
-    """The room for a drawing, in characters, and its means."""
+    """The room for a drawing, in characters, and whether letters take the place of colours."""
 
     width: int
     height: int
@@ -29,7 +29,7 @@ class Form(Protocol):
 
     @property
     def least(self) -> tuple[int, int]:
-        """Columns and rows of characters in which all cells can be drawn."""
+        """Smallest numbers of columns and rows of characters in which all cells can be drawn."""
 
     def scale(self, room: Room) -> int:
         """Return how large a cell can be in a room; 0 if there is no room for all cells."""
@@ -45,14 +45,14 @@ class Form(Protocol):
 
 
 def form_of(law: Law, letters: bool) -> Form:
-    """Return the form of a law's worlds. In a well-mixed world the places say nothing."""
+    """Return the form of a law's worlds. In a well-mixed world the places have no meaning."""
     rows, columns = law.placement.shape(law.cells)
     return Ring(law.cells) if rows == 1 else Torus(rows, columns, letters)
 
 
 @dataclass(frozen=True)
 class Ring:
-    """Cells as a skyline, in several below each other if they are many, or one with its past below."""
+    """Cells as a skyline. Many cells make several skylines, a single one has its past below."""
 
     cells: int
 
@@ -107,7 +107,7 @@ class Torus:
 
     @property
     def least(self) -> tuple[int, int]:
-        """A character for a cell in letters, and for two in colours."""
+        """A character for each cell in letters, or for each two cells in colours."""
         return self.columns, self.rows if self.letters else -(-self.rows // 2)
 
     def scale(self, room: Room) -> int:
@@ -134,5 +134,5 @@ class Torus:
 
 
 def part_of(shown: int, count: int, what: str = "cells") -> str:
-    """Say that a part is shown; "" if it is the whole."""
+    """Return the words for a part that is shown; "" if all is shown."""
     return "" if shown == count else f"shown: the first {shown:,} of {count:,} {what}"

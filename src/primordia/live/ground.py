@@ -11,7 +11,7 @@ from primordia.law.events import BIRTHS, DEATHS, Events, Rows
 from primordia.runs.lives import ALIVE, Lives
 
 KEPT = 4096
-"""Births that are kept, the latest of all worlds together; their parents count if they are among them."""
+"""Number of latest births that are kept, of all worlds together. Other parents are unknown."""
 
 
 class Ground:
@@ -21,7 +21,7 @@ class Ground:
         """Take the number of cells of a world, and the number of worlds."""
         self._cells = cells
         self._births = _Latest(BIRTHS, KEPT)
-        # Since the first birth that is kept, no more have died than were born since or alive then.
+        # Since the first kept birth, at most those born since and those alive then have died.
         self._deaths = _Latest(DEATHS, KEPT + cells * worlds)
 
     def follow(self, events: Events) -> None:
@@ -30,7 +30,7 @@ class Ground:
         self._deaths.add(events.deaths)
 
     def measured(self, ticks: np.ndarray) -> list[Threshold]:
-        """Return the error threshold of each world, over its births that are kept.
+        """Return the error threshold of each world, among the kept births of the world.
 
         Args:
             ticks: the present tick of each world, int64 (W,).
@@ -67,7 +67,7 @@ class Ground:
 
 
 class Medians(NamedTuple):
-    """Medians over the worlds in which all is known."""
+    """Medians over the worlds in which all three numbers are known."""
 
     mutated: float
     as_good: float
@@ -75,7 +75,7 @@ class Medians(NamedTuple):
 
 
 def medians(found: Sequence[Threshold]) -> Medians | None:
-    """Return the medians of p, v and s (1 - p (1 - v)); None where no world tells them."""
+    """Return the medians of p, v and s (1 - p (1 - v)); None if they are known in no world."""
     known: list[Any] = [
         (each.mutated, each.as_good, each.held) for each in found if each.held is not None
     ]
@@ -83,7 +83,7 @@ def medians(found: Sequence[Threshold]) -> Medians | None:
 
 
 class _Latest:
-    """The latest rows of a list of events, a number of them."""
+    """The latest rows of a list of events, up to a given number."""
 
     def __init__(self, columns: Columns, kept: int) -> None:
         self._columns, self._kept, self._count = columns, kept, 0

@@ -1,6 +1,6 @@
-"""The pace of a run that is watched: ticks a second at most, pauses, and single steps.
+"""The pace of a run that is watched: limited speed, pauses, and single steps.
 
-No life depends on it, since the length of chunks and the time between them change nothing.
+No life depends on the pace, since the length of chunks and the time between them change nothing.
 """
 
 import time
@@ -15,18 +15,18 @@ from primordia.runs.loop import Status
 FRAME = 0.1
 """Seconds of a chunk at a limited speed."""
 NAP = 0.25
-"""Most seconds until a signal is noticed in a wait."""
+"""Largest number of seconds until a waiting run notices a signal."""
 LEVELS = [step * 10**power for power in range(9) for step in (1, 3)]
 """Ticks a second that can be chosen by key."""
 UNKNOWN = 10_000
-"""Ticks a second that are taken for the speed of a run before it is known."""
+"""Assumed speed of a run before its speed is known, in ticks a second."""
 
 
 class Pace:
     """The limit of a run's speed, and whether it is paused."""
 
     def __init__(self, limit: float | None = None) -> None:
-        """Take the ticks a second at most; None for no limit."""
+        """Set the limit, in ticks a second; None for no limit."""
         self.limit, self.paused = limit, False
         self._steps = 0
         self._ticks: np.ndarray | None = None
@@ -49,7 +49,7 @@ class Pace:
         self.paused, self._steps = True, self._steps + 1
 
     def slower(self, speed: float | None) -> None:
-        """Lower the limit below the present speed in ticks a second, if it is known."""
+        """Lower the limit below the present `speed`, in ticks a second; None if the speed is unknown."""
         present = min(self.limit or np.inf, speed or UNKNOWN if self._late else np.inf)
         if self.limit is None:
             present = speed or UNKNOWN
@@ -57,7 +57,7 @@ class Pace:
         self._restart()
 
     def faster(self) -> None:
-        """Raise the limit; none is left once the run is slower than its limit."""
+        """Raise the limit, or remove it if the run is slower than its limit."""
         above = [level for level in LEVELS if self.limit is not None and level > self.limit]
         self.limit = above[0] if above and not self._late else None
         self._restart()
@@ -67,7 +67,8 @@ class Pace:
 
         Args:
             status: the run.
-            react: called again and again; waits for some seconds, and may change this pace.
+            react: function that is called repeatedly; it waits for some seconds, and may change
+                this pace.
         """
         if self.limited:
             self._note(to_host(status.engine.state.world.worlds.tick))
@@ -87,7 +88,7 @@ class Pace:
         return self.paused or self.limit is not None
 
     def _wait(self) -> float:
-        """Return the seconds until the next chunk may begin, 0 or less if it may."""
+        """Return the seconds until the next chunk may begin; 0 or less if it may begin now."""
         if self.paused:
             return 0.0 if self._steps else np.inf
         if self.limit is None:
@@ -95,7 +96,7 @@ class Pace:
         return self._began + self._lived / self.limit - time.perf_counter()
 
     def _note(self, ticks: np.ndarray) -> None:
-        """Take the ticks of all worlds; those that have stopped do not count."""
+        """Take the ticks of all worlds; worlds that have stopped do not count."""
         if self._ticks is not None:
             self._lived += int((ticks - self._ticks).max())
         self._ticks = ticks

@@ -15,7 +15,7 @@ from rich.style import Style
 Row = list[Segment]
 """One row of characters in the terminal."""
 EMPTY, OUTSIDE = -1, -2
-"""Marks of an empty cell, in place of the number of a line of descent, and of no cell."""
+"""Marks of an empty cell and of no cell, in place of the number of a line of descent."""
 HUES = 64
 EIGHTHS = " ▁▂▃▄▅▆▇█"
 FAINT = Style(color="grey50")
@@ -35,7 +35,7 @@ class Cells:
 
     @classmethod
     def of(cls, line: np.ndarray, ticks: np.ndarray, full: int) -> "Cells":
-        """Return cells with ages in ticks, int64; the age `full` and higher ones are drawn as 1."""
+        """Return cells with ages in ticks, int64; ages of `full` ticks and more are drawn as 1."""
         return cls(line, np.minimum(np.log1p(np.maximum(ticks, 0)) / log1p(full), 1.0))
 
     def take(self, index: slice | np.ndarray) -> "Cells":
@@ -46,7 +46,7 @@ class Cells:
 def skyline(cells: Cells, wide: int, tall: int, letters: bool) -> list[Row]:
     """Draw a bar for each cell, higher with age, in `tall` rows and `wide` columns for a cell.
 
-    With `letters` a row below the bars names the lines, which have no colours then.
+    With `letters` the lines have no colours, and a row below the bars names the lines.
     """
     bar, gap = max(wide - 1, 1), " " if wide > 1 else ""
     living = cells.line != EMPTY
@@ -78,9 +78,9 @@ def strip(cells: Cells, letters: bool) -> Row:
 
 
 def field(cells: Cells, columns: int, scale: int, letters: bool) -> list[Row]:
-    """Draw rows of `columns` cells, two rows in a row of characters, lighter with age; or `letters`.
+    """Draw rows of `columns` cells, two in a row of characters, lighter with age; or draw letters.
 
-    A cell is `scale` characters wide, and half as many rows of characters high.
+    A cell is `scale` characters wide, and `scale` / 2 rows of characters high.
     """
     rows = [slice(at, at + columns) for at in range(0, len(cells.line), columns)]
     if letters:
@@ -101,13 +101,13 @@ def mosaic(numbers: np.ndarray) -> list[Row]:
 
 def photograph(pixels: np.ndarray) -> list[Row]:
     """Draw a picture, uint8 (rows, columns, 3), two of its rows in a row of characters."""
-    # A few thousand colours look the same, and their styles are then kept.
+    # 4096 colours look the same as all colours, and their styles can be kept.
     red, green, blue = np.moveaxis(pixels.astype(np.int64) >> 4, -1, 0)
     return _halves(red << 8 | green << 4 | blue, _points)
 
 
 def _halves(numbers: np.ndarray, style: Callable[[int, int], Style]) -> list[Row]:
-    """Draw numbers as upper and lower halves of characters, in the style of each two."""
+    """Draw numbers as upper and lower halves of characters, in the style of each pair."""
     if len(numbers) % 2:
         numbers = np.vstack([numbers, np.full_like(numbers[:1], OUTSIDE)])
     return [
@@ -133,7 +133,8 @@ def padded(row: Row, width: int) -> Row:
 
 
 def _joined(glyphs: list[str], styles: Iterable[Style]) -> Row:
-    """Join characters of one style into one segment, since rich and terminals are slow with many."""
+    """Join characters of one style into one segment, since rich and terminals are slow with many
+    segments."""
     runs = groupby(zip(glyphs, styles, strict=True), key=lambda pair: id(pair[1]))
     parts = (list(run) for _, run in runs)
     return [Segment("".join(glyph for glyph, _ in part), part[0][1]) for part in parts]

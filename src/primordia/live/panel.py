@@ -18,14 +18,14 @@ FILLED = Style(color="green")
 CELL = 26
 """Smallest number of columns for one number with its name."""
 MOST = 5
-"""Most numbers side by side."""
+"""Largest number of values side by side."""
 SHORTEST, LONGEST = 8, 24
 """Columns of a bar; a shorter one is left out."""
 TOPOLOGIES = {"ring": "on a ring", "torus4": "on a torus", "torus8": "on a torus"}
 
 
 class Outlook(NamedTuple):
-    """Speed and remaining time, where known."""
+    """Speed and remaining time; None if unknown."""
 
     organism_ticks_per_s: float | None
     seconds_left: float | None
@@ -52,7 +52,7 @@ def numbers(
     takeovers: int | None,
     ground: Medians | None,
 ) -> dict[str, str]:
-    """Return counts by name, the most telling first; those that are unknown are left out.
+    """Return counts by name, the most important first; unknown counts are left out.
 
     Args:
         census: the counts.
@@ -120,7 +120,7 @@ def _causes(census: Census, width: int) -> Row:
 
 
 def saturation(census: Census, cells: int, calm_needed: int, width: int) -> Row:
-    """Return a bar: how close one world is to saturation, or how many of several are saturated."""
+    """Return a bar: how close one world is to saturation, or how many of several worlds are saturated."""
     worlds, done = len(census.tick), int((census.saturated >= 0).sum())
     if done and worlds == 1:
         tick = f"{census.saturated[0]:,}"
@@ -171,7 +171,7 @@ KEYS = (
 
 
 def keys(shown: str, width: int) -> Row:
-    """Return the keys with their names, or without the names where these do not fit.
+    """Return the keys with their names; names that do not fit are left out.
 
     `shown` has the first characters of the keys that mean something now.
     """

@@ -1,4 +1,4 @@
-"""Drawings of worlds: one in the form of its places, several as tiles."""
+"""Drawings of worlds: one world in the form of its places, several worlds as tiles."""
 
 from collections import deque
 from collections.abc import Callable
@@ -16,7 +16,7 @@ from primordia.live.paint import EMPTY, FAINT, Cells, Row, padded, shades
 from primordia.random.wide import Wide, to_host
 
 KEPT = 512
-"""moments of the past of a ring that are kept"""
+"""number of past moments of a ring that are kept"""
 
 
 class Scene(NamedTuple):
@@ -25,7 +25,7 @@ class Scene(NamedTuple):
     rows: list[Row]
     legend: str
     part: str
-    """the part of the worlds that is shown; empty if all are"""
+    """the part of the worlds that is shown; empty if all worlds are shown"""
 
 
 class Grid(NamedTuple):
@@ -40,7 +40,7 @@ class Grid(NamedTuple):
 
     @classmethod
     def of(cls, form: Form, worlds: int, edge: int, room: Room) -> "Grid":
-        """Return the tiles in which cells are largest; if not all worlds fit, as many as do.
+        """Return the tiles in which cells are largest; if not all worlds fit, the others are left out.
 
         Beside each drawing are `edge` columns for its label and mark.
         """
@@ -91,8 +91,8 @@ class Stage:
         Args:
             law: the law of the run.
             world: all worlds.
-            lines: lines of descent by number of the world; in others, colours show the branch of the
-                founder.
+            lines: lines of descent by number of the world; in other worlds, colours show the branch
+                of the founder.
             alone: the only world that is shown; None for all.
             room: the room for the drawing.
         """
@@ -112,7 +112,7 @@ class Stage:
         return _tiles(world, form, draw, bool(lines), room)
 
     def follow(self, law: Law, world: World, lines: dict[int, Lines], number: int) -> None:
-        """Remember a world that is a ring as it is now."""
+        """Remember the present state of a world that is a ring."""
         if law.placement.shape(law.cells)[0] == 1:
             tick = int(to_host(world.worlds.tick)[number])
             self._remember(number, tick, cells_of(law, world, lines.get(number), number))

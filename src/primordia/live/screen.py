@@ -13,16 +13,16 @@ from primordia.live.scene import Scene
 GAP = 2
 """columns between two parts side by side"""
 NARROWEST, BROADEST = 28, 64
-"""columns of an organism beside its world"""
+"""smallest and largest number of columns of an organism beside its world"""
 SCENE = 20
 """fewest columns of a world with something beside it"""
 SPACED = 20
-"""rows of a screen from which there are empty rows between its parts"""
+"""least number of rows of a screen that has empty rows between its parts"""
 LOW = 12
-"""rows of a screen below which there is no legend"""
+"""least number of rows of a screen that has a legend"""
 
 Draw = Callable[[Room], list[Row]]
-"""Draw a part in a room, with at most as many rows."""
+"""Function that draws a part in a room; it returns at most as many rows as the room has."""
 
 
 def composed(
@@ -34,13 +34,13 @@ def composed(
 ) -> list[Row]:
     """Return the rows of a screen.
 
-    Numbers are beside the world if its cells are then as large as with the numbers below it.
+    Numbers are beside the world if the cells are no smaller then than with the numbers below.
 
     Args:
         measure: returns the columns of a cell of the worlds in a room; 0 if not all cells fit.
         draw: draws the worlds.
         numbers: draws the numbers.
-        organism: draws the organism that is shown; None if none is.
+        organism: draws the organism that is shown; None if no organism is shown.
         room: the whole room.
     """
     space = 1 if room.height >= SPACED else 0
@@ -65,7 +65,7 @@ def composed(
 
 
 def _size(measure: Callable[[Room], int], room: Room) -> tuple[int, int]:
-    """Return the size of a cell, and if not all cells fit, of the room."""
+    """Return the size of a cell, and the size of the room if not all cells fit."""
     scale = measure(_drawn(room))
     return scale, 0 if scale else room.width * room.height
 

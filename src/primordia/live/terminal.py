@@ -11,7 +11,7 @@ from types import TracebackType
 from typing import Any
 
 SEQUENCE = re.compile(r"\x1b(\[[0-9;?]*[@-~]|O.|.)?", re.DOTALL)
-"""What a key such as an arrow sends; none of these keys has a meaning here."""
+"""Pattern of what keys such as arrows send; these keys have no meaning here."""
 
 
 def show_cursor() -> None:
@@ -20,10 +20,10 @@ def show_cursor() -> None:
 
 
 class Keyboard:
-    """The keys that are pressed, in a `with` block; none where the input is no terminal.
+    """The keys that are pressed, in a `with` block; no keys if the input is not a terminal.
 
-    The terminal hands over each key at once and does not print it. Ctrl-C still sends SIGINT. A command
-    in the background leaves the terminal alone, since the system would stop it.
+    The terminal hands over each key at once and does not print it. Ctrl-C still sends SIGINT. A
+    command in the background does not change the terminal, since the system would stop the command.
     """
 
     def __init__(self) -> None:
@@ -49,7 +49,7 @@ class Keyboard:
 
     @property
     def there(self) -> bool:
-        """Whether there are keys."""
+        """Whether keys can be read."""
         return self._before is not None
 
     def restore(self) -> None:
@@ -61,7 +61,7 @@ class Keyboard:
                 self._before = None
 
     def pressed(self, seconds: float) -> str:
-        """Return the keys pressed since the last call; wait `seconds` for one at most.
+        """Return the keys pressed since the last call; wait at most `seconds` for a key.
 
         A signal does not end the wait.
         """
@@ -81,7 +81,8 @@ class Keyboard:
         return SEQUENCE.sub("", keys.decode(errors="ignore"))
 
     def _take(self) -> None:
-        """Take the terminal, also again after Ctrl-Z and `fg`, when the shell has changed it."""
+        """Take the terminal, and take it again after Ctrl-Z and `fg`, since the shell changes its
+        mode."""
         if termios.tcgetattr(self._file)[3] & termios.ICANON:
             tty.setcbreak(self._file, termios.TCSANOW)
 

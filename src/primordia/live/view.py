@@ -1,4 +1,4 @@
-"""The view in a terminal of a run that advances."""
+"""The view of a run that advances, in a terminal."""
 
 import sys
 import time
@@ -30,14 +30,14 @@ from primordia.runs.loop import Status
 class View:
     """A listener that draws the living and the counts in place, in a `with` block, and obeys keys.
 
-    It follows the births of every chunk, and draws as often as SHARE of the time allows; more often if
-    the run waits in any case.
+    The view follows the births of every chunk. It draws as often as SHARE of the time allows, and
+    more often while the run waits.
     """
 
     SHARE = 0.01
     """share of the time that drawing may take"""
     MOMENT, LONGEST = 0.1, 2.0
-    """seconds between moments of the past of a ring at least, and between frames at most"""
+    """least seconds between two past moments of a ring, and most seconds between two frames"""
 
     def __init__(
         self, console: Console, pace: Pace | None = None, keyboard: Keyboard | None = None
@@ -149,7 +149,7 @@ class View:
         return rows[:height]
 
     def _words(self, room: Room) -> list[Row]:
-        """Return the page of words that is shown; nothing if the world is."""
+        """Return the page of words that is shown; nothing if the world is shown."""
         if self._page is None:
             return []
         found = pages(room.width, room.height)

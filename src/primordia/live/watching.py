@@ -22,7 +22,7 @@ def watching(quiet: bool, speed: float | None = None) -> Iterator[Listener | Non
 
     Args:
         quiet: show nothing.
-        speed: ticks a second at most; None for no limit.
+        speed: limit of the speed, in ticks a second; None for no limit.
     """
     pace = Pace(speed)
     # not the stream that spells out escapes

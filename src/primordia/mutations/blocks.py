@@ -27,6 +27,6 @@ def check_blocks(blocks: Mapping[str, Settings], layout: Layout) -> None:
 def per_block(
     whole: BaseModel, blocks: Mapping[str, Settings], field: str, layout: Layout
 ) -> list[float]:
-    """Return a setting's value for each block: the block's, or else the whole genome's."""
+    """Return a setting's value for each block: the block's own value, or the whole genome's value."""
     own = [getattr(blocks.get(block), field, None) for block in layout.names]
     return [getattr(whole, field) if value is None else value for value in own]

@@ -23,12 +23,12 @@ STEPS = 7
 class Calibrated(Mutation):
     """Gaussian noise in the proportions of founders' weights, scaled by its effect on behaviour.
 
-    The direction is drawn: noise with the standard deviation of founders' weights in each block. It
-    is multiplied by 2^(q / 4). Bisection finds a q from -96 to 0: the child's action differs from
-    the parent's in at most a share `differs` of the parent's moments, and in more with q + 1. For
-    continuous actions, `differs` is the root mean square change of the outputs (SM-R of Lehman et
-    al. 2018, arXiv:1712.06563, with a length of whole steps, so that genomes are rebuilt). The note
-    `quarters` is q, and 0 for a copy.
+    The direction is random: noise with the standard deviation of founders' weights in each block.
+    This noise is multiplied by 2^(q / 4). Bisection finds a q from -96 to 0 with which the child's
+    action differs from the parent's action in at most a share `differs` of the parent's moments.
+    With q + 1 the action differs in more moments. For continuous actions, `differs` is the root
+    mean square change of the outputs (SM-R of Lehman et al. 2018, arXiv:1712.06563, with a length
+    of whole steps, so that genomes are rebuilt). The note `quarters` is q, and 0 for a copy.
     """
 
     notes: ClassVar = ("quarters",)
@@ -51,7 +51,8 @@ class Calibrated(Mutation):
     )
 
     def __hash__(self) -> int:
-        """Return a hash of the values; `blocks` is a dictionary, which has none, and never changes."""
+        """Return a hash of the values. The dictionary `blocks` has no hash of its own, but never
+        changes."""
         return hash(self.model_dump_json())
 
     @property
@@ -85,7 +86,7 @@ class Calibrated(Mutation):
         return jnp.where(mutates, found, none)[:, None]
 
     def inherit(self, layout: Layout, family: Family) -> tuple[Array, Array]:
-        """Add noise of the lengths in the notes; see `Mutation.inherit`."""
+        """Add noise, multiplied by 2^(q / 4) with the child's q; see `Mutation.inherit`."""
         mutates = self._mutates(family)
         mutants = self._mutants(layout, family, family.notes[:, 0])
         return jnp.where(mutates[:, None], mutants, family.parents), mutates

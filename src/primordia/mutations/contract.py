@@ -68,28 +68,29 @@ class Moments(NamedTuple):
     """The number and interval of the moments that organisms remember: senses and memory."""
 
     kept: int
-    """number of moments; they are the latest of a line of descent, since a child begins with its
-    parent's"""
+    """number of moments; they are the latest of a line of descent, since a child begins with the
+    parent's moments"""
     every: int
     """ticks between two moments; kept x every is at most 2^16"""
 
 
 Change: TypeAlias = Callable[[Array], Array]
-"""The change of behaviour of K genomes (K, P) in their parents' moments, float32 (K,); see
-`Mutation.moments`."""
+"""A function of K genomes: their change of behaviour in the parents' moments (`Mutation.moments`),
+float32 (K,) from (K, P)."""
 
 
 class Mutation(Settings, ABC):
     """A mutation's settings and its behaviour.
 
-    Seasons may change settings that are declared as `Rate`. Methods get their present values as `rates`,
-    by the names of `rates_of`. The first axis of all arrays is the births, K. Births do not depend on
-    each other.
+    Seasons may change settings that are declared as `Rate`. Methods get the present values of these
+    settings as `rates`, by the names of `rates_of`. The first axis of all arrays is the births, K.
+    Births do not depend on each other.
     """
 
     notes: ClassVar[tuple[str, ...]] = ()
-    """Names of the small integers that belong to an organism beside its genome, such as a heritable rate.
-    `note` makes them from those of the parent. They are columns of the births table."""
+    """Names of the notes: small integers of an organism beside its genome, such as a heritable
+    rate. `note` makes the child's notes from the parent's notes. Notes are columns of the births
+    table."""
 
     @property
     def moments(self) -> Moments | None:
@@ -120,7 +121,7 @@ class Mutation(Settings, ABC):
         Args:
             layout: layout of the genomes.
             family: the parents, with their notes.
-            change: None unless organisms remember `moments`.
+            change: the change of behaviour; None if organisms remember no `moments`.
         """
         return family.notes
 

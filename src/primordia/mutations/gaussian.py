@@ -1,4 +1,4 @@
-"""Gaussian mutation: noise on every weight of a block, at a share of the births."""
+"""Gaussian mutation: noise on every weight of a block, in a share of the births."""
 
 from typing import Literal, TypeAlias
 
@@ -31,7 +31,7 @@ class Block(FounderBlock):
 class Gaussian(Mutation):
     """Gaussian noise of a fixed scale (Schmidgall & Hays 2021, "Mutation").
 
-    One uniform draw a birth decides for all blocks: block b mutates if the draw is below
+    In each birth one uniform draw decides for all blocks: block b mutates if the draw is below
     its probability. A child is a copy if none of its blocks mutates.
     """
 
@@ -45,7 +45,8 @@ class Gaussian(Mutation):
     )
 
     def __hash__(self) -> int:
-        """Return a hash of the values; `blocks` is a dictionary, which has none, and never changes."""
+        """Return a hash of the values. The dictionary `blocks` has no hash of its own, but never
+        changes."""
         return hash(self.model_dump_json())
 
     def check(self, layout: Layout) -> None:
@@ -95,7 +96,7 @@ class Gaussian(Mutation):
         return noise * jnp.asarray(np.repeat(scales, layout.sizes))
 
     def per_block(self, field: BlockField, layout: Layout) -> list[float]:
-        """Return a setting's value for each block: the block's, or else the whole genome's."""
+        """Return a setting's value for each block: the block's own value, or the whole genome's value."""
         return per_block(self, self.blocks, field, layout)
 
 

@@ -14,12 +14,13 @@ from primordia.random.keys import Purpose, below
 
 
 class Heritable(Gaussian):
-    """Gaussian noise of a scale times 2^(q / 4), with a whole number q that is inherited.
+    """Gaussian noise with the standard deviation scale x 2^(q / 4). The whole number q is inherited.
 
-    A mutant's q is its parent's plus a number from -stride to stride, all equally likely, within finest
-    and coarsest. Then its weights get noise of the new scale (Schwefel 1981; in steps as in Dang &
-    Lehre 2016). In the control `belongs = "cell"` the same q belongs to a cell: a mutant starts
-    from the q of the organism that was last born in its cell. So q is not selected with a genome.
+    A mutant's q is the sum of its parent's q and a whole number from -stride to stride, all equally
+    likely. The sum is kept from finest to coarsest. Then the mutant's weights get noise of the new
+    scale (Schwefel 1981; the steps are as in Dang & Lehre 2016). In the control `belongs = "cell"`
+    the same q belongs to a cell: a mutant starts from the q of the organism that was last born in
+    its cell. So q is not selected with a genome.
     """
 
     notes: ClassVar = ("quarters",)
@@ -35,7 +36,7 @@ class Heritable(Gaussian):
 
     @property
     def notes_from(self) -> Literal["parent", "cell"]:
-        """Return where a child's first q comes from; see `Mutation.notes_from`."""
+        """Return the source of a child's first q; see `Mutation.notes_from`."""
         return "cell" if self.belongs == "cell" else "parent"
 
     def note(self, layout: Layout, family: Family, change: Change | None) -> Array:

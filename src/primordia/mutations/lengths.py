@@ -16,5 +16,5 @@ LENGTHS = np.array(
 
 
 def length(quarters: Array) -> Array:
-    """Return 2^(quarters / 4), float32, of int32 from SHORTEST to LONGEST."""
+    """Return 2^(quarters / 4), float32; `quarters` is int32, from SHORTEST to LONGEST."""
     return jnp.asarray(LENGTHS)[quarters - SHORTEST]

@@ -89,11 +89,11 @@ def evaluate(
     habitat: Mapping[str, Any] | None = None,
     **changes: Any,
 ) -> list[Evaluation]:
-    """Let organisms play games side by side; the result of each does not depend on the others.
+    """Let organisms play games side by side; no result depends on other organisms.
 
     Args:
         run: the organisms' run.
-        organisms: birth number and world of each.
+        organisms: birth number and world of each organism.
         games: number of games of each organism; one game if all would be the same.
         ticks: length at which a game is cut; whole games are also cut at the habitat's `episode`.
         senses: `live`; `frozen`: senses keep their values from the start of a game; `ignored`: each
@@ -123,7 +123,7 @@ def judged(
     senses: Senses,
     habitat: Mapping[str, Any],
 ) -> list[Evaluation]:
-    """Let players of a task play games side by side; the numbers name them in results. See `evaluate`."""
+    """Let players play games side by side; `numbers` name the players in results. See `evaluate`."""
     if games < 1 or ticks < 1:
         raise InputError("evaluate needs at least one game of at least one tick")
     players = own._replace(habitat=changed(config, habitat).build_habitat())
@@ -172,7 +172,7 @@ def changed(config: Config, changes: Mapping[str, Any]) -> Config:
 
 
 def _in_the_original(players: Players) -> Players | None:
-    """Return the players in the habitat's original task, without metabolism; None if it has none."""
+    """Return the players in the habitat's original task, without metabolism; None without such a task."""
     original = players.habitat.original()
     if original is None:
         return None

@@ -17,13 +17,13 @@ def export(
 ) -> tuple[int, ...]:
     """Write organisms to a file. Return their birth numbers.
 
-    The file is an ONNX model of one brain if its name ends with .onnx, see `onnx.write`; else it holds
-    genomes in safetensors, see `genomes.write`.
+    The file is an ONNX model of one brain if its name ends with .onnx (see `onnx.write`). Other
+    files hold genomes in safetensors (see `genomes.write`).
 
     Args:
         run: the organisms' run.
         out: path of the file.
-        organisms: birth numbers; by default that of the champion; see `Lives.oldest`.
+        organisms: birth numbers; by default the champion's number; see `Lives.oldest`.
         world: the organisms' world.
 
     Raises:

@@ -17,7 +17,7 @@ from primordia.random.wide import Wide
 AT_ONCE = 128
 """Default number of games played side by side; the games of one player are never separated."""
 AT_ONCE_IN_JAX = 1024
-"""The same for a habitat in JAX, where a game needs little more memory than a genome."""
+"""The same number for a habitat in JAX, in which a game needs little more memory than a genome."""
 MIX = np.uint64(0x9E3779B97F4A7C15)
 """An odd number that mixes the bits of courses."""
 
@@ -66,7 +66,8 @@ class Games(NamedTuple):
         return Games._make([*(array[player] for array in arrays), [actions[player]]])
 
     def actions_at(self, tick: int) -> np.ndarray:
-        """Return the action of each player at a tick of its first game, repeated: (K,) or (K, A)."""
+        """Return the action of each player at a tick of its first game, which is repeated when it
+        ends: (K,) or (K, A)."""
         return np.stack([each[(tick - 1) % len(each)] for each in self.actions])
 
 
@@ -87,7 +88,7 @@ def play(
         ticks: length at which a game is cut.
         frozen: the senses and memory of each player that keep their values from the start of a
             game.
-        script: earlier games of the same players; their actions are repeated regardless of senses.
+        script: earlier games of the same players, whose actions are repeated regardless of senses.
         at_once: number of games played side by side.
     """
     size, parts = max((at_once or AT_ONCE) // games, 1), []
@@ -103,18 +104,18 @@ def play(
 
 
 def lifespans(players: Players, ticks: int) -> np.ndarray:
-    """Return the ticks that each player lives in one game, int64 (K,), cut at a length."""
+    """Return the ticks that each player lives in one game, at most `ticks`: int64 (K,)."""
     return lifespans_in_games(players, 1, ticks)[:, 0]
 
 
 def lifespans_in_games(
     players: Players, games: int, ticks: int, frozen: Frozen | None = None
 ) -> np.ndarray:
-    """Return the ticks that each player lives in a number of games, int64 (K, E), cut at a length."""
+    """Return the ticks that each player lives in each of its games, at most `ticks`: int64 (K, E)."""
     at_once = AT_ONCE if players.habitat.kind == "host" else AT_ONCE_IN_JAX
     size, lived = max(at_once // games, 1), []
     for first in range(0, len(players.genomes), size):
-        # In parts, since games keep all actions of their players.
+        # Players play in parts, since games keep all actions of their players.
         some = slice(first, first + size)
         part = frozen and frozen.take(some)
         found = play(players.take(some), games, ticks, frozen=part, at_once=at_once)

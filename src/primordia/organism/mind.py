@@ -1,4 +1,4 @@
-"""A mind: the inputs of an organism's actions beside the law and its senses."""
+"""A mind: the inputs of an organism's actions beside the law and the senses."""
 
 from typing import NamedTuple
 
@@ -23,6 +23,6 @@ class Mind(NamedTuple):
 
 
 def think(law: Law, mind: Mind, memory: Array, senses: Array, tick: Wide) -> Thought:
-    """Think one tick, Wide (1,), with memory (N, M) and senses (N, S)."""
+    """Return the thoughts of one tick, Wide (1,), from memory (N, M) and senses (N, S)."""
     key = stream(mind.key, Purpose.MOTOR, tick)
     return life.think(law, mind.genome, memory, senses, key, mind.cell)

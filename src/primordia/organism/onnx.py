@@ -19,9 +19,9 @@ INPUTS, OUTPUTS = ["senses", "memory"], ["action", "memory_after"]
 def write(path: Path, law: Law, weights: dict[str, np.ndarray], about: dict[str, str]) -> None:
     """Write a brain as an ONNX model of one tick, with `about` as its metadata.
 
-    Its inputs are `senses`, float32 (S,), and `memory`, float32 (M,), zero at birth. Its outputs are
-    `action`, int32 () or float32 (K,), without the motor's noise, and `memory_after`, float32 (M,).
-    A brain without memory has only `senses` and `action`.
+    The model's inputs are `senses`, float32 (S,), and `memory`, float32 (M,), zero at birth. Its
+    outputs are `action`, int32 () or float32 (K,), without the motor's noise, and `memory_after`,
+    float32 (M,). A brain without memory has only `senses` and `action`.
 
     Args:
         path: the file.

@@ -79,7 +79,7 @@ class Organism:
         return Cause(cause).label if self.lives.died[self.row] else None
 
     def descent(self) -> list[int]:
-        """Return the birth numbers of the organism's ancestors, founder first, and of itself."""
+        """Return the birth numbers of the organism's ancestors, founder first, then its own number."""
         return [int(self.lives.id[row]) for row in descent(self.lives, self.id, self.world)]
 
     def genome(self) -> np.ndarray:
@@ -100,7 +100,8 @@ class Organism:
         ages: tuple[int | None, int | None] = (None, None),
         beside: Sequence[int] = (),
     ) -> Path:
-        """Make a video of its life, or of several. Return the file; see `replay.replay`."""
+        """Make a video of the organism's life, or of several lives. Return the file; see
+        `replay.replay`."""
         path = Path(out) if out is not None else None
         return replay(self.run, self.id, self.world, path, ages, beside=beside)
 

@@ -33,7 +33,7 @@ def founders_of(run: Records, worlds: np.ndarray, counts: np.ndarray) -> tuple[n
     Args:
         run: the run, or an arm.
         worlds: some worlds, int (V,).
-        counts: number of founders of each, int (V,).
+        counts: number of founders of each world, int (V,).
 
     Returns:
         the world of each founder, int (K,), and the players, numbered from 0 in each world.

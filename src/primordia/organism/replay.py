@@ -41,20 +41,21 @@ def replay(
 ) -> Path:
     """Make a video of a life, or of several side by side. Return the path of the file.
 
-    Lives side by side begin together, in the order of their births; each is held at its last picture.
+    Lives side by side begin together, in the order of their births. A life that has ended keeps its
+    last picture.
 
     Args:
         run: the organism's run.
         organism: birth number.
         world: the organism's world.
-        out: an .mp4 or .gif; by default under the run's `videos`.
+        out: an .mp4 or .gif file; by default under the run's `videos`.
         ages: first and last age shown, in ticks. By default the whole life is shown, or the first and
             last 30 seconds of a life longer than a minute.
-        part: seconds shown at each end of a long life, other than 30.
-        beside: birth numbers of others of its world, whose lives are shown too.
+        part: seconds shown at each end of a long life; by default 30.
+        beside: birth numbers of other organisms of the world, whose lives are shown too.
 
     Raises:
-        InputError: no such organism was born, its habitat draws no pictures, or no age is left to show.
+        InputError: no such organism was born, the habitat draws no pictures, or no age is left to show.
         Trouble: the video cannot be written, or the life does not repeat as recorded.
     """
     if out is None:
@@ -89,7 +90,7 @@ def lacking(habitat: AnyHabitat) -> list[str]:
 
 
 def picture_rate(life: RelivedLife) -> float:
-    """Return the ticks in a second of a life; raise InputError if its habitat draws no pictures."""
+    """Return the ticks in a second of a life; raise InputError if the habitat draws no pictures."""
     if lacks := " and no ".join(f"`{name}`" for name in lacking(life.habitat)):
         raise InputError(f"{life.run.path}: its habitat draws no pictures (it has no {lacks})")
     assert life.habitat.rate
@@ -104,7 +105,7 @@ def parts_of(
     """Return the ages to show, in ticks; for a long life `seconds` at each end, by default PART.
 
     Raises:
-        InputError: no age is left to show, or its habitat draws no pictures.
+        InputError: no age is left to show, or the habitat draws no pictures.
     """
     seconds = PART if seconds is None else seconds
     rate, born = picture_rate(life), int(life.record.born[0])
@@ -127,7 +128,7 @@ def _pictures(
 ) -> Iterator[Image.Image]:
     """Yield a picture of every `step`-th tick of the parts; the last one is repeated.
 
-    A card between two parts shows the time left out.
+    A card between two parts tells the time that is left out.
     """
     still, part, picture = max(1, round(STILL * rate)), 0, None
     for part_now, stretch, i in moments(life, parts, step):
@@ -141,7 +142,7 @@ def _pictures(
 
 
 def _side_by_side(films: list[Iterator[Image.Image]]) -> Iterator[Image.Image]:
-    """Yield the pictures of films of one size in one, in rows; an ended film holds its last picture."""
+    """Yield pictures that join films of one size in rows; an ended film keeps its last picture."""
     columns = isqrt(len(films) - 1) + 1
     rows = ceil(len(films) / columns)
     held = [next(film) for film in films]

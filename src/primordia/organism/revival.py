@@ -82,10 +82,10 @@ def revive(
 ) -> Revival:
     """Live a life again, tick for tick, and compare it with its record.
 
-    A living organism lives up to the run's newest checkpoint, which also holds its memory, and its body,
-    or its senses in a habitat on the host. Death by a neighbour's child counts as repeated if the
-    organism is alive at its last tick and the records have a child in its cell in that tick. Other
-    deaths happen again in the life itself.
+    A living organism lives up to the run's newest checkpoint. There its memory is compared too, and
+    its body or, in a habitat on the host, its senses. Death by a neighbour's child counts as
+    repeated if the organism is alive at its last tick and the records have a child in its cell in
+    that tick. Other deaths happen again in the life itself.
 
     Args:
         run: the organism's run.
@@ -95,7 +95,7 @@ def revive(
             newest checkpoints, or the state of the fork. By default the life begins with the birth,
             or with the fork if the organism is older.
         save: an .npz, .parquet or .csv file to write the life to; see `diary.write`.
-        film: an .mp4 or .gif file to film the life to, if it agrees with its record.
+        film: an .mp4 or .gif file for a film of the life, made if the life agrees with its record.
 
     Raises:
         InputError: the life cannot be lived again; the message says why.
@@ -129,7 +129,7 @@ def revive(
 
 
 def _lived(life: RelivedLife, save: Path | None) -> Course:
-    """Live a life and return its course; write it to a file if one is named."""
+    """Live a life and return its course; write the life to the file `save` if there is one."""
     course = Course(life)
     if save is None:
         deque(course.stretches(), 0)

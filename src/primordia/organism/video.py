@@ -33,7 +33,7 @@ def write(
 
     Args:
         path: the file.
-        pictures: one or more.
+        pictures: one picture or more.
         rate: pictures in a second.
         sample: a picture with the colours of all pictures (a GIF has at most 256); by default the
             first picture.

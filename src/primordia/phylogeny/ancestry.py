@@ -3,19 +3,21 @@
 import numpy as np
 
 ROWS = 4096
-"""Organisms that are looked at together."""
+"""Number of organisms in one step."""
 FEW = 8
-"""Lines up to which Python follows each sooner than NumPy all of them."""
+"""Largest number of lines that Python follows one by one; NumPy follows more lines faster."""
 
 
 def nearest(parent_row: np.ndarray, marked: np.ndarray) -> np.ndarray:
-    """Return the nearest marked organism on each one's line of descent, itself included; its row or -1.
+    """Return the row of the nearest marked organism on each organism's line of descent, or -1.
+
+    A marked organism is the nearest to itself.
 
     Args:
         parent_row: row of each parent, or -1, int64 (L,), parents before their children.
         marked: rows, int64.
     """
-    found = np.full(len(parent_row) + 1, -1)  # the last is that of no parent, -1
+    found = np.full(len(parent_row) + 1, -1)  # the last is for no parent, -1
     found[marked] = marked
     for first in range(0, len(parent_row), ROWS):
         parent = parent_row[first : first + ROWS]
@@ -34,7 +36,7 @@ def with_ancestors(rows: np.ndarray, *parents: np.ndarray) -> np.ndarray:
 
     Args:
         rows: rows of the organisms, int64.
-        parents: row of each one's first parent, or -1, int64 (L,); then those of further parents.
+        parents: rows of all first parents, or -1, int64 (L,); then rows of further parents.
     """
     known = np.zeros(len(parents[0]) + 1, bool)
     known[-1] = True  # no parent
@@ -52,7 +54,7 @@ def with_ancestors(rows: np.ndarray, *parents: np.ndarray) -> np.ndarray:
 
 
 def places_of(rising: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """Return the places of rows, which are all among the rising ones, or -1 of row -1."""
+    """Return the place of each row among `rising`, which holds all of them; -1 for row -1."""
     return np.where(rows < 0, -1, np.searchsorted(rising, rows))
 
 

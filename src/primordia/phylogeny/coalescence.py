@@ -1,4 +1,4 @@
-"""The genealogy of the living of one world: their common ancestor, and when each two of them had one.
+"""The genealogy of the living of one world: their common ancestor, and that of each pair.
 
 Without selection, two of the n living after a birth are the newborn and its parent with probability
 2 / (n (n - 1)), whichever two they are (Moran 1958; Kingman 1982). So the births and the sizes of the
@@ -17,17 +17,18 @@ from primordia.runs.lives import Lives
 
 @dataclass(frozen=True)
 class Genealogy:
-    """The living of one world at its end, and their A ancestors, by rising row."""
+    """The living of one world at its end and their ancestors, A organisms by rising row."""
 
     lives: Lives
     rows: np.ndarray
     """rows of the living and all their ancestors, int64 (A,)"""
     parent: np.ndarray
-    """place of each one's parent among them, or -1, int64 (A,)"""
+    """place of each organism's parent among `rows`, or -1, int64 (A,)"""
     size: np.ndarray
-    """number of the living that each is or has as descendants, int64 (A,)"""
+    """number of the living among each organism and its descendants, int64 (A,)"""
     merges: np.ndarray
-    """pairs of the living whose lines part at its birth: one goes through it, one through its parent"""
+    """number of pairs of the living whose lines part at each organism's birth: one line goes
+    through the organism, the other one only through its parent"""
 
     @classmethod
     def of(cls, lives: Lives) -> "Genealogy":
@@ -37,7 +38,7 @@ class Genealogy:
         size = (~lives.died[rows]).astype(int).tolist()
         merges = [0] * len(rows)
         for place, of in reversed(list(enumerate(parent.tolist()))):
-            if of >= 0:  # the size of the parent is by now that without this child and older ones
+            if of >= 0:  # the parent's size is still without this child and older ones
                 merges[place] = size[of] * size[place]
                 size[of] += size[place]
         return cls(lives, rows, parent, np.array(size, np.int64), np.array(merges, np.int64))
@@ -59,7 +60,8 @@ class Genealogy:
         return int(common[-1]) if self.living and len(common) else None
 
     def trunk(self) -> np.ndarray:
-        """Return the rows from the largest root on, from each to its child with most of the living."""
+        """Return the rows of a line from the largest root; it goes on with the child with the most
+        living."""
         if not len(self.rows):
             return np.zeros(0, np.int64)
         order = np.lexsort((self.size, self.parent))
@@ -71,7 +73,7 @@ class Genealogy:
         return self.rows[line]
 
     def coalescences(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return ticks at which lines of the living part, falling, and the pairs that part there."""
+        """Return the ticks at which lines of the living part, latest first, and the number of pairs."""
         parted = np.flatnonzero(self.merges)[::-1]
         ticks = self.lives.born[self.rows[parted]]
         falling, place = np.unique(-ticks, return_inverse=True)
@@ -82,16 +84,16 @@ class Genealogy:
 
 @dataclass(frozen=True)
 class Times:
-    """Ticks back from the end of a world to the common ancestor of pairs: what share has it by then."""
+    """Coalescence times: ticks back from the end of a world to the common ancestors of pairs."""
 
     back: np.ndarray
     """int64 (K,), rising"""
     share: np.ndarray
-    """share of pairs whose common ancestor is at most so far back, float64 (K,), rising"""
+    """share of pairs whose common ancestor is at most `back` ticks back, float64 (K,), rising"""
 
     @property
     def median(self) -> float | None:
-        """The time that half of the pairs do not exceed; None where it is before the records."""
+        """The time that half of the pairs do not exceed; None if this time is before the records."""
         reached = np.flatnonzero(self.share >= 0.5)
         return float(self.back[reached[0]]) if len(reached) else None
 
@@ -111,7 +113,7 @@ def observed(genealogy: Genealogy) -> Times:
 
 
 def neutral(lives: Lives, turnover: Turnover) -> Times:
-    """Return the coalescence times that drift alone would make, from births and population; see above."""
+    """Return the coalescence times that drift alone would make, from births and population."""
     born = turnover.birth & (turnover.tick > lives.seen.min())  # since the fork, if it is one
     living = turnover.living[born].astype(float)
     own = lives.parent[turnover.row[born]] >= 0

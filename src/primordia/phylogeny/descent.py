@@ -34,9 +34,9 @@ class CommonAncestor:
     born: int
     """tick of its birth"""
     since: int
-    """tick after which all the living have been its descendants, or itself"""
+    """tick after which all the living have been the organism or its descendants"""
     generation: int
-    """births from the root of its line to it"""
+    """number of births from the root of the line to the organism"""
 
 
 @dataclass(frozen=True)
@@ -48,16 +48,16 @@ class Ancestors:
     line: Lives
     """the lives of the ancestors and the organism"""
     children: np.ndarray
-    """children of each so far, int64 (D,)"""
+    """number of children of each organism so far, int64 (D,)"""
     blocks: list[str]
     """names of the B blocks of weights"""
     changes: np.ndarray | None
-    """size of each one's mutation by block, float64 (D, B); see `lineage.changes`. None: not known"""
+    """size of each mutation by block, float64 (D, B), or None if unknown; see `lineage.changes`"""
     unknown: str | None
-    """why they, or those before a fork, are not known"""
+    """why the sizes of mutations, or of those before a fork, are not known"""
     ticks: dict[str, np.ndarray]
-    """for each of SHARES, the first tick after which more of the living were descendants, int64 (D,), or
-    UNKNOWN"""
+    """for each of SHARES, the first tick after which each organism's descendants exceeded this
+    share of the living, int64 (D,), or UNKNOWN"""
     census: Census
     """the living of the world at instants"""
     branch: np.ndarray
@@ -65,7 +65,7 @@ class Ancestors:
     common: CommonAncestor | None
     """the common ancestor of the living; None if there is none on record"""
     roots: int
-    """ancestors of the living whose parents are not on record, or that had none"""
+    """number of ancestors of the living without a parent on record"""
 
     @cached_property
     def size(self) -> np.ndarray | None:
@@ -73,7 +73,8 @@ class Ancestors:
         return None if self.changes is None else np.sqrt((self.changes**2).sum(axis=1))
 
     def shares(self, places: np.ndarray) -> np.ndarray:
-        """Return which share of the living descended from some of the line at each instant, (T, K).
+        """Return the share of the living that descended from organisms of the line at each instant,
+        (T, K).
 
         Args:
             places: places on the line, rising, int64 (K,).
@@ -84,10 +85,10 @@ class Ancestors:
         return from_each / np.maximum(self.census.living, 1)[:, None]
 
     def telling(self, most: int) -> np.ndarray:
-        """Return the places of at most `most` of the line, rising: the first, the last, the most telling.
+        """Return at most `most` places on the line, rising: the first, the last and the most important.
 
-        They are the half of them that outlived their parents by the largest ratio, and others evenly
-        spaced.
+        Half of the places are of organisms that outlived their parents by the largest ratio. The
+        other places are evenly spaced.
         """
         count = len(self.line)
         if count <= most:
@@ -113,7 +114,7 @@ class Ancestors:
         }
 
     def step(self, place: int) -> dict[str, Any]:
-        """Return one of the line as plain values; None is what is not known or has not happened."""
+        """Return an organism of the line as plain values; None if unknown or if it has not happened."""
         line, parent = self.line, int(self.line.parent[place])
         size = None if self.changes is None else [_known(each) for each in self.changes[place]]
         return {
@@ -133,14 +134,14 @@ class Ancestors:
 def ancestors(run: Records, organism: int, world: int = 0, say: Say = warnings.warn) -> Ancestors:
     """Follow the line of descent of an organism, from the records alone.
 
-    A line ends with a founder. It goes on through forks into the runs that they were made from.
+    A line ends with a founder. At a fork the line goes on in the run that was forked.
 
     Args:
         run: the organism's run, or an arm.
         organism: birth number.
         world: the organism's world.
-        say: called if a run that was forked is not there, or is another one. Then the line ends with an
-            organism that was alive at that fork.
+        say: called if a run that was forked is missing, or another run is in its place. Then the
+            line ends with an organism that was alive at that fork.
 
     Raises:
         InputError: no such organism was born.
@@ -176,15 +177,15 @@ def ancestors(run: Records, organism: int, world: int = 0, say: Say = warnings.w
 def _changes(
     runs: Sequence[Archive], line: Lives, world: int
 ) -> tuple[np.ndarray | None, str | None]:
-    """Return the sizes of mutations on a line, and why some are not known; each run tells its own part.
+    """Return the sizes of mutations on a line, and why some are unknown; each run gives its part.
 
-    No code of a run is executed that the user has not trusted.
+    Code of a run is executed only if the user has trusted the code.
     """
     found, until = np.full((len(line), len(runs[0].layout.names)), np.nan), len(line)
     for run in runs:
         before = int((line.born <= run.config.begins).sum())
         if before == until and run is not runs[-1]:
-            continue  # all are alive at its fork, or older
+            continue  # all were alive at the run's fork, or are older
         try:
             own = changes(run, int(line.id[until - 1]), world)
         except InputError as error:

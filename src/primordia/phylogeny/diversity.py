@@ -1,9 +1,9 @@
 """The diversity of the living over time: of their tree (Faith 1992), and of their lines (Hill 1973).
 
-A life is cut where its children are born. Each piece is a branch of the tree of all that lived, and
-lies in the tree of the living at a tick if an organism that is alive then lived it or descends from it.
-So the sum of branches needs no tree: a piece enters it when it is complete and leaves it when its last
-descendant dies.
+A life is cut where its children are born. Each piece is a branch of the tree of all organisms. A
+piece belongs to the tree of the living at a tick if an organism alive at this tick lived the piece
+or descends from it. So the sum of branches needs no tree: a piece is added when it is complete, and
+removed when its last descendant dies.
 """
 
 import numpy as np
@@ -16,9 +16,10 @@ from primordia.runs.lives import Lives
 def phylogenetic_diversity(lives: Lives, ticks: np.ndarray) -> np.ndarray:
     """Return the total length of the tree of the living after each tick, from its roots on, int64 (T,).
 
-    The unit is ticks: it is the time for which the lines of the living have existed, each tick counted
-    once for each line that existed in it. In a fork, lines begin at the birth of organisms alive at it
-    whose parents are not on record.
+    The unit is ticks. The length is the time for which the lines of the living have existed, and
+    each tick counts once for each line that existed then. In a fork, lines begin with organisms
+    that were alive at the fork and whose parents are not on record, at the birth of these
+    organisms.
 
     Source: Faith 1992, "Conservation evaluation and phylogenetic diversity".
     """
@@ -41,7 +42,7 @@ def phylogenetic_diversity(lives: Lives, ticks: np.ndarray) -> np.ndarray:
 
 
 def hill_numbers(counts: np.ndarray) -> np.ndarray:
-    """Return the effective numbers of lines of orders 0, 1 and 2, float64 (3, ...); 0 of none.
+    """Return the effective numbers of lines of orders 0, 1 and 2, float64 (3, ...); 0 if nothing lives.
 
     They are the number of lines, the exponential of Shannon's entropy of their shares, and the inverse
     of the probability that two of the living, drawn with replacement, are of one line.
@@ -61,9 +62,9 @@ def hill_numbers(counts: np.ndarray) -> np.ndarray:
 
 
 def _pieces(lives: Lives) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return when the pieces of lives begin and end, and when the last that descends from them dies.
+    """Return when the pieces of lives begin and end, and when the last descendant of each piece dies.
 
-    int64 each. The last piece of a life ends with it.
+    Each result is int64. The last piece of a life ends with the life.
     """
     stop = np.minimum(stops(lives), lives.ended.max() + 1)  # small numbers
     parent = lives.parent_row
@@ -75,7 +76,7 @@ def _pieces(lives: Lives) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     # Each child's birth begins a piece of its parent, which the next child's birth ends.
     following = np.where(later, lives.born[np.append(child[1:], 0)], stop[of])
     first = np.flatnonzero(np.diff(of, prepend=-1))
-    until = stop.copy()  # of the first piece of each life
+    until = stop.copy()  # the end of the first piece of each life
     until[of[first]] = lives.born[child[first]]
     rest = _latest_after(of, gone[child], stop[of])
     begin = np.concatenate([lives.born, lives.born[child]])
@@ -83,17 +84,17 @@ def _pieces(lives: Lives) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def _next_of_group(groups: np.ndarray) -> np.ndarray:
-    """Return whether the next of each is of the same group, bool."""
+    """Return, for each element, whether the next element has the same group, bool."""
     return np.append(groups[1:] == groups[:-1], False)
 
 
 def _latest_after(of: np.ndarray, gone: np.ndarray, stop: np.ndarray) -> np.ndarray:
-    """Return the latest of a parent's death and the ends of the lines of its children after each, int64.
+    """Return, for each child, when its parent and the lines of all later children have ended, int64.
 
     Args:
         of: parent of each child, rising; its children in the order of birth.
         gone: when the last of each child's line dies.
-        stop: when each one's parent dies.
+        stop: when each child's parent dies.
     """
     apart = int(max(gone.max(initial=0), stop.max(initial=0))) + 1
     lift = (of.max(initial=0) - of)[::-1] * apart  # one parent's values are above those of the next
@@ -102,7 +103,7 @@ def _latest_after(of: np.ndarray, gone: np.ndarray, stop: np.ndarray) -> np.ndar
 
 
 def _last_descendant(parent_row: np.ndarray, stop: np.ndarray) -> np.ndarray:
-    """Return the tick from which nothing is alive that is or descends from each organism, int64 (L,)."""
+    """Return the tick from which each organism and all its descendants are dead, int64 (L,)."""
     gone = stop.copy()
     for first in range((len(stop) - 1) // ROWS * ROWS, -1, -ROWS):
         own, parent = gone[first : first + ROWS], parent_row[first : first + ROWS]

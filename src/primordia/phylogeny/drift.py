@@ -2,7 +2,7 @@
 
 Each birth and each death happens at its tick, so the population is the recorded one. But the parent of
 a birth, and the organism that dies, are drawn from all that are alive, each with the same probability
-(Moran 1958, in a population of changing size). What lines do then is drift.
+(Moran 1958, in a population of changing size). All changes of lines are then drift.
 """
 
 from collections.abc import Iterator
@@ -24,11 +24,11 @@ from primordia.runs.lives import Lives
 MOST, FEWEST = 200, 40
 """Largest and smallest number of shadows."""
 DRAWS = 10**9
-"""Draws up to which there are more shadows than FEWEST."""
+"""Largest number of draws, unless the smallest number of shadows needs more."""
 DEATH, BIRTH, FOUNDER = 0, 1, 2
 """Kinds of events."""
 NO_LINE = 0
-"""The line of founders that are born later, which begin none; the others count from 1."""
+"""Number for founders that are born later, which begin no line; lines are numbered from 1."""
 
 
 class Deal(NamedTuple):
@@ -37,7 +37,7 @@ class Deal(NamedTuple):
     kinds: Array
     """int8 (E + 1,); the last is no event"""
     before: Array
-    """number of living before each, int32 (E + 1,)"""
+    """number of living before each event, int32 (E + 1,)"""
     key: Wide
     """key of the draws"""
     places: np.ndarray
@@ -49,7 +49,8 @@ class Deal(NamedTuple):
     def of(
         cls, lives: Lives, turnover: Turnover, ticks: np.ndarray, seed: int, what: int
     ) -> "Deal":
-        """Prepare the turnover of one world; its seed, the first tick and `what` make all draws."""
+        """Prepare the turnover of one world; the world's seed, the first tick and `what` make all
+        draws."""
         device.prepare()
         places = np.searchsorted(turnover.tick, ticks, side="right")
         events = slice(places[0], places[-1])
@@ -67,12 +68,12 @@ class Deal(NamedTuple):
         )
 
     def replicates(self, lines: int, fewest: int, most: int) -> int:
-        """Return the number of shadows of each of some lines, which are drawn one by one."""
+        """Return the number of shadows of each line, if `lines` lines are drawn one by one."""
         return int(np.clip(DRAWS // max(self.places[-1] * lines, 1), fewest, most))
 
     @property
     def parts(self) -> Iterator[tuple[int, int, int, int]]:
-        """For each instant its place, the events since the one before it, and the number of living."""
+        """For each instant: its place, begin and end of its events, and the number of living."""
         begin = np.append(0, self.places[:-1])
         rows = np.array([np.arange(len(begin)), begin, self.places, self.living])
         return map(tuple, rows.T.tolist())
@@ -80,14 +81,14 @@ class Deal(NamedTuple):
 
 @dataclass(frozen=True)
 class Drift:
-    """What K lines of R shadows do at T instants."""
+    """The course of K lines of R shadows at T instants."""
 
     final: np.ndarray
     """share of each line after the last instant, float64 (R, K)"""
     largest: np.ndarray
     """share of the largest line after each instant, float64 (R, T)"""
     effective: np.ndarray
-    """effective number of lines (order 2) after each instant, float64 (R, T); 0 of none"""
+    """effective number of lines (order 2) after each instant, float64 (R, T); 0 without lines"""
 
 
 def drift(lives: Lives, turnover: Turnover, ticks: np.ndarray, lines: int, seed: int) -> Drift:
@@ -95,7 +96,7 @@ def drift(lives: Lives, turnover: Turnover, ticks: np.ndarray, lines: int, seed:
 
     Args:
         lives: lives of one world.
-        turnover: its births and deaths.
+        turnover: births and deaths of the world.
         ticks: T instants, rising; each organism alive after the first begins a line.
         lines: K, the number of lines.
         seed: the world's seed.
@@ -124,17 +125,17 @@ def _dealt(deal: Deal, shadows: int, lines: int) -> Iterator[np.ndarray]:
             counts = np.bincount(codes.ravel(), minlength=shadows * (lines + 1))
             counts = counts.reshape(shadows, -1)[:, NO_LINE + 1 :]
             settled = end > last_founder and bool((counts.max(axis=1) == living).all())
-        else:  # one line is left in each, so nothing is left to draw
+        else:  # one line is left in each shadow, so nothing is left to draw
             counts = np.where(counts > 0, living, 0)
         yield counts
 
 
 def _deal(labels: Array, first: int, last: int, kinds: Array, before: Array, key: Wide) -> Array:
-    """Deal births and deaths to shadows, one after another -> the lines of the living, int32 (R, M).
+    """Deal births and deaths to shadows in order. Return the lines of the living, int32 (R, M).
 
-    The living of a shadow are in the first of its M places. A newborn takes the next place with the
-    line of its parent; the place of a dead one is taken by the last of the living. So each event copies
-    one place to another.
+    The living of a shadow are in the first of its M places. A newborn takes the next place, with
+    the line of its parent. The last of the living takes the place of an organism that dies. So each
+    event copies one place to another.
     """
     shadows, slots = labels.shape
     which = jnp.arange(shadows, dtype=jnp.int32)
@@ -154,7 +155,9 @@ def _deal(labels: Array, first: int, last: int, kinds: Array, before: Array, key
 def deal_one_line(
     counts: Array, which: Array, first: int, last: int, kinds: Array, before: Array, key: Wide
 ) -> Array:
-    """Deal births and deaths to one line of each shadow and to all others -> its living, int32 (R,).
+    """Deal births and deaths to one line of each shadow and to all others.
+
+    Return the number of living of the line, int32 (R,).
 
     Args:
         counts: living of the line in each shadow, int32 (R,).
@@ -162,7 +165,7 @@ def deal_one_line(
         first: the first event.
         last: the event after the last.
         kinds: kind of each event, int8 (E,).
-        before: number of living before each, int32 (E,).
+        before: number of living before each event, int32 (E,).
         key: key of the draws.
     """
 

@@ -8,15 +8,15 @@ from primordia.phylogeny.ancestry import nearest, places_of
 from primordia.phylogeny.living import NEVER, Turnover
 
 SPANS = 256, 2048
-"""Fewest and most births and deaths that are looked at together."""
+"""Smallest and largest number of births and deaths in one step."""
 UNKNOWN = -1
-"""The tick of what has not happened."""
+"""Number in place of a tick that has not come."""
 
 
 def branches(parent_row: np.ndarray, line: np.ndarray) -> np.ndarray:
     """Return the place on a line of descent at which each organism's own line leaves it, int64 (L,).
 
-    It is the place of the youngest ancestor that both have in common, -1 if they have none.
+    This is the place of the youngest common ancestor of both lines, or -1 if there is none.
 
     Args:
         parent_row: row of each parent, or -1, int64 (L,).
@@ -30,22 +30,22 @@ def first_ticks(
 ) -> list[np.ndarray]:
     """Return the first ticks after which each ancestor's descendants exceed some shares of the living.
 
-    The descendants of an ancestor are those whose lines leave the line of descent at its place or later.
-    So an ancestor reaches a share no earlier than the one before it, and one pass over the births and
-    deaths is enough.
+    The lines of an ancestor's descendants leave the line of descent at its place or later. So an
+    ancestor reaches a share no earlier than the ancestor before it, and one pass over the births
+    and deaths is enough.
 
     Args:
         turnover: births and deaths of the world.
         branch: place where each organism's line leaves the line of descent, int64 (L,); see `branches`.
-        length: D, the number of ancestors on it.
-        shares: from 0 to below 1 each; 1 asks for all of the living.
+        length: D, the number of ancestors on the line.
+        shares: each from 0 to below 1, or 1 for all of the living.
 
     Returns:
-        For each share, ticks int64 (D,), UNKNOWN where it has not happened.
+        For each share, the ticks, or UNKNOWN for a share not yet exceeded, int64 (D,).
     """
     looks = [_Look(turnover, share, length) for share in shares]
     alive = np.zeros(length + 1, np.int32)  # of one type with `change`: add.at is fast then
-    # Each look at a part tells of one ancestor, so parts have a few ancestors each.
+    # Each pass over a part finds the tick of one ancestor, so parts have a few ancestors each.
     events = len(turnover.row)
     span = int(np.clip(4 * events // max(length, 1), *SPANS))
     for first in range(0, events, span):
@@ -59,7 +59,7 @@ def first_ticks(
 
 
 class _Look:
-    """Follows which ancestor is the next to reach a share of the living."""
+    """Finds the tick at which each ancestor's descendants exceed a share, one ancestor after another."""
 
     def __init__(self, turnover: Turnover, share: float, length: int) -> None:
         self._turnover, self._share = turnover, share
@@ -67,7 +67,10 @@ class _Look:
         self._next, self._above = 0, 0  # the next ancestor, and its descendants before a part
 
     def follow(self, part: slice, at: np.ndarray, change: np.ndarray, alive: np.ndarray) -> None:
-        """Follow a part of the births and deaths; `alive`: how many leave at each place, before it."""
+        """Follow a part of the births and deaths.
+
+        `alive` has the number of living whose lines leave at each place, before the part.
+        """
         needed, next_ = self._needed(part), self._next
         while next_ < len(self.ticks):
             own = at >= next_

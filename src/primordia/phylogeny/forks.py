@@ -1,4 +1,4 @@
-"""Forks: the record of a run, put together with those of the runs that it was forked from.
+"""Forks: the record of a run, joined with the records of the runs that were forked.
 
 A fork's records begin with the births of the organisms then alive. Their ancestors, and all that died
 before, are on record in the run that was forked.
@@ -20,9 +20,9 @@ from primordia.runs.lives import Lives
 from primordia.runs.opening import archive
 
 AS_INHERITED = ("world", "id", "parent", "cell", "birth_cause", "born")
-"""What a fork copies of the births of the organisms that were alive at it."""
+"""Columns that a fork copies from the births of the organisms alive at the fork."""
 Say = Callable[[str], object]
-"""Called with a line for the user."""
+"""A function that is called with a line for the user."""
 
 
 class Past(NamedTuple):
@@ -30,7 +30,7 @@ class Past(NamedTuple):
 
     whole: Phylogeny
     runs: list[Archive]
-    """the run, the one that it was forked from, and so on"""
+    """the run, the run from which it was forked, and so on"""
 
 
 def whole_past(run: Archive, say: Say) -> Past:
@@ -38,12 +38,12 @@ def whole_past(run: Archive, say: Say) -> Past:
 
     Args:
         run: the run, read as of its newest checkpoint.
-        say: called if the run that was forked is not there, or is another one. Then the organisms alive
-            at that fork are roots.
+        say: called if the run that was forked is missing, or another run is in its place. Then the
+            organisms alive at that fork are roots.
 
     Raises:
         InputError: nothing has lived in the run yet.
-        Trouble: its records are damaged.
+        Trouble: the run's records are damaged.
     """
     past, runs, seen = recorded(run), [run], {bundle.origin_of(run.path).resolve()}
     while (fork := runs[-1].config.fork) is not None:
@@ -91,10 +91,10 @@ def _until(run: Archive, tick: int) -> Phylogeny:
 
 
 def _joined(earlier: Phylogeny, later: Phylogeny, fork: Archive) -> Phylogeny | None:
-    """Return the organisms of a run up to a fork, and of the fork; None if it is a fork of another run.
+    """Return the organisms of a run up to its fork, and of the fork; None if the fork is of another run.
 
     Args:
-        earlier: organisms of the run that was forked, on record at the end of that tick.
+        earlier: organisms of the run that was forked, on record at the end of the fork's tick.
         later: organisms of the fork, and of its forks.
         fork: the fork itself.
     """
@@ -106,7 +106,7 @@ def _joined(earlier: Phylogeny, later: Phylogeny, fork: Archive) -> Phylogeny | 
     if not (same and _follow(later.lives.take(own), earlier.lives, fork)):
         return None
     begun = np.concatenate([np.arange(len(earlier)), len(earlier) + own])
-    ended = begun.copy()  # those alive at the fork end as the fork records it
+    ended = begun.copy()  # organisms alive at the fork end as the fork records
     ended[alive] = len(earlier) + again
     world = np.concatenate([earlier.lives.world, later.lives.world])[begun]
     order = np.argsort(world.astype(np.uint16), kind="stable")
@@ -126,14 +126,14 @@ def _joined(earlier: Phylogeny, later: Phylogeny, fork: Archive) -> Phylogeny | 
 
 
 def _agree(living: Lives, inherited: Lives) -> bool:
-    """Return whether the organisms alive in a run are those that a fork of it began with."""
+    """Return whether the organisms alive in a run are those with which its fork began."""
     return all(
         np.array_equal(getattr(living, name), getattr(inherited, name)) for name in AS_INHERITED
     )
 
 
 def _follow(own: Lives, past: Lives, fork: Archive) -> bool:
-    """Return whether the birth numbers of a run's past end where those of a fork of it begin."""
+    """Return whether a fork's birth numbers begin where those of the run's past end."""
     if fork.origin is None:
         return False
     births = read_count(fork.origin, "world.worlds.births").astype(np.int64)

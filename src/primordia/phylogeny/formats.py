@@ -19,7 +19,7 @@ NODE = "strain"
 """The column of Taxonium's metadata that holds the labels of a tree: the first, under the name that
 `newick_to_taxonium` looks for."""
 OF_TREES = ("ancestor_list", "ancestor_id")
-"""Columns that a tree makes needless."""
+"""Columns that are not needed beside a tree."""
 
 
 def save(whole: Phylogeny, out: Path, say: Callable[[str], object]) -> None:
@@ -31,7 +31,7 @@ def save(whole: Phylogeny, out: Path, say: Callable[[str], object]) -> None:
         say: called with a line if the format cannot hold all of the phylogeny.
 
     Raises:
-        InputError: no such format, or the path is that of something else than a regular file.
+        InputError: there is no such format, or the path exists and is not a regular file.
         Trouble: the file cannot be written.
     """
     write = check_suffix(out)
@@ -41,7 +41,7 @@ def save(whole: Phylogeny, out: Path, say: Callable[[str], object]) -> None:
 
 
 def check_suffix(out: Path) -> Callable[[Phylogeny, Path], None]:
-    """Return what writes the format of a path; raise InputError if there is none."""
+    """Return the function that writes the format of a path; raise InputError if there is none."""
     try:
         return FORMATS[out.suffix.lower()]
     except KeyError:
@@ -55,12 +55,12 @@ def _parquet(whole: Phylogeny, path: Path) -> None:
 
 
 def _csv(whole: Phylogeny, path: Path) -> None:
-    """Write the table as the standard has it: quoted where there are commas, in lists of two parents."""
+    """Write the table as in the standard; lists of two parents are quoted, since they hold commas."""
     _separated(whole, path, ",", lambda rows: rows, "needed" if whole.mates else "none")
 
 
 def _taxonium(whole: Phylogeny, path: Path) -> None:
-    """Write metadata for Taxonium: the node names first, then what is known of each."""
+    """Write metadata for Taxonium: the node names first, then the facts of each node."""
 
     def metadata(rows: pa.RecordBatch) -> pa.RecordBatch:
         rows = rows.drop_columns(list(OF_TREES))
@@ -98,4 +98,4 @@ FORMATS: dict[str, Callable[[Phylogeny, Path], None]] = {
     ".newick": _newick,
     ".tsv": _taxonium,
 }
-"""What writes a format, by the suffix of the file."""
+"""The functions that write the formats, by the suffix of the file."""

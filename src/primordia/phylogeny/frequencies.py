@@ -1,4 +1,4 @@
-"""Lines of a world, the descendants of all that are alive at a tick, and when they are counted."""
+"""Lines of a world: the descendants of each organism alive at a tick; and when lines are counted."""
 
 import numpy as np
 
@@ -13,10 +13,11 @@ INSTANTS = 300
 
 
 def founding_tick(lives: Lives) -> int:
-    """Return the tick after which lines of one world are founded if no other is named.
+    """Return the tick after which lines of one world are founded if no tick is given.
 
-    It is the first tick since the last extinction, or since the fork, after which a crowd is alive; see
-    `crowd_size`. In a world whose cells are filled with founders, it is that of the founders.
+    It is the first tick since the last extinction, or since the fork, after which a crowd is alive;
+    see `crowd_size`. In a world whose cells are filled with founders, it is the tick of their
+    birth.
     """
     era = last_era(lives)
     turnover, begin = Turnover.of(era), int(era.seen.min())
@@ -26,7 +27,7 @@ def founding_tick(lives: Lives) -> int:
 
 
 def instants(at: int, last: int) -> np.ndarray:
-    """Return ticks from `at` to `last`, ever further apart: most lines are lost early; int64 (T,)."""
+    """Return ticks from `at` to `last`, denser at first, since most lines are lost early; int64 (T,)."""
     after = np.geomspace(1, max(last - at, 1), INSTANTS).round().astype(np.int64)
     return np.unique(np.concatenate([[at], at + after[at + after <= last]]))
 
@@ -49,7 +50,7 @@ def founders(lives: Lives, at: int) -> np.ndarray:
 def lines_of(lives: Lives, founders: np.ndarray) -> np.ndarray:
     """Return the line of each organism, a place among the founders, or -1; int64 (L,).
 
-    Each line is all descendants of one of the founders, int64 (K,), which were alive at one tick. A
+    A line is a founder with all its descendants; the founders, int64 (K,), were alive at one tick. A
     child belongs to its parent's line, and to the line of the first parent if it has two.
     """
     return places_of(founders, nearest(lives.parent_row, founders))

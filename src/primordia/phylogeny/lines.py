@@ -1,4 +1,4 @@
-"""Evolution of one world measured in lines: their shares over time, beside those of drift."""
+"""Evolution of one world measured in lines: their shares over time, beside the shares under drift."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ BAND = (2.5, 97.5)
 
 @dataclass(frozen=True)
 class WorldLines:
-    """K lines of one world at T instants, and what else tells how it evolved."""
+    """K lines of one world at T instants, and further measures of the world's evolution."""
 
     world: int
     lives: Lives
@@ -42,14 +42,14 @@ class WorldLines:
     shadow_slopes: dict[int, np.ndarray]
     """for each line with a slope, by its place, the slopes of its shadows, float64, rising"""
     drift: Drift
-    """what all lines do when they drift together"""
+    """the course of all lines when they drift together"""
     sweeps: list[Sweep]
     diversity: np.ndarray
     """phylogenetic diversity of the living at the instants, in ticks, int64 (T,)"""
     pairs: Times
     """coalescence times of the living"""
     neutral_pairs: Times
-    """those that drift alone would give"""
+    """coalescence times that drift alone would give"""
 
     @property
     def shares(self) -> np.ndarray:
@@ -71,7 +71,8 @@ class WorldLines:
 
     @cached_property
     def p_of_slopes(self) -> np.ndarray:
-        """Two-sided p value of each slope among those of its shadows, float64 (K,); NaN without."""
+        """Two-sided p value of each slope among its shadows' slopes, float64 (K,); NaN without a
+        slope."""
         p = np.full(len(self.founders), np.nan)
         for place, null in self.shadow_slopes.items():
             p[place] = two_sided(self.slopes[place], null)
@@ -79,7 +80,7 @@ class WorldLines:
 
     @cached_property
     def p_of_finals(self) -> np.ndarray:
-        """Two-sided p value of each final share among those of all lines of shadows, float64 (K,)."""
+        """Two-sided p value of each final share among the final shares of all shadows, float64 (K,)."""
         return two_sided(self.shares[-1], np.sort(self.drift.final, axis=None))
 
     @cached_property
@@ -90,7 +91,7 @@ class WorldLines:
 
     @property
     def ranked(self) -> np.ndarray:
-        """Places of the lines, that with the largest share at any instant first, int64 (K,)."""
+        """Places of the lines by their largest share at any instant, largest first, int64 (K,)."""
         return np.argsort(-self.shares.max(axis=0), kind="stable")
 
     def to_dict(self) -> dict[str, Any]:
@@ -134,7 +135,7 @@ class WorldLines:
 
 
 def lines(run: Records, world: int | None = None, at: int | None = None) -> list[WorldLines]:
-    """Measure lines in one world of a run, or in all.
+    """Measure lines in one world of a run, or in all worlds.
 
     Args:
         run: the run, or an arm.
@@ -153,7 +154,7 @@ def lines(run: Records, world: int | None = None, at: int | None = None) -> list
 
 
 def lines_of_world(world: int, lives: Lives, at: int | None, seed: int) -> WorldLines:
-    """Measure lines in the lives of one world; `seed` is its seed, for the others see `lines`."""
+    """Measure lines in the lives of one world with this seed; see `lines` for the other arguments."""
     turnover, era = Turnover.of(lives), last_era(lives)
     founded = founding_tick(lives) if at is None else at
     own = founders(lives, founded)
@@ -183,10 +184,11 @@ def lines_of_world(world: int, lives: Lives, at: int | None, seed: int) -> World
 
 
 def two_sided(values: np.ndarray, null: np.ndarray) -> np.ndarray:
-    """Return two-sided p values of values among N of the null hypothesis, in their shape, float64.
+    """Return the two-sided p value of each value among N values of the null hypothesis, float64.
 
-    Twice the smaller share of those at least as large or as small, the value itself counted among them
-    (Davison & Hinkley 1997, sec. 4.2), at most 1.
+    The p value is at most 1. It is twice the smaller of two shares: of values at least as large,
+    and of values at least as small. Both include the value itself (Davison & Hinkley 1997, sec.
+    4.2).
 
     Args:
         values: of any shape.

@@ -19,7 +19,7 @@ def stops(lives: Lives) -> np.ndarray:
 def last_era(lives: Lives) -> Lives:
     """Return the lives of one world since it was last founded: at the beginning, or after extinction.
 
-    A world that dies out is founded again in the same tick, so the founders without a parent tell.
+    A world that dies out is founded again in the same tick, so the last founders mark its beginning.
     """
     rootless = np.flatnonzero(lives.parent < 0)
     if not len(rootless):  # a fork of a world whose founders are dead
@@ -30,7 +30,7 @@ def last_era(lives: Lives) -> Lives:
 
 @dataclass(frozen=True)
 class Census:
-    """Which organisms of one world are alive after each of T rising ticks: A pairs in all."""
+    """The organisms of one world that are alive after each of T rising ticks: A pairs in all."""
 
     lives: Lives
     ticks: np.ndarray
@@ -38,7 +38,7 @@ class Census:
 
     @cached_property
     def pairs(self) -> tuple[np.ndarray, np.ndarray]:
-        """The place among the ticks, and the row of an organism alive after it, int64 (A,) each."""
+        """The place of a tick, and the row of an organism alive after that tick, int64 (A,) each."""
         first = np.searchsorted(self.ticks, self.lives.born)
         past = np.searchsorted(self.ticks, stops(self.lives))
         rows = np.flatnonzero(past > first)
@@ -56,7 +56,7 @@ class Census:
         """Count the living of each group after each tick, int64 (T, number).
 
         Args:
-            groups: group of each organism, int (L,), from 0 to `number` - 1; -1 is in none.
+            groups: group of each organism, int (L,), from 0 to `number` - 1; -1 for no group.
             number: number of groups.
         """
         places, rows = self.pairs
@@ -69,16 +69,16 @@ class Census:
 class Turnover:
     """Births and deaths of one world in the order of their ticks, (E,) each.
 
-    In a tick children are born first, since a parent may die in it. Then organisms die. Founders come
-    last: a world is founded again in the tick in which it dies out.
+    In a tick children are born first, since a parent may die in the same tick. Then organisms die.
+    Founders come last: a world is founded again in the tick in which it dies out.
     """
 
     tick: np.ndarray
-    """int64, not falling"""
+    """int64, never decreasing"""
     row: np.ndarray
     """row of the organism, int64"""
     birth: np.ndarray
-    """bool: it is born; otherwise it dies"""
+    """bool: the organism is born; otherwise it dies"""
 
     @classmethod
     def of(cls, lives: Lives) -> "Turnover":
@@ -99,5 +99,5 @@ class Turnover:
 
     @cached_property
     def closes(self) -> np.ndarray:
-        """Whether each is the last of its tick, bool (E,)."""
+        """Whether each birth or death is the last of its tick, bool (E,)."""
         return np.append(self.tick[1:] > self.tick[:-1], True)

@@ -1,9 +1,9 @@
-"""Newick: a phylogeny as text, one tree a line, for programs that read trees.
+"""Newick: a phylogeny as text, one tree in each line, for programs that read trees.
 
 The format is https://phylipweb.github.io/phylip/newicktree.html (Felsenstein et al. 1986). A label is
 an organism's id. The length of a branch is the number of ticks from the parent's birth to the child's.
-That of a root is the tick of its birth. So the distance from the top of a tree to an organism is the tick
-of its birth.
+The branch of a root has the tick of birth as its length. So the distance from the top of a tree to
+an organism is the tick of its birth.
 """
 
 from array import array
@@ -39,7 +39,7 @@ def newick(whole: Phylogeny) -> Iterator[pa.Buffer]:
 
 
 def _children_first(parent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the rows in an order in which each follows all its descendants, and the depth of each row.
+    """Return the rows in an order in which each row follows its descendants, and the depth of each row.
 
     Parents have lower rows than their children, so two loops over the rows need no recursion.
     """

@@ -1,4 +1,4 @@
-"""A phylogeny: organisms in the order of their births, their parents, and what is known of each."""
+"""A phylogeny: organisms in the order of their births, their parents, and further facts."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -37,7 +37,7 @@ class Phylogeny:
 
     @cached_property
     def mate_row(self) -> np.ndarray | None:
-        """Row of each organism's mate, int64 (L,), -1 without one; None if there are no mates.
+        """Row of each organism's mate, int64 (L,), -1 without a mate; None if no organism has mates.
 
         Raises:
             Trouble: a mate is not older than the child.
@@ -57,7 +57,8 @@ class Phylogeny:
         )
 
     def rooted(self) -> "Phylogeny":
-        """Return the same organisms; one whose parent is missing among them is a root, with parent -1."""
+        """Return the same organisms; an organism whose parent is missing becomes a root, with
+        parent -1."""
         lives = self.lives
         parent = np.where(lives.parent_row < 0, -1, lives.parent)
         if (mate_row := self.mate_row) is None:
@@ -74,8 +75,8 @@ def recorded(run: Archive) -> Phylogeny:
     """Return the organisms on record in one run.
 
     Raises:
-        InputError: nothing has lived in it yet.
-        Trouble: its records are damaged.
+        InputError: nothing has lived in the run yet.
+        Trouble: the run's records are damaged.
     """
     lives, of_births = run.lives, {}
     if run.schema.mates:
@@ -88,7 +89,7 @@ def recorded(run: Archive) -> Phylogeny:
 
 
 def _of_deaths(run: Archive, lives: Lives) -> Facts:
-    """Return what the deaths tell of each life beside its end."""
+    """Return the facts in the table of deaths beside the end of each life."""
     whole = ("energy", "food")
     found = {name: np.zeros(len(lives)) for name in whole}
     found |= {name: np.zeros(len(lives), np.int32) for name in run.schema.tallies}

@@ -21,7 +21,7 @@ def chosen(
     Args:
         whole: the phylogeny.
         organism: birth number; only this organism and its ancestors.
-        world: only this world; the organism's is 0 by default.
+        world: only this world; with `organism` by default world 0.
         extant: only the living and their ancestors.
         collapse: without organisms on unbranched stretches; see `collapsed`.
 
@@ -42,7 +42,7 @@ def of_world(whole: Phylogeny, world: int) -> Phylogeny:
     """Return the organisms of one world.
 
     Raises:
-        InputError: nothing was born there.
+        InputError: nothing was born in the world.
     """
     rows = np.flatnonzero(whole.lives.world == world)
     if not len(rows):
@@ -66,7 +66,9 @@ def line_of(whole: Phylogeny, organism: int, world: int) -> Phylogeny:
 
 
 def collapsed(whole: Phylogeny) -> Phylogeny:
-    """Return the phylogeny without the dead that have a parent and one child: that child is its parent's.
+    """Return the phylogeny without dead organisms that have a parent and one child.
+
+    The child becomes a child of the nearest ancestor that remains.
 
     Raises:
         InputError: organisms have two parents.
@@ -83,6 +85,6 @@ def collapsed(whole: Phylogeny) -> Phylogeny:
 
 
 def _with_ancestors(whole: Phylogeny, rows: np.ndarray) -> Phylogeny:
-    """Return organisms and all their ancestors, by either parent."""
+    """Return organisms and all their ancestors, through both parents."""
     parents = [whole.lives.parent_row, *([] if whole.mate_row is None else [whole.mate_row])]
     return whole.take(with_ancestors(rows, *parents))

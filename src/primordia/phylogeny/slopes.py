@@ -15,7 +15,7 @@ from primordia.phylogeny.living import Census, Turnover
 LOW, HIGH = 0.05, 0.95
 """Shares between which a line has a slope: below and above, chance alone decides."""
 LEAST = 5
-"""Fewest instants for a slope."""
+"""Smallest number of instants for a slope."""
 MOST, FEWEST = 1000, 200
 """Largest and smallest number of shadows of a line."""
 EVENTS = 2**15
@@ -30,7 +30,7 @@ class Slopes:
     """
 
     def __init__(self, number: int) -> None:
-        """Start with no instant; `number`: N."""
+        """Start without instants, with N = `number` lines."""
         self._sums = np.zeros((5, number))
         self._instants = np.zeros(number, np.int64)
 
@@ -53,16 +53,16 @@ class Slopes:
 
 
 def between(counts: np.ndarray, living: int | np.ndarray) -> np.ndarray:
-    """Return whether lines have shares between LOW and HIGH; counts and living broadcast."""
+    """Return whether lines have shares between LOW and HIGH; `counts` and `living` are broadcast."""
     return (counts > 0) & (counts >= LOW * living) & (counts <= HIGH * living) & (counts < living)
 
 
 def observed(counts: np.ndarray, living: np.ndarray, ticks: np.ndarray) -> np.ndarray:
-    """Return the slopes of K lines, float64 (K,); NaN where a line has none.
+    """Return the slopes of K lines, float64 (K,); NaN for a line without a slope.
 
     Args:
         counts: living of each line at T instants, int64 (T, K).
-        living: all living at each, int64 (T,).
+        living: all living at each instant, int64 (T,).
         ticks: the instants, int64 (T,).
     """
     slopes = Slopes(counts.shape[1])
@@ -72,17 +72,18 @@ def observed(counts: np.ndarray, living: np.ndarray, ticks: np.ndarray) -> np.nd
 
 
 def of_shadows(census: Census, turnover: Turnover, counts: np.ndarray, seed: int) -> np.ndarray:
-    """Return the slopes of M lines in each of R shadows, float64 (M, R); NaN where a shadow has none.
+    """Return the slopes of M lines in R shadows, float64 (M, R); NaN for a shadow without a slope.
 
-    The shadow of a line begins where the line first has a share between LOW and HIGH, with the number
-    of living that the line then has. From there on it drifts. What led the line there has no effect on
-    what drift does next, so without selection the line's slope is one more of its shadows' slopes.
+    The shadow of a line begins at the first instant at which the line's share is between LOW and
+    HIGH. At this instant shadow and line have the same number of living. Then the shadow drifts.
+    The line's past has no effect on later drift, so without selection the line's slope is like one
+    more of its shadows' slopes.
 
     Args:
         census: the living of one world at T instants.
-        turnover: its births and deaths.
-        counts: living of each line at each, int64 (T, M); each line is between the bounds at some
-            instant.
+        turnover: births and deaths of the world.
+        counts: living of each line at each instant, int64 (T, M); each line is between the bounds
+            at some instant.
         seed: the world's seed.
     """
     lines = counts.shape[1]
@@ -104,8 +105,8 @@ def of_shadows(census: Census, turnover: Turnover, counts: np.ndarray, seed: int
 def _drift_on(now: np.ndarray, deal: Deal, first: int, last: int) -> None:
     """Let the lines of shadows, int32 (N,), drift from one event to another, in place.
 
-    Only lines that are neither lost nor all of the living can change. A line that is all has no slope any
-    more, so it is treated as lost.
+    Only lines that are neither lost nor all of the living can change. A line that is all of the
+    living has no slope any more, so it is treated as lost.
     """
     now[now >= int(deal.before[first])] = 0
     rows = np.flatnonzero(now)

@@ -23,13 +23,13 @@ class Sweep:
     half: int | None
     """first tick after which more than half of the living were its descendants; None for not yet"""
     fixed: int | None
-    """first tick after which all of the living were; None for not yet"""
+    """first tick after which all of the living were its descendants; None for not yet"""
     living: int
     """number of living after the tick `fixed`, or `half` if it has not fixed"""
 
     @property
     def duration(self) -> int | None:
-        """Ticks from the organism's birth until all descended from it."""
+        """Ticks from the organism's birth until all the living descended from the organism."""
         return None if self.fixed is None else self.fixed - self.born
 
     def to_dict(self) -> dict[str, Any]:
@@ -40,10 +40,10 @@ class Sweep:
 def sweeps(lives: Lives) -> list[Sweep]:
     """Return the sweeps in one world since it was last founded, in the order of birth.
 
-    At each tick at which the youngest common ancestor of the living changes, that ancestor has swept.
-    Its own ancestors, which are fixed at the same tick, came with it and are not counted. The last of
-    the list may be under way: the youngest organism of whose descendants more than half of the living
-    are. Founders of a world and organisms alive at a fork do not count.
+    At each tick at which the youngest common ancestor of the living changes, the new one has swept.
+    Its own ancestors, which are fixed at the same tick, came with it and are not counted. The last
+    sweep of the list may be under way: it is of the youngest organism whose descendants are more
+    than half of the living. Founders of a world and organisms alive at a fork do not count.
     """
     era = last_era(lives)
     line = _line_of_survivors(era)

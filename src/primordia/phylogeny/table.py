@@ -16,7 +16,7 @@ from primordia.phylogeny.phylogeny import MATE, Phylogeny
 from primordia.runs.lives import ALIVE
 
 WORLD = 10**12
-"""Numbers of one world: an id is the world times this, plus the birth number."""
+"""Number of ids of one world. An id is the world times this number, plus the birth number."""
 ROOT = "[NONE]"
 """The `ancestor_list` of an organism without a parent."""
 ROWS = 2**18
@@ -71,7 +71,7 @@ def ids(world: np.ndarray, number: np.ndarray | int) -> np.ndarray:
 
 
 def _mates(some: Phylogeny, mate: pa.Array) -> pa.Array:
-    """Return the ids of mates, int64, null without one."""
+    """Return the ids of mates, int64, null without a mate."""
     return pc.add(mate, pa.array(ids(some.lives.world, 0)))
 
 

@@ -51,7 +51,7 @@ def main() -> None:
 
 
 def _yield_to_the_run() -> None:
-    """Let the run keep its core while it wakes workers, since it must wake the others too.
+    """Let the run keep its core while it wakes workers, since the run must wake all of them.
 
     Without this, the second worker began 0.4 ms after the first (128 games on two cores).
     """

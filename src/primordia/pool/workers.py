@@ -1,8 +1,9 @@
 """Simulators in worker processes: one for each cell, stepped in parallel on all cores.
 
 Workers are started by a command rather than by `multiprocessing`, so scripts need no guard and notebooks
-work. Rows of arrays go through shared memory, commands of one byte through pipes. A pipe closes when the
-process at either end does. So a worker's death is noticed at once, and no worker outlives its run.
+work. Rows of arrays go through shared memory, commands of one byte through pipes. A pipe closes
+when the process at either end ends. So a worker's death is noticed at once, and no worker outlives
+its run.
 """
 
 import json
@@ -23,7 +24,7 @@ from primordia.pool.board import LOAD, READY, RESET, SAVE, STEP
 from primordia.pool.contract import Pool
 
 PATIENCE = 20.0
-"""Longest wait for an answer of a worker, in seconds; each simulator that it makes is an answer."""
+"""Longest wait for an answer of a worker, in seconds; a worker answers after each simulator it makes."""
 
 
 class Workers(Pool):
@@ -152,7 +153,7 @@ def _await_ready(worker: subprocess.Popen, times: int = 1, at_leisure: bool = Fa
 
 
 def _receive(worker: subprocess.Popen, count: int, at_leisure: bool = False) -> bytes:
-    """Return `count` bytes; wait PATIENCE seconds for each, or as long as the worker lives."""
+    """Return `count` bytes; wait PATIENCE seconds for each, or, `at_leisure`, until the worker ends."""
     assert worker.stdout is not None
     parts, left = [], count
     while left:

@@ -1,7 +1,7 @@
 """Dice: the random numbers that a body in a simulator draws while it lives.
 
-They follow from the random words of its birth by SplitMix64 (Steele, Lea & Flood 2014). The state of a
-body's dice is one number of 64 bits, which is saved with the body.
+The numbers follow from the random words of the body's birth by SplitMix64 (Steele, Lea & Flood
+2014). The state of a body's dice is one number of 64 bits, which is saved with the body.
 """
 
 GAMMA = 0x9E3779B97F4A7C15

@@ -1,4 +1,4 @@
-"""Counter-based random bits: each is a pure function of seed, tick, purpose and cell.
+"""Counter-based random bits: each bit is a pure function of seed, tick, purpose and cell.
 
 The key of a draw is made of the world's seed, the tick and a named purpose; its counter is the cell.
 Nothing else enters. So chunks, other worlds of the run, interruptions and the order of evaluation

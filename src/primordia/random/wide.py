@@ -59,7 +59,7 @@ class Wide(NamedTuple):
 
 
 def wide(values: object) -> Wide:
-    """Return ints or integer arrays of the host as counts; negative ones wrap (two's complement)."""
+    """Return ints or integer arrays of the host as counts; negative numbers wrap (two's complement)."""
     whole = np.asarray(np.asarray(values, dtype=object) % 2**64).astype(np.uint64)
     hi, lo = whole >> np.uint64(32), whole & np.uint64(0xFFFFFFFF)
     return Wide(jnp.asarray(hi.astype(np.uint32)), jnp.asarray(lo.astype(np.uint32)))

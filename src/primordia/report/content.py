@@ -53,7 +53,7 @@ def of_run(run: Records, filmed: bool = True) -> dict[str, Any]:
 
 
 def of_experiment(chosen: Campaign) -> dict[str, Any]:
-    """Return the content of the page of an experiment: its arms side by side, and a world of each.
+    """Return the content of the page of an experiment: its arms side by side, and a world of each arm.
 
     Raises:
         InputError: an arm has not begun, or the arms cannot be compared.

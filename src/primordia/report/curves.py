@@ -110,7 +110,7 @@ def _ages(worlds: list[Lives], time: str) -> Panel:
 
 
 def _deaths(lives: Lives) -> Panel:
-    """Return lifespans by order of birth, with quartiles of those of the dead."""
+    """Return lifespans by order of birth, with quartiles over the dead."""
     number = lives.rank + 1 + lives.world / lives.worlds  # so that no two worlds share a number
     lifespan, died, tables = lives.lifespan, lives.died, []
     for name, group, colour in (("dead", died, style.SKY), ("alive", ~died, style.ORANGE)):
@@ -147,7 +147,7 @@ def _living(worlds: list[Lives], cells: int, time: str) -> Panel:
 
 
 def _rates(worlds: list[Lives], lives: Lives, time: str) -> Panel:
-    """Return births and deaths of each cause, divided by the ticks of all worlds, in bins."""
+    """Return rates of births, and of deaths by cause, in bins: events divided by the worlds' ticks."""
     edges = series.bins(int(lives.ended.max()))
     ends = np.array([world.ended.max() for world in worlds])
     ticks = series.exposure(np.zeros_like(ends), ends, edges)
@@ -164,7 +164,7 @@ def _rates(worlds: list[Lives], lives: Lives, time: str) -> Panel:
 
 
 def _survival(lives: Lives) -> Panel:
-    """Return the share alive at each age (Kaplan-Meier), of each quarter of the births."""
+    """Return the share alive at each age (Kaplan-Meier), for each quarter of the births."""
     longest = int(lives.lifespan.max())
     tables = []
     for cohort, (name, colour) in zip(quarters(lives), COHORTS.items(), strict=True):

@@ -68,7 +68,7 @@ def commands(config: Config, name: str, own_code: bool) -> list[str]:
 
 
 def _flags(config: Config) -> list[str] | None:
-    """Return the flags by which a run differs from a built-in task; None if flags cannot express it."""
+    """Return the flags by which a run differs from a built-in task; None if flags cannot express this."""
     if config.task not in tasks():
         return None
     try:

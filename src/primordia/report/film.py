@@ -19,7 +19,7 @@ INK_BITS = 5
 
 
 def film(ground: Ground, config: Config) -> dict[str, Any] | None:
-    """Return the film of a world for `film.js`; None if it is not on a torus, or too large.
+    """Return the film of a world for `film.js`; None if the world is not on a torus, or too large.
 
     Returns:
         `cells`: a byte for each picture and cell: 0 for an empty cell, else ink + 1 in the lower 5

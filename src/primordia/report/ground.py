@@ -1,4 +1,4 @@
-"""The space-time picture of one world as data: the organism in each cell between each two births.
+"""The space-time picture of one world as data: the organism in each cell between successive births.
 
 Time runs in births, as in `figures.spacetime`: place p shows the cells after the tick of the p-th birth.
 A world with few births is given completely. For a larger world, the cells are read only after some
@@ -40,7 +40,7 @@ class Ground:
     cells: int
     """cells of the world"""
     share: int = 1
-    """number of worlds in the page, which share its size"""
+    """number of worlds in the page, which divide its size among them"""
 
     @cached_property
     def clades(self) -> Clades:
@@ -78,11 +78,11 @@ class Ground:
 
     @cached_property
     def segments(self) -> dict[str, np.ndarray]:
-        """The lives in the shown cells, split at the begin of new lines; sorted by cell and time,
-        each (S,).
+        """The lives in the shown cells, split where new lines begin; sorted by cell and time, each
+        (S,).
 
-        `row`: row of the organism; `start`, `stop`: the places of time at which it appears and
-        leaves; `code`: its line, see `line_codes`.
+        `row`: row of the organism; `start`, `stop`: the places of time at which the organism
+        appears and leaves; `code`: its line, see `line_codes`.
         """
         lives, births = self.lives, len(self.lives)
         rows = self.rows[np.isin(lives.cell[self.rows], self.shown)]

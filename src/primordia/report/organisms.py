@@ -47,8 +47,8 @@ def organisms(lives: Lives, rows: np.ndarray) -> dict[str, Any]:
 def generations(parent_row: np.ndarray) -> np.ndarray:
     """Return the number of ancestors on record of each organism, int64 (L,).
 
-    The distances to an ancestor twice as far are known at each step, so few steps are needed (pointer
-    jumping: Wyllie 1979).
+    Each step doubles the distance up to which ancestors are counted, so few steps are needed
+    (pointer jumping: Wyllie 1979).
     """
     far = np.where(parent_row >= 0, parent_row, np.arange(len(parent_row)))
     distance = (parent_row >= 0).astype(np.int64)

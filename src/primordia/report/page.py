@@ -1,4 +1,4 @@
-"""The page: one HTML file with its style, scripts and content, which loads nothing.
+"""The page: one HTML file with its style, scripts and content. The page loads no other file.
 
 A Content-Security-Policy in the page allows only these scripts, by their hashes, and forbids all
 requests (W3C, Content Security Policy Level 3).

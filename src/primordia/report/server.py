@@ -2,8 +2,8 @@
 
 The server gives three things at fixed names and reads no path from a request: the page, its content as
 JSON, and events that say when the content has changed (server-sent events: WHATWG HTML, section
-9.2). It answers only requests whose Host header names this machine. So no page of another site can
-read it through another name (DNS rebinding).
+9.2). The server answers only requests whose Host header names this machine. So no page of another
+site can read the run through another name (DNS rebinding).
 """
 
 from collections.abc import Callable
@@ -40,7 +40,7 @@ class Server(ThreadingHTTPServer):
 
         Args:
             watched: the content of the page.
-            port: the port, or 0 for any that is free.
+            port: the port, or 0 for any free port.
 
         Raises:
             InputError: the port is in use, or the user may not use it.

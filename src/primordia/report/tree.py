@@ -1,8 +1,8 @@
 """The phylogeny of the living of one world: ancestors, and the times at which lines parted.
 
 An ancestor is a node if it is alive, if two or more lines part at it, or if it has no parent on record.
-All other ancestors lie between two nodes. Each node is drawn as a bar on a level of its own or on that of
-the last line that left it, so that no two bars cross.
+All other ancestors lie between two nodes. Each node is drawn as a bar on its own level, or on the
+level of the last line that left it, so that no two bars cross.
 """
 
 import heapq
@@ -15,7 +15,7 @@ from primordia.figures.spacetime import line_codes
 from primordia.report.ground import Ground
 
 LEAVES = 300
-"""Largest number of the living that are shown; otherwise a sample, evenly spaced over the cells."""
+"""Largest number of the living that are shown. If more live, an evenly spaced sample is shown."""
 
 
 @dataclass
@@ -36,13 +36,13 @@ class Node:
 
 
 def tree(ground: Ground) -> dict[str, Any] | None:
-    """Return the phylogeny of the living for `tree.js`; None if none is alive.
+    """Return the phylogeny of the living for `tree.js`; None if nothing is alive.
 
     Returns:
         `nodes`, parents before their children, each with the birth `number` of its organism; `parent`:
-        place among the nodes, or -1; `start`, `stop`: place of time at which its line leaves the
-        parent's, and to which the bar goes; `level`: from 0, a level for each of the living; `ink` of the
-        line; `skipped`: ancestors between it and its parent.
+        place among the nodes, or -1; `start`, `stop`: places of time at which the node's line
+        leaves the parent's line, and at which the bar ends; `level`: from 0, a level for each of
+        the living; `ink` of the line; `skipped`: number of ancestors between the node and its parent.
     """
     lives = ground.lives
     living = np.flatnonzero(~lives.died)

@@ -11,17 +11,17 @@ from primordia.runs.records import Records
 def watch(
     open_: Callable[[], Records], port: int = PORT, begun: Callable[[str], object] = print
 ) -> None:
-    """Serve the page of a run until the process ends, or Ctrl-C.
+    """Serve the page of a run until the process ends or Ctrl-C is pressed.
 
     Args:
         open_: a function that opens the run for reading; it is called again at each new checkpoint.
-        port: the port at 127.0.0.1, or 0 for any that is free.
+        port: the port at 127.0.0.1, or 0 for any free port.
         begun: a function that is called with the address of the page when it is served.
 
     Raises:
         InputError: there is no run, nothing has lived in it yet, or the port is in use.
         Trouble: the run is damaged.
-        KeyboardInterrupt: on Ctrl-C, unless that ends the process at once.
+        KeyboardInterrupt: on Ctrl-C, unless Ctrl-C ends the process at once.
     """
     watched, ended = Watched(open_), threading.Event()
     with Server(watched, port) as server:

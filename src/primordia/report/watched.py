@@ -37,7 +37,7 @@ class Watched:
         self._count, self._going = 0, self._goes_on()
 
     def look(self) -> None:
-        """Read the runs if they have new checkpoints; keep the old content if that fails.
+        """Read the runs if they have new checkpoints; keep the old content if they cannot be read.
 
         A run that is being written removes old checkpoints, perhaps while they are read.
         """

@@ -34,8 +34,8 @@ class Archive(Records):
 
     Only the settings are read at opening. The archive shows the run at the checkpoint that was
     newest at the first use; open a run again to see newer ones. All files of that checkpoint,
-    segments of the tables included, are checked against their checksums before anything is read
-    from it.
+    segments of the tables included, are checked against their checksums before anything of the
+    checkpoint is read.
     """
 
     def __init__(self, path: str | Path, edited: bool = False) -> None:
@@ -46,7 +46,7 @@ class Archive(Records):
             edited: execute the present version of the user's own code, not the run's copy.
 
         Raises:
-            InputError: the directory holds no run, or one that this version cannot read.
+            InputError: the directory holds no run, or a run that this version cannot read.
         """
         self.path, self.edited = Path(path), edited
         self.config: Config = directory.read_config(self.path)
@@ -81,7 +81,7 @@ class Archive(Records):
         """Allow the code of these parts, or of all parts, to be imported.
 
         Raises:
-            InputError: the user has not trusted it yet.
+            InputError: the user has not trusted the code yet.
         """
         code.admit(self.path, self.code(*parts))
 
@@ -90,8 +90,8 @@ class Archive(Records):
         """The habitat, only for reading its properties; build a new one to make bodies.
 
         Raises:
-            InputError: the user has not trusted its code yet (`law` and `heredity` also raise this
-                error).
+            InputError: the user has not trusted the habitat's code yet (`law` and `heredity` also
+                raise this error).
         """
         self.admit("habitat")
         return self.config.build_habitat()
@@ -107,7 +107,7 @@ class Archive(Records):
 
     @cached_property
     def heredity(self) -> Heredity:
-        """The part of the law that makes genomes. It needs neither habitat nor brain."""
+        """The part of the law that makes genomes. Heredity needs neither habitat nor brain."""
         self.admit("mutation")
         heredity, about = self.config.build_heredity(self.layout), self.description
         rates = {f"mutation.{name}" for name in heredity.mutation.rates(self.layout)}
@@ -122,7 +122,7 @@ class Archive(Records):
 
     @cached_property
     def other_versions(self) -> list[str]:
-        """Versions that have changed since the run began; if there are none, it goes on bit for bit."""
+        """Versions that have changed since the run began; without changes the run goes on bit for bit."""
         versions = [
             f"{name} {self.versions.get(name)} then, {now} now"
             for name, now in directory.versions_here(self.config, self.habitat).items()
@@ -146,7 +146,7 @@ class Archive(Records):
 
         Raises:
             InputError: the run has no checkpoint yet.
-            Trouble: none of its checkpoints is whole.
+            Trouble: no checkpoint of the run is whole.
         """
         last, faults = self.newest
         if last is None and faults:
@@ -206,7 +206,7 @@ class Archive(Records):
             self.__dict__.pop(name, None)
 
     def arrays_of(self, stored: Checkpoint) -> Arrays:
-        """Open the arrays of a checkpoint of this run; each is checked when it is first read.
+        """Open the arrays of a checkpoint of this run; each array is checked when it is first read.
 
         Raises:
             Trouble: the arrays do not fit the settings.

@@ -1,4 +1,4 @@
-"""Arms: several runs read as one. Their worlds ran as jobs, on any machine and in any order.
+"""Arms: several runs read as one. The runs may be jobs that ran on any machine and in any order.
 
 The worlds of the first run come first. Worlds keep their seeds. So a world has the same record and
 digest in a separate run and beside other worlds.
@@ -28,7 +28,7 @@ from primordia.runs.records import Records
 from primordia.settings.tables import flat
 
 OWN = ("about", "seed", "seeds", "stop", "fork")
-"""The settings in which the runs of an arm may differ; but forks begin at the same tick."""
+"""The settings in which the runs of an arm may differ; forks must begin at the same tick."""
 MOST = 2**16
 """Largest number of worlds of an arm."""
 
@@ -41,7 +41,7 @@ class Arm(Records):
 
         Args:
             path: the arm's folder, or any name.
-            runs: one or more, all of the same settings but for `seed`, `seeds` and `stop`.
+            runs: one run or more, with the same settings except `seed`, `seeds` and `stop`.
 
         Raises:
             InputError: settings differ, or a world is given twice.
@@ -73,7 +73,7 @@ class Arm(Records):
 
     @cached_property
     def versions(self) -> dict[str, Any]:
-        """The versions of all runs; different ones are separated by commas."""
+        """The versions of all runs; different versions are separated by commas."""
         names = dict.fromkeys(name for run in self.runs for name in run.versions)
         return {name: self._one_or_all(name) for name in names}
 

@@ -1,4 +1,4 @@
-"""Bundles: a run in one file. It is a zip of the files that the newest checkpoint names.
+"""Bundles: a run in one file. A bundle is a zip of the files that the newest checkpoint names.
 
     run/versions.json  config.toml  description.json  ...
     run/births/*.parquet  deaths/*.parquet  metrics/*.parquet
@@ -114,7 +114,7 @@ def _fill(sources: Mapping[str, IO[bytes]], path: Path) -> None:
 
 
 def opened(file: Path) -> Path:
-    """Return a directory with the run of a bundle; it is removed when this process ends.
+    """Return a directory with the run of a bundle; the directory is removed when this process ends.
 
     Raises:
         InputError: the file is not a bundle, or differs from its manifests. Trouble: the directory
@@ -230,7 +230,7 @@ def _is_plain(part: str) -> bool:
 
 
 def _seals(bundle: zipfile.ZipFile, entries: Entries) -> Seals:
-    """Return the files that a bundle must hold: those that its manifests name.
+    """Return the files that a bundle must hold: the files that its manifests name.
 
     Raises:
         ValueError: the bundle has no manifest or several, or a manifest was changed.

@@ -26,7 +26,7 @@ from primordia.runs.record import Recorder
 from primordia.runs.schema import TABLES
 
 KEPT = 2
-"""Number of checkpoints that are kept; if the newest is damaged, the one before is used."""
+"""Number of checkpoints that are kept; if the newest is damaged, the earlier one is used."""
 FOLDER, ORIGIN = "checkpoints", "origin"
 STATE, MANIFEST = "state.npz", "manifest.json"
 NUMBER = re.compile("[0-9]{6,9}")
@@ -45,7 +45,7 @@ class Checkpoint:
     manifest: Manifest
 
     def arrays(self, fault_of: FaultOf) -> Arrays:
-        """Open the state and the tails, each of which is checked when it is read."""
+        """Open the state and the tails; each array is checked when it is read."""
         return Arrays(self.path / STATE, fault_of)
 
     @property

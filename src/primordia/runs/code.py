@@ -1,8 +1,8 @@
-"""The user's own code in a run: the run holds a copy, and executes it only if the user trusts it.
+"""The user's own code in a run: the run holds a copy, which is executed only if the user trusts it.
 
-RUN/code holds the files; their checksums are in the run's description. A run may come from a stranger,
-and so may its code. It is executed only after the user has trusted exactly these files, once on
-each machine. Code with which the user has begun a run is trusted.
+RUN/code holds the files; their checksums are in the run's description. A run may come from a
+stranger, and so may its code. The code is executed only after the user has trusted exactly these
+files, once on each machine. Code with which the user has begun a run is trusted.
 """
 
 from collections.abc import Iterable, Sequence
@@ -52,7 +52,7 @@ def of_run(
     """Return the files of the user's own code in a run that these parts execute.
 
     Modules without a copy in the run are found on `sys.path` or in the current folder. With
-    `edited`, all modules are looked up there first.
+    `edited`, all modules are looked up in these places first.
 
     Raises:
         Trouble: the copy differs from the description.
@@ -76,7 +76,7 @@ def admit(run: Path, code: Sources) -> None:
     """Allow the code of a run to be imported.
 
     Raises:
-        InputError: the user has not trusted it yet, or other modules with these names are imported.
+        InputError: the user has not trusted the code yet, or other modules with its names are imported.
     """
     if not own_code.is_loaded(code) and not _is_trusted(code):
         names = ", ".join(str(source.file) for source in code.values())
@@ -103,7 +103,8 @@ def changes(config: Config, recorded: dict[str, str]) -> list[str]:
 
 
 def trust(code: Sources) -> None:
-    """Trust these files from now on: in this process, and on this machine if that can be stored."""
+    """Trust these files from now on: in this process, and on this machine if their checksums can be
+    stored."""
     new = {source.sha256 for source in code.values()} - _stored()
     _trusted.update(new)
     if new:

@@ -22,7 +22,7 @@ class Description(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
 
     rate: float | None = Field(gt=0, allow_inf_nan=False)
-    """ticks in a second of the habitat; None if it has no clock"""
+    """ticks in a second of the habitat; None if the habitat has no clock"""
     tallies: tuple[str, ...]
     """names of the habitat's counts"""
     notes: tuple[str, ...]
@@ -58,7 +58,7 @@ class Description(BaseModel):
         """Write the description into a run's directory.
 
         Raises:
-            Trouble: it cannot be written.
+            Trouble: the file cannot be written.
         """
         files.write_text(run / FILE, self.model_dump_json(indent=1))
 

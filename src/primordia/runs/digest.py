@@ -14,7 +14,7 @@ BLOCK = 65536
 
 
 def row_hashes(rows: np.ndarray) -> np.ndarray:
-    """Return a hash of 128 bits for each row uint32 (n, fields), as uint64 (n, 2).
+    """Return a hash of 128 bits for each row: uint64 (n, 2) from uint32 (n, fields).
 
     Each word is mixed in by the finaliser of MurmurHash3 (Appleby 2011).
     """
@@ -40,7 +40,7 @@ def digests(
 
     Args:
         records: the sums of row hashes of each table, uint64 (W, 2).
-        arrays: the state by name, first axis worlds or cells; open tails are not part of it.
+        arrays: the state by name, first axis worlds or cells; open tails are left out.
         worlds: number of worlds W.
     """
     state = {name: arrays[name] for name in arrays if not name.startswith("tail.")}

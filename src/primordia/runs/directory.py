@@ -37,8 +37,8 @@ OWN = (VERSIONS, *FOLDERS, code.FOLDER, checkpoint.ORIGIN, *INPUTS, LOCK)
 def create(run: Path, config: Config, fill: Callable[[], object] | None = None) -> Iterator[None]:
     """Write settings, founders, code and versions into a new or empty directory, and hold its lock.
 
-    The versions come last: a directory that has them is a run. If the `with` block ends by an error
-    or a signal before the first checkpoint, all files are removed.
+    The versions are written last: a directory with versions is a run. If the `with` block ends by
+    an error or a signal before the first checkpoint, all files are removed.
 
     Args:
         run: the directory.
@@ -86,7 +86,7 @@ def clear_unbegun(run: Path) -> bool:
     """Remove the files of a killed start. Return whether the directory holds no run.
 
     Raises:
-        InputError: another process is starting a run there.
+        InputError: another process is starting a run in the directory.
     """
     files.check_name(run)
     if not run.is_dir() or (run / VERSIONS).exists():
@@ -148,7 +148,7 @@ def make_folders(run: Path) -> None:
 
 
 def read_config(run: Path) -> Config:
-    """Return the configuration of a run directory. It was checked completely when the run began.
+    """Return the configuration of a run directory, which was checked completely when the run began.
 
     Raises:
         InputError: this is not a run directory, or this version cannot read it.
@@ -197,10 +197,10 @@ def recorded_versions(run: Path) -> Versions:
 
 @contextmanager
 def locked(run: Path) -> Iterator[None]:
-    """Hold the run's lock. It admits one writer at a time, and even kill -9 releases it.
+    """Hold the run's lock. The lock admits one writer at a time, and even kill -9 releases it.
 
     Raises:
-        InUseError: another process holds it.
+        InUseError: another process holds the lock.
     """
     files.check_output(run / LOCK)
     lock = FileLock(run / LOCK)

@@ -1,4 +1,4 @@
-"""RUN/faults.txt: why simulations of bodies failed, a line for each organism that died of it.
+"""RUN/faults.txt: why simulations of bodies failed, a line for each organism that died of a failure.
 
 The file is for people and not part of a run's exact records: after an interruption a line may
 appear twice.

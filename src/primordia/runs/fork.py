@@ -45,8 +45,8 @@ def fork(
     settings: dict[str, Any],
     listen: Listener | None = None,
 ) -> None:
-    """Make a run that begins with another run's state at the end of tick `at`, without advancing
-    it.
+    """Make a run that begins with another run's state at the end of tick `at`. The new run is not
+    advanced.
 
     Args:
         source: the run to fork.
@@ -199,7 +199,7 @@ def _looks(worlds: Worlds, after: Engine, at: int) -> Looks:
 
 
 def _climate(now: Climate, before: Engine, after: Engine) -> Climate:
-    """Return the new value of each changed setting, and the present value of the others."""
+    """Return the new value of each changed setting, and the present value of each other setting."""
     old = dict(before.law.beginning)
     return {
         name: now[name] if old.get(name) == value else jnp.full_like(now[name], value)

@@ -52,7 +52,7 @@ class Lives:
     def entered(self) -> np.ndarray:
         """Age from which the life is on record, int64 (L,): above 0 for organisms alive at a fork.
 
-        Organisms of their generation that died before the fork are not on record. So these lives
+        Organisms of the same generation that died before the fork are not on record. So these lives
         carry no information about younger ages.
         """
         return self.seen - self.born
@@ -61,7 +61,7 @@ class Lives:
     def rank(self) -> np.ndarray:
         """Index in the world's order of birth, from 0, int64 (L,).
 
-        It is the birth number, except in a fork, whose records leave out the deaths before it.
+        The rank is the birth number, except in a fork, whose records leave out earlier deaths.
         """
         return np.arange(len(self)) - np.searchsorted(self.world, self.world)
 
@@ -105,8 +105,8 @@ class Lives:
     def late(self, after: float = LATE) -> np.ndarray:
         """Return whether each life began late, bool (L,).
 
-        Late are the births of a world that come after a share `after` of all its births. The organisms
-        that were alive at a fork were born before it, so they are not late and do not count.
+        Late are the births of a world that come after a share `after` of all its births. Organisms
+        that were alive at a fork were born before the fork, so they are not late and do not count.
         """
         own = self.entered == 0
         ordinal = np.cumsum(own) - 1  # index among the births of all worlds
@@ -116,13 +116,13 @@ class Lives:
         return own & (ordinal - first[self.world] >= np.floor(after * count)[self.world])
 
     def oldest(self, world: int | None = None, after: float = LATE) -> int:
-        """Return the row of the longest late life, in one world or in all; see `late`.
+        """Return the row of the longest late life, in one world or in all worlds; see `late`.
 
         Early organisms do not count, since a long-lived founder is not a product of evolution.
         Among equal lives the last-born wins, since time limits cut many lives at the same age.
 
         Raises:
-            InputError: nothing was born there.
+            InputError: there is no such world, or nothing was born since the fork.
         """
         here = self._rows_of_world(world) if world is not None else slice(0, len(self))
         if here.start == here.stop:
@@ -134,7 +134,7 @@ class Lives:
         return int(rows[len(rows) - 1 - np.argmax(lifespan[::-1])])
 
     def champions(self) -> np.ndarray:
-        """Return the row of the `oldest` of each world with a birth since the run began."""
+        """Return the row of the `oldest` organism of each world with a birth since the run began."""
         rows = np.flatnonzero(self.late())
         ranked = rows[np.lexsort((self.lifespan[rows], self.world[rows]))]
         return ranked[np.flatnonzero(np.diff(self.world[ranked], append=-1))]
@@ -161,7 +161,7 @@ class Lives:
         return self.rows_of(self.world, self.parent)
 
     def rows_of(self, world: np.ndarray, number: np.ndarray) -> np.ndarray:
-        """Return the rows of organisms by world and birth number, int64 (n,); -1 for missing ones."""
+        """Return the rows of organisms by world and birth number, int64 (n,); -1 if missing."""
         return _rows(self.world, self.id, world, number)
 
     def rows_in(self, worlds: np.ndarray, numbers: np.ndarray) -> np.ndarray:
@@ -184,7 +184,7 @@ def join(
 
     Args:
         births: one or more segments, in the order of events: within a world by birth number.
-        deaths: segments; their world, id, tick and cause are enough.
+        deaths: segments; the columns world, id, tick and cause are enough.
         ends: last tick of each world so far, int64 (W,).
         begins: tick at the end of which the records begin.
         cells: cells of one world.
@@ -223,7 +223,7 @@ def join(
 
 
 def joined(parts: Sequence[Lives], firsts: np.ndarray) -> Lives:
-    """Join the lives of R runs; the first world of each gets its number in `first`, int64 (R,)."""
+    """Join the lives of R runs; the first world of each run gets its number in `firsts`, int64 (R,)."""
     columns = {
         each.name: np.concatenate([getattr(part, each.name) for part in parts])
         for each in fields(Lives)
@@ -262,7 +262,7 @@ def _check_deaths(
     born: np.ndarray,
     ended: np.ndarray,
 ) -> None:
-    """Check deaths and the rows of the dead; all other arrays are of all organisms."""
+    """Check deaths and the rows of the dead; `born` and `ended` have a value for every organism."""
     if len(rows) and rows.min() < 0:
         raise ValueError(f"organism {dead['id'][rows.argmin()]} dies without having been born")
     early = (dead["tick"] < born[rows]) | (dead["tick"] > ended[rows])
@@ -274,7 +274,7 @@ def _check_deaths(
 def _rows(
     worlds: np.ndarray, numbers: np.ndarray, world: np.ndarray, number: np.ndarray
 ) -> np.ndarray:
-    """Return the row of each wanted organism among the given ones, int64 (n,); -1 if it is missing.
+    """Return the row of each wanted organism among the given organisms, int64 (n,); -1 if missing.
 
     Args:
         worlds: worlds of the given organisms, (L,), in ascending order.

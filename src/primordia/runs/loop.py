@@ -1,6 +1,6 @@
 """The loop of a run: begin or resume, then advance, record and checkpoint.
 
-A run is a directory. Its content is a function of `config.toml`; see `record` and `checkpoint`.
+A run is a directory, whose content is a function of `config.toml`; see `record` and `checkpoint`.
 """
 
 import time
@@ -111,8 +111,8 @@ def resume(
         done.
 
     Raises:
-        InputError: this is not a run, it is in use, it was made by other versions, or a limit is
-            wrong.
+        InputError: this is not a run, the run is in use or was made by other versions, or a limit
+            is wrong.
         Trouble: a file cannot be written, or no checkpoint is whole.
     """
     _check_interval(checkpoint_every)
@@ -150,7 +150,7 @@ def resume(
 
 
 def recorder_for(engine: Engine, run: Path | None) -> Recorder:
-    """Return a recorder for an engine's events; without a directory it keeps only digests."""
+    """Return a recorder for an engine's events; without a directory the recorder keeps only digests."""
     config = engine.config
     return Recorder(run, config.seeds, Schema.of(engine.law, engine.tallies))
 
@@ -182,7 +182,7 @@ def drive(
 ) -> None:
     """Advance, record and checkpoint until every world stops or a signal comes; see `start`.
 
-    If a listener fails, a checkpoint is written before its error is raised.
+    If a listener fails, a checkpoint is written before the listener's error is raised.
 
     Raises:
         KeyboardInterrupt: on Ctrl-C, SIGTERM or SIGHUP, after a checkpoint if the run has advanced.
@@ -211,13 +211,13 @@ def drive(
 
 
 def _chunks(engine: Engine, limits: Limits, noted: list[int]) -> Iterator[Events]:
-    """Advance chunk by chunk and yield each one's events, until every world stops or a signal comes."""
+    """Advance, and yield the events of each chunk, until every world stops or a signal comes."""
     while engine.any_running(limits) and not noted:
         yield engine.advance(limits)
 
 
 class Saver:
-    """The checkpoints of a running run: some soon after its first chunk, then one in each interval."""
+    """The checkpoints of a running run: some soon after the first chunk, then one in each interval."""
 
     def __init__(
         self,

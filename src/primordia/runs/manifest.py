@@ -38,7 +38,7 @@ Table = Annotated[str, AfterValidator(_is_table)]
 
 
 class Part(BaseModel):
-    """Values of one kind in a manifest; nothing else is accepted."""
+    """Values of one kind in a manifest; unknown names and other types are refused."""
 
     model_config = ConfigDict(extra="forbid", strict=True)
 
@@ -107,7 +107,7 @@ def read(path: Path) -> Manifest:
 
 
 def parsed(text: bytes) -> Manifest:
-    """Return the manifest in a text; raise ValueError if the text holds none, or was changed."""
+    """Return the manifest in a text; raise ValueError if there is no manifest, or it was changed."""
     try:
         content = json.loads(text)
         recorded = content.pop("sha256")

@@ -53,7 +53,7 @@ def run_paths(place: Path) -> list[Path]:
     """Return the directories and bundles of the runs at a place, in order of names.
 
     Raises:
-        InputError: there is none.
+        InputError: there is no run.
     """
     files.check_name(place)
     if (place / EXPERIMENT).is_file():
@@ -78,7 +78,7 @@ def arm_paths(experiment: Path) -> list[Path]:
 
 
 def split_name(place: str) -> tuple[str | None, str]:
-    """Return the name and the place in `name=place`; the name is None if there is none."""
+    """Return the name and the place in `name=place`; the name is None if `place` has no name."""
     named = re.fullmatch(r"([^=/*?\[\]]+)=(.+)", place, re.DOTALL)
     if named is None or Path(place).exists():
         return None, place

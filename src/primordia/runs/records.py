@@ -96,7 +96,7 @@ class Records(ABC):
         """Allow the user's own code of these parts, or of all parts, to be imported.
 
         Raises:
-            InputError: the user has not trusted it yet.
+            InputError: the user has not trusted the code yet.
         """
 
     @property
@@ -105,8 +105,8 @@ class Records(ABC):
         """The habitat, only for reading its properties; build a new one to make bodies.
 
         Raises:
-            InputError: the user has not trusted its code yet (`law` and `heredity` also raise this
-                error).
+            InputError: the user has not trusted the habitat's code yet (`law` and `heredity` also
+                raise this error).
         """
 
     @property
@@ -117,7 +117,7 @@ class Records(ABC):
     @property
     @abstractmethod
     def heredity(self) -> Heredity:
-        """The part of the law that makes genomes. It needs neither habitat nor brain."""
+        """The part of the law that makes genomes. Heredity needs neither habitat nor brain."""
 
     @cached_property
     def layout(self) -> Layout:

@@ -52,7 +52,7 @@ class Schema:
         return sample_columns(self.rates).plus(*tally_columns(self.tallies))
 
     def world_of(self, table: str, rows: np.ndarray) -> np.ndarray:
-        """Return the world that each row uint32 (n, words) belongs to, (n,)."""
+        """Return the world to which each row belongs, (n,) from uint32 (n, words)."""
         return rows[:, 0] if table == "metrics" else rows[:, 0] // np.uint32(self.cells)
 
     def within_world(self, table: str, rows: np.ndarray) -> np.ndarray:
@@ -62,7 +62,7 @@ class Schema:
         return own
 
     def arrow(self, table: str, rows: np.ndarray) -> pa.Table:
-        """Return rows uint32 (n, words) as an Arrow table with names, units and types."""
+        """Return rows as an Arrow table with names, units and types, from uint32 (n, words)."""
         words = self.columns(table).unpacked(rows)
         world = pa.array(self.world_of(table, rows).astype(np.int32))
         if table == "metrics":

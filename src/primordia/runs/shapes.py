@@ -38,8 +38,8 @@ class Expected:
         self._tally: Kind = "int32", (self._cells, len(about.tallies))
 
     def fault(self, arrays: Mapping[str, np.ndarray]) -> str | None:
-        """Return a fault: an array is missing or unknown, or a world's number is impossible; else
-        None.
+        """Return a fault: an array is missing or unknown, or a number of a world is impossible.
+        Return None without a fault.
 
         Only the numbers of worlds are read; `fault_of` checks every other array when it is read.
         """
@@ -64,8 +64,7 @@ class Expected:
         return self._odd_row(table, array) if folder == "tail" else None
 
     def _odd_row(self, table: str, tail: np.ndarray) -> str | None:
-        """Return the fault of an open tail that names a missing world, cell or cause; None without
-        one."""
+        """Return the fault of an open tail that names a missing world, cell or cause, or None."""
         most = {
             "births": {"cell": self._cells, "cause": len(BirthCause)},
             "deaths": {"cell": self._cells, "cause": len(Cause)},

@@ -6,15 +6,15 @@ from pydantic import BaseModel, ConfigDict
 
 SEASONAL = "seasonal"
 Rate = Annotated[float, SEASONAL]
-"""A setting that seasons may change while a run goes on. It is part of every world's climate and a column
-of the metrics, under its dotted name in settings."""
+"""A setting that seasons may change while a run goes on. The setting is part of every world's
+climate and a column of the metrics, under its dotted name in settings."""
 
 
 class Settings(BaseModel):
     """A frozen, validated group of settings; an unknown name or a wrong type is an error.
 
-    Parts of the law are such groups with methods: a setting is declared once, beside the code that uses
-    it.
+    Parts of the law are such groups with methods: a setting is declared once, beside the code that
+    uses the setting.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)

@@ -31,7 +31,7 @@ def values(task: str) -> dict[str, Any]:
     """Return the settings of a task that is made from an environment, as nested tables.
 
     Raises:
-        InputError: there is no such environment, or organisms cannot live in it; the message says why.
+        InputError: there is no such environment, or no organism can live in it; the message says why.
     """
     return _through("values", task)
 

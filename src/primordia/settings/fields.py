@@ -58,7 +58,7 @@ def first_fault(
 
     Args:
         error: pydantic's error.
-        model: the model of the settings; its names are suggested for a misspelt one.
+        model: the model of the settings; its names are suggested for a misspelt name.
         group: dotted path of the validated table; "" for the whole.
         others: dotted names of further settings, such as those of a task's brain.
     """

@@ -21,7 +21,7 @@ def make(what: str, table: Mapping[str, Any], find: Callable[[object], type[Part
         find: name -> the part's class; LookupError if there is none.
 
     Raises:
-        InputError: there is no such part, or it does not take these settings.
+        InputError: there is no such part, or the part does not take these settings.
     """
     own, key = dict(table), PARTS[what]
     try:

@@ -13,7 +13,7 @@ def find(what: str, name: object, known: Mapping[str, str], base: type) -> type:
         what: the kind of part, such as `habitat`; for messages.
         name: one of the known names, or `module:Class`.
         known: `module:Class` of each part that comes with the package, by name.
-        base: the class that parts of this kind subclass.
+        base: the base class of parts of this kind.
 
     Raises:
         LookupError: there is no such name, module or class, or the class is not a part of this

@@ -81,7 +81,7 @@ def from_toml(path: Path) -> dict[str, Any]:
 
 
 def parsed_toml(text: str) -> dict[str, Any]:
-    """Return the values of a TOML text; raise ValueError if it is not TOML."""
+    """Return the values of a TOML text; raise ValueError if the text is not TOML."""
     try:
         return tomllib.loads(text)
     except RecursionError:
@@ -91,7 +91,7 @@ def parsed_toml(text: str) -> dict[str, Any]:
 def merged(base: dict[str, Any], change: dict[str, Any]) -> dict[str, Any]:
     """Return `base` with the values of `change`, table by table.
 
-    If a table of `change` names another part, it replaces the whole table of `base`.
+    If a table of `change` names another part, this table replaces the whole table of `base`.
     """
     result = dict(base)
     for name, value in change.items():

@@ -19,7 +19,7 @@ def check_values(values: Any, path: str = "", depth: int = 0) -> None:
     Args:
         values: a value, or a table or list of values.
         path: the value's dotted name, for messages.
-        depth: the number of tables and lists around it.
+        depth: the number of tables and lists around the value.
 
     Raises:
         InputError: a number is not finite, or does not fit into 64 bits or float32; a text cannot be

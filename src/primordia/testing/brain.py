@@ -20,7 +20,7 @@ def check_brain(brain: Brain, senses: int = 33, outputs: int = 5) -> None:
     Args:
         brain: the brain with its settings.
         senses: S, numbers that an organism perceives.
-        outputs: A, numbers that its motor takes.
+        outputs: A, numbers that the motor takes.
 
     Raises:
         ContractError: the brain does not keep the contract of `brains.contract`.
@@ -93,7 +93,7 @@ def _types(brain: Brain, genome: Genome, memory: Array, seen: Array, outputs: in
 def _depends_on_its_own_only(
     brain: Brain, whole: tuple, genome: Genome, memory: Array, seen: Array
 ) -> None:
-    """Compare with a second trace, and with a batch in which one organism has a broken genome."""
+    """Compare thoughts with those of a second trace, and of a batch with one broken genome."""
     again = jax.jit(lambda *given: brain(*given))(genome, memory, seen)
     says = (
         "when it is traced again, so it depends on more than genome, memory and senses; keep no"

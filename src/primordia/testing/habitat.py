@@ -29,7 +29,7 @@ def check_habitat(habitat: AnyHabitat) -> None:
 
     Args:
         habitat: the habitat with its settings; a habitat on the host must not be open. The habitat
-            is not changed, since copies of it are opened.
+            is not changed, since only copies are opened.
 
     Raises:
         ContractError: the habitat does not keep the contract of `habitats.contract`.

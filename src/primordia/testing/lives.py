@@ -156,7 +156,7 @@ class Stage:
         self.pasts: list[Past] = [[] for _ in range(ALL)]
 
     def bear(self, chosen: np.ndarray | None = None) -> None:
-        """Give bodies in cells, bool (N,), their births."""
+        """Begin the lives of the bodies in the `chosen` cells, bool (N,), or in all cells."""
         cells = np.flatnonzero(np.ones(self.cells, bool) if chosen is None else chosen)
         part, own = self.lives.habitat, self.who[cells]
         given = self.lives.words[own]
@@ -167,7 +167,7 @@ class Stage:
         self.age[cells], self.alive[cells] = 0, True
 
     def tick(self, chosen: np.ndarray | None = None) -> None:
-        """Step the bodies in cells, bool (N,), whose last tick is still ahead."""
+        """Step the bodies in the `chosen` cells, bool (N,), or in all cells, that have ticks left."""
         part = self.lives.habitat
         active = self.alive & (self.age < TICKS)
         active &= True if chosen is None else chosen
@@ -187,7 +187,7 @@ class Stage:
                 self.alive &= ~np.asarray(ended)
 
     def play(self, ticks: int) -> None:
-        """Give all bodies their births, and live some ticks."""
+        """Begin all lives, and live some ticks."""
         self.bear()
         for _ in range(ticks):
             self.tick()

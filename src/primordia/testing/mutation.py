@@ -182,7 +182,7 @@ def _copies(mutation: Mutation, layout: Layout, made: Made, family: Family) -> N
 
 
 def _obeys_rates(mutation: Mutation, layout: Layout, family: Family) -> None:
-    """Compare births under rates of 0 with those under rates of 1."""
+    """Compare births under rates of 0 with births under rates of 1."""
     none, full = (
         jax.jit(partial(_births, mutation, layout))(
             family._replace(rates={name: jnp.full(ALL, value) for name in family.rates})

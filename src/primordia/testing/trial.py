@@ -6,7 +6,7 @@ import jax
 import numpy as np
 
 ALL, COUNTS = 32, (1, 2, 31)
-"""Number of organisms of a whole batch, and numbers in smaller batches that must give the same."""
+"""Number of organisms of a whole batch, and of smaller batches that must give the same results."""
 
 
 def last(tree: Any, count: int) -> Any:

@@ -19,7 +19,7 @@ from primordia.runs.archive import Archive
 Row = dict[str, Any]
 """A row of metrics: `tick`, and the values of all other columns by name."""
 Version = tuple[str, int] | None
-"""Name and time of the newest checkpoint of a run; None if it has none."""
+"""Name and time of the newest checkpoint of a run; None without a checkpoint."""
 
 
 @dataclass(frozen=True)
@@ -103,7 +103,7 @@ class Reader:
 
 
 def newest_version(path: Path) -> Version:
-    """Return name and time of the newest checkpoint of a run; None if it has none."""
+    """Return name and time of the newest checkpoint of a run; None without a checkpoint."""
     folders = checkpoint.numbered(path)
     return (folders[-1].name, folders[-1].stat().st_mtime_ns) if folders else None
 

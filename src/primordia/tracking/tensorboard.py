@@ -17,7 +17,7 @@ from primordia.tracking.reader import Row, World
 
 
 class TensorBoard:
-    """A folder that `tensorboard --logdir` shows; values are kept in single precision there."""
+    """A folder that `tensorboard --logdir` shows. Values in its files have single precision."""
 
     def __init__(self, folder: Path) -> None:
         """Prepare to write into a folder, without making it.
@@ -38,8 +38,8 @@ class TensorBoard:
         self._open: dict[str, Any] = {}
 
     def add(self, world: World, rows: list[Row]) -> None:
-        """Append rows of a world, with the present time; at the first call, replace its earlier
-        files.
+        """Append rows of a world, with the present time; at the first call, replace the world's
+        earlier files.
 
         Raises:
             InputError: the world's folder holds files of other worlds. Trouble: the folder cannot

@@ -62,15 +62,15 @@ def track(
         look: a function that returns the present runs.
         group: a name for all runs.
         tensorboard: folder for TensorBoard, in which each world has a folder.
-        wandb: folder for Weights & Biases; its runs are in the subfolder `wandb`. Nothing connects
+        wandb: folder for Weights & Biases, whose subfolder `wandb` holds the runs. Nothing connects
             to the network: wandb's error reports are switched off in this process.
         follow: read again until all runs have stopped.
         every: seconds between two readings.
         seen: a function that is called after each reading with the number of rows written so far.
 
     Raises:
-        InputError: no folder is given, a package is missing, there is nothing to write, or a folder holds
-            files of others.
+        InputError: no folder is given, a package is missing, there is nothing to write, or a folder
+            holds files of other worlds.
         Trouble: a run is damaged, or a folder cannot be written.
         KeyboardInterrupt: on Ctrl-C; all rows read so far are written.
     """

@@ -51,7 +51,7 @@ class WeightsAndBiases:
         self._open: dict[str, Any] = {}
 
     def add(self, world: World, rows: list[Row]) -> None:
-        """Append rows of a world; at the first call, replace its earlier run.
+        """Append rows of a world; at the first call, replace the world's earlier run.
 
         Raises:
             Trouble: the run cannot be written.

@@ -65,7 +65,7 @@ def tell(
         name: name of the assay, of the module of `figures.assays` that draws it, and of the files.
         found: the results of each arm, by its path.
         as_json: whether JSON is printed.
-        out: folder for figures; each of several arms has a folder with its name there.
+        out: folder for figures; each of several arms has a folder in it, with the arm's name.
         table: a function that makes a table of an arm's results.
     """
     if as_json:

@@ -80,7 +80,7 @@ def stretches(
 def _opened(
     law: Law, habitat: JaxHabitat, seated: Seats, frozen: Frozen | None, count: int
 ) -> _Table:
-    """Return the table at the start of `count` games; further ones are padding."""
+    """Return the table at the start of `count` games; further games are padding."""
     mind, memory, vitals, words = shared(begun, law, habitat.words)(seated)
     bodies = shared(fresh, habitat)(words)
     first = None if frozen is None else shared(type(habitat).sense, habitat)(bodies)
@@ -89,7 +89,7 @@ def _opened(
 
 
 def _padded(tree: Any, size: int) -> Any:
-    """Repeat the last row of each leaf (N, ...) up to `size` rows, or FEWEST."""
+    """Repeat the last row of each leaf (N, ...) until it has `size` rows, at least FEWEST."""
 
     def longer(leaf: np.ndarray) -> np.ndarray:
         more = max(size, FEWEST) - len(leaf)
@@ -119,7 +119,10 @@ def _advance(
     table: _Table,
     ticks: tuple[Wide, Array, Array | None],
 ) -> tuple[_Table, tuple]:
-    """Play T ticks in a loop, by their numbers (T, 1), whether they count (T,), and actions if given."""
+    """Play T ticks in a loop.
+
+    `ticks` holds their numbers (T, 1), whether they count (T,), and their actions or None.
+    """
     mind, rates, frozen, first, *own = table
 
     def play(own: tuple, now: tuple[Wide, Array, Array | None]) -> tuple[tuple, tuple]:

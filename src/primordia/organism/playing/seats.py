@@ -65,7 +65,7 @@ class Stretch(NamedTuple):
 
 
 class Thinking(NamedTuple):
-    """The inputs of N brains in T ticks, before any is frozen."""
+    """The inputs of N brains in T ticks, before any input is frozen."""
 
     senses: Any
     """float32 (T, N, S)"""
@@ -81,7 +81,7 @@ class Seats(NamedTuple):
     keys: Wide
     """(N,), key of everything random in a game"""
     cells: np.ndarray
-    """int32 (N,): number that tells games of one key apart"""
+    """int32 (N,): number that distinguishes the games of one key"""
     rates: Rates
     """metabolism, each float32 (N,)"""
 

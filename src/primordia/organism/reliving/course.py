@@ -1,4 +1,4 @@
-"""The compared values of a life: as recorded, and as found when it was lived again."""
+"""The compared values of a life: as recorded, and as found when the life was lived again."""
 
 import hashlib
 from collections.abc import Iterator, Mapping

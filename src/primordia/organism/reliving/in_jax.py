@@ -59,8 +59,8 @@ def _lived(
 ) -> tuple[Instant, tuple]:
     """Live ticks (n,). Return the state after them, and the columns of a Stretch, each (n, 1, ...).
 
-    `ticks` holds their numbers, their rates, and whether each is real; padding leaves the state
-    unchanged.
+    `ticks` holds the ticks' numbers, their rates, and whether each tick is real; padding leaves the
+    state unchanged.
     """
 
     def step(now: Instant, given: tuple[Wide, Rates, Array]) -> tuple[Instant, tuple]:

@@ -99,7 +99,7 @@ class RelivedLife:
 
     @property
     def begins(self) -> int:
-        """The tick after which the relived life begins: that of the birth, or of the stored state."""
+        """The tick after which the relived life begins: the tick of the birth or of the stored state."""
         if self.stored is None:
             return int(self.record.born[0])
         return int(world_ticks(self.stored)[self.world])
@@ -131,12 +131,13 @@ class RelivedLife:
     def instants(
         self, watched: bool = False
     ) -> Generator[tuple[dict[str, np.ndarray], Stretch | None], None, None]:
-        """Live the life up to its recorded end or an earlier death, without comparing it.
+        """Live the life up to its recorded end or an earlier death, without comparing it with the record.
 
         Yields:
-            The memory, the energy, the food, and the body or its senses, (1, ...) each, by the names
-            under which a checkpoint holds them, at first and after each stretch; and the stretch, None
-            at first. A death ends a stretch, after which memory and body have no meaning.
+            Two values, at first and after each stretch. The first value holds the memory, the
+            energy, the food, and the body or its senses by their names in a checkpoint, (1, ...)
+            each. The second value is the stretch; at first it is None. A death ends a stretch, and
+            memory and body have no meaning after a death.
         """
         with closing(self._alone(watched)) as alone:
             instant = self._start(alone)
