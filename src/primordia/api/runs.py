@@ -258,7 +258,7 @@ class Run:
         listen: Listener | None = None,
         **limits: Any,
     ) -> list[str]:
-        """Go on with the run, with the limits `ticks`, `births` or `until` if given; see `loop.resume`."""
+        """Go on with the run; `limits` are new `ticks`, `births` or `until`. See `loop.resume`."""
         every, run = checkpoint_every, self.only().path
         bundle.refuse_changes(run)
         with devices.selected(device):

@@ -91,7 +91,7 @@ def _pairs(found: Families, which: np.ndarray) -> Pairs:
 
 
 def slope(x: np.ndarray, y: np.ndarray) -> float | None:
-    """Return the slope of y on x by least squares; None for few points, or if all x are equal."""
+    """Return the slope of y on x by least squares; None for fewer than LEAST points or equal x."""
     if len(x) < LEAST or np.ptp(x) == 0:
         return None
     return float(np.cov(x, y)[0, 1] / np.var(x, ddof=1))
