@@ -8,5 +8,5 @@ VARIABLE = "MUJOCO_GL"
 
 
 def backend() -> str:
-    """Return the variable's value if it is set, else `osmesa`, which needs no GPU, or else `egl`."""
+    """Return the variable's value; if unset, `osmesa`, which needs no GPU, if installed; or `egl`."""
     return os.environ.get(VARIABLE) or ("osmesa" if find_library("OSMesa") else "egl")
