@@ -1,9 +1,9 @@
 """One Atari game for each cell, on the Arcade Learning Environment (Bellemare et al. 2013).
 
 A life begins in the state after the game's reset, followed by no-ops if the settings say so. The state
-after the reset is cloned once and restored at each birth, since a reset takes as long as about 60 frames. The emulator
-itself draws no random numbers: sticky actions are drawn here, from dice that begin with the birth's
-random words.
+after the reset is cloned once and restored at each birth, since a reset takes as long as about 60 frames.
+The emulator itself draws no random numbers: sticky actions are drawn here, from dice that begin with the
+birth's random words.
 """
 
 import weakref
