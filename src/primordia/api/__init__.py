@@ -133,8 +133,8 @@ def compare(
         runs: each is a run's directory; an arm's folder; `name=PATTERN`, such as
             `heredity=runs/h*`, for several runs as one arm; or an experiment's directory, for all
             arms of the experiment.
-        births: horizon in births.
-        ticks: horizon in ticks.
+        births: horizon in births; see `comparison.compare`.
+        ticks: horizon in ticks, in the same way.
 
     `figures.comparison.save` draws the result.
     """

@@ -45,7 +45,7 @@ class _Loss(NamedTuple):
 def ablate(
     subjects: Subjects, each_sense: bool = False, games: int = GAMES, ticks: int = TICKS
 ) -> list[Ablation]:
-    """Let each subject live several times: without senses, without memory, and without each block.
+    """Let each subject live several times: without senses, memory, or one block of weights.
 
     Ablated senses keep their values from the start of each game. An ablated memory is zero in each
     tick. Ablated weights are zero.
@@ -53,7 +53,7 @@ def ablate(
     Args:
         subjects: the organisms.
         each_sense: whether to ablate each single sense, too.
-        games: games of each organism; one if the habitat draws nothing at random.
+        games: number of games of each organism; 1 if the habitat draws nothing at random.
         ticks: number of ticks after which a game is cut.
     """
     number = subjects.games(games)

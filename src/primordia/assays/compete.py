@@ -86,7 +86,7 @@ def compete(
     Args:
         one: a single organism or genome, and the law.
         other: a single organism or genome of the same brain.
-        worlds: number of worlds; the first world has the seed of `one`, and the others count up.
+        worlds: number of worlds; the seeds count up from the seed of `one`.
         ticks: ticks of each world.
 
     Raises:

@@ -90,7 +90,7 @@ def effects(
         differs: values of `differs` for calibrated mutations; see `mutations.calibrated`. A parent
             remembers moments of one game.
         count: number of mutants that each mutation makes of each parent.
-        games: games of each genome; one if the habitat draws nothing at random.
+        games: number of games of each genome; 1 if the habitat draws nothing at random.
         ticks: number of ticks after which a game is cut.
 
     Raises:

@@ -66,7 +66,7 @@ def garden(
             late-born. The other late-born organisms are evenly spaced over the late births, without
             the world's last birth.
         after: share of a world's births after which a birth is late.
-        games: games of each organism; one if the habitat draws nothing at random.
+        games: number of games of each organism; 1 if the habitat draws nothing at random.
         ticks: number of ticks after which a game is cut.
         habitat: changed settings of the habitat.
 

@@ -86,7 +86,7 @@ def line(
         world: the organism's world.
         most: largest number of genomes that live. These are evenly spaced over the line, from the
             line's first genome to its last.
-        games: games of each genome; one if the habitat draws nothing at random.
+        games: number of games of each genome; 1 if the habitat draws nothing at random.
         ticks: number of ticks after which a game is cut.
         habitat: changed settings of the habitat.
 

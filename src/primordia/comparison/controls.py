@@ -39,7 +39,7 @@ class Standing:
 
     name: str
     chosen_from: int
-    """number of organisms among which one was chosen, the largest over worlds; 1 if none was chosen"""
+    """largest number, in a world, of organisms among which one was chosen; 1 without a choice"""
     evaluations: list[Evaluation]
 
     def by_world(self, outcome: str) -> dict[int, float]:
@@ -83,7 +83,7 @@ class Group:
     chosen_from: int
     """see `Standing`"""
     numbers: list[tuple[int, int]]
-    """birth number (of founders: number among the founders) and world of each organism"""
+    """birth number (for founders: number among the founders) and world of each organism"""
     players: Players
 
     def evaluate(

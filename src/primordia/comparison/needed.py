@@ -27,7 +27,7 @@ def of_each_run(delta: float, missed: float) -> int | None:
 
 
 def of_pairs(effect: Paired, missed: float) -> int | None:
-    """Return the number of pairs that a sign test needs; it ignores ties. None if delta is 0."""
+    """Return the number of pairs that a sign test needs; ties do not count. None if delta is 0."""
     if not effect.delta:
         return None
     untied = (effect.larger + effect.smaller) / effect.pairs

@@ -108,7 +108,10 @@ def _quiet(
 
 
 def _embody(law: Law, habitat: JaxHabitat, world: World, bodies: Bodies, newborn: Array) -> Bodies:
-    """Insert fresh bodies for the newborn in batches, since bodies may be expensive; bool (C,)."""
+    """Insert fresh bodies for the newborn in batches, since bodies may be expensive.
+
+    `newborn` is bool (C,).
+    """
     key = stream(world.worlds.seed, Purpose.BODY, world.worlds.tick)
 
     def one_batch(cells: Array, valid: Array, carry: tuple[Bodies]) -> tuple[Bodies]:

@@ -95,8 +95,9 @@ class HostedChunks:
         active: Array,
         most: int,
     ) -> tuple[Unsettled, Thought, np.ndarray]:
-        """Live up to and including the first eventful tick, but at most `most` ticks, which is 0
-        before genesis.
+        """Live up to and including the first eventful tick, but at most `most` ticks.
+
+        `most` is 0 before genesis.
 
         Returns:
             the ticks lived; the thought of the next tick; senses, float32 (C, S).

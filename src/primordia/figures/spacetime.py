@@ -13,7 +13,7 @@ from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 
 ROWS, COLUMNS = 800, 512
-"""Largest number of moments, and of cells, that are drawn; of more, every second, third, ... is."""
+"""Largest number of drawn moments, and cells; if there are more, every second, third, ... is drawn."""
 EMPTY = -1
 """Mark of an empty cell, in place of the row of an organism."""
 HUES = (
@@ -85,8 +85,9 @@ def line_inks(lives: Lives, clades: Clades, codes: np.ndarray, size: np.ndarray)
     picture.
 
     Lines of one era take the colours in turn: first lines that last to the end of the era, then the
-    others, the largest first. Lines that last have strong colours, all others pale ones. Lines of
-    organisms born after the beginning of the era, or before the first renewal, are grey.
+    others, the largest first. Lines that last have strong colours, all others pale ones. Lines
+    whose first organism was born after the beginning of the era are grey, and so are all lines before
+    the first renewal.
     """
     era, line = np.divmod(codes, len(lives))
     last = int(lives.ended.max())

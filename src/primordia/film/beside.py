@@ -27,7 +27,7 @@ class Beside(NamedTuple):
 
 
 def oldest(run: Records, lives: Lives, ticks: np.ndarray) -> Iterator[Beside]:
-    """Yield a picture for each moment, of the life of the oldest organism so far, from its birth on.
+    """Yield a picture for each moment: the life of the oldest organism so far, from birth on.
 
     Args:
         run: the run.

@@ -21,7 +21,7 @@ FLASH = 0.75
 FADING = 0.8
 """Share of the light of a death that is left at the next moment."""
 MOST = 2**22
-"""Number of cells times moments that are computed at once, after sorting the lives once."""
+"""Largest number of cells x moments that are computed at once, with the lives sorted once."""
 PALETTE = np.array([colour(hue) for hue in range(HUES)], np.float32)
 
 

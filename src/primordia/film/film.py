@@ -43,7 +43,7 @@ def film(
         out: an .mp4 or .gif file; by default a file in the run's folder `videos`.
         world: the world's number.
         by: what passes between two pictures; see `moments`.
-        ticks: the first and the last tick that are shown; by default all ticks are.
+        ticks: the first and the last tick to show; by default all ticks.
         organism: birth number of the organism whose life is shown; by default the oldest organism so far.
 
     Raises:

@@ -63,7 +63,7 @@ class Ring:
     """A ring of cells. The present is outside; the moments before it are rings within."""
 
     MOST = 1024
-    """largest number of cells that are drawn; of more cells, every second, third, ... is"""
+    """largest number of cells that are drawn; if there are more, every second, third, ... is drawn"""
 
     def __init__(self, count: int) -> None:
         """Take the number of cells."""

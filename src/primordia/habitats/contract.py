@@ -259,7 +259,10 @@ class HostHabitat(Habitat):
 
     @abstractmethod
     def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
-        """Step only bodies of cells `alive`, bool (N,); return senses, float32 (N, S), and outcome."""
+        """Step only the bodies of living cells; return senses, float32 (N, S), and outcome.
+
+        `alive` is bool (N,).
+        """
 
     def close(self) -> None:
         """Release what `open` allocated."""

@@ -62,7 +62,7 @@ class OnHost(HostHabitat):
         return np.array(self._sense(newborn))[:count]
 
     def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
-        """Step the bodies of cells `alive`, bool (N,); return senses, float32 (N, S), and outcome."""
+        """Step only the bodies of living cells; see `HostHabitat.step`."""
         self._bodies, outcome = self._step(self._bodies, action, alive)
         return np.array(self._sense(self._bodies)), outcome
 

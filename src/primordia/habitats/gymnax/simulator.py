@@ -177,7 +177,7 @@ def simulator(name: str, params: str, time_limit: bool) -> Simulator:
 
 
 def _params(env: Any, name: str, changed: dict[str, Any], time_limit: bool) -> Any:
-    """Return the parameters after replacements, and without a time limit unless `time_limit`."""
+    """Return the parameters after replacements, and without a time limit unless `time_limit` is true."""
     params = env.default_params
     known = [each.name for each in dataclasses.fields(params)] if is_dataclass(params) else []
     for each in changed:
