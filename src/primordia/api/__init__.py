@@ -55,12 +55,12 @@ def run(
 
     Args:
         task: name of a built-in task, or a TOML file.
-        out: directory of the new run; by default a new one under `runs/`.
-        resume: go on with the run in `out` if it has begun, instead of refusing the directory.
+        out: directory of the new run; by default a new directory under `runs/`.
+        resume: if `out` already holds a run, go on with that run instead of raising InputError.
         checkpoint_every: seconds from one checkpoint to the next.
-        device: `cpu` or `gpu`. All such devices that JAX has are used if the number of worlds
-            allows it; see `device.sharing`.
-        listen: called after each chunk.
+        device: `cpu` or `gpu`. All devices of this kind are used if the number of worlds allows
+            it; see `device.sharing`.
+        listen: a function that is called after each chunk.
         settings: changed settings, with tables as dicts: `{"cells": 64, "mutation": {"scale":
             0.02}}`.
         more: further changed settings as keywords: `cells=64, mutation={"scale": 0.02}`.
@@ -91,21 +91,22 @@ def experiment(
     device: str = "cpu",
     look: Callable[[CampaignStatus], object] | None = None,
 ) -> Experiment:
-    """Run the arms of an experiment on all cores, or go on with it, and write its results.
+    """Begin or resume an experiment, run its jobs on all cores, and write the results.
 
     Args:
         file: an experiment's TOML file, or the directory of an experiment that has begun.
         out: the experiment's directory; by default the file's name under `runs/`.
         jobs: number of jobs that run at once; by default one for each core.
-        only: names of arms to run; by default all.
-        ray: address of a Ray cluster to run on; "" for the cluster of this machine, or a new one.
+        only: names of the arms to run; by default all arms.
+        ray: address of a Ray cluster to run on; "" for this machine's cluster, or for a new cluster
+            if there is none. By default no cluster is used.
         checkpoint_every: seconds from one checkpoint to the next.
         device: the device that JAX computes on, `cpu` or `gpu`.
         look: a function that is called about twice a second with the status.
 
     Raises:
         InputError: something in the file is wrong, or `out` holds another experiment.
-        Trouble: jobs failed; the others are done.
+        Trouble: some jobs failed; all other jobs are done.
         KeyboardInterrupt: on Ctrl-C, after checkpoints.
     """
     chosen = campaigns.begin(Path(file), Path(out) if out is not None else None)
@@ -126,13 +127,14 @@ def experiment(
 def compare(
     *runs: Run | str | Path, births: int | None = None, ticks: int | None = None
 ) -> comparison.Comparison:
-    """Put runs or arms of one task side by side, the first as the reference; see `comparison.compare`.
+    """Compare runs or arms of one task with the first of them; see `comparison.compare`.
 
     Args:
-        runs: a run's directory; an arm's folder; `name=PATTERN` for several runs as one arm, such
-            as `heredity=runs/h*`; or the directory of an experiment, for all its arms.
-        births: horizon in births.
-        ticks: horizon in ticks.
+        runs: each is a run's directory; an arm's folder; `name=PATTERN`, such as
+            `heredity=runs/h*`, for several runs as one arm; or an experiment's directory, for all
+            arms of the experiment.
+        births: horizon in births; see `comparison.compare`.
+        ticks: horizon in ticks, in the same way.
 
     `figures.comparison.save` draws the result.
     """
@@ -159,9 +161,9 @@ def load(run: str | Path | Sequence[str | Path], trust: bool = False) -> Run:
             `runs/h*`; several of these; or the directory of an experiment, which gives an
             `Experiment`.
         trust: allow Primordia to execute the run's own code on this machine from now on. Code with
-            which the user began a run needs no permission. For other code `resume`, `fork`,
-            `verify`, `replay`, `revive`, `evaluate` and `policy` raise InputError. Reading records
-            executes nothing.
+            which the user began a run needs no permission. With other code and no permission,
+            `resume`, `fork`, `verify`, `replay`, `revive`, `evaluate` and `policy` raise
+            InputError. Reading records executes nothing.
 
     Raises:
         InputError: there is no run, or the runs do not belong to one arm.
@@ -177,6 +179,6 @@ def load(run: str | Path | Sequence[str | Path], trust: bool = False) -> Run:
 
 
 def default_name(chosen: config.Config) -> str:
-    """Return the name of a run's directory, made of task and seed."""
+    """Return a name for a run's directory, made of the task's name and the seed."""
     task = "".join(each if each.isprintable() and each != "/" else "-" for each in chosen.task)
     return f"{task}-seed{chosen.seed}"

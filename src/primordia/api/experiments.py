@@ -27,7 +27,7 @@ class Experiment(Run):
 
     @property
     def arms(self) -> dict[str, Run]:
-        """The runs of each arm by its name, the reference first."""
+        """The arms by name, each as a `Run`; the reference comes first."""
         return {name: Run(folder) for name, folder in self._recorded().arms.items()}
 
     def _repr_html_(self) -> str:
@@ -43,7 +43,7 @@ class Experiment(Run):
         return self._recorded().opened()
 
     def status(self) -> CampaignStatus:
-        """Return the states of the jobs and the numbers of the arms so far; open no run."""
+        """Return the number of jobs in each state and the counts of each arm, without opening a run."""
         return self._recorded().status()
 
     def info(self) -> dict[str, Any]:
@@ -57,7 +57,7 @@ class Experiment(Run):
     def plot(
         self, out: str | Path | None = None, world: int = 0, figures: Sequence[str] = ()
     ) -> list[Path]:
-        """Draw the arms side by side, and the figures of each arm in a folder with its name."""
+        """Draw the comparison of the arms, and the figures of each arm in a folder named like the arm."""
         from primordia.figures.comparison import save  # Matplotlib takes a second to load
 
         folder = Path(out) if out is not None else self.path / "figures"
@@ -69,7 +69,7 @@ class Experiment(Run):
         return [*save(self.compare(), folder), *drawn]
 
     def report(self, out: str | Path | None = None) -> Path:
-        """Write a page with the arms side by side, by default `report.html` in the directory."""
+        """Write a page that compares the arms, by default `report.html` in the experiment's directory."""
         from primordia.report.report import report  # Matplotlib takes a second to load
 
         return report(self._recorded(), Path(out) if out is not None else None)

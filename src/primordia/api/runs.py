@@ -41,9 +41,9 @@ from primordia.tracking.track import Sources, track
 
 @dataclass(frozen=True)
 class Run:
-    """A run, or several runs as one arm: their worlds in the order of their seeds.
+    """A run, or several runs as one arm. All worlds are in the order of their seeds.
 
-    Each call opens the runs again; an `Organism` keeps the records that it came from.
+    Each call opens the runs again. An `Organism` keeps the records from which it was made.
     """
 
     path: Path
@@ -62,19 +62,19 @@ class Run:
             return notebook.table(str(error), (), ())
 
     def opened(self) -> Records:
-        """Open the records for reading, as they are now."""
+        """Open the present records for reading."""
         return opening.opened([self.path, *self.others])
 
     def only(self) -> Archive:
-        """Open the run for reading; raise InputError if there are several."""
+        """Open the run for reading; raise InputError if there are several runs."""
         return opening.only([self.path, *self.others])
 
     def directories(self) -> tuple[Path, ...]:
-        """Return the directories of the runs; raise InputError if one is not a run."""
+        """Return the directories of the runs; raise InputError if a directory is not a run."""
         return self.opened().paths
 
     def info(self) -> dict[str, Any]:
-        """Return the run in numbers; see `info.info`."""
+        """Return the main numbers of the run and of its worlds; see `info.info`."""
         return info(self.opened())
 
     def table(self, name: str) -> pa.Table:
@@ -96,11 +96,11 @@ class Run:
         return Organism(run, run.lives.row(organism, world))
 
     def oldest(self, world: int | None = None, after: float = LATE) -> Organism:
-        """Return the organism that lived longest, in one world or in all.
+        """Return the organism that lived longest, in one world or in all worlds.
 
-        Only organisms born after a share `after` of their world's births count, and only those born
-        since a fork. So the founders that a world begins with do not count. Among equal lives the
-        last-born wins.
+        Organisms count if they were born after a share `after` of their world's births and, in a
+        fork, after the fork. So the founders with which a world begins do not count. If several
+        organisms lived longest, the last-born of them is returned.
         """
         run = self.opened()
         return Organism(run, run.lives.oldest(world, after))
@@ -117,8 +117,7 @@ class Run:
     def standings(
         self, founders: int | None = FOUNDERS, world: int | None = None, **options: Any
     ) -> list[Standing]:
-        """Evaluate the champions, the living, founders, and the best of as many founders as were
-        born.
+        """Evaluate the champions, the living, some founders, and the best of many founders.
 
         `founders` and `world` are those of `controls.unevolved`; `options` are those of
         `Group.evaluate`.
@@ -148,7 +147,7 @@ class Run:
     ) -> Ancestors:
         """Follow the line of descent of an organism, by default the `oldest`; see `descent.ancestors`.
 
-        `say` is called with a line if the line ends at a fork because its source is not there.
+        `say` is called with a message if the line ends at a fork because the forked run is missing.
         """
         run = self.opened()
         if organism is not None:
@@ -161,11 +160,11 @@ class Run:
         return lines(self.opened(), world, at)
 
     def policy(self) -> Policy:
-        """Return the brain of the champion, see `oldest`, as `policy(senses) -> action`."""
+        """Return the brain of the run's `oldest` organism as a function `policy(senses) -> action`."""
         return self.oldest().policy()
 
     def export(self, out: str | Path, *organisms: int, world: int = 0) -> tuple[int, ...]:
-        """Write genomes of organisms of a world to a safetensors file; see `export.export`."""
+        """Write the genomes of some organisms of one world to a safetensors file; see `export.export`."""
         return export(self.opened(), Path(out), organisms, world)
 
     def lineage(
@@ -178,7 +177,7 @@ class Run:
     ) -> pa.Table | None:
         """Return the phylogeny as a table, or write it to a file; see docs/how-to/phylogeny.md.
 
-        `say` is called with one line about anything that is missing. `world`, `extant` and
+        `say` is called with a message about anything that is missing. `world`, `extant` and
         `collapse` are those of `reduce.chosen`. With `organism`, a birth number, the table is that
         organism's line of descent.
         """
@@ -197,13 +196,13 @@ class Run:
     def plot(
         self, out: str | Path | None = None, world: int = 0, figures: Sequence[str] = ()
     ) -> list[Path]:
-        """Draw the figures in a folder, by default the run's own. Return the files; see `plot.plot`."""
+        """Draw figures, by default into the run's `figures`. Return the files; see `plot.plot`."""
         from primordia.figures.plot import plot  # Matplotlib takes a second to load
 
         return plot(self.opened(), Path(out) if out is not None else None, world, figures)
 
     def film(self, out: str | Path | None = None, world: int = 0, **options: Any) -> Path:
-        """Film a world, by default in the run's `videos`. Return the file; see `film.film`."""
+        """Film a world, by default into the run's folder `videos`. Return the file; see `film.film`."""
         from primordia.film.film import film
 
         return film(self.opened(), Path(out) if out is not None else None, world, **options)
@@ -215,7 +214,7 @@ class Run:
         return report(self.opened(), Path(out) if out is not None else None)
 
     def watch(self, port: int | None = None, begun: Callable[[str], object] = print) -> None:
-        """Serve a live page about the run on this machine, until Ctrl-C; see `watch.watch`."""
+        """Serve a live page about the run on this machine until Ctrl-C is pressed; see `watch.watch`."""
         from primordia.report.server import PORT  # Matplotlib takes a second to load
         from primordia.report.watch import watch
 
@@ -259,7 +258,7 @@ class Run:
         listen: Listener | None = None,
         **limits: Any,
     ) -> list[str]:
-        """Go on with the run, with new `ticks`, `births` or `until` if given; see `loop.resume`."""
+        """Go on with the run; `limits` are new `ticks`, `births` or `until`. See `loop.resume`."""
         every, run = checkpoint_every, self.only().path
         bundle.refuse_changes(run)
         with devices.selected(device):

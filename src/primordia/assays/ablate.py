@@ -21,11 +21,11 @@ class Ablation:
     intact: float
     """mean ticks that the intact organism lived in its games"""
     lifespan: float
-    """mean ticks that it lived in the same games after the ablation"""
+    """mean ticks that the ablated organism lived in the same games"""
 
     @property
     def kept(self) -> float:
-        """Share of the intact life."""
+        """Life after the ablation, as a share of the intact life."""
         return self.lifespan / self.intact
 
     def to_dict(self) -> dict[str, Any]:
@@ -45,16 +45,16 @@ class _Loss(NamedTuple):
 def ablate(
     subjects: Subjects, each_sense: bool = False, games: int = GAMES, ticks: int = TICKS
 ) -> list[Ablation]:
-    """Let each subject live without its senses, its memory, and each block of its weights.
+    """Let each subject live several times: without senses, memory, or one block of weights.
 
     Ablated senses keep their values from the start of each game. An ablated memory is zero in each
     tick. Ablated weights are zero.
 
     Args:
         subjects: the organisms.
-        each_sense: whether to ablate each sense alone too.
-        games: games of each organism; one if the habitat draws nothing at random.
-        ticks: length at which a game is cut.
+        each_sense: whether to ablate each single sense, too.
+        games: number of games of each organism; 1 if the habitat draws nothing at random.
+        ticks: number of ticks after which a game is cut.
     """
     number = subjects.games(games)
     intact = lifespans_in_games(subjects.players, number, ticks).mean(axis=1)

@@ -26,7 +26,7 @@ WORLDS = 10
 TICKS = 5_000
 """Default number of ticks of each world."""
 MOMENTS = 101
-"""Number of ticks at which shares are counted, with the first and the last."""
+"""Number of ticks at which shares are counted, including the first and the last tick."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class Competition:
 
     @property
     def won(self) -> tuple[int, int]:
-        """Number of worlds whose late living descend mostly from `one`, and from `other`."""
+        """Numbers of worlds in which most of the late living descend from `one`, and from `other`."""
         late = self.late_share
         return int((late > 0.5).sum()), int((late < 0.5).sum())
 
@@ -80,13 +80,13 @@ def compete(
 ) -> Competition:
     """Let two genomes compete in empty worlds.
 
-    The two genomes fill the cells by turns, and again if all organisms die. There is no mutation
-    and no recombination. All other settings are those of `one`.
+    Founders take the two genomes in turn and fill all cells. If all organisms die, founders fill
+    the cells again. There is no mutation and no recombination. All other settings are those of `one`.
 
     Args:
         one: a single organism or genome, and the law.
         other: a single organism or genome of the same brain.
-        worlds: number of worlds; their seeds begin with that of `one`.
+        worlds: number of worlds; the seeds count up from the seed of `one`.
         ticks: ticks of each world.
 
     Raises:

@@ -1,8 +1,8 @@
 """Effects of mutations: mutants of an organism play the parent's own games.
 
 A mutant plays the games that its parent plays, with the same random numbers. In a game without
-chance a genome has one lifespan. An equally long life then means that the mutation had no effect on
-it.
+chance a genome always lives equally long. So if a mutant lives exactly as long as its parent, the
+mutation had no effect on the lifespan.
 """
 
 from collections.abc import Iterable, Sequence
@@ -19,9 +19,9 @@ from primordia.mutations.gaussian import Block, Gaussian
 from primordia.organism.games import lifespans_in_games
 
 MUTANTS = 24
-"""Default number of mutants of an organism by each mutation."""
+"""Default number of mutants that each mutation makes of an organism."""
 SCALES = (0.001, 0.003, 0.01, 0.03, 0.1, 0.3)
-"""Default standard deviations of noise, as shares of that of founders' weights."""
+"""Default standard deviations of noise, as shares of the standard deviation of founders' weights."""
 
 
 @dataclass(frozen=True)
@@ -38,22 +38,22 @@ class Effect:
 
     @property
     def as_long(self) -> float:
-        """Share of the mutants that lived exactly as long."""
+        """Share of the mutants that lived exactly as long as the parent."""
         return float((self.mutants == self.lifespan).mean())
 
     @property
     def longer(self) -> float:
-        """Share of the mutants that lived longer."""
+        """Share of the mutants that lived longer than the parent."""
         return float((self.mutants > self.lifespan).mean())
 
     @property
     def tenth_longer(self) -> float:
-        """Share of the mutants that lived longer by a tenth or more."""
+        """Share of the mutants that lived longer than the parent by a tenth or more."""
         return float((10 * self.mutants >= 11 * self.lifespan).mean())
 
     @property
     def third_shorter(self) -> float:
-        """Share of the mutants that lived shorter by a third or more."""
+        """Share of the mutants that lived shorter than the parent by a third or more."""
         return float((3 * self.mutants <= 2 * self.lifespan).mean())
 
     def to_dict(self) -> dict[str, Any]:
@@ -81,17 +81,17 @@ def effects(
     games: int = GAMES,
     ticks: int = TICKS,
 ) -> list[Effect]:
-    """Let mutants of each subject live, made by its run's own mutation and by others.
+    """Let mutants of each subject live, made by the run's own mutation and by other mutations.
 
     Args:
         subjects: the parents.
         scales: standard deviations of Gaussian noise on all weights, as shares of the standard
             deviation of founders' weights in each block.
         differs: values of `differs` for calibrated mutations; see `mutations.calibrated`. A parent
-            remembers one game.
-        count: number of mutants of each parent by each mutation.
-        games: games of each genome; one if the habitat draws nothing at random.
-        ticks: length at which a game is cut.
+            remembers moments of one game.
+        count: number of mutants that each mutation makes of each parent.
+        games: number of games of each genome; 1 if the habitat draws nothing at random.
+        ticks: number of ticks after which a game is cut.
 
     Raises:
         InputError: the run's own mutation makes no mutants.

@@ -1,6 +1,7 @@
-"""The common garden: the oldest organisms and others are born again with fresh random keys.
+"""The common garden: oldest organisms, other organisms and founders live with fresh random keys.
 
-The oldest organisms were also lucky. Their lives with fresh keys show what their genomes are worth.
+The oldest organisms were also lucky. When the same genomes live again with fresh keys, their new
+lifespans show how good the genomes are.
 """
 
 from collections.abc import Mapping
@@ -16,7 +17,7 @@ from primordia.runs.lives import LATE
 from primordia.runs.records import Records
 
 EACH = 20
-"""Default number of organisms of a world in each group."""
+"""Default number of organisms in each group of a world."""
 
 
 @dataclass(frozen=True)
@@ -57,15 +58,16 @@ def garden(
     ticks: int = TICKS,
     habitat: Mapping[str, Any] | None = None,
 ) -> list[Bed]:
-    """Let the oldest, other late-born organisms and founders of each world live in fresh games.
+    """Let oldest organisms, other late-born organisms and founders of each world play fresh games.
 
     Args:
         run: the run, or an arm.
-        each: most organisms of each group in each world. The oldest are chosen among the late-born.
-            The others are evenly spaced over the late births, without the world's last birth.
+        each: largest number of organisms in each group of a world. The oldest are chosen among the
+            late-born. The other late-born organisms are evenly spaced over the late births, without
+            the world's last birth.
         after: share of a world's births after which a birth is late.
-        games: games of each organism; one if the habitat draws nothing at random.
-        ticks: length at which a game is cut.
+        games: number of games of each organism; 1 if the habitat draws nothing at random.
+        ticks: number of ticks after which a game is cut.
         habitat: changed settings of the habitat.
 
     Raises:

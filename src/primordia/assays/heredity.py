@@ -19,7 +19,7 @@ from primordia.runs.records import Records
 
 @dataclass(frozen=True)
 class Pairs:
-    """Children of one kind beside their parents, both dead."""
+    """Dead children of one kind, each with its dead parent."""
 
     pairs: int
     slope: float | None
@@ -28,9 +28,9 @@ class Pairs:
     as_long: float | None
     """share of the children that live exactly as long as the parent"""
     longer: float | None
-    """share of the children that live longer by a tenth or more"""
+    """share of the children that live longer than the parent by a tenth or more"""
     shorter: float | None
-    """share of the children that live shorter by a third or more"""
+    """share of the children that live shorter than the parent by a third or more"""
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,7 @@ def _pairs(found: Families, which: np.ndarray) -> Pairs:
 
 
 def slope(x: np.ndarray, y: np.ndarray) -> float | None:
-    """Return the slope of y on x by least squares; None for few points, or if all x are equal."""
+    """Return the slope of y on x by least squares; None for fewer than LEAST points or equal x."""
     if len(x) < LEAST or np.ptp(x) == 0:
         return None
     return float(np.cov(x, y)[0, 1] / np.var(x, ddof=1))
@@ -101,8 +101,8 @@ def price(found: Families) -> tuple[float | None, float | None]:
     """Return selection and transmission from families whose parent and late children are all dead.
 
     Late-born organisms without children count as parents of zero children. The sum of both terms is
-    the mean log lifespan of the children minus that of these parents. Both terms are None if there
-    are no children.
+    the mean log lifespan of the children minus the mean log lifespan of these parents. Both terms
+    are None if there are no children.
     """
     lives, z = found.lives, _log(found.lives.lifespan)
     counted = np.zeros(len(lives), bool)

@@ -1,4 +1,4 @@
-"""The lives of an organism's ancestors: each genome on its line of descent lives again."""
+"""The lives of an organism's ancestors: each genome on the line of descent lives again."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -21,7 +21,7 @@ GOOD = 0.9
 
 @dataclass(frozen=True)
 class Step:
-    """A genome on the line, and the life that it gives."""
+    """A genome on the line of descent, and its life."""
 
     generation: int
     """births since the first organism of the line"""
@@ -32,7 +32,7 @@ class Step:
     recorded: int
     """ticks that the organism has lived in its world so far"""
     reborn: float
-    """mean ticks that it lived in the games of the line's last organism"""
+    """mean ticks that the genome lived in the games of the line's last organism"""
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class Line:
 
     @property
     def good(self) -> Step:
-        """The first step from which on every step lives at least GOOD of the last one's life."""
+        """The first step such that this and all later steps live at least GOOD of the last one's life."""
         enough = GOOD * self.steps[-1].reborn
         below = [k for k, step in enumerate(self.steps) if step.reborn < enough]
         return self.steps[below[-1] + 1 if below else 0]
@@ -84,10 +84,10 @@ def line(
         run: the organism's run, or its arm.
         organism: birth number.
         world: the organism's world.
-        most: largest number of genomes that live. They are evenly spaced over the line, with its
-            first and its last.
-        games: games of each genome; one if the habitat draws nothing at random.
-        ticks: length at which a game is cut.
+        most: largest number of genomes that live. These are evenly spaced over the line, from the
+            line's first genome to its last.
+        games: number of games of each genome; 1 if the habitat draws nothing at random.
+        ticks: number of ticks after which a game is cut.
         habitat: changed settings of the habitat.
 
     Raises:
@@ -117,7 +117,7 @@ def line(
 
 
 def _changed(run: Records, rows: np.ndarray) -> np.ndarray:
-    """Return the indices in a line of descent (D,) at which the genome changed, with the first."""
+    """Return 0 and the indices at which the genome changed in a line of descent; `rows` is (D,)."""
     lives = run.lives.take(rows)
     changed = (lives.birth_cause != BirthCause.COPY) | (run.mates_of(lives) >= 0)
     changed[0] = True

@@ -20,7 +20,7 @@ from primordia.random.keys import streams
 from primordia.random.wide import wide
 
 MOST_CHILDREN = 1000
-"""Children made for each wanted mutant, before the mutation counts as one that never happens."""
+"""Number of children made for each wanted mutant before the mutation is taken to never happen."""
 
 
 class Operator(NamedTuple):
@@ -104,12 +104,14 @@ def _children(
 
 
 def moments_of(players: Players, rule: Moments, ticks: int) -> Remembered:
-    """Return the last moments of one game that players remember, at regular ticks from its start.
+    """Let players play one game, and return the last moments that they remember.
+
+    Moments are at regular ticks from the start of the game.
 
     Args:
         players: the organisms, K.
-        rule: number of moments that are kept, and the ticks between two of them.
-        ticks: length at which the game is cut.
+        rule: number of moments that are kept, and the ticks between two moments.
+        ticks: number of ticks after which the game is cut.
     """
     count, law = len(players.genomes), players.law
     senses = np.zeros((count, rule.kept, law.senses), np.float32)

@@ -29,7 +29,7 @@ GAMES = 5
 TICKS = 20_000
 """Default length at which games are cut, in ticks."""
 FOUNDERS, BEST = 512, 16
-"""Number of a task's founders that live once, and number of the longest-lived that are its subjects."""
+"""Number of a task's founders that live once, and number of the longest-lived that become subjects."""
 
 
 class Subjects(NamedTuple):
@@ -51,7 +51,7 @@ class Subjects(NamedTuple):
 
     @property
     def law(self) -> Law:
-        """The law by which they live."""
+        """The law by which the subjects live."""
         return self.players.law
 
     @property
@@ -165,7 +165,7 @@ def founders(chosen: Config, count: int) -> np.ndarray:
 
 
 def _fresh(source: str, chosen: Config, number: np.ndarray, own: np.ndarray) -> Subjects:
-    """Return subjects with genomes (K, P) from outside a run, and their numbers (K,)."""
+    """Return subjects that come from no run: `own` are genomes (K, P), `number` is (K,)."""
     habitat, count = chosen.build_habitat(), len(number)
     law = chosen.build_law(habitat)
     climate = {name: np.asarray(each) for name, each in initial_climate(law, count).items()}

@@ -1,11 +1,11 @@
 """The contract of brains: `(genome, memory, senses) -> (memory, output)`, for all organisms at once.
 
-A genome is a flat float32 vector (P,) in records and files. Here it is held as named blocks of
-weights, each (N, *shape): a compiled loop that cuts a flat (N, P) array into matrices copies them
-at every tick (measured on a CPU: 2.5 times slower).
+A genome is a flat float32 vector (P,) in records and files. Brains get genomes as named blocks
+of weights, each (N, *shape). A compiled loop that cuts a flat (N, P) array into matrices copies these
+matrices at every tick (measured on a CPU: 2.5 times slower).
 
-`kind` in a task's `[brain]` table is one of those listed here, or `module:Class` of any `Brain`. The
-other keys of the table are the class's own settings.
+`kind` in a task's `[brain]` table is a name in KNOWN, or `module:Class` of any `Brain`. The other
+keys of the table are the class's own settings.
 """
 
 from abc import ABC, abstractmethod
@@ -39,8 +39,8 @@ class Brain(Settings, ABC):
         """Return name and shape of each block of weights, in the order of the flat genome.
 
         Args:
-            senses: S, numbers that an organism perceives.
-            outputs: A, numbers that its motor takes.
+            senses: S, the count of numbers that an organism perceives.
+            outputs: A, the count of numbers that the motor takes.
         """
 
     def memory(self, senses: int, outputs: int) -> int:
@@ -49,7 +49,7 @@ class Brain(Settings, ABC):
 
     @abstractmethod
     def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:
-        """Think for one tick; everything is float32.
+        """Think for one tick; all arrays are float32.
 
         Args:
             genome: block of weights -> (N, *shape).

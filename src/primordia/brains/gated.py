@@ -20,8 +20,8 @@ class Gated(Brain):
         h' = z * h + (1 - z) * c
         y  = V h'
 
-    Cho et al. 2014, "Learning phrase representations using RNN encoder-decoder", sec. 2.3, there
-    without biases. With biases, one is added in each of r, z, c and y.
+    Cho et al. 2014, "Learning phrase representations using RNN encoder-decoder", sec. 2.3. The paper
+    has no biases. With `biases`, one bias is added in each of r, z, c and y.
     """
 
     hidden: Hidden = 32

@@ -1,6 +1,6 @@
 """Genome files: the weights of K organisms in safetensors.
 
-A file holds one float32 tensor (K, *shape) for each block of the brain, in the blocks' order.
+A file holds one float32 tensor (K, *shape) for each block of the brain, in the order of the blocks.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -34,7 +34,7 @@ def write(path: Path, layout: Layout, genomes: np.ndarray, about: dict[str, str]
 
 
 def read(paths: Sequence[str], layout: Layout) -> np.ndarray:
-    """Return the genomes of some files, in their order, float32 (K, P).
+    """Return the genomes of some files, in the order of the files, float32 (K, P).
 
     Raises:
         InputError: a file cannot be read, is not a genome file, or has genomes of another brain.

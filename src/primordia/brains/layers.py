@@ -20,24 +20,24 @@ Biases: TypeAlias = Annotated[
 def layer(name: str, inputs: int, outputs: int, bias: bool = False) -> dict[str, Shape]:
     """Return the blocks of a layer `W x` or `W x + b`: W is `NAME`, and b is `NAME_bias`.
 
-    The longer axis of W comes last; a batched product of small matrices is then up to four times
-    faster on a CPU.
+    The longer axis of W comes last, since a batched product of small matrices is then up to four
+    times faster on a CPU.
     """
     weights = {name: (min(inputs, outputs), max(inputs, outputs))}
     return {**weights, f"{name}_bias": (outputs,)} if bias else {**weights}
 
 
 def linear(genome: Mapping[str, Array], name: str, x: Array) -> Array:
-    """Return a layer's output (N, outputs) for x (N, inputs), with its bias if the genome has one."""
+    """Return a layer's output (N, outputs) for x (N, inputs), plus the bias if the genome has one."""
     product, bias = matvec(genome[name], x), genome.get(f"{name}_bias")
     return product if bias is None else product + bias
 
 
 def matvec(weights: Array, x: Array) -> Array:
-    """Return W x for each organism: weights (N, *shape) as `layer` has them, x (N, inputs).
+    """Return W x for each organism; weights are (N, *shape) as in `layer`, and x is (N, inputs).
 
-    All sums go through one `dot_general`. Its bits do not depend on N or on threads (a test holds that);
-    the bits of `(W * x).sum(-1)` do.
+    One `dot_general` computes all sums. Its bits do not depend on N or on the number of threads (a test
+    checks this). The bits of `(W * x).sum(-1)` depend on both.
     """
     summed = 1 if weights.shape[1] == x.shape[1] else 2
     dimensions = (((1,), (summed,)), ((0,), (0,)))
@@ -47,8 +47,8 @@ def matvec(weights: Array, x: Array) -> Array:
 def gate(x: Array) -> Array:
     """Return the logistic function of x, from 0 to 1.
 
-    It is computed from tanh. Products with 1/2 are exact, so a compiler that rounds a product and a
-    sum together changes no bit.
+    The function is computed from tanh. Products with 1/2 are exact, so a compiler that rounds
+    a product and a sum together changes no bit.
     """
     half = np.float32(0.5)
     return half + half * jnp.tanh(half * x)

@@ -17,7 +17,7 @@ Shape: TypeAlias = tuple[int, ...]
 Arrays = TypeVar("Arrays", Array, np.ndarray)
 
 NAME = "[A-Za-z0-9_-]+"
-"""The allowed names of blocks, as a regular expression: names are parts of settings and columns."""
+"""Regular expression of a block's name, which becomes a part of names of settings and columns."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class Layout:
 
     @cached_property
     def sizes(self) -> np.ndarray:
-        """Weights in each block, int64 (B,)."""
+        """Number of weights in each block, int64 (B,)."""
         return np.array([prod(shape) for _, shape in self.blocks], np.int64)
 
     @property
@@ -61,7 +61,12 @@ class Layout:
         return int(self.sizes.sum())
 
     def flat(self, genome: Mapping[str, Array], cells: Array) -> Array:
-        """Return the flat genomes (K, P) of the organisms in cells int32 (K,) of blocks (C, *shape)."""
+        """Return the flat genomes of the organisms in some cells, (K, P).
+
+        Args:
+            genome: block of weights -> (C, *shape).
+            cells: the organisms' cells, int32 (K,).
+        """
         blocks = [genome[name][cells].reshape(len(cells), -1) for name in self.names]
         return jnp.concatenate(blocks, axis=1)
 

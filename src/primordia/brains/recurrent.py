@@ -1,4 +1,4 @@
-"""The paper's brain: one recurrent layer, which is its memory."""
+"""The paper's brain: one recurrent layer, which is also the memory."""
 
 import jax.numpy as jnp
 from jax import Array
@@ -12,15 +12,15 @@ class Recurrent(Brain):
     """One hidden layer that feeds back into itself: `h' = tanh(W1 x + R h)`, `y = W2 h'`.
 
     Schmidgall & Hays 2021, "CartPole-survival", describe it as fully connected and recurrent with
-    one hidden layer of 32. This formula, without biases, is that of the published code. With biases
-    it is `h' = tanh(W1 x + b + R h)`, `y = W2 h' + c`.
+    one hidden layer of 32. The published code has this formula, without biases. With biases the
+    formula is `h' = tanh(W1 x + b + R h)`, `y = W2 h' + c`.
     """
 
     hidden: Hidden = 32
     biases: Biases = False
 
     def blocks(self, senses: int, outputs: int) -> dict[str, Shape]:
-        """Return `input` (W1), `recurrent` (R) and `output` (W2), and biases of the first and last."""
+        """Return `input` (W1), `recurrent` (R) and `output` (W2), and biases of input and output."""
         return {
             **layer("input", senses, self.hidden, self.biases),
             **layer("recurrent", self.hidden, self.hidden),

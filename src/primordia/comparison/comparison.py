@@ -4,8 +4,8 @@ The units are worlds. The worlds of one run are independent. If two runs have th
 worlds of one seed are a pair; see `pairs`. The first run is the reference of all others. All
 intervals of one outcome hold simultaneously; see `resample`. A world that stopped before it
 saturated is treated as censored; see `measured`. If runs are forks, the births, ticks and lives of
-all runs count from the tick of the latest fork. If few worlds saturate, lives count up to the last
-tick that all worlds have lived through.
+all runs count from the tick of the latest fork. If few worlds saturate, lives count up to the last tick
+that is on record in all worlds.
 """
 
 from collections.abc import Sequence
@@ -52,19 +52,19 @@ class ComparedArm:
     seeds: np.ndarray
     """the seed of each world, uint64 (W,)"""
     measured: dict[str, Measured]
-    """name in OUTCOMES -> its value in each world.
+    """name in OUTCOMES -> the outcome in each world.
 
     `first`: number of the first birth whose life reached the comparison's age. `births`, `ticks`: births
     (founders included) and ticks to saturation. `lifespan`: mean lifespan up to that age, in ticks.
     `longest`: ticks of the longest life so far. `pace`: ticks lived for each death. `food`: mean food of
-    an organism in a span. The last two are of the last quarter of the time that all worlds have lived
-    through.
+    an organism in a `span` of time. `pace` and `food` are those of the last quarter of the time that is
+    on record in all worlds.
     """
     survival: Survival
     pace: Pace
     gathering: Gathering
     extinctions: Extinctions
-    """the lives on record in the compared time"""
+    """the extinctions in the compared time"""
 
     @property
     def worlds(self) -> int:
@@ -87,13 +87,13 @@ class Comparison:
     age: int
     """age, in ticks, up to which lives count"""
     begin: int
-    """tick after which births, ticks and lives count: that of the latest fork, or 0"""
+    """tick after which births, ticks and lives count: the tick of the latest fork, or 0"""
     births: int | None
-    """horizon in births; None if there is none"""
+    """horizon in births; None: no horizon"""
     ticks: int | None
-    """horizon in ticks; None if there is none"""
+    """horizon in ticks; None: no horizon"""
     span: str
-    """unit of time in which food is counted: second, or tick if the habitat has no rate"""
+    """unit of time for food: `second`, or `tick` if the habitat has no rate"""
 
     @property
     def contrasts(self) -> int:
@@ -102,7 +102,7 @@ class Comparison:
 
     @property
     def outcomes(self) -> dict[str, str]:
-        """The outcomes to show, name -> title: those that are known in some world and apply."""
+        """Name -> title of each outcome that applies and is known in some world."""
         useless = UNSATURATED if any(often_saturated(arm.measured) for arm in self.arms) else ()
         return {
             name: title.format(span=self.span)
@@ -148,7 +148,7 @@ def compare(
         runs: the first is the reference.
         births: horizon: a world counts as saturated only if it saturates before this number of
             births, counted from the latest fork.
-        ticks: horizon in ticks, likewise.
+        ticks: the same horizon in ticks.
 
     Raises:
         InputError: there are fewer than two runs, one run is given twice, the tasks differ, nothing

@@ -1,4 +1,4 @@
-"""Contrasts: one value of each world of a run against that of a reference's worlds.
+"""Contrasts: an outcome in a run's worlds against the same outcome in a reference's worlds.
 
 Two worlds whose order is unknown count as a tie (Gehan 1965).
 """
@@ -19,13 +19,13 @@ WORDS = ((0.147, "negligible"), (0.33, "small"), (0.474, "medium"))
 
 @dataclass(frozen=True)
 class Contrast:
-    """One value of a run's worlds against that of a reference's worlds."""
+    """An outcome in a run's worlds against the same outcome in a reference's worlds."""
 
     delta: float
-    """Cliff's delta (1993): share of all pairs of worlds in which the run's value is larger, less
-    the share in which it is smaller; -1 to 1"""
+    """Cliff's delta (1993): share of all pairs of worlds in which the run's value is larger, minus
+    the share in which the run's value is smaller; -1 to 1"""
     decided: float
-    """share of these pairs whose order is known, or known to be a tie"""
+    """share of these pairs whose order is known; known ties are included"""
     paired: Paired | None
     """the pairs of worlds with equal seeds; None unless both runs have the same seeds"""
     ratio: Bounds
@@ -33,8 +33,8 @@ class Contrast:
     coverage: float
     """share of resamples in `interval`: 0.95 for one contrast, more for several simultaneous ones"""
     interval: Bounds | None
-    """interval that holds both bounds of this ratio in a share `coverage` of resamples of worlds or
-    pairs; None if one of the runs has too few worlds, see `resample.least`"""
+    """interval that holds both bounds of the ratio in a share `coverage` of the resamples of worlds
+    or pairs; None if one of the runs has too few worlds, see `resample.least`"""
     worlds: int
     """number of worlds of the smaller run"""
 
@@ -47,10 +47,10 @@ class Contrast:
 
     @property
     def needed(self) -> int | None:
-        """Worlds of each run at which 80 % of experiments find an effect of this size; see `needed`.
+        """Worlds of each run with which 80 % of experiments find an effect of this size; see `needed`.
 
-        The level is that of the interval. None if there is no effect, or one of the runs has fewer
-        than LEAST worlds.
+        The test has the level of the interval. None if there is no effect, or one of the runs has
+        fewer than LEAST worlds.
         """
         if self.worlds < LEAST:
             return None

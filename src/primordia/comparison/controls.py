@@ -1,8 +1,9 @@
-"""Evaluation with controls: champions, the living, the best of many founders, and founders.
+"""Evaluation of champions and of controls: all living, best of many founders, and some founders.
 
 A champion is the longest-lived of many, by luck as well as by descent. So the control is chosen in
-the same way: as many founders as the world had births live once, and the longest-lived of them is
-judged. No organism is judged by the game that chose it, unless all games of the task are the same.
+the same way: as many founders live once as the world had births, and the longest-lived of these
+founders is judged. No organism is judged by the game in which it was chosen, unless all games
+of the task are the same.
 """
 
 from collections.abc import Mapping
@@ -18,9 +19,9 @@ from primordia.organism.players import evaluation_keys, founders_of, players_of
 from primordia.runs.records import Records
 
 FOUNDERS = 500
-"""Default for the largest number of founders of a world of which the best is chosen."""
+"""Default for the largest number of founders in each world among which the best is chosen."""
 TYPICAL = 20
-"""Number of founders of a world that are judged without being chosen."""
+"""Number of unselected founders of each world that are judged."""
 OUTCOMES = ("lifespan", "score", "length")
 
 
@@ -38,12 +39,12 @@ class Standing:
 
     name: str
     chosen_from: int
-    """largest number, over worlds, of organisms among which each was chosen; 1 if they were not chosen"""
+    """largest number, in a world, of organisms among which one was chosen; 1 without a choice"""
     evaluations: list[Evaluation]
 
     def by_world(self, outcome: str) -> dict[int, float]:
-        """Return the median organism's median game in each world; an empty array if there is no
-        such outcome.
+        """Return the median organism's median game in each world, by the world's number; an empty
+        dict if there is no such outcome.
 
         Args:
             outcome: `lifespan`, or `score` or `length` of the whole game.
@@ -82,7 +83,7 @@ class Group:
     chosen_from: int
     """see `Standing`"""
     numbers: list[tuple[int, int]]
-    """birth number, or number among the founders, and world of each organism"""
+    """birth number (for founders: number among the founders) and world of each organism"""
     players: Players
 
     def evaluate(
@@ -133,8 +134,8 @@ def unevolved(run: Records, most: int | None = FOUNDERS, world: int | None = Non
 
     Args:
         run: the run, or the arm.
-        most: largest number of founders of a world of which the best is chosen; None: the number of
-            births.
+        most: largest number of founders in each world among which the best is chosen; None: as many
+            as the world had births.
         world: as for `evolved`.
 
     Raises:

@@ -15,7 +15,7 @@ class Gathering:
     """Mean food of an organism in a span of time, for each of W worlds."""
 
     curve: np.ndarray
-    """food in each window, float64 (W, WINDOWS); NaN where no organism lived, or found any food"""
+    """food in each window, float64 (W, WINDOWS); NaN where no organism lived, all NaN without food"""
     late: Measured
     """food in the last quarter of the time; known if any food was gathered"""
 

@@ -2,7 +2,7 @@
 
 If a world stopped before it saturated, its value is *at least* the births or ticks that it reached.
 Nothing is assumed about its course after the stop. A quartile is given by its bounds, which are
-equal if it is known. So every statement is exact, whatever stopped the worlds.
+equal if the quartile is known. So every statement is exact, whatever stopped the worlds.
 """
 
 from dataclasses import dataclass

@@ -12,7 +12,7 @@ from primordia.runs.records import Records
 
 
 def first_long(worlds: Sequence[Lives], age: int) -> Measured:
-    """Return the number of the first birth in each world, after its fork, whose life reached an age.
+    """Return, for each world, the number of the first birth after a fork whose life reached an age.
 
     The number is known if all organisms born before that birth are dead. Otherwise it is at least
     the number of the first organism that is still alive.
@@ -33,7 +33,8 @@ def saturation(
 ) -> dict[str, Measured]:
     """Return the births and ticks to saturation of each world of a run, counted from tick `begin`.
 
-    They are 0 in a world that was saturated at `begin`. `lives` are those recorded since `begin`.
+    Both are 0 in a world that was saturated at `begin`. `lives` are the lives recorded since
+    `begin`.
     """
 
     def by_world(name: str) -> np.ndarray:

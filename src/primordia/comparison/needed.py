@@ -1,8 +1,9 @@
 """Sample sizes: the number of worlds with which an effect of a given size would be found.
 
 Noether (1987, Sample size determination for some common nonparametric tests, JASA 82, 645-647) gives the
-numbers for the test of Mann and Whitney and for the sign test. Both are normal approximations. The
-one for Mann and Whitney's test ignores ties, so fewer worlds may suffice if there are many ties.
+numbers for the test of Mann and Whitney and for the sign test. Both formulas are normal
+approximations. The formula for Mann and Whitney's test ignores ties, so fewer worlds may suffice if
+there are many ties.
 """
 
 import math
@@ -15,18 +16,18 @@ POWER = 0.8
 
 
 def of_each_run(delta: float, missed: float) -> int | None:
-    """Return the worlds of each run for Cliff's `delta`; None if it is 0.
+    """Return the number of worlds that each run needs for Cliff's `delta`; None if delta is 0.
 
     Args:
-        delta: share of all pairs of worlds in which the run's value is larger, less the share in
-            which it is smaller.
+        delta: share of all pairs of worlds in which the run's value is larger, minus the share in
+            which the run's value is smaller.
         missed: two-sided level of the test.
     """
     return math.ceil(_sum_of_quantiles(missed) ** 2 / (1.5 * delta**2)) if delta else None
 
 
 def of_pairs(effect: Paired, missed: float) -> int | None:
-    """Return the pairs of worlds for a sign test, in which ties do not count; None if delta is 0."""
+    """Return the number of pairs that a sign test needs; ties do not count. None if delta is 0."""
     if not effect.delta:
         return None
     untied = (effect.larger + effect.smaller) / effect.pairs

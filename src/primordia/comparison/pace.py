@@ -17,7 +17,7 @@ class Pace:
     """Ticks lived and deaths of each of W worlds, in windows of equal length."""
 
     edges: np.ndarray
-    """ticks of the world, float64 (WINDOWS + 1,)"""
+    """ticks at which the windows begin and end, float64 (WINDOWS + 1,)"""
     lived: np.ndarray
     """organism-ticks, float64 (W, WINDOWS)"""
     deaths: np.ndarray

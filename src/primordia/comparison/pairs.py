@@ -3,7 +3,7 @@
 The worlds of a pair draw the same random words and have the same founders, and two forks of one run
 share a past. So their values may be correlated. A resample therefore has both worlds of a seed or
 neither. This is correct with and without correlation: the interval of correlated pairs is narrower,
-and that of uncorrelated pairs is as wide as for independent worlds.
+and the interval of uncorrelated pairs is as wide as for independent worlds.
 """
 
 from typing import NamedTuple
@@ -24,11 +24,12 @@ class Paired(NamedTuple):
     larger: int
     """number of pairs in which the run's world is known to have the larger value"""
     smaller: int
-    """number of pairs in which it is known to have the smaller value; all others are ties (Gehan 1965)"""
+    """number of pairs in which the run's world is known to have the smaller value; all other pairs
+    count as ties (Gehan 1965)"""
 
     @property
     def delta(self) -> float:
-        """Share of pairs in which the run's value is larger, less the share in which it is smaller."""
+        """Share of pairs with a larger value of the run, minus the share with a smaller value."""
         return (self.larger - self.smaller) / self.pairs
 
 

@@ -25,7 +25,7 @@ OUTSIDE = 10
 
 
 def resamples(worlds: int, stream: int = 0, count: int = RESAMPLES) -> Iterator[np.ndarray]:
-    """Yield `count` resamples in parts of K: the numbers of the worlds in each, int64 (K, worlds).
+    """Yield `count` resamples, K at once: the numbers of the drawn worlds, int64 (K, worlds).
 
     Two runs with independent worlds use different streams, so that their resamples are independent.
     """
@@ -45,14 +45,14 @@ def interval(values: np.ndarray, missed: float = MISSED) -> tuple[np.ndarray, np
 
 
 def enough(missed: float) -> int:
-    """Return the number of resamples for an interval with a share `missed` of them outside."""
+    """Return the number of resamples for an interval that leaves a share `missed` outside."""
     return max(RESAMPLES, math.ceil(2 * OUTSIDE / missed))
 
 
 def least(contrasts: int) -> int:
     """Return the smallest number of worlds of a run for simultaneous intervals.
 
-    Twice the contrasts need one more world, since each world halves the probability that the range
+    Twice as many contrasts need one world more, since each world halves the probability that the range
     of the worlds misses the median.
     """
     return LEAST + math.ceil(math.log2(contrasts))

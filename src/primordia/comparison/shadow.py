@@ -41,7 +41,7 @@ class Shadow:
     original: np.ndarray
     """ticks that each organism lived when it was born again, int64 (K,)"""
     shadow: np.ndarray
-    """ticks that its shadow lived, int64 (K,)"""
+    """ticks that the shadow of each organism lived, int64 (K,)"""
     cut: int
     """ticks after which lives were cut"""
 
@@ -66,7 +66,7 @@ class Shadow:
 
     @property
     def ratio(self) -> float:
-        """Median over worlds of the originals' mean life divided by the shadows'."""
+        """Median over worlds of the originals' mean life divided by the shadows' mean life."""
         return float(np.median(np.divide(*self.means)))
 
     @property
@@ -129,15 +129,15 @@ def shadow(run: Records, organisms: int = ORGANISMS, ticks: int | None = None) -
 def _sample(worlds: np.ndarray, rows: np.ndarray, most: int) -> np.ndarray:
     """Return at most `most` rows of each world, evenly spaced, without the last birth of a world.
 
-    A saturated world stopped because its last-born lived long. So that birth depends on the limit.
-    Without it, the births up to such a limit are an unbiased sample (Haldane 1945).
+    A saturated world stopped because its last-born lived long. So the last birth depends on the
+    limit. Without the last birth, the births up to such a limit are an unbiased sample (Haldane 1945).
     """
     each = (rows[worlds == world][:-1] for world in np.unique(worlds))
     return np.concatenate([own[_spaced(len(own), most)] for own in each])
 
 
 def _spaced(count: int, most: int) -> np.ndarray:
-    """Return at most `most` places among `count`, in the middle of equal parts."""
+    """Return at most `most` indices below `count`, in the middle of equal parts."""
     parts = min(most, count)
     return ((np.arange(parts) + 0.5) * count / parts).astype(int)
 

@@ -1,4 +1,4 @@
-"""Survival: the share alive at each age, by Kaplan-Meier (1958) over lives, with worlds as the units.
+"""Survival: the share alive at each age (Kaplan and Meier 1958); resamples draw whole worlds.
 
 Organisms alive at a fork count from their age at the fork (delayed entry: Kalbfleisch and Prentice
 2002, section 1.3), since the fork has no record of the shorter lives of their generation.
@@ -18,8 +18,8 @@ from primordia.runs.lives import Lives
 class Survival:
     """Deaths and organisms at risk in each of W worlds, at each of A ages with a death.
 
-    Lives count up to a limit of age; longer lives survive to the limit. The living are censored at
-    their present age. A curve is constant after the last observed age.
+    Lives count up to a limit of age; a longer life counts as survival to the limit. The living are
+    censored at their present age. A curve is constant after the last observed age.
     """
 
     limit: int
@@ -71,8 +71,8 @@ def survival(lives: Lives, worlds: int, limit: int) -> Survival:
     ages = np.unique(lives.lifespan[died])
     deaths = np.zeros((worlds, len(ages)), np.int64)
     np.add.at(deaths, (lives.world[died], np.searchsorted(ages, lives.lifespan[died])), 1)
-    # At risk at an age: the lives that end at it or later, less those whose record begins at it or
-    # later.
+    # At risk at an age: lives that end at this age or later, minus lives whose record begins at
+    # this age or later.
     reached, later = (
         _reaching(lives.world, each, worlds, ages) for each in (lives.lifespan, lives.entered)
     )

@@ -72,7 +72,7 @@ def paired_text(against: Contrast) -> str:
 
 
 def needed_text(against: Contrast) -> str:
-    """Return the number of worlds that an effect of this size needs as text; "" if it is unknown."""
+    """Return, as text, how many worlds an effect of this size needs; "" if unknown."""
     return "" if against.needed is None else f"{against.needed:,} worlds an arm"
 
 
@@ -123,7 +123,7 @@ def _runs(compared: Comparison) -> Table:
 
 
 def _against(compared: Comparison, outcome: str) -> Table:
-    """Return a table of one outcome: each run, and each run against the first."""
+    """Return a table of one outcome, of each run and of each run against the first run."""
     reference, *others = compared.arms
     against = {arm.name: compared.contrast(arm, outcome) for arm in others}
     columns = {

@@ -23,7 +23,7 @@ from primordia.law.world import World
 
 
 class Decision(NamedTuple):
-    """The results of settling a tick that the host needs for the next ones."""
+    """The results of a settled tick that the host needs for the next ticks."""
 
     alive: Array
     """bool (C,): cells with an organism"""
@@ -60,7 +60,7 @@ class Calls:
 
 
 class Unsettled(NamedTuple):
-    """The ticks lived since the last settled one."""
+    """The ticks lived since the last settled tick."""
 
     held: Held
     """the world after these ticks, not settled yet"""
@@ -77,7 +77,7 @@ class _Steps:
     words: int
 
     def think(self, genome: Genome, held: Held, senses: Array) -> Thought:
-        """Think the first tick after a settled one."""
+        """Think for the first tick after a settled tick."""
         world = self.form.release(held, Bulk(genome, None))
         return think(self.law, world, senses, keys_of(world.worlds, jnp.int32(1)))
 
@@ -91,7 +91,7 @@ class _Steps:
         active: Array,
         passed: Array,
     ) -> tuple[Held, Thought, Fates]:
-        """Judge the tick `passed` ticks after the last settled one, and think the next one."""
+        """Judge the tick `passed` ticks after the last settled one, and think for the next tick."""
         world = self.form.release(now, Bulk(genome, None))
         keys = keys_of(world.worlds, passed)
         world, fates = judge(self.law, world, thought, senses, outcome, keys, active)
@@ -121,7 +121,7 @@ class _Steps:
         return Bulk.of(world), events, self.form.hold(world), decision
 
     def remember(self, bulk: Bulk, held: Held, senses: Array, ran: Array) -> Bulk:
-        """Let organisms remember at the end of a settled tick, after its newborn have senses."""
+        """Let organisms remember a moment at the end of a settled tick, when its newborn have senses."""
         return Bulk.of(remember(self.law, self.form.release(held, bulk), senses, ran))
 
     def _decide(

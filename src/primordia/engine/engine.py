@@ -41,7 +41,7 @@ class Engine:
         self.state: State = self.chunks.begin(config.world_seeds)
         self._ticks = 1
         self.longest: int | None = None
-        """most ticks of a chunk, for someone who watches; None: as many as take CHUNK_SECONDS"""
+        """largest number of ticks of a chunk, for a live view; None: no limit but CHUNK_SECONDS"""
 
     @property
     def events(self) -> Events:
@@ -69,11 +69,11 @@ class Engine:
         return bool(np.asarray(_running(self.state.world.worlds, limits)).any())
 
     def limits(self, stop: dict[str, Any], ticks: np.ndarray | None = None) -> Limits:
-        """Return the limits of all worlds, by settings of `stop`.
+        """Return the limits of all worlds, from settings of `stop`.
 
         Args:
             stop: settings of `config.Stop`; a missing setting or None is no limit.
-            ticks: a limit of ticks for each world, (W,), in place of that of `stop`.
+            ticks: a limit in ticks for each world, (W,); it replaces the limit in `stop`.
         """
 
         def for_all(limit: int | None) -> np.ndarray:

@@ -80,7 +80,7 @@ def advance(
 def _quiet(
     law: Law, habitat: JaxHabitat, state: State, live_worlds: Array, at_most: Array
 ) -> tuple[State, Fates, Array]:
-    """Live ticks up to and including the first eventful one, at most `at_most`.
+    """Live ticks up to and including the first eventful tick, but at most `at_most` ticks.
 
     Returns:
         state; fates of the last tick; number of ticks, int32 ().
@@ -108,7 +108,10 @@ def _quiet(
 
 
 def _embody(law: Law, habitat: JaxHabitat, world: World, bodies: Bodies, newborn: Array) -> Bodies:
-    """Insert fresh bodies for the newborn, bool (C,), in batches, since bodies may be expensive."""
+    """Insert fresh bodies for the newborn in batches, since bodies may be expensive.
+
+    `newborn` is bool (C,).
+    """
     key = stream(world.worlds.seed, Purpose.BODY, world.worlds.tick)
 
     def one_batch(cells: Array, valid: Array, carry: tuple[Bodies]) -> tuple[Bodies]:

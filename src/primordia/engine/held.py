@@ -1,6 +1,6 @@
 """Worlds packed into few arrays, since the cost of a compiled call grows with its number of arrays.
 
-Measured for 32 cells: settling a world of 61 arrays takes 0.55 ms, most of which passes the arrays.
+Measured for 32 cells: settling a world of 61 arrays takes 0.55 ms, mostly to pass the arrays.
 """
 
 from dataclasses import dataclass
@@ -58,7 +58,7 @@ class Form:
         return Held(organisms, self.worlds.pack(world.worlds))
 
     def release(self, held: Held, bulk: Bulk) -> World:
-        """Return the world that was packed, with this bulk."""
+        """Return the world that `hold` packed, joined with its bulk."""
         organisms = self.organisms.unpack(held.organisms)._replace(**bulk._asdict())
         return World(organisms, self.worlds.unpack(held.worlds))
 
@@ -69,16 +69,19 @@ def _without_bulk(organisms: Organisms) -> Organisms:
 
 @dataclass(frozen=True)
 class Packing:
-    """The packing of a tree of arrays (N, ...) of 32-bit numbers and bools into words uint32 (N, K)."""
+    """The packing of a tree of arrays into one array of words.
+
+    The arrays have 32-bit numbers or bools, (N, ...). The words are uint32 (N, K).
+    """
 
     tree: Any
     """JAX's PyTreeDef"""
     kinds: tuple[tuple[tuple[int, ...], Any], ...]
-    """shape after N, dtype of each leaf"""
+    """the shape after N, and the dtype, of each leaf"""
 
     @classmethod
     def of(cls, like: Any) -> "Packing":
-        """Return the packing of trees with the same shapes and types as this one."""
+        """Return the packing of trees with the shapes and types of `like`."""
         leaves, tree = jax.tree.flatten(like)
         return cls(tree, tuple((leaf.shape[1:], leaf.dtype) for leaf in leaves))
 

@@ -1,9 +1,9 @@
-"""Chunks with a habitat on the host: the habitat is stepped between compiled calls, one for each tick.
+"""Chunks with a habitat on the host, which is stepped between compiled calls.
 
-The call judges a tick and then thinks the next one. A tick without events needs no other call. A
-tick with an event, or with a change that is due, is settled by a second call. The first thought of
-the newborn takes a third call. The changes of unsettled ticks are kept beside the state, so a chunk
-may end at any tick.
+Each tick has one compiled call, which judges this tick and then thinks for the next tick. A tick
+without events needs no other call. A tick with an event, or with a change that is due, is settled
+by a second call. A third call computes the first thought of the newborn. The changes of
+unsettled ticks are kept beside the state, so a chunk may end at any tick.
 """
 
 import numpy as np
@@ -27,7 +27,7 @@ from primordia.random.keys import Purpose, stream
 
 
 class HostedChunks:
-    """A compiled law and a habitat on the host, which owns the bodies; `State.bodies` are senses."""
+    """A compiled law and a habitat on the host, which owns the bodies; `State.bodies` is senses."""
 
     def __init__(self, law: Law, habitat: HostHabitat) -> None:
         self.exact = habitat.exact
@@ -95,8 +95,9 @@ class HostedChunks:
         active: Array,
         most: int,
     ) -> tuple[Unsettled, Thought, np.ndarray]:
-        """Live up to and including the first eventful tick, at most `most` ticks; none before
-        genesis.
+        """Live up to and including the first eventful tick, but at most `most` ticks.
+
+        `most` is 0 before genesis.
 
         Returns:
             the ticks lived; the thought of the next tick; senses, float32 (C, S).
@@ -139,7 +140,7 @@ class HostedChunks:
         return State(world, senses)
 
     def _reset_to_birth(self, world: World, senses: np.ndarray) -> np.ndarray:
-        """Reset the bodies of the living to birth, if the habitat cannot save bodies; return senses."""
+        """Reset the bodies of the living to birth, for a habitat that cannot save them; return senses."""
         alive, senses = np.flatnonzero(world.organisms.alive), senses.copy()
         seed = world.worlds.seed.map(self._law.per_cell)
         key = stream(seed, Purpose.BODY, world.organisms.born)

@@ -33,7 +33,7 @@ def check(law: Law, habitat: AnyHabitat, devices: list[jax.Device]) -> None:
 
 
 def bytes_needed(law: Law, habitat: AnyHabitat, devices: int = 1) -> int:
-    """Return the bytes of worlds, bodies in JAX or else senses, and lists of events, on all devices."""
+    """Return the bytes of worlds, lists of events and bodies (on the host: senses), on all devices."""
     law = replace(law, worlds=law.worlds // devices)
     cells = law.worlds * law.cells
 

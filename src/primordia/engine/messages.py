@@ -14,11 +14,11 @@ class Messages:
         self.begin()
 
     def begin(self) -> None:
-        """Begin a chunk without messages."""
+        """Begin a chunk, which has no messages yet."""
         self._of_deaths: list[str] = []
 
     def note_deaths(self, died: np.ndarray) -> None:
-        """Note why bodies failed, before they are reset, in cells whose organism died, bool (C,)."""
+        """Note why the bodies of dead organisms failed, before a reset; `died` is bool (C,)."""
         self._of_deaths += [self._habitat.message(cell) for cell in np.flatnonzero(died).tolist()]
 
     def of(self, deaths: Rows) -> list[str]:

@@ -2,8 +2,8 @@
 
 Worlds share nothing. So every device has a loop for its own worlds, with its own lists of events,
 and waits for the others only at the end of a chunk. If a list is full on one device, the worlds of
-the other devices are ahead of its worlds for a while. A state is the same as on one device, but
-each of its arrays is split along the first axis.
+this device are behind all other worlds for a while. A state is the same as on one device, but each
+array of the state is split along the first axis.
 """
 
 from collections.abc import Callable
@@ -60,7 +60,7 @@ class ShardedChunks(FusedChunks):
         Returns:
             state; the number of ticks advanced on the device that advanced most.
         """
-        # The template stays on its devices, unless it was changed.
+        # A state that is split already is not copied.
         state = jax.device_put(state, self._split)
         state, self._lists, done = self._advance(state, self._lists, limits, np.int32(ticks))
         self.events = self._joined()
@@ -87,8 +87,8 @@ def _joined(lists: Rows, columns: Columns, share: int) -> Rows:
 
     Args:
         lists: rows uint32 (D, capacity, fields), filled int32 (D,).
-        columns: the first columns of a row; the very first is the number of a cell or world within
-            a device.
+        columns: the first columns of a row; the very first is the number of a cell or of a
+            world within a device.
         share: the number of cells or worlds of a device.
     """
     parts = [np.zeros((0, lists.rows.shape[2]), np.uint32)]

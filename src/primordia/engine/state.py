@@ -1,7 +1,7 @@
 """The state of a run and the limits of its worlds, which both kinds of chunks share.
 
-A chunk is many ticks of law and habitat between two visits of the host. No life depends on the
-length of chunks.
+A chunk is many ticks of law and habitat, after which the run records events. No life depends on
+the length of chunks.
 """
 
 from collections.abc import Callable, Mapping
@@ -36,7 +36,7 @@ class State(NamedTuple):
 
     world: World
     bodies: Bodies
-    """bodies of a habitat in JAX; senses, float32 (C, S), of a habitat on the host"""
+    """for a habitat in JAX, the bodies; for a habitat on the host, the senses, float32 (C, S)"""
 
 
 def running(worlds: Worlds, limits: Limits) -> Array:
@@ -57,7 +57,9 @@ def filled(
     prefix: str = "",
     place: Callable[[np.ndarray], Array] = jnp.array,
 ) -> Tree:
-    """Return a tree like the template with stored arrays, named by a prefix and their paths.
+    """Return a tree like the template, but with stored arrays.
+
+    The name of an array is `prefix` and the array's path in the tree.
 
     `place` copies an array from the host to its device.
 
@@ -74,6 +76,6 @@ def filled(
 
 
 def ticks_left(law: Law, world: World, limits: Limits, live_worlds: Array) -> Array:
-    """Return the ticks until a running world reaches a limit or another due change, int32 ()."""
+    """Return the ticks until a running world reaches a limit or until a change is due, int32 ()."""
     to_limit = jnp.where(live_worlds, world.worlds.tick.until(limits.ticks), 2**31 - 1).min()
     return jnp.minimum(to_limit, quiet_ticks(law, world, live_worlds))

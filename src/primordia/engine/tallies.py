@@ -1,7 +1,7 @@
 """Tallies: counts of an organism's life for people, such as a score; the law never sees them.
 
-A habitat on the host may keep them. Its `tallies` are their names, and its `tally()` returns the
-counts of the present lives, int32 (C, K). They become columns of the lists of deaths and samples.
+A habitat on the host may keep tallies. Its `tallies` are the names, and its `tally()` returns the
+counts of the present lives, int32 (C, K). Tallies become columns of the lists of deaths and samples.
 """
 
 from typing import Any
@@ -27,18 +27,18 @@ class Tallies:
         self.begin()
 
     def begin(self) -> None:
-        """Begin a chunk without tallies."""
+        """Begin a chunk, which has no tallies yet."""
         self._deaths = [np.zeros((0, len(self.names)), np.uint32)]
         self._samples = [np.zeros((0, len(tally_columns(self.names))), np.uint32)]
         self._sampled = 0
 
     def note_deaths(self, died: np.ndarray) -> None:
-        """Note the tallies of cells whose organism died, bool (C,), before their bodies are reset."""
+        """Note the tallies of organisms that died, before a reset of bodies; `died` is bool (C,)."""
         if self.names and died.any():
             self._deaths.append(self._habitat.tally()[died].astype(np.uint32))
 
     def note_samples(self, alive: Array, samples: Rows) -> None:
-        """Note the tallies of the living, bool (C,), newborn included, if a sample was taken."""
+        """If a sample was taken, note the tallies of the living, with newborn; `alive` is bool (C,)."""
         if self.names and (filled := int(samples.filled)) > self._sampled:
             worlds = np.asarray(samples.rows)[self._sampled : filled, 0]
             self._samples.append(self._of_worlds(worlds, np.asarray(alive)))
@@ -55,7 +55,7 @@ class Tallies:
     def _of_worlds(self, numbers: np.ndarray, alive: np.ndarray) -> np.ndarray:
         """Return mean (the bits of a float32) and best of each tally in some worlds, uint32 (n, 2 K).
 
-        They are 0 in a world without organisms.
+        Mean and best are 0 in a world without organisms.
         """
         tally = self._habitat.tally().reshape(self._worlds, -1, len(self.names))
         lives, rows = alive.reshape(self._worlds, -1), []

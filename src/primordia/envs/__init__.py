@@ -1,4 +1,5 @@
-"""Our tasks as Gymnasium environments: import this, and `gymnasium.make("primordia/Pong-survival-v0")`.
+"""Tasks as Gymnasium environments: import this module and call
+`gymnasium.make("primordia/Pong-survival-v0")`.
 
 Every task that comes with the package is registered, with a vector environment. Wrappers give any other
 environment the rules of survival or of foraging.

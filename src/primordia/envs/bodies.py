@@ -71,7 +71,11 @@ class Bodies:
         self._vitals = _vitals(energy, eaten)
 
     def step(self, action: np.ndarray, alive: np.ndarray) -> np.ndarray:
-        """Live a tick in the cells alive, bool (N,). Return causes of death or -1, int32 (N,)."""
+        """Live one tick in the living cells; `alive` is bool (N,).
+
+        Returns:
+            causes of death, int32 (N,); -1 for none.
+        """
         before = [np.asarray(each) for each in self._vitals]
         senses, outcome = self.habitat.step(action, alive)
         vitals, cause = self._judge(self._vitals, self._sound, senses, outcome, self._rates)

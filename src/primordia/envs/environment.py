@@ -34,8 +34,8 @@ class LifeEnv(gymnasium.Env):
 
         Args:
             task: name of a task, or a file, as for `primordia run`.
-            settings: settings that differ, as nested tables.
-            reward: the reward of each tick that is lived; death has none.
+            settings: settings that differ from those of the task, as nested tables.
+            reward: the reward of each tick that is lived; the reward of the tick of death is 0.
             render_mode: `rgb_array`, or None.
 
         Raises:
@@ -82,7 +82,7 @@ class LifeEnv(gymnasium.Env):
         return info | ({"cause": label(cause)} if cause >= 0 else {})
 
     def render(self) -> np.ndarray | None:
-        """Return a picture of the body, uint8 (height, width, 3), if there are pictures."""
+        """Return a picture of the body, uint8 (height, width, 3); None if none can be drawn."""
         habitat = self._bodies.habitat
         if self.render_mode is None or not habitat.can(Ability.PICTURE):
             return None

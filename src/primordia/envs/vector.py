@@ -33,10 +33,10 @@ class LifeVectorEnv(VectorEnv):
         Args:
             task: name of a task, or a file, as for `primordia run`.
             num_envs: number N of bodies.
-            settings: settings that differ, as nested tables.
-            reward: the reward of each tick that is lived; death has none.
-            autoreset_mode: NEXT_STEP: the step after a death begins the next life; DISABLED: only
-                `reset` with `options={"reset_mask": mask}`, mask bool (N,), begins it.
+            settings: settings that differ from those of the task, as nested tables.
+            reward: the reward of each tick that is lived; the reward of the tick of death is 0.
+            autoreset_mode: with NEXT_STEP, the step after a death begins the next life. With DISABLED,
+                only `reset` begins a life; `options={"reset_mask": mask}` names the bodies, bool (N,).
             render_mode: None; a vector environment draws nothing.
 
         Raises:
@@ -76,7 +76,7 @@ class LifeVectorEnv(VectorEnv):
         return self._bodies.senses.copy(), self._info(np.full(self.num_envs, -1))
 
     def _seeds_of(self, seed: int | Sequence[int | None] | None) -> list[int | None]:
-        """Return the seed that each body is given, or None."""
+        """Return the seed given to each body; None: no seed is given."""
         if seed is None and self._np_random_seed is None:
             seed = self.np_random_seed
         elif isinstance(seed, int):

@@ -19,7 +19,7 @@ class Survival(gymnasium.Wrapper, RecordConstructorArgs):
     """An environment that rewards only survival, without a time limit."""
 
     def __init__(self, env: gymnasium.Env, reward: float = 0.0) -> None:
-        """Wrap an environment and remove its time limit; each tick lived has this `reward`."""
+        """Wrap an environment and remove its time limit; `reward` is the reward of a tick lived."""
         RecordConstructorArgs.__init__(self, reward=reward)
         super().__init__(_without_limit(env))
         self._reward = reward

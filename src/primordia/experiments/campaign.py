@@ -24,18 +24,18 @@ class Campaign:
     """An experiment in a directory."""
 
     def __init__(self, path: Path, plan: Plan) -> None:
-        """See `begin` and `recorded`."""
+        """Take a directory and its plan; `begin` and `recorded` call this."""
         self.path, self.plan = path, plan
         self.jobs = plan.jobs()
         self._ledger = Ledger(path, self.jobs)
 
     @property
     def arms(self) -> dict[str, Path]:
-        """The folder of each arm's runs, by the name of the arm; the first is the reference."""
+        """Name of each arm -> the folder of its runs; the first arm is the reference."""
         return {arm.name: self.path / arm.name for arm in self.plan.arms}
 
     def runs(self) -> dict[str, list[Path]]:
-        """Return the directories of the runs of each arm that have a checkpoint, by the arm's name."""
+        """Return, by name of the arm, the directories of the arm's runs that have a checkpoint."""
         runs: dict[str, list[Path]] = {name: [] for name in self.arms}
         for job in self.jobs:
             if checkpoint.exists(path := self.path / job.folder):
@@ -51,7 +51,7 @@ class Campaign:
         return self.jobs[number]
 
     def left(self, arms: Sequence[str] = ()) -> list[Job]:
-        """Return the jobs that are not done, of some arms or of all arms.
+        """Return the jobs of some arms that are not done; without `arms`, those of all arms.
 
         Raises:
             InputError: there is no such arm.
@@ -62,7 +62,7 @@ class Campaign:
         ]
 
     def status(self) -> CampaignStatus:
-        """Return the states of the jobs and the numbers of the arms so far."""
+        """Return the number of jobs in each state, and the counts of each arm so far."""
         return status(self.plan, self._ledger.entries())
 
     def opened(self) -> list[Records]:
@@ -77,7 +77,7 @@ class Campaign:
         return [opened([folder]) for folder in self.arms.values()]
 
     def gather(self) -> list[Path]:
-        """Write the results of all arms. Return the files; none if there is a single arm."""
+        """Write the results of all arms, unless there is only one arm. Return the files."""
         if len(self.plan.arms) < 2:
             return []
         from primordia.experiments import results  # Matplotlib takes a second to load

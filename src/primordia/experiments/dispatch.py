@@ -34,7 +34,7 @@ class Result:
     done: int = 0
     failed: list[Ending] = field(default_factory=list)
     elsewhere: int = 0
-    """jobs that another process runs"""
+    """number of jobs that another process runs"""
     stopped: bool = False
     """whether a signal came before the end"""
 
@@ -51,8 +51,8 @@ def live_all(
         jobs: the jobs to run, in this order.
         place: where the jobs run.
         look: a function that is called about twice a second.
-        failed: a function that is called with each job that fails, and whether it will be tried
-            again.
+        failed: a function that is called with each job that fails, its ending, and whether the job
+            will be tried again.
     """
     ended: queue.SimpleQueue[tuple[Job, Future[Ending]]] = queue.SimpleQueue()
     result, tries = Result(), Counter[int]()
@@ -76,7 +76,7 @@ def live_all(
                         else:
                             result.failed.append(ending)
                     if ending.state == "stopped" and not noted:
-                        submit(job)  # only its process got a signal
+                        submit(job)  # only the job's process got a signal
                     result.done += ending.state == "done"
                     result.elsewhere += ending.state == "elsewhere"
         finally:
@@ -87,7 +87,7 @@ def live_all(
 
 
 def _ended(ended: queue.SimpleQueue) -> list[tuple[Job, Ending]]:
-    """Return the jobs that have ended, after waiting for a moment if there are none."""
+    """Return the jobs that have ended; wait up to MOMENT for the first."""
     found = []
     try:
         found.append(ended.get(timeout=MOMENT))

@@ -8,6 +8,6 @@ class Ending(NamedTuple):
 
     job: int
     state: Literal["done", "failed", "elsewhere", "stopped"]
-    """elsewhere: another process runs it; stopped: a signal came, and the job can go on"""
+    """elsewhere: another process runs the job; stopped: a signal came, and the job can go on"""
     error: str | None = None
     """the error in one line, if the job failed"""

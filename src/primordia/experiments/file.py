@@ -11,9 +11,9 @@ name = "heredity"
 name = "no-heredity"
 inheritance = "founder"
 
-The first arm is the reference. `[jobs] worlds` is the number of worlds of one job. With `[fork]`,
-all arms are forks. `of` names a run, an arm's folder, or an arm of another file in the same folder
-(`other/arm`), and `at` is the tick of the fork.
+The first arm is the reference. `[jobs] worlds` is the number of worlds of one job. With a table
+`[fork]`, all arms are forks: its `of` names a run, an arm's folder, or an arm of another file in the
+same folder (`other/arm`), and its `at` is the tick of the fork.
 """
 
 import os
@@ -45,7 +45,8 @@ OWN = ("question", "arms", "jobs", "fork")
 """Keys of an experiment's file that are not settings of a run."""
 BY_TENS = 10
 """Number of worlds of a job with a habitat in JAX, where the worlds of a run share each compiled
-call. On the host the simulators take nearly all of the time, so a job has one world."""
+call. With a habitat on the host, simulators take nearly all of the time, so a job has one
+world."""
 
 
 class _Jobs(Settings):
@@ -58,7 +59,7 @@ class _ForkOf(Settings):
 
 
 def read(file: Path, out: Path) -> Plan:
-    """Return the plan of an experiment by its file.
+    """Return the plan of an experiment from its file.
 
     Args:
         file: the experiment's file.

@@ -15,7 +15,7 @@ from primordia.experiments.job import note_failure
 from primordia.experiments.plan import Job
 
 PATIENCE = 15.0
-"""Seconds that a process has for its checkpoint when it must stop."""
+"""Seconds that a process has for a checkpoint when the process must stop."""
 LOG = "workers.log"
 """The file in the experiment's directory with the output of workers and their libraries."""
 

@@ -1,4 +1,4 @@
-"""Jobs: an ordinary run that a job begins or resumes."""
+"""Jobs. Each job begins or resumes an ordinary run."""
 
 import os
 import time
@@ -97,7 +97,7 @@ def configuration(plan: Plan, job: Job) -> Config:
 
 
 def _changes(config: Config) -> dict[str, object]:
-    """Return the settings of a fork, with the unchanged ones."""
+    """Return the settings of a fork, changed and unchanged."""
     return config.model_dump(mode="json", exclude={"task", "about", "fork", "seeds", "ancestors"})
 
 

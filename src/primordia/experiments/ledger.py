@@ -1,6 +1,6 @@
 """The ledger: a small file with the state of each job, written at intervals by its process.
 
-The files give states and counts without opening a run, on any machine. A job is done if its file
+The files show states and counts on any machine, without opening a run. A job is done if its file
 says so and its run exists. If a file is lost, the job is resumed and ends at once.
 """
 
@@ -33,7 +33,7 @@ class WorldCounts(BaseModel):
     deaths: int
     organism_ticks: int
     saturated: int | None
-    """tick, or None"""
+    """tick of saturation, or None"""
 
 
 class Entry(BaseModel):
@@ -57,7 +57,7 @@ class Entry(BaseModel):
 
 
 class Ledger:
-    """The entries of all jobs; the entry of a job that is done is read once."""
+    """The entries of all jobs; the entry of a job that is done is read only once."""
 
     def __init__(self, out: Path, jobs: list[Job]) -> None:
         self._folder, self._out = out / FOLDER, out
@@ -65,7 +65,7 @@ class Ledger:
         self._done: dict[int, Entry] = {}
 
     def entries(self) -> list[Entry]:
-        """Return the entry of each job, in their order."""
+        """Return the entry of each job, in the order of the jobs."""
         try:
             there = set(os.listdir(self._folder))
         except OSError:

@@ -140,7 +140,7 @@ def _sees(path: str) -> bool:
 
 
 def _live(number: int, out: str, checkpoint_every: float, device: str) -> Ending:
-    """Run a job on a node; wait for a while if a dead node still holds its lock."""
+    """Run a job on a node; wait for a while if a dead node still holds the lock of the run."""
     from primordia.experiments.job import ending_of
     from primordia.experiments.plan import recorded
 
@@ -154,7 +154,7 @@ def _live(number: int, out: str, checkpoint_every: float, device: str) -> Ending
 
 
 def _ending(job: Job, done: "Future[Any]") -> Ending:
-    """Return the outcome of a task, also of one that Ray gave up."""
+    """Return the outcome of a task, also of a task that Ray gave up."""
     with suppress(Exception):
         return Ending(*done.result())
     error = done.exception()

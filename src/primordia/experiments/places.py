@@ -24,7 +24,7 @@ def place_for(
         left: number of jobs.
         jobs: number of jobs that run at once on this machine; None: one for each core, or one if
             jobs take all GPUs.
-        ray: address of a Ray cluster; "": this machine's cluster, or a new one; None: no cluster.
+        ray: address of a Ray cluster; "": this machine's cluster, or a new cluster; None: none.
         checkpoint_every: seconds from one checkpoint to the next.
         device: the device that computes the jobs, `cpu` or `gpu`.
 

@@ -30,29 +30,29 @@ LARGEST = 100_000
 
 
 class Source(Settings):
-    """A run whose worlds a job goes on with."""
+    """A run whose worlds a job continues."""
 
     run: str
-    """its directory, relative to that of the experiment"""
+    """the run's directory, relative to the experiment's directory"""
     worlds: int = Field(ge=1)
 
 
 class Fork(Settings):
-    """The source of all arms."""
+    """The runs from which all arms are forked, and the tick of the fork."""
 
     at: int = Field(ge=1, lt=2**63)
     sources: tuple[Source, ...] = Field(min_length=1, strict=False)
 
 
 class ArmPlan(Settings):
-    """An arm by its name and all settings of its worlds."""
+    """An arm's name and all settings of its worlds."""
 
     name: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9 ._+-]*$", max_length=100)]
     settings: dict[str, Any]
 
     @property
     def config(self) -> Config:
-        """The configuration of one run of all worlds of the arm."""
+        """The configuration of a single run with all worlds of the arm."""
         return parsed(self.settings, f"arm {self.name}")
 
 
@@ -66,7 +66,7 @@ class Job:
     """number of the first world within the arm"""
     worlds: int
     folder: str
-    """the run's directory, relative to that of the experiment"""
+    """the run's directory, relative to the experiment's directory"""
     source: str | None = None
     """the run that the job forks, relative to the directory of the experiment"""
 
@@ -89,8 +89,8 @@ class Plan(Settings):
         raise InputError(f"there is no arm {name!r}; the arms are {names}")
 
     def jobs(self) -> list[Job]:
-        """Return all jobs in the order in which they run: the first of each arm, the second of
-        each, ..."""
+        """Return all jobs in the order in which they run: the first job of each arm, then the
+        second job of each arm, ..."""
         by_arm = ([(arm.name, *cut) for cut in self._cut(arm)] for arm in self.arms)
         in_turn = filter(None, chain.from_iterable(zip_longest(*by_arm)))
         return [Job(number, *values) for number, values in enumerate(in_turn)]
@@ -117,7 +117,7 @@ def recorded(out: Path) -> Plan:
     """Return the plan in an experiment's directory.
 
     Raises:
-        InputError: there is none, or it is damaged.
+        InputError: there is no plan, or the plan is damaged.
     """
     file = out / EXPERIMENT
     try:
@@ -136,7 +136,7 @@ def check(plan: Plan, out: Path) -> None:
 
 
 def write(plan: Plan, out: Path) -> None:
-    """Write a plan into an experiment's directory, unless the directory has it.
+    """Write a plan into an experiment's directory, unless the directory has a plan.
 
     Raises:
         Trouble: the plan cannot be written."""

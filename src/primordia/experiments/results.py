@@ -44,7 +44,7 @@ COLUMNS = {
     "pace": "late_ticks_per_death",
     "food": "late_food",
 }
-"""Names in the CSV of outcomes that a comparison shows; the CSV always has both counts of saturation."""
+"""Outcome of a comparison -> its column in the CSV, which always has both counts of saturation."""
 
 
 def write(stem: Path, question: str, arms: Sequence[Records]) -> list[Path]:
@@ -117,7 +117,7 @@ def summary(compared: Comparison, counted: list[dict[str, np.ndarray]]) -> str:
 
 
 def dying(compared: Comparison, ends: list[list[dict[str, float]]]) -> str:
-    """Return a table with a row for each arm: late deaths, in worlds that have any."""
+    """Return a table with a row for each arm: medians and quartiles of late deaths, over worlds."""
     names = [name for name in late.COLUMNS if name in ends[0][0]]
     rows = [
         [arm.name, *(spread_text([world[name] for world in worlds]) for name in names)]
@@ -127,7 +127,7 @@ def dying(compared: Comparison, ends: list[list[dict[str, float]]]) -> str:
 
 
 def effects(compared: Comparison) -> str:
-    """Return a table with a row for each arm: Cliff's delta and the ratio of medians to the reference."""
+    """Return a table of each arm against the reference: Cliff's delta and the ratio of medians."""
     reference, *others = compared.arms
     rows = []
     for arm in others:
@@ -138,8 +138,8 @@ def effects(compared: Comparison) -> str:
 
 
 def _effect(against: Contrast, outcome: str) -> str:
-    """Return an effect as text: over all worlds, within seeds, of medians, and the worlds that it
-    needs."""
+    """Return an effect as text: delta over all worlds, delta within seeds, the ratio of medians,
+    and the number of worlds that the effect needs."""
     within, needed = paired_text(against), needed_text(against)
     parts = [
         effect_text(against, outcome),

@@ -1,4 +1,4 @@
-"""The status of an experiment: states of jobs and numbers of arms, read without opening a run."""
+"""The status of an experiment: states of jobs and counts of arms, read without opening a run."""
 
 from collections import Counter
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from primordia.experiments.ledger import Entry, WorldCounts
 from primordia.experiments.plan import Plan
 
 SIGMAS = 1.96
-"""Standard deviations on either side of the mean that hold 95 % of a normal law."""
+"""Standard deviations from the mean within which 95 % of a normal distribution lies."""
 STATES = ("done", "running", "failed", "waiting")
 
 
@@ -58,7 +58,7 @@ class CampaignStatus:
 
 
 def status(plan: Plan, entries: list[Entry]) -> CampaignStatus:
-    """Return the status of an experiment by the entries of its jobs."""
+    """Return the status of an experiment from the entries of its jobs."""
     states = Counter(entry.state for entry in entries)
     worlds: dict[str, list[WorldCounts]] = {arm.name: [] for arm in plan.arms}
     for entry in entries:

@@ -4,7 +4,7 @@
 
 A line of standard input is the number of a job. The answer is a line of standard output with the
 number and the outcome of the job. Standard input closes when the experiment's command ends in any
-way. Then the running job writes a checkpoint, and the process ends.
+way. When standard input closes, the running job writes a checkpoint, and this process ends.
 """
 
 import json
@@ -42,7 +42,7 @@ def main() -> None:
 
 
 def _read(lines: Lines) -> None:
-    """Pass on the lines of standard input. When it closes, end this process as a signal would."""
+    """Pass on the lines of standard input. At their end, end this process as a signal would."""
     for line in sys.stdin:
         lines.put(line)
     os.kill(os.getpid(), signal.SIGTERM)

@@ -10,9 +10,9 @@ from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 
 DOTS = 3000
-"""Largest number of dots, for the dead and for the living."""
+"""Largest number of dots for the dead, and for the living."""
 BINS, ENOUGH = 40, 30
-"""Largest number of bins of birth order with quartiles, and the number of dead that a bin needs."""
+"""Largest number of bins of birth order, and the number of dead that a bin needs for quartiles."""
 
 
 def draw(run: Records, world: int) -> Figure:
@@ -84,5 +84,5 @@ def quartiles(number: np.ndarray, lifespan: np.ndarray) -> np.ndarray:
 
 
 def _positive(values: np.ndarray) -> np.ndarray:
-    """Return the values, with NaN for those that a logarithmic axis cannot show."""
+    """Return the values, with NaN in place of values that a logarithmic axis cannot show."""
     return np.where(values > 0, values, np.nan)

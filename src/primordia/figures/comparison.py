@@ -18,12 +18,12 @@ from primordia.comparison.resample import LEAST
 from primordia.figures import style
 
 STOPPED = "|"
-"""Mark of a world that stopped unsaturated, as the mark of censoring in survival curves."""
+"""Mark of a world that stopped unsaturated, like the mark of censoring in survival curves."""
 DASHES = "-", "--", ":"
 MAX_COLUMNS = 3
 """Largest number of panels side by side."""
 FEW_ARMS = 5
-"""Largest number of runs with colours from dark to light and curves of all their worlds."""
+"""Largest number of runs that get colours from dark to light and a curve for each world."""
 FEW_WORLDS = 200
 """Largest number of a run's worlds with separate curves."""
 
@@ -65,8 +65,8 @@ def _panels(compared: Comparison) -> list[Callable[[Axes, Comparison], None]]:
 def line_styles(arms: int) -> list[dict[str, Any]]:
     """Return the line style of each run.
 
-    The reference is black. A few others go from dark to light, in order. Many others have distinct
-    colours, with dashes after the last colour.
+    The reference is black. If the other runs are few, their colours go from dark to light, in order.
+    If they are many, their colours are distinct, and runs after the last colour have dashes.
     """
     if arms > FEW_ARMS:
         lines = product(DASHES, [style.INK, *style.PALETTE, style.SOFT])
@@ -80,7 +80,7 @@ def _styled(compared: Comparison) -> Iterator[tuple[ComparedArm, dict[str, Any]]
 
 
 def _alive(axes: Axes, compared: Comparison) -> None:
-    """Draw the Kaplan-Meier curve of each run; a few runs with enough worlds have an interval too."""
+    """Draw the Kaplan-Meier curve of each run; if the runs are few, with intervals if possible."""
     for arm, line in _styled(compared):
         survived = arm.survival
         ages, curve = np.maximum(survived.steps, 1), survived.with_ends(survived.curve)
@@ -138,7 +138,7 @@ def _gathering(axes: Axes, compared: Comparison) -> None:
 def _over_time(
     axes: Axes, compared: Comparison, curve: Callable[[ComparedArm], np.ndarray]
 ) -> None:
-    """Draw the median of the curves (W, WINDOWS) of each run, and each world's curve if there are few."""
+    """Draw the median of each run's curves (W, WINDOWS); if the worlds are few, also each curve."""
     most = max(arm.worlds for arm in compared.arms)
     few, edges = len(compared.arms) <= FEW_ARMS and most <= FEW_WORLDS, compared.arms[0].pace.edges
     middle = (edges[1:] + edges[:-1]) / 2

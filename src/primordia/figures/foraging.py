@@ -11,8 +11,8 @@ BREAK_EVEN = style.ORANGE
 
 
 def draw(run: Records, world: int) -> Figure | None:
-    """Draw an organism's food in a second, or in a tick if the habitat has no rate, and the
-    break-even.
+    """Draw the food and the break-even of an organism per second, or per tick if the habitat has
+    no rate.
 
     Returns:
         None for a run without a metabolism.

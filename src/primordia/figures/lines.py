@@ -1,4 +1,4 @@
-"""Lines of one world: their shares and number, beside drift; the tree of the living."""
+"""Lines of one world: their shares, their number beside that under drift, and the tree of the living."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -28,7 +28,7 @@ def draw(found: WorldLines) -> Figure:
 
 
 def _time(found: WorldLines) -> np.ndarray:
-    """Return the time of each instant; the first is drawn at 1, since the axis is logarithmic."""
+    """Return the time of each instant. The first instant is at 1, since the axis is logarithmic."""
     return np.maximum(found.ticks - found.ticks[0], 1)
 
 

@@ -1,7 +1,7 @@
 """Figures of a run's records, as PNG and SVG.
 
-A figure is a function `draw(run, world) -> Figure | None`; None if the run has nothing to draw. It
-is one of those listed here, or your own `module:function`.
+A figure is a function `draw(run, world) -> Figure | None`, which returns None if the run has nothing
+to draw. Its name is one of KNOWN, or `module:function` for your own.
 """
 
 from collections.abc import Callable, Sequence
@@ -35,7 +35,7 @@ def plot(
 
     Args:
         run: the run, opened for reading.
-        out: folder for the figures; by default `figures` in the run.
+        out: folder for the figures; by default `figures` in the run's directory.
         world: the world of which lines of descent are drawn; all other figures show all worlds.
         figures: the figures to draw, names in KNOWN or `module:function`; by default all in KNOWN.
 
@@ -79,5 +79,5 @@ def find(name: str) -> Draw:
 
 
 def _file(name: str) -> str:
-    """Return the stem of the names of a figure's files; it is the function's name for your own figure."""
+    """Return the stem of the names of a figure's files: for your own figure, the function's name."""
     return name.rpartition(":")[2]

@@ -67,7 +67,7 @@ def _fates(axes: Axes, lives: Lives, causes: list[Cause]) -> None:
 
 
 def _rates(axes: Axes, lives: Lives, causes: list[Cause]) -> None:
-    """Draw births and deaths divided by the ticks of all worlds, in bins."""
+    """Draw births and deaths in bins of time, each divided by the number of ticks of all worlds."""
     edges = series.bins(int(lives.ended.max()))
     ends = np.array([lives.of_world(world).ended.max() for world in range(lives.worlds)])
     ticks = series.exposure(np.zeros_like(ends), ends, edges)

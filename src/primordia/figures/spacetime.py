@@ -13,7 +13,7 @@ from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 
 ROWS, COLUMNS = 800, 512
-"""Largest number of moments, and of cells, that are drawn; otherwise only every second, third, ..."""
+"""Largest number of drawn moments, and cells; if there are more, every second, third, ... is drawn."""
 EMPTY = -1
 """Mark of an empty cell, in place of the row of an organism."""
 HUES = (
@@ -57,7 +57,7 @@ def clades_of(lives: Lives) -> Clades:
 
 
 def occupants(lives: Lives, cells: np.ndarray, ticks: np.ndarray) -> np.ndarray:
-    """Return the row of the organism in each cell after each tick, int64 (T, N), or EMPTY; one world."""
+    """Return the row of the organism in each cell of a world after each tick, or EMPTY: int64 (T, N)."""
     order = np.lexsort((lives.born, lives.cell))
     span = int(lives.ended.max()) + 1
     begun = lives.cell[order].astype(np.int64) * span + lives.born[order]
@@ -84,8 +84,10 @@ def line_inks(lives: Lives, clades: Clades, codes: np.ndarray, size: np.ndarray)
     """Return the index in INKS of each line, int64 (K,), by its `line_codes` and size in the
     picture.
 
-    Lines of one era take the colours in turn, the largest first. A line that lasts to the end of its era
-    has a strong colour, any other a pale one. Organisms of the time before the first era are grey.
+    Lines of one era take the colours in turn: first lines that last to the end of the era, then the
+    others, the largest first. Lines that last have strong colours, all others pale ones. Lines
+    whose first organism was born after the beginning of the era are grey, and so are all lines before
+    the first renewal.
     """
     era, line = np.divmod(codes, len(lives))
     last = int(lives.ended.max())
@@ -102,7 +104,9 @@ def line_inks(lives: Lives, clades: Clades, codes: np.ndarray, size: np.ndarray)
 
 
 def line_codes(lives: Lives, clades: Clades, rows: np.ndarray, ticks: np.ndarray) -> np.ndarray:
-    """Return one number for era and line of each organism (T, N): era x number of lives + line.
+    """Return one number for the era and the line of each organism: era x number of lives + line.
+
+    `rows` and the result are (T, N).
 
     An era is the time from one renewal of lines to the next.
     """

@@ -79,7 +79,7 @@ def _writer(figure: Figure, suffix: str) -> Callable[[Path], None]:
 
 
 def time_label(lives: Lives) -> str:
-    """Return the label of the time axis of lives from `Lives.since_fork`."""
+    """Return the label of a time axis; `lives` are from `Lives.since_fork`."""
     return "time since the fork (ticks)" if (lives.entered > 0).any() else "time (ticks)"
 
 
@@ -120,10 +120,10 @@ def short(value: float) -> str:
 
 
 def curves(axes: Axes, x: np.ndarray, ys: np.ndarray, colour: str = BLUE) -> None:
-    """Draw a curve for each world, (W, X), without its NaN.
+    """Draw a curve for each world without its NaN; `ys` is (W, X).
 
-    Several worlds are faint, behind their median and quartiles. Median and quartiles end when fewer
-    than half of the worlds have a value.
+    The curves of several worlds are faint, behind median and quartiles. Median and quartiles end
+    when fewer than half of the worlds have a value.
     """
     if len(ys) == 1:
         axes.plot(x, ys[0], color=colour)

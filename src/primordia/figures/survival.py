@@ -22,7 +22,7 @@ COHORTS = {
 
 
 def draw(run: Records, world: int) -> Figure:
-    """Draw survival above a table of numbers at risk, and risks of death, of all worlds together."""
+    """Draw survival with a table of numbers at risk, and risks of death; all worlds are pooled."""
     lives = run.lives.since_fork()
     figure = Figure(figsize=(style.PAGE, 2.8))
     alive, by_age, over_time = figure.subplots(1, 3)
@@ -39,7 +39,7 @@ def draw(run: Records, world: int) -> Figure:
 
 
 def quarters(lives: Lives) -> list[Lives]:
-    """Return the lives of each quarter; a life's quarter is that of its world's births so far."""
+    """Return the lives of each quarter of births; each world's births so far are divided separately."""
     births = np.bincount(lives.world)[lives.world]
     quarter = lives.rank * len(COHORTS) // births
     return [lives.take(quarter == number) for number in range(len(COHORTS))]

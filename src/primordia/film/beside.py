@@ -1,4 +1,4 @@
-"""The lives beside a world: of the oldest organism so far, or of one that is chosen."""
+"""The life shown beside a world: that of the oldest organism so far, or of a chosen organism."""
 
 from collections.abc import Iterator
 from itertools import repeat
@@ -16,7 +16,7 @@ from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 
 LEAST = 4 * RATE
-"""Pictures for which a life is shown at least, before that of an older organism takes its place."""
+"""Smallest number of pictures of a life before the life of an older organism takes its place."""
 
 
 class Beside(NamedTuple):
@@ -27,7 +27,7 @@ class Beside(NamedTuple):
 
 
 def oldest(run: Records, lives: Lives, ticks: np.ndarray) -> Iterator[Beside]:
-    """Yield the life of the oldest so far at each moment; each begins with its birth and goes on.
+    """Yield a picture for each moment: the life of the oldest organism so far, from birth on.
 
     Args:
         run: the run.
@@ -49,7 +49,7 @@ def chosen(run: Records, organism: int, world: int, count: int) -> Iterator[Besi
 
 
 def nothing(count: int) -> Iterator[Beside]:
-    """Yield no life, for a habitat that draws no pictures."""
+    """Yield nothing to show, `count` times, for a habitat that draws no pictures."""
     yield from repeat(Beside(None, ""), count)
 
 

@@ -15,13 +15,13 @@ from primordia.runs.lives import Lives
 GROUND = np.array([22, 25, 33], np.float32)
 """Red, green and blue of an empty cell."""
 DARKEST = 0.5
-"""Light of an organism at birth; at the age `full` it is 1."""
+"""Light of an organism at birth; at the age `full` the light is 1."""
 FLASH = 0.75
 """Share of white in a cell in which an organism was born since the moment before."""
 FADING = 0.8
 """Share of the light of a death that is left at the next moment."""
 MOST = 2**22
-"""Cells at moments that are computed together: the lives are sorted once for them."""
+"""Largest number of cells x moments that are computed at once, with the lives sorted once."""
 PALETTE = np.array([colour(hue) for hue in range(HUES)], np.float32)
 
 
@@ -31,7 +31,7 @@ def colours(lives: Lives, cells: np.ndarray, ticks: np.ndarray, full: int) -> It
     Args:
         lives: the lives of one world.
         cells: numbers of cells, int64 (N,).
-        ticks: rising, int64 (F,).
+        ticks: the moments in ascending order, int64 (F,).
         full: the age in ticks at which a cell is lightest.
     """
     clades, before = clades_of(lives), int(ticks[0])

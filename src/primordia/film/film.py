@@ -22,7 +22,7 @@ from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 
 STILL = 2 * RATE
-"""Pictures for which the end is shown."""
+"""Number of pictures that show the end."""
 
 
 def film(
@@ -33,18 +33,18 @@ def film(
     ticks: tuple[int | None, int | None] = (None, None),
     organism: int | None = None,
 ) -> Path:
-    """Film a world -> the path of the file.
+    """Film a world, and return the path of the file.
 
     Beside the world is the life of the oldest organism so far, or of a chosen one, if the habitat draws
-    pictures. A life goes at its own speed, which is not that of the world.
+    pictures. The life is shown at a speed of its own, not at the world's speed.
 
     Args:
         run: the world's run.
-        out: an .mp4 or .gif; by default under the run's `videos`.
-        world: its number.
+        out: an .mp4 or .gif file; by default a file in the run's folder `videos`.
+        world: the world's number.
         by: what passes between two pictures; see `moments`.
-        ticks: the first and the last tick that are shown; by default all.
-        organism: birth number of the organism whose life is shown; by default the oldest so far.
+        ticks: the first and the last tick to show; by default all ticks.
+        organism: birth number of the organism whose life is shown; by default the oldest organism so far.
 
     Raises:
         InputError: there is no such world or organism, or nothing to show.

@@ -14,13 +14,13 @@ LIFE = WIDTH - SIDE - 3 * EDGE
 INK, SOFT = "#e8e6e1", "#8d93a0"
 TITLE, SMALL = 20, 14
 STRIPS = 3
-"""Lights of each colour that a GIF has."""
+"""Number of lights of each colour in a GIF."""
 BAR = 3
 """pixels, the height of the bar that shows how much of the film has passed"""
 
 
 class Frames:
-    """Pictures of a film, which has a title."""
+    """The pictures of a film with a title."""
 
     def __init__(self, title: str, alone: bool) -> None:
         """Take the title, and whether the world is shown without a life."""
@@ -39,7 +39,7 @@ class Frames:
             counts: words below the world.
             share: part of the film that has passed, 0 to 1.
             life: a picture of the life, or None.
-            about: words below it.
+            about: words below the life.
         """
         picture = self._empty.copy()
         top = EDGE + TITLE + 8

@@ -1,4 +1,4 @@
-"""The moments that a film shows: equally many births, or ticks, from each to the next."""
+"""The moments that a film shows, at equal distances in births or in ticks."""
 
 from typing import Literal, TypeAlias
 
@@ -15,14 +15,14 @@ SECONDS = 30
 
 
 def moments(lives: Lives, start: int, by: By, ticks: tuple[int | None, int | None]) -> np.ndarray:
-    """Return the ticks after which a world is shown, int64 (F,), rising; F is at most RATE x SECONDS.
+    """Return the ticks after which a world is shown, in ascending order, int64 (F,).
 
     Args:
         lives: the lives of one world.
-        start: the tick at which its records begin.
-        by: what passes between two moments. A world that is full is calm for most of its ticks, so that
-            most of the births are in few of them.
-        ticks: the first tick and the last one; None is where the records begin or end.
+        start: the tick at which the world's records begin.
+        by: whether equally many `births` or equally many `ticks` pass between two moments. In a full
+            world most ticks are without births.
+        ticks: the first tick and the last one; None: where the records begin or end.
 
     Raises:
         InputError: the records have no such ticks, or nothing was born in them.

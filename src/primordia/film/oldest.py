@@ -28,18 +28,21 @@ def oldest_so_far(lives: Lives, ticks: np.ndarray) -> np.ndarray:
 
 
 def _holders(spans: np.ndarray) -> np.ndarray:
-    """Return 1 + the place of the first longest of the first k spans, for k = 0, 1, ...; 0 of none."""
+    """Return, for k = 0, 1, ..., 1 + the index of the longest of the first k spans; 0 for k = 0.
+
+    Among equal spans the first counts."""
     longest = np.maximum.accumulate(np.append(-1, spans))
     new = np.append(False, spans > longest[:-1])
     return np.maximum.accumulate(np.where(new, np.arange(len(new)), 0))
 
 
 def shown(holders: np.ndarray, least: int) -> np.ndarray:
-    """Return the holder that is shown at each moment, (F,): one that is shown stays for some moments.
+    """Return the organism that is shown at each moment, (F,). Each is shown for some moments.
 
     Args:
         holders: the oldest so far at each moment, (F,).
-        least: moments for which a holder is shown at least; then the holder of that moment is.
+        least: smallest number of moments for which an organism is shown; after them, the oldest
+            organism of the moment takes its place.
     """
     chosen, since = holders.copy(), 0
     for now in range(1, len(holders)):

@@ -25,7 +25,7 @@ class Shape(Protocol):
 
 
 def shape(placement: Placement, cells: int) -> Shape:
-    """Return the form of a world of some cells. In a well-mixed world the places say nothing."""
+    """Return the form of a world of `cells` cells. In a well-mixed world, places have no meaning."""
     rows, columns = placement.shape(cells)
     if rows > 1:
         return Grid(rows, columns)
@@ -36,7 +36,7 @@ def shape(placement: Placement, cells: int) -> Shape:
 
 
 class Grid:
-    """Rows and columns of cells; of more than SIDE, every second or third is drawn."""
+    """Rows and columns of cells; if there are more than SIDE, every second, third, ... is drawn."""
 
     def __init__(self, rows: int, columns: int, count: int | None = None) -> None:
         """Take rows and columns, and the number of cells if they do not fill the last row."""
@@ -63,7 +63,7 @@ class Ring:
     """A ring of cells. The present is outside; the moments before it are rings within."""
 
     MOST = 1024
-    """cells that are drawn; of more, every second or third"""
+    """largest number of cells that are drawn; if there are more, every second, third, ... is drawn"""
 
     def __init__(self, count: int) -> None:
         """Take the number of cells."""

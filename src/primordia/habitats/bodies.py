@@ -15,9 +15,9 @@ def fresh(habitat: JaxHabitat, words: Array) -> Bodies:
     """Return fresh bodies from random words uint32 (N, words). Every caller must compile this
     function.
 
-    Uncompiled, a product and a sum are each rounded; compiled, they may be rounded once. On a CPU the
-    rounding may also depend on N, since a single body is no vector. So on a CPU each body is made
-    alone, and its bits do not depend on the number of births.
+    In uncompiled code a product and a sum are each rounded; in compiled code both may be rounded
+    once. On a CPU the rounding may also depend on N, since a single body is no vector. So on a CPU each
+    body is made alone, and its bits do not depend on the number of births.
     """
 
     def fresh_body(words: Array) -> Bodies:

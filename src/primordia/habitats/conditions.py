@@ -1,8 +1,8 @@
 """Conditions and amounts in settings, such as `ram[17] == 0 or lives < 3` and `10 * max(forward, 0)`.
 
 All habitats share one small grammar: numbers, names, `name[3]`, `name[1:]`, `name["part"]`, `+ - *`,
-comparisons, `and or not`, some functions and parentheses. It is a part of Python's, so Python's parser
-reads it. Only the operations listed here are executed, on arrays.
+comparisons, `and or not`, some functions and parentheses. The grammar is a part of Python's, so Python's
+parser reads it. Only the operations listed here are executed, on arrays.
 
 Arithmetic is that of floats. Bytes and counts are taken as float64, in which whole numbers are exact up
 to 2^53 and products do not wrap. A quantity that is a float keeps its precision, so an expression of
@@ -24,7 +24,7 @@ from primordia.settings.values import LARGEST, shown
 Kind: TypeAlias = Literal["condition", "amount"] | int
 """A condition, an amount (one number), or the length of a list of numbers."""
 Names: TypeAlias = Mapping[str, Kind | Mapping[str, Kind]]
-"""The kind of each quantity that expressions can name; for a quantity with parts, of each part."""
+"""The kind of each quantity that expressions can name; if a quantity has parts, of each part."""
 Values: TypeAlias = Mapping[str, Any]
 """Arrays by name: (N,) for a condition or an amount, (N, K) for a list, or arrays by part."""
 Compute: TypeAlias = Callable[[Values], Any]
@@ -54,7 +54,7 @@ REDUCTIONS = {
 LONGEST, DEEPEST = 10_000, 100
 """Largest length of an expression, and largest depth of its syntax tree; n terms have depth n + 1."""
 EXACT = 2**53
-"""Largest whole number that can be written out; with a decimal point, it is the largest float32."""
+"""Largest whole number in an expression; a number with a decimal point is at most LARGEST."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ class Expression:
     compute: Compute
 
     def __call__(self, values: Values) -> np.ndarray:
-        """Return its value for each body: (N,) for a condition (bool) or an amount, (N, K) for a list.
+        """Return the value for each body: (N,) for a condition (bool) or an amount, (N, K) for a list.
 
         An expression that names no quantity has one value, the same for all bodies.
         """
@@ -85,9 +85,9 @@ def parse(text: str, kind: Literal["condition", "amount", "numbers"], names: Nam
 
     Args:
         text: the expression.
-        kind: the required kind; "numbers" are an amount or a list. A condition is also an amount: 1
-            if it is true, else 0.
-        names: the quantities that it may name.
+        kind: the required kind; "numbers" accepts an amount or a list. A condition is also an
+            amount: 1 if the condition is true, else 0.
+        names: the quantities that the expression may name.
 
     Raises:
         ValueError: the text is not in the grammar or not of the required kind; the message says

@@ -3,9 +3,9 @@
 A habitat knows nothing of energy, ages, neighbours or other organisms. It reports in physical units
 what happened to its bodies; the law decides what that means for a life.
 
-A habitat subclasses `JaxHabitat` or `HostHabitat`, alone or together with `Settings`:
-`class Pond(JaxHabitat, Settings)`. It must define the abstract methods of that class, and `senses_size`,
-`action` and `words`; everything else has a default. `name` in a task's `[habitat]` table is one of KNOWN,
+A habitat is a subclass of `JaxHabitat` or `HostHabitat`, alone or together with `Settings`:
+`class Pond(JaxHabitat, Settings)`. The subclass must define all abstract methods, and `senses_size`,
+`action` and `words`. Everything else has a default. `name` in a task's `[habitat]` table is one of KNOWN,
 or `module:Class`. The other keys of the table are the class's own settings.
 
 Simulators in worker processes load this file, so it imports neither JAX nor pydantic.
@@ -99,7 +99,7 @@ class Outcome(NamedTuple):
     effort: "Array | None" = None
     """float32 (N,): effort exerted, in the habitat's unit"""
     expired: "Array | None" = None
-    """bool (N,): a time limit of the habitat's own ends the life"""
+    """bool (N,): the habitat's own time limit ends the life"""
     fault: "Array | None" = None
     """bool (N,): the body's simulation has failed; the law itself detects NaN and infinity"""
 
@@ -137,7 +137,7 @@ if not TYPE_CHECKING:
 
 
 class Habitat(ABC):
-    """The common part of `JaxHabitat` and `HostHabitat`; subclass one of these two."""
+    """The common part of `JaxHabitat` and `HostHabitat`, the base classes of all habitats."""
 
     abilities: ClassVar[Mapping[Ability, tuple[str, ...]]]
     """Methods that a class must define for each ability."""
@@ -167,12 +167,12 @@ class Habitat(ABC):
 
     @default
     def rate(self) -> float | None:
-        """Return the ticks in a second of simulated time; None if its time has no unit."""
+        """Return the ticks in a second of simulated time; None if simulated time has no unit."""
         return None
 
     @default
     def episode(self) -> int | None:
-        """Return the ticks after which the standard benchmark ends a game; None if it does not."""
+        """Return the ticks after which the standard benchmark ends a game; None: it ends no game."""
         return None
 
     @default
@@ -199,8 +199,8 @@ class Habitat(ABC):
         """Raise ValueError if these settings do not allow a run of `cells` cells."""
 
     def original(self) -> "AnyHabitat | None":
-        """Return the whole game as the standard benchmark scores it: food is the score, and its end
-        is fatal."""
+        """Return the whole game as the standard benchmark scores it: food is the score, and the end
+        of the game is fatal. None if there is no such game."""
         return None
 
     def picture(self, body: Bodies, action: np.ndarray) -> "Image":
@@ -255,11 +255,14 @@ class HostHabitat(Habitat):
 
     @abstractmethod
     def reset(self, cells: np.ndarray, words: np.ndarray) -> np.ndarray:
-        """Make fresh bodies in cells (K,) from words uint32 (K, words); return their senses (K, S)."""
+        """Make fresh bodies in cells (K,) from words uint32 (K, words); return the senses (K, S)."""
 
     @abstractmethod
     def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
-        """Step the bodies of the cells alive, bool (N,), alone; return senses float32 (N, S), outcome."""
+        """Step only the bodies of living cells; return senses, float32 (N, S), and outcome.
+
+        `alive` is bool (N,).
+        """
 
     def close(self) -> None:
         """Release what `open` allocated."""
@@ -277,7 +280,7 @@ class HostHabitat(Habitat):
         return ""
 
     def save(self) -> dict[str, np.ndarray]:
-        """Return the whole state of the bodies as arrays (N, ...), from which they go on exactly."""
+        """Return the whole state of the bodies as arrays (N, ...), so that bodies go on exactly."""
         return {}
 
     def load(self, arrays: dict[str, np.ndarray]) -> None:

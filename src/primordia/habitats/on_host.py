@@ -52,7 +52,7 @@ class OnHost(HostHabitat):
         self._cells = cells
 
     def reset(self, cells: np.ndarray, words: np.ndarray) -> np.ndarray:
-        """Make fresh bodies in cells (K,) from words uint32 (K, words); return their senses (K, S)."""
+        """Make fresh bodies in cells (K,) from words uint32 (K, words); return the senses (K, S)."""
         count = len(cells)
         # K is padded to a power of two, since JAX compiles each shape separately.
         padding = (1 << (count - 1).bit_length()) - count
@@ -62,7 +62,7 @@ class OnHost(HostHabitat):
         return np.array(self._sense(newborn))[:count]
 
     def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
-        """Step the bodies of the cells alive, bool (N,); return senses float32 (N, S), outcome."""
+        """Step only the bodies of living cells; see `HostHabitat.step`."""
         self._bodies, outcome = self._step(self._bodies, action, alive)
         return np.array(self._sense(self._bodies)), outcome
 
@@ -80,8 +80,8 @@ class OnHost(HostHabitat):
         self._bodies = jax.tree.unflatten(jax.tree.structure(self._bodies), leaves)
 
     def lacks(self, ability: Ability) -> list[str]:
-        """Return the methods that the habitat lacks for an ability; the JAX habitat draws the
-        pictures."""
+        """Return the methods that the habitat lacks for an ability. Pictures are drawn by the JAX
+        habitat."""
         return self.inner.lacks(ability) if ability is Ability.PICTURE else super().lacks(ability)
 
     def picture(self, body: Bodies, action: np.ndarray) -> "Image":

@@ -8,5 +8,8 @@ VARIABLE = "MUJOCO_GL"
 
 
 def backend() -> str:
-    """Return the variable's value if it is set, else `osmesa`, which needs no GPU, or else `egl`."""
+    """Return the value of VARIABLE, or a default.
+
+    The default is `osmesa`, which needs no GPU, if OSMesa is installed, otherwise `egl`.
+    """
     return os.environ.get(VARIABLE) or ("osmesa" if find_library("OSMesa") else "egl")

@@ -8,8 +8,8 @@ from primordia.figures import style
 
 
 def draw(found: list[Ablation]) -> Figure:
-    """Draw the share of life that is left after each ablation: a dot for each organism, and the
-    median."""
+    """Draw the share of life that is left after each ablation: a dot for each organism, and a line
+    at the median."""
     losses = list(dict.fromkeys(each.without for each in found))
     figure = Figure(figsize=(style.COLUMN, 0.9 + 0.16 * len(losses)))
     axes = figure.subplots()

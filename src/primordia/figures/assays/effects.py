@@ -14,7 +14,7 @@ SHARES = {
 
 
 def draw(found: list[Effect]) -> Figure:
-    """Draw the shares of mutants that live as long, longer and shorter, for each mutation.
+    """Draw, for each mutation, the shares of mutants that live as long, longer and shorter.
 
     Lines and bands are means and quartiles over organisms.
     """

@@ -1,9 +1,9 @@
 """One Atari game for each cell, on the Arcade Learning Environment (Bellemare et al. 2013).
 
-A life begins in the state after the game's reset, plus no-ops if the settings say so. That state is
-cloned once and restored at each birth, since a reset takes as long as about 60 frames. The emulator
-itself draws no random numbers: sticky actions are drawn here, from dice that begin with the birth's
-random words.
+A life begins in the state after the game's reset, followed by no-ops if the settings say so. The state
+after the reset is cloned once and restored at each birth, since a reset takes as long as about 60 frames.
+The emulator itself draws no random numbers: sticky actions are drawn here, from dice that begin with the
+birth's random words.
 """
 
 import weakref
@@ -118,9 +118,9 @@ class Arcade:
         self._dice[cell], self._held[cell] = 0, NOOP
 
     def step(self, cells: list[int]) -> None:
-        """Emulate the frames of one tick; points are summed over them.
+        """Emulate the frames of one tick; points are summed over these frames.
 
-        Rows are read and written for all cells at once: one by one, they take a fifth of the time.
+        Rows are read and written for all cells at once; one by one, this would take a fifth of the time.
         """
         arrays, plain = self._arrays, self._skip == 1 and not self._sticky
         points, lives, over = [], [], []
@@ -145,7 +145,7 @@ class Arcade:
         return points
 
     def _button(self, cell: int, button: int) -> int:
-        """Return the button that is down in this frame: with probability `sticky`, the last frame's."""
+        """Return the button that is down in this frame: with probability `sticky`, the last button."""
         self._dice[cell], word = dice.roll(self._dice[cell])
         if word >= self._sticky:
             self._held[cell] = button
@@ -185,6 +185,6 @@ class Arcade:
 
 
 def _spare(game: Game, consoles: "dict[int, tuple[ALEInterface, np.ndarray]]") -> None:
-    """Keep the emulators of an arcade that is no longer needed, up to SPARES."""
+    """Keep, up to SPARES, the emulators of an arcade that is no longer needed."""
     spare = _SPARE[game]
     spare += [ale for ale, _ in consoles.values()][: SPARES - len(spare)]

@@ -17,7 +17,7 @@ from primordia.habitats.gymnasium.spaces import Acting, Observation
 from primordia.habitats.silence import quiet
 
 TICKS, LIVES = 1000, 8
-"""Number of steps that are compared, and the smallest number of their lives."""
+"""Number of steps that are compared, and the smallest number of lives that contain these steps."""
 SAVED = 4
 """Number of states of each life that are saved and continued."""
 
@@ -154,7 +154,7 @@ def measure(env: str, options: Mapping[str, Any], imports: Sequence[str]) -> Mea
     """Return the results for an environment.
 
     Raises:
-        ValueError: it cannot be made, or raises an error; the message says which.
+        ValueError: the environment cannot be made, or raises an error; the message says which.
     """
     trial = _Trial(env, options, imports)
     try:

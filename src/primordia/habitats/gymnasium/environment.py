@@ -24,13 +24,13 @@ def make(
     """Return an environment without its time limit.
 
     Args:
-        env: its registered name, or `module:NAME`, whose module registers it.
+        env: the environment's registered name, or `module:NAME` with the module that registers it.
         options: keyword arguments.
         imports: modules to import first, such as those that register the environment.
         watched: whether the environment must be able to draw pictures.
 
     Raises:
-        ValueError: it cannot be made; the message says why, in one line.
+        ValueError: the environment cannot be made; a message of one line says why.
     """
     module, colon, _ = env.partition(":")
     drawing = {"render_mode": PICTURES} if watched else {}
@@ -64,7 +64,7 @@ def food_function(name: str) -> Callable[..., float]:
     """Return the function `module:function` of (observation, reward, terminated, truncated, info).
 
     Raises:
-        ValueError: there is none.
+        ValueError: there is no such function.
     """
     module, _, attribute = name.partition(":")
     try:

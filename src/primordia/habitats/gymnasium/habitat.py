@@ -2,7 +2,7 @@
 
 Settings define death, food and effort by expressions of the observation, reward, ends and `info`. The
 environment's own time limit is off. Every birth resets an environment with a different seed, the
-birth's random word. Environments are in worker processes, or in this one.
+birth's random word. Environments run in worker processes, or in this process.
 """
 
 from functools import cached_property
@@ -150,7 +150,7 @@ class Gymnasium(HostHabitat, Settings):
 
     @property
     def action(self) -> Action:
-        """The environment's action, with a part for each of its own."""
+        """The environment's action, with one part for each part of the environment's action space."""
         return self._probe.acting.kind
 
     words: ClassVar = 1
@@ -202,7 +202,7 @@ class Gymnasium(HostHabitat, Settings):
         """Make the environments.
 
         Raises:
-            InputError: they cannot draw, but are watched.
+            InputError: the environments are watched, but cannot draw.
         """
         from primordia.habitats.gymnasium.probe import screen_shape
         from primordia.habitats.gymnasium.simulator import SCREEN, fields
@@ -273,7 +273,7 @@ class Gymnasium(HostHabitat, Settings):
         """Count errors in the environments, and stop the run if there are too many.
 
         Raises:
-            Trouble: there are too many; the message has the latest error.
+            Trouble: there are too many errors; the message has the latest error.
         """
         self._failed += int(fault.sum())
         if self._failed > self.faults:

@@ -14,7 +14,7 @@ from primordia.habitats.silence import quiet
 TICKS = 200
 """Random steps in which keys of `info` are looked for."""
 LONGEST = 64
-"""Largest number of numbers in a value of `info` that settings can name."""
+"""Largest count of numbers in a value of `info` that settings can name."""
 
 
 PICTURES_S = 30.0
@@ -38,7 +38,7 @@ def probe(env: str, options: Mapping[str, Any], imports: Sequence[str]) -> Probe
     """Return the description of an environment.
 
     Raises:
-        ValueError: it cannot be made, perceived or acted upon; the message says why.
+        ValueError: the environment cannot be made, perceived or acted upon; the message says why.
     """
     return _probe(env, json.dumps(options, sort_keys=True), tuple(imports))
 
@@ -68,8 +68,8 @@ def _probe(env: str, options: str, imports: tuple[str, ...]) -> Probe:
 
 
 def info_of(env: str, options: Mapping[str, Any], imports: Sequence[str]) -> dict[str, int]:
-    """Return the keys of an environment's `info` with numbers as values, and the count of the
-    numbers.
+    """Return the keys of an environment's `info` whose values are numbers, and how many numbers
+    each value has.
 
     The keys are those that appear at a reset and in random play.
     """
@@ -127,7 +127,7 @@ def screen_shape(env: str, options: Mapping[str, Any], imports: Sequence[str]) -
     """Return the shape of an environment's pictures, (height, width, 3).
 
     Raises:
-        ValueError: it cannot draw; the message says why.
+        ValueError: the environment cannot draw; the message says why.
     """
     made = environment.make(env, options, imports, watched=True)
     try:
@@ -145,7 +145,7 @@ def check_food(env: str, options: Mapping[str, Any], imports: Sequence[str], fun
     """Call a function that measures food once.
 
     Raises:
-        ValueError: there is no such function, or it gives no number.
+        ValueError: there is no such function, or the function returns no number.
     """
     food, made = environment.food_function(function), environment.make(env, options, imports)
     with quiet():

@@ -14,12 +14,12 @@ from gymnasium.spaces import Box, MultiBinary, MultiDiscrete, Space
 from primordia.habitats.contract import Action, Compound, Continuous, Discrete
 
 UNBOUNDED = 1e6
-"""A bound of a box at or beyond this counts as none."""
+"""A bound of a box at or beyond this number counts as no bound."""
 
 
 Builder = Callable[[np.ndarray], Any]
 Block = tuple[slice, int | None]
-"""A block of numbers that are each one sense, or one number that is one of n choices."""
+"""A block of numbers, each of which is one sense, or one number that is one of n choices."""
 
 
 class Leaf(NamedTuple):
@@ -30,14 +30,14 @@ class Leaf(NamedTuple):
 
     @property
     def width(self) -> int:
-        """The number of numbers of this part in a row."""
+        """The count of numbers of this part in a row."""
         if isinstance(self.space, spaces.Discrete):
             return 1
         return int(np.prod(self.space.shape or ()))
 
     @property
     def first(self) -> Any:
-        """The least values of whole numbers that are choices, so that a row counts from 0."""
+        """The smallest value of each choice; a row counts choices from 0. For other parts, 0."""
         return self.space.start if isinstance(self.space, spaces.Discrete | MultiDiscrete) else 0
 
 
@@ -45,7 +45,7 @@ def leaves(space: Space, what: str, path: tuple[Any, ...] = ()) -> Iterator[Leaf
     """Yield the parts of a space that hold numbers; `what` names the space in messages.
 
     Raises:
-        ValueError: a part has no fixed number of numbers; the message says which.
+        ValueError: a part has no fixed count of numbers; the message says which.
     """
     if isinstance(space, spaces.Dict):
         for key, inner in space.spaces.items():
@@ -106,7 +106,7 @@ class Observation:
         return Senses((low + high) / 2, (high - low) / 2, squash & ~bounded, blocks)
 
     def _bounds(self) -> np.ndarray:
-        """Return the least and largest value of each number, infinite where there is none: (2, R)."""
+        """Return the least and largest value of each number, infinite without a bound: (2, R)."""
         rows = []
         for leaf in self._leaves:
             space = leaf.space
@@ -169,10 +169,10 @@ class Acting:
         """a function of a row (K,) that returns the environment's action"""
 
     def rows(self, action: np.ndarray) -> np.ndarray:
-        """Return rows float64 (N, K) of actions of the law, int32 (N,) or float32 (N, K).
+        """Return the law's actions, int32 (N,) or float32 (N, K), as rows, float64 (N, K).
 
-        Outputs from -1 to 1 cover a number with bounds. Choices and unbounded numbers are
-        unchanged.
+        Outputs from -1 to 1 cover the range of a number with bounds. Choices and unbounded
+        numbers are unchanged.
         """
         values = np.asarray(action, float).reshape(len(action), -1)
         inside = np.where(self._bounded, np.clip(values, -1, 1), values)

@@ -40,7 +40,7 @@ def encode(env: object) -> bytes:
     """Return the state of an environment.
 
     Raises:
-        UnknownStateError: a part of it cannot be stored.
+        UnknownStateError: a part of the state cannot be stored.
     """
     return zlib.compress(json.dumps(_Writer().write(env, "env")).encode(), level=1)
 
@@ -195,7 +195,7 @@ def _text(data: bytes) -> str:
 
 
 def _fixed(data: Any) -> list[str]:
-    """Return the names of the arrays of MuJoCo's data that it has before any contact.
+    """Return the names of the arrays that MuJoCo's data has before any contact.
 
     The other arrays are computed from these in each step.
     """

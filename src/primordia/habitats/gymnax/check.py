@@ -31,7 +31,7 @@ class Measured:
 
 
 class _Seen(NamedTuple):
-    """The record of a tick, of the living."""
+    """The record of a tick of the living bodies."""
 
     alive: Array
     """before the tick, bool (N,)"""

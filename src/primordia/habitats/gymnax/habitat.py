@@ -108,7 +108,7 @@ class Gymnax(JaxHabitat, Settings):
 
     @property
     def versions(self) -> dict[str, str]:
-        """Versions of the packages that the environment is computed by."""
+        """Versions of the packages that compute the environment."""
         return libraries.versions(self.env)
 
     @property
@@ -127,7 +127,7 @@ class Gymnax(JaxHabitat, Settings):
         return Gymnax(**{**self.model_dump(), **changed})
 
     def picture(self, body: Body, action: np.ndarray) -> "Image":
-        """Return a picture by the environment's library, or else a picture of the body's senses."""
+        """Return a picture drawn by the environment's library, or else a picture of the body's senses."""
         from primordia.habitats.gymnax.picture import draw, rendered
 
         about, packed = self.simulator, body.packed
@@ -222,5 +222,5 @@ def _parts(tree: Any) -> dict[str, Array]:
 
 
 def _key(root: Wide, age: Wide) -> Array:
-    """Return the keys, uint32 (N, 2), of bodies of an age: those of JAX's `fold_in`."""
+    """Return the keys of bodies at an age, equal to those of JAX's `fold_in`, uint32 (N, 2)."""
     return jnp.stack(encrypt(root, age), axis=1)

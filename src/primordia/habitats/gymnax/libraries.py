@@ -43,7 +43,7 @@ def make(name: str, time_limit: bool) -> Any:
     Args:
         name: an environment of gymnax or Craftax, `package:NAME` for another library, or your own
             `module:Class` or `module:function`.
-        time_limit: keep a time limit that can be set only when the environment is made.
+        time_limit: whether to keep a time limit that can be set only when the environment is made.
 
     Raises:
         ValueError: there is no such environment, or its library is not installed.
@@ -91,7 +91,7 @@ def _of_octax(name: str, time_limit: bool) -> Any:
 
 
 def _of_playground(name: str) -> Any:
-    """Return a task of MuJoCo Playground, computed by MJX in JAX; warp needs a GPU of NVIDIA."""
+    """Return a task of MuJoCo Playground, computed by MJX in JAX, since Warp needs an NVIDIA GPU."""
     registry = import_module("mujoco_playground").registry
     _check_known(name, registry.ALL_ENVS, "playground")
     robots = import_module("mujoco_playground._src.mjx_env").MENAGERIE_PATH

@@ -8,11 +8,11 @@ import numpy as np
 from jax import Array, lax
 
 WORDS = (np.float32, np.int32, np.uint32)
-"""Types whose numbers are one word of 32 bits; a truth value is one too."""
+"""Types whose numbers are one word of 32 bits; a truth value is also one word."""
 
 
 class Packed(NamedTuple):
-    """Senses and state of a body; or those of N bodies, with an axis before."""
+    """Senses and state of one body, or of N bodies with a further first axis."""
 
     words: Array
     """uint32 (K,): the bits of the senses, then of the state's single numbers"""

@@ -1,4 +1,4 @@
-"""Pictures of bodies, drawn by the environment's library, or else of their senses.
+"""Pictures of bodies, drawn by the environment's library, or else pictures of the bodies' senses.
 
 A grid has a colour for each channel; other senses have a bar each.
 """
@@ -19,7 +19,7 @@ from primordia.habitats.mujoco.picture import Renderer
 from primordia.habitats.silence import quiet, silent
 
 WIDTH = 400
-"""pixels of the longer side of a grid, and the least of a row of bars"""
+"""pixels of the longer side of a grid, and smallest width of a row of bars"""
 GROUND = np.array([24, 26, 32])
 BAR, AXIS = "#23395b", "#8a8a8a"
 BLOCK = 64
@@ -27,7 +27,7 @@ BLOCK = 64
 
 
 def rendered(env: Any, state: Any, params: Any) -> Image.Image | None:
-    """Return the picture of a state by the environment's library; None if it cannot draw it.
+    """Return the picture of a state by the environment's library; None if the library draws none.
 
     Raises:
         InputError: this machine cannot draw robots.
@@ -44,7 +44,7 @@ def _renderer(env: Any) -> Callable[[Any, Any], Image.Image]:
     """Return a function that draws a state with parameters.
 
     Raises:
-        AttributeError, ImportError: there is none.
+        AttributeError, ImportError: there is no such function.
     """
     if isinstance(env, Playground):
         robot = Renderer(env.env.mj_model)
@@ -81,7 +81,7 @@ def _coloured(cells: np.ndarray) -> Image.Image:
 
 
 def _bars(senses: np.ndarray) -> Image.Image:
-    """Return a bar from the middle for each sense, up to -1 or 1."""
+    """Return a picture with a bar for each sense, from the middle up to 1 or down to -1."""
     width, half = max(len(senses), WIDTH), WIDTH // 4
     picture = Image.new("RGB", (width, 2 * half), PAPER)
     pen, each = ImageDraw.Draw(picture), width / len(senses)

@@ -1,6 +1,6 @@
 """Tasks with the interface of MuJoCo Playground: `reset(key)` and `step(state, action)`, without a key.
 
-MJX computes many of them. It is made for GPUs: on a CPU a cheetah's body takes 8 ms a step.
+MJX computes many of these tasks. MJX is made for GPUs: on a CPU a cheetah's body takes 8 ms a step.
 """
 
 from collections.abc import Mapping

@@ -1,10 +1,11 @@
 """Functions of JAX whose products and sums are rounded in the same way in every program.
 
-A compiler may contract a product and a sum into a fused multiply-add, which rounds once. Whether it does
-depends on what else the program computes: gymnax's Pendulum had other bits in a loop than tick by tick.
-Here the operations of a function are executed one by one. After each product of floats comes an integer
-operation that changes nothing, which the compiler does not know (see `primordia.rounding`). Sums over
-axes, also those of matrix products, are trees of additions, whatever the number of bodies.
+A compiler may contract a product and a sum into a fused multiply-add, which rounds once. Whether the
+compiler does so depends on what else the program computes: gymnax's Pendulum had other bits in a
+loop than tick by tick. Here the operations of a function are executed one by one. After each product of
+floats comes an integer operation that changes nothing, but the compiler does not know this (see
+`primordia.rounding`). Sums over axes, also those of matrix products, are trees of additions, whatever
+the number of bodies.
 """
 
 from collections.abc import Callable, Sequence
@@ -54,7 +55,7 @@ def rounded(function: Callable, zero: Array) -> Callable:
 
 
 def uses_first(function: Callable, *arguments: Any) -> bool:
-    """Return whether a function of arrays, given by their shapes, uses the first of them."""
+    """Return whether a function uses its first argument; the shapes of arguments are enough."""
     jaxpr = jax.make_jaxpr(function)(*arguments).jaxpr
     used = [variable for equation in jaxpr.eqns for variable in equation.invars]
     return any(variable is jaxpr.invars[0] for variable in [*used, *jaxpr.outvars])
@@ -178,7 +179,7 @@ class _Rounded:
 
 
 def _may_be_added(function: Jaxpr) -> set[Any]:
-    """Return the variables that something may be added to: their users are not all in NO_SUM."""
+    """Return the variables to which something may be added: not all of their users are in NO_SUM."""
     adding = [each for each in function.eqns if each.primitive.name not in NO_SUM]
     used = [*function.outvars, *(variable for each in adding for variable in each.invars)]
     return {variable for variable in used if not isinstance(variable, Literal)}

@@ -43,7 +43,7 @@ class Step(NamedTuple):
 
 
 class Simulator:
-    """One environment with its parameters. Its functions are of one body and can be mapped over many."""
+    """One environment with its parameters. Each function is for one body and can be mapped over many."""
 
     def __init__(self, env: Any, params: Any, time_limit: bool) -> None:
         self.env, self.params = env, params
@@ -165,7 +165,7 @@ def traced() -> Iterator[None]:
 
 @lru_cache(maxsize=64)
 def simulator(name: str, params: str, time_limit: bool) -> Simulator:
-    """Return the environment of a name, with some parameters replaced (JSON).
+    """Return the environment with this name, with some parameters replaced; `params` is JSON.
 
     Raises:
         ValueError: there is no such environment or parameter, or its library is not installed.
@@ -177,7 +177,7 @@ def simulator(name: str, params: str, time_limit: bool) -> Simulator:
 
 
 def _params(env: Any, name: str, changed: dict[str, Any], time_limit: bool) -> Any:
-    """Return the parameters, with replaced ones, and without a time limit unless it is kept."""
+    """Return the parameters after replacements, and without a time limit unless `time_limit` is true."""
     params = env.default_params
     known = [each.name for each in dataclasses.fields(params)] if is_dataclass(params) else []
     for each in changed:

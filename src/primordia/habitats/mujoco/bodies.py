@@ -16,7 +16,7 @@ class Bodies:
     """A batch of bodies of one model, which a habitat steps."""
 
     def __init__(self, model: Any, cells: int, observed: Collection[str]) -> None:
-        """Allocate the bodies, and observe those of `simulator.observables` that are named."""
+        """Allocate the bodies, and observe the `simulator.observables` named in `observed`."""
         # With one thread the batch starts none: the calling thread steps the bodies.
         self.batch = package().batch.Batch(model, cells, nthread=cores.count())
         bind, wanted = self.batch.bind, set(observed)

@@ -2,8 +2,8 @@
 
 Schmidgall & Hays 2021, "Reacher", "HalfCheetah", "Walker". Settings define senses, death, food and effort
 by expressions of named parts of the state. The simulator is MuJoCo's batch (extra `primordia[mujoco]`).
-Its results do not depend on the number of threads. A row of its state includes the warm start, so a body
-goes on exactly from it.
+The results do not depend on the number of threads. A saved row of state includes the warm start of
+MuJoCo's solver, so a body goes on exactly.
 """
 
 from functools import cached_property
@@ -213,7 +213,7 @@ class MuJoCo(HostHabitat, Settings):
         return self.target.joint_addresses(self._model) if self.target else []
 
     def original(self) -> "MuJoCo | None":
-        """Return the game as the standard benchmark scores it; None without `scored`."""
+        """Return the game as the standard benchmark scores it; None if `scored` is not set."""
         changed = {**self.model_dump(), "scored": {}, **self.scored}
         return MuJoCo(**changed) if self.scored else None
 

@@ -27,7 +27,7 @@ def package() -> Any:
     law reports these as faults.
 
     Raises:
-        ValueError: it is not installed, or cannot be loaded with this MUJOCO_GL.
+        ValueError: MuJoCo is not installed, or cannot be loaded with this MUJOCO_GL.
     """
     try:
         mujoco = import_module("mujoco")
@@ -65,7 +65,7 @@ def load_model(file: str, timestep: float | None) -> Any:
 
 
 def fingerprint(model: Any) -> str:
-    """Return twelve digits of the SHA-256 of a model as MuJoCo has compiled it, with its meshes."""
+    """Return twelve digits of the SHA-256 of a compiled model, with its meshes."""
     mujoco = package()
     binary = np.zeros(mujoco.mj_sizeModel(model), np.uint8)
     mujoco.mj_saveModel(model, None, binary)

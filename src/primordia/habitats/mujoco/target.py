@@ -1,4 +1,4 @@
-"""A target that a robot reaches, and that then moves to a random position in a disc."""
+"""A target for a robot. When a robot reaches it, the target moves to a random position in a disc."""
 
 import math
 from typing import Any
@@ -12,7 +12,7 @@ from primordia.settings.base import Settings
 
 
 class Target(Settings):
-    """An object to be reached; it then moves to a random position in a disc of the plane x, y."""
+    """An object to be reached, which then moves to a random position in a disc of the plane x, y."""
 
     body: str = Field(description="the target's body")
     by: str = Field(description="the robot's body that must reach the target")
@@ -33,12 +33,16 @@ class Target(Settings):
                 )
 
     def joint_addresses(self, model: Any) -> list[tuple[int, int]]:
-        """Return the indices in qpos and in qvel of its joints, x and y."""
+        """Return the indices in qpos and in qvel of the target's joints, x and y."""
         joints = map(model.joint, self.joints)
         return [(int(joint.qposadr[0]), int(joint.dofadr[0])) for joint in joints]
 
     def reached(self, positions: dict[str, np.ndarray]) -> np.ndarray:
-        """Return which robots reach it, bool (N,), from positions of bodies by name, (N, 3) in metres."""
+        """Return which robots reach the target, bool (N,).
+
+        Args:
+            positions: name of a body -> the body's positions in metres, (N, 3).
+        """
         difference = positions[self.body] - positions[self.by]
         return np.sqrt((difference * difference).sum(axis=1)) < self.within
 
