@@ -62,7 +62,7 @@ class ForkedFrom(Settings):
     """The source of a fork. Its first checkpoint is in the run's directory, under `origin`."""
 
     run: str = Field(description="the run that was forked")
-    tick: int = Field(ge=1, lt=2**63, description="the tick at the end of which it was forked")
+    tick: int = Field(ge=1, lt=2**63, description="the tick after which the run was forked")
 
 
 class Config(Settings):
@@ -73,7 +73,7 @@ class Config(Settings):
     habitat: dict[str, Any] = Field(description="`name` of the habitat, and its own settings")
     brain: dict[str, Any] = Field({}, description="`kind` of the brain, and its own settings")
     motor: Motor = Motor()
-    cells: int = Field(32, ge=2, le=2**24, description="cells of one world")
+    cells: int = Field(32, ge=2, le=2**24, description="number of cells of one world")
     placement: Placement = Placement()
     replication: Rate = Field(
         0.05, ge=0, le=1, description="probability that an organism replicates in a tick"
@@ -83,15 +83,17 @@ class Config(Settings):
     ancestors: tuple[str, ...] = Field(
         (),
         strict=False,
-        description="genome files (`primordia export`) whose genomes founders take in turn",
+        description="genome files (`primordia export`); founders take these genomes in turn",
     )
     inheritance: Literal["parent", "founder"] = Field(
-        "parent", description="parent: heredity; founder: every child is a founder (the control)"
+        "parent",
+        description="parent: a child inherits its parent's genome; founder: every child is a new"
+        " founder (the control)",
     )
     genesis: Literal["one", "fill"] = Field(
         "one",
-        description="how life starts and restarts: one founder in a random cell, or a "
-        "founder in every cell (fill)",
+        description="how life starts and restarts. one: one founder in a random cell; fill: a "
+        "founder in every cell",
     )
     hazard: Rate = Field(
         0.0, ge=0, le=1, description="probability that an organism dies by accident in a tick"
@@ -110,7 +112,9 @@ class Config(Settings):
         1000, ge=1, lt=2**31, description="ticks from one row of metrics to the next"
     )
     seed: int = Field(0, ge=0, lt=2**64, description="seed of the first world")
-    seeds: int = Field(1, ge=1, le=2**16, description="worlds, with consecutive seeds")
+    seeds: int = Field(
+        1, ge=1, le=2**16, description="number of worlds, which have consecutive seeds"
+    )
     stop: Stop = Stop()
     fork: ForkedFrom | None = Field(None, description="set by `primordia fork`")
 
@@ -316,7 +320,7 @@ def _check(config: Config) -> None:
     if config.motor.kind == "gaussian" and not continuous:
         raise InputError(
             "motor.kind: this habitat's actions are discrete, so a gaussian motor cannot be used;"
-            " set direct"
+            " set motor.kind to direct"
         )
     law = config.build_law(habitat)
     try:

@@ -72,7 +72,7 @@ def test_children_are_exact_copies(sides: tuple[Subjects, Subjects], tmp_path: P
 
 def test_one_organism_competes_on_a_side(poles: primordia.Run) -> None:
     both = of_run(poles.opened())
-    with pytest.raises(InputError, match="name one organism to compete; these are 2"):
+    with pytest.raises(InputError, match="name one organism to compete, not 2"):
         compete(both, both)
 
 

@@ -36,7 +36,7 @@ def test_a_file_gives_the_genomes_that_were_exported(poles: primordia.Run, tmp_p
 def test_a_file_must_hold_the_genome_and_say_its_task(poles: primordia.Run, tmp_path: Path) -> None:
     file = tmp_path / "one.safetensors"
     poles.export(file, 0)
-    with pytest.raises(InputError, match="has no genome 1; they count from 0 to 0"):
+    with pytest.raises(InputError, match="has no genome 1; the genomes are 0 to 0"):
         of_file(file, (1,))
     with pytest.raises(InputError, match="there is no genome file"):
         of_file(tmp_path / "none.safetensors")
@@ -63,7 +63,7 @@ def test_of_a_task_the_longest_lived_founders_live() -> None:
     assert lived[best.organism].min() >= np.sort(lived)[-BEST]
     np.testing.assert_array_equal(best.players.genomes, everyone.players.genomes[best.organism])
     np.testing.assert_array_equal(lifespans(best.players, 20_000), lived[best.organism])
-    with pytest.raises(InputError, match="has no genome 512; they count from 0 to 511"):
+    with pytest.raises(InputError, match="has no genome 512; the genomes are 0 to 511"):
         of_task("CartPole-survival", [512])
 
 

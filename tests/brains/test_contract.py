@@ -185,7 +185,7 @@ def test_brains_are_found_by_name_and_by_class() -> None:
         ({"kind": 5}, "brain.kind: no brain named 5"),
         (
             {"kind": "tests.toys:Meadow"},
-            "brain.kind: Meadow is not a brain: subclass Brain of primordia.brains",
+            "brain.kind: Meadow is not a brain: make it a subclass of primordia.brains",
         ),
         ({"kind": "tests.toys:Nothing"}, "'tests.toys:Nothing' cannot be loaded"),
         (

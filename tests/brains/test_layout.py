@@ -50,7 +50,7 @@ def test_equal_layouts_are_one_value() -> None:
 @pytest.mark.parametrize(
     ("blocks", "says"),
     [
-        ((), "it has no blocks of weights"),
+        ((), r"blocks\(\) names no blocks of weights"),
         (
             (("in.put", (2,)),),
             "'in.put' cannot name a block of weights; use letters, digits, _ and -",

@@ -44,7 +44,7 @@ def test_a_state_dictionary_becomes_a_founder_and_its_policy_has_the_weights(
     ("change", "says"),
     [
         ({"input": None}, "the block input is missing"),
-        ({"input": "turned"}, "transpose it"),
+        ({"input": "turned"}, "transpose the block"),
         ({"bias": np.zeros(3)}, "bias is not a block of this task's brain, which has input"),
         ({"output": np.full((2, 32), np.nan)}, "not finite numbers"),
     ],

@@ -58,7 +58,12 @@ def test_a_new_task_file_says_what_can_be_changed_and_is_lived_by(tmp_path: Path
     file = tmp_path / "pond.toml"
     assert here("new", file, "--env", POND).returncode == 0
     text = file.read_text()
-    for part in ("obs[0] to obs[1]", 'info["age"]', "time_limit = 50", "exactly from their state"):
+    for part in (
+        "obs[0] to obs[1]",
+        'info["age"]',
+        "time_limit = 50",
+        "exactly from their saved states",
+    ):
         assert part in text
     assert here("run", file, "--out", tmp_path / "run", *SHORT, "--ticks", "20").returncode == 0
     complains(here("new", file, "--env", POND), 2, f"{file} exists")
@@ -71,7 +76,7 @@ def test_a_new_task_file_says_what_can_be_changed_and_is_lived_by(tmp_path: Path
 def test_check_says_what_is_wrong_by_its_status() -> None:
     sound, worn = here("check", POND), here("check", "tests.ponds:Worn-v0")
     assert (sound.returncode, worn.returncode) == (0, 1)
-    assert "lives go on exactly from their state" in sound.stdout
+    assert "lives go on exactly from their saved states" in sound.stdout
     assert "Found: a life depends on earlier lives" in worn.stdout
     complains(here("check", "gym:tests.ponds:Talking-v0"), 2, "space['says'] is a Text")
 

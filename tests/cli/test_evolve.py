@@ -19,7 +19,7 @@ def test_a_replay_is_recommended_where_the_habitat_draws_pictures(
     figures = f"Figures: primordia plot {run}"
     video = f"Video of the champion: primordia replay {run}"
     assert (figures in lines, video in lines) == (True, False)
-    complains(here("replay", run), 2, "draws no pictures (it has no `picture` and no `rate`)")
+    complains(here("replay", run), 2, "draws no pictures, since it has no `picture` and no `rate`")
     monkeypatch.setattr(Meadow, "rate", 50.0, raising=False)
     monkeypatch.setattr(Meadow, "picture", lambda self, body, action: None)
     lines = here("resume", run, "--ticks", 3).stdout.splitlines()

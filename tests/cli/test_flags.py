@@ -184,9 +184,11 @@ def test_a_misspelt_option_is_corrected(command: click.Command) -> None:
 
 
 def test_an_argument_given_as_a_flag_is_explained() -> None:
-    complains(here("run", "--task", TASK), 2, "give the argument without it:", "run TASK|FILE.toml")
     complains(
-        here("fork", "--run", "x", "--at", "3"), 2, "give the argument without it:", "fork RUN"
+        here("run", "--task", TASK), 2, "give the argument without a flag:", "run TASK|FILE.toml"
+    )
+    complains(
+        here("fork", "--run", "x", "--at", "3"), 2, "give the argument without a flag:", "fork RUN"
     )
 
 

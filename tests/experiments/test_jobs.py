@@ -150,8 +150,8 @@ def test_a_process_that_dies_is_replaced_and_its_job_tried_again(
     out = tmp_path / "out"
     done = here("experiment", write(tmp_path), "--out", out, "--jobs", 1)
     assert done.returncode == 0, done.stderr
-    assert done.stderr.count("its process ended with status -9") == 2
-    assert done.stderr.count("it is tried again") == 2
+    assert done.stderr.count("the job's process ended with status -9") == 2
+    assert done.stderr.count("the job is tried again") == 2
     assert digests_of(begin(out)) == alone
 
 
@@ -164,9 +164,9 @@ def test_a_job_that_fails_stops_nobody_else(tmp_path: Path) -> None:
     assert done.returncode == 1
     lines = done.stderr.strip().splitlines()
     assert lines[0].startswith("primordia: job 2 (mild) failed: ")
-    assert lines[0].endswith("; it is tried again")
+    assert lines[0].endswith("; the job is tried again")
     assert len(lines) == 4
-    assert lines[-1].endswith("1 job failed; the same command tries again")
+    assert lines[-1].endswith("1 job failed; give the same command to try again")
     told = json.loads(here("experiment", out, "--status", "--json").stdout)
     assert told["jobs"] == {"done": 3, "running": 0, "failed": 1, "waiting": 0}
     assert [entry["job"] for entry in told["failed"]] == [2]
@@ -218,7 +218,7 @@ def test_some_arms_are_run_alone(tmp_path: Path) -> None:
     file, out = write(tmp_path), tmp_path / "out"
     done = here("experiment", file, "--out", out, "--only", "harsh", "--jobs", 1)
     assert done.returncode == 0
-    assert "2 jobs of other arms not done yet" in done.stderr
+    assert "2 jobs of other arms left to do" in done.stderr
     assert begin(out).status().jobs["done"] == 2
     assert not (out / "mild").exists()
     complains(here("compare", out), 2, f"arm mild of {out} has not begun yet")

@@ -74,11 +74,11 @@ def test_words_of_a_question_may_change_and_settings_may_not(tmp_path: Path) -> 
         ({"arms": [{"name": "jobs"}]}, "'jobs' cannot name an arm"),
         ({"arms": [{"name": "a/b"}]}, "arm 'a/b': name"),
         ({"arms": [{"name": ".."}]}, "arm '..': name"),
-        ({"arms": [{"hazard": 0.1}]}, "an arm has no name"),
+        ({"arms": [{"hazard": 0.1}]}, "table has no `name`"),
         ({"arms": []}, "one or more arms"),
         ({"arms": "heredity"}, "one or more arms"),
-        ({"questions": "?"}, "there is no 'questions'; did you mean 'question'?"),
-        ({"sees": 3}, "there is no 'sees'; did you mean 'seeds'?"),
+        ({"questions": "?"}, "there is no setting 'questions'; did you mean 'question'?"),
+        ({"sees": 3}, "there is no setting 'sees'; did you mean 'seeds'?"),
         ({"question": 3}, "question must be a text"),
         ({"jobs": {"world": 3}}, "jobs: there is no setting 'world'; did you mean 'worlds'?"),
         ({"jobs": {"worlds": 0}}, "jobs: worlds: "),
@@ -113,9 +113,9 @@ def test_a_wrong_request_is_one_clear_line(tmp_path: Path) -> None:
     assert not out.exists()
     for alone in (["--jobs", "2"], ["--only", "mild"], ["--ray"]):
         complains(asked("--job", "1", *alone), 2, f"leave out {alone[0]}")
-    complains(asked("--job", "4"), 2, f"{out} has no job 4; they count from 0 to 3")
+    complains(asked("--job", "4"), 2, f"{out} has no job 4; the jobs are 0 to 3")
     complains(asked("--only", "mlid"), 2, "there is no arm 'mlid'; the arms are mild, harsh")
-    complains(asked("--json"), 2, "--json goes with --status")
+    complains(asked("--json"), 2, "--json needs --status")
     complains(here("experiment", tmp_path / "none.toml"), 2, "none.toml cannot be read")
     (tmp_path / "full").mkdir()
     (tmp_path / "full" / "a").touch()
@@ -136,5 +136,5 @@ def test_a_fork_has_the_jobs_and_settings_of_its_source(tmp_path: Path) -> None:
         ("same/0-1", "../one/harsh/0-1"),
         ("same/2", "../one/harsh/2"),
     ]
-    with pytest.raises(InputError, match="a fork takes its task, seeds and cells from one/harsh"):
+    with pytest.raises(InputError, match="a fork takes task, seeds and cells from one/harsh"):
         read(write(tmp_path, "two", fork=fork, **other), tmp_path / "runs" / "two")

@@ -84,7 +84,7 @@ def test_a_cluster_that_is_not_there_is_one_clear_line(
         taken.bind(("127.0.0.1", 0))
         nobody = f"127.0.0.1:{taken.getsockname()[1]}"
         complains(here("experiment", file, "--out", out, "--ray", nobody), 2, "no cluster answers")
-    with pytest.raises(InputError, match="--jobs is the number for this machine"):
+    with pytest.raises(InputError, match="--jobs is for jobs on this machine"):
         primordia.experiment(file, out, jobs=2, ray="")
     monkeypatch.setitem(sys.modules, "ray", None)
     complains(here("experiment", file, "--out", out, "--ray"), 2, "pip install 'primordia[ray]'")

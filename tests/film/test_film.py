@@ -53,10 +53,10 @@ def test_a_world_whose_habitat_draws_nothing_is_filmed_alone(tmp_path: Path) -> 
 
 def test_what_cannot_be_filmed_is_one_line(poles: primordia.Run, tmp_path: Path) -> None:
     for words, line in (
-        (("--world", 3), "has no world 3; they count from 0 to 0"),
+        (("--world", 3), "has no world 3; the worlds are 0 to 0"),
         (("--from", 200, "--to", 100), "not from 200 to 100"),
         (("--organism", 10**6), "no organism"),
-        (("--out", tmp_path / "film.avi"), "a video is an .mp4 or a .gif"),
+        (("--out", tmp_path / "film.avi"), "the file of a video must end with .mp4 or .gif"),
     ):
         complains(here("film", poles.path, *words), 2, line)
     assert not list(tmp_path.iterdir())

@@ -105,7 +105,9 @@ def test_a_life_that_cannot_begin_is_a_fault() -> None:
 
 
 def test_too_many_errors_stop_the_run() -> None:
-    says = r"\d organisms died of errors in tests.ponds:Crashing-v0, the last of: ZeroDivisionError"
+    says = (
+        r"\d organisms died of errors in tests.ponds:Crashing-v0, the last error: ZeroDivisionError"
+    )
     with pytest.raises(Trouble, match=says):
         Lived(config(pond("Crashing", faults=2)), 200)
 

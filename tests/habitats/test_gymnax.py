@@ -144,7 +144,7 @@ def test_a_picture_is_drawn_of_what_is_sensed() -> None:
 
 WRONG: list[tuple[dict[str, Any], str]] = [
     ({"env": "tests.walks:Mute"}, "a brain needs two or more choices"),
-    ({"env": "tests.walks:Growing"}, "its state has a different form"),
+    ({"env": "tests.walks:Growing"}, "the state has one form"),
     ({"env": "tests.walks:Nothing"}, "has no default_params, reset_env, step_env"),
     ({"env": "tests.walks:Missing"}, "cannot be made"),
     ({"env": "tests.walks:Walk", "params": {"gust": 1.0}}, "did you mean 'gusts'"),

@@ -30,7 +30,7 @@ def test_what_is_wrong_is_found(name: str, faults: list[str]) -> None:
 
 def test_functions_that_keep_something_between_calls_are_found() -> None:
     (fault,) = measure(Gymnax(env="tests.walks:Counting")).faults
-    assert fault.startswith("its functions differ when they are traced again")
+    assert fault.startswith("functions of the environment differ when traced again")
 
 
 def test_lives_are_measured() -> None:

@@ -74,7 +74,8 @@ def test_what_is_known_of_an_environment_is_said() -> None:
         "Observation: 4 numbers, obs[0] to obs[3] in conditions.",
         "Action: one of 2.",
         'Numbers in info: info["discount"].',
-        "The environment's time limit (max_steps_in_episode) is off; time_limit = true keeps it.",
+        "The environment's time limit (max_steps_in_episode) is off;"
+        " time_limit = true turns the limit on.",
     ):
         assert line in facts
 

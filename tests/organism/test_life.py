@@ -332,8 +332,8 @@ def test_wrong_input_is_an_error_that_says_why(poles: Path, mill: Path, tmp_path
     complains(here("replay", poles, "--organism", 10**6), 2, "no organism 1000000")
     complains(here("replay", poles, "--world", 2), 2, "no world 2")
     complains(here("replay", poles, "--from", 10**7), 2, "can be seen from age 1 to")
-    complains(here("replay", poles, "--out", tmp_path / "x.avi"), 2, ".mp4 or a .gif")
-    complains(here("replay", mill), 2, "draws no pictures (it has no `picture` and no `rate`)")
+    complains(here("replay", poles, "--out", tmp_path / "x.avi"), 2, ".mp4 or .gif")
+    complains(here("replay", mill), 2, "draws no pictures, since it has no `picture` and no `rate`")
     complains(here("replay", tmp_path), 2, "is not a run")
 
 
@@ -342,11 +342,13 @@ def test_a_habitat_without_pictures_gives_no_video(
 ) -> None:
     values = {"task": "host", "habitat": HOST_CARTPOLE, "cells": 4, "stop": {"ticks": 20}}
     loop.start(config(values), tmp_path / "run")
-    no_pictures = "draws no pictures (it has no "
+    no_pictures = "draws no pictures, since it has no "
     complains(here("replay", tmp_path / "run"), 2, no_pictures, "`picture` and no `seen`")
     monkeypatch.setattr(HostCartPole, "picture", None, raising=False)
     complains(
-        here("replay", tmp_path / "run"), 2, "draws no pictures (it has no `seen` and no `rate`)"
+        here("replay", tmp_path / "run"),
+        2,
+        "draws no pictures, since it has no `seen` and no `rate`",
     )
     (seen,) = RelivedLife.of(Archive(tmp_path / "run"), 0).stretches()
     assert seen.bodies is None

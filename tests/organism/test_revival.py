@@ -61,7 +61,7 @@ def test_a_life_revived_from_a_checkpoint_agrees_too(chain: list[Path]) -> None:
         for since in (120, 121, 10**20):
             found = Organism(run, int(row)).revive(since)
             assert (found.begin, found.begins, found.agrees) == ("checkpoint", 120, True)
-    with pytest.raises(InputError, match=r"--from 1: .* keeps 120 of it"):
+    with pytest.raises(InputError, match=r"--from 1: .* keeps only later checkpoints: 120"):
         Organism(run, int(across[0])).revive(since=1)
     with pytest.raises(InputError, match="keeps no checkpoint of these ticks"):
         Organism(run, 0).revive(since=100)
@@ -155,7 +155,7 @@ def test_what_limits_the_comparison_is_said(
     number = dead(Archive(run))
     assert revive(Archive(run), number).notes == ()
     with directory.locked(run):
-        assert "the run goes on; these are its records up to tick 150" in only_note(
+        assert "the run goes on; the records end at tick 150" in only_note(
             revive(Archive(run), number)
         )
     versions = json.loads((run / "versions.json").read_text())
@@ -165,11 +165,11 @@ def test_what_limits_the_comparison_is_said(
     reseal(newest(run), lambda content: content["progress"].update(exact=False, restarts=2))
     inexact, restarts = revive(Archive(run), number).notes
     assert inexact.startswith("exactness is off")
-    assert "began again 2 times, when the run went on" in restarts
+    assert "got new bodies 2 times, when the run was resumed" in restarts
     lives = Archive(chain[0]).lives
     row = int(np.flatnonzero(lives.cause == Cause.REPLACED)[0])
     replaced = Organism(Archive(chain[0]), row).revive()
-    assert "a child took its cell in that tick" in only_note(replaced)
+    assert "a child took the cell in that tick" in only_note(replaced)
 
 
 def test_a_missing_segment_is_an_error_of_one_line(chain: list[Path], tmp_path: Path) -> None:
@@ -196,7 +196,7 @@ def test_what_cannot_be_revived_is_refused(
     complains(
         here("revive", run, organism, "--save", tmp_path / "a.xls"), 2, ".npz, .parquet, .csv"
     )
-    complains(here("revive", run, organism, "--video", tmp_path / "a.avi"), 2, ".mp4 or a .gif")
+    complains(here("revive", run, organism, "--video", tmp_path / "a.avi"), 2, ".mp4 or .gif")
     complains(here("revive", run, organism, "--video", tmp_path / "a.gif"), 2, "no pictures")
     complains(here("revive", run, organism, "--from", 3), 2, "keeps no checkpoint of these ticks")
     opened = Archive(run)
@@ -206,7 +206,7 @@ def test_what_cannot_be_revived_is_refused(
     monkeypatch.setattr(Mirror, "exact", False, raising=False)
     older = Archive(chain[1])
     if older.schema.tallies:
-        with pytest.raises(InputError, match="older than the fork, and its habitat cannot save"):
+        with pytest.raises(InputError, match="older than the fork, and the habitat cannot save"):
             Organism(older, 0).revive()
 
 

@@ -178,7 +178,7 @@ def test_without_its_source_a_fork_begins_with_roots(tmp_path: Path) -> None:
     assert len(whole) > len(own)
     source.rename(tmp_path / "kept")
     word = (
-        f"primordia: {{}} was forked from {source}, which is not there or is another run now: the"
+        f"primordia: {{}} was forked from {source}, which is missing or was replaced by another run: the"
         " organisms alive at tick 60 are roots\n"
     )
 

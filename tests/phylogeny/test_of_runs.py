@@ -123,7 +123,10 @@ def test_without_its_source_a_line_ends_at_the_fork(run: Path, tmp_path: Path) -
         said: list[str] = []
         own = fork.ancestors(world=1, say=lambda line: said.append(str(line)))
         (line,) = said
-        assert "which is not there or is another run now: the organisms alive at tick 200" in line
+        assert (
+            "which is missing or was replaced by another run: the organisms alive at tick 200"
+            in line
+        )
         assert own.line.entered[0] > 0
         assert own.line.id.tolist() == whole.line.id[-len(own.line) :].tolist()
         done = here("ancestors", fork.path, "--world", 1)

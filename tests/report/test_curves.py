@@ -102,7 +102,10 @@ def test_words_of_one_world_are_in_the_singular(tmp_path: Path) -> None:
     _, happened, lives = words(run, info(run))
     assert happened.startswith("In 50 ticks, 1 organism was born, and none has died.")
     assert "1 organism lives now in the 24 cells." in happened
-    assert lives == "The longest life is that of organism 0, born at tick 0: 50 ticks; it is alive."
+    assert (
+        lives
+        == "The longest life is that of organism 0, born at tick 0: 50 ticks. This organism is alive."
+    )
     (table,) = named(tmp_path / "run")["Age at death"]["tables"]
     assert (table["x"], table["curves"][0]["values"]) == ([1], [50])
 

@@ -319,7 +319,7 @@ def test_a_fork_cut_off_before_it_began_is_an_error_that_says_why(
     fork = primordia.load(poles).fork(5, tmp_path / "fork", stop={"ticks": 6})
     for folder in ("origin", "checkpoints"):
         (fork.path / folder).rename(tmp_path / folder)
-    with pytest.raises(InputError, match="cut off before it began"):
+    with pytest.raises(InputError, match="fork without a first checkpoint"):
         fork.resume()
 
 

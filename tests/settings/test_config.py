@@ -188,7 +188,7 @@ def test_help_lists_every_setting_with_its_value_and_meaning(tmp_path: Path) -> 
     assert "is saturated [10000]" in squeezed
     assert "--stop.until" in squeezed
     assert '["saturation"]' in squeezed
-    assert "--placement.rows rows of a torus" in squeezed
+    assert "--placement.rows number of rows of a torus" in squeezed
     assert "[none]" in squeezed
 
 
@@ -218,7 +218,10 @@ def test_help_without_a_task_shows_what_all_tasks_have() -> None:
         assert habitat == ["--habitat.name"]
         assert "--brain.hidden " in done.stdout
         squeezed = " ".join(done.stdout.split())
-        assert f"primordia {command} {named} --help` shows those of its habitat too" in squeezed
+        assert (
+            f"primordia {command} {named} --help` also shows the settings of the habitat"
+            in squeezed
+        )
 
 
 def test_help_shows_the_values_of_a_file_or_else_the_defaults(tmp_path: Path) -> None:

@@ -121,11 +121,11 @@ JAX_FAULTS: list[tuple[Any, str]] = [
     (Melting(), "gives bodies after a step as float16"),
     (Changing(), "bodies of different forms in step and in reset"),
     (Shared(), "array float32 .3,.; its first axis must be bodies"),
-    (Mute(), "reports .*; return an Outcome from step"),
-    (Senseless(), "has no 'senses_size'; state it as an attribute"),
+    (Mute(), "returns .* from step; return an Outcome"),
+    (Senseless(), "has no 'senses_size'; define senses_size as an attribute"),
     (Unready(), "has words = -1; it must be a whole number of at least 0"),
     (Choiceless(), r"has action = Discrete\(size=1\); it must be Discrete\(2\) or more"),
-    (Scribble(), "draws str; return a PIL.Image.Image"),
+    (Scribble(), "returns str from picture; return a PIL.Image.Image"),
 ]
 
 

@@ -163,7 +163,7 @@ def test_the_mutations_without_these_faults(mutation: Mutation) -> None:
             "organism 0 although it is marked as a copy; return the parent's weights unchanged",
         ),
         (Cleaner(), "although it is marked as a copy"),
-        (Timed(), "notes 'tick', which cannot be a column of births; take a word other than"),
+        (Timed(), "has the note 'tick', which cannot be a column of births; use a name other than"),
         (Real(), r"gives notes as float32 \(32, 1\); the contract says int32 \(32, 1\)"),
         (Ranked(), "gives founders different notes"),
         (Neighbourly(), "instead of 32 are born together"),

@@ -72,8 +72,8 @@ def test_both_dashboards_show_the_metrics_of_each_world(run: Path, tmp_path: Pat
     done = here("track", run, "--tensorboard", tmp_path, "--wandb", tmp_path)
     assert done.returncode == 0, done.stderr
     assert done.stdout.splitlines() == [
-        f"Look at it with: tensorboard --logdir {tmp_path}",
-        f"Look at it with: wandb sync {tmp_path}/wandb/offline-run-*",
+        f"Look at the metrics with: tensorboard --logdir {tmp_path}",
+        f"Look at the metrics with: wandb sync {tmp_path}/wandb/offline-run-*",
     ]
     shows(tmp_path, run)
 

@@ -113,7 +113,9 @@ def test_an_organism_that_lived_at_a_fork_is_in_its_origin(run: Path, tmp_path: 
 
     rewrite(fork / "origin", change)
     done = here("export", fork, tmp_path / "genome", "--organism", number)
-    complains(done, 1, f"organism {number} of world 0 is not in the state where it lived")
+    complains(
+        done, 1, f"organism {number} of world 0 is missing in the state of a tick at which it lived"
+    )
 
 
 def test_an_array_is_read_and_checked_when_it_is_needed(run: Path) -> None:

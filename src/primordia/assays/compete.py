@@ -95,7 +95,7 @@ def compete(
     for side in (one, other):
         if len(side.organism) != 1:
             raise InputError(
-                f"{side.source}: name one organism to compete; these are {len(side.organism)}"
+                f"{side.source}: name one organism to compete, not {len(side.organism)}"
             )
     layout = one.law.heredity.layout
     if layout != other.law.heredity.layout:

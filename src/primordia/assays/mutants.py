@@ -91,7 +91,7 @@ def _of_one(
         found = np.concatenate([found, np.asarray(children)[np.asarray(mutated)]])
         if len(found) >= count:
             return found[:count].astype(np.float32)
-    raise InputError(f"{subjects.source}: its mutation makes no mutants with the present settings")
+    raise InputError(f"{subjects.source}: the mutation makes no mutants with the present settings")
 
 
 def _children(

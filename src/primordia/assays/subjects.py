@@ -118,7 +118,9 @@ def of_file(
     """
     named = task or genomes.about(file).get("task")
     if named is None:
-        raise InputError(f"{file} does not say which task its genomes live in; name it: --task")
+        raise InputError(
+            f"{file} does not say which task its genomes live in; name the task: --task"
+        )
     device.prepare()
     chosen = changed(config.load(named), habitat or {})
     everyone = genomes.read([str(file)], chosen.build_layout(chosen.build_habitat()))
@@ -178,4 +180,4 @@ def _fresh(source: str, chosen: Config, number: np.ndarray, own: np.ndarray) -> 
 
 def _check_number(source: str | Path, number: int, count: int) -> None:
     if not 0 <= number < count:
-        raise InputError(f"{source} has no genome {number}; they count from 0 to {count - 1}")
+        raise InputError(f"{source} has no genome {number}; the genomes are 0 to {count - 1}")

@@ -65,8 +65,8 @@ def of_state(path: Path, layout: Layout) -> np.ndarray:
             other = "is missing" if found is None else f"is {_described({name: found})}"
             turned = found is not None and found == shape[::-1]
             raise InputError(
-                f"{path}: the block {name} {other}; this task's brain has {wanted}"
-                f"{'; transpose it' if turned else ''}"
+                f"{path}: the block {name} {other}; this task's brain needs {wanted}"
+                f"{'; transpose the block' if turned else ''}"
             )
     if unknown := sorted(set(state) - set(layout.names)):
         raise InputError(
@@ -112,7 +112,7 @@ def _read(path: Path, layout: Layout) -> np.ndarray:
         )
     counts = {len(block) for block in blocks.values()}
     if len(counts) != 1 or 0 in counts:
-        raise InputError(f"{path} holds no complete genome; export it again")
+        raise InputError(f"{path} holds no complete genome; export the genomes again")
     genomes = layout.join(blocks).astype(np.float32)
     if not np.isfinite(genomes).all():
         raise InputError(f"{path} has weights that are not finite numbers; use another genome")

@@ -13,7 +13,7 @@ from primordia.rounding import rounded_product
 
 Hidden: TypeAlias = Annotated[int, Field(ge=1, le=4096, description="neurons in the hidden layer")]
 Biases: TypeAlias = Annotated[
-    bool, Field(description="whether layers add biases, each a block of weights")
+    bool, Field(description="true: layers add biases, each a block of weights")
 ]
 
 

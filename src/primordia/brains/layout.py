@@ -32,9 +32,7 @@ class Layout:
 
     def __post_init__(self) -> None:
         if not self.blocks:
-            raise InputError(
-                "brain: it has no blocks of weights, so nothing could evolve; name them in blocks()"
-            )
+            raise InputError("brain: blocks() names no blocks of weights, so nothing could evolve")
         for name, shape in self.blocks:
             if not isinstance(name, str) or not re.fullmatch(NAME, name):
                 raise InputError(

@@ -56,5 +56,5 @@ cache_option = click.option(
     is_flag=True,
     expose_value=False,
     callback=_compile_again,
-    help="Compile everything; neither use nor keep compiled code.",
+    help="Neither read nor write the cache of compiled code.",
 )

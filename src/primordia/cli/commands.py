@@ -40,10 +40,10 @@ def commands() -> None:
     """Natural selection in any simulator: no reward, no fitness, no generations.
 
     \b
-    primordia run CartPole-survival      evolve; Ctrl-C stops it, nothing is lost
-    primordia plot runs/...              figures of what happened
-    primordia replay runs/...            the life of the champion on video
-    primordia resume runs/...            go on
+    primordia run CartPole-survival      evolve; Ctrl-C saves the run and stops it
+    primordia plot runs/...              draw figures of the run
+    primordia replay runs/...            make a video of the champion's life
+    primordia resume runs/...            go on with the run
     """
 
 

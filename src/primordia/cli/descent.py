@@ -31,7 +31,9 @@ ROWS, LINES = 20, 10
 @click.command(short_help="Show the line of descent of an organism.")
 @run_argument
 @click.argument("organism", type=int, required=False, metavar="[ID]")
-@click.option("--world", type=int, help="The organism's world [0, or that of the champion].")
+@click.option(
+    "--world", type=int, help="World of the organism [0 if ID is given, otherwise the champion's]."
+)
 @out_option
 @trust_option
 @cache_option
@@ -39,10 +41,10 @@ ROWS, LINES = 20, 10
 def ancestors(
     run: Path, organism: int | None, world: int | None, out: Path | None, trust: bool, as_json: bool
 ) -> None:
-    """Show the ancestors of the organism with birth number ID, and how far their lines spread.
+    """Show the ancestors of the organism with birth number ID, and how far each one's descendants spread.
 
     Without ID the organism is the champion: the longest-lived of the later half of the births. The
-    table shows some of the ancestors, JSON all of them.
+    table shows some of the ancestors; --json shows all of them.
     """
     from primordia.api import load
 
@@ -57,9 +59,9 @@ def ancestors(
         _draw(partial(descent.draw, found), out, "ancestors", as_json)
 
 
-@click.command(short_help="Measure evolution in lines: selection beside drift, sweeps, diversity.")
+@click.command(short_help="Measure lines of descent: selection and drift, sweeps, diversity.")
 @run_argument
-@click.option("--world", default="0", metavar="N|all", help="World, or all of them [0].")
+@click.option("--world", default="0", metavar="N|all", help="Number of a world, or all [0].")
 @click.option(
     "--at", type=int, metavar="TICK", help="Tick at which the lines are founded [see above]."
 )
@@ -70,8 +72,8 @@ def lines(run: Path, world: str, at: int | None, out: Path | None, as_json: bool
     """Measure how lines of descent replace each other, and compare them with neutral shadows.
 
     A line is an organism that is alive after the tick --at, with all its descendants. By default,
-    --at is the first tick since the last extinction with 16 living organisms, or with half of the
-    largest population if that is less. If founders fill the world, --at is their tick of birth.
+    --at is the first tick since the last extinction at which 16 organisms live, or half of the
+    largest population if this half is fewer. If founders fill the world, --at is their tick of birth.
     """
     from primordia.api import load
 
@@ -100,9 +102,9 @@ def _world(text: str) -> int | None:
 def _show_ancestors(run: Path, found: "Ancestors") -> None:
     places = found.telling(ROWS).tolist()
     notes = [
-        "change: L2 norm of the genome's change by mutation.",
-        "10 %, 50 %, all: first tick after which more than this share of the living were"
-        " descendants.",
+        "change: L2 norm of the change that mutation made to the genome.",
+        "10 %, 50 %, all: first tick after which more than 10 %, more than 50 %, or all of the living"
+        " descended from the ancestor.",
     ]
     if left_out := len(found.line) - len(places):
         notes.append(
@@ -137,8 +139,8 @@ def _common_text(found: "Ancestors") -> str:
     if (common := found.common) is not None:
         return (
             f"The common ancestor of the living is organism {common.organism:,}, born at tick"
-            f" {common.born:,} in generation {common.generation:,}. All descend from it since tick"
-            f" {common.since:,}."
+            f" {common.born:,} in generation {common.generation:,}. Since tick"
+            f" {common.since:,} all of the living descend from this organism."
         )
     if not found.roots:
         return "Nothing is alive, so there is no common ancestor of the living."
@@ -177,17 +179,17 @@ def _notes(found: "WorldLines", told: dict[str, Any]) -> list[str]:
         notes.append(f"{left_out:,} smaller lines are left out; --json shows all.")
     now, (low, high) = found.effective[2, -1], (e[-1] for e in told["bands"]["effective_lines"])
     notes += [
-        "s: slope of ln(x / (1 - x)) over time while the share x is between 5 and 95 %. p:"
-        " two-sided, beside neutral shadows with the same births, deaths and population.",
+        "s: slope of ln(x / (1 - x)) over time while the share x is between 5 and 95 %. p: two-sided"
+        " p-value from neutral shadows with the same births, deaths and population.",
         f"Effective number of lines at the end: {now:.2f}; in 95 % of {told['shadows']:,} shadows"
-        f" {low:.2f} to {high:.2f}. Over all instants: p = {told['p_of_effective_lines']:.2g}.",
+        f" {low:.2f} to {high:.2f}. Test over all instants: p = {told['p_of_effective_lines']:.2g}.",
         _sweeps_text(found.sweeps),
         f"Phylogenetic diversity of the living: {found.diversity[-1]:,} ticks.",
     ]
     if found.pairs.mean is not None and found.neutral_pairs.mean is not None:
         notes.append(
             f"{found.pairs.share[-1]:.0%} of the pairs of the living have a common ancestor on"
-            f" record, {found.pairs.mean:,.0f} ticks ago in the mean. Drift alone would give"
+            f" record, {found.pairs.mean:,.0f} ticks ago on average. Drift alone would give"
             f" {found.neutral_pairs.share[-1]:.0%} and {found.neutral_pairs.mean:,.0f} ticks."
         )
     return notes
@@ -200,7 +202,10 @@ def _sweeps_text(sweeps: "list[Sweep]") -> str:
         text += f", in {durations[len(durations) // 2]:,} ticks (median)"
     if sweeps and sweeps[-1].half is not None and sweeps[-1].fixed is None:
         last = sweeps[-1]
-        text += f". Under way: that of {last.organism:,}, above one half since tick {last.half:,}"
+        text += (
+            f". Under way: the sweep of the descendants of organism {last.organism:,}, above one half"
+            f" of the living since tick {last.half:,}"
+        )
     return f"{text}."
 
 

@@ -14,11 +14,11 @@ from primordia.errors import InputError
     "--env", required=True, metavar="ENV", help="Environment, such as gym:LunarLander-v3."
 )
 def new(file: Path, env: str) -> None:
-    """Write FILE.toml, a task in another library's environment. Its comments explain the settings.
+    """Write FILE.toml, a task in another library's environment, with comments on the settings.
 
     The settings come from the environment's own spaces and from random play. ENV is gym:NAME or
-    gymnax:NAME. It is gym:MODULE:NAME if a module must be imported first, and gymnax:MODULE:CLASS
-    for a class.
+    gymnax:NAME. If a module must be imported first, ENV is gym:MODULE:NAME. For a class of your
+    own, ENV is gymnax:MODULE:CLASS.
     """
     from primordia.settings import doors
 
@@ -28,13 +28,13 @@ def new(file: Path, env: str) -> None:
     click.echo(f"{file}: primordia run {file}")
 
 
-@click.command(short_help="Measure whether lives in an environment repeat.")
+@click.command(short_help="Measure whether lives in an environment repeat exactly.")
 @click.argument("env", metavar="ENV")
 def check(env: str) -> None:
-    """Measure whether lives in another library's environment repeat.
+    """Measure whether lives in another library's environment repeat exactly.
 
     Lives with random actions are lived again in the same environment, in new environments and from
-    saved states. They are compared bit for bit. The exit status is 1 if the environment has a
+    saved states. The results are compared bit for bit. The exit status is 1 if the environment has a
     fault.
     """
     from primordia.settings import doors

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 SENSES = {
     "live": "",
     "frozen": ", senses frozen",
-    "ignored": ", blindly repeating its actions in a game of its task",
+    "ignored": ", senses ignored: actions of a game in the run's own task are repeated",
 }
 
 
@@ -28,7 +28,7 @@ SENSES = {
 @click.option(
     "--world",
     type=int,
-    help="The organism's world [0]; without an organism, the only world measured [all].",
+    help="World of --organism [0]; without --organism, measure this world alone [all].",
 )
 @click.option("--games", default=30, show_default=True, help="Number of games.")
 @click.option(
@@ -36,9 +36,11 @@ SENSES = {
     type=click.IntRange(min=1),
     default=500,
     show_default=True,
-    help="Choose the best founder among as many as there were births, and at most this number.",
+    help="Choose the best of this number of founders, or of the number of births if that is less.",
 )
-@click.option("--ticks", default=100_000, show_default=True, help="Cut games at this length.")
+@click.option(
+    "--ticks", default=100_000, show_default=True, help="Cut games at this number of ticks."
+)
 @click.option(
     "--freeze-senses",
     is_flag=True,
@@ -47,7 +49,7 @@ SENSES = {
 @click.option(
     "--open-loop",
     is_flag=True,
-    help="Ignore the senses: repeat the actions of a game of the organism's task.",
+    help="Ignore the senses: repeat the actions of an earlier game in the run's own task.",
 )
 @trust_option
 @cache_option
@@ -70,7 +72,8 @@ def evaluate(
     """Let organisms play whole games of their task from fresh starts, and print the results.
 
     The champion of each world plays: the longest-lived of the later half of the births. The
-    controls are all living organisms, the longest-lived of many founders, and unselected founders.
+    controls are three groups: all living organisms, the longest-lived of many founders, and
+    unselected founders.
 
     The lifespan is counted by the rules of the task; score and length are those of the whole game. Any
     setting of the habitat can be changed by a flag, such as --sticky 0.25; `primordia evaluate RUN
@@ -136,13 +139,16 @@ def show_standings(standings: "list[Standing]", title: str) -> None:
 def _notes(standings: "list[Standing]") -> list[str]:
     """Return notes on how to read the rows."""
     worlds = standings[0].to_dict()["worlds"]
-    notes = ["The best founder is the longest-lived of as many founders, which have not evolved."]
+    notes = [
+        "The best founder is the longest-lived of the founders that it was chosen from. Founders have"
+        " not evolved."
+    ]
     if worlds > 1:
         notes.append("Medians over worlds (quartiles) of the median organism of each world.")
     if all(each.evaluations[0].distinct == 1 for each in standings):
         notes.append(
-            "All games of an organism are the same, so champions are judged by the game that chose"
-            " them. Change a setting, such as --sticky 0.25, to make games differ."
+            "All games of an organism are the same, so champions are judged by the same game for which"
+            " they were chosen. Change a setting, such as --sticky 0.25, to make games differ."
         )
     return notes
 

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     help="Start from the genomes in a file (`primordia export`); may be repeated.",
 )
 @limit_options
-@click.option("--resume", is_flag=True, help="Go on with the run in --out if it has begun.")
+@click.option("--resume", is_flag=True, help="If --out holds a run, go on with this run.")
 @checkpoint_option
 @device_option
 @cache_option
@@ -59,12 +59,13 @@ def run(
 ) -> None:
     """Evolve in a new run directory.
 
-    TASK is one of `primordia tasks`, a FILE.toml with a `task` and the settings that differ from
-    it, an environment of Gymnasium (gym:NAME), or an environment in JAX (gymnax:NAME). Any setting
-    below can be given as a flag, such as --seed 3, --cells 64 or --mutation.scale 0.02.
+    TASK is a name from `primordia tasks`, a FILE.toml with a `task` and the settings that differ from
+    this task, an environment of Gymnasium (gym:NAME), or an environment in JAX (gymnax:NAME). Any
+    setting below can be given as a flag, such as --seed 3, --cells 64 or --mutation.scale 0.02.
 
     Keys in a terminal: space pauses, s lives one tick, - and + change the speed, w shows another world,
-    o one organism beside it and n the next one, ? explains all words, q saves and stops.
+    o shows an organism beside the world, n shows the next organism, ? explains all words, q saves and
+    stops.
     """
     from primordia import api, config
 
@@ -108,7 +109,7 @@ def resume(run: Path, quiet: bool, speed: float | None, trust: bool, **options: 
     cls=SettingsCommand, short_help="Go on from a tick of a run with another seed or settings."
 )
 @run_argument
-@click.option("--at", type=int, required=True, metavar="TICK", help="Tick at whose end to fork.")
+@click.option("--at", type=int, required=True, metavar="TICK", help="Begin after this tick of RUN.")
 @out_option
 @limit_options
 @checkpoint_option
@@ -131,8 +132,8 @@ def fork(
 ) -> None:
     """Begin a new run from a tick of a RUN, with another --seed or other settings.
 
-    With the same seed and settings it repeats the RUN. Settings that change brains, senses or cells
-    cannot be changed. The keys are those of `primordia run`.
+    With the same seed and settings the new run repeats the RUN. Brains, senses, and the numbers of
+    cells and worlds cannot be changed. The keys are those of `primordia run`.
     """
     from primordia.api import fresh_directory, load
 

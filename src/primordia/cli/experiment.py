@@ -23,13 +23,15 @@ if TYPE_CHECKING:
 @click.command(short_help="Run arms of many worlds on all cores.")
 @click.argument("file", metavar="FILE.toml|DIR", type=click.Path(path_type=Path))
 @click.option(
-    "--out", type=click.Path(path_type=Path), help="Directory of the runs [runs/ and FILE's name]."
+    "--out",
+    type=click.Path(path_type=Path),
+    help="Directory of the runs [runs/NAME for NAME.toml].",
 )
 @click.option(
     "--jobs", type=click.IntRange(1), help="Number of jobs that run at once [one for each core]."
 )
 @click.option("--only", multiple=True, metavar="ARM", help="Run only this arm; may be repeated.")
-@click.option("--job", type=int, metavar="K", help="Run exactly one job, by its number from 0.")
+@click.option("--job", type=int, metavar="K", help="Run job K alone; the first job is 0.")
 @click.option("--status", is_flag=True, help="Show the progress of the experiment; run nothing.")
 @click.option("--json", "as_json", is_flag=True, help="With --status: print one JSON object.")
 @click.option(
@@ -37,7 +39,7 @@ if TYPE_CHECKING:
     is_flag=False,
     flag_value="",
     metavar="[ADDRESS]",
-    help="Run jobs on the Ray cluster at ADDRESS, or else on this machine's or a new one.",
+    help="Run jobs on the Ray cluster at ADDRESS [a cluster of this machine, or a new one].",
 )
 @checkpoint_option
 @device_option
@@ -63,7 +65,7 @@ def experiment(
     from primordia.experiments.campaign import begin, planned
 
     if as_json and not status:
-        raise InputError("--json goes with --status")
+        raise InputError("--json needs --status")
     several = [f"--{name}" for name in ("jobs", "only", "ray") if options[name] not in (None, ())]
     if job is not None and several:
         raise InputError(f"--job runs one job in this process; leave out {' and '.join(several)}")
@@ -107,7 +109,7 @@ def _live_one(chosen: "Campaign", number: int, checkpoint_every: float, device: 
     with cores.one_unless_given():
         ending = ending_of(chosen.plan, job, chosen.path, checkpoint_every, device)
     if ending.state == "stopped":
-        report(f"stopped job {number}; the same command goes on with it")
+        report(f"job {number} stopped; the same command goes on with this job")
         raise SystemExit(interrupts.STATUS)
     if ending.state == "elsewhere":
         raise InputError(f"job {number} is being run by another process")
@@ -135,13 +137,13 @@ def _live_all(
             result = live_all(left, place, look, _report_failure)
         _end_unless_done(chosen, result)
     if chosen.left():
-        return report(f"{_jobs(len(chosen.left()))} of other arms not done yet")
+        return report(f"{_jobs(len(chosen.left()))} of other arms left to do")
     for path in chosen.gather():
         click.echo(path)
 
 
 def _report_failure(job: "Job", ending: "Ending", again: bool) -> None:
-    more = "; it is tried again" if again else ""
+    more = "; the job is tried again" if again else ""
     report(f"job {job.number} ({job.arm}) failed: {ending.error}{more}")
 
 
@@ -151,7 +153,7 @@ def _end_unless_done(chosen: "Campaign", result: "Result") -> None:
         report(f"Stopped and saved. Go on with: primordia experiment {chosen.path}")
         raise SystemExit(interrupts.STATUS)
     if result.failed:
-        report(f"{_jobs(len(result.failed))} failed; the same command tries again")
+        report(f"{_jobs(len(result.failed))} failed; give the same command to try again")
         raise SystemExit(1)
     if result.elsewhere:
         report(f"{_jobs(result.elsewhere)} under way in other processes; see --status")

@@ -17,22 +17,25 @@ from primordia.cli.flags import run_argument, trust_option, video_option
     "--by",
     type=click.Choice(["births", "ticks"]),
     default="births",
-    help="Unit of time: equally many of these pass between two pictures [births].",
+    help="Unit of film time: the same number of births, or ticks, passes between all pictures [births].",
 )
 @click.option("--from", "begin", type=int, metavar="TICK", help="First tick shown.")
 @click.option("--to", "end", type=int, metavar="TICK", help="Last tick shown.")
 @click.option(
-    "--organism", type=int, metavar="ID", help="Organism whose life is shown [the oldest so far]."
+    "--organism",
+    type=int,
+    metavar="ID",
+    help="Organism whose life is shown [the longest-lived so far].",
 )
 @trust_option
 @cache_option
 def film(run: Path, trust: bool, begin: int | None, end: int | None, **chosen: Any) -> None:
     """Film a world: births and deaths in all its cells, and beside them one organism's life.
 
-    The colour of a cell is the line of descent. Cells are lighter with age, flash at a birth, and fade
-    after a death. A torus is drawn as a square. A ring is drawn as a disc, with the present at its
-    edge and the past within. The film is at most half a minute long. The life beside the world has
-    a different speed.
+    The colour of a cell shows the line of descent. Cells are lighter with age, flash at a birth, and
+    fade after a death. A torus is drawn as a square. A ring is drawn as a disc, with the present at
+    the edge and the past inside. The film is at most half a minute long. The life beside the world
+    is shown at a different speed.
     """
     from primordia.api import load
 

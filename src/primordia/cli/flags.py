@@ -10,9 +10,6 @@ from primordia.errors import InputError
 from primordia.settings.tables import parsed_toml
 from primordia.settings.values import check_values
 
-CHAMPION = "the longest-lived of the later half of the births"
-"""the default organism"""
-
 run_argument = click.argument("run", type=click.Path(path_type=Path))
 runs_argument = click.argument(
     "runs", type=click.Path(path_type=Path), nargs=-1, required=True, metavar="RUN..."
@@ -38,20 +35,20 @@ trust_option = click.option(
     "--trust", is_flag=True, help="Allow the run's own code to be executed from now on."
 )
 video_option = click.option(
-    "--out", type=click.Path(path_type=Path), help="An .mp4 or .gif file [under RUN/videos]."
+    "--out", type=click.Path(path_type=Path), help="File to write: .mp4 or .gif [under RUN/videos]."
 )
 speed_option = click.option(
     "--speed",
     type=click.FloatRange(min=0, min_open=True, max=1e9),
     metavar="TICKS",
-    help="Live at most this number of ticks a second.",
+    help="Live at most this number of ticks per second.",
 )
 quiet_option = click.option("--quiet", is_flag=True, help="Print nothing while running.")
 
 LIMITS = {
-    "ticks": "Stop each world after this number of ticks, or none.",
-    "births": "Stop each world after this number of births, or none.",
-    "until": "saturation: stop each world when it is saturated; or none.",
+    "ticks": "Stop each world after this number of ticks; none: no limit.",
+    "births": "Stop each world after this number of births; none: no limit.",
+    "until": "saturation: stop each world when it is saturated; none: no limit.",
 }
 
 
@@ -108,7 +105,7 @@ class SettingsCommand(click.Command):
             options.update(parameter.opts)
         if flag in arguments:
             raise InputError(
-                f"there is no flag {flag}; give the argument without it: {ctx.command_path}"
+                f"there is no flag {flag}; give the argument without a flag: {ctx.command_path}"
                 f" {arguments[flag]}"
             )
         hyphenated = flag.replace("_", "-") in options or ("-" in flag[2:] and "." not in flag)
@@ -135,7 +132,7 @@ class SettingsCommand(click.Command):
             if word in known or word.endswith(".toml") or is_door(word):
                 return title, setting_rows(word, ctx.obj)
         argument = " ".join(self.collect_usage_pieces(ctx)[1:])
-        more = f"`{ctx.command_path} {argument} --help` shows those of its habitat too"
+        more = f"`{ctx.command_path} {argument} --help` also shows the settings of the habitat"
         return f"Settings, as in TOML (defaults; {more})", setting_rows(None, ctx.obj)
 
 

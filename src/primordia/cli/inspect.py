@@ -10,7 +10,6 @@ from primordia import files
 from primordia.cli.cache import cache_option
 from primordia.cli.experiment import show_status
 from primordia.cli.flags import (
-    CHAMPION,
     device_option,
     run_argument,
     runs_argument,
@@ -45,7 +44,7 @@ def info(runs: tuple[Path, ...], as_json: bool) -> None:
 @click.option(
     "--out", type=click.Path(path_type=Path), help="Folder for the figures [RUN/figures]."
 )
-@click.option("--world", default=0, help="World of which the lines of descent are drawn [0].")
+@click.option("--world", default=0, help="World whose lines of descent are drawn [0].")
 @click.option(
     "--figure",
     "figures",
@@ -66,8 +65,10 @@ def plot(runs: tuple[Path, ...], out: Path | None, world: int, figures: tuple[st
 
 @click.command(short_help="Make a video of a life.")
 @run_argument
-@click.option("--organism", type=int, help=f"Birth number [{CHAMPION}].")
-@click.option("--world", type=int, help="The organism's world [0, or that of the champion].")
+@click.option("--organism", type=int, help="Birth number of the organism [the champion].")
+@click.option(
+    "--world", type=int, help="World of the organism [0 with --organism, otherwise the champion's]."
+)
 @click.option(
     "--beside", type=int, multiple=True, metavar="ID", help="Show this life too; may be repeated."
 )
@@ -84,12 +85,12 @@ def replay(
     out: Path | None,
     **chosen: Any,
 ) -> None:
-    """Make a video of a life: the whole life, or the first and last 30 seconds of a long one.
+    """Make a video of a life: the whole life, or the first and last 30 seconds of a long life.
 
     Without --organism the life is that of the champion: the longest-lived of the later half of the
     births.
-    With --beside, lives of its world are shown side by side, each from its birth, in the order of birth.
-    A life that has ended is held at its last picture.
+    With --beside, lives of the same world are shown side by side, each from birth, in order of birth.
+    A life that has ended stays at the last picture.
     """
     click.echo(chosen_organism(run, **chosen).replay(out, (begin, end), beside))
 
@@ -106,7 +107,7 @@ def replay(
 def export(run: Path, organisms: tuple[int, ...], world: int, trust: bool, file: Path) -> None:
     """Write genomes to a safetensors FILE, which `primordia run --ancestor` takes.
 
-    If its name ends with .onnx, FILE is one brain as an ONNX model, for other programs.
+    If the name of FILE ends with .onnx, one brain is written as an ONNX model for other programs.
 
     Without --organism the genome is that of the champion: the longest-lived of the later half of
     the births.
@@ -120,14 +121,12 @@ def export(run: Path, organisms: tuple[int, ...], world: int, trust: bool, file:
 @click.command("import", short_help="Write a state dictionary as a genome file.")
 @click.argument("state", type=click.Path(path_type=Path))
 @click.argument("file", type=click.Path(path_type=Path))
-@click.option(
-    "--task", required=True, help="Task, or FILE.toml, with the brain that has these weights."
-)
+@click.option("--task", required=True, help="Task, or FILE.toml, whose brain has these weights.")
 def import_(state: Path, file: Path, task: str) -> None:
     """Write weights from another program as a genome FILE, which `primordia run --ancestor` takes.
 
     STATE is a safetensors file with a tensor for each block of the brain. In PyTorch,
-    safetensors.torch.save_file writes it from a state dictionary.
+    safetensors.torch.save_file writes a state dictionary to such a file.
     """
     from primordia import config
     from primordia.brains import genomes
@@ -157,7 +156,7 @@ def verify(run: Path, device: str, trust: bool) -> None:
 
     differences = load(run, trust).verify(device)
     if differences:
-        raise Trouble(f"{run} differs from its records: {differences[0]}")
+        raise Trouble(f"{run}, lived again, differs from its records: {differences[0]}")
     click.echo(
         f"{run} is verified: every world was repeated from its beginning with the same result."
     )
@@ -184,14 +183,14 @@ def tasks() -> None:
     "--out",
     type=click.Path(path_type=Path, file_okay=False),
     default=Path(),
-    help="Folder for compare.png and compare.svg [the current one].",
+    help="Folder for compare.png and compare.svg [the current folder].",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 def compare(runs: tuple[str, ...], out: Path, as_json: bool, **horizons: int | None) -> None:
     """Compare runs of one task: how soon worlds saturate, how long organisms live.
 
-    The first run is the reference of all others. The units are worlds, so compare runs with many
-    worlds (--seeds), or give an arm several runs: 'heredity=runs/h*' 'none=runs/n*'.
+    The first run is the reference of all others. The sample size is the number of worlds. So compare
+    runs with many worlds (--seeds), or join several runs in an arm: 'heredity=runs/h*' 'none=runs/n*'.
     """
     from primordia import api
     from primordia.comparison.tables import comparison_tables

@@ -19,7 +19,7 @@ from primordia.cli.streams import report
     metavar="FILE",
     help="File to write: .parquet, .csv, .nwk or .tsv.",
 )
-@click.option("--world", type=int, help="Write only this world [all; with ID, world 0].")
+@click.option("--world", type=int, help="Write only this world [0 if ID is given, otherwise all].")
 @click.option("--extant", is_flag=True, help="Write only the living and their ancestors.")
 @click.option(
     "--collapse", is_flag=True, help="Leave out the dead that have a parent and only one child."

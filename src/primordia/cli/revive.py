@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     "since",
     type=int,
     metavar="TICK",
-    help="Begin with the newest kept checkpoint of this tick or an earlier one [birth].",
+    help="Begin at the newest checkpoint that is not later than this tick [birth].",
 )
 @click.option(
     "--save",
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     "--video",
     type=click.Path(path_type=Path),
     metavar="FILE",
-    help="Film the life too: .mp4 or .gif; the first and last 30 seconds of a long one.",
+    help="Also write a video (.mp4 or .gif), of a long life only the first and last 30 seconds.",
 )
 @trust_option
 @cache_option
@@ -55,11 +55,12 @@ def revive(
 
     The comparison covers the tick and the cause of death, the energy left, the food eaten, and the
     habitat's tallies. A living organism lives up to the newest checkpoint, and its memory and body
-    are compared too. The exit status is 0 if all agree, 1 if one does not, and 2 if the life cannot
-    be lived again.
+    are compared too. The exit status is 0 if all of them agree, 1 if one differs, and 2 if the
+    life cannot be lived again.
 
-    A life begins at birth, or at the fork if the organism is older. With --from it begins at a
-    checkpoint. A run keeps its two newest checkpoints, and a fork also its first one.
+    The life is lived again from birth, or from the fork if the organism was born before the fork.
+    With --from the life is lived again from a checkpoint. A run keeps its two newest checkpoints,
+    and a fork also its first checkpoint.
     """
     from primordia.api import load
     from primordia.organism import revival
@@ -72,7 +73,9 @@ def revive(
         _show(found)
     if not found.agrees:
         names = ", ".join(each.name for each in found.respects if not each.agrees)
-        raise Trouble(f"organism {organism} of world {world} did not live as recorded: {names}")
+        raise Trouble(
+            f"organism {organism} of world {world} lived again differs from its record in: {names}"
+        )
 
 
 def _show(found: "Revival") -> None:

@@ -16,7 +16,10 @@ if TYPE_CHECKING:
 @click.command(short_help="Compare organisms with an unselected pedigree.")
 @runs_argument
 @click.option(
-    "--organisms", default=500, show_default=True, help="Largest number of organisms of a world."
+    "--organisms",
+    default=500,
+    show_default=True,
+    help="Largest number of organisms from each world.",
 )
 @click.option("--ticks", type=int, help="Cut lives at this age [the task's saturation_ticks].")
 @trust_option
@@ -25,10 +28,10 @@ if TYPE_CHECKING:
 def shadow(
     runs: tuple[Path, ...], organisms: int, ticks: int | None, trust: bool, as_json: bool
 ) -> None:
-    """Let organisms live again, and beside each its shadow, whose line was never selected.
+    """Let organisms live again, each beside a shadow, an organism whose line was never selected.
 
-    The shadows have the same pedigree, with new random founders and mutations. Organism and shadow
-    each live alone, with the same fresh random keys. Several runs are measured as one arm. Each arm
+    The shadows have the same pedigree, with new random founders and mutations. An organism and its
+    shadow each live alone, with the same new random keys. Several runs are measured as one arm. Each arm
     of an experiment is measured.
     """
     from primordia.api import Experiment, load
@@ -63,7 +66,7 @@ def shadow_text(found: "Shadow") -> str:
             *lines,
             f"originals live longer than shadows in {longer} worlds and shorter in {shorter}"
             f" (sign test, p = {found.p:.2g})",
-            f"{found.ratio:.2f} times as long in the median world{bounds}",
+            f"in the median world originals live {found.ratio:.2f} times as long{bounds}",
         ]
     )
 

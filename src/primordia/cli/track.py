@@ -21,7 +21,9 @@ from primordia.cli.streams import report
     metavar="DIR",
     help="Folder for Weights & Biases, in its offline format.",
 )
-@click.option("--follow", is_flag=True, help="Go on until the runs have stopped, or Ctrl-C.")
+@click.option(
+    "--follow", is_flag=True, help="Go on until all runs have stopped or you press Ctrl-C."
+)
 @click.option(
     "--every",
     type=float,
@@ -35,9 +37,9 @@ def track(
 ) -> None:
     """Write the metrics of a run, several runs as one arm, or an experiment for dashboards.
 
-    Each column of the table `metrics` becomes a series over ticks, and each world a run of the
+    Each column of the table `metrics` becomes a series over ticks. Each world becomes a run of the
     dashboard, such as seed-3. The command reads the newest checkpoint and does not disturb the RUN.
-    It replaces the output of an earlier call for the same worlds.
+    The output of an earlier call for the same worlds is replaced.
     """
     from primordia.api import load
 
@@ -61,7 +63,9 @@ def _how_to_look(tensorboard: Path | None, wandb: Path | None) -> list[str]:
         "tensorboard --logdir {}": tensorboard,
         "wandb sync {}/wandb/offline-run-*": wandb,
     }
-    return [f"Look at it with: {way.format(folder)}" for way, folder in ways.items() if folder]
+    return [
+        f"Look at the metrics with: {way.format(folder)}" for way, folder in ways.items() if folder
+    ]
 
 
 COMMANDS = (track,)

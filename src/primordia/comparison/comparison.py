@@ -232,7 +232,8 @@ def _configs(runs: Sequence[Records]) -> list[Config]:
         raise InputError("compare needs two or more runs; the first is the reference of the others")
     paths = [path.resolve() for run in runs for path in run.paths]
     if len(set(paths)) < len(paths):
-        raise InputError("a run is given twice; its worlds cannot be compared with themselves")
+        twice = next(path for path in paths if paths.count(path) > 1)
+        raise InputError(f"{twice} is given twice; worlds cannot be compared with themselves")
     first, *others = runs
     for run in others:
         if run.config.task != first.config.task:

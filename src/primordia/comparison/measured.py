@@ -38,8 +38,8 @@ class Measured:
         if (short := ~self.known & (self.value < horizon)).any():
             world = int(np.flatnonzero(short)[0])
             raise InputError(
-                f"world {world} stopped at {self.value[world]:,.0f} before it saturated, so nothing"
-                f" is known about it up to {horizon:,.0f}"
+                f"world {world} stopped at {self.value[world]:,.0f} before it saturated, so it is"
+                f" unknown whether the world would be saturated at {horizon:,.0f}"
             )
         near = self.value < horizon
         return Measured(np.where(near, self.value, horizon), self.known & near)

@@ -120,7 +120,7 @@ def shadow(run: Records, organisms: int = ORGANISMS, ticks: int | None = None) -
     rows = _sample(run.lives.world[own], own, organisms) if len(own) else own
     if not len(rows):
         raise InputError(
-            f"{run.path}: shadow needs two births in a world (of a fork: since the fork)"
+            f"{run.path}: shadow needs two births in a world; in a fork, two births since the fork"
         )
     original, redrawn = (_lifespans(run, rows, each, cut) for each in (False, True))
     return Shadow(run.path.name, len(own), run.lives.world[rows], original, redrawn, cut)

@@ -200,7 +200,7 @@ def _notes(compared: Comparison) -> list[str]:
         " (Kaplan-Meier).",
         "Delta: Cliff's delta, the share of pairs of worlds in which the run's value is larger"
         " than the reference's,",
-        "less the share in which it is smaller.",
+        "minus the share in which the run's value is smaller.",
     ]
 
 

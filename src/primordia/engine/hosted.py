@@ -136,7 +136,9 @@ class HostedChunks:
         try:
             self._habitat.load(bodies)
         except (IndexError, KeyError, ValueError) as error:
-            raise Trouble(f"the checkpoint is not one of this run: no bodies: {error}") from None
+            raise Trouble(
+                f"the checkpoint does not fit this run: its bodies cannot be loaded: {error}"
+            ) from None
         return State(world, senses)
 
     def _reset_to_birth(self, world: World, senses: np.ndarray) -> np.ndarray:

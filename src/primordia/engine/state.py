@@ -70,7 +70,9 @@ def filled(
     for name, own in named_leaves(template):
         stored = arrays.get(prefix + name)
         if stored is None or (stored.shape, stored.dtype) != (own.shape, own.dtype):
-            raise Trouble(f"the checkpoint is not one of this run: {prefix + name} does not fit")
+            raise Trouble(
+                f"the checkpoint does not fit this run: {prefix + name} is missing or different"
+            )
         leaves.append(place(stored))
     return jax.tree.unflatten(jax.tree.structure(template), leaves)
 

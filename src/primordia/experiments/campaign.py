@@ -46,7 +46,7 @@ class Campaign:
         """Return a job by its number; raise InputError if there is none."""
         if not 0 <= number < len(self.jobs):
             raise InputError(
-                f"{self.path} has no job {number}; they count from 0 to {len(self.jobs) - 1}"
+                f"{self.path} has no job {number}; the jobs are 0 to {len(self.jobs) - 1}"
             )
         return self.jobs[number]
 

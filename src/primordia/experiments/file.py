@@ -84,7 +84,7 @@ def read(file: Path, out: Path) -> Plan:
         base, sources = _origin(fork, file, out)
         if {"task", "seeds", "cells"} & {*values, *(name for arm in arms for name in arm)}:
             raise InputError(
-                f"{file}: a fork takes its task, seeds and cells from {fork.of}; remove them"
+                f"{file}: a fork takes task, seeds and cells from {fork.of}; remove these settings"
             )
         values = merged(base, values)
     elif "task" not in values:
@@ -98,7 +98,9 @@ def read(file: Path, out: Path) -> Plan:
     worlds = (jobs and jobs.worlds) or _recorded_worlds(out) or _default_worlds(chosen[0].config)
     plan = Plan(question=question, worlds=worlds, fork=sources, arms=tuple(chosen))
     if (count := len(plan.jobs())) > plans.LARGEST:
-        raise InputError(f"{file}: {count:,} jobs are more than {plans.LARGEST:,}; set jobs.worlds")
+        raise InputError(
+            f"{file}: {count:,} jobs are more than {plans.LARGEST:,}; raise jobs.worlds"
+        )
     return plan
 
 
@@ -106,7 +108,7 @@ def _refuse_unknown(values: dict[str, Any], file: Path) -> None:
     known = [*OWN, *Config.model_fields]
     for name in values:
         if name not in known or name == "fork":
-            raise InputError(f"{file}: there is no {name!r}{did_you_mean(name, known)}")
+            raise InputError(f"{file}: there is no setting {name!r}{did_you_mean(name, known)}")
 
 
 def _table(own: dict[str, Any], name: str, kind: type[Settings], file: Path) -> Any:
@@ -132,7 +134,7 @@ def _arm(shared: dict[str, Any], own: dict[str, Any], file: Path, complete: bool
     own = dict(own)
     name = own.pop("name", None)
     if name is None:
-        raise InputError(f"{file}: an arm has no name")
+        raise InputError(f"{file}: an [[arms]] table has no `name`")
     if own.get("task", shared["task"]) != shared["task"]:
         raise InputError(f"{file}: arm {name!r} has another task; all arms must have the same task")
     values = merged(shared, own)

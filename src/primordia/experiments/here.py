@@ -72,7 +72,7 @@ class Here:
             return Ending(**json.loads(answer))
         if self._stopping:
             return Ending(job.number, "stopped")
-        error = f"its process ended with status {worker.wait()}; see {self._out / LOG}"
+        error = f"the job's process ended with status {worker.wait()}; see {self._out / LOG}"
         note_failure(job, self._out, error)
         return Ending(job.number, "failed", error)
 

@@ -125,7 +125,7 @@ def _check_folder(ray: Any, out: Path) -> None:
                 fault = "does not see"
             except ray.exceptions.RayError as error:
                 first = str(error).strip().partition("\n")[0]
-                fault = f"does not answer ({type(error).__name__}: {first}), to be asked for"
+                fault = f"does not answer ({type(error).__name__}: {first}) whether it sees"
             ray.shutdown()
             raise InputError(
                 f"--ray: node {node['NodeManagerAddress']} {fault} {out}; choose an --out in a"

@@ -36,7 +36,7 @@ def place_for(
         return Here(out, min(at_a_time, left), checkpoint_every, device)
     if jobs is not None:
         raise InputError(
-            "--jobs is the number for this machine; with --ray the cluster's cores count, so leave"
-            " it out"
+            "--jobs is for jobs on this machine; with --ray each core of the cluster runs a job, so"
+            " leave out --jobs"
         )
     return OnRay(out, checkpoint_every, device, ray or None)

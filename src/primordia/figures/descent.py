@@ -34,9 +34,7 @@ def _lives(axes: Axes, found: Ancestors) -> None:
     style.logarithmic(axes.yaxis)
     axes.set_ylabel("ticks lived")
     key = {"dead": style.BLUE, "alive": style.ORANGE}
-    style.title(
-        axes, f"The line of organism {found.organism} of world {found.world}: its ancestors", key
-    )
+    style.title(axes, f"The ancestors of organism {found.organism} of world {found.world}", key)
 
 
 def _changes(axes: Axes, found: Ancestors) -> None:

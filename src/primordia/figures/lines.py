@@ -43,8 +43,8 @@ def _shares(axes: Axes, found: WorldLines) -> None:
         axes.plot(_time(found), found.shares[:, place], color=colour)
     axes.set(ylim=(0, 1.02), ylabel="share of the living")
     named = zip(order[:4].tolist(), style.PALETTE, strict=False)
-    key = {f"of {found.lives.id[found.founders[place]]}": colour for place, colour in named}
-    key[f"{SHADOWS}: the largest"] = style.SOFT
+    key = {f"line of {found.lives.id[found.founders[place]]}": colour for place, colour in named}
+    key[f"{SHADOWS}: largest line"] = style.SOFT
     style.title(axes, f"{len(order):,} lines of world {found.world}", key)
 
 
@@ -80,6 +80,6 @@ def _pairs(axes: Axes, found: WorldLines) -> None:
     last = max(int(found.ticks[-1] - found.lives.born.min()), 1)
     axes.set(ylim=(0, 1.02), xlim=(0, last), ylabel="share of pairs")
     style.linear(axes.xaxis)
-    axes.set_xlabel("ticks back to their common ancestor")
+    axes.set_xlabel("ticks back to the common ancestor of a pair")
     key = {"recorded": style.BLUE, "expected from drift": style.SOFT}
     style.title(axes, "Coalescence of pairs of the living", key)

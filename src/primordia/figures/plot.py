@@ -46,7 +46,7 @@ def plot(
     """
     if not 0 <= world < run.config.seeds:
         raise InputError(
-            f"{run.path} has no world {world}; they count from 0 to {run.config.seeds - 1}"
+            f"{run.path} has no world {world}; the worlds are 0 to {run.config.seeds - 1}"
         )
     if out is None:
         bundle.refuse_changes(run.path)

@@ -56,7 +56,7 @@ def film(
     video.check_name(path)
     if not 0 <= world < run.config.seeds:
         raise InputError(
-            f"{run.path} has no world {world}; they count from 0 to {run.config.seeds - 1}"
+            f"{run.path} has no world {world}; the worlds are 0 to {run.config.seeds - 1}"
         )
     lives = run.lives.of_world(world)
     shown = moments(lives, run.config.begins, by, ticks)

@@ -39,6 +39,8 @@ def moments(lives: Lives, start: int, by: By, ticks: tuple[int | None, int | Non
         return np.unique(np.linspace(begin, end, RATE * SECONDS).astype(np.int64))
     born = lives.born[(lives.born > begin) & (lives.born <= end)]
     if not len(born):
-        raise InputError(f"nothing was born from tick {begin} to {end}; show it by ticks")
+        raise InputError(
+            f"nothing was born from tick {begin} to {end}; choose other ticks, or --by ticks"
+        )
     chosen = np.linspace(0, len(born) - 1, RATE * SECONDS).astype(np.int64)
     return np.unique([begin, *born[chosen], end])

@@ -96,7 +96,9 @@ def parse(text: str, kind: Literal["condition", "amount", "numbers"], names: Nam
     tree = _tree(text)
     actual, compute = _Reader(text, names).read(tree.body)
     if kind == "condition" and actual != "condition":
-        raise ValueError(f"{shown(text)} is a number, not a condition; compare it with something")
+        raise ValueError(
+            f"{shown(text)} is a number, not a condition; add a comparison, such as < 0"
+        )
     if kind == "amount" and isinstance(actual, int):
         raise ValueError(f"{shown(text)} is {_described(actual)}, where a number is needed")
     used = frozenset(n.id for n in ast.walk(tree) if isinstance(n, ast.Name) and n.id in names)
@@ -157,7 +159,9 @@ class _Reader:
             if kind == "condition":
                 raise self._error(node, f"this is {_described(kind)}, where a number is needed")
             if isinstance(kind, int) and kind != lists[0]:
-                beside = f"this is {_described(kind)}, beside {_described(lists[0])}"
+                beside = (
+                    f"this is {_described(kind)}, but another operand is {_described(lists[0])}"
+                )
                 raise self._error(node, beside)
         if not lists:
             return "amount", list(parts)
@@ -169,9 +173,9 @@ class _Reader:
     def _read_constant(self, node: ast.Constant) -> tuple[Kind, Compute]:
         value = node.value
         if isinstance(value, bool) or not isinstance(value, int | float):
-            raise self._error(node, "only numbers can be written out")
+            raise self._error(node, "only numbers can be constants")
         if not value <= (EXACT if isinstance(value, int) else LARGEST):
-            raise self._error(node, "numbers go up to 2^53, with a decimal point up to 3.4e38")
+            raise self._error(node, "the largest number is 2^53, or 3.4e38 with a decimal point")
         number = float(value)
         return "amount", lambda values: number
 
@@ -245,7 +249,7 @@ class _Reader:
             inner = self._read_as("condition", node.operand)
             return "condition", lambda values: ~inner(values)
         if not isinstance(node.op, ast.USub):
-            raise self._error(node, "the only sign is -")
+            raise self._error(node, "the only sign before a number is -")
         kind, (inner,) = self._read_operands([node.operand])
         return kind, lambda values: -inner(values)
 

@@ -130,8 +130,7 @@ if not TYPE_CHECKING:
         def __get__(self, habitat: object, owner: type) -> Any:
             if habitat is None:
                 raise AttributeError(
-                    "this default of habitats belongs to instances; read it from a habitat, not"
-                    " from its class"
+                    "this default can be read from a habitat, but not from the class of the habitat"
                 )
             return self._compute(habitat)
 
@@ -292,8 +291,8 @@ AnyHabitat: TypeAlias = JaxHabitat | HostHabitat
 
 def _missing(habitat: Habitat, name: str) -> TypeError:
     return TypeError(
-        f"{type(habitat).__name__} is not a complete habitat: it has no {name!r}; state it as an"
-        " attribute or a property of the class"
+        f"{type(habitat).__name__} is not a complete habitat: it has no {name!r}; define {name} as"
+        " an attribute or a property of the class"
     )
 
 
@@ -307,9 +306,9 @@ def find(name: object) -> type[AnyHabitat]:
     kind = parts.find("habitat", name, KNOWN, object)
     if not issubclass(kind, JaxHabitat | HostHabitat):
         raise LookupError(
-            f"{kind.__name__} is not a habitat: subclass JaxHabitat (with reset, sense and step) or"
-            " HostHabitat (with open, reset and step) of primordia.habitats, and state senses_size,"
-            " action and words"
+            f"{kind.__name__} is not a habitat: make it a subclass of JaxHabitat (with reset, sense and"
+            " step) or HostHabitat (with open, reset and step) of primordia.habitats, and define"
+            " senses_size, action and words"
         )
     return kind
 
@@ -324,6 +323,6 @@ def complete(habitat: AnyHabitat) -> AnyHabitat:
         getattr(habitat, name)
     if habitat.tallies and not habitat.can(Ability.TALLY):
         raise TypeError(
-            f"{type(habitat).__name__} names tallies, which need a HostHabitat's tally()"
+            f"{type(habitat).__name__} has tallies, so it must be a HostHabitat that defines tally()"
         )
     return habitat

@@ -33,7 +33,9 @@ def place_in(state: Mapping[str, np.ndarray], organism: int, world: int) -> int:
     here = np.arange(len(number)) // cells == world
     places = np.flatnonzero(here & state["world.organisms.alive"] & (number == organism))
     if len(places) != 1:
-        raise Trouble(f"organism {organism} of world {world} is not in the state where it lived")
+        raise Trouble(
+            f"organism {organism} of world {world} is missing in the state of a tick at which it lived"
+        )
     return int(places[0])
 
 

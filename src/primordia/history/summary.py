@@ -25,7 +25,7 @@ def summary(info: dict[str, Any]) -> str:
         lines.append("  not exact: parts of this run cannot be repeated bit for bit")
     if times := info["restarts"]:
         often = "once" if times == 1 else f"{times:,} times"
-        lines.append(f"  the bodies of the living began again {often}, when the run went on")
+        lines.append(f"  the living got new bodies {often}, when the run was resumed")
     return "\n".join(lines)
 
 
@@ -38,7 +38,7 @@ def _one_world(world: dict[str, Any]) -> list[str]:
     if world["alive"]:
         lines[-1] += f", mean age {world['mean_age']:,.0f}, oldest {world['oldest_age']:,}"
     if "tallies" in world:
-        lines.append(f"    of the living: {_tallies(world['tallies'])}")
+        lines.append(f"    tallies of the living: {_tallies(world['tallies'])}")
     if world["fixation"]:
         lines.append(f"    one common ancestor since {_when(world['fixation'])}")
     lines += _threshold([world])

@@ -19,9 +19,12 @@ class Motor(Settings):
     """
 
     kind: Literal["direct", "gaussian"] = Field(
-        "direct", description="direct: the action is the output; gaussian: noise of sd is added"
+        "direct",
+        description="direct: the brain's output is the action; gaussian: noise is added to the output",
     )
-    sd: float = Field(0.0, ge=0, le=100, description="standard deviation of the gaussian motor")
+    sd: float = Field(
+        0.0, ge=0, le=100, description="standard deviation of the gaussian motor's noise"
+    )
 
 
 def outputs_of(action: Action) -> Iterator[tuple[Discrete | Continuous, slice]]:

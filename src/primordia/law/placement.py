@@ -46,11 +46,13 @@ class Placement(Settings):
     )
     rule: Literal["blind", "empty-only", "replacing"] = Field(
         "blind",
-        description="picked cells that are occupied. blind: no birth; empty-only: never "
-        "picked; replacing: the occupant dies",
+        description="what happens if a child's cell is occupied. blind: no birth; empty-only: only "
+        "empty cells are picked; replacing: the occupant dies",
     )
     rows: int | None = Field(
-        None, ge=2, description="rows of a torus (default: as nearly square as the cells allow)"
+        None,
+        ge=2,
+        description="number of rows of a torus (default: the torus is as nearly square as possible)",
     )
 
     def shape(self, cells: int) -> tuple[int, int]:
@@ -67,7 +69,7 @@ class Placement(Settings):
             rows = max(r for r in range(1, math.isqrt(cells) + 1) if cells % r == 0)
         if rows < 2 or cells // rows < 2:
             raise ValueError(
-                f"{cells} cells do not make a torus; choose rows x columns, both 2 or more"
+                f"{cells} cells do not make a torus; let cells be rows x columns, both 2 or more"
             )
         return rows, cells // rows
 

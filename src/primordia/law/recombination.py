@@ -30,7 +30,7 @@ class Recombination(Settings):
     )
     unit: Literal["block", "row"] = Field(
         "row",
-        description="unit that comes from one parent as a whole: a block of weights, or a row",
+        description="unit that comes from one parent as a whole: a block of weights, or a row of a block",
     )
 
     def recombined(self, layout: Layout, draws: Draws, parents: Array, mates: Array) -> Array:

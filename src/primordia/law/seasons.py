@@ -20,7 +20,7 @@ class Schedule(Settings):
 
     kind: Literal["schedule"] = Field(description="change at a given tick")
     setting: str = Field(min_length=1, description="the setting that changes")
-    at: int = Field(ge=1, description="the first tick after this one has the new value")
+    at: int = Field(ge=1, description="the tick after which the new value holds")
     value: float = Field(ge=0, description="the new value")
 
 

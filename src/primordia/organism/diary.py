@@ -23,7 +23,7 @@ def check_name(path: Path) -> None:
     """Raise InputError unless the suffix is in WRITERS, and the path is free or a regular file."""
     files.check_output(path)
     if path.suffix not in WRITERS:
-        raise InputError(f"{path}: a life is saved as {', '.join(WRITERS)}")
+        raise InputError(f"{path}: the file of a life must end with one of {', '.join(WRITERS)}")
 
 
 def write(path: Path, stretches: Iterator[Stretch], counts: tuple[str, ...]) -> None:

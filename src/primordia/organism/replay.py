@@ -92,7 +92,7 @@ def lacking(habitat: AnyHabitat) -> list[str]:
 def picture_rate(life: RelivedLife) -> float:
     """Return the ticks in a second of a life; raise InputError if the habitat draws no pictures."""
     if lacks := " and no ".join(f"`{name}`" for name in lacking(life.habitat)):
-        raise InputError(f"{life.run.path}: its habitat draws no pictures (it has no {lacks})")
+        raise InputError(f"{life.run.path}: the habitat draws no pictures, since it has no {lacks}")
     assert life.habitat.rate
     return life.habitat.rate
 

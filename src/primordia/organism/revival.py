@@ -122,7 +122,7 @@ def revive(
         replay.film(film, (life, parts))
         written.append(film)
     elif film is not None:
-        notes.append(f"{film} was not made, since the life is not as recorded")
+        notes.append(f"{film} was not made, since the life differs from its record")
     begin = "birth" if life.stored is None else "fork" if since is None else "checkpoint"
     place = organism, world, begin, life.begins, course.tick
     return Revival(*place, respects, tuple(notes), tuple(written))
@@ -157,10 +157,12 @@ def _stored(run: Archive, organism: int, world: int, since: int | None) -> Array
             kept.append(f"{tick:,}")
     life = f"organism {organism} lived from tick {born:,} to {ended:,}"
     if kept:
-        raise InputError(f"--from {since}: {life}, and {run.path} keeps {' and '.join(kept)} of it")
+        raise InputError(
+            f"--from {since}: {life}; {run.path} keeps only later checkpoints: {' and '.join(kept)}"
+        )
     raise InputError(
-        f"--from {since}: {life}, and {run.path} keeps no checkpoint of these ticks (it keeps the"
-        " newest two); without --from the life begins at birth"
+        f"--from {since}: {life}, and {run.path} keeps no checkpoint of these ticks (a run keeps"
+        " the newest two); without --from the life begins at birth"
     )
 
 
@@ -178,10 +180,10 @@ def _notes(run: Archive, course: Course) -> list[str]:
     notes = [f"{fault}; an older checkpoint was read" for fault in faults[:1]]
     if course.replaced:
         notes.append(
-            "the births say that a child took its cell in that tick; neighbours were not relived"
+            "a child took the cell in that tick, as the births say; neighbours were not relived"
         )
     if directory.is_written(run.path):
-        notes.append(f"the run goes on; these are its records up to tick {run.ends.max():,}")
+        notes.append(f"the run goes on; the records end at tick {run.ends.max():,}")
     if run.other_versions:
         notes.append(f"exactness is off: {'; '.join(run.other_versions)}")
     elif not progress.exact:
@@ -189,7 +191,7 @@ def _notes(run: Archive, course: Course) -> list[str]:
     if times := progress.restarts:
         often = "once" if times == 1 else f"{times:,} times"
         notes.append(
-            f"the bodies of the living began again {often}, when the run went on; a life that was"
-            " lived then does not repeat"
+            f"the living got new bodies {often}, when the run was resumed; a life that was lived then"
+            " does not repeat"
         )
     return notes

@@ -20,7 +20,7 @@ def check_name(path: Path) -> None:
     """Raise InputError unless the suffix is .mp4 or .gif, and the path is free or a regular file."""
     files.check_output(path)
     if path.suffix not in FASTEST:
-        raise InputError(f"{path}: a video is an .mp4 or a .gif")
+        raise InputError(f"{path}: the file of a video must end with .mp4 or .gif")
 
 
 def write(

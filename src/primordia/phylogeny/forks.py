@@ -62,8 +62,8 @@ def whole_past(run: Archive, say: Say) -> Past:
                 break
         else:
             say(
-                f"{bundle.origin_of(run.path)} was forked from {fork.run}, which is not there or is"
-                f" another run now: the organisms alive at tick {fork.tick} are roots"
+                f"{bundle.origin_of(run.path)} was forked from {fork.run}, which is missing or was"
+                f" replaced by another run: the organisms alive at tick {fork.tick} are roots"
             )
             break
         seen.add(place.resolve())

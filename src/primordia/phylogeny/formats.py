@@ -45,7 +45,7 @@ def check_suffix(out: Path) -> Callable[[Phylogeny, Path], None]:
     try:
         return FORMATS[out.suffix.lower()]
     except KeyError:
-        raise InputError(f"{out}: its name must end with one of {', '.join(FORMATS)}") from None
+        raise InputError(f"{out}: the name must end with one of {', '.join(FORMATS)}") from None
 
 
 def _parquet(whole: Phylogeny, path: Path) -> None:

@@ -29,7 +29,7 @@ def chosen(
         InputError: there is no such organism or world, or the choices contradict each other.
     """
     if organism is not None and extant:
-        raise InputError("an organism and --extant both choose the last of each line; give one")
+        raise InputError("an organism's ID and --extant exclude each other; give one of them")
     part = whole if organism is None and world is None else of_world(whole, world or 0)
     if organism is not None:
         part = line_of(part, organism, world or 0)
@@ -75,7 +75,7 @@ def collapsed(whole: Phylogeny) -> Phylogeny:
     """
     if whole.mates:
         raise InputError(
-            "--collapse is for runs without recombination: here a child has two parents"
+            "--collapse is for runs without recombination: in this run children have two parents"
         )
     lives, parent = whole.lives, whole.lives.parent_row
     passed = lives.died & (parent >= 0) & (children(parent) == 1)

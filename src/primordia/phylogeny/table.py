@@ -35,7 +35,9 @@ def batches(whole: Phylogeny) -> Iterator[pa.RecordBatch]:
         Trouble: a birth number is too large for an id.
     """
     if len(whole) and whole.lives.id.max() >= WORLD:
-        raise Trouble(f"organism {whole.lives.id.max()}: ids are for birth numbers below 10^12")
+        raise Trouble(
+            f"organism {whole.lives.id.max()}: the table can hold birth numbers below 10^12 only"
+        )
     for first in range(0, len(whole), ROWS):
         yield batch(whole.take(slice(first, first + ROWS)))
 

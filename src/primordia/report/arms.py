@@ -105,7 +105,7 @@ def _over_time(runs: Sequence[Records], colours: Sequence[str]) -> list[Panel]:
             curve(name, _median(series.curve_by_world(of, each, ticks), log), colour)
             for name, each, colour in zip(names(runs), worlds, colours, strict=True)
         ]
-        about = f"{title} over time in each arm: the median of its worlds."
+        about = f"{title} over time in each arm, median over worlds."
         panels.append(
             panel(title, about, time, label, [table(ticks, *curves)], log_x=True, log_y=log)
         )

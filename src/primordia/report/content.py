@@ -70,8 +70,8 @@ def of_experiment(chosen: Campaign) -> dict[str, Any]:
         "title": chosen.plan.question or runs[0].config.task,
         "subtitle": f"{_name(chosen.path)}, {runs[0].config.task}, jobs: {jobs}",
         "words": [
-            f"The experiment has {count(len(runs), 'arm')}: {', '.join(named)}. They differ in the"
-            f" settings below; {count(worlds, 'world')} were lived in all.",
+            f"The experiment has {count(len(runs), 'arm')}: {', '.join(named)}. The arms differ in"
+            f" the settings below. All arms together have {count(worlds, 'world')}.",
             setting(runs[0].config),
         ],
         "numbers": _numbers([world for each in numbers.values() for world in each["worlds"]]),

@@ -129,7 +129,7 @@ def _deaths(lives: Lives) -> Panel:
             )
         )
     return panel(
-        "Age at death", "The age at which each organism died, or the age of those alive.",
+        "Age at death", "The age at which each organism died, or the present age of a living organism.",
         "organism, in order of birth", "age (ticks)", tables, log_y=True,
     )  # fmt: skip
 
@@ -157,7 +157,7 @@ def _rates(worlds: list[Lives], lives: Lives, time: str) -> Panel:
             shown.append((f"deaths: {cause.label}", lives.ended[here], COLOURS[cause]))
     curves = [curve(name, series.per_tick(at, ticks, edges), each) for name, at, each in shown]
     return panel(
-        "Births and deaths", "Births and deaths in a tick of a world over time, by cause.", time,
+        "Births and deaths", "Births and deaths per tick of a world over time, by cause.", time,
         "per tick of a world" if len(worlds) > 1 else "per tick",
         [table(series.middle(edges), *curves)], log_x=True, log_y=True,
     )  # fmt: skip
@@ -193,7 +193,7 @@ def _foraging(run: Records) -> list[Panel]:
     rate = run.description.rate
     unit = "second" if rate else "tick"
     food, enough = (each * (rate or 1) for each in (found.food, found.break_even))
-    about = "The food that an organism gathers, and the food that keeps an organism alive."
+    about = "The food that an organism gathers, and the food that keeps the energy constant."
     tables = [
         over_worlds("food", found.middle, food, style.BLUE),
         over_worlds("break-even", found.middle, enough, style.ORANGE, each=False),
@@ -218,7 +218,7 @@ def _counts(run: Records) -> list[Panel]:
             ]
             label = column.removeprefix(f"{name}_")
             tables.append(over_worlds(label, ticks, np.array(values), colour, each=False))
-        title = f"Of the living: {name}"
+        title = f"{name} of the living"
         about = f"The habitat's count {name}: mean and best of the living, over time."
         found.append(panel(title, about, "time (ticks)", name, tables))
     return found

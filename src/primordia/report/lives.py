@@ -43,7 +43,7 @@ def chosen(lives: Lives) -> dict[str, int]:
     """Return the rows of the lives that are filmed, by title: the first organism and the champion."""
     rows = {"The first organism": 0}
     with suppress(InputError):  # no birth since the fork
-        rows["The longest-lived of the later half"] = lives.oldest()
+        rows["The champion: the longest-lived of the later half"] = lives.oldest()
     return rows
 
 
@@ -53,7 +53,7 @@ def _film(run: Records, title: str, row: int) -> dict[str, str]:
     if ticks > LONGEST[kind]:
         raise InputError(
             f"the life of organism {number} is {ticks:,} ticks long, too long for a page;"
-            " `primordia replay` films it"
+            f" `primordia replay` films this life"
         )
     device.prepare()
     with (

@@ -29,7 +29,7 @@ def report(shown: Records | Campaign, out: Path | None = None) -> Path:
         bundle.refuse_changes(shown.path)
     path = out if out is not None else shown.path / NAME
     if path.suffix not in (".html", ".htm"):
-        raise InputError(f"--out {path}: a report is an .html file")
+        raise InputError(f"--out {path}: the file of a report must end with .html")
     if out is None and not shown.path.is_dir():
         raise InputError(
             f"{shown.path} is not a directory; name the file of the report: --out FILE.html"

@@ -20,10 +20,10 @@ DEATHS = {
     "fatal": "killed by their world",
     "starved": "of hunger",
     "hazard": "by accident",
-    "replaced": "since a child took their cell",
-    "fault": "of a fault in their brain",
-    "time-limit": "at the end of their time",
-    "restart": "when the run went on without their bodies",
+    "replaced": "because a child took their cell",
+    "fault": "of a fault in their body or brain",
+    "time-limit": "at the time limit of the task",
+    "restart": "when the run was resumed without their bodies",
 }
 
 
@@ -48,9 +48,9 @@ def setting(config: Config) -> str:
     room = "a neighbouring" if taken else "an empty neighbouring"
     parts = [
         f"{about}{worlds} {config.cells:,} {WORLDS[config.placement.topology]}. In each cell lives"
-        " at most one organism: a small neural network in a simulation of its own.",
-        "There is no goal and no reward. An organism lives until its world kills it, and while it"
-        f" lives it copies itself into {room} cell{taken}.",
+        " at most one organism: a small neural network with its own simulated body.",
+        "There is no goal and no reward. An organism lives until its world kills it. Meanwhile"
+        f" the organism copies itself into {room} cell{taken}.",
     ]
     if config.inheritance == "parent":
         parts.append("Copies differ from their parent by small random changes.")
@@ -89,7 +89,7 @@ def _one_world(worlds: list[dict[str, Any]], run: Records, rate: float | None) -
             " others follow."
         )
     else:
-        parts.append("Nothing lives there now.")
+        parts.append("Nothing lives in the world now.")
     return parts
 
 
@@ -129,7 +129,7 @@ def _extinct(times: int, config: Config, what: str) -> list[str]:
         return []
     often = "once" if times == 1 else f"{times:,} times"
     new = "a random founder" if config.genesis == "one" else "founders in all cells"
-    new = new if not config.ancestors else "the genomes that it was given"
+    new = new if not config.ancestors else "the given genomes"
     return [f"{what} died out {often}, and life began again with {new}."]
 
 
@@ -142,8 +142,8 @@ def _lives(run: Records, rate: float | None) -> list[str]:
     early, late = (lives.take(rows) for rows in (order[:quarter], order[-quarter:]))
     if len(lives) >= 40:
         parts.append(
-            f"Half of the first quarter of the organisms lived {_median(early)}, and half of the"
-            f" last quarter {_median(late)} so far."
+            f"In the first quarter of the births, half of the organisms lived {_median(early)}; in the"
+            f" last quarter, half lived {_median(late)} so far."
         )
     row = int(lives.lifespan.argmax())
     which = f"organism {lives.id[row]:,}"
@@ -152,7 +152,7 @@ def _lives(run: Records, rate: float | None) -> list[str]:
     long = int(lives.lifespan[row])
     parts.append(
         f"The longest life is that of {which}{where}, born at tick {lives.born[row]:,}: {long:,}"
-        f" ticks{simulated(long, rate)}; it {fate}."
+        f" ticks{simulated(long, rate)}. This organism {fate}."
     )
     return parts
 

@@ -217,7 +217,7 @@ class Archive(Records):
             if fault := expected.fault(arrays):
                 raise arrays.unfit(fault)
             if any(len(each) != self.config.seeds for each in stored.digests.values()):
-                raise arrays.unfit("it has different worlds")
+                raise arrays.unfit("the checkpoint has another number of worlds")
             self._fitting.add(stored.path)
         return arrays
 

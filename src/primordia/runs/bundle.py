@@ -168,7 +168,7 @@ def refuse_changes(path: Path) -> None:
         file = origin_of(path)
         raise InputError(
             f"{file} is a bundle and cannot be changed; `primordia unbundle {file} FOLDER` makes a "
-            "run from it; figures, films and pages need only --out"
+            "run from the bundle. For figures, films and pages of a bundle, give --out"
         )
 
 
@@ -183,11 +183,11 @@ def _extract(file: Path, folder: Path) -> None:
                 raise ValueError("its files are larger than the bundle")
             seals = _seals(bundle, entries)
             for name in sorted(entries.keys() ^ seals.keys()):
-                held = "is named by no manifest" if name in entries else "is missing"
+                held = "is not named by any manifest" if name in entries else "is missing"
                 raise ValueError(f"{name} {held}")
             for name, seal in seals.items():
                 if seal is not None and seal.bytes != entries[name].file_size:
-                    raise ValueError(f"{name} has another size than its manifest says")
+                    raise ValueError(f"{name} has another size than the manifest says")
             directory.make_folders(folder)
             for name, seal in seals.items():
                 _copy(_pieces(bundle, entries[name]), folder / name, seal)
@@ -214,9 +214,9 @@ def _entries(bundle: zipfile.ZipFile) -> Entries:
         if entry.flag_bits & 1:
             raise ValueError(f"{name} is encrypted")
         if entry.compress_type != zipfile.ZIP_STORED or entry.compress_size != entry.file_size:
-            raise ValueError(f"{name} is compressed, and no bundle compresses")
+            raise ValueError(f"{name} is compressed, but files in a bundle are never compressed")
         if name in entries:
-            raise ValueError(f"{name} is there twice")
+            raise ValueError(f"{name} occurs twice")
         entries[name] = entry
     folded = {unicodedata.normalize("NFKC", name).casefold() for name in entries}
     if len(folded) != len(entries):

@@ -128,7 +128,7 @@ def _inputs(run: Path) -> list[str]:
 
 def no_whole_checkpoint(run: Path, faults: list[str]) -> Trouble:
     """Return the error for a run without a whole checkpoint."""
-    again = f"`primordia run {run / 'config.toml'}` lives it again from its beginning"
+    again = f"`primordia run {run / 'config.toml'}` repeats the run from its beginning"
     if (run / ORIGIN).exists():
         again = "fork it again"
     return Trouble(f"no checkpoint of {run} is whole: {faults[0]}; {again}")
@@ -199,7 +199,7 @@ def _read(run: Path, path: Path, fault_in: FaultIn) -> Checkpoint | str:
         return f"{path / MANIFEST} is missing or damaged"
     for name, seal in manifest.inputs.items():
         if fault := fault_in(run / name, seal.bytes, seal.sha256):
-            raise Trouble(f"{fault}; put it back (`primordia fork` goes on with other settings)")
+            raise Trouble(f"{fault}; put the file back (for other settings use `primordia fork`)")
     for file, seal in sealed:
         if fault := fault_in(file, seal.bytes, seal.sha256):
             return fault

@@ -81,7 +81,7 @@ def admit(run: Path, code: Sources) -> None:
     if not own_code.is_loaded(code) and not _is_trusted(code):
         names = ", ".join(str(source.file) for source in code.values())
         raise InputError(
-            f"{run} executes code from outside installed packages: {names}. Read it; then add"
+            f"{run} executes code from outside installed packages: {names}. Read this code; then add"
             " --trust once, or call primordia.load(run, trust=True)"
         )
     try:

@@ -163,7 +163,7 @@ def read_config(run: Path) -> Config:
     if made_by < FORMAT:
         raise InputError(
             f"{run} has format {made_by}, and this primordia reads format {FORMAT} only;"
-            f" `primordia run {run / 'config.toml'}` repeats it from its beginning"
+            f" `primordia run {run / 'config.toml'}` repeats the run from its beginning"
         )
     if not (file := run / "config.toml").is_file():
         raise InputError(f"{file} is missing; put it back")

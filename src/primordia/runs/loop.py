@@ -130,7 +130,7 @@ def resume(
         if last is None and damaged:
             raise checkpoint.no_whole_checkpoint(run, damaged)
         if last is None and config.fork is not None:
-            fault = "is a fork that was cut off before it began; remove it and fork again"
+            fault = "is a fork without a first checkpoint; remove this folder and fork again"
             raise InputError(f"{run} {fault}")
         directory.make_folders(run)
         checkpoint.remove_leftovers(run, last)
@@ -168,7 +168,7 @@ def _nothing_to_do(run: Path, progress: Progress) -> str:
     limits = ", ".join(f"{name} {value}" for name, value in progress.limits if value)
     return (
         f"nothing to do: every world of {run} has reached a limit ({limits}); to go on, set"
-        " another with --ticks, --births or --until, such as --ticks 1000000 --until none"
+        " another limit with --ticks, --births or --until, such as --ticks 1000000 --until none"
     )
 
 
@@ -267,7 +267,7 @@ class Saver:
 def _check_same(run: Path, differ: list[str], inexact: bool) -> None:
     if differ and not inexact:
         raise InputError(
-            f"{run} cannot go on bit for bit: {'; '.join(differ)}. Restore that, or add --inexact"
+            f"{run} cannot go on bit for bit: {'; '.join(differ)}. Undo these changes, or add --inexact"
         )
 
 

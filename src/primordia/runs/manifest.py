@@ -112,13 +112,13 @@ def parsed(text: bytes) -> Manifest:
         content = json.loads(text)
         recorded = content.pop("sha256")
     except (RecursionError, AttributeError, KeyError, TypeError, ValueError):
-        raise ValueError("a manifest cannot be read") from None
+        raise ValueError("one of its manifests cannot be read") from None
     if recorded != _checksum(content):
-        raise ValueError("a manifest was changed")
+        raise ValueError("one of its manifests was changed")
     try:
         return Manifest.model_validate_json(json.dumps(content))
     except ValueError:
-        raise ValueError("a manifest does not belong to a run") from None
+        raise ValueError("one of its manifests is not that of a run") from None
 
 
 def _checksum(content: dict[str, Any]) -> str:

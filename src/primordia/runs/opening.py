@@ -57,7 +57,7 @@ def run_paths(place: Path) -> list[Path]:
     """
     files.check_name(place)
     if (place / EXPERIMENT).is_file():
-        arms = ", ".join(str(path) for path in arm_paths(place)) or "it has none yet"
+        arms = ", ".join(str(path) for path in arm_paths(place)) or "none has begun yet"
         raise InputError(f"{place} is an experiment; name one of its arms: {arms}")
     if not place.exists() and has_magic(str(place)):
         found = [path for each in sorted(glob(str(place))) for path in run_paths(Path(each))]

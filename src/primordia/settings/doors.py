@@ -50,7 +50,7 @@ def text(env: str) -> str:
     (facts, faults), table = report(env), values(full(env))
     fatal = table["habitat"]["fatal"]
     lines = [
-        f"{env}: `primordia run FILE` lives in it; change what you like.",
+        f"A task in {env}: `primordia run FILE` runs it. Change any setting.",
         *facts,
         *(f"Found: {fault}." for fault in faults),
         f"fatal is a condition that ends a life, such as: {fatal} or obs[0] < -1.",

@@ -24,7 +24,8 @@ def find(what: str, name: object, known: Mapping[str, str], base: type) -> type:
         raise LookupError(f"{what} {name!r} is not a class")
     if not issubclass(found, base):
         raise LookupError(
-            f"{found.__name__} is not a {what}: subclass {base.__name__} of {base.__module__}"
+            f"{found.__name__} is not a {what}: make it a subclass of"
+            f" {base.__module__}.{base.__name__}"
         )
     return found
 

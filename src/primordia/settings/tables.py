@@ -52,8 +52,8 @@ def values_of(task: str) -> dict[str, Any]:
         values = from_toml(Path(task))
         return merged(known.get(str(values.get("task")), {}), values)
     raise InputError(
-        f"there is no task {task!r}{did_you_mean(task, list(known))}; `primordia tasks` lists them,"
-        " or give a file FILE.toml, or an environment gym:NAME"
+        f"there is no task {task!r}{did_you_mean(task, list(known))}; give a name that `primordia"
+        " tasks` lists, a file FILE.toml, or an environment gym:NAME"
     )
 
 

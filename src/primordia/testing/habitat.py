@@ -46,7 +46,7 @@ def check_habitat(habitat: AnyHabitat) -> None:
         expected,
         lives.whole(),
         "when it begins again, so it depends on more than words and actions; draw only from"
-        " `words`, and let `open` begin from nothing",
+        " `words`, and let `open` keep nothing of earlier lives",
     )
     for count in COUNTS:
         says = f"among {count} bodies than among {ALL}; compute each body alone, elementwise"
@@ -107,7 +107,7 @@ def _abilities(habitat: AnyHabitat) -> None:
     need(
         not taken,
         habitat,
-        f"counts {taken}, which are columns of deaths already; give tallies other names",
+        f"has tallies {taken}, which are columns of deaths already; give the tallies other names",
     )
     for ability, methods in habitat.abilities.items():
         lacking = habitat.lacks(ability)
@@ -143,7 +143,7 @@ def _types(habitat: JaxHabitat) -> None:
     need(
         len({jax.tree.structure(each) for each in (stepped[0], bodies)}) == 1,
         habitat,
-        "makes bodies of different forms in step and in reset; return the same tree of arrays",
+        "makes bodies of different forms in step and in reset; return the same tree of arrays from both",
     )
     for after, before in zip(jax.tree.leaves(stepped[0]), jax.tree.leaves(bodies), strict=True):
         typed(habitat, "bodies after a step", after, before.shape, before.dtype)

@@ -33,7 +33,7 @@ Past: TypeAlias = list[tuple[Any, ...]]
 
 def judged(habitat: object, outcome: Any, count: int) -> None:
     """Raise ContractError if a step does not report an Outcome of `count` bodies."""
-    need(isinstance(outcome, Outcome), habitat, f"reports {outcome!r}; return an Outcome from step")
+    need(isinstance(outcome, Outcome), habitat, f"returns {outcome!r} from step; return an Outcome")
     for name, each in outcome._asdict().items():
         if each is not None or name == "fatal":
             dtype = np.bool_ if name in ("fatal", "fault", "expired") else np.float32
@@ -123,11 +123,13 @@ class Lives:
             need(
                 isinstance(picture, Image),
                 self.habitat,
-                f"draws {type(picture).__name__}; return a PIL.Image.Image from picture",
+                f"returns {type(picture).__name__} from picture; return a PIL.Image.Image",
             )
             said = stage.habitat.caption(body, action)
             need(
-                isinstance(said, str), self.habitat, f"says {said!r}; return a string from caption"
+                isinstance(said, str),
+                self.habitat,
+                f"returns {said!r} from caption; return a string",
             )
 
     def compare(self, expected: list[Past], found: list[Past], says: str) -> None:

@@ -79,7 +79,7 @@ def _stated(mutation: Mutation, layout: Layout) -> None:
         need(
             isinstance(name, str) and name.isidentifier() and name not in TAKEN,
             mutation,
-            f"notes {name!r}, which cannot be a column of births; take a word other than"
+            f"has the note {name!r}, which cannot be a column of births; use a name other than"
             f" {', '.join(sorted(TAKEN))}",
         )
     rates = mutation.rates(layout)

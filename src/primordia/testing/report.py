@@ -7,8 +7,8 @@ import jax
 import numpy as np
 
 ROUNDED = (
-    "; compilers round a product and a sum together, or not, and sum in other orders: take"
-    " rounding.rounded_product for a product that is added to something, and brains.layers for"
+    "; compilers differ in the rounding of products that are added, and in the order of sums: use"
+    " rounding.rounded_product for a product that is added to something, and brains.layers in"
     " brains"
 )
 
@@ -56,7 +56,6 @@ def advise(part: object) -> None:
     if not shares:
         warnings.warn(
             f"{type(part).__name__} is not hashed by its values, so each run compiles it again;"
-            " subclass Settings, without dictionaries or lists among the settings, or define"
-            " __hash__",
+            " make the class a subclass of Settings without dictionaries and lists, or define __hash__",
             stacklevel=3,
         )

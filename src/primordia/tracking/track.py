@@ -99,7 +99,7 @@ def track(
                 raise KeyboardInterrupt
     if not count:
         raise InputError(
-            f"{group} has no row of metrics yet; there is one row in `sample_every` ticks"
+            f"{group} has no row of metrics yet; a row is written every `sample_every` ticks"
         )
 
 

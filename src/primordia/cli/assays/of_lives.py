@@ -56,16 +56,16 @@ def assay_of_lives(short_help: str) -> Callable:
 
 @click.option(
     "--mutants", type=click.IntRange(min=1), default=24, show_default=True,
-    help="Number of mutants of an organism by each mutation.",
+    help="Number of mutants of each organism, for each mutation.",
 )  # fmt: skip
 @click.option(
     "--scale", "scales", type=click.FloatRange(min=0, min_open=True), multiple=True,
-    help="Measure noise of this share of the founders' standard deviation; may be repeated "
-    "[0.001 0.003 0.01 0.03 0.1 0.3].",
+    help="Standard deviation of the noise, as a multiple of the founders' standard deviation; may be"
+    " repeated [0.001 0.003 0.01 0.03 0.1 0.3].",
 )  # fmt: skip
 @click.option(
     "--differs", type=click.FloatRange(min=0), multiple=True,
-    help="Measure the calibrated mutation with this change of behaviour; may be repeated.",
+    help="Also measure a calibrated mutation with this change of behaviour; may be repeated.",
 )  # fmt: skip
 @assay_of_lives("Measure how mutations of several sizes change a life.")
 def effects(
@@ -80,7 +80,7 @@ def effects(
     as_json: bool,
     **chosen: Any,
 ) -> None:
-    """Let mutants of organisms play their parents' games, for several mutations.
+    """Let mutants play the same games as their parents, for several mutations.
 
     RUN is a run, a genome file or a task. Without an ID the parents are the champions of a run's
     worlds, all genomes of a file, or the longest-lived 16 of 512 founders of a task. The first row
@@ -107,7 +107,7 @@ def ablate(
     as_json: bool,
     **chosen: Any,
 ) -> None:
-    """Let organisms live with frozen senses, without memory, and without each block of weights.
+    """Let organisms live again with one loss each: frozen senses, no memory, or a zero block of weights.
 
     RUN is a run, a genome file or a task. Without an ID the organisms are the champions of a run's
     worlds, all genomes of a file, or the longest-lived 16 of 512 founders of a task. Any setting of

@@ -23,7 +23,9 @@ NUMBERED = re.compile(r"(?P<place>.+):(?P<organism>\d+)(@(?P<world>\d+))?")
 @click.argument("one")
 @click.argument("other")
 @click.option("--task", help="Task of a genome file [the task that the file names].")
-@click.option("--worlds", type=click.IntRange(min=1), default=10, show_default=True, help="Worlds.")
+@click.option(
+    "--worlds", type=click.IntRange(min=1), default=10, show_default=True, help="Number of worlds."
+)
 @click.option(
     "--ticks", type=click.IntRange(min=1), default=5_000, show_default=True,
     help="Number of ticks of each world.",
@@ -48,10 +50,10 @@ def compete(
     """Let two genomes compete in empty worlds, without mutation. Measure whose descendants take
     over.
 
-    ONE and OTHER are each a run (its champion) or a genome file (its first genome). `runs/a:17` is
-    organism 17 of world 0. `runs/a:17@2` is organism 17 of world 2. `some.safetensors:3` is the
-    fourth genome of a file. `Pong-survival:5` is a founder of a task. The law is that of ONE. Any
-    setting of the habitat can be changed by a flag.
+    ONE and OTHER each name a run, which stands for its champion, or a genome file, which stands for
+    its first genome. `runs/a:17` is organism 17 of world 0. `runs/a:17@2` is organism 17 of world 2.
+    `some.safetensors:3` is the fourth genome of a file. `Pong-survival:5` is a founder of a task.
+    The worlds follow the settings of ONE. Any setting of the habitat can be changed by a flag.
     """
     from primordia.assays.compete import compete as measure
 

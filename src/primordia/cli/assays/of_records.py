@@ -33,8 +33,8 @@ def threshold(runs: tuple[Path, ...], after: float, out: Path | None, as_json: b
 
     p is the share of children that mutate. v is the share of good parents' mutants that are as good
     as the parents. s is the mean life of good parents' copies, divided by the mean life of all
-    organisms. Above 1 a good line persists. Several runs are measured as one arm. Each arm of an
-    experiment is measured.
+    organisms. If the result is above 1, a good line persists. Several runs are measured as one arm.
+    Each arm of an experiment is measured.
     """
     found = {str(arm.path): arm.threshold(after) for arm in arms_of(runs)}
     tell("threshold", found, as_json, out, tables.threshold)

@@ -20,7 +20,9 @@ from primordia.cli.cache import cache_option
 from primordia.cli.flags import HabitatCommand, trust_option
 
 
-@click.command(cls=HabitatCommand, short_help="Measure whether the oldest are good or were lucky.")
+@click.command(
+    cls=HabitatCommand, short_help="Measure whether the oldest organisms are good or were lucky."
+)
 @source_argument
 @click.option(
     "--each", type=click.IntRange(min=1), default=20, show_default=True,
@@ -43,10 +45,10 @@ def garden(
     as_json: bool,
     **options: Any,
 ) -> None:
-    """Let the oldest organisms, other late-born organisms and founders of each world be born again.
+    """Let three groups be born again: the oldest organisms, others born late, and founders.
 
-    The oldest organisms were also lucky. Their lives in fresh games show what their genomes are
-    worth. Each arm of an experiment is measured. Any setting of the habitat can be changed by a
+    The oldest organisms were also lucky. New lives in fresh games show how good their genomes are.
+    Each arm of an experiment is measured. Any setting of the habitat can be changed by a
     flag, such as --sticky 0.25 --noops 30.
     """
     from primordia.assays.garden import garden as measure
@@ -60,7 +62,7 @@ def garden(
 
 @click.option(
     "--most", type=click.IntRange(min=2), default=200, show_default=True,
-    help="Let at most this number of the line's genomes live.",
+    help="Largest number of genomes of the line that live again.",
 )  # fmt: skip
 @assay_of_lives("Measure when a line of descent became good.")
 def line(
@@ -77,7 +79,7 @@ def line(
 ) -> None:
     """Let the ancestors of organisms live again, all in the same games.
 
-    Without an ID the line is that of the champion of the world, or of the whole run. Any setting of
+    Without an ID the line leads to the champion of --world, or of the whole run. Any setting of
     the habitat can be changed by a flag, such as --sticky 0.25 --noops 30.
     """
     from primordia.api import load
@@ -86,7 +88,8 @@ def line(
 
     if task is not None or run.suffix == SUFFIX:
         raise InputError(
-            "a genome file holds no ancestors; give the run that its genomes come from"
+            "the assay `line` needs a run, since a genome file holds no ancestors; give the run that"
+            " the genomes come from, without --task"
         )
     opened = load(run, trust).opened()
     numbers = [(each, world or 0) for each in organisms]

@@ -20,7 +20,7 @@ after_option = click.option(
     type=click.FloatRange(0, 1, max_open=True),
     default=0.5,
     show_default=True,
-    help="Count only births after this share of a world's births.",
+    help="Leave out the first births of each world, up to this share.",
 )
 json_option = click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 out_option = click.option(
@@ -40,7 +40,7 @@ ticks_option = click.option(
     type=click.IntRange(min=1),
     default=20_000,
     show_default=True,
-    help="Cut games at this length.",
+    help="Cut games at this number of ticks.",
 )
 
 

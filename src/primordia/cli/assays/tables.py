@@ -92,7 +92,7 @@ def ablate(name: str, found: list[Any]) -> Told:
     first = [each for each in found if each.without == losses[0]]
     return Told(
         f"{name}: {_count(len(first), 'organism')}, medians (quartiles)",
-        ("without", "ticks lived", "of the intact life"),
+        ("without", "ticks lived", "share of the intact life"),
         [("nothing", spread(each.intact for each in first), "1"), *rows],
     )
 
@@ -155,12 +155,14 @@ def compete(name: str, found: list[Any]) -> Told:
         rows.append((each.other, worlds, f"{lost:,}", f"{spread(1 - share for share in late)}"))
     head = ("", "worlds", "won", "share of the late living")
     notes = [
-        "Late: mean over the later half of the ticks. Won: worlds in which it is above one half."
+        "Late: mean over the later half of the ticks. Won: worlds in which this share is above one half."
         f" Sign test over worlds: p = {each.p:.2g}."
         for each in found
     ]
     ticks = f"{found[0].tick[-1]:,} ticks"
-    return Told(f"{name}: each fills half of each world, {ticks}, no mutation", head, rows, notes)
+    return Told(
+        f"{name}: each genome begins in half of the cells, {ticks}, no mutation", head, rows, notes
+    )
 
 
 def _birth_text(step: Any) -> str:

@@ -36,5 +36,5 @@ def draw(found: list[Effect]) -> Figure:
     axes.set_xticks(places, [mutation.replace(" ", "\n") for mutation in mutations])
     axes.set(ylim=(-0.02, 1.02), ylabel="share of mutants")
     key = dict(SHARES.values())
-    style.title(axes, "Lives of mutants beside their parents', means and quartiles", key)
+    style.title(axes, "Lives of mutants compared with parents, means and quartiles", key)
     return figure

@@ -24,7 +24,7 @@ def draw(found: list[Bed]) -> Figure:
     style.logarithmic(pairs.xaxis)
     style.logarithmic(pairs.yaxis)
     pairs.axline((1, 1), (10, 10), color=style.FAINT, zorder=0)
-    pairs.set(xlabel="life in its world (ticks)", ylabel="life when born again (ticks)")
+    pairs.set(xlabel="life as recorded (ticks)", ylabel="life when born again (ticks)")
     style.title(pairs, "Organisms", COLOURS)
     for group, colour in {**COLOURS, "founders": style.SOFT}.items():
         lives = np.sort(np.concatenate([each.reborn for each in found if each.group == group]))

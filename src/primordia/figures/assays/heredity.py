@@ -22,7 +22,7 @@ def draw(found: list[Inherited]) -> Figure:
     )
     slopes.axhline(1, color=style.FAINT, zorder=0)
     slopes.axhline(0, color=style.FAINT, zorder=0)
-    style.title(slopes, "Slope of children's log life on parents'", key)
+    style.title(slopes, "Slope of children's log life on parents' log life", key)
     strips(
         shares,
         {

@@ -19,6 +19,6 @@ def draw(found: list[Line]) -> Figure:
         axes.axvline(line.good.generation, color=style.FAINT, zorder=0)
         style.logarithmic(axes.yaxis)
         axes.set(xlabel="generation", ylabel="ticks lived", xlim=(0, max(line.generations, 1)))
-        key = {"born again": style.BLUE, "in its world": style.ORANGE, "as good from": style.SOFT}
+        key = {"born again": style.BLUE, "as recorded": style.ORANGE, "as good from": style.SOFT}
         style.title(axes, f"The line of organism {line.organism} of world {line.world}", key)
     return figure

@@ -45,19 +45,21 @@ FRAME_RATE = 60
 
 
 class Atari(HostHabitat, Settings):
-    """A game as a habitat: senses are bytes of RAM, (byte - 128) / 128."""
+    """An Atari game as a habitat: senses are bytes of RAM, (byte - 128) / 128."""
 
     game: str = Field(description="the game's name, such as pong or space_invaders")
     senses: tuple[int, ...] = Field(
-        (), strict=False, description="addresses perceived, 0 to 127; none given: all 128"
+        (),
+        strict=False,
+        description="addresses of RAM that organisms perceive, 0 to 127 (default: all)",
     )
     blind: bool = Field(False, description="true: senses are constant (a control)")
     fatal: str = Field("game_over", description="condition that ends a life")
     food: str = Field("0", description="amount gathered in a tick")
     actions: str = Field(
-        "minimal", description="minimal, full, or names with spaces between, such as NOOP UPFIRE"
+        "minimal", description="minimal, full, or names separated by spaces, such as NOOP UPFIRE"
     )
-    frame_skip: int = Field(1, ge=1, le=100, description="frames a tick")
+    frame_skip: int = Field(1, ge=1, le=100, description="frames in a tick")
     sticky: float = Field(
         0.0, ge=0, lt=1, description="probability that a frame repeats the last button"
     )
@@ -69,7 +71,8 @@ class Atari(HostHabitat, Settings):
     workers: int | None = Field(
         None,
         ge=0,
-        description="emulator processes, or 0: emulators in this process; no life depends on it"
+        description="number of emulator processes; 0: emulators in this process; lives do not depend"
+        " on it"
         " (default: one for each core, 0 if there is one core)",
     )
 

@@ -34,19 +34,22 @@ class CartPole(JaxHabitat, Settings):
     rate: ClassVar = 1 / TAU
 
     senses: tuple[Coordinate, ...] = Field(
-        COORDINATES, min_length=1, strict=False, description="coordinates perceived, unscaled"
+        COORDINATES,
+        min_length=1,
+        strict=False,
+        description="coordinates that organisms perceive, unscaled",
     )
     angle_limit: float = Field(12.0, gt=0, le=180, description="fatal angle, degrees")
     track_limit: float = Field(
         2.4,
         gt=0,
-        description="fatal distance from the middle, m; 1e9: there is no limit in practice",
+        description="fatal distance from the middle, m; 1e9 is no limit in practice",
     )
     spread: float = Field(
         0.05,
         ge=0,
         le=1e9,
-        description="each coordinate of a fresh body is uniform within +-spread",
+        description="each coordinate of a new body is uniform from -spread to spread",
     )
 
     @property

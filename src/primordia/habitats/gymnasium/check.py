@@ -185,8 +185,8 @@ def _repeat(trial: _Trial, lives: list[_Life], found: Measured) -> None:
         begins = all(a[0] == b[0] for a, b in zip(new, twice, strict=True))
         found.saving = "restart"
         found.faults.append(
-            "the same seed and actions give another life: the environment draws from outside, or"
-            " keeps something between environments"
+            "the same seed and actions give another life: the environment draws random numbers from"
+            " outside, or keeps something between environments"
             if begins
             else "a reset with the same seed gives another beginning: the environment "
             "ignores its seed, or keeps something between environments"
@@ -215,11 +215,11 @@ def _go_on(trial: _Trial, lives: list[_Life], fresh: bool) -> str:
                 saved = state.encode(env)
                 elsewhere = _restored(trial, elsewhere, saved, fresh)
                 if state.encode(elsewhere) != saved:
-                    return "a state that was restored is not the one that was saved"
+                    return "a restored state differs from the saved state"
             except state.UnknownStateError as error:
                 return str(error)
             if trial.steps(elsewhere, life.rows[age:]) != life.seen[age + 1 :]:
-                return "a state that was saved does not go on bit for bit"
+                return "a life does not go on from a saved state bit for bit"
             trial.steps(env, life.rows[age:until])
     return ""
 

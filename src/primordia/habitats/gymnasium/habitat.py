@@ -32,7 +32,7 @@ NOT_INSTALLED = "this needs Gymnasium: pip install 'primordia[gymnasium]'"
 
 
 class Gymnasium(HostHabitat, Settings):
-    """An environment as a habitat; the senses are its observation, flattened and scaled."""
+    """An environment of Gymnasium as a habitat; senses are the observation, flattened and scaled."""
 
     env: str = Field(min_length=1, description="registered name, or module:NAME")
     options: dict[str, Any] = Field({}, description="keyword arguments of the environment")
@@ -41,9 +41,7 @@ class Gymnasium(HostHabitat, Settings):
         strict=False,
         description="modules to import first, such as those that register the environment",
     )
-    fatal: str = Field(
-        "terminated", description="condition that ends a life; if none is given, no life ends"
-    )
+    fatal: str = Field("terminated", description='condition that ends a life; "": no life ends')
     food: str = Field("0", description="amount gathered in a tick, or module:function")
     effort: str = Field("0", description="amount exerted in a tick")
     time_limit: int | None = Field(None, ge=1, description="ticks after which a life ends")
@@ -54,23 +52,23 @@ class Gymnasium(HostHabitat, Settings):
         " observation, or one for all (default: 1)",
     )
     squash: bool = Field(
-        False, description="x becomes x / (1 + |x|) where observations have no bounds"
+        False, description="true: an observation x without bounds becomes x / (1 + |x|)"
     )
     saving: Literal["snapshot", "replay", "restart"] = Field(
         "replay",
-        description="how a life goes on after an interruption: from its state, by living it "
-        "again, or with a body as at birth; `primordia check` measures which of them work",
+        description="how a life goes on after an interruption. snapshot: from its saved state; replay:"
+        " the life is lived again; restart: with a new body. `primordia check` measures what works",
     )
     fresh: bool = Field(False, description="make a new environment for each life; slow")
     faults: int = Field(
         100,
         ge=0,
-        description="largest number of deaths by errors in the environment; more stop the run",
+        description="largest number of deaths by errors in the environment; one more stops the run",
     )
     workers: int | None = Field(
         None,
         ge=0,
-        description="processes, or 0: environments in this process; no life depends on it"
+        description="number of processes; 0: environments in this process; lives do not depend on it"
         " (default: one for each core, 0 if there is one core)",
     )
 
@@ -88,7 +86,7 @@ class Gymnasium(HostHabitat, Settings):
             check_food(self.env, self.options, self.imports, self._food_function)
         count = self._probe.observation.width
         if len(self.scale) not in (0, 1, count) or any(each <= 0 for each in self.scale):
-            raise ValueError(f"scale: give 1 number or {count}, all above 0")
+            raise ValueError(f"scale: give 1 number or {count} numbers, all above 0")
         return self
 
     @cached_property
@@ -279,8 +277,8 @@ class Gymnasium(HostHabitat, Settings):
         if self._failed > self.faults:
             last = self.message(int(np.flatnonzero(fault)[-1]))
             raise Trouble(
-                f"{self._failed} organisms died of errors in {self.env}, the last of: {last}. Mend"
-                " the environment, or allow more with habitat.faults"
+                f"{self._failed} organisms died of errors in {self.env}, the last error: {last}."
+                " Mend the environment, or raise habitat.faults"
             )
 
     def message(self, cell: int) -> str:

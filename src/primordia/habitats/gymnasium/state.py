@@ -95,7 +95,7 @@ class _Writer:
                 type(value).__qualname__,
                 {name: self.write(each, f"{place}.{name}") for name, each in attributes},
             ]
-        raise UnknownStateError(f"{place} is a {type(value).__name__}")
+        raise UnknownStateError(f"{place} is a {type(value).__name__}, which cannot be saved")
 
     def _fields(self, data: Any, place: str) -> dict[str, Any]:
         """Write the arrays of MuJoCo's data whose lengths the model fixes, and the time."""

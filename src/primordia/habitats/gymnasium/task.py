@@ -11,7 +11,7 @@ from primordia.settings.doors import replication
 PLAIN = 5.0
 """Unbounded observations that stay below this in random play are not scaled."""
 SAVING = {
-    "snapshot": "After an interruption lives go on exactly from their state",
+    "snapshot": "After an interruption lives go on exactly from their saved states",
     "replay": "After an interruption lives are lived again from their seed and actions, exactly",
     "restart": "After an interruption lives cannot go on exactly",
 }
@@ -98,8 +98,8 @@ def _facts(env: str, about: Any, found: Any, keys: dict[str, int]) -> list[str]:
         f"Observation: {one_line[0]}; obs[0] to obs[{about.observation.width - 1}] in conditions.",
         f"Action: {one_line[1]}.",
         f"Numbers in info: {named}.",
-        f"The environment's limit of {about.limit} steps is off; time_limit = {about.limit} keeps"
-        " it."
+        f"The environment's limit of {about.limit} steps is off; time_limit = {about.limit} turns"
+        " the limit on."
         if about.limit
         else "The environment has no time limit.",
         SAVING[found.saving] + (f" ({found.why})." if found.why else "."),

@@ -57,7 +57,7 @@ def measure(habitat: Gymnax) -> Measured:
         "an observation is outside the declared space": not seen.inside.all(),
         "a reward is not finite": not seen.rewarded.all(),
         "step changes the state that it is given": habitat.simulator.changes_state(),
-        "its functions differ when they are traced again: they draw from outside JAX, "
+        "functions of the environment differ when traced again: they draw from outside JAX, "
         "or keep something between calls": not habitat.simulator.repeats(),
     }
     return Measured(

@@ -51,9 +51,7 @@ class Gymnax(JaxHabitat, Settings):
         min_length=1,
         description="an environment of gymnax or Craftax, octax:NAME, playground:NAME, or module:Class",
     )
-    params: dict[str, Any] = Field(
-        {}, description="parameters of the environment that are replaced"
-    )
+    params: dict[str, Any] = Field({}, description="new values of parameters of the environment")
     time_limit: bool = Field(False, description="true: the environment's own time limit ends lives")
     fatal: str = Field("done", description='condition that ends a life; "": no life ends')
     food: str = Field(
@@ -63,7 +61,7 @@ class Gymnax(JaxHabitat, Settings):
     )
     squash: bool = Field(False, description="true: an unbounded sense x becomes x / (1 + |x|)")
 
-    rate: float = Field(20.0, gt=0, description="ticks in a second of videos")
+    rate: float = Field(20.0, gt=0, description="ticks shown in a second of a video")
 
     def __hash__(self) -> int:
         return hash(self.model_dump_json())

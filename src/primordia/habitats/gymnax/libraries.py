@@ -97,7 +97,7 @@ def _of_playground(name: str) -> Any:
     robots = import_module("mujoco_playground._src.mjx_env").MENAGERIE_PATH
     if name not in registry.dm_control_suite.ALL_ENVS and not robots.exists():
         raise ValueError(
-            f"env: {name} needs the models of robots that MuJoCo Playground downloads; load it once"
+            f"env: {name} needs the models of robots that MuJoCo Playground downloads; load them once"
             f" with `mujoco_playground.registry.load({name!r})`"
         )
     return Playground(registry.load(name, config_overrides={"impl": "jax"}))
@@ -125,7 +125,7 @@ def _own(name: str) -> Any:
     ]
     if lacking:
         raise ValueError(
-            f"env: {name} has no {', '.join(lacking)}, which gymnax's environments have"
+            f"env: {name} has no {', '.join(lacking)}, which every environment of gymnax has"
         )
     return env
 

@@ -103,7 +103,7 @@ class Simulator:
         if trees[0] != trees[1] or any(
             a.shape != b.shape for a, b in zip(*map(jax.tree.leaves, (born, later)), strict=True)
         ):
-            raise ValueError("env: its state has a different form after a step than after a reset")
+            raise ValueError("env: the state has one form after a reset and another after a step")
         return jax.tree.map(
             lambda a, b: jax.ShapeDtypeStruct(a.shape, jnp.promote_types(a.dtype, b.dtype)),
             born,

@@ -53,10 +53,10 @@ def report(env: str) -> tuple[list[str], list[str]]:
         f"Observation: {named['obs']} numbers, obs[0] to obs[{named['obs'] - 1}] in conditions.",
         f"Action: {what}.",
         *(f"Numbers in {part}: {_listed(part, named[part])}." for part in ("state", "info")),
-        f"The environment's time limit ({limits}) is off; time_limit = true keeps it."
+        f"The environment's time limit ({limits}) is off; time_limit = true turns the limit on."
         if limits
         else "The environment has no time limit.",
-        "After an interruption lives go on exactly from their state.",
+        "After an interruption lives go on exactly from their saved states.",
         f"Random actions live {found.lifespan:,.0f} ticks on average."
         if found.ended
         else f"None of {BODIES} lives ended in {TICKS} ticks of random play: name a condition for fatal,"

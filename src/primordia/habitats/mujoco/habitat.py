@@ -35,29 +35,35 @@ if TYPE_CHECKING:
 
 
 class MuJoCo(HostHabitat, Settings):
-    """A model as a habitat; actions are its controls, kept within their ranges."""
+    """A MuJoCo model as a habitat; actions are the controls of the model, kept within their ranges."""
 
-    file: str = Field(description="an MJCF file, or gymnasium:NAME.xml for one of Gymnasium's")
-    timestep: float | None = Field(None, gt=0, description="seconds of a substep [the model's]")
+    file: str = Field(description="an MJCF file, or gymnasium:NAME.xml for a model of Gymnasium")
+    timestep: float | None = Field(
+        None, gt=0, description="seconds in a substep (default: as in the model)"
+    )
     substeps: int = Field(1, ge=1, le=1000, description="steps of the simulator in a tick")
     senses: tuple[str, ...] = Field(
-        ("qpos", "qvel"), strict=False, description="numbers perceived, such as qpos[1:] or qvel"
+        ("qpos", "qvel"),
+        strict=False,
+        description="numbers that organisms perceive, such as qpos[1:] or qvel",
     )
     position_noise: float = Field(
-        0.0, ge=0, description="largest deviation of positions at birth from the model's"
+        0.0, ge=0, description="largest difference between a position at birth and the model's"
     )
     velocity_noise: float = Field(
-        0.0, ge=0, description="velocities at birth are uniform within +-this"
+        0.0, ge=0, description="velocities at birth are uniform from minus to plus this number"
     )
     velocity_sd: float = Field(
         0.0, ge=0, description="velocities at birth are Gaussian with this standard deviation"
     )
-    fatal: str = Field("", description="condition that ends a life; none: no life ends")
+    fatal: str = Field("", description='condition that ends a life; "": no life ends')
     food: str = Field("0", description="amount gathered in a tick")
     effort: str = Field("0", description="amount exerted in a tick")
     target: Target | None = Field(None, description="an object that the robot must reach")
     episode: int | None = Field(
-        None, ge=1, description="ticks after which an evaluation ends a game; no life ends there"
+        None,
+        ge=1,
+        description="ticks after which an evaluation ends a game; lives have no such limit",
     )
     scored: dict[str, Any] = Field(
         {}, description="settings that differ in the standard benchmark, in which food is the score"
@@ -72,7 +78,9 @@ class MuJoCo(HostHabitat, Settings):
         assert self._sense_expressions
         assert self._observed is not None
         if (original := self.original()) and original.senses_size != self.senses_size:
-            raise ValueError(f"scored: use {self.senses_size} senses, like the task itself")
+            raise ValueError(
+                f"scored: these settings must give {self.senses_size} senses, as in the task"
+            )
         if self.velocity_noise and self.velocity_sd:
             raise ValueError("velocity_noise and velocity_sd exclude each other; set one to 0")
         if self.target is not None:

@@ -85,8 +85,8 @@ def _gl_context() -> Any:
         context.make_current()
     except Exception:  # each library raises different errors
         raise InputError(
-            f"pictures of robots need OpenGL without a screen, and {name} cannot be used:"
-            " `apt-get install libosmesa6`, or set MUJOCO_GL to egl or osmesa"
+            f"pictures of robots need OpenGL without a screen, and {name} cannot be used;"
+            " install OSMesa with `apt-get install libosmesa6`, or set MUJOCO_GL to egl or osmesa"
         ) from None
     # Handlers run in reverse order: first renderers, then this context, then EGL's display from
     # above. A context without its display cannot be released.

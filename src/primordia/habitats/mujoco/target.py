@@ -14,13 +14,17 @@ from primordia.settings.base import Settings
 class Target(Settings):
     """An object to be reached, which then moves to a random position in a disc of the plane x, y."""
 
-    body: str = Field(description="the target's body")
-    by: str = Field(description="the robot's body that must reach the target")
+    body: str = Field(description="name of the target's body")
+    by: str = Field(description="name of the robot's body that must reach the target")
     within: float = Field(
         gt=0, description="distance between the two bodies at which the target is reached, metres"
     )
-    joints: tuple[str, str] = Field(strict=False, description="the target's slide joints, x and y")
-    radius: float = Field(gt=0, description="radius of the disc around the origin, metres")
+    joints: tuple[str, str] = Field(
+        strict=False, description="names of the target's slide joints, x and y"
+    )
+    radius: float = Field(
+        gt=0, description="radius of the disc around the origin in which targets appear, metres"
+    )
 
     def check(self, model: Any) -> None:
         """Raise ValueError if a model lacks one of the named bodies or joints."""

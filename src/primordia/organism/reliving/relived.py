@@ -86,7 +86,7 @@ class RelivedLife:
             stored, begin = run.origin, "the fork"
         if stored is not None and not habitat.exact:
             raise InputError(
-                f"{run.path}: organism {organism} is older than {begin}, and its habitat cannot"
+                f"{run.path}: organism {organism} is older than {begin}, and the habitat cannot"
                 " save bodies"
             )
         genome = law.heredity.layout.split(jnp.asarray(rebuild(run, organism, world)[None]))
@@ -204,7 +204,7 @@ class RelivedLife:
         if not same:
             raise Trouble(
                 f"{self.run.path}: the life of organism {self.record.id[0]} did not repeat as"
-                " recorded; `primordia verify` tells whether this machine gives the run's bits"
+                " recorded; `primordia verify` tells whether this machine repeats the run"
             )
 
     @cached_property

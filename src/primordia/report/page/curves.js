@@ -11,7 +11,7 @@ const KINDS = {
 };
 
 function curvesSection(panels, title = "Curves") {
-  const about = "Move over a figure to read its values. Drag to zoom; double-click shows all.";
+  const about = "Move over a figure to read its values. Drag to zoom; double-click to show all.";
   const hint = "Keys: ← and → read values, + and − zoom, Shift with ← and → moves, 0 shows all.";
   return section(title, about, element("div", { class: "charts" }, ...panels.map(chart)),
     element("p", { class: "hint" }, hint));

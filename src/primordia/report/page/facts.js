@@ -1,17 +1,17 @@
 // How to live the run again; its settings, versions and digests.
 
 function factsSection(all) {
-  const about = "The same settings, versions and kind of device give the same run, bit for bit. The digests tell"
-    + " whether they did.";
-  return section("Live it again", about, ...all.flatMap(factsOf));
+  const about = "The same settings, versions and kind of device give the same run, bit for bit. Equal digests show"
+    + " that two runs are the same.";
+  return section("Repeat this run", about, ...all.flatMap(factsOf));
 }
 
 function factsOf({ name, settings, toml, versions, digests, exact, restarts, commands }) {
   const file = commands[0].includes("config.toml");
   return [
     ...(name ? [element("h3", {}, name)] : []),
-    ...(exact ? [] : [element("p", {}, "This run is not exact: parts of it cannot be repeated bit for bit.")]),
-    ...(restarts ? [element("p", {}, `The bodies of the living began again ${whole(restarts)} times.`)] : []),
+    ...(exact ? [] : [element("p", {}, "This run is not exact: parts of the run cannot be repeated bit for bit.")]),
+    ...(restarts ? [element("p", {}, `The living got new bodies ${whole(restarts)} times, when the run was resumed.`)] : []),
     copied(commands.join("\n"), "Copy the commands"),
     folded(file ? "config.toml, which the command takes" : "All settings as config.toml", copied(toml, "Copy config.toml")),
     folded("Settings", pairs(settings, { class: "pairs" })),

@@ -4,8 +4,8 @@ const PICTURES_A_SECOND = 15;
 
 async function filmSection(world, palette, chosen, show) {
   const film = { ...world.film, cells: await unpacked(world.film.cells), at: world.film.places.length - 1 };
-  const about = `All ${whole(film.rows)} × ${whole(film.columns)} cells, one picture after another; the edges meet.`
-    + " Colour is the line of descent, light is youth. Time runs in births.";
+  const about = `All ${whole(film.rows)} × ${whole(film.columns)} cells, one picture after another; opposite edges meet.`
+    + " The colour shows the line of descent; young organisms are light. Time runs in births.";
   const canvas = element("canvas", { role: "img", "aria-label": "The cells of the torus" });
   canvas.style.setProperty("--shape", `${film.columns} / ${film.rows}`);
   const slider = element("input", { type: "range", min: 0, max: film.places.length - 1, value: film.at,

@@ -7,7 +7,7 @@ const KEY_STEPS = {
 
 function groundFigure(world, palette, chosen, kept) {
   const hint = "Click a cell to see who lived there.";
-  const keys = "Drag moves, and the wheel zooms once the picture has been clicked. Keys: arrows, +, − and 0.";
+  const keys = "Drag to move. After a click, the wheel zooms. Keys: arrows, +, − and 0.";
   const canvas = element("canvas", { id: "ground", tabindex: 0, role: "img", "aria-label":
     `Space and time: ${whole(world.cells)} cells across, ${whole(world.births)} births downwards, coloured by`
     + ` line of descent. ${keys} Organisms can also be chosen by their number beside the picture.` });

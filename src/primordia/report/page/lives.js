@@ -1,7 +1,7 @@
 // Lives as short films; they are in the page, and do not play by themselves.
 
 function livesSection({ films, missing }) {
-  const about = "Each life was lived again from its record, tick for tick, and came out as recorded. Of a long life"
+  const about = "Each life was lived again tick for tick, and agrees with its record. Of a long life"
     + " the first and last seconds are shown.";
   const figures = films.map(({ title, about: what, data }) => {
     const video = element("video", { controls: true, loop: true, muted: true, playsinline: true, preload: "auto",

@@ -32,7 +32,7 @@ function organismCard(world, chosen, show) {
 }
 
 function unknown(world, text) {
-  const why = world.whole ? "was not born in this world" : "is not among those in this picture";
+  const why = world.whole ? "was not born in this world" : "is not in this picture";
   return [element("h3", {}, "No such organism"), element("p", {}, text ? `Organism ${text} ${why}.` : "Give a birth number.")];
 }
 
@@ -46,8 +46,8 @@ function shortcuts(world, show) {
 function card(world, at, show) {
   if (at < 0) {
     return [element("h3", {}, "No organism is chosen"),
-      element("p", {}, "Click a cell of the picture, or choose one here. Its ancestors are then lit, joined by a"
-        + " line; its descendants are half lit.")];
+      element("p", {}, "Click a cell of the picture, or choose an organism here. Then its ancestors are lit and joined"
+        + " by a line; its descendants are half lit.")];
   }
   const { facts } = world;
   const cause = facts.cause[at] ? facts.causes[facts.cause[at] - 1] : null;

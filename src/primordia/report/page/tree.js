@@ -2,11 +2,11 @@
 
 function treeSection(world, palette, chosen, show) {
   const { tree } = world;
-  const some = tree.shown < tree.living ? `; ${whole(tree.shown)} of them are shown, spread over the cells` : "";
-  const about = `The ${whole(tree.living)} that are alive, and the ancestors at which their lines part${some}.`
+  const some = tree.shown < tree.living ? `; ${whole(tree.shown)} of the living are shown, spread over the cells` : "";
+  const about = `The ${whole(tree.living)} living organisms, and the ancestors at which their lines part${some}.`
     + " Time runs to the right, in births; strong lines last to the present.";
   const drawing = element("div", { class: "tree", tabindex: 0, role: "group", "aria-label":
-    "Phylogeny of the living. Keys: up and down read the living, Enter shows one in the space-time picture." });
+    "Phylogeny of the living. Keys: up and down choose a living organism, Enter shows this organism in the space-time picture." });
   const readout = element("p", { class: "readout", "aria-live": "polite" }, "\u00a0");
   const state = { at: -1 };
   const tellNode = (at) => {
@@ -27,7 +27,7 @@ function treeSection(world, palette, chosen, show) {
   painters.add(draw);
   treeKeys(drawing, tree.nodes, state, tellNode, showNode);
   return section("Phylogeny of the living", about, drawing, readout,
-    element("p", { class: "hint" }, "Move over a line to read it; click to see it in the space-time picture."));
+    element("p", { class: "hint" }, "Move over a line to read its organism; click to see the organism in the space-time picture."));
 }
 
 function nodeText(nodes, at) {

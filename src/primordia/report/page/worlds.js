@@ -39,7 +39,7 @@ function groundText({ topology, cells, shown, whole: complete }) {
   const order = { ring: "in the order of the ring", "well-mixed": "all neighbours of each other" };
   const across = order[topology] || "row after row of the torus";
   const some = shown < cells ? ` ${whole(shown)} of ${whole(cells)} cells are shown.` : "";
-  const seen = complete ? "" : " The cells are looked at after some births only; lives between two of these are not shown.";
-  return `Cells lie across, ${across}; births run downwards. Each colour is a line of descent: strong if it lasted,`
-    + ` pale if it died out; gaps are empty cells.${some}${seen}`;
+  const seen = complete ? "" : " The picture shows the cells after some of the births only; shorter lives may be missing.";
+  return `Cells lie across, ${across}; births run downwards. Each colour is a line of descent: strong if the line lasted,`
+    + ` pale if the line died out; gaps are empty cells.${some}${seen}`;
 }
