@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 
 from primordia.errors import InputError
 from primordia.law.world import BirthCause, Cause
-from primordia.runs.lives import ALIVE, Lives, join
+from primordia.runs.join import join
+from primordia.runs.lives import ALIVE, Lives
 
 WORLDS = st.lists(st.lists(st.booleans(), max_size=30), min_size=1, max_size=4)
 """Which birth numbers are on record in each world: all of them, except in a fork."""

@@ -20,7 +20,8 @@ from primordia.runs import checkpoint, code, description, directory, segment
 from primordia.runs.arrays import Arrays
 from primordia.runs.checkpoint import Checkpoint
 from primordia.runs.description import Description
-from primordia.runs.lives import Lives, join
+from primordia.runs.join import join
+from primordia.runs.lives import Lives
 from primordia.runs.manifest import Progress
 from primordia.runs.records import Records
 from primordia.runs.schema import TABLES

@@ -1,0 +1,118 @@
+"""The births and deaths of a run, checked and joined into lives."""
+
+from collections.abc import Iterable
+
+import numpy as np
+import pyarrow as pa
+
+from primordia.law.world import BirthCause, Cause, Named
+from primordia.runs.lives import ALIVE, Lives, find_rows
+
+
+def join(
+    births: Iterable[pa.Table],
+    deaths: Iterable[pa.Table],
+    ends: np.ndarray,
+    begins: int,
+    cells: int,
+) -> Lives:
+    """Join the births and deaths of a run; each segment is released once it is read.
+
+    Args:
+        births: one or more segments, in the order of events: within a world by birth number.
+        deaths: segments; the columns world, id, tick and cause are enough.
+        ends: last tick of each world so far, int64 (W,).
+        begins: tick at the end of which the records begin.
+        cells: cells of one world.
+
+    Raises:
+        ValueError: births and deaths contradict each other; the message says where.
+    """
+    born = _concatenated([_columns(segment, BirthCause) for segment in births])
+    _check_worlds(born, ends)
+    if len(ends) > 1:  # sorted by world; NumPy sorts numbers of 16 bits in linear time
+        order = np.argsort(born["world"].astype(np.uint16), kind="stable")
+        born = {name: array[order] for name, array in born.items()}
+    _check_births(born, ends, cells)
+    ended, cause = ends[born["world"]], np.full(len(born["id"]), ALIVE, np.int8)
+    died = 0
+    for dead in (_columns(segment, Cause) for segment in deaths):
+        _check_worlds(dead, ends)
+        rows = find_rows(born["world"], born["id"], dead["world"], dead["id"])
+        _check_deaths(dead, rows, born["tick"], ended)
+        ended[rows], cause[rows] = dead["tick"], dead["cause"]
+        died += len(rows)
+    if np.count_nonzero(cause != ALIVE) != died:
+        raise ValueError("an organism dies twice")
+    pa.default_memory_pool().release_unused()  # 100 MB after 5 million births
+    return Lives(
+        world=born["world"],
+        id=born["id"],
+        parent=born["parent"],
+        cell=born["cell"],
+        birth_cause=born["cause"],
+        born=born["tick"],
+        seen=np.maximum(born["tick"], begins) if begins else born["tick"],
+        ended=ended,
+        cause=cause,
+    )
+
+
+def _check_worlds(events: dict[str, np.ndarray], ends: np.ndarray) -> None:
+    if not ((events["world"] >= 0) & (events["world"] < len(ends))).all():
+        raise ValueError("an organism lives in a world that does not exist")
+
+
+def _check_births(born: dict[str, np.ndarray], ends: np.ndarray, cells: int) -> None:
+    world, number = born["world"], born["id"]
+    faults = {
+        "lives in a cell that does not exist": (born["cell"] < 0) | (born["cell"] >= cells),
+        "has a birth number below 0": number < 0,
+        "is born before the first tick, or after the last": (born["tick"] < 0)
+        | (born["tick"] > ends[world]),
+        "is not younger than its parent": born["parent"] >= number,
+        "has no parent and is no founder": (born["parent"] < 0)
+        & (born["cause"] != BirthCause.FOUNDER),
+    }
+    for fault, where in faults.items():
+        if where.any():
+            raise ValueError(f"organism {number[where.argmax()]} {fault}")
+    ascending = (number[1:] > number[:-1]) | (world[1:] > world[:-1])
+    if not ascending.all():
+        raise ValueError(f"organism {number[1:][~ascending][0]} is not recorded in order of birth")
+
+
+def _check_deaths(
+    dead: dict[str, np.ndarray],
+    rows: np.ndarray,
+    born: np.ndarray,
+    ended: np.ndarray,
+) -> None:
+    """Check deaths and the rows of the dead; `born` and `ended` have a value for every organism."""
+    if len(rows) and rows.min() < 0:
+        raise ValueError(f"organism {dead['id'][rows.argmin()]} dies without having been born")
+    early = (dead["tick"] < born[rows]) | (dead["tick"] > ended[rows])
+    if early.any():
+        number = dead["id"][early.argmax()]
+        raise ValueError(f"organism {number} dies before its birth, or after the last tick")
+
+
+def _columns(segment: pa.Table, kind: type[Named]) -> dict[str, np.ndarray]:
+    """Return the columns of births or deaths as arrays; -1 for no parent, causes by number of `kind`."""
+    arrays = {
+        name: segment[name].fill_null(-1).to_numpy()
+        for name in segment.column_names
+        if name != "cause"
+    }
+    causes = segment["cause"].combine_chunks()
+    codes = {each.label: each for each in kind}
+    words = causes.dictionary.to_pylist()
+    if not set(words) <= set(codes):
+        raise ValueError(f"{min(set(words) - set(codes), key=str)!r} is not a cause")
+    code_of_word = np.array([codes[word] for word in words], np.int8)
+    return {**arrays, "cause": code_of_word[causes.indices.to_numpy()]}
+
+
+def _concatenated(parts: list[dict[str, np.ndarray]]) -> dict[str, np.ndarray]:
+    """Return the joined columns of all parts. The parts are emptied to save memory."""
+    return {name: np.concatenate([part.pop(name) for part in parts]) for name in list(parts[0])}
