@@ -46,9 +46,9 @@ speed_option = click.option(
 quiet_option = click.option("--quiet", is_flag=True, help="Print nothing while running.")
 
 LIMITS = {
-    "ticks": "Stop each world after this number of ticks; none: no limit.",
-    "births": "Stop each world after this number of births; none: no limit.",
-    "until": "saturation: stop each world when it is saturated; none: no limit.",
+    "ticks": "Stop each world after this number of ticks; `none` sets no limit.",
+    "births": "Stop each world after this number of births; `none` sets no limit.",
+    "until": "`saturation` stops each world when it is saturated, `none` does not.",
 }
 
 

@@ -17,7 +17,7 @@ STATES = ("done", "running", "failed", "waiting")
 
 @dataclass(frozen=True)
 class ArmStatus:
-    """The worlds of an arm so far."""
+    """The state of an arm, over the worlds that have begun so far."""
 
     name: str
     worlds: int

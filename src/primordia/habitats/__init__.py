@@ -1,4 +1,4 @@
-"""Habitats: simulators in which organisms live, one folder each, and the contract of habitats."""
+"""Habitats: the simulators in which organisms live, each in a folder, and the contract of habitats."""
 
 from primordia.habitats.contract import (
     Ability,

@@ -1,4 +1,4 @@
-"""The numbers of the live view, laid out for any room."""
+"""The numbers of the live view, arranged for a terminal of any size."""
 
 from collections.abc import Sequence
 from typing import NamedTuple

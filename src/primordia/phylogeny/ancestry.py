@@ -11,7 +11,7 @@ FEW = 8
 def nearest(parent_row: np.ndarray, marked: np.ndarray) -> np.ndarray:
     """Return the row of the nearest marked organism on each organism's line of descent, or -1.
 
-    A marked organism is the nearest to itself.
+    For a marked organism it is the organism itself.
 
     Args:
         parent_row: row of each parent, or -1, int64 (L,), parents before their children.

@@ -28,7 +28,7 @@ def branches(parent_row: np.ndarray, line: np.ndarray) -> np.ndarray:
 def first_ticks(
     turnover: Turnover, branch: np.ndarray, length: int, shares: Sequence[float]
 ) -> list[np.ndarray]:
-    """Return the first ticks after which each ancestor's descendants exceed some shares of the living.
+    """Return, for each ancestor and share, the first tick after which its descendants exceed the share.
 
     The lines of an ancestor's descendants leave the line of descent at its place or later. So an
     ancestor reaches a share no earlier than the ancestor before it, and one pass over the births

@@ -33,7 +33,7 @@ class Pool(ABC):
 
     @abstractmethod
     def load(self, states: list[bytes]) -> None:
-        """Restore the states that `save` of any pool returned."""
+        """Restore states that `save` returned, of this pool or of another."""
 
     @abstractmethod
     def close(self) -> None:

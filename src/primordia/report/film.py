@@ -47,7 +47,7 @@ def film(ground: Ground, config: Config) -> dict[str, Any] | None:
 
 
 def _pictures(ground: Ground, ticks: np.ndarray) -> np.ndarray:
-    """Return the byte of each cell after each tick, uint8 (T, N)."""
+    """Return colour and shade of each cell after each tick, as one byte, uint8 (T, N)."""
     lives, bytes_ = ground.lives, np.zeros((len(ticks), ground.cells), np.uint8)
     rows = occupants(lives, np.arange(ground.cells), ticks)
     there = rows != EMPTY

@@ -117,7 +117,9 @@ def refuse_if_taken(run: Path) -> None:
     """Raise InputError unless the path is free or a directory without files except a lock."""
     files.check_name(run)
     if (run / VERSIONS).exists():
-        raise InputError(f"{run} exists already; choose another --out, or `primordia resume {run}`")
+        raise InputError(
+            f"{run} exists already; choose another --out, or continue the run with `primordia resume {run}`"
+        )
     if run.exists() and not (run.is_dir() and {each.name for each in run.iterdir()} <= {LOCK}):
         raise InputError(f"{run} exists already and is not a run; choose another --out")
 

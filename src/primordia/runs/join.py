@@ -19,11 +19,11 @@ def join(
     """Join the births and deaths of a run; each segment is released once it is read.
 
     Args:
-        births: one or more segments, in the order of events: within a world by birth number.
+        births: one or more segments, in the order of events; those of a world are in the order of birth numbers.
         deaths: segments; the columns world, id, tick and cause are enough.
         ends: last tick of each world so far, int64 (W,).
-        begins: tick at the end of which the records begin.
-        cells: cells of one world.
+        begins: the records begin at the end of this tick.
+        cells: number of cells of one world.
 
     Raises:
         ValueError: births and deaths contradict each other; the message says where.

@@ -82,10 +82,10 @@ def effects(
 ) -> None:
     """Let mutants play the same games as their parents, for several mutations.
 
-    RUN is a run, a genome file or a task. Without an ID the parents are the champions of a run's
-    worlds, all genomes of a file, or the longest-lived 16 of 512 founders of a task. The first row
-    of the table is the run's own mutation. Any setting of the habitat can be changed by a flag,
-    such as --sticky 0.25.
+    RUN is a run, a genome file or a task. Without an ID, the parents of a run are the champions
+    of its worlds; those of a file are all of its genomes; those of a task are the 16 longest-lived of
+    512 founders. The first row of the table is the run's own mutation. Any setting of the habitat can
+    be changed by a flag, such as --sticky 0.25.
     """
     from primordia.assays.effects import SCALES
     from primordia.assays.effects import effects as measure
@@ -109,9 +109,10 @@ def ablate(
 ) -> None:
     """Let organisms live again with one loss each: frozen senses, no memory, or a zero block of weights.
 
-    RUN is a run, a genome file or a task. Without an ID the organisms are the champions of a run's
-    worlds, all genomes of a file, or the longest-lived 16 of 512 founders of a task. Any setting of
-    the habitat can be changed by a flag, such as --sticky 0.25.
+    RUN is a run, a genome file or a task. Without an ID, the organisms of a run are the
+    champions of its worlds; those of a file are all of its genomes; those of a task are the 16
+    longest-lived of 512 founders. Any setting of the habitat can be changed by a flag, such as --sticky
+    0.25.
     """
     from primordia.assays.ablate import ablate as measure
 

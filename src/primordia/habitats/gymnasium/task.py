@@ -72,7 +72,7 @@ def _measured(env: str) -> tuple[dict[str, Any], list[str], list[str]]:
 
 
 def _scale(env: str) -> list[float]:
-    """Return divisors that bring each number of observations in random play to about -1 to 1.
+    """Return a divisor for each number of an observation: in random play all are then about -1 to 1.
 
     The divisor is 1 if there are bounds, or if observations stay small. The result is empty if all
     are 1.

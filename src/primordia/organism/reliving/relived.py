@@ -118,7 +118,7 @@ class RelivedLife:
         """Live the whole life in order, and yield it some ticks at a time.
 
         Args:
-            watched: whether pictures are needed, which a habitat on the host then makes.
+            watched: whether pictures are needed. If so, a habitat on the host makes them.
 
         Raises:
             Trouble: the life does not repeat as recorded.
