@@ -36,7 +36,8 @@ SENSES = {
     type=click.IntRange(min=1),
     default=500,
     show_default=True,
-    help="Choose the best of this number of founders. If the run had fewer births, try as many founders as births.",
+    help="Choose the best of this number of founders. If the run had fewer births, try as many"
+    " founders as births.",
 )
 @click.option(
     "--ticks", default=100_000, show_default=True, help="Cut games at this number of ticks."

@@ -118,7 +118,8 @@ def refuse_if_taken(run: Path) -> None:
     files.check_name(run)
     if (run / VERSIONS).exists():
         raise InputError(
-            f"{run} exists already; choose another --out, or continue the run with `primordia resume {run}`"
+            f"{run} exists already; choose another --out, or continue the run with"
+            f" `primordia resume {run}`"
         )
     if run.exists() and not (run.is_dir() and {each.name for each in run.iterdir()} <= {LOCK}):
         raise InputError(f"{run} exists already and is not a run; choose another --out")
