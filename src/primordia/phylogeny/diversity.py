@@ -1,9 +1,9 @@
 """The diversity of the living over time: of their tree (Faith 1992), and of their lines (Hill 1973).
 
 A life is divided into pieces at the births of its children. Each piece is a branch of the tree of all
-organisms. A piece belongs to the tree of the living at a tick if an organism alive at this tick lived the piece
-or descends from it. So the sum of branches needs no tree: a piece is added when it is complete, and
-removed when its last descendant dies.
+organisms. A piece belongs to the tree of the living at a tick if an organism alive at this tick lived
+the piece or descends from it. So the sum of branches needs no tree: a piece is added when it is
+complete, and removed when its last descendant dies.
 """
 
 import numpy as np
