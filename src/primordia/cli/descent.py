@@ -72,8 +72,8 @@ def lines(run: Path, world: str, at: int | None, out: Path | None, as_json: bool
     """Measure how lines of descent replace each other, and compare them with neutral shadows.
 
     A line is an organism that is alive after the tick --at, with all its descendants. By default,
-    --at is the first tick since the last extinction at which 16 organisms live, or half of the
-    largest population if this half is fewer. If founders fill the world, --at is their tick of birth.
+    --at is the first tick after the last extinction with enough living organisms: 16, or half of the
+    largest population if that is less. If founders fill the world, --at is their tick of birth.
     """
     from primordia.api import load
 

@@ -20,7 +20,7 @@ after_option = click.option(
     type=click.FloatRange(0, 1, max_open=True),
     default=0.5,
     show_default=True,
-    help="Leave out the first births of each world, up to this share.",
+    help="Leave out this share of each world's births, the earliest ones.",
 )
 json_option = click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 out_option = click.option(
