@@ -22,7 +22,9 @@ NUMBERED = re.compile(r"(?P<place>.+):(?P<organism>\d+)(@(?P<world>\d+))?")
 @click.command(cls=HabitatCommand, short_help="Let two genomes compete in one world.")
 @click.argument("one")
 @click.argument("other")
-@click.option("--task", help="Task in which the genomes of a file live [the task that the file names].")
+@click.option(
+    "--task", help="Task in which the genomes of a file live [the task that the file names]."
+)
 @click.option(
     "--worlds", type=click.IntRange(min=1), default=10, show_default=True, help="Number of worlds."
 )
