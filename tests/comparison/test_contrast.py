@@ -72,7 +72,7 @@ def test_bounds_hold_for_every_future_of_the_worlds(run: list, on: list[int]) ->
 def test_a_horizon_ignores_what_happens_later(run: list, horizon: int) -> None:
     whole = figures(run)
     if any(not known and value < horizon for value, known in run):
-        with pytest.raises(InputError, match="nothing is known"):
+        with pytest.raises(InputError, match="it is unknown"):
             whole.before(horizon)
         return
     near = whole.before(horizon)

@@ -150,6 +150,6 @@ def test_where_nothing_can_be_saved_bodies_begin_again_and_that_is_counted(tmp_p
     for times in (1, 2):
         run.resume(ticks=30 + 30 * times)
         assert run.info()["restarts"] == times
-    assert "began again 2 times" in here("info", run.path).stdout
+    assert "got new bodies 2 times" in here("info", run.path).stdout
     after = run.lives()
     np.testing.assert_array_equal(after.born[: len(before)], before.born)

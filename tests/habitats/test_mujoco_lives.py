@@ -109,5 +109,9 @@ def test_without_opengl_the_error_says_what_to_install(
     monkeypatch.setenv("MUJOCO_GL", "nothing")
     done = here("replay", reachers, "--to", 10, "--out", tmp_path / "life.mp4")
     mujoco_picture._gl_context.cache_clear()
-    complains(done, 2, "OpenGL without a screen, and nothing cannot be used: `apt-get install")
+    complains(
+        done,
+        2,
+        "OpenGL without a screen, and nothing cannot be used; install OSMesa with `apt-get install",
+    )
     assert not list(tmp_path.iterdir())
