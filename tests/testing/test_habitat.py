@@ -235,7 +235,7 @@ HOST_FAULTS: list[tuple[Any, str]] = [
     (Doubled(), r"gives senses from step as float64 \(32, 1\); the contract says float32"),
     (Stored(), "defines save without load; define both, or neither"),
     (Scored(), "does not save its counts; save them as 'tally'"),
-    (Eaten(), r"counts \['food'\], which are columns of deaths already"),
+    (Eaten(), r"has tallies \['food'\], which are columns of deaths already"),
     (Partial(), r"saves 'clock' as \(2,\); save NumPy arrays with cells as first axis"),
 ]
 
