@@ -14,7 +14,8 @@ import site
 import sys
 import sysconfig
 import warnings
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cache
 from importlib.abc import MetaPathFinder, SourceLoader
 from importlib.machinery import ModuleSpec
 from importlib.metadata import packages_distributions, version
@@ -204,9 +205,17 @@ def is_installed(module: str) -> bool:
 
 def packages(modules: Iterable[str]) -> dict[str, str]:
     """Return the versions of the installed packages that hold some of these modules, by name."""
-    tops = {module.partition(".")[0] for module in modules} - {"primordia"}
-    owners = packages_distributions() if tops else {}
-    return {name: version(name) for top in tops for name in owners.get(top, [])}
+    tops = {module.partition(".")[0] for module in modules if is_installed(module)} - {"primordia"}
+    return {name: version(name) for top in tops for name in owners().get(top, [])}
+
+
+@cache
+def owners() -> Mapping[str, list[str]]:
+    """Return the installed packages that hold each top-level module, by its name.
+
+    The first call takes up to a second, since it reads the list of files of every package.
+    """
+    return packages_distributions()
 
 
 def _module(name: str) -> str:

@@ -87,7 +87,9 @@ def test_a_run_with_a_changed_configuration_is_refused(run: Path) -> None:
     config = run / "config.toml"
     config.write_text(config.read_text().replace("seed = 0", "seed = 1"))
     for command in ("info", "resume", "verify"):
-        complains(here(command, run), 1, str(config), "changed", "put the file back", "primordia fork")
+        complains(
+            here(command, run), 1, str(config), "changed", "put the file back", "primordia fork"
+        )
 
 
 @pytest.mark.parametrize("text", ["", "cells = 'x'", "\x00", "task = 5"])

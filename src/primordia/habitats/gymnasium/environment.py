@@ -2,8 +2,7 @@
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from functools import cache
-from importlib.metadata import PackageNotFoundError, packages_distributions, version
+from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 import gymnasium
@@ -82,7 +81,7 @@ def versions(env: str) -> dict[str, str]:
     path = str(entry).split(":")[0] if isinstance(entry, str) else getattr(entry, "__module__", "")
     engines = {"gymnasium.envs.box2d": ["box2d"], "gymnasium.envs.mujoco": ["mujoco"]}
     own = next((each for start, each in engines.items() if path.startswith(start)), [])
-    names = {"gymnasium", "numpy", *own, *_distributions().get(path.partition(".")[0], [])}
+    names = {"gymnasium", "numpy", *own, *own_code.owners().get(path.partition(".")[0], [])}
     found = {}
     for name in sorted(names):
         try:
@@ -90,8 +89,3 @@ def versions(env: str) -> dict[str, str]:
         except PackageNotFoundError:
             continue
     return found
-
-
-@cache
-def _distributions() -> Mapping[str, list[str]]:
-    return packages_distributions()
