@@ -29,7 +29,7 @@ checkpoint_option = click.option(
     default=60.0,
     show_default=True,
     metavar="SECONDS",
-    help="Time from one checkpoint to the next.",
+    help="Seconds of real time from one checkpoint to the next.",
 )
 trust_option = click.option(
     "--trust", is_flag=True, help="Allow the run's own code to be executed from now on."

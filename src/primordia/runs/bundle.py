@@ -133,7 +133,7 @@ def opened(file: Path) -> Path:
 
 
 def origin_of(path: Path) -> Path:
-    """Return the bundle of a copy that `opened` made; any other path is returned unchanged."""
+    """Return the path of the bundle that `path` is a copy of, if `opened` made the copy; else `path`."""
     return _bundles.get(path, path)
 
 

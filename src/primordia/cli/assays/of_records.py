@@ -9,13 +9,13 @@ from primordia.cli.assays.options import after_option, arms_of, json_option, out
 from primordia.cli.flags import runs_argument
 
 
-@click.command(short_help="Measure how length of life is inherited.")
+@click.command(short_help="Measure how strongly length of life is inherited.")
 @runs_argument
 @after_option
 @out_option
 @json_option
 def heredity(runs: tuple[Path, ...], after: float, out: Path | None, as_json: bool) -> None:
-    """Measure how length of life is inherited, from the records.
+    """Measure from the records how strongly length of life is inherited.
 
     Several runs are measured as one arm. Each arm of an experiment is measured.
     """
