@@ -154,14 +154,14 @@ def evolved(file: Path, folder: Path, ticks: int) -> dict[str, Any]:
         "late": f"{np.median(one):,.0f}",
         "without": f"{np.median(other):,.0f}",
         "ratio": f"{np.median(one) / np.median(other):.2f} ({low:.2f} to {high:.2f})",
-        "why": reason(Run(runs["parent"]), one, other) if low <= 1 <= high else "",
+        "why": reason(Run(runs["parent"]), one, other, ticks) if low <= 1 <= high else "",
     }
 
 
-def reason(run: Run, late: np.ndarray, without: np.ndarray) -> str:
-    """Say why late life with heredity, (W,), may be as long as that without."""
-    all_of_it = CELLS * run.info()["worlds"][0]["tick"] / 4
-    if np.median(late) == np.median(without) == all_of_it:
+def reason(run: Run, late: np.ndarray, without: np.ndarray, ticks: int) -> str:
+    """Say why late life with heredity, (W,), may be as long as late life without."""
+    whole_quarter = CELLS * ticks / 4
+    if np.median(late) == np.median(without) == whole_quarter:
         return "with heredity and without, nothing dies in the last quarter of most worlds"
     return inherited(run)
 

@@ -325,10 +325,14 @@ def test_sources_are_a_module_and_those_beside_it_that_it_imports(tmp_path: Path
         assert own_code.found(installed) == {}
 
 
-def test_parts_of_installed_packages_are_recorded_by_version() -> None:
+def test_parts_of_installed_packages_are_recorded_by_version(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     assert own_code.packages(["numpy.linalg", "primordia.brains", "no_such"]) == {
         "numpy": np.__version__
     }
+    monkeypatch.setattr(own_code, "owners", lambda: pytest.fail("all packages were searched"))
+    assert own_code.packages(["tests.toys", "primordia.brains"]) == {}
 
 
 def test_what_goes_to_another_process_is_what_a_module_imports(folder: Path) -> None:
