@@ -17,7 +17,7 @@ demo: .venv/installed  ## evolve pole balancers, draw and report them, and film 
 	@echo "Explore    runs/demo/report.html in a browser: every organism, its line of descent, the film of its world"
 	@echo 'Read on    docs/tutorial.md, ten minutes; `source .venv/bin/activate` puts `primordia` on the path'
 
-test: .venv/installed-dev  ## run all tests: ten to twenty minutes on two cores
+test: .venv/installed-dev  ## run all tests: about twenty minutes on two cores
 	$(BIN)/python -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder
 
 quick: .venv/installed-dev  ## test each promise once, with the tests in tests/quick.txt: a minute on two cores
