@@ -142,7 +142,7 @@ def _range(metadata: list[Any]) -> str:
             case limits.Le(le=value):
                 high = f" to {_number(value)}"
             case limits.Lt(lt=value):
-                high = f" below {_number(value)}"
+                high = f" to less than {_number(value)}"
     return low + high
 
 

@@ -42,7 +42,7 @@ from primordia.settings.tables import (
 from primordia.settings.values import check_values
 
 CONTRACTS: dict[str, Any] = {"habitat": habitats, "brain": brains, "mutation": mutations}
-"""Module of each replaceable part's contract, by the name of its table."""
+"""Name of a replaceable part's table -> the module with the contract of that part."""
 
 
 class Stop(Settings):
@@ -206,7 +206,8 @@ class Config(Settings):
 def load(task: str, settings: dict[str, Any] | None = None) -> Config:
     """Return the configuration of a task, by its name or TOML file, with some settings changed.
 
-    A file whose `task` is a built-in name changes that task. Any other file is a task by itself.
+    A file whose `task` is a built-in name starts from the settings of that task. Any other file is
+    a task by itself.
 
     Raises:
         InputError: there is no such task or file, or a setting is unknown or out of range.

@@ -81,8 +81,8 @@ def default() -> jax.Device:
 def sharing(worlds: int) -> list[jax.Device]:
     """Return the devices that share a run's worlds: the default device, and others of its kind.
 
-    All devices take the same number of worlds. So the number of devices is the largest possible
-    divisor of `worlds`.
+    All devices take the same number of worlds. So the number of devices is the largest divisor of
+    `worlds` for which there are enough devices.
     """
     first = default()
     alike = [

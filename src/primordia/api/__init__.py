@@ -162,10 +162,10 @@ def load(run: str | Path | Sequence[str | Path], trust: bool = False) -> Run:
         run: a run's directory; a run's bundle; a folder that holds runs; a pattern, such as
             `runs/h*`; several of these; or the directory of an experiment, which gives an
             `Experiment`.
-        trust: allow Primordia to execute the run's own code on this machine from now on. Code with
-            which the user began a run needs no permission. With other code and no permission,
-            `resume`, `fork`, `verify`, `replay`, `revive`, `evaluate` and `policy` raise
-            InputError. Reading records executes nothing.
+        trust: allow Primordia to execute the run's own code on this machine from now on. If the
+            user has already begun a run with the same code, no permission is needed. With other
+            code and no permission, `resume`, `fork`, `verify`, `replay`, `revive`, `evaluate` and
+            `policy` raise InputError. Reading records executes nothing.
 
     Raises:
         InputError: there is no run, or the runs do not belong to one arm.

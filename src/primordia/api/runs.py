@@ -98,9 +98,9 @@ class Run:
     def oldest(self, world: int | None = None, after: float = LATE) -> Organism:
         """Return the organism that lived longest, in one world or in all worlds.
 
-        Organisms count if they were born after a share `after` of their world's births and, in a
-        fork, after the fork. So the founders with which a world begins do not count. If several
-        organisms lived longest, the last-born of them is returned.
+        An organism counts only if it was born after the first share `after` of its world's births.
+        In a fork, only births after the fork count. So the founders with which a world begins do
+        not count. If several organisms lived longest, the last-born of them is returned.
         """
         run = self.opened()
         return Organism(run, run.lives.oldest(world, after))

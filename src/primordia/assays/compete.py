@@ -51,13 +51,13 @@ class Competition:
 
     @property
     def won(self) -> tuple[int, int]:
-        """Numbers of worlds in which most of the late living descend from `one`, and from `other`."""
+        """Numbers of worlds whose `late_share` is above one half, and below: `one` won, `other` won."""
         late = self.late_share
         return int((late > 0.5).sum()), int((late < 0.5).sum())
 
     @property
     def p(self) -> float:
-        """Probability that equal genomes split the worlds at least as unevenly (sign test)."""
+        """Probability of a split at least this uneven if both genomes are equally good (sign test)."""
         return sign_test(*self.won)
 
     def to_dict(self) -> dict[str, Any]:

@@ -53,7 +53,7 @@ class Effect:
 
     @property
     def third_shorter(self) -> float:
-        """Share of the mutants that lived shorter than the parent by a third or more."""
+        """Share of the mutants whose lifespan was at least a third below the parent's."""
         return float((3 * self.mutants <= 2 * self.lifespan).mean())
 
     def to_dict(self) -> dict[str, Any]:

@@ -65,7 +65,7 @@ def garden(
         each: largest number of organisms in each group of a world. The oldest are chosen among the
             late-born. The other late-born organisms are evenly spaced over the late births, without
             the world's last birth.
-        after: share of a world's births after which a birth is late.
+        after: a birth is late if it comes after this share of its world's births.
         games: number of games of each organism; 1 if the habitat draws nothing at random.
         ticks: number of ticks after which a game is cut.
         habitat: changed settings of the habitat.

@@ -30,7 +30,7 @@ class Pairs:
     longer: float | None
     """share of the children that live longer than the parent by a tenth or more"""
     shorter: float | None
-    """share of the children that live shorter than the parent by a third or more"""
+    """share of the children whose life is shorter than the parent's by a third or more"""
 
 
 @dataclass(frozen=True)

@@ -48,14 +48,14 @@ class Line:
 
     @property
     def good(self) -> Step:
-        """The first step such that this and all later steps live at least GOOD of the last one's life."""
+        """The first step from which on all steps live at least a share GOOD of the last step's life."""
         enough = GOOD * self.steps[-1].reborn
         below = [k for k, step in enumerate(self.steps) if step.reborn < enough]
         return self.steps[below[-1] + 1 if below else 0]
 
     @property
     def largest(self) -> tuple[Step, Step] | None:
-        """The two neighbouring steps with the largest ratio of lives; None if life never grew."""
+        """Neighbouring steps between which lifespan grew by the largest factor; None if it never grew."""
         pairs = list(zip(self.steps, self.steps[1:], strict=False))
         grown = [pair for pair in pairs if pair[1].reborn > pair[0].reborn]
         return max(grown, key=lambda pair: pair[1].reborn / pair[0].reborn, default=None)
@@ -77,14 +77,14 @@ def line(
 ) -> Line:
     """Let the ancestors of an organism live again, all in the same games.
 
-    Copies have their parent's genome, so only founders, mutants and children of two parents live.
+    Copies have their parent's genome, so only founders, mutants and children of two parents live again.
     The line of a fork's organism begins with the oldest ancestor in the fork's records.
 
     Args:
         run: the organism's run, or its arm.
         organism: birth number.
         world: the organism's world.
-        most: largest number of genomes that live. These are evenly spaced over the line, from the
+        most: largest number of genomes that live again. These are evenly spaced over the line, from the
             line's first genome to its last.
         games: number of games of each genome; 1 if the habitat draws nothing at random.
         ticks: number of ticks after which a game is cut.

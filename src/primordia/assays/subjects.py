@@ -29,7 +29,7 @@ GAMES = 5
 TICKS = 20_000
 """Default length at which games are cut, in ticks."""
 FOUNDERS, BEST = 512, 16
-"""Number of a task's founders that live once, and number of the longest-lived that become subjects."""
+"""Number of a task's founders that live once, and number of the longest-lived ones that become subjects."""
 
 
 class Subjects(NamedTuple):
@@ -137,8 +137,7 @@ def of_task(
 
     Args:
         task: name of a task, or a TOML file.
-        numbers: numbers among the FOUNDERS founders, counted from 0; by default the BEST that live
-            longest.
+        numbers: which founders to take, from 0 to FOUNDERS - 1; by default the BEST that live longest.
         habitat: as in `of_run`.
 
     Raises:

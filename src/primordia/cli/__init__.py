@@ -17,7 +17,7 @@ def main() -> None:
 
 
 def open_streams() -> None:
-    """Open closed standard streams on the null device, since the next opened file would replace them."""
+    """Connect closed standard streams to the null device; else the next opened file takes their place."""
     while (nowhere := os.open(os.devnull, os.O_RDWR)) <= 2:
         os.set_inheritable(nowhere, True)  # worker processes have the same streams
     os.close(nowhere)

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from primordia.phylogeny.sweeps import Sweep
 
 ROWS, LINES = 20, 10
-"""Largest numbers of ancestors, and of lines of a world, in a table."""
+"""Largest number of ancestors in a table of ancestors, and of lines in a table of a world's lines."""
 
 
 @click.command(short_help="Show the line of descent of an organism.")
@@ -71,9 +71,10 @@ def ancestors(
 def lines(run: Path, world: str, at: int | None, out: Path | None, as_json: bool) -> None:
     """Measure how lines of descent replace each other, and compare them with neutral shadows.
 
-    A line is an organism that is alive after the tick --at, with all its descendants. By default,
-    --at is the first tick after the last extinction with enough living organisms: 16, or half of the
-    largest population if that is less. If founders fill the world, --at is their tick of birth.
+    A line consists of an organism that is alive after the tick --at, and of all its descendants. By
+    default, --at is the first tick since the last extinction after which enough organisms are
+    alive. Enough is 16, or half of the largest population if that is less. If founders fill the
+    world, --at is their tick of birth.
     """
     from primordia.api import load
 
@@ -203,8 +204,8 @@ def _sweeps_text(sweeps: "list[Sweep]") -> str:
     if sweeps and sweeps[-1].half is not None and sweeps[-1].fixed is None:
         last = sweeps[-1]
         text += (
-            f". Under way: the sweep of the descendants of organism {last.organism:,}, above one half"
-            f" of the living since tick {last.half:,}"
+            f". Under way: the sweep of organism {last.organism:,}, whose descendants have been more than"
+            f" half of the living since tick {last.half:,}"
         )
     return f"{text}."
 

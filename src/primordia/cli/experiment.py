@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     is_flag=False,
     flag_value="",
     metavar="[ADDRESS]",
-    help="Run jobs on the Ray cluster at ADDRESS [a cluster of this machine, or a new one].",
+    help="Run jobs on the Ray cluster at ADDRESS [one that runs on this machine, or a new one].",
 )
 @checkpoint_option
 @device_option

@@ -15,7 +15,7 @@ from primordia.settings.tables import DEFAULTS, NONE, PARTS, merged, replaced, v
 
 
 def setting_rows(task: str | None, given: dict[str, Any]) -> list[tuple[str, str]]:
-    """Return each setting with its value in a task, or by default, and its meaning.
+    """Return each setting with its meaning and its value, which is the task's value or the default.
 
     Args:
         task: name of a task or a file; None for the defaults, without a habitat.

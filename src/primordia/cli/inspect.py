@@ -189,8 +189,9 @@ def tasks() -> None:
 def compare(runs: tuple[str, ...], out: Path, as_json: bool, **horizons: int | None) -> None:
     """Compare runs of one task: how soon worlds saturate, how long organisms live.
 
-    The first run is the reference of all others. The sample size is the number of worlds. So compare
-    runs with many worlds (--seeds), or join several runs in an arm: 'heredity=runs/h*' 'none=runs/n*'.
+    The first run is the reference of all others. The sample size is the number of worlds. So each
+    run needs many worlds (--seeds), or several runs must be joined in an arm: 'heredity=runs/h*'
+    'none=runs/n*'.
     """
     from primordia import api
     from primordia.comparison.tables import comparison_tables

@@ -37,7 +37,7 @@ def report(runs: tuple[Path, ...], out: Path | None, trust: bool) -> None:
     help="Port on this machine, or 0 for any free port [8321].",
 )
 def watch(run: Path, port: int | None) -> None:
-    """Show a run in a browser of this machine, live while the run goes on.
+    """Show a run in a browser on this machine, live while the run goes on.
 
     The page is that of `primordia report` without films. The page changes with each checkpoint; the
     run is not disturbed. Only programs on this machine can open the page, and only to read it.

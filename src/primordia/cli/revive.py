@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     "--video",
     type=click.Path(path_type=Path),
     metavar="FILE",
-    help="Also write a video (.mp4 or .gif), of a long life only the first and last 30 seconds.",
+    help="Also write a video (.mp4 or .gif). It shows only the first and last 30 seconds of a long life.",
 )
 @trust_option
 @cache_option
@@ -54,9 +54,9 @@ def revive(
     """Live the life of an organism again, tick for tick, and compare it with its record.
 
     The comparison covers the tick and the cause of death, the energy left, the food eaten, and the
-    habitat's tallies. A living organism lives up to the newest checkpoint, and its memory and body
-    are compared too. The exit status is 0 if all of them agree, 1 if one differs, and 2 if the
-    life cannot be lived again.
+    habitat's tallies. If the organism is still alive, its life is lived again until the newest
+    checkpoint, and its memory and body are compared too. The exit status is 0 if all of them agree,
+    1 if one differs, and 2 if the life cannot be lived again.
 
     The life is lived again from birth, or from the fork if the organism was born before the fork.
     With --from the life is lived again from a checkpoint. A run keeps its two newest checkpoints,

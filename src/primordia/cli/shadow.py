@@ -1,4 +1,4 @@
-"""The command `primordia shadow`, which measures selection beside chance."""
+"""The command `primordia shadow`, which compares organisms with shadows that were never selected."""
 
 import json
 from pathlib import Path
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 def shadow(
     runs: tuple[Path, ...], organisms: int, ticks: int | None, trust: bool, as_json: bool
 ) -> None:
-    """Let organisms live again, each beside a shadow, an organism whose line was never selected.
+    """Let organisms live again, and compare each with a shadow, whose line was never selected.
 
     The shadows have the same pedigree, with new random founders and mutations. An organism and its
     shadow each live alone, with the same new random keys. Several runs are measured as one arm. Each arm
@@ -50,8 +50,8 @@ def shadow_text(found: "Shadow") -> str:
     told = found.to_dict()
     longer, shorter = found.longer
     head = (
-        f"{found.name}: {told['organisms']:,} of {found.births:,} births in {told['worlds']}"
-        f" worlds, born again alone; {2 * told['organisms']:,} lives, {told['ticks']:,} ticks"
+        f"{found.name}: {told['organisms']:,} organisms from {found.births:,} births in"
+        f" {told['worlds']} worlds, each born again alone; {2 * told['organisms']:,} lives, {told['ticks']:,} ticks"
     )
     lines = [f"{'':12}{'mean life':>12}{f'reach {found.cut:,} ticks':>24}"]
     for line in ("original", "shadow"):

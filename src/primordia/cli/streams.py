@@ -35,7 +35,7 @@ def _stream(number: int) -> Printable:
 
 
 def flush() -> None:
-    """Flush the streams. Drop text that cannot be written, which Python would write again at exit."""
+    """Flush the streams; drop text that cannot be written, or Python would try again at exit."""
     for stream in (sys.stdout, sys.stderr):
         try:
             stream.flush()

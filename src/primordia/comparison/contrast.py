@@ -14,7 +14,8 @@ from primordia.comparison.pairs import Paired, Rows, paired
 from primordia.comparison.resample import LEAST, MISSED, enough, interval, least, resamples
 
 WORDS = ((0.147, "negligible"), (0.33, "small"), (0.474, "medium"))
-"""Words for an absolute delta below each number; "large" above the last (Romano et al. 2006)."""
+"""The word for an absolute delta below each number; from the last number on it is "large" (Romano et al.
+2006)."""
 
 
 @dataclass(frozen=True)
@@ -33,8 +34,8 @@ class Contrast:
     coverage: float
     """share of resamples in `interval`: 0.95 for one contrast, more for several simultaneous ones"""
     interval: Bounds | None
-    """interval that holds both bounds of the ratio in a share `coverage` of the resamples of worlds
-    or pairs; None if one of the runs has too few worlds, see `resample.least`"""
+    """interval of the ratio: in a share `coverage` of the resamples of worlds or pairs, both bounds of the ratio
+    are inside it; None if one of the runs has too few worlds, see `resample.least`"""
     worlds: int
     """number of worlds of the smaller run"""
 
@@ -47,10 +48,10 @@ class Contrast:
 
     @property
     def needed(self) -> int | None:
-        """Worlds of each run with which 80 % of experiments find an effect of this size; see `needed`.
+        """Number of worlds that a run needs: then 80 % of experiments find this effect; see `needed`.
 
-        The test has the level of the interval. None if there is no effect, or one of the runs has
-        fewer than LEAST worlds.
+        The test's significance level is 1 minus the interval's coverage. None if there is no
+        effect, or one of the runs has fewer than LEAST worlds.
         """
         if self.worlds < LEAST:
             return None

@@ -1,9 +1,9 @@
 """Evaluation of champions and of controls: all living, best of many founders, and some founders.
 
 A champion is the longest-lived of many, by luck as well as by descent. So the control is chosen in
-the same way: as many founders live once as the world had births, and the longest-lived of these
-founders is judged. No organism is judged by the game in which it was chosen, unless all games
-of the task are the same.
+the same way: for each birth in the world one founder lives once, and the longest-lived of these
+founders is judged. No organism is judged by the game in which it was chosen, unless all games of
+the task are the same.
 """
 
 from collections.abc import Mapping
@@ -19,7 +19,7 @@ from primordia.organism.players import evaluation_keys, founders_of, players_of
 from primordia.runs.records import Records
 
 FOUNDERS = 500
-"""Default for the largest number of founders in each world among which the best is chosen."""
+"""Default limit: in each world, the best founder is chosen among at most this number of founders."""
 TYPICAL = 20
 """Number of unselected founders of each world that are judged."""
 OUTCOMES = ("lifespan", "score", "length")
@@ -39,12 +39,12 @@ class Standing:
 
     name: str
     chosen_from: int
-    """largest number, in a world, of organisms among which one was chosen; 1 without a choice"""
+    """number of organisms among which one was chosen, in the world with the most; 1 if none was chosen"""
     evaluations: list[Evaluation]
 
     def by_world(self, outcome: str) -> dict[int, float]:
-        """Return the median organism's median game in each world, by the world's number; an empty
-        dict if there is no such outcome.
+        """Return an outcome's median for each world, by the world's number: the median over
+        organisms of each one's median over games. The dict is empty if there is no such outcome.
 
         Args:
             outcome: `lifespan`, or `score` or `length` of the whole game.
@@ -113,7 +113,8 @@ def evolved(run: Records, world: int | None = None) -> list[Group]:
 
     Args:
         run: the run, or the arm.
-        world: the only world; by default all worlds in which anything was born since the run began.
+        world: a single world to take; by default all worlds in which anything was born since the
+            run began.
 
     Raises:
         InputError: nothing was born there.

@@ -29,7 +29,7 @@ class Paired(NamedTuple):
 
     @property
     def delta(self) -> float:
-        """Share of pairs with a larger value of the run, minus the share with a smaller value."""
+        """Share of pairs in which the run's value is larger, minus the share in which it is smaller."""
         return (self.larger - self.smaller) / self.pairs
 
 
@@ -47,6 +47,6 @@ def same_seeds(run: np.ndarray, reference: np.ndarray) -> Rows | None:
 
 
 def paired(run: Measured, reference: Measured) -> Paired:
-    """Count the pairs by their order; the worlds of both runs are in the order of pairs."""
+    """Count pairs in which the run's value is larger, and smaller; row k of both is pair k."""
     larger, smaller = run.value > reference.high, reference.value > run.high
     return Paired(len(run.value), int(larger.sum()), int(smaller.sum()))

@@ -16,10 +16,11 @@ RESAMPLES = 1000
 MISSED = 0.05
 """Share of resamples outside an interval, or outside at least one of several simultaneous ones."""
 LEAST = 5
-"""Fewest worlds of a run that are resampled. The whole range of n worlds holds the median of all
-possible worlds only with probability 1 - 2^(1 - n): 94 % for 5, 88 % for 4."""
+"""A run's worlds are resampled only if there are at least this many. The whole range of n worlds
+holds the median of all possible worlds only with probability 1 - 2^(1 - n): 94 % for 5, 88 % for 4."""
 NUMBERS = 2**18
-"""Numbers of worlds that are drawn at once: the 1,000 resamples of 10,000 worlds would take 80 MB."""
+"""Largest number of worlds that are drawn at once: all 1,000 resamples of 10,000 worlds would take
+80 MB."""
 OUTSIDE = 10
 """Smallest number of resamples beyond either end of an interval."""
 

@@ -61,7 +61,7 @@ class Shadow:
 
     @property
     def p(self) -> float:
-        """Probability that the worlds split at least as unevenly without selection (sign test)."""
+        """Probability of a split at least this uneven between worlds without selection (sign test)."""
         return sign_test(*self.longer)
 
     @property

@@ -91,7 +91,7 @@ class _Steps:
         active: Array,
         passed: Array,
     ) -> tuple[Held, Thought, Fates]:
-        """Judge the tick `passed` ticks after the last settled one, and think for the next tick."""
+        """Judge a tick that is `passed` ticks after the last settled one; think for the next."""
         world = self.form.release(now, Bulk(genome, None))
         keys = keys_of(world.worlds, passed)
         world, fates = judge(self.law, world, thought, senses, outcome, keys, active)
@@ -121,7 +121,7 @@ class _Steps:
         return Bulk.of(world), events, self.form.hold(world), decision
 
     def remember(self, bulk: Bulk, held: Held, senses: Array, ran: Array) -> Bulk:
-        """Let organisms remember a moment at the end of a settled tick, when its newborn have senses."""
+        """Let organisms remember a moment at the end of a settled tick, when the newborn have senses."""
         return Bulk.of(remember(self.law, self.form.release(held, bulk), senses, ran))
 
     def _decide(

@@ -27,7 +27,7 @@ from primordia.random.keys import Purpose, stream
 
 
 class HostedChunks:
-    """A compiled law and a habitat on the host, which owns the bodies; `State.bodies` is senses."""
+    """A compiled law, and a habitat on the host that owns the bodies; `State.bodies` holds senses."""
 
     def __init__(self, law: Law, habitat: HostHabitat) -> None:
         self.exact = habitat.exact

@@ -17,7 +17,7 @@ from primordia.law.genesis import begin
 from primordia.law.law import Law
 
 MEMINFO, CGROUP = Path("/proc/meminfo"), Path("/sys/fs/cgroup/memory.max")
-"""Linux's files with the available memory, and with the limit of a container."""
+"""The file in which Linux tells the available memory, and the file with a container's memory limit."""
 
 
 def check(law: Law, habitat: AnyHabitat, devices: list[jax.Device]) -> None:
@@ -49,7 +49,7 @@ def bytes_needed(law: Law, habitat: AnyHabitat, devices: int = 1) -> int:
 
 
 def bytes_available(devices: list[jax.Device]) -> int:
-    """Return the bytes of memory that devices have available for equal shares."""
+    """Return the bytes of memory that all devices offer together if each takes an equal share."""
     known = [statistics for device in devices if (statistics := device.memory_stats())]
     if known:
         return len(known) * min(int(each["bytes_limit"] - each["bytes_in_use"]) for each in known)

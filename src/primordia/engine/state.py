@@ -32,7 +32,7 @@ class Limits(NamedTuple):
 
 
 class State(NamedTuple):
-    """The state of a run, complete for a habitat in JAX."""
+    """The state of a run; a habitat on the host holds a further part of the state itself."""
 
     world: World
     bodies: Bodies

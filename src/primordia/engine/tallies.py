@@ -1,4 +1,4 @@
-"""Tallies: counts of an organism's life for people, such as a score; the law never sees them.
+"""Tallies: counts in an organism's life that only people read, such as a score; the law never sees them.
 
 A habitat on the host may keep tallies. Its `tallies` are the names, and its `tally()` returns the
 counts of the present lives, int32 (C, K). Tallies become columns of the lists of deaths and samples.
@@ -38,7 +38,7 @@ class Tallies:
             self._deaths.append(self._habitat.tally()[died].astype(np.uint32))
 
     def note_samples(self, alive: Array, samples: Rows) -> None:
-        """If a sample was taken, note the tallies of the living, with newborn; `alive` is bool (C,)."""
+        """If a sample was taken, note tallies of the living, newborn included; `alive` is bool (C,)."""
         if self.names and (filled := int(samples.filled)) > self._sampled:
             worlds = np.asarray(samples.rows)[self._sampled : filled, 0]
             self._samples.append(self._of_worlds(worlds, np.asarray(alive)))

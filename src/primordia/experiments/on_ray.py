@@ -125,7 +125,9 @@ def _check_folder(ray: Any, out: Path) -> None:
                 fault = "does not see"
             except ray.exceptions.RayError as error:
                 first = str(error).strip().partition("\n")[0]
-                fault = f"does not answer ({type(error).__name__}: {first}) whether it sees"
+                fault = (
+                    f"gave no answer ({type(error).__name__}: {first}) when asked whether it sees"
+                )
             ray.shutdown()
             raise InputError(
                 f"--ray: node {node['NodeManagerAddress']} {fault} {out}; choose an --out in a"

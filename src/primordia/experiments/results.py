@@ -44,7 +44,7 @@ COLUMNS = {
     "pace": "late_ticks_per_death",
     "food": "late_food",
 }
-"""Outcome of a comparison -> its column in the CSV, which always has both counts of saturation."""
+"""Outcome of a comparison -> its column in the CSV, which also has the births and the ticks to saturation."""
 
 
 def write(stem: Path, question: str, arms: Sequence[Records]) -> list[Path]:

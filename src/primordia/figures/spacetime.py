@@ -13,7 +13,7 @@ from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 
 ROWS, COLUMNS = 800, 512
-"""Largest number of drawn moments, and cells; if there are more, every second, third, ... is drawn."""
+"""Largest numbers of moments and of cells that are drawn. If there are more, evenly spaced ones are drawn."""
 EMPTY = -1
 """Mark of an empty cell, in place of the row of an organism."""
 HUES = (

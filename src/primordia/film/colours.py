@@ -19,9 +19,10 @@ DARKEST = 0.5
 FLASH = 0.75
 """Share of white in a cell in which an organism was born since the moment before."""
 FADING = 0.8
-"""Share of the light of a death that is left at the next moment."""
+"""Share of a cell's light after a death that is left from one moment to the next."""
 MOST = 2**22
-"""Largest number of cells x moments that are computed at once, with the lives sorted once."""
+"""Largest number of cells x moments that are computed at once; the lives are sorted once for all of
+them."""
 PALETTE = np.array([colour(hue) for hue in range(HUES)], np.float32)
 
 

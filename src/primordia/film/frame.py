@@ -14,7 +14,7 @@ LIFE = WIDTH - SIDE - 3 * EDGE
 INK, SOFT = "#e8e6e1", "#8d93a0"
 TITLE, SMALL = 20, 14
 STRIPS = 3
-"""Number of lights of each colour in a GIF."""
+"""Number of levels of brightness of each colour in a GIF."""
 BAR = 3
 """pixels, the height of the bar that shows how much of the film has passed"""
 

@@ -11,7 +11,8 @@ SIDE = 480
 """pixels of a picture, in both directions"""
 PAPER = np.array([13, 15, 20], np.uint8)
 NOW, INNER = 0.06, 0.3
-"""Shares of a ring's radius: the width of the present, and the radius of the hole."""
+"""As shares of a ring's radius: the width of the rim that shows the present, and the radius of the
+hole."""
 
 
 class Shape(Protocol):

@@ -24,7 +24,7 @@ from primordia.settings.values import LARGEST, shown
 Kind: TypeAlias = Literal["condition", "amount"] | int
 """A condition, an amount (one number), or the length of a list of numbers."""
 Names: TypeAlias = Mapping[str, Kind | Mapping[str, Kind]]
-"""The kind of each quantity that expressions can name; if a quantity has parts, of each part."""
+"""The kind of each quantity that expressions can name; if a quantity has parts, the kind of each part."""
 Values: TypeAlias = Mapping[str, Any]
 """Arrays by name: (N,) for a condition or an amount, (N, K) for a list, or arrays by part."""
 Compute: TypeAlias = Callable[[Values], Any]

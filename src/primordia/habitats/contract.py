@@ -110,7 +110,7 @@ class Ability(StrEnum):
     PICTURE = "picture"
     """draw bodies, for `primordia replay`"""
     TALLY = "tally"
-    """count numbers for people, such as a score; the law never sees them"""
+    """keep counts that only people read, such as a score; the law never sees these counts"""
     SAVE = "save"
     """save bodies, so that they go on exactly"""
 

@@ -21,7 +21,7 @@ STEPS = 7
 
 
 class Calibrated(Mutation):
-    """Gaussian noise in the proportions of founders' weights, scaled by its effect on behaviour.
+    """Gaussian noise whose size is chosen for each child by its effect on behaviour.
 
     The direction is random: noise with the standard deviation of founders' weights in each block.
     This noise is multiplied by 2^(q / 4). Bisection finds a q from -96 to 0 with which the child's

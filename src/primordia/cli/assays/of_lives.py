@@ -82,12 +82,12 @@ def effects(
     as_json: bool,
     **chosen: Any,
 ) -> None:
-    """Let mutants play the same games as their parents, for several mutations.
+    """Measure several kinds of mutation: let mutants play the same games as their parents.
 
-    RUN is a run, a genome file or a task. Without an ID, the parents of a run are the champions
-    of its worlds; those of a file are all of its genomes; those of a task are the 16 longest-lived of
-    512 founders. The first row of the table is the run's own mutation. Any setting of the habitat can
-    be changed by a flag, such as --sticky 0.25.
+    RUN is a run, a genome file or a task. Without an ID, the parents are the champions of a run's
+    worlds, all genomes of a file, or the 16 longest-lived of 512 founders of a task. The first row
+    of the table is the run's own mutation. Any setting of the habitat can be changed by a flag,
+    such as --sticky 0.25.
     """
     from primordia.assays.effects import SCALES
     from primordia.assays.effects import effects as measure
@@ -109,12 +109,12 @@ def ablate(
     as_json: bool,
     **chosen: Any,
 ) -> None:
-    """Let organisms live again with one loss each: frozen senses, no memory, or a zero block of weights.
+    """Let organisms live again with one part switched off: senses, memory, or a block of
+    weights.
 
-    RUN is a run, a genome file or a task. Without an ID, the organisms of a run are the
-    champions of its worlds; those of a file are all of its genomes; those of a task are the 16
-    longest-lived of 512 founders. Any setting of the habitat can be changed by a flag, such as --sticky
-    0.25.
+    RUN is a run, a genome file or a task. Without an ID, these organisms are the champions of a
+    run's worlds, all genomes of a file, or the 16 longest-lived of 512 founders of a task. Any
+    setting of the habitat can be changed by a flag, such as --sticky 0.25.
     """
     from primordia.assays.ablate import ablate as measure
 

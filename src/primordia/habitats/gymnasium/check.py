@@ -23,7 +23,7 @@ SAVED = 4
 
 
 ENDED, GOING_ON = b"\1", b"\0"
-"""The last byte of the record of an age."""
+"""The last byte of what is recorded at each age: whether the life ended there."""
 
 
 @dataclass

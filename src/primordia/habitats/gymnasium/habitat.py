@@ -41,7 +41,9 @@ class Gymnasium(HostHabitat, Settings):
         strict=False,
         description="modules to import first, such as those that register the environment",
     )
-    fatal: str = Field("terminated", description='condition that ends a life; "": no life ends')
+    fatal: str = Field(
+        "terminated", description='condition that ends a life; "": no condition ends it'
+    )
     food: str = Field("0", description="amount gathered in a tick, or module:function")
     effort: str = Field("0", description="amount exerted in a tick")
     time_limit: int | None = Field(None, ge=1, description="ticks after which a life ends")

@@ -14,7 +14,7 @@ from primordia.habitats.silence import quiet
 TICKS = 200
 """Random steps in which keys of `info` are looked for."""
 LONGEST = 64
-"""Largest count of numbers in a value of `info` that settings can name."""
+"""Settings can name a value of `info` only if it has at most this many numbers."""
 
 
 PICTURES_S = 30.0

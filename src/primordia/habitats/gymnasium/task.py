@@ -103,7 +103,7 @@ def _facts(env: str, about: Any, found: Any, keys: dict[str, int]) -> list[str]:
         if about.limit
         else "The environment has no time limit.",
         SAVING[found.saving] + (f" ({found.why})." if found.why else "."),
-        f"Random actions live {found.lifespan:,.0f} ticks on average."
+        f"With random actions, a life has {found.lifespan:,.0f} ticks on average."
         if found.ended
         else "No life ended in random play: name a condition for fatal, or add a metabolism.",
     ]

@@ -36,7 +36,7 @@ NO_SUM = {
     "floor",
     "ceil",
 }
-"""Primitives that add nothing to their arguments, so a product before them is not contracted.
+"""Primitives that compute no sum of their arguments, so a product before them is not contracted.
 Others, such as the sine, may be computed by compilers as sums."""
 
 

@@ -38,7 +38,7 @@ class Step(NamedTuple):
     reward: Array
     """float32 ()"""
     done: Array
-    """bool (): the environment has ended; its time limit counts only if it is kept"""
+    """bool (): the environment has ended; its time limit counts only if `Simulator.time_limit` is true"""
     info: Any
 
 
