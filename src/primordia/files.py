@@ -22,7 +22,8 @@ from primordia.errors import InputError, Trouble
 READABLE = 2**26
 """Largest size, in bytes, of a file of settings or of a manifest."""
 LONGEST_NAME = 240
-"""Largest length of a name, in bytes. File systems allow 255, but the name of an unfinished file has a prefix."""
+"""Largest length of a name, in bytes. File systems allow 255, but an unfinished file's name has a
+prefix."""
 TEMPORARY = ".writing-"
 """Prefix of the names of unfinished files."""
 

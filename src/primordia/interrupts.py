@@ -6,8 +6,8 @@ compiles, the exception has to wait. So signals are only noted here, and take ef
 
 - A run checks `noted` between two chunks, and writes a checkpoint before it stops. If a chunk does
 not end, since a simulator hangs, a second signal ends the process.
-- At all other times a signal ends the process at once, since a run survives even kill -9. The
-process is ended by a thread, which the system wakes whatever the main thread does
+- At all other times a signal ends the process at once. This is safe, since a run survives even kill
+-9. The process is ended by a thread, which the system wakes whatever the main thread does
 (`end_commands_at_once`).
 """
 
@@ -72,8 +72,7 @@ def came() -> bool:
 
 
 def deferred() -> AbstractContextManager[None]:
-    """Keep a first signal from ending the process in a `with` block, which checks the list of
-    `noting`."""
+    """Keep a first signal from ending the process in a `with` block that checks the list of `noting`."""
     return _entry(_deferred, True)
 
 

@@ -145,7 +145,7 @@ def test_an_environment_in_jax_is_lived_in_by_its_name_alone(tmp_path: Path) -> 
 def test_what_is_wrong_with_an_environment_in_jax_is_found() -> None:
     fine = here("check", "gymnax:tests.walks:Choice")
     assert fine.returncode == 0
-    assert "Random actions live 9 ticks on average." in fine.stdout
+    assert "With random actions, a life has 9 ticks on average." in fine.stdout
     wrong = here("check", "gymnax:tests.walks:Overwriting")
     assert wrong.returncode == 1
     assert "Found: step changes the state that it is given." in wrong.stdout

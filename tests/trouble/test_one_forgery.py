@@ -52,7 +52,7 @@ def test_an_open_tail_names_no_world_cell_or_cause_that_does_not_exist(
         arrays[f"tail.{table}"] = np.concatenate([arrays[f"tail.{table}"], row])
 
     rewrite(newest(run), change)
-    with pytest.raises(Trouble, match=f"tail.{table} has a {column} that does not exist"):
+    with pytest.raises(Trouble, match=f"tail.{table} names a {column} that does not exist"):
         Archive(run).table(table)
 
 

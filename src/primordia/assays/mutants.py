@@ -20,8 +20,8 @@ from primordia.random.keys import streams
 from primordia.random.wide import wide
 
 MOST_CHILDREN = 1000
-"""Largest number of children made for each wanted mutant. If too few of these children mutate, the mutation
-counts as one that never happens."""
+"""Largest number of children made for each wanted mutant. If too few of these children mutate, the
+mutation counts as one that never happens."""
 
 
 class Operator(NamedTuple):

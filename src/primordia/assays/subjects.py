@@ -29,7 +29,7 @@ GAMES = 5
 TICKS = 20_000
 """Default length at which games are cut, in ticks."""
 FOUNDERS, BEST = 512, 16
-"""Number of a task's founders that live once, and number of the longest-lived ones that become subjects."""
+"""Number of a task's founders that live once, and number of the longest-lived that become subjects."""
 
 
 class Subjects(NamedTuple):

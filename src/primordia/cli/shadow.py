@@ -51,7 +51,8 @@ def shadow_text(found: "Shadow") -> str:
     longer, shorter = found.longer
     head = (
         f"{found.name}: {told['organisms']:,} organisms from {found.births:,} births in"
-        f" {told['worlds']} worlds, each born again alone; {2 * told['organisms']:,} lives, {told['ticks']:,} ticks"
+        f" {told['worlds']} worlds, each born again alone;"
+        f" {2 * told['organisms']:,} lives, {told['ticks']:,} ticks"
     )
     lines = [f"{'':12}{'mean life':>12}{f'reach {found.cut:,} ticks':>24}"]
     for line in ("original", "shadow"):

@@ -22,9 +22,10 @@ def place_for(
     Args:
         out: the experiment's directory.
         left: number of jobs.
-        jobs: number of jobs that run at once on this machine; None: one for each core, or one if
-            jobs take all GPUs.
-        ray: address of a Ray cluster; "": this machine's cluster, or a new cluster; None: none.
+        jobs: number of jobs that run at once on this machine; None: one for each core, or a single
+            job on `gpu`, where each job takes all GPUs.
+        ray: address of a Ray cluster; "": this machine's cluster, or a new cluster; None: the jobs
+            run without a cluster.
         checkpoint_every: seconds from one checkpoint to the next.
         device: the device that computes the jobs, `cpu` or `gpu`.
 

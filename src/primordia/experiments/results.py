@@ -44,7 +44,7 @@ COLUMNS = {
     "pace": "late_ticks_per_death",
     "food": "late_food",
 }
-"""Outcome of a comparison -> its column in the CSV, which also has the births and the ticks to saturation."""
+"""Outcome of a comparison -> its column in the CSV, which also has births and ticks to saturation."""
 
 
 def write(stem: Path, question: str, arms: Sequence[Records]) -> list[Path]:
@@ -117,7 +117,7 @@ def summary(compared: Comparison, counted: list[dict[str, np.ndarray]]) -> str:
 
 
 def dying(compared: Comparison, ends: list[list[dict[str, float]]]) -> str:
-    """Return a table with a row for each arm: medians and quartiles of late deaths, over worlds."""
+    """Return a table of the last deaths in each arm: medians and quartiles over worlds."""
     names = [name for name in late.COLUMNS if name in ends[0][0]]
     rows = [
         [arm.name, *(spread_text([world[name] for world in worlds]) for name in names)]

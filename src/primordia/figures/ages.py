@@ -16,7 +16,7 @@ BINS, ENOUGH = 40, 30
 
 
 def draw(run: Records, world: int) -> Figure:
-    """Draw mean age over time and over organisms, and lifespans of the dead by birth order."""
+    """Draw mean age against time and against births, and lifespans of the dead by birth order."""
     lives = run.lives.since_fork()
     figure = Figure(figsize=(style.PAGE, 2.4))
     over_time, over_births, dead = figure.subplots(1, 3, sharey=True)

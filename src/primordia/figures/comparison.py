@@ -66,7 +66,8 @@ def line_styles(arms: int) -> list[dict[str, Any]]:
     """Return the line style of each run.
 
     The reference is black. If the other runs are few, their colours go from dark to light, in order.
-    If they are many, their colours are distinct, and runs after the last colour have dashes.
+    If they are many, their colours are distinct; when all colours are used, they begin again with
+    dashed lines.
     """
     if arms > FEW_ARMS:
         lines = product(DASHES, [style.INK, *style.PALETTE, style.SOFT])

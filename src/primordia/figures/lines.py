@@ -1,4 +1,4 @@
-"""Lines of one world: their shares, their number beside that under drift, and the tree of the living."""
+"""Lines of one world: their shares, their number compared with drift, and the tree of the living."""
 
 import numpy as np
 from matplotlib.axes import Axes

@@ -13,7 +13,8 @@ from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 
 ROWS, COLUMNS = 800, 512
-"""Largest numbers of moments and of cells that are drawn. If there are more, evenly spaced ones are drawn."""
+"""Largest numbers of moments and of cells that are drawn. If there are more, evenly
+spaced ones are drawn."""
 EMPTY = -1
 """Mark of an empty cell, in place of the row of an organism."""
 HUES = (
@@ -84,10 +85,10 @@ def line_inks(lives: Lives, clades: Clades, codes: np.ndarray, size: np.ndarray)
     """Return the index in INKS of each line, int64 (K,), by its `line_codes` and size in the
     picture.
 
-    Lines of one era take the colours in turn: first lines that last to the end of the era, then the
-    others, the largest first. Lines that last have strong colours, all others pale ones. Lines
-    whose first organism was born after the beginning of the era are grey, and so are all lines before
-    the first renewal.
+    Lines of one era take the colours in turn. Those that last to the end of the era come before the
+    others, and in both groups larger lines come before smaller ones. Lines that last have strong
+    colours, all others pale ones. Lines whose first organism was born after the beginning of the
+    era are grey, and so are all lines before the first renewal.
     """
     era, line = np.divmod(codes, len(lives))
     last = int(lives.ended.max())

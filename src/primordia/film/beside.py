@@ -49,7 +49,7 @@ def chosen(run: Records, organism: int, world: int, count: int) -> Iterator[Besi
 
 
 def nothing(count: int) -> Iterator[Beside]:
-    """Yield nothing to show, `count` times, for a habitat that draws no pictures."""
+    """Yield a `Beside` without picture and words, `count` times, for a habitat that draws no pictures."""
     yield from repeat(Beside(None, ""), count)
 
 

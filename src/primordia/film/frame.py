@@ -68,7 +68,7 @@ def with_colours(picture: Image.Image) -> Image.Image:
 
 
 def fitted(picture: Image.Image, room: tuple[int, int]) -> Image.Image:
-    """Return a picture as large as a room, (width, height) in pixels, allows."""
+    """Return the picture scaled to the largest size that fits into `room`, (width, height) in pixels."""
     scale = min(room[0] / picture.width, room[1] / picture.height)
     size = (round(picture.width * scale), round(picture.height * scale))
     return picture if size == picture.size else picture.resize(size, Image.Resampling.BILINEAR)

@@ -15,9 +15,10 @@ def fresh(habitat: JaxHabitat, words: Array) -> Bodies:
     """Return fresh bodies from random words uint32 (N, words). Every caller must compile this
     function.
 
-    In uncompiled code a product and a sum are each rounded; in compiled code both may be rounded
-    once. On a CPU the rounding may also depend on N, since a single body is no vector. So on a CPU each
-    body is made alone, and its bits do not depend on the number of births.
+    In uncompiled code a product and a sum are rounded separately; compiled code may round only
+    once, after the sum. On a CPU the rounding may also depend on N, since the code for a single
+    body uses no vector instructions. So on a CPU each body is made alone, and its bits do not
+    depend on the number of births.
     """
 
     def fresh_body(words: Array) -> Bodies:

@@ -91,7 +91,7 @@ def parse(text: str, kind: Literal["condition", "amount", "numbers"], names: Nam
 
     Raises:
         ValueError: the text is not in the grammar or not of the required kind; the message says
-            what, and where.
+            what is wrong, and where.
     """
     tree = _tree(text)
     actual, compute = _Reader(text, names).read(tree.body)

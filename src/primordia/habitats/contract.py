@@ -158,7 +158,7 @@ class Habitat(ABC):
 
     @default
     def versions(self) -> dict[str, str]:
-        """Return the version of each package or file, other than this package, that lives depend on.
+        """Return the versions of packages and files on which lives depend, without this package.
 
         A run under other versions is resumed only if the user asks for it.
         """
@@ -176,7 +176,7 @@ class Habitat(ABC):
 
     @default
     def tallies(self) -> tuple[str, ...]:
-        """Return the names of the counts that are kept for people, such as score."""
+        """Return the names of the counts, such as a score, that are kept only for people to read."""
         return ()
 
     @default
@@ -314,7 +314,7 @@ def find(name: object) -> type[AnyHabitat]:
 
 
 def complete(habitat: AnyHabitat) -> AnyHabitat:
-    """Return the habitat, checked to state everything that has no default.
+    """Return the habitat after a check that it states everything that has no default.
 
     Raises:
         TypeError: something is missing; the message says what.

@@ -42,7 +42,7 @@ def find_clades(
         born: tick of birth, int64 (L,), in ascending order.
         ended: tick of death, int64 (L,); not used for living organisms.
         died: whether the organism has died, bool (L,).
-        crowd: number of living at which lines begin, at least 1.
+        crowd: lines begin when this number of organisms is alive; at least 1.
     """
     lines, dead = Lines([], crowd), np.flatnonzero(died)
     birth_line = lines.follow(Turnover(np.arange(len(born)), parent_row, born, dead, ended[dead]))
@@ -52,6 +52,7 @@ def find_clades(
 
 
 def crowd_size(lives: Lives) -> int:
-    """Return the number of living at which lines begin: CROWD, or less in a small population."""
+    """Return how many organisms must be alive before lines begin: CROWD, or fewer in a small
+    population."""
     most = int(series.population(lives, lives.born).max())
     return min(CROWD, max(most // 2, 1))

@@ -40,9 +40,10 @@ class Families:
         """Return which children live at least as long as their parents, and which results are
         known.
 
-        The result of a pair with a living organism is known in two cases. A living child lives as
-        long if it has reached the lifespan of its dead parent. A dead child lives less long if it
-        died younger than its living parent is now.
+        The result of a pair with a living organism is known in two cases. If only the parent is
+        dead, the child counts as living at least as long once its age has reached the parent's
+        lifespan. If only the child is dead, it counts as shorter-lived if it died younger than the
+        parent is now.
         """
         child, parent = self.lifespans
         longer = (child >= parent) & self.lives.died[self.parent]

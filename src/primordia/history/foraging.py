@@ -23,7 +23,8 @@ class Foraging(NamedTuple):
     food: np.ndarray
     """mean food of an organism in a tick, float64 (W, N); NaN if no organism lived"""
     break_even: np.ndarray
-    """food in a tick that kept energy constant, float64 (W, N); infinite if no amount did"""
+    """amount of food in a tick with which energy stays constant, float64 (W, N); infinite if there
+    is no such amount"""
 
 
 class Harvest(NamedTuple):

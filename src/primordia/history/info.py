@@ -21,12 +21,12 @@ def info(run: Records) -> dict[str, Any]:
 
     `crashes` are the extinctions after a rise; see `extinctions`. `threshold` is the error threshold
     among the later half of the births; see `threshold`.
-    `saturation` and `fixation` are a tick with the number of births until then (founders included),
-    or None if they have not happened. `restarts` is the number of times that the run was resumed
-    with bodies as at birth, since its habitat cannot save them. Ages, in ticks, and the habitat's
-    counts (`tallies`) are those of the living. `break_even` is the food in a tick, and in a second,
-    that keeps energy constant under the present climate. `tries_per_life` tells how often an
-    organism tries to copy itself in a life of mean length, at the present replication. If the
+    `saturation` and `fixation` each hold a tick and the number of births until then (founders
+    included); each is None if it has not happened. `restarts` is the number of times that the run
+    was resumed with bodies as at birth, since its habitat cannot save them. Ages, in ticks, and the
+    habitat's counts (`tallies`) are those of the living. `break_even` is the food in a tick, and in
+    a second, that keeps energy constant under the present climate. `tries_per_life` tells how often
+    an organism tries to copy itself in a life of mean length, at the present replication. If the
     number is below one, lineages die out. The fields of a single world also appear at the top
     level.
     """

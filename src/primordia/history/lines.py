@@ -19,7 +19,7 @@ from primordia.law.events import BIRTHS, DEATHS, Events, Rows
 NO_PARENT, DIES = -1, -2
 """Numbers for a founder and for a death, in place of a parent's number."""
 CROWD = 16
-"""Number of living at which lines begin; half the cells if that is less."""
+"""Number of living organisms at which lines begin; half the number of cells if that is less."""
 
 
 class Turnover(NamedTuple):

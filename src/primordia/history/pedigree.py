@@ -162,7 +162,7 @@ class _Made:
         return np.stack([self.genomes.get(place, self._none) for place in places.tolist()])
 
     def release(self, places: np.ndarray) -> None:
-        """Note that genomes were used once, and forget those that are not used again."""
+        """Count one use of each genome, and forget genomes that will not be used again."""
         for place in places[places >= 0].tolist():
             self._uses[place] -= 1
             if not self._uses[place]:

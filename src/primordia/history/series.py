@@ -67,7 +67,7 @@ def middle(edges: np.ndarray) -> np.ndarray:
 
 
 def count_until(rising: np.ndarray, ticks: np.ndarray) -> np.ndarray:
-    """Return how many of the ascending values `rising` are at most each tick, int64."""
+    """Return, for each tick, how many of the ascending values `rising` are not above it, int64."""
     return np.searchsorted(rising, ticks, side="right")
 
 

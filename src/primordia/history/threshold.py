@@ -22,7 +22,7 @@ BEST = 0.9
 
 @dataclass(frozen=True)
 class Threshold:
-    """The error threshold in one world, among children born late. None is an unknown number."""
+    """The error threshold in one world, among children born late. None stands for an unknown number."""
 
     world: int
     mutated: float | None
@@ -31,8 +31,8 @@ class Threshold:
     """v: the share of good parents' mutants that live as long as the parent, divided by the same
     share of the parents' copies"""
     advantage: float | None
-    """s: ticks lived for each death among copies of good parents, divided by the same ratio among all
-    born"""
+    """s: number of ticks lived per death among copies of good parents, divided by the same ratio
+    among all organisms born"""
 
     @property
     def held(self) -> float | None:

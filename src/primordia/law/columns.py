@@ -1,4 +1,4 @@
-"""Columns of the lists that the law writes and records keep; rows are packed and unpacked by name.
+"""Columns of the lists that the law writes and that records keep; rows are packed and unpacked by name.
 
 A row is made of uint32 words. A 64-bit number takes two words, the high word first.
 """

@@ -30,9 +30,9 @@ TOTALS = (
     "energy_total",
     "food_total",
 )
-"""Numbers of 64 bits in a sample. Births, deaths, extinctions, organism-ticks and the total of food
-count since the beginning of the world; the other totals are over the living. Energy and food are in
-1/1024 units, two's complement."""
+"""Names of the 64-bit values in a sample. Births, deaths, extinctions, organism-ticks and the total
+of food count since the beginning of the world; the other totals are over the living. Energy and
+food are in 1/1024 units, two's complement."""
 
 
 def birth_columns(mates: bool, notes: tuple[str, ...]) -> Columns:

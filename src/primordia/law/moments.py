@@ -73,7 +73,8 @@ def remember(law: Law, world: World, senses: Array, live_worlds: Array) -> World
 
 
 def change_in(law: Law, moments: Remembered, parents: Array) -> Change:
-    """Return a function of genomes: their change of behaviour from the parents, in the parents' moments.
+    """Return a function of genomes. It returns how far their behaviour differs from the parents'
+    behaviour in the parents' moments.
 
     For discrete actions it is the share of moments with another choice. For continuous actions it
     is the root mean square change of the outputs, each at most 1. For an action with parts of both

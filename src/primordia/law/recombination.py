@@ -1,6 +1,6 @@
 """Recombination: a child takes some of its weights from a second parent, the mate.
 
-The mate is drawn among the living neighbours of the child's cell, without the parent. On a ring the
+The mate is drawn among the living neighbours of the child's cell, the parent excluded. On a ring the
 mate is the neighbour on the other side. A child without a neighbour other than the parent has no
 mate. The mate is recorded with the birth, so that genomes are rebuilt through both lines.
 """

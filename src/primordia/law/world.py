@@ -75,7 +75,7 @@ class Organisms(NamedTuple):
     """birth number within its world, from 0"""
     branch: Wide
     """1 + birth number of the founder's child from which the organism descends; 0 for a founder.
-    After fixation all the living have the same branch, not 0"""
+    After fixation all the living have the same branch, which is not 0"""
     moments: Remembered | None
     """None if the mutation needs no moments; see `Mutation.moments`"""
 

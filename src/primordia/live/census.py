@@ -67,20 +67,20 @@ class Speed:
         self._censuses: deque[tuple[float, Census]] = deque()
 
     def add(self, now: float, census: Census) -> None:
-        """Add the census taken at a time in seconds."""
+        """Add a census and the time, in seconds, at which it was taken."""
         self._censuses.append((now, census))
         while len(self._censuses) > 2 and now - self._censuses[1][0] >= self.WINDOW:
             self._censuses.popleft()
 
     def organism_ticks_per_s(self) -> float | None:
-        """Return the organism-ticks of all worlds in a second; None before the second census."""
+        """Return the organism-ticks per second of all worlds; None before there are two censuses."""
         if len(self._censuses) < 2:
             return None
         (then, before), (now, after) = self._censuses[0], self._censuses[-1]
         return float((after.organism_ticks - before.organism_ticks).sum()) / (now - then)
 
     def ticks_per_s(self) -> float | None:
-        """Return the ticks of the fastest world in a second; None before the second census."""
+        """Return the ticks per second of the fastest world; None before there are two censuses."""
         if len(self._censuses) < 2:
             return None
         (then, before), (now, after) = self._censuses[0], self._censuses[-1]

@@ -1,4 +1,4 @@
-"""Lines of descent of the worlds that may be shown, followed unless cells or births are too many."""
+"""Lines of descent of worlds that may be shown, unless there are too many cells or births to follow."""
 
 from collections.abc import Iterable
 

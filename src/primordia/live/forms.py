@@ -52,7 +52,7 @@ def form_of(law: Law, letters: bool) -> Form:
 
 @dataclass(frozen=True)
 class Ring:
-    """Cells as a skyline. Many cells make several skylines, a single one has its past below."""
+    """Cells as a skyline. Many cells make several skylines. A single skyline has its past below it."""
 
     cells: int
 
@@ -62,7 +62,7 @@ class Ring:
         return self.cells, 1
 
     def scale(self, room: Room) -> int:
-        """Return the columns of a cell; see `Form`."""
+        """Return the width of a cell, in columns; see `Form`."""
         return min(room.width // self.cells, WIDEST) if room.height else 0
 
     def draw(self, cells: Cells, past: Sequence[np.ndarray], room: Room) -> tuple[list[Row], str]:
@@ -134,5 +134,5 @@ class Torus:
 
 
 def part_of(shown: int, count: int, what: str = "cells") -> str:
-    """Return the words for a part that is shown; "" if all is shown."""
+    """Return words that say which part is shown; "" if all is shown."""
     return "" if shown == count else f"shown: the first {shown:,} of {count:,} {what}"

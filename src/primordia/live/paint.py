@@ -1,4 +1,4 @@
-"""Cells as characters: colour or letter shows the line of descent, height or light the age."""
+"""Cells as characters: colour or letter shows the line of descent; height or light shows the age."""
 
 import colorsys
 from collections.abc import Callable, Iterable
@@ -15,7 +15,8 @@ from rich.style import Style
 Row = list[Segment]
 """One row of characters in the terminal."""
 EMPTY, OUTSIDE = -1, -2
-"""Marks of an empty cell and of no cell, in place of the number of a line of descent."""
+"""Marks of an empty cell and of a place without a cell; they stand in place of the number of a line
+of descent."""
 HUES = 64
 EIGHTHS = " ▁▂▃▄▅▆▇█"
 FAINT = Style(color="grey50")
@@ -78,7 +79,7 @@ def strip(cells: Cells, letters: bool) -> Row:
 
 
 def field(cells: Cells, columns: int, scale: int, letters: bool) -> list[Row]:
-    """Draw rows of `columns` cells, two in a row of characters, lighter with age; or draw letters.
+    """Draw rows of `columns` cells as colours, lighter with age, or as letters.
 
     A cell is `scale` characters wide, and `scale` / 2 rows of characters high.
     """
@@ -95,7 +96,7 @@ def shades(cells: Cells) -> np.ndarray:
 
 
 def mosaic(numbers: np.ndarray) -> list[Row]:
-    """Draw rows of shades, int64 (rows, columns), two in a row of characters."""
+    """Draw rows of shades, int64 (rows, columns); each row of characters shows two rows of shades."""
     return _halves(numbers, _pixels)
 
 
@@ -123,7 +124,7 @@ def levels(values: np.ndarray) -> str:
 
 
 def width_of(row: Row) -> int:
-    """Return the columns of a row."""
+    """Return the width of a row, in columns."""
     return sum(len(segment.text) for segment in row)
 
 

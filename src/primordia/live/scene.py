@@ -68,7 +68,7 @@ class Grid(NamedTuple):
 
 
 def cell_width(law: Law, alone: int | None, room: Room) -> int:
-    """Return the columns of a cell in a room; 0 if not all cells of the shown worlds fit."""
+    """Return the width of a cell in a room, in columns; 0 if not all cells of the shown worlds fit."""
     form = form_of(law, room.letters)
     if law.worlds == 1 or alone is not None:
         return form.scale(room)

@@ -34,10 +34,10 @@ def composed(
 ) -> list[Row]:
     """Return the rows of a screen.
 
-    Numbers are beside the world if the cells are no smaller then than with the numbers below.
+    Numbers go beside the world, or below it if that makes the cells larger.
 
     Args:
-        measure: returns the columns of a cell of the worlds in a room; 0 if not all cells fit.
+        measure: returns the width of the worlds' cells in a room, in columns; 0 if not all cells fit.
         draw: draws the worlds.
         numbers: draws the numbers.
         organism: draws the organism that is shown; None if no organism is shown.

@@ -37,7 +37,8 @@ class View:
     SHARE = 0.01
     """share of the time that drawing may take"""
     MOMENT, LONGEST = 0.1, 2.0
-    """least seconds between two past moments of a ring, and most seconds between two frames"""
+    """smallest number of seconds between two past moments of a ring, and largest number of seconds
+    between two frames"""
 
     def __init__(
         self, console: Console, pace: Pace | None = None, keyboard: Keyboard | None = None

@@ -25,7 +25,7 @@ WORDS = {
     "tick": "One step of time: each organism senses and acts once.",
     "alive": "Living organisms, and the number of cells. A cell holds at most one organism.",
     "births": "Organisms born so far, founders included.",
-    "deaths": "Organisms that have died so far. The causes are listed with them.",
+    "deaths": "Organisms that have died so far. The row `died of` lists the causes.",
     "mean age": "Mean age of the living, in ticks.",
     "oldest": "Age of the oldest of the living, in ticks.",
     "line of descent": "Organisms that descend from one organism at an earlier moment. A line has"
@@ -34,8 +34,8 @@ WORDS = {
     "takeovers": "How often only one line was left, so that all the living descend from one ancestor.",
     "extinctions": "How often no organism was alive. A new founder then begins life again.",
     "children mutate": "Share of the latest births whose genome differs from the parent's.",
-    "mutants as good": "Share of good parents' mutants that live as long as the parent, compared with"
-    " copies.",
+    "mutants as good": "Share of good parents' mutants that live as long as the parent, divided by"
+    " that of their copies.",
     "good lines hold": "Above 1, a long-lived line persists in spite of its bad mutants. Below 1, such"
     " lines are lost.",
     "organism-ticks/s": "Ticks lived by all organisms together in a second of your time.",
@@ -47,7 +47,7 @@ WORDS = {
     "hazard": "A death by chance, at the rate of the setting `hazard`.",
     "replaced": "A death because a neighbour's child took the cell.",
     "time-limit": "A death because the task ends a life after some ticks.",
-    "fault": "A death because the simulation of the body, or the brain, gave a wrong number.",
+    "fault": "A death because the simulation or the brain failed, or gave a number that is not finite.",
     "restart": "A death because the run was resumed without the body of the organism.",
     "energy": "What an organism needs to live. Life and actions take energy, food gives energy.",
     "senses": "What the organism perceives: a bar for each sense, lowest at -1, highest at 1.",

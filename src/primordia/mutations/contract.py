@@ -41,7 +41,7 @@ class Draws(NamedTuple):
     """cell of each birth within its world, int32 (K,)"""
 
     def bits(self, purpose: Purpose, index: Array | int = 0) -> Wide:
-        """Return two random words for each birth, (K,); `index` numbers further draws."""
+        """Return two random words for each birth, (K,); each `index` gives a separate draw."""
         return bits(self.streams[purpose], self.cell, index)
 
 
@@ -88,9 +88,9 @@ class Mutation(Settings, ABC):
     """
 
     notes: ClassVar[tuple[str, ...]] = ()
-    """Names of the notes: small integers of an organism beside its genome, such as a heritable
-    rate. `note` makes the child's notes from the parent's notes. Notes are columns of the births
-    table."""
+    """Names of the notes: small integers that an organism has in addition to its genome, such as a
+    heritable rate. `note` makes the child's notes from the parent's notes. Notes are columns of the
+    births table."""
 
     @property
     def moments(self) -> Moments | None:

@@ -58,7 +58,8 @@ class Evaluation:
 
     @property
     def distinct(self) -> int:
-        """Number of games that differ in a sense or in food."""
+        """Number of distinct games; two games are distinct if any of their senses or their food
+        differ."""
         return len(np.unique((self.whole or self.lived).course))
 
     def to_dict(self) -> dict[str, Any]:
@@ -164,8 +165,8 @@ def changed(config: Config, changes: Mapping[str, Any]) -> Config:
     habitat = after.build_habitat()
     if (habitat.senses_size, habitat.action) != (before.senses_size, before.action):
         raise InputError(
-            f"with changed {', '.join(changes)} the habitat has {habitat.senses_size} senses and"
-            f" {habitat.action.size} actions; the brain is made for {before.senses_size} senses and"
+            f"the changed settings ({', '.join(changes)}) give the habitat {habitat.senses_size} senses"
+            f" and {habitat.action.size} actions; the brain is made for {before.senses_size} senses and"
             f" {before.action.size} actions"
         )
     return after

@@ -1,4 +1,4 @@
-"""A mind: the inputs of an organism's actions beside the law and the senses."""
+"""A mind: the inputs of an organism's actions, apart from the law and the senses."""
 
 from typing import NamedTuple
 

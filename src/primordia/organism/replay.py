@@ -22,7 +22,7 @@ from primordia.runs import bundle
 from primordia.runs.records import Records
 
 PART = 30.0
-"""Seconds shown at each end of a life that is longer than two such parts."""
+"""Seconds shown at each end of a long life; a life of at most twice this time is shown whole."""
 STILL = 1.0
 """Seconds for which a card, and the last picture, are shown."""
 SIZE, INK = 16, "#333333"
@@ -158,7 +158,7 @@ def _side_by_side(films: list[Iterator[Image.Image]]) -> Iterator[Image.Image]:
 
 
 def moments(life: RelivedLife, parts: list[range], step: int) -> Iterator[tuple[int, Stretch, int]]:
-    """Yield the number of the part, the stretch and the index in it of each tick that is shown."""
+    """Yield, for each tick shown, the number of its part, its stretch, and its index in the stretch."""
     for stretch in life.stretches(watched=True):
         ages = stretch.tick - life.record.born[0]
         for number, part in enumerate(parts):

@@ -91,9 +91,9 @@ def revive(
         run: the organism's run.
         organism: birth number.
         world: the organism's world.
-        since: begin with the newest kept state of this tick or an earlier one: one of the two
-            newest checkpoints, or the state of the fork. By default the life begins with the birth,
-            or with the fork if the organism is older.
+        since: begin with the newest kept state that is not later than this tick. The kept states
+            are the two newest checkpoints and the state of the fork. By default the life begins
+            with the birth, or with the fork if the organism is older.
         save: an .npz, .parquet or .csv file to write the life to; see `diary.write`.
         film: an .mp4 or .gif file for a film of the life, made if the life agrees with its record.
 
@@ -180,7 +180,7 @@ def _notes(run: Archive, course: Course) -> list[str]:
     notes = [f"{fault}; an older checkpoint was read" for fault in faults[:1]]
     if course.replaced:
         notes.append(
-            "a child took the cell in that tick, as the births say; neighbours were not relived"
+            "by the recorded births a child took the cell in that tick; neighbours were not relived"
         )
     if directory.is_written(run.path):
         notes.append(f"the run goes on; the records end at tick {run.ends.max():,}")

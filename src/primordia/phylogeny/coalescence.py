@@ -17,7 +17,7 @@ from primordia.runs.lives import Lives
 
 @dataclass(frozen=True)
 class Genealogy:
-    """The living of one world at its end and their ancestors, A organisms by rising row."""
+    """The living of one world at its end, and their ancestors, sorted by row; A is their number."""
 
     lives: Lives
     rows: np.ndarray
@@ -60,8 +60,7 @@ class Genealogy:
         return int(common[-1]) if self.living and len(common) else None
 
     def trunk(self) -> np.ndarray:
-        """Return the rows of a line from the largest root; it goes on with the child with the most
-        living."""
+        """Return the rows of a line: the largest root, and always the child with the largest living family."""
         if not len(self.rows):
             return np.zeros(0, np.int64)
         order = np.lexsort((self.size, self.parent))
@@ -73,7 +72,7 @@ class Genealogy:
         return self.rows[line]
 
     def coalescences(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return the ticks at which lines of the living part, latest first, and the number of pairs."""
+        """Return the ticks at which pairs of the living separate, latest first, and how many pairs do."""
         parted = np.flatnonzero(self.merges)[::-1]
         ticks = self.lives.born[self.rows[parted]]
         falling, place = np.unique(-ticks, return_inverse=True)

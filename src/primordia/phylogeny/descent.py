@@ -23,7 +23,8 @@ from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 
 SHARES = {"tenth": 0.1, "half": 0.5, "fixed": 1}
-"""Shares of the living whose first ticks are given; see `first_ticks`."""
+"""Shares of the living; for each share, the first tick at which an ancestor's descendants reach it
+is given; see `first_ticks`."""
 
 
 @dataclass(frozen=True)
@@ -56,8 +57,8 @@ class Ancestors:
     unknown: str | None
     """why the sizes of mutations, or of those before a fork, are not known"""
     ticks: dict[str, np.ndarray]
-    """for each of SHARES, the first tick after which each organism's descendants exceeded this
-    share of the living, int64 (D,), or UNKNOWN"""
+    """for each of SHARES, the first tick after which each organism's descendants were more than
+    this share of the living (for a share of 1, all of the living), int64 (D,), or UNKNOWN"""
     census: Census
     """the living of the world at instants"""
     branch: np.ndarray
@@ -114,7 +115,7 @@ class Ancestors:
         }
 
     def step(self, place: int) -> dict[str, Any]:
-        """Return an organism of the line as plain values; None if unknown or if it has not happened."""
+        """Return an organism of the line as plain values; what is unknown or has not happened is None."""
         line, parent = self.line, int(self.line.parent[place])
         size = None if self.changes is None else [_known(each) for each in self.changes[place]]
         return {

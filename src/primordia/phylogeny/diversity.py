@@ -17,9 +17,8 @@ def phylogenetic_diversity(lives: Lives, ticks: np.ndarray) -> np.ndarray:
     """Return the total length of the tree of the living after each tick, from its roots on, int64 (T,).
 
     The unit is ticks. The length is the time for which the lines of the living have existed, and
-    each tick counts once for each line that existed then. In a fork, lines begin with organisms
-    that were alive at the fork and whose parents are not on record, at the birth of these
-    organisms.
+    each tick counts once for each line that existed then. In a fork, lines begin at the births of
+    those organisms that were alive at the fork and whose parents are not on record.
 
     Source: Faith 1992, "Conservation evaluation and phylogenetic diversity".
     """

@@ -49,8 +49,7 @@ class Deal(NamedTuple):
     def of(
         cls, lives: Lives, turnover: Turnover, ticks: np.ndarray, seed: int, what: int
     ) -> "Deal":
-        """Prepare the turnover of one world; the world's seed, the first tick and `what` make all
-        draws."""
+        """Prepare the turnover of one world; draws follow from its seed, the first tick and `what`."""
         device.prepare()
         places = np.searchsorted(turnover.tick, ticks, side="right")
         events = slice(places[0], places[-1])
@@ -161,9 +160,9 @@ def deal_one_line(
 
     Args:
         counts: living of the line in each shadow, int32 (R,).
-        which: numbers of the shadows, int32 (R,); they make the draws.
+        which: numbers of the shadows, int32 (R,); the draws of a shadow depend on its number.
         first: the first event.
-        last: the event after the last.
+        last: the event before which to stop.
         kinds: kind of each event, int8 (E,).
         before: number of living before each event, int32 (E,).
         key: key of the draws.

@@ -69,7 +69,8 @@ class _Look:
     def follow(self, part: slice, at: np.ndarray, change: np.ndarray, alive: np.ndarray) -> None:
         """Follow a part of the births and deaths.
 
-        `alive` has the number of living whose lines leave at each place, before the part.
+        `alive[i]` is the number of organisms, living before this part, whose lines leave the line
+        of descent at place i.
         """
         needed, next_ = self._needed(part), self._next
         while next_ < len(self.ticks):

@@ -26,7 +26,7 @@ Say = Callable[[str], object]
 
 
 class Past(NamedTuple):
-    """All organisms of a run, those before its fork included, through forks of forks."""
+    """All organisms of a run, with those that lived before its fork, back through all earlier forks."""
 
     whole: Phylogeny
     runs: list[Archive]

@@ -1,4 +1,4 @@
-"""Lines of a world: the descendants of each organism alive at a tick; and when lines are counted."""
+"""Lines of a world, begun by the organisms alive at a tick, and the ticks at which they are counted."""
 
 import numpy as np
 
@@ -48,7 +48,7 @@ def founders(lives: Lives, at: int) -> np.ndarray:
 
 
 def lines_of(lives: Lives, founders: np.ndarray) -> np.ndarray:
-    """Return the line of each organism, a place among the founders, or -1; int64 (L,).
+    """Return the line of each organism as the place of its founder in `founders`, or -1; int64 (L,).
 
     A line is a founder with all its descendants; the founders, int64 (K,), were alive at one tick. A
     child belongs to its parent's line, and to the line of the first parent if it has two.

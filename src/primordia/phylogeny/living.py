@@ -30,7 +30,7 @@ def last_era(lives: Lives) -> Lives:
 
 @dataclass(frozen=True)
 class Census:
-    """The organisms of one world that are alive after each of T rising ticks: A pairs in all."""
+    """The living of one world after each of T rising ticks; A counts the pairs of tick and organism."""
 
     lives: Lives
     ticks: np.ndarray

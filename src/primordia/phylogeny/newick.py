@@ -20,7 +20,8 @@ from primordia.phylogeny.table import ROWS, ids
 def newick(whole: Phylogeny) -> Iterator[pa.Buffer]:
     """Yield the text of all trees, in pieces; a child's second parent is left out.
 
-    Organisms are written after their children, as `)` or `,` and `(` and then label and length.
+    Each organism is written after its children: first `)`, or `,` and `(` as needed; then label and
+    length.
     """
     lives, parent = whole.lives, whole.lives.parent_row
     order, depth = _children_first(parent)

@@ -13,7 +13,8 @@ from primordia.phylogeny.drift import Deal, deal_one_line
 from primordia.phylogeny.living import Census, Turnover
 
 LOW, HIGH = 0.05, 0.95
-"""Shares between which a line has a slope: below and above, chance alone decides."""
+"""Smallest and largest share of the living at which the slope of a line is measured: below and
+above, chance alone decides."""
 LEAST = 5
 """Smallest number of instants for a slope."""
 MOST, FEWEST = 1000, 200

@@ -25,7 +25,7 @@ class Sweep:
     fixed: int | None
     """first tick after which all of the living were its descendants; None for not yet"""
     living: int
-    """number of living after the tick `fixed`, or `half` if it has not fixed"""
+    """number of living organisms after the tick `fixed`, or after the tick `half` if `fixed` is None"""
 
     @property
     def duration(self) -> int | None:
@@ -42,8 +42,9 @@ def sweeps(lives: Lives) -> list[Sweep]:
 
     At each tick at which the youngest common ancestor of the living changes, the new one has swept.
     Its own ancestors, which are fixed at the same tick, came with it and are not counted. The last
-    sweep of the list may be under way: it is of the youngest organism whose descendants are more
-    than half of the living. Founders of a world and organisms alive at a fork do not count.
+    sweep of the list may be under way. It is then the sweep of the youngest organism whose
+    descendants are more than half of the living. Founders of a world and organisms alive at a fork
+    do not count.
     """
     era = last_era(lives)
     line = _line_of_survivors(era)

@@ -45,7 +45,7 @@ def _bytes(field: Field, cells: int) -> int:
 def shared_memory(size: int) -> tuple[BinaryIO, mmap.mmap]:
     """Return a file and its memory, which other processes can map by the file's descriptor.
 
-    The file has no name, so nothing is left when all processes have closed it, even by kill -9.
+    The file has no name, so nothing is left when all its processes have ended, even by kill -9.
     """
     in_memory = Path("/dev/shm")
     folder = in_memory if in_memory.is_dir() and os.access(in_memory, os.W_OK) else None

@@ -33,7 +33,7 @@ class Pool(ABC):
 
     @abstractmethod
     def load(self, states: list[bytes]) -> None:
-        """Restore states that `save` returned, of this pool or of another."""
+        """Restore states that the `save` of this pool, or of another pool, returned."""
 
     @abstractmethod
     def close(self) -> None:

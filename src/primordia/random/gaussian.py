@@ -1,4 +1,4 @@
-"""The standard Gaussian as a table of 65,536 quantiles, read by 16 random bits.
+"""The standard Gaussian as a table of 65,536 quantiles; 16 random bits choose one of them.
 
 The table is made on the host in float32, so it has the same bits on any device. The tails end at +-4.32
 standard deviations.

@@ -76,7 +76,7 @@ class Streams:
         return self.keys.take(self.purposes.index(purpose))
 
     def replaced(self, key: Wide, *purposes: Purpose) -> "Streams":
-        """Return the streams with one key (...) for some purposes."""
+        """Return the streams, but with this key (...) for these purposes."""
         keys = [key if each in purposes else self[each] for each in self.purposes]
         return Streams(Wide(*map(jnp.stack, zip(*keys, strict=True))), self.purposes)
 

@@ -129,7 +129,7 @@ def happened(value: Wide) -> Array:
 
 
 def to_float(value: Wide) -> Array:
-    """Return counts in two's complement as float32.
+    """Return counts as float32; they are read as signed numbers in two's complement.
 
     The product with 2^32 is exact, so only the sum rounds.
     """

@@ -26,7 +26,7 @@ def of_run(run: Records, filmed: bool = True) -> dict[str, Any]:
 
     Args:
         run: the run.
-        filmed: whether to live lives again and film them.
+        filmed: whether to repeat some lives and film them.
 
     Raises:
         InputError: nothing has lived in the run yet.

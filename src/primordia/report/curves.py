@@ -138,7 +138,7 @@ def _living(worlds: list[Lives], cells: int, time: str) -> Panel:
     ticks = series.moments(max(int(world.ended.max()) for world in worlds))
     living = series.curve_by_world(series.population, worlds, ticks)
     return panel(
-        "Organisms alive", "The number of organisms that are alive over time.", time, "organisms",
+        "Organisms alive", "The number of living organisms over time.", time, "organisms",
         [
             table(ticks, curve(f"all {cells:,} cells", np.full(len(ticks), cells), style.FAINT, "limit")),
             over_worlds("alive", ticks, living, LIVING),
@@ -180,7 +180,7 @@ def _survival(lives: Lives) -> Panel:
 
 
 def thinned(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the distinguishable points of a curve on a logarithmic axis, always with the last."""
+    """Return the points of a curve that a logarithmic axis can tell apart, and always the last point."""
     cut = np.floor(POINTS * np.log(x) / max(np.log(float(x[-1])), 1e-9))
     keep = np.flatnonzero(np.append(np.diff(cut), 1))
     return x[keep], y[keep]

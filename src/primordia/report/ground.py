@@ -25,7 +25,7 @@ from primordia.report.packed import packed
 from primordia.runs.lives import Lives
 
 WHOLE = 100_000
-"""Largest number of births of a world that is given completely."""
+"""Largest number of births with which a world is given completely."""
 SEEN = 400_000
 """Largest number of cells that are read in a larger world, over all moments."""
 MARKS = 12
@@ -40,7 +40,7 @@ class Ground:
     cells: int
     """cells of the world"""
     share: int = 1
-    """number of worlds in the page, which divide its size among them"""
+    """number of worlds in the page; each world gets an equal part of the page's size"""
 
     @cached_property
     def clades(self) -> Clades:
@@ -114,7 +114,7 @@ class Ground:
         return codes, line_inks(self.lives, self.clades, codes, size)
 
     def inks(self, codes: np.ndarray) -> np.ndarray:
-        """Return the ink of each line by its code, a place in `figures.spacetime.INKS`, int64 (n,)."""
+        """Return inks, places in `figures.spacetime.INKS`, for lines given by their codes, int64 (n,)."""
         known, inks = self._inked
         place = np.minimum(np.searchsorted(known, codes), len(known) - 1)
         found, other = inks[place], known[place] != codes

@@ -17,7 +17,8 @@ from primordia.runs.records import Records
 PART = 6.0
 """Seconds shown at each end of a long life."""
 LONGEST = {"jax": 2_000_000, "host": 100_000}
-"""Ticks of the longest life that is lived again for a page, by kind of habitat: about a minute."""
+"""Largest number of ticks of a life that is lived again for a page, by kind of habitat; living them
+again takes about a minute."""
 
 
 def films(run: Records) -> dict[str, Any]:

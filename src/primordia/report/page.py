@@ -26,7 +26,7 @@ LIVE = "live"
 
 
 def page(content: Mapping[str, Any], live: bool = False) -> str:
-    """Return the page of a content; see `content`. Equal contents give the same text.
+    """Return the page that shows this content; see `content`. Equal contents give the same text.
 
     Args:
         content: JSON values, with a `title`.

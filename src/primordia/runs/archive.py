@@ -57,7 +57,7 @@ class Archive(Records):
 
     @property
     def paths(self) -> tuple[Path, ...]:
-        """The run's directory, as the only one."""
+        """One path: the run's directory."""
         return (self.path,)
 
     def parts(self) -> "Iterator[Archive]":
@@ -66,7 +66,7 @@ class Archive(Records):
 
     @cached_property
     def description(self) -> Description:
-        """The description of the run's parts from its beginning."""
+        """The description of the run's parts, written when the run began."""
         about = description.read(self.path)
         rates = {*rates_of(self.config), *rates_of(Metabolism(), "metabolism.")}
         if not rates <= set(about.beginning):

@@ -172,7 +172,7 @@ class _Joined(Mapping[str, np.ndarray]):
         self._kept, self._count = np.zeros(len(runs), bool), sum(run.config.seeds for run in runs)
 
     def keep(self, number: int) -> None:
-        """Copy the arrays of worlds of a run, given by its index in the arm."""
+        """Copy the arrays of the worlds of one run; `number` is the run's index in the arm."""
         if self._kept[number]:
             return
         stored, first = self._of(self._runs[number]), self._firsts[number]

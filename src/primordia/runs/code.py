@@ -76,7 +76,8 @@ def admit(run: Path, code: Sources) -> None:
     """Allow the code of a run to be imported.
 
     Raises:
-        InputError: the user has not trusted the code yet, or other modules with its names are imported.
+        InputError: the user has not trusted the code yet, or the process has imported another
+            module of the same name.
     """
     if not own_code.is_loaded(code) and not _is_trusted(code):
         names = ", ".join(str(source.file) for source in code.values())

@@ -83,7 +83,8 @@ def _remove_unbegun(run: Path, check: Callable[[], None]) -> None:
 
 
 def clear_unbegun(run: Path) -> bool:
-    """Remove the files of a killed start. Return whether the directory holds no run.
+    """Remove the files of a process that was killed while it started a run. Return whether the
+    directory holds no run.
 
     Raises:
         InputError: another process is starting a run in the directory.
@@ -220,7 +221,7 @@ def locked(run: Path) -> Iterator[None]:
 
 
 def is_written(run: Path) -> bool:
-    """Return whether a process holds the run's lock, without writing or refusing a writer."""
+    """Return whether a process holds the run's lock; this check writes nothing and refuses no writer."""
     try:
         handle = os.open(run / LOCK, os.O_RDONLY)
     except OSError:

@@ -31,7 +31,8 @@ from primordia.settings.tables import from_toml, merged
 HARMLESS = {"stop", "fork", "about", "sample_every"}
 """Settings that do not change the course of a world."""
 OF_ANY_LENGTH = "bodies.states"
-"""The array whose rows have the length of its longest state (`habitats.states`)."""
+"""The array of saved states; all its rows are as long as the longest of these states
+(`habitats.states`)."""
 OF_MUTATION = (".notes", ".moments.")
 """Parts of the names of arrays that begin empty if the kind of mutation changes."""
 RENEWED = (*OF_MUTATION, ".looks.", ".climate.")

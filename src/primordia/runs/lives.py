@@ -103,7 +103,7 @@ class Lives:
     def late(self, after: float = LATE) -> np.ndarray:
         """Return whether each life began late, bool (L,).
 
-        Late are the births of a world that come after a share `after` of all its births. Organisms
+        The late births of a world are those that come after a share `after` of all its births. Organisms
         that were alive at a fork were born before the fork, so they are not late and do not count.
         """
         own = self.entered == 0

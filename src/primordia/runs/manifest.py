@@ -66,7 +66,7 @@ class Progress(Part):
     """The progress of a whole run."""
 
     limits: Stop
-    """the last requested ticks, births and until"""
+    """the limits that were requested last: `ticks`, `births` and `until`"""
     wall_s: float = Field(ge=0, allow_inf_nan=False)
     """seconds spent so far"""
     exact: bool
@@ -75,7 +75,7 @@ class Progress(Part):
     """number of resumes at which the living got new bodies, since the habitat cannot save them"""
 
     def gone_on(self, exact: bool) -> "Progress":
-        """Return the progress of a resumed run, with its old bodies or with bodies as at birth."""
+        """Return the progress of a resumed run; unless `exact`, the living have got new bodies."""
         return self.model_copy(update={"restarts": self.restarts + (not exact)})
 
 

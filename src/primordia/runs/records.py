@@ -45,7 +45,7 @@ class Records(ABC):
     @property
     @abstractmethod
     def description(self) -> Description:
-        """The description of the parts from the beginning of the run."""
+        """The description of the run's parts, written when the run began."""
 
     @property
     @abstractmethod
@@ -126,7 +126,7 @@ class Records(ABC):
 
     @cached_property
     def count(self) -> Callable[[str], np.ndarray]:
-        """Return numbers of 64 bits in the state by their name, as uint64; each is read once."""
+        """Return the 64-bit numbers of this name in the state, as uint64; each array is read once."""
         return cache(partial(read_count, self.state))
 
     @cached_property

@@ -44,7 +44,7 @@ class Schema:
         return cls(cells, about.mates, about.notes, tuple(about.beginning), about.tallies)
 
     def columns(self, table: str) -> Columns:
-        """Return the columns of a table's rows in the form of the law and the tallies."""
+        """Return the columns of a table, as the law and the tallies pack them into words."""
         if table == "births":
             return birth_columns(self.mates, self.notes)
         if table == "deaths":

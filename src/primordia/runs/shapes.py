@@ -21,7 +21,7 @@ COUNTS = (
     *("seed", "tick", "births", "extinctions", "organism_ticks", "food"),
     *("saturated", "saturated_births", "fixed", "fixed_births"),
 )
-"""Numbers of 64 bits of each world."""
+"""Names of the 64-bit values of each world."""
 BODIES = "bodies"
 """Prefix of the names of a habitat's arrays, which have a row for each cell."""
 
@@ -38,10 +38,10 @@ class Expected:
         self._tally: Kind = "int32", (self._cells, len(about.tallies))
 
     def fault(self, arrays: Mapping[str, np.ndarray]) -> str | None:
-        """Return a fault: an array is missing or unknown, or a number of a world is impossible.
+        """Return a fault: an array is missing or unknown, or a count of a world is impossible.
         Return None without a fault.
 
-        Only the numbers of worlds are read; `fault_of` checks every other array when it is read.
+        Only the counts of each world are read; `fault_of` checks every other array when it is read.
         """
         for name in self._kinds:
             if name not in arrays:
@@ -73,7 +73,7 @@ class Expected:
         words = self._schema.columns(table).unpacked(tail)
         for name, limit in most[table].items():
             if (words[name] >= limit).any():
-                return f"tail.{table} has a {name} that does not exist"
+                return f"tail.{table} names a {name} that does not exist"
         return None
 
 

@@ -14,7 +14,7 @@ LEAST, MOST = 0.001, 0.5
 WIDTH = 100
 """Width of comments, in characters."""
 DEFAULT = "gym"
-"""The door of an environment's name without a door."""
+"""The door that is used if an environment's name does not begin with a door."""
 
 
 def is_door(task: str) -> bool:
@@ -37,7 +37,7 @@ def values(task: str) -> dict[str, Any]:
 
 
 def replication(lifespan: float) -> float:
-    """Return a probability of replication in a tick, for a mean life of random actions in ticks.
+    """Return a probability of replication in a tick, from the mean lifespan in ticks with random actions.
 
     An organism replicates about once in such a life, since the paper makes the probability "loosely
     proportional to the average lifespan of the initial organisms".

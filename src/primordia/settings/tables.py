@@ -117,7 +117,7 @@ def _is_dotted(text: str) -> bool:
 
 
 def with_full_paths(folder: Path, values: dict[str, Any]) -> dict[str, Any]:
-    """Return values with full paths of the habitat's files that are in the folder."""
+    """Return values in which each of the habitat's files that is in the folder has its full path."""
     habitat = values.get("habitat")
     if not isinstance(habitat, dict):
         return values

@@ -14,7 +14,7 @@ SHOWN = 100
 
 
 def check_values(values: Any, path: str = "", depth: int = 0) -> None:
-    """Check the values of settings in nested tables, without their meaning.
+    """Check the values of settings in nested tables, but not what they mean.
 
     Args:
         values: a value, or a table or list of values.

@@ -1,4 +1,4 @@
-"""Lives to compare: equal words and actions beside other bodies, with pauses, or in other cells."""
+"""Lives to compare: they have equal words and actions, but other neighbours, pauses or other cells."""
 
 import copy
 from collections.abc import Iterator
@@ -82,7 +82,7 @@ class Lives:
         return self._played(np.arange(ALL)[::-1][:count])
 
     def interrupted(self) -> list[Past]:
-        """Play with a rest of three ticks for every other body."""
+        """Play with a rest of three ticks for every second body."""
         with self.opened(np.arange(ALL), ALL) as stage:
             stage.bear()
             for tick in range(TICKS + 3):
@@ -133,7 +133,7 @@ class Lives:
             )
 
     def compare(self, expected: list[Past], found: list[Past], says: str) -> None:
-        """Raise ContractError if a life differs from the expected one, up to the shorter end."""
+        """Raise ContractError if a life differs from the expected one before the shorter of them ends."""
         for body, (one, other) in enumerate(zip(expected, found, strict=True)):
             for age, (a, b) in enumerate(zip(one, other, strict=False)):
                 pairs = zip(a, b, strict=False)

@@ -104,7 +104,7 @@ def _stated(mutation: Mutation, layout: Layout) -> None:
     need(
         not mutation.governed("no-such-setting", layout),
         mutation,
-        "takes a season of a setting that it does not have; return [] from `governed`",
+        "accepts a season of a setting that the mutation does not have; return [] from `governed`",
     )
 
 

@@ -42,7 +42,7 @@ class Reader:
         """Prepare to read; all worlds belong to the group."""
         self._group = group
         self._given: dict[str, int] = {}
-        """last tick of each world whose row was given"""
+        """for each world, the tick of the last row that was given"""
         self._seen: dict[Path, Version] = {}
         """newest checkpoint of each run when it was last read"""
         self._fault_in = cache(files.fault_in)

@@ -1,4 +1,4 @@
-"""Metrics of runs, written for dashboards by a reader beside them.
+"""Metrics of runs, written for dashboards by a separate process that reads the runs.
 
 Runs are read from their files, at their newest checkpoints. The process of a run is not disturbed,
 and no code of a run is executed.

@@ -152,7 +152,7 @@ class Atari(HostHabitat, Settings):
 
     @property
     def tallies(self) -> tuple[str, ...]:
-        """Names of the counts that are kept for people."""
+        """Names of the counts that are kept only for people to read."""
         return "score", "kills", "lives"
 
     @property

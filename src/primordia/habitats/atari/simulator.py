@@ -120,7 +120,8 @@ class Arcade:
     def step(self, cells: list[int]) -> None:
         """Emulate the frames of one tick; points are summed over these frames.
 
-        Rows are read and written for all cells at once; one by one, this would take a fifth of the time.
+        Rows are read and written for all cells at once; one by one, this work would take up a fifth
+        of the total time.
         """
         arrays, plain = self._arrays, self._skip == 1 and not self._sticky
         points, lives, over = [], [], []

@@ -1,8 +1,9 @@
 """Any Gymnasium environment as a habitat (Towers et al. 2024; extra `primordia[gymnasium]`).
 
-Settings define death, food and effort by expressions of the observation, reward, ends and `info`. The
-environment's own time limit is off. Every birth resets an environment with a different seed, the
-birth's random word. Environments run in worker processes, or in this process.
+Settings define death, food and effort by expressions of the observation, the reward, `terminated`,
+`truncated` and `info`. The environment's own time limit is off. Every birth resets an environment
+with a different seed, the birth's random word. Environments run in worker processes, or in this
+process.
 """
 
 from functools import cached_property
@@ -189,7 +190,7 @@ class Gymnasium(HostHabitat, Settings):
             )
 
     def original(self) -> "Gymnasium":
-        """Return the game that the benchmark scores: food is the reward, and its ends are fatal."""
+        """Return the game that the benchmark scores: the reward is food, and a game's end is fatal."""
         own = {
             "fatal": "terminated or truncated",
             "food": "reward",

@@ -142,7 +142,7 @@ def screen_shape(env: str, options: Mapping[str, Any], imports: Sequence[str]) -
 
 
 def check_food(env: str, options: Mapping[str, Any], imports: Sequence[str], function: str) -> None:
-    """Call a function that measures food once.
+    """Call, a single time, a function that measures food.
 
     Raises:
         ValueError: there is no such function, or the function returns no number.

@@ -76,7 +76,7 @@ class Environments:
         self._lives[cell] = _Life(env)
 
     def reset(self, cell: int) -> None:
-        """Begin a new life. If the environment fails, its fault counts in the first tick."""
+        """Begin a new life. If the environment fails here, the first tick reports the fault."""
         with quiet():
             self._begin(cell, int(self._arrays["seed"][cell]) >> 1)
 

@@ -37,7 +37,7 @@ class Leaf(NamedTuple):
 
     @property
     def first(self) -> Any:
-        """The smallest value of each choice; a row counts choices from 0. For other parts, 0."""
+        """The space's number of its first choice, which a row counts as 0. For other parts, 0."""
         return self.space.start if isinstance(self.space, spaces.Discrete | MultiDiscrete) else 0
 
 

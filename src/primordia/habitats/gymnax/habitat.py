@@ -1,7 +1,8 @@
 """Any environment with the interface of gymnax as a habitat, fused with the law.
 
-The key of a tick is made of the words of the body's birth and its age, so a life depends on nothing
-else. The environment never resets itself. Its time limit ends no life unless `time_limit` is true.
+The random key of a tick is made from the body's age and the random words of its birth, so a life
+has no other source of chance. The environment never resets itself. Its time limit ends no life
+unless `time_limit` is true.
 """
 
 import json
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
 class Body(NamedTuple):
     """Bodies: the environment's states, their senses, the words of their births, and their ages.
 
-    Ages stay zero if the environment draws nothing after a birth.
+    Ages stay zero if the environment draws no random numbers after a birth.
     """
 
     packed: Packed
@@ -120,7 +121,7 @@ class Gymnax(JaxHabitat, Settings):
         return self._actions.kind
 
     def original(self) -> "Gymnax":
-        """Return the environment as the benchmark scores it: food is the reward, with its time limit."""
+        """Return the environment as the benchmark scores it: the reward is food, the time limit holds."""
         changed = {"time_limit": True, "fatal": "done", "food": "reward"}
         return Gymnax(**{**self.model_dump(), **changed})
 

@@ -40,7 +40,7 @@ class Bodies:
             self._tracked["com"] = bind("subtree_com")[:, 0, :2]
         stages = package().mjtStage
         self._stage = stages.mjSTAGE_POS if wanted & DERIVED else stages.mjSTAGE_NONE
-        """The derived quantities that MuJoCo computes after a step: positions if observed, otherwise none"""
+        """derived quantities that MuJoCo computes after a step: positions if observed, else none"""
 
     def step(self, alive: np.ndarray, substeps: int) -> np.ndarray:
         """Step the bodies of the living, and return those whose simulation failed, bool (N,)."""

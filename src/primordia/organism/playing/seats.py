@@ -28,7 +28,7 @@ class Frozen(NamedTuple):
     senses: np.ndarray
     """bool (N, S)"""
     memory: np.ndarray
-    """bool (N, 1): the memory, which is all zeros at the start"""
+    """bool (N, 1): whether the memory is frozen; a frozen memory stays all zeros, as at the start"""
 
     def take(self, index: Any) -> "Frozen":
         """Return the rows at an index."""

@@ -15,7 +15,7 @@ Value: TypeAlias = int | float | str | None
 ALIVE = "alive"
 """The word in place of a cause of death."""
 OWN = tuple(f"world.organisms.{name}" for name in ("memory", "energy", "eaten"))
-"""The names of an organism's arrays in a state that change in its life."""
+"""The names, in a state, of those arrays of an organism that change during its life."""
 BODIES, SENSES, COUNTS = "bodies", ("bodies.senses",), "bodies.tally"
 """Prefix of the names of a body's arrays in a state, and names of a host body's senses and counts."""
 

@@ -16,7 +16,8 @@ class Instant(NamedTuple):
     memory: Array
     vitals: Vitals
     bodies: Bodies
-    """the body; for a habitat on the host, which holds the body itself, the senses"""
+    """the body; or the senses, if the habitat is on the host, since such a habitat holds the body
+    itself"""
 
 
 class Stretch(NamedTuple):

@@ -73,8 +73,9 @@ class RelivedLife:
             run: the organism's run.
             organism: birth number.
             world: the organism's world.
-            stored: arrays of a checkpoint of the run in which the organism is alive, to begin there. By
-                default the life begins with the birth, or with the fork if the organism is older.
+            stored: arrays of one of the run's checkpoints, in which the organism is alive; the life
+                begins there. By default the life begins with the birth, or with the fork if the
+                organism is older.
 
         Raises:
             InputError: no such organism was born, or its life cannot be lived again.
