@@ -60,7 +60,7 @@ class Genealogy:
         return int(common[-1]) if self.living and len(common) else None
 
     def trunk(self) -> np.ndarray:
-        """Return the rows of a line: the largest root, and always the child with the largest living family."""
+        """Return the rows of the line that goes from the largest root always to the largest family."""
         if not len(self.rows):
             return np.zeros(0, np.int64)
         order = np.lexsort((self.size, self.parent))
