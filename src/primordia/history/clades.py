@@ -18,7 +18,7 @@ class Clades:
     birth_line: np.ndarray
     """line that each organism was born into, int64 (L,)"""
     renewals: np.ndarray
-    """ticks after which each of the living began a line, int64 (K,), in ascending order"""
+    """ticks after which every living organism began a new line, int64 (K,), in ascending order"""
     by_takeover: np.ndarray
     """whether the reason for a renewal was the takeover of one line, bool (K,)"""
 

@@ -48,7 +48,7 @@ class Lines:
         self.takeovers: list[int] = []
         """ticks after which only one line was left"""
         self.renewals: list[int] = []
-        """ticks after which each of the living began a line, takeovers included"""
+        """ticks after which every living organism began a new line, takeovers included"""
         self._size = dict.fromkeys(living, 1)
         self._crowd, self._young = crowd, len(living) < crowd
 

@@ -65,8 +65,8 @@ class Law:
         return tuple(name for name, _ in self.beginning)
 
     def governed(self, setting: str) -> list[str]:
-        """Return the names among `rates` that a season of a setting changes; [] for an unknown
-        setting."""
+        """Return the names among `rates` whose values change if a season changes a setting; [] for
+        an unknown setting."""
         part, _, name_in_part = setting.partition(".")
         if part == "mutation":
             names = self.heredity.mutation.governed(name_in_part, self.heredity.layout)

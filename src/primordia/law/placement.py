@@ -26,8 +26,8 @@ OFFSETS = {
 }
 
 Draw = Callable[[Array], Wide]
-"""A function of the number of a round in one tick's placement; it returns two random words for
-every cell, (W, N)."""
+"""A function of a round's number (a tick has several rounds of placement); it returns two random words
+for every cell, (W, N)."""
 
 
 class Placement(Settings):

@@ -108,8 +108,8 @@ class Mutation(Settings, ABC):
         return rates_of(self)
 
     def governed(self, setting: str, layout: Layout) -> list[str]:
-        """Return the names among `rates` that a season of a setting changes; [] for an unknown
-        setting."""
+        """Return the names among `rates` whose values change if a season changes a setting; [] for
+        an unknown setting."""
         return [setting] if setting in self.rates(layout) else []
 
     def check(self, layout: Layout) -> None:

@@ -88,7 +88,7 @@ class Times:
     back: np.ndarray
     """int64 (K,), rising"""
     share: np.ndarray
-    """share of pairs whose common ancestor is at most `back` ticks back, float64 (K,), rising"""
+    """share of pairs whose common ancestor lived at most `back` ticks ago, float64 (K,), rising"""
 
     @property
     def median(self) -> float | None:

@@ -67,7 +67,7 @@ class Deal(NamedTuple):
         )
 
     def replicates(self, lines: int, fewest: int, most: int) -> int:
-        """Return the number of shadows of each line, if `lines` lines are drawn one by one."""
+        """Return the number of shadows of each line, for a number of lines that are drawn one by one."""
         return int(np.clip(DRAWS // max(self.places[-1] * lines, 1), fewest, most))
 
     @property

@@ -77,8 +77,8 @@ def of_shadows(census: Census, turnover: Turnover, counts: np.ndarray, seed: int
 
     The shadow of a line begins at the first instant at which the line's share is between LOW and
     HIGH. At this instant shadow and line have the same number of living. Then the shadow drifts.
-    The line's past has no effect on later drift, so without selection the line's slope is like one
-    more of its shadows' slopes.
+    The line's past has no effect on later drift, so without selection the line's slope has
+    the same distribution as the slopes of its shadows.
 
     Args:
         census: the living of one world at T instants.
