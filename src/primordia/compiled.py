@@ -20,8 +20,7 @@ def shared(function: Callable, *fixed: Any, donate: tuple[int, ...] = ()) -> Cal
     Args:
         function: a pure function of a module or a class.
         fixed: the function's first arguments, which never change.
-        donate: positions, among the other arguments, of those whose memory a call may reuse; see
-            `donate_argnums`.
+        donate: arguments whose memory a call may reuse, by position after `fixed`; see `donate_argnums`.
     """
     try:
         hash(fixed)

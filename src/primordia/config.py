@@ -306,7 +306,7 @@ def _check(config: Config) -> None:
     config.placement.shape(config.cells)
     if config.seed + config.seeds > 2**64:
         raise InputError(
-            "seed + seeds: seeds must be below 2^64; lower seed, or the number of seeds"
+            "seed + seeds: seeds must be below 2^64; choose a lower seed or fewer seeds"
         )
     if config.cells * config.seeds > 2**26:
         raise InputError(

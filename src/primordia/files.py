@@ -98,7 +98,7 @@ def check_output(path: Path) -> None:
 
 
 def own_folder(path: Path) -> None:
-    """Make a folder of a run, unless it exists. A link is refused, since it leads out of the run.
+    """Make a folder of a run, unless it exists. A link is refused, since it may lead out of the run.
 
     Raises:
         InputError: the path exists and is not a folder.

@@ -1,9 +1,9 @@
 """A user's own code: modules of habitats, brains and mutations outside installed packages.
 
 The code is found on `sys.path`, in the current folder, or in the copy that a run holds. An import
-uses the bytes that were read when the code was found. Later changes of a file and caches of
-compiled code are not used. Installed modules have precedence, so a file `numpy.py` in the current
-folder is never imported.
+uses the bytes that were read when the code was found. Later changes to a file have no effect, and
+caches of compiled code are not used. Installed modules have precedence, so a file `numpy.py` in the
+current folder is never imported.
 """
 
 import ast

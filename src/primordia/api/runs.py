@@ -156,7 +156,7 @@ class Run:
         return ancestors(run, oldest.id, oldest.world, say)
 
     def lines(self, world: int | None = None, at: int | None = None) -> list[WorldLines]:
-        """Measure evolution in lines, in one world or in all; see `phylogeny.lines`."""
+        """Measure how lines replace each other, in one world or in all; see `phylogeny.lines`."""
         return lines(self.opened(), world, at)
 
     def policy(self) -> Policy:

@@ -51,7 +51,7 @@ class Competition:
 
     @property
     def won(self) -> tuple[int, int]:
-        """Numbers of worlds whose `late_share` is above one half, and below: `one` won, `other` won."""
+        """Numbers of worlds that `one` won (`late_share` above one half) and that `other` won (below)."""
         late = self.late_share
         return int((late > 0.5).sum()), int((late < 0.5).sum())
 

@@ -81,7 +81,7 @@ def effects(
     games: int = GAMES,
     ticks: int = TICKS,
 ) -> list[Effect]:
-    """Let mutants of each subject live, made by the run's own mutation and by other mutations.
+    """Make mutants of each subject by the run's own mutation and by others, and let the mutants live.
 
     Args:
         subjects: the parents.

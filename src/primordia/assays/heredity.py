@@ -1,6 +1,6 @@
 """Heredity of lifespan: the regression of offspring on parents, and the Price equation.
 
-Lifespans are compared as natural logarithms, since they differ by factors. The slope of the
+Lifespans are compared as natural logarithms, since their ratios matter. The slope of the
 offspring's lifespan on the parent's is the realised heritability if organisms have one parent
 (Falconer & Mackay 1996, ch. 10). The Price equation (Price 1970) divides the change from parents to
 offspring into two terms. Selection: the long-lived have more children. Transmission: children

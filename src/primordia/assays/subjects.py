@@ -158,7 +158,7 @@ def of_task(
 
 
 def founders(chosen: Config, count: int) -> np.ndarray:
-    """Return genomes of founders as the mutation of a task makes them, float32 (count, P)."""
+    """Return genomes of founders, drawn by the task's mutation class, float32 (count, P)."""
     heredity = chosen.build_heredity(chosen.build_layout(chosen.build_habitat()))
     seed = stream(wide(np.full(count, chosen.seed)), Purpose.CONTROL, wide([0]))
     draws = Draws(streams(seed, wide([0]), *PURPOSES), jnp.arange(count, dtype=jnp.int32))

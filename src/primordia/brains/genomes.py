@@ -18,7 +18,7 @@ from primordia.errors import InputError
 FOUNDERS = "founders.safetensors"
 """The file in a run's directory that keeps its ancestors."""
 MOST_ANCESTORS = 2**16
-"""The largest number of ancestors of a run; 32-bit arithmetic chooses a founder's ancestor."""
+"""The largest number of ancestors among which 32-bit arithmetic can choose one for a founder."""
 
 
 def write(path: Path, layout: Layout, genomes: np.ndarray, about: dict[str, str]) -> None:

@@ -17,7 +17,7 @@ def main() -> None:
 
 
 def open_streams() -> None:
-    """Connect closed standard streams to the null device; else the next opened file takes their place."""
+    """Connect closed standard streams to the null device, so that no opened file takes their place."""
     while (nowhere := os.open(os.devnull, os.O_RDWR)) <= 2:
         os.set_inheritable(nowhere, True)  # worker processes have the same streams
     os.close(nowhere)

@@ -18,7 +18,7 @@ from primordia.live.panel import duration, with_prefix
 from primordia.live.terminal import show_cursor
 
 SHARE = 0.02
-"""Largest share of the time that the display takes."""
+"""The display takes at most this share of the time."""
 SHOWN = 12
 """Largest number of running jobs that are listed."""
 
@@ -54,7 +54,7 @@ class Clock:
         return time.perf_counter() - self._began
 
     def left(self, status: CampaignStatus) -> float | None:
-        """Return the seconds until all jobs are done, from the jobs done so far or under way."""
+        """Estimate, from the jobs done so far or under way, the seconds until all jobs are done."""
         done = status.jobs["done"]
         if self._done < 0:
             self._done = done

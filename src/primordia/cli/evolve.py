@@ -107,7 +107,7 @@ def resume(run: Path, quiet: bool, speed: float | None, trust: bool, **options: 
 
 @click.command(
     cls=SettingsCommand,
-    short_help="Begin a new run from a tick of another, with a new seed or settings.",
+    short_help="Begin a new run from a tick of another run, with a new seed or settings.",
 )
 @run_argument
 @click.option("--at", type=int, required=True, metavar="TICK", help="Begin after this tick of RUN.")

@@ -17,7 +17,7 @@ from primordia.cli.flags import run_argument, trust_option, video_option
     "--by",
     type=click.Choice(["births", "ticks"]),
     default="births",
-    help="Time of the film: each picture is some number of births, or ticks, after the last [births].",
+    help="Equally many births, or ticks, pass from each picture to the next [births].",
 )
 @click.option("--from", "begin", type=int, metavar="TICK", help="First tick shown.")
 @click.option("--to", "end", type=int, metavar="TICK", help="Last tick shown.")

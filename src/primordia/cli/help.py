@@ -19,7 +19,7 @@ def setting_rows(task: str | None, given: dict[str, Any]) -> list[tuple[str, str
 
     Args:
         task: name of a task or a file; None for the defaults, without a habitat.
-        given: settings by flags; if they name another brain, that brain's settings are shown.
+        given: settings given as flags; if these name another brain, that brain's settings are shown.
     """
     values = merged(values_of(task) if task else {}, given)
     fields: dict[str, Any] = {}

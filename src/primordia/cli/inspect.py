@@ -1,4 +1,4 @@
-"""Commands that only read run directories, and `tasks`."""
+"""Commands that only read run directories, and the command `tasks`."""
 
 import json
 from pathlib import Path
@@ -95,7 +95,7 @@ def replay(
     click.echo(chosen_organism(run, **chosen).replay(out, (begin, end), beside))
 
 
-@click.command(short_help="Write genomes to a file that runs can start from, or a brain as ONNX.")
+@click.command(short_help="Write genomes to a file for new runs, or write a brain as ONNX.")
 @run_argument
 @click.option(
     "--organism", "organisms", type=int, multiple=True, help="Birth number; may be repeated."
@@ -189,7 +189,7 @@ def tasks() -> None:
 def compare(runs: tuple[str, ...], out: Path, as_json: bool, **horizons: int | None) -> None:
     """Compare runs of one task: how soon worlds saturate, how long organisms live.
 
-    The first run is the reference of all others. The sample size is the number of worlds. So each
+    All other runs are compared with the first run. The sample size is the number of worlds. So each
     run needs many worlds (--seeds), or several runs must be joined in an arm: 'heredity=runs/h*'
     'none=runs/n*'.
     """

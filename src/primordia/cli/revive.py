@@ -74,7 +74,7 @@ def revive(
     if not found.agrees:
         names = ", ".join(each.name for each in found.respects if not each.agrees)
         raise Trouble(
-            f"organism {organism} of world {world} lived again differs from its record in: {names}"
+            f"organism {organism} of world {world}, lived again, differs from its record in: {names}"
         )
 
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from primordia.comparison.shadow import Shadow
 
 
-@click.command(short_help="Compare organisms with an unselected pedigree.")
+@click.command(short_help="Compare organisms to unselected ones of the same pedigree.")
 @runs_argument
 @click.option(
     "--organisms",

@@ -35,7 +35,7 @@ from primordia.cli.streams import report
 def track(
     runs: tuple[Path, ...], tensorboard: Path | None, wandb: Path | None, **options: Any
 ) -> None:
-    """Write the metrics of a run, several runs as one arm, or an experiment for dashboards.
+    """Write, for dashboards, the metrics of a run, of several runs as one arm, or of an experiment.
 
     Each column of the table `metrics` becomes a series over ticks. Each world becomes a run of the
     dashboard, such as seed-3. The command reads the newest checkpoint and does not disturb the RUN.

@@ -34,8 +34,9 @@ class Contrast:
     coverage: float
     """share of resamples in `interval`: 0.95 for one contrast, more for several simultaneous ones"""
     interval: Bounds | None
-    """interval of the ratio: in a share `coverage` of the resamples of worlds or pairs, both bounds
-    of the ratio are inside it; None if one of the runs has too few worlds, see `resample.least`"""
+    """interval of the ratio: it holds both bounds of the ratio in a share `coverage` of the
+    resamples of worlds or pairs; None if one of the runs has too few worlds, see
+    `resample.least`"""
     worlds: int
     """number of worlds of the smaller run"""
 

@@ -39,12 +39,12 @@ class Standing:
 
     name: str
     chosen_from: int
-    """number of organisms among which one was chosen, in the world with the most; 1 if none was chosen"""
+    """largest number of organisms in a world from which one was chosen; 1 if there was no choice"""
     evaluations: list[Evaluation]
 
     def by_world(self, outcome: str) -> dict[int, float]:
-        """Return an outcome's median for each world, by the world's number: the median over
-        organisms of each one's median over games. The dict is empty if there is no such outcome.
+        """Return an outcome's value for each world, by the world's number. It is the median over
+        organisms of their medians over games. The dict is empty if there is no such outcome.
 
         Args:
             outcome: `lifespan`, or `score` or `length` of the whole game.

@@ -47,6 +47,6 @@ def same_seeds(run: np.ndarray, reference: np.ndarray) -> Rows | None:
 
 
 def paired(run: Measured, reference: Measured) -> Paired:
-    """Count pairs in which the run's value is larger, and smaller; row k of both is pair k."""
+    """Count pairs with a larger and with a smaller value of `run`; pair k is row k of each argument."""
     larger, smaller = run.value > reference.high, reference.value > run.high
     return Paired(len(run.value), int(larger.sum()), int(smaller.sum()))

@@ -54,8 +54,7 @@ class Shadow:
 
     @property
     def longer(self) -> tuple[int, int]:
-        """Numbers of worlds in which the originals live longer, and shorter, than the shadows on
-        average."""
+        """Numbers of worlds in which originals live longer than shadows on average, and shorter."""
         original, shadow = self.means
         return int((original > shadow).sum()), int((original < shadow).sum())
 

@@ -42,7 +42,7 @@ def comparison_tables(compared: Comparison) -> str:
 
 
 def quartiles_text(arm: ComparedArm, outcome: str) -> str:
-    """Return the median, and the quartiles in brackets if they differ, as text."""
+    """Return the median as text, with the quartiles in brackets if these two are not equal."""
     quartiles = (bounds_text(arm.measured[outcome].quantile(q)) for q in (0.25, 0.5, 0.75))
     q1, median, q3 = quartiles
     return f"{median} ({q1} to {q3})" if q1 != q3 else median
@@ -61,7 +61,9 @@ def effect_text(against: Contrast, outcome: str) -> str:
     """Return delta with its word and direction as text."""
     smaller, larger = DIRECTIONS[outcome]
     direction = f" {larger if against.delta > 0 else smaller}" if against.delta else ""
-    known = f"; order known of {int(100 * against.decided)} %" if against.decided < 1 else ""
+    known = (
+        f"; order known in {int(100 * against.decided)} % of pairs" if against.decided < 1 else ""
+    )
     word = f" {against.word}" if against.word else ""
     return f"{against.delta:+.2f}{word}{direction}{known}"
 
@@ -151,7 +153,7 @@ def _ratio_title(against: list[Contrast]) -> str:
 
 
 def evidence_notes(compared: Comparison) -> list[str]:
-    """Return notes on how to read pairs, intervals and needed worlds, if the tables have any."""
+    """Return notes that explain pairs, intervals and counts of needed worlds, if the tables have them."""
     against = [compared.contrast(arm, "births") for arm in compared.arms[1:]]
     notes = []
     if any(each.paired for each in against):

@@ -17,7 +17,7 @@ from primordia.law.genesis import begin
 from primordia.law.law import Law
 
 MEMINFO, CGROUP = Path("/proc/meminfo"), Path("/sys/fs/cgroup/memory.max")
-"""The file in which Linux tells the available memory, and the file with a container's memory limit."""
+"""The file in which Linux shows the available memory, and the file with a container's memory limit."""
 
 
 def check(law: Law, habitat: AnyHabitat, devices: list[jax.Device]) -> None:
@@ -33,7 +33,7 @@ def check(law: Law, habitat: AnyHabitat, devices: list[jax.Device]) -> None:
 
 
 def bytes_needed(law: Law, habitat: AnyHabitat, devices: int = 1) -> int:
-    """Return the bytes of worlds, lists of events and bodies (on the host: senses), on all devices."""
+    """Return the bytes that worlds, event lists and bodies (on the host: senses) need on all devices."""
     law = replace(law, worlds=law.worlds // devices)
     cells = law.worlds * law.cells
 

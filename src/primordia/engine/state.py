@@ -23,7 +23,7 @@ Tree = TypeVar("Tree")
 
 
 class Limits(NamedTuple):
-    """The limits at which each world stops, Wide (W,); `wide.never` is no limit."""
+    """The limits at which each world stops, Wide (W,); `wide.never` means no limit."""
 
     ticks: Wide
     births: Wide

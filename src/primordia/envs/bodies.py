@@ -1,4 +1,4 @@
-"""Bodies of a task without brains: a policy acts in them, and they live and die by the law."""
+"""A task's bodies, without brains: a policy acts in them, and they live and die by the law."""
 
 from typing import Any, NamedTuple
 
@@ -21,7 +21,7 @@ from primordia.random.wide import wide
 
 
 class Births(NamedTuple):
-    """The births that determine the bodies of K organisms, as in a run: each int (K,)."""
+    """Seed, tick and cell of K births, which fix the bodies as in a run: int (K,) each."""
 
     seeds: np.ndarray
     """seed of the world"""

@@ -13,7 +13,7 @@ from primordia.habitats.contract import Compound
 
 
 class LifeVectorEnv(VectorEnv):
-    """N lives in one of Primordia's tasks, with the same numbers as N environments `LifeEnv`.
+    """N lives in one of Primordia's tasks; all values equal those of N `LifeEnv` environments.
 
     Life number n of body i is determined by n and the body's seed. See `LifeEnv` for
     observations and `info`.

@@ -87,7 +87,7 @@ class Campaign:
     def info(self) -> dict[str, Any]:
         """Return the question, the number of jobs in each state, and the worlds of each arm.
 
-        The settings of an arm are those in which the arms differ.
+        For each arm, only settings in which the arms differ are returned.
         """
         settings = differing([arm.config for arm in self.plan.arms])
         arms = [

@@ -21,7 +21,7 @@ def place_for(
 
     Args:
         out: the experiment's directory.
-        left: number of jobs.
+        left: number of jobs still to run.
         jobs: number of jobs that run at once on this machine; None: one for each core, or a single
             job on `gpu`, where each job takes all GPUs.
         ray: address of a Ray cluster; "": this machine's cluster, or a new cluster; None: the jobs

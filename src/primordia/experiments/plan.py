@@ -24,7 +24,7 @@ from primordia.settings.fields import first_fault
 from primordia.settings.tables import flat, from_toml
 
 RESERVED = {"jobs", "figures"}
-"""Names of folders that no arm can have."""
+"""Folder names that no arm can have."""
 LARGEST = 100_000
 """Largest number of jobs of an experiment."""
 

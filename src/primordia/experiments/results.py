@@ -71,7 +71,7 @@ def write(stem: Path, question: str, arms: Sequence[Records]) -> list[Path]:
 
 
 def counts(arm: Records) -> dict[str, np.ndarray]:
-    """Return the numbers of each world of an arm, each (W,); NEVER if a world is not saturated."""
+    """Return seeds and counts of an arm's worlds, each (W,); NEVER for saturation not yet reached."""
 
     def counted(name: str) -> np.ndarray:
         return arm.count(f"world.worlds.{name}")

@@ -82,8 +82,7 @@ def picture(lives: Lives, clades: Clades, cells: np.ndarray, ticks: np.ndarray) 
 
 
 def line_inks(lives: Lives, clades: Clades, codes: np.ndarray, size: np.ndarray) -> np.ndarray:
-    """Return the index in INKS of each line, int64 (K,), by its `line_codes` and size in the
-    picture.
+    """Return each line's colour, an index in INKS, int64 (K,), from its code and size in the picture.
 
     Lines of one era take the colours in turn. Those that last to the end of the era come before the
     others, and in both groups larger lines come before smaller ones. Lines that last have strong

@@ -120,7 +120,7 @@ def short(value: float) -> str:
 
 
 def curves(axes: Axes, x: np.ndarray, ys: np.ndarray, colour: str = BLUE) -> None:
-    """Draw a curve for each world without its NaN; `ys` is (W, X).
+    """Draw a curve for each world, with gaps at NaN; `ys` is (W, X).
 
     The curves of several worlds are faint, behind median and quartiles. Median and quartiles end
     when fewer than half of the worlds have a value.

@@ -8,7 +8,7 @@ from primordia.history.threshold import Threshold, over_births
 from primordia.runs.records import Records
 
 WINDOWS, ENOUGH = 20, 200
-"""Largest number of bins of birth order, and births that a bin needs (a tenth of parents is good)."""
+"""Largest number of bins, and the births needed for each bin (a tenth of the parents count as good)."""
 
 
 def draw(run: Records, world: int) -> Figure | None:

@@ -16,7 +16,7 @@ from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 
 LEAST = 4 * RATE
-"""Smallest number of pictures of a life before the life of an older organism takes its place."""
+"""A life is shown in at least this many pictures before an older organism takes its place."""
 
 
 class Beside(NamedTuple):
@@ -54,7 +54,7 @@ def nothing(count: int) -> Iterator[Beside]:
 
 
 def pictures_of(run: Records, organism: int, world: int) -> Iterator[Image.Image]:
-    """Yield the pictures of a life, RATE in a second of the life; the last one is repeated for ever.
+    """Yield a life's pictures, RATE of them for each second lived; the last is repeated for ever.
 
     Raises:
         InputError: the life cannot be lived again, or its habitat draws no pictures.

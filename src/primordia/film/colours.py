@@ -19,7 +19,7 @@ DARKEST = 0.5
 FLASH = 0.75
 """Share of white in a cell in which an organism was born since the moment before."""
 FADING = 0.8
-"""Share of a cell's light after a death that is left from one moment to the next."""
+"""After a death, a cell keeps this share of its light from one moment to the next."""
 MOST = 2**22
 """Largest number of cells x moments that are computed at once; the lives are sorted once for all of
 them."""

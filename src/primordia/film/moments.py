@@ -20,7 +20,7 @@ def moments(lives: Lives, start: int, by: By, ticks: tuple[int | None, int | Non
     Args:
         lives: the lives of one world.
         start: the tick at which the world's records begin.
-        by: whether equally many `births` or equally many `ticks` pass between two moments. In a full
+        by: `births` or `ticks`: the same number of them passes between one moment and the next. In a full
             world most ticks are without births.
         ticks: the first tick and the last one; None: where the records begin or end.
 

@@ -1,4 +1,4 @@
-"""Pictures of a world's cells: a torus as a square grid, a ring as a ring with its past within."""
+"""Pictures of a world's cells: a torus as a square grid, a ring as a circle with its past inside."""
 
 from typing import Protocol
 

@@ -105,7 +105,7 @@ class Outcome(NamedTuple):
 
 
 class Ability(StrEnum):
-    """Optional abilities of a habitat; `habitat.can(Ability.PICTURE)` is true if it has one."""
+    """Optional abilities of a habitat; `habitat.can(Ability.PICTURE)` is true if it draws pictures."""
 
     PICTURE = "picture"
     """draw bodies, for `primordia replay`"""
@@ -158,7 +158,7 @@ class Habitat(ABC):
 
     @default
     def versions(self) -> dict[str, str]:
-        """Return the versions of packages and files on which lives depend, without this package.
+        """Return the versions of packages and files, other than this package, on which lives depend.
 
         A run under other versions is resumed only if the user asks for it.
         """
@@ -198,8 +198,10 @@ class Habitat(ABC):
         """Raise ValueError if these settings do not allow a run of `cells` cells."""
 
     def original(self) -> "AnyHabitat | None":
-        """Return the whole game as the standard benchmark scores it: food is the score, and the end
-        of the game is fatal. None if there is no such game."""
+        """Return a habitat for the whole game as the standard benchmark scores it; None if there is none.
+
+        Food is the score, and the end of the game is fatal.
+        """
         return None
 
     def picture(self, body: Bodies, action: np.ndarray) -> "Image":

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 class OnHost(HostHabitat):
-    """A JAX habitat that keeps the contract of habitats on the host; lives have the same bits."""
+    """A JAX habitat with the interface of habitats on the host; lives are the same, bit for bit."""
 
     senses_size: int
     action: Action

@@ -20,7 +20,7 @@ class Clades:
     renewals: np.ndarray
     """ticks after which every living organism began a new line, int64 (K,), in ascending order"""
     by_takeover: np.ndarray
-    """whether the reason for a renewal was the takeover of one line, bool (K,)"""
+    """whether the reason for a renewal was that one line had taken over, bool (K,)"""
 
     def lines_at(self, rows: np.ndarray, ticks: np.ndarray) -> np.ndarray:
         """Return the line of each organism in `rows` after a tick of its life, int64.

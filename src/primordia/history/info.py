@@ -26,9 +26,9 @@ def info(run: Records) -> dict[str, Any]:
     was resumed with bodies as at birth, since its habitat cannot save them. Ages, in ticks, and the
     habitat's counts (`tallies`) are those of the living. `break_even` is the food in a tick, and in
     a second, that keeps energy constant under the present climate. `tries_per_life` tells how often
-    an organism tries to copy itself in a life of mean length, at the present replication. If the
-    number is below one, lineages die out. The fields of a single world also appear at the top
-    level.
+    an organism tries to copy itself in a life of mean length, at the present rate of replication.
+    If the number is below one, lineages die out. The fields of a single world also appear at the
+    top level.
     """
     config, progress = run.config, run.progress
     worlds = [

@@ -7,7 +7,7 @@
 
 Every tick, brains think and fates are judged (`life` for organisms without neighbours, `tick` for all
 cells). A tick is settled if an organism dies or may be born, or if a sample, season or other change
-is due. `rest` restores the organisms of cells that did not live. Then births, deaths, counts and
+is due. `rest` restores the organisms of cells that were not active. Then births, deaths, counts and
 seasons are brought up to date (`population`, `turnover`). All other ticks need no settling.
 
 The number of a tick is the number of ticks that the world has lived at the tick's end. An organism

@@ -30,9 +30,9 @@ TOTALS = (
     "energy_total",
     "food_total",
 )
-"""Names of the 64-bit values in a sample. Births, deaths, extinctions, organism-ticks and the total
-of food count since the beginning of the world; the other totals are over the living. Energy and
-food are in 1/1024 units, two's complement."""
+"""Names of the 64-bit values in a sample. Births, deaths, extinctions, organism-ticks and food are
+counted since the beginning of the world; the other totals are over the living. Energy and food are
+in 1/1024 units, two's complement."""
 
 
 def birth_columns(mates: bool, notes: tuple[str, ...]) -> Columns:
@@ -68,7 +68,7 @@ class Events(NamedTuple):
 
 
 def batch(cells: int) -> int:
-    """Return the number of events in a batch: 1 in small worlds, up to 1,024 in large ones for a GPU."""
+    """Return the number of events in a batch: 1 in small worlds, up to 1,024 in large ones (for GPUs)."""
     return min(max(cells // 256, 1), 1024)
 
 

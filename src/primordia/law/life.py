@@ -22,7 +22,7 @@ from primordia.random.gaussian import quantiles
 from primordia.random.wide import Wide
 
 BODILY = (Cause.TIME_LIMIT, Cause.STARVED, Cause.FATAL, Cause.FAULT)
-"""Causes of death by brain, body and store. If several hold, the last one is recorded."""
+"""Causes of death that come from brain, body or energy. If several hold, the last one is recorded."""
 
 
 class Thought(NamedTuple):

@@ -1,7 +1,7 @@
 """Metabolism: all energy arithmetic.
 
-Energy is fixed point, int32 in steps of 1/1024 unit, and saturates. In float32, an energy of 2^24 would
-not change when 1 is subtracted, and the organism would never starve.
+Energy is fixed point, int32 in steps of 1/1024 unit, and saturates. In float32, an energy of 2^25
+would not change when 1 is subtracted, and the organism would never starve.
 """
 
 from collections.abc import Mapping

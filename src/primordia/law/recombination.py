@@ -26,7 +26,7 @@ class Recombination(Settings):
         1.0,
         ge=0,
         le=1,
-        description="probability that a child recombines if its cell has a second neighbour",
+        description="chance that a child recombines if a neighbour besides the parent is alive",
     )
     unit: Literal["block", "row"] = Field(
         "row",

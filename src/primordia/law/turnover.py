@@ -1,7 +1,7 @@
 """Turnover: the dead are removed, the newborn are added, and extinct worlds begin again.
 
-Turnover runs only in ticks in which an organism dies or may be born. Work on the weights of genomes
-is done per birth. All other work is cheap enough to be done for all cells at once.
+Turnover runs only in ticks in which an organism dies or may be born. The weights of genomes are
+handled once for each birth. All other work is cheap enough to be done for all cells at once.
 """
 
 from typing import NamedTuple

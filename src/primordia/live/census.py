@@ -33,7 +33,7 @@ class Census:
 
     @classmethod
     def of(cls, world: World, alone: int | None = None) -> "Census":
-        """Count the organisms of all worlds, or of the world `alone`; every cell is read once."""
+        """Count the organisms of all worlds, or of one (`alone`); every cell is read once."""
         organisms, worlds = world
         cells, own = len(organisms.alive) // len(worlds.calm), slice(None)
         if alone is not None:

@@ -1,4 +1,4 @@
-"""Lines of descent of worlds that may be shown, unless there are too many cells or births to follow."""
+"""Lines of descent in the shown worlds; with too many cells or births, no lines are followed."""
 
 from collections.abc import Iterable
 

@@ -111,7 +111,7 @@ class Torus:
         return self.columns, self.rows if self.letters else -(-self.rows // 2)
 
     def scale(self, room: Room) -> int:
-        """Return the columns of a cell; see `Form`."""
+        """Return the width of a cell, in columns; see `Form`."""
         across, high = room.width // self.columns, room.height // self.rows
         if self.letters:
             return min(across, high, 1)

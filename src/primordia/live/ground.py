@@ -11,7 +11,7 @@ from primordia.law.events import BIRTHS, DEATHS, Events, Rows
 from primordia.runs.lives import ALIVE, Lives
 
 KEPT = 4096
-"""Number of latest births that are kept, of all worlds together. Other parents are unknown."""
+"""Number of latest births that are kept, of all worlds together. Parents born earlier are unknown."""
 
 
 class Ground:
@@ -30,7 +30,7 @@ class Ground:
         self._deaths.add(events.deaths)
 
     def measured(self, ticks: np.ndarray) -> list[Threshold]:
-        """Return the error threshold of each world, among the kept births of the world.
+        """Return the error threshold of each world, measured in the world's kept births.
 
         Args:
             ticks: the present tick of each world, int64 (W,).

@@ -84,7 +84,7 @@ class Pace:
 
     @property
     def limited(self) -> bool:
-        """Whether the run waits, or may wait."""
+        """Whether the run is paused, or its speed is limited."""
         return self.paused or self.limit is not None
 
     def _wait(self) -> float:

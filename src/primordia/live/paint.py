@@ -36,7 +36,7 @@ class Cells:
 
     @classmethod
     def of(cls, line: np.ndarray, ticks: np.ndarray, full: int) -> "Cells":
-        """Return cells with ages in ticks, int64; ages of `full` ticks and more are drawn as 1."""
+        """Make cells from ages in ticks, int64; an age of `full` ticks or more becomes 1."""
         return cls(line, np.minimum(np.log1p(np.maximum(ticks, 0)) / log1p(full), 1.0))
 
     def take(self, index: slice | np.ndarray) -> "Cells":
@@ -118,7 +118,7 @@ def _halves(numbers: np.ndarray, style: Callable[[int, int], Style]) -> list[Row
 
 
 def levels(values: np.ndarray) -> str:
-    """Return a bar for each of some numbers, lowest at -1 and highest at 1."""
+    """Return a bar for each number: -1 gives the lowest bar, 1 the highest."""
     heights = np.rint((np.clip(np.nan_to_num(values), -1, 1) + 1) * 3.5).astype(int) + 1
     return "".join(EIGHTHS[height] for height in heights.tolist())
 

@@ -91,8 +91,8 @@ class Stage:
         Args:
             law: the law of the run.
             world: all worlds.
-            lines: lines of descent by number of the world; in other worlds, colours show the branch
-                of the founder.
+            lines: lines of descent by number of the world; in worlds without them, colours show the
+                branch of the founder.
             alone: the only world that is shown; None for all.
             room: the room for the drawing.
         """

@@ -1,4 +1,4 @@
-"""The user's terminal: keys without Enter, and a cursor, both given back however a command ends."""
+"""The user's terminal: keys without Enter; settings and cursor are restored however a command ends."""
 
 import os
 import re

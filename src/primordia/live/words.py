@@ -10,7 +10,7 @@ from primordia.live.panel import STRONG
 NAME = 18
 """columns of a word, with the gap after it"""
 WIDE = 100
-"""most columns of an explanation with its word"""
+"""largest number of columns of a word with its explanation"""
 KEYS = {
     "space": "Pause, or go on.",
     "s": "Live one tick, and pause.",
@@ -35,14 +35,14 @@ WORDS = {
     "extinctions": "How often no organism was alive. A new founder then begins life again.",
     "children mutate": "Share of the latest births whose genome differs from the parent's.",
     "mutants as good": "Share of good parents' mutants that live as long as the parent, divided by"
-    " that of their copies.",
+    " that of the parents' copies.",
     "good lines hold": "Above 1, a long-lived line persists in spite of its bad mutants. Below 1, such"
     " lines are lost.",
     "organism-ticks/s": "Ticks lived by all organisms together in a second of your time.",
     "time left": "Time until the last world reaches its limit, at the present speed.",
     "calm": "Without births and deaths.",
     "saturated": "The world has been full and calm for the number of ticks that the task demands.",
-    "fatal": "A death by the body: the task's own condition, such as a fallen pole.",
+    "fatal": "A death because the task's own condition was met, such as a fallen pole.",
     "starved": "A death because the energy reached 0.",
     "hazard": "A death by chance, at the rate of the setting `hazard`.",
     "replaced": "A death because a neighbour's child took the cell.",

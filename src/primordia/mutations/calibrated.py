@@ -24,11 +24,11 @@ class Calibrated(Mutation):
     """Gaussian noise whose size is chosen for each child by its effect on behaviour.
 
     The direction is random: noise with the standard deviation of founders' weights in each block.
-    This noise is multiplied by 2^(q / 4). Bisection finds a q from -96 to 0 with which the child's
-    action differs from the parent's action in at most a share `differs` of the parent's moments.
-    With q + 1 the action differs in more moments. For continuous actions, `differs` is the root
-    mean square change of the outputs (SM-R of Lehman et al. 2018, arXiv:1712.06563, with a length
-    of whole steps, so that genomes are rebuilt). The note `quarters` is q, and 0 for a copy.
+    This noise is multiplied by 2^(q / 4). Bisection finds a q from -96 to 0. With this q, child and
+    parent act differently in at most a share `differs` of the parent's moments. With q + 1 the
+    action differs in more moments. For continuous actions, `differs` limits the root mean square
+    change of the outputs. This is SM-R of Lehman et al. 2018, arXiv:1712.06563, but lengths are
+    whole steps, so that genomes can be rebuilt. The note `quarters` is q, and 0 for a copy.
     """
 
     notes: ClassVar = ("quarters",)
@@ -37,7 +37,7 @@ class Calibrated(Mutation):
     differs: Rate = Field(
         0.02,
         ge=0,
-        description="largest change of behaviour: share of moments, or change of outputs",
+        description="largest change of behaviour: share of changed choices, or change of outputs",
     )
     remembered: int = Field(
         64, ge=1, le=256, description="number of moments that organisms remember"

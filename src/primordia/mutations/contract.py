@@ -65,13 +65,13 @@ class Family(NamedTuple):
 
 
 class Moments(NamedTuple):
-    """The number and interval of the moments that organisms remember: senses and memory."""
+    """The number and interval of the moments that organisms remember; a moment is senses and memory."""
 
     kept: int
     """number of moments; they are the latest of a line of descent, since a child begins with the
     parent's moments"""
     every: int
-    """ticks between two moments; kept x every is at most 2^16"""
+    """ticks between two moments; `kept` times `every` is at most 2^16"""
 
 
 Change: TypeAlias = Callable[[Array], Array]

@@ -19,8 +19,8 @@ class Heritable(Gaussian):
     A mutant's q is the sum of its parent's q and a whole number from -stride to stride, all equally
     likely. The sum is limited to the range from `finest` to `coarsest`. Then the mutant's weights
     get noise of the new scale (Schwefel 1981; the steps are as in Dang & Lehre 2016). In the
-    control `belongs = "cell"` the same q belongs to a cell: a mutant starts from the q of the
-    organism that was last born in its cell. So q is not selected with a genome.
+    control `belongs = "cell"`, q belongs to a cell and not to a genome: a mutant starts from the q
+    of the organism that was last born in its cell. So q is not selected with a genome.
     """
 
     notes: ClassVar = ("quarters",)

@@ -27,7 +27,7 @@ def export(
         world: the organisms' world.
 
     Raises:
-        InputError: no such organism was born, or an ONNX model was asked for several organisms.
+        InputError: no such organism was born, or several organisms were to be written to one ONNX model.
         Trouble: the file cannot be written.
     """
     chosen = tuple(organisms) or (int(run.lives.id[run.lives.oldest(world)]),)

@@ -17,7 +17,7 @@ from primordia.random.wide import Wide
 AT_ONCE = 128
 """Default number of games played side by side; the games of one player are never separated."""
 AT_ONCE_IN_JAX = 1024
-"""The same number for a habitat in JAX, in which a game needs little more memory than a genome."""
+"""The default number for a habitat in JAX, where a game needs little more memory than a genome."""
 MIX = np.uint64(0x9E3779B97F4A7C15)
 """An odd number that mixes the bits of courses."""
 

@@ -1,4 +1,4 @@
-"""A mind: the inputs of an organism's actions, apart from the law and the senses."""
+"""A mind: all that determines an organism's actions, apart from the law and the senses."""
 
 from typing import NamedTuple
 

@@ -82,10 +82,10 @@ def revive(
 ) -> Revival:
     """Live a life again, tick for tick, and compare it with its record.
 
-    A living organism lives up to the run's newest checkpoint. There its memory is compared too, and
-    its body or, in a habitat on the host, its senses. Death by a neighbour's child counts as
-    repeated if the organism is alive at its last tick and the records have a child in its cell in
-    that tick. Other deaths happen again in the life itself.
+    A living organism lives up to the run's newest checkpoint. There its memory is compared too. So
+    is its body; in a habitat on the host, its senses are compared instead. Death by a neighbour's
+    child counts as repeated if the organism is alive at its last tick and, by the records, a child
+    was born in its cell in that tick. Other deaths happen again in the life itself.
 
     Args:
         run: the organism's run.
@@ -180,14 +180,16 @@ def _notes(run: Archive, course: Course) -> list[str]:
     notes = [f"{fault}; an older checkpoint was read" for fault in faults[:1]]
     if course.replaced:
         notes.append(
-            "by the recorded births a child took the cell in that tick; neighbours were not relived"
+            "the record says that a child took the cell in that tick; neighbours were not relived"
         )
     if directory.is_written(run.path):
         notes.append(f"the run goes on; the records end at tick {run.ends.max():,}")
     if run.other_versions:
-        notes.append(f"exactness is off: {'; '.join(run.other_versions)}")
+        notes.append(f"exact repetition is not sure: {'; '.join(run.other_versions)}")
     elif not progress.exact:
-        notes.append("exactness is off: parts of this run cannot be repeated bit for bit")
+        notes.append(
+            "exact repetition is not sure: parts of this run cannot be repeated bit for bit"
+        )
     if times := progress.restarts:
         often = "once" if times == 1 else f"{times:,} times"
         notes.append(

@@ -5,7 +5,7 @@ import numpy as np
 ROWS = 4096
 """Number of organisms in one step."""
 FEW = 8
-"""Largest number of lines that Python follows one by one; NumPy follows more lines faster."""
+"""Largest number of lines that Python follows one by one; with more lines, NumPy is faster."""
 
 
 def nearest(parent_row: np.ndarray, marked: np.ndarray) -> np.ndarray:

@@ -1,7 +1,7 @@
 """The genealogy of the living of one world: their common ancestor, and that of each pair.
 
-Without selection, two of the n living after a birth are the newborn and its parent with probability
-2 / (n (n - 1)), whichever two they are (Moran 1958; Kingman 1982). So the births and the sizes of the
+Without selection, any two of the n organisms alive after a birth are the newborn and its parent
+with probability 2 / (n (n - 1)) (Moran 1958; Kingman 1982). So the births and the sizes of the
 population give the distribution of coalescence times that drift alone would have made.
 """
 
@@ -60,7 +60,7 @@ class Genealogy:
         return int(common[-1]) if self.living and len(common) else None
 
     def trunk(self) -> np.ndarray:
-        """Return the rows of the line that goes from the largest root always to the largest family."""
+        """Return the rows of the line that starts at the largest root and follows the largest family."""
         if not len(self.rows):
             return np.zeros(0, np.int64)
         order = np.lexsort((self.size, self.parent))

@@ -23,8 +23,8 @@ from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 
 SHARES = {"tenth": 0.1, "half": 0.5, "fixed": 1}
-"""Shares of the living; for each share, the first tick at which an ancestor's descendants reach it
-is given; see `first_ticks`."""
+"""Shares of the living; `first_ticks` gives the first tick at which an ancestor's descendants reach
+each share."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ class Ancestors:
     census: Census
     """the living of the world at instants"""
     branch: np.ndarray
-    """place on the line from which each organism of the world descends, int64; see `branches`"""
+    """place on the line at which each organism's own line leaves it, int64; see `branches`"""
     common: CommonAncestor | None
     """the common ancestor of the living; None if there is none on record"""
     roots: int
@@ -86,7 +86,7 @@ class Ancestors:
         return from_each / np.maximum(self.census.living, 1)[:, None]
 
     def telling(self, most: int) -> np.ndarray:
-        """Return at most `most` places on the line, rising: the first, the last and the most important.
+        """Return up to `most` places on the line, rising: the first, the last and the most important.
 
         Half of the places are of organisms that outlived their parents by the largest ratio. The
         other places are evenly spaced.

@@ -28,7 +28,7 @@ DRAWS = 10**9
 DEATH, BIRTH, FOUNDER = 0, 1, 2
 """Kinds of events."""
 NO_LINE = 0
-"""Number for founders that are born later, which begin no line; lines are numbered from 1."""
+"""The line number of founders that are born later: they begin no line. Lines are numbered from 1."""
 
 
 class Deal(NamedTuple):
@@ -67,7 +67,7 @@ class Deal(NamedTuple):
         )
 
     def replicates(self, lines: int, fewest: int, most: int) -> int:
-        """Return the number of shadows of each line, for a number of lines that are drawn one by one."""
+        """Return the number of shadows that each line gets if `lines` lines are dealt one by one."""
         return int(np.clip(DRAWS // max(self.places[-1] * lines, 1), fewest, most))
 
     @property
@@ -154,7 +154,7 @@ def _deal(labels: Array, first: int, last: int, kinds: Array, before: Array, key
 def deal_one_line(
     counts: Array, which: Array, first: int, last: int, kinds: Array, before: Array, key: Wide
 ) -> Array:
-    """Deal births and deaths to one line of each shadow and to all others.
+    """In each shadow, deal births and deaths to one line and to the rest of the living.
 
     Return the number of living of the line, int32 (R,).
 

@@ -30,9 +30,9 @@ def first_ticks(
 ) -> list[np.ndarray]:
     """Return, for each ancestor and share, the first tick after which its descendants exceed the share.
 
-    The lines of an ancestor's descendants leave the line of descent at its place or later. So an
-    ancestor reaches a share no earlier than the ancestor before it, and one pass over the births
-    and deaths is enough.
+    The lines of an ancestor's descendants leave the line of descent at the ancestor's place or
+    later. So an ancestor reaches a share no earlier than the ancestor before it, and one pass over
+    the births and deaths is enough.
 
     Args:
         turnover: births and deaths of the world.

@@ -16,8 +16,8 @@ from primordia.phylogeny.phylogeny import Phylogeny
 from primordia.phylogeny.table import batch, batches
 
 NODE = "strain"
-"""The column of Taxonium's metadata that holds the labels of a tree: the first, under the name that
-`newick_to_taxonium` looks for."""
+"""The first column of Taxonium's metadata. It holds the labels of a tree; `newick_to_taxonium`
+looks for its name."""
 OF_TREES = ("ancestor_list", "ancestor_id")
 """Columns that are not needed beside a tree."""
 

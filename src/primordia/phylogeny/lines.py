@@ -38,9 +38,9 @@ class WorldLines:
     living: np.ndarray
     """all living, int64 (T,)"""
     slopes: np.ndarray
-    """selection coefficient of each line in one tick, float64 (K,); NaN where it cannot be measured"""
+    """selection coefficient of each line per tick, float64 (K,); NaN where it cannot be measured"""
     shadow_slopes: dict[int, np.ndarray]
-    """for each line with a slope, by its place, the slopes of its shadows, float64, rising"""
+    """slopes of the shadows of each line with a slope, by the line's place, float64, rising"""
     drift: Drift
     """the course of all lines when they drift together"""
     sweeps: list[Sweep]

@@ -20,14 +20,14 @@ LEAST = 5
 MOST, FEWEST = 1000, 200
 """Largest and smallest number of shadows of a line."""
 EVENTS = 2**15
-"""Births and deaths after which lines that are lost are put aside."""
+"""Number of births and deaths after which lost lines are put aside."""
 
 
 class Slopes:
     """The slopes of the logit shares of N lines, by weighted least squares, one instant after another.
 
-    The weight of an instant is m x (1 - x) for m living: the inverse of the variance of the logit of a
-    share among m.
+    If m organisms are alive, the weight of an instant is m x (1 - x). It is the inverse of the
+    variance of the logit of x.
     """
 
     def __init__(self, number: int) -> None:
@@ -46,7 +46,7 @@ class Slopes:
 
     @property
     def slopes(self) -> np.ndarray:
-        """The slope of each line in one tick, float64 (N,); NaN with fewer than LEAST instants."""
+        """The slope of each line per tick, float64 (N,); NaN with fewer than LEAST instants."""
         w, wt, wtt, wy, wty = self._sums
         spread = w * wtt - wt**2
         known = (self._instants >= LEAST) & (spread > 0)
@@ -83,8 +83,8 @@ def of_shadows(census: Census, turnover: Turnover, counts: np.ndarray, seed: int
     Args:
         census: the living of one world at T instants.
         turnover: births and deaths of the world.
-        counts: living of each line at each instant, int64 (T, M); each line is between the bounds
-            at some instant.
+        counts: living of each line at each instant, int64 (T, M); the share of each line is between
+            LOW and HIGH at some instant.
         seed: the world's seed.
     """
     lines = counts.shape[1]

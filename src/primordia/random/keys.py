@@ -104,7 +104,7 @@ def stream(seed: Wide, purpose: Purpose, tick: Wide) -> Wide:
 
 
 def bits(stream: Wide, cell: Array, index: Array | int = 0) -> Wide:
-    """Return two words for a cell; `index` numbers further draws of the same stream and cell."""
+    """Return two words for a cell; another `index` gives another draw of the same stream and cell."""
     cell = jnp.asarray(cell, jnp.uint32)
     return threefry(stream, Wide(cell, jnp.asarray(index, jnp.uint32)))
 

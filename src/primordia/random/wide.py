@@ -103,7 +103,7 @@ def times(a: Array, b: Array) -> Wide:
 
 
 def modulo(value: Wide, n: int) -> Array:
-    """Return the remainder after division by n, 1 to 2^16: int32."""
+    """Return the remainder after division by n, int32; n is 1 to 2^16."""
     high = (value.hi % np.uint32(n)) * np.uint32(2**32 % n)
     return ((high + value.lo % np.uint32(n)) % np.uint32(n)).astype(jnp.int32)
 
@@ -119,7 +119,7 @@ def zero(shape: tuple[int, ...]) -> Wide:
 
 
 def never(shape: tuple[int, ...]) -> Wide:
-    """Return 2^64 - 1: a tick that never comes, or the missing number of an organism."""
+    """Return 2^64 - 1: a tick that never comes, or a number that stands for no organism."""
     return Wide(*(jnp.full(shape, np.uint32(2**32 - 1)) for _ in range(2)))
 
 

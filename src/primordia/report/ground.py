@@ -25,7 +25,7 @@ from primordia.report.packed import packed
 from primordia.runs.lives import Lives
 
 WHOLE = 100_000
-"""Largest number of births with which a world is given completely."""
+"""Largest number of births of a world whose organisms are all in the page."""
 SEEN = 400_000
 """Largest number of cells that are read in a larger world, over all moments."""
 MARKS = 12
@@ -114,7 +114,7 @@ class Ground:
         return codes, line_inks(self.lives, self.clades, codes, size)
 
     def inks(self, codes: np.ndarray) -> np.ndarray:
-        """Return inks, places in `figures.spacetime.INKS`, for lines given by their codes, int64 (n,)."""
+        """Return the ink of each line, an index of `figures.spacetime.INKS`, by its code, int64 (n,)."""
         known, inks = self._inked
         place = np.minimum(np.searchsorted(known, codes), len(known) - 1)
         found, other = inks[place], known[place] != codes

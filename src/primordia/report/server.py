@@ -19,7 +19,7 @@ PORT = 8321
 MOST_LISTENERS = 32
 """Largest number of pages that wait for events at the same time."""
 QUIET = 10.0
-"""Seconds between empty lines to a waiting page, by which a closed page is noticed."""
+"""Seconds between empty lines to a waiting page; they are sent to notice a closed page."""
 HEADERS = {
     "Cache-Control": "no-store",
     "Content-Security-Policy": "frame-ancestors 'none'",

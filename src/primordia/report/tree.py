@@ -20,13 +20,13 @@ LEAVES = 300
 
 @dataclass
 class Node:
-    """One node of the tree, by rows of organisms."""
+    """One node of the tree; organisms are given by row."""
 
     row: int
     alive: bool
     left_by: int
-    """the organism whose birth separates this line from the parent's: an ancestor, or the node's
-    organism"""
+    """the first organism on this line after the parent node's: the node's organism or one of its
+    ancestors"""
     skipped: int = 0
     """number of ancestors between the node and its parent"""
     parent: "Node | None" = None

@@ -61,7 +61,7 @@ class Archive(Records):
         return (self.path,)
 
     def parts(self) -> "Iterator[Archive]":
-        """Yield the run itself, its only part."""
+        """Yield this run, and nothing else."""
         yield self
 
     @cached_property
@@ -199,8 +199,8 @@ class Archive(Records):
     def release(self) -> None:
         """Release the arrays and the lives, which are read again at their next use.
 
-        The newest checkpoint is remembered and not checked again. The results of checked files are
-        forgotten.
+        The newest checkpoint is remembered and not checked again. The results of other file checks
+        are forgotten.
         """
         self.fault_in.cache_clear()
         for name in ("state", "origin", "lives", "count", "ends", "metrics"):

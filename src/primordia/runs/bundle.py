@@ -41,13 +41,13 @@ PIECE = 2**20
 TRIES = 3
 """Number of attempts to read a run that goes on meanwhile."""
 MANIFESTS = re.compile(rf"({ORIGIN}|{FOLDER}/{NUMBER.pattern})/{re.escape(MANIFEST)}")
-"""Paths of manifests in a run, by the names of their folders."""
+"""Pattern of a manifest's path in a run; its group is the folder."""
 Seals = dict[str, Seal | None]
 """Size and checksum of files by their path below the run; None for manifests and versions."""
 Entries = dict[str, zipfile.ZipInfo]
 """The entries of a zip, by the path of a file below the run."""
 _copies: dict[tuple, Path] = {}
-"""The copy of each bundle made by `opened`, by path, size and time of the file."""
+"""The copy that `opened` made of each bundle, by path, size and time of the bundle."""
 _bundles: dict[Path, Path] = {}
 """The bundle of each copy."""
 
@@ -133,7 +133,7 @@ def opened(file: Path) -> Path:
 
 
 def origin_of(path: Path) -> Path:
-    """Return the path of the bundle that `path` is a copy of, if `opened` made the copy; else `path`."""
+    """Return the bundle from which `opened` made the copy at `path`; `path` if it is no such copy."""
     return _bundles.get(path, path)
 
 

@@ -115,7 +115,7 @@ def _remove_empty(folders: list[Path]) -> None:
 
 
 def refuse_if_taken(run: Path) -> None:
-    """Raise InputError unless the path is free or a directory without files except a lock."""
+    """Raise InputError if the path exists; a directory with at most a lock is allowed."""
     files.check_name(run)
     if (run / VERSIONS).exists():
         raise InputError(

@@ -83,7 +83,7 @@ def fork(
 def _fork_config(source: Path, settings: dict[str, Any], at: int) -> Config:
     """Return the configuration of the fork."""
     if "task" in settings:
-        raise InputError("a fork has the task of its run; remove the setting 'task'")
+        raise InputError("a fork keeps the task of its source; remove the setting 'task'")
     values = merged(from_toml(source / "config.toml"), settings)
     values["fork"] = ForkedFrom(run=str(bundle.origin_of(source)), tick=at).model_dump()
     return validated(values, source=str(source))

@@ -103,8 +103,9 @@ class Lives:
     def late(self, after: float = LATE) -> np.ndarray:
         """Return whether each life began late, bool (L,).
 
-        The late births of a world are those that come after a share `after` of all its births. Organisms
-        that were alive at a fork were born before the fork, so they are not late and do not count.
+        The argument `after` is a share of a world's births: the births that come after this share
+        are late. Organisms that were alive at a fork were born before the fork, so they are not
+        late and do not count.
         """
         own = self.entered == 0
         ordinal = np.cumsum(own) - 1  # index among the births of all worlds

@@ -39,7 +39,7 @@ class Expected:
 
     def fault(self, arrays: Mapping[str, np.ndarray]) -> str | None:
         """Return a fault: an array is missing or unknown, or a count of a world is impossible.
-        Return None without a fault.
+        Return None if there is no fault.
 
         Only the counts of each world are read; `fault_of` checks every other array when it is read.
         """

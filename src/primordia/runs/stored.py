@@ -12,7 +12,7 @@ Model = TypeVar("Model", bound=BaseModel)
 
 
 def read(path: Path, model: type[Model], otherwise: str) -> Model:
-    """Return the content of a file; raise InputError with the text `otherwise` if it is not valid."""
+    """Return the content of a file; if it is not valid, raise InputError with the text `otherwise`."""
     try:
         return model.model_validate_json(files.read(path))
     except (OSError, ValidationError):

@@ -18,7 +18,7 @@ DEFAULT = "gym"
 
 
 def is_door(task: str) -> bool:
-    """Return whether a task is the name of an environment with a door."""
+    """Return whether a task's name begins with a door, such as `gym:`."""
     return task.partition(":")[0] in DOORS and ":" in task
 
 
@@ -37,7 +37,7 @@ def values(task: str) -> dict[str, Any]:
 
 
 def replication(lifespan: float) -> float:
-    """Return a probability of replication in a tick, from the mean lifespan in ticks with random actions.
+    """Return a probability of replication in a tick; `lifespan` is the mean in ticks for random actions.
 
     An organism replicates about once in such a life, since the paper makes the probability "loosely
     proportional to the average lifespan of the initial organisms".

@@ -117,7 +117,7 @@ def _is_dotted(text: str) -> bool:
 
 
 def with_full_paths(folder: Path, values: dict[str, Any]) -> dict[str, Any]:
-    """Return values in which each of the habitat's files that is in the folder has its full path."""
+    """Return the values with a full path for each of the habitat's files that is in the folder."""
     habitat = values.get("habitat")
     if not isinstance(habitat, dict):
         return values

@@ -19,8 +19,8 @@ def check_brain(brain: Brain, senses: int = 33, outputs: int = 5) -> None:
 
     Args:
         brain: the brain with its settings.
-        senses: S, numbers that an organism perceives.
-        outputs: A, numbers that the motor takes.
+        senses: S, how many numbers an organism perceives.
+        outputs: A, how many numbers the motor takes.
 
     Raises:
         ContractError: the brain does not keep the contract of `brains.contract`.

@@ -158,7 +158,7 @@ def _in_a_loop(habitat: JaxHabitat, lives: Lives, expected: list[Past]) -> None:
     )
     says = "when it is traced again, so it draws from more than `words`; keep no random generator in it"
     lives.compare(_pasts(one), _pasts(other), says)
-    says = f"inside a compiled loop than stepped tick by tick{ROUNDED}"
+    says = f"in a compiled loop than when it is stepped tick by tick{ROUNDED}"
     lives.compare(expected, _pasts(one), says)
 
 

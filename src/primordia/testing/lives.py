@@ -1,4 +1,4 @@
-"""Lives to compare: they have equal words and actions, but other neighbours, pauses or other cells."""
+"""Lives to compare: their random words and actions are equal; neighbours, pauses or cells differ."""
 
 import copy
 from collections.abc import Iterator
@@ -64,7 +64,7 @@ class Lives:
 
     @contextmanager
     def opened(self, who: np.ndarray, cells: int, watched: bool = False) -> Iterator["Stage"]:
-        """Open a copy of the habitat, in which bodies `who` take the first cells, in order."""
+        """Open a copy of the habitat; its first cells are for the bodies `who`, in order."""
         inner = self.habitat
         own = OnHost(inner) if isinstance(inner, JaxHabitat) else copy.deepcopy(inner)
         try:
@@ -101,8 +101,7 @@ class Lives:
             return stage.pasts
 
     def restored(self, rows: slice) -> list[Past]:
-        """Play half of the lives' ticks, and the rest of some lives in a habitat that loads the
-        saved state."""
+        """Play half of all lives; then play the rest of some in a habitat that loads the saved state."""
         with self.opened(np.arange(ALL), ALL) as stage:
             stage.play(HALF)
             saved = stage.saved()
@@ -169,7 +168,7 @@ class Stage:
         self.age[cells], self.alive[cells] = 0, True
 
     def tick(self, chosen: np.ndarray | None = None) -> None:
-        """Step the bodies in the `chosen` cells, bool (N,), or in all cells, that have ticks left."""
+        """Step the bodies in all cells, or in the `chosen` cells, bool (N,), if they have ticks left."""
         part = self.lives.habitat
         active = self.alive & (self.age < TICKS)
         active &= True if chosen is None else chosen

@@ -27,7 +27,7 @@ TAKEN = {"world", *BIRTHS.names}
 
 
 class Made(NamedTuple):
-    """Children and founders of K births."""
+    """Children of K births, and K founders."""
 
     notes: Array
     genome: Array

@@ -98,7 +98,7 @@ def effects(
 
 
 @click.option("--each-sense", is_flag=True, help="Also freeze each sense alone.")
-@assay_of_lives("Measure which senses, memory and weights a life needs.")
+@assay_of_lives("Measure how a life depends on senses, memory and weights.")
 def ablate(
     habitat: dict[str, Any],
     /,

@@ -62,7 +62,7 @@ def tell(
     """Print a table for each arm, or one JSON object for all; draw figures if a folder is given.
 
     Args:
-        name: name of the assay, of the module of `figures.assays` that draws it, and of the files.
+        name: the assay's name, which is also that of its module in `figures.assays` and of its files.
         found: the results of each arm, by its path.
         as_json: whether JSON is printed.
         out: folder for figures; each of several arms has a folder in it, with the arm's name.

@@ -44,12 +44,12 @@ def threshold(name: str, found: list[Any]) -> Told:
     words = {
         "mutated": "p, share of children that mutate",
         "as_good": "v, share of good parents' mutants that are as good",
-        "advantage": "s, life of good parents' copies / life of all",
+        "advantage": "s, life of good parents' copies / life of all organisms",
         "held": "s (1 - p (1 - v))",
     }
     rows = [(text, spread(getattr(each, field) for each in found)) for field, text in words.items()]
     above = f"{sum(value > 1 for value in held)} of {len(held)}"
-    last = ("worlds above 1, in which a good line persists", above)
+    last = ("worlds where it is above 1: a good line persists", above)
     return Told(_title(name, found), ("", "median"), [*rows, last])
 
 
@@ -71,8 +71,8 @@ def effects(name: str, found: list[Any]) -> Told:
     lived = spread(each.lifespan for each in found if each.mutation == mutations[0])
     count = len(found) // len(mutations)
     return Told(
-        f"{name}: {_count(count, 'organism')}, {len(found[0].mutants)} mutants of each by each"
-        " mutation",
+        f"{name}: {_count(count, 'organism')}; each mutation made"
+        f" {len(found[0].mutants)} mutants of each",
         ("", *words.values(), "median life"),
         rows,
         (

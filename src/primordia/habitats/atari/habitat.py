@@ -222,7 +222,7 @@ class Atari(HostHabitat, Settings):
         return self._tally
 
     def original(self) -> "Atari":
-        """Return the whole game as the benchmark scores it: food is its points."""
+        """Return a habitat for the whole game as the benchmark scores it: points are food."""
         return Atari(**{**self.model_dump(), "fatal": "game_over", "food": "points"})
 
     def seen(self) -> dict[str, np.ndarray]:

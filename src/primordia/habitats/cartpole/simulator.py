@@ -18,7 +18,7 @@ TAU = 0.02  # s per tick
 def advance(
     x: Array, x_dot: Array, theta: Array, theta_dot: Array, action: Array
 ) -> tuple[Array, Array, Array, Array]:
-    """Return the coordinates (N,) each, in m, m/s, rad and rad/s, after one tick of TAU seconds.
+    """Return the coordinates, each (N,), in m, m/s, rad and rad/s, after one tick of TAU seconds.
 
     An action (N,) of 1 pushes the cart to the right, any other to the left. `theta` is the pole's angle
     from the vertical.

@@ -17,7 +17,7 @@ from primordia.habitats.gymnasium.spaces import Acting, Observation
 from primordia.habitats.silence import quiet
 
 TICKS, LIVES = 1000, 8
-"""Number of steps that are compared, and the smallest number of lives that contain these steps."""
+"""Largest number of steps that are compared in all lives together, and number of these lives."""
 SAVED = 4
 """Number of states of each life that are saved and continued."""
 
@@ -35,7 +35,7 @@ class Measured:
     fresh: bool = False
     """whether a life repeats only in a new environment"""
     lifespan: float = 0.0
-    """mean ticks of lives with random actions; lives that did not end count with their length so far"""
+    """mean ticks of lives with random actions; an unfinished life counts with its length so far"""
     ended: int = 0
     """number of lives that the environment ended"""
     faults: list[str] = field(default_factory=list)
@@ -219,7 +219,7 @@ def _go_on(trial: _Trial, lives: list[_Life], fresh: bool) -> str:
             except state.UnknownStateError as error:
                 return str(error)
             if trial.steps(elsewhere, life.rows[age:]) != life.seen[age + 1 :]:
-                return "a life does not go on from a saved state bit for bit"
+                return "a life does not go on exactly from a saved state"
             trial.steps(env, life.rows[age:until])
     return ""
 

@@ -18,7 +18,7 @@ LONGEST = 64
 
 
 PICTURES_S = 30.0
-"""Default steps in a second of an environment with pictures."""
+"""Default number of steps a second if an environment has pictures."""
 
 
 class Probe(NamedTuple):
@@ -87,7 +87,7 @@ def _info(env: str, options: str, imports: tuple[str, ...]) -> dict[str, int]:
 def random_play(
     env: str, options: Mapping[str, Any], imports: Sequence[str]
 ) -> list[tuple[np.ndarray, Mapping[str, Any]]]:
-    """Return observations, as rows, and infos of TICKS random steps and resets; an error ends a life."""
+    """Return observation rows and infos of TICKS random steps and the resets; an error ends a life."""
     made = environment.make(env, options, imports)
     observation = Observation(made.observation_space)
     seen: list[tuple[np.ndarray, Mapping[str, Any]]] = []
@@ -142,7 +142,7 @@ def screen_shape(env: str, options: Mapping[str, Any], imports: Sequence[str]) -
 
 
 def check_food(env: str, options: Mapping[str, Any], imports: Sequence[str], function: str) -> None:
-    """Call, a single time, a function that measures food.
+    """Try a function that measures food on one step.
 
     Raises:
         ValueError: there is no such function, or the function returns no number.

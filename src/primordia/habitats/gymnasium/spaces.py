@@ -19,7 +19,7 @@ UNBOUNDED = 1e6
 
 Builder = Callable[[np.ndarray], Any]
 Block = tuple[slice, int | None]
-"""A block of numbers, each of which is one sense, or one number that is one of n choices."""
+"""A block of numbers that are one sense each, or a single number that is one of n choices."""
 
 
 class Leaf(NamedTuple):

@@ -46,7 +46,7 @@ def encode(env: object) -> bytes:
 
 
 def decode(env: object, state: bytes) -> None:
-    """Give an environment, made with the same settings and reset, the state that `encode` returned.
+    """Restore the state from `encode` in a reset environment that was made with the same settings.
 
     Raises:
         UnknownStateError: the state does not fit the environment.

@@ -21,11 +21,11 @@ class Measured:
     """The results for an environment."""
 
     lifespan: float
-    """mean ticks of the lives; lives that did not end count with their length so far"""
+    """mean ticks of the lives; an unfinished life counts with its length so far"""
     ended: int
     """number of lives that the environment ended"""
     largest: np.ndarray
-    """largest size of each number of the observation, float32 (S,)"""
+    """largest absolute value of each number of the observation, float32 (S,)"""
     faults: list[str]
     """the faults, each in a sentence"""
 
@@ -57,7 +57,7 @@ def measure(habitat: Gymnax) -> Measured:
         "an observation is outside the declared space": not seen.inside.all(),
         "a reward is not finite": not seen.rewarded.all(),
         "step changes the state that it is given": habitat.simulator.changes_state(),
-        "functions of the environment differ when traced again: they draw from outside JAX, "
+        "functions of the environment differ when traced again: they take randomness from outside JAX, "
         "or keep something between calls": not habitat.simulator.repeats(),
     }
     return Measured(

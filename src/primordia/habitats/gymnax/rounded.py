@@ -1,11 +1,11 @@
 """Functions of JAX whose products and sums are rounded in the same way in every program.
 
 A compiler may contract a product and a sum into a fused multiply-add, which rounds once. Whether the
-compiler does so depends on what else the program computes: gymnax's Pendulum had other bits in a
-loop than tick by tick. Here the operations of a function are executed one by one. After each product of
-floats comes an integer operation that changes nothing, but the compiler does not know this (see
-`primordia.rounding`). Sums over axes, also those of matrix products, are trees of additions, whatever
-the number of bodies.
+compiler does so depends on what else the program computes: the results of gymnax's Pendulum in a
+loop differed from those tick by tick. Here the operations of a function are executed one by one.
+After each product of floats comes an integer operation that changes nothing, but the compiler does
+not know this (see `primordia.rounding`). Sums over axes, also those of matrix products, are trees
+of additions, whatever the number of bodies.
 """
 
 from collections.abc import Callable, Sequence
@@ -19,7 +19,7 @@ from jax import Array, lax
 from jax.extend.core import ClosedJaxpr, Jaxpr, Literal
 
 INLINED = {"jit": "jaxpr", "closed_call": "call_jaxpr", "custom_jvp_call": "call_jaxpr"}
-"""Primitives that only call a function, with the name of the function's parameter."""
+"""Primitives that only call a function, and their parameter that holds this function."""
 
 PRODUCTS = {"mul", "square"}
 NO_SUM = {
@@ -55,7 +55,7 @@ def rounded(function: Callable, zero: Array) -> Callable:
 
 
 def uses_first(function: Callable, *arguments: Any) -> bool:
-    """Return whether a function uses its first argument; the shapes of arguments are enough."""
+    """Return whether a function uses its first argument; `arguments` may be mere shapes."""
     jaxpr = jax.make_jaxpr(function)(*arguments).jaxpr
     used = [variable for equation in jaxpr.eqns for variable in equation.invars]
     return any(variable is jaxpr.invars[0] for variable in [*used, *jaxpr.outvars])

@@ -17,7 +17,7 @@ def values(env: str) -> dict[str, Any]:
     """Return the settings of a task in an environment, as nested tables.
 
     Raises:
-        InputError: there is no such environment, or a brain cannot live in it; the message says why.
+        InputError: there is no such environment, or it cannot be used; the message says why.
     """
     habitat, found = _measured(env)
     name = env.rpartition(":")[2]
@@ -57,7 +57,7 @@ def report(env: str) -> tuple[list[str], list[str]]:
         if limits
         else "The environment has no time limit.",
         "After an interruption lives go on exactly from their saved states.",
-        f"Random actions live {found.lifespan:,.0f} ticks on average."
+        f"With random actions, a life has {found.lifespan:,.0f} ticks on average."
         if found.ended
         else f"None of {BODIES} lives ended in {TICKS} ticks of random play: name a condition for fatal,"
         " or add a metabolism.",

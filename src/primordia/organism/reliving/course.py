@@ -13,11 +13,11 @@ from primordia.organism.reliving.relived import RelivedLife
 
 Value: TypeAlias = int | float | str | None
 ALIVE = "alive"
-"""The word in place of a cause of death."""
+"""The word for the living, in place of a cause of death."""
 OWN = tuple(f"world.organisms.{name}" for name in ("memory", "energy", "eaten"))
 """The names, in a state, of those arrays of an organism that change during its life."""
 BODIES, SENSES, COUNTS = "bodies", ("bodies.senses",), "bodies.tally"
-"""Prefix of the names of a body's arrays in a state, and names of a host body's senses and counts."""
+"""Names in a state: the prefix of a body's arrays, the senses of a habitat on the host, the counts."""
 
 
 def recorded(life: RelivedLife) -> dict[str, Value]:
@@ -66,7 +66,7 @@ class Course:
 
     @property
     def replaced(self) -> bool:
-        """Whether the organism was still alive when the record says that a child took its cell."""
+        """Whether the organism still lived at the tick at which, on record, a child took its cell."""
         life, lives = self._life, self._life.run.lives
         if life.cause is not Cause.REPLACED or self._cause >= 0:
             return False
