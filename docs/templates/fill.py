@@ -178,7 +178,7 @@ def unseen(name: str) -> bool:
 def worlds(name: str) -> str:
     """Say how many worlds each arm of an experiment has, and of which seeds."""
     count = rows(name).seed.nunique()
-    kind = "unseen seeds" if unseen(name) else "the first seeds, on which settings were chosen"
+    kind = "unseen seeds" if unseen(name) else "the first seeds"
     return f"{IN_WORDS.get(count, count)} worlds of {kind}"
 
 

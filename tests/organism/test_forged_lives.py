@@ -77,7 +77,7 @@ def test_a_forged_death_is_noticed(
     reseal(newest(run))
     for number in chosen:
         done = here("revive", run, number, "--json")
-        complains(done, 1, f"organism {number} of world 0 lived again differs from its record")
+        complains(done, 1, f"organism {number} of world 0, lived again, differs from its record")
         found = json.loads(done.stdout)
         assert not found["agrees"]
         assert {row["name"] for row in found["respects"] if not row["agrees"]} >= respects

@@ -13,7 +13,7 @@ import numpy as np
 from primordia.comparison.measured import Measured
 
 Rows = tuple[np.ndarray, np.ndarray]
-"""The worlds of two runs in the order of their pairs, each int64 (W,)."""
+"""The worlds of one run and of another, int64 (W,) each; worlds at the same index are a pair."""
 
 
 class Paired(NamedTuple):

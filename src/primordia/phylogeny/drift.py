@@ -28,7 +28,7 @@ DRAWS = 10**9
 DEATH, BIRTH, FOUNDER = 0, 1, 2
 """Kinds of events."""
 NO_LINE = 0
-"""The line number of founders that are born later: they begin no line. Lines are numbered from 1."""
+"""The number in place of a line for founders that are born later. Lines are numbered from 1."""
 
 
 class Deal(NamedTuple):
@@ -80,7 +80,7 @@ class Deal(NamedTuple):
 
 @dataclass(frozen=True)
 class Drift:
-    """The course of K lines of R shadows at T instants."""
+    """The shares of K lines in each of R shadows, at T instants."""
 
     final: np.ndarray
     """share of each line after the last instant, float64 (R, K)"""

@@ -1,4 +1,4 @@
-"""Forks: the record of a run, joined with the records of the runs that were forked.
+"""Forks: the record of a fork, joined with the records of the runs from which it was forked.
 
 A fork's records begin with the births of the organisms then alive. Their ancestors, and all that died
 before, are on record in the run that was forked.

@@ -29,7 +29,7 @@ WHOLE = 100_000
 SEEN = 400_000
 """Largest number of cells that are read in a larger world, over all moments."""
 MARKS = 12
-"""Largest number of renewals of lines that are marked."""
+"""At most this many of the moments at which all lines began again are marked."""
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,7 @@ from primordia.runs.record import Recorder
 from primordia.runs.schema import Schema
 
 EARLY = (1.0, 4.0, 10.0)
-"""Seconds before each of the first checkpoints, so that a run can soon be read."""
+"""Seconds from each early checkpoint to the next; early ones let a run be read soon."""
 
 
 @dataclass

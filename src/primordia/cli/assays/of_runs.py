@@ -62,7 +62,7 @@ def garden(
 
 @click.option(
     "--most", type=click.IntRange(min=2), default=200, show_default=True,
-    help="Largest number of genomes of the line that live again.",
+    help="At most this many genomes of the line live again.",
 )  # fmt: skip
 @assay_of_lives("Measure when a line of descent became good.")
 def line(
