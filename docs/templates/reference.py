@@ -143,7 +143,7 @@ def _range(metadata: list[Any]) -> str:
                 high = f" to {_number(value)}"
             case limits.Lt(lt=value):
                 high = f" to less than {_number(value)}"
-    return low + high
+    return f"{low} and up{high}" if low.startswith(" above") and high else low + high
 
 
 def _number(value: Any) -> str:

@@ -24,7 +24,9 @@ SENSES = {
 
 @click.command(cls=HabitatCommand, short_help="Measure champions, or one organism, in whole games.")
 @run_argument
-@click.option("--organism", type=int, help="Measure this organism alone, by its birth number.")
+@click.option(
+    "--organism", type=int, help="Birth number of an organism; only this organism is measured."
+)
 @click.option(
     "--world",
     type=int,

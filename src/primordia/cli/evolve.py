@@ -61,11 +61,11 @@ def run(
 
     TASK is a name from `primordia tasks`, a FILE.toml with a `task` and the settings that differ from
     this task, an environment of Gymnasium (gym:NAME), or an environment in JAX (gymnax:NAME). Any
-    setting below can be given as a flag, such as --seed 3, --cells 64 or --mutation.scale 0.02.
+    setting can be given as a flag, such as --seed 3, --cells 64 or --mutation.scale 0.02.
 
-    Keys in a terminal: space pauses, s lives one tick, - and + change the speed, w shows another world,
-    o shows an organism beside the world, n shows the next organism, ? explains all words, q saves and
-    stops.
+    Keys in a terminal: space pauses, s runs one tick and pauses, - and + change the speed, w shows
+    another world, o shows an organism beside the world, n shows the next organism, ? explains all
+    words, q saves and stops.
     """
     from primordia import api, config
 

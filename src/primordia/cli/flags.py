@@ -41,7 +41,7 @@ speed_option = click.option(
     "--speed",
     type=click.FloatRange(min=0, min_open=True, max=1e9),
     metavar="TICKS",
-    help="Live at most this number of ticks per second.",
+    help="Run at most this number of ticks per second.",
 )
 quiet_option = click.option("--quiet", is_flag=True, help="Print nothing while running.")
 

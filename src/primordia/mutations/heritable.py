@@ -14,7 +14,7 @@ from primordia.random.keys import Purpose, below
 
 
 class Heritable(Gaussian):
-    """Gaussian noise with the standard deviation scale x 2^(q / 4). The whole number q is inherited.
+    """Gaussian noise of standard deviation `scale` times 2^(q / 4). The whole number q is inherited.
 
     A mutant's q is the sum of its parent's q and a whole number from -stride to stride, all equally
     likely. The sum is limited to the range from `finest` to `coarsest`. Then the mutant's weights

@@ -25,7 +25,9 @@ SUFFIX = ".safetensors"
 
 source_argument = click.argument("run", type=click.Path(path_type=Path))
 organisms_argument = click.argument("organisms", type=int, nargs=-1, metavar="[ID]...")
-world_option = click.option("--world", type=int, help="The organisms' world [0].")
+world_option = click.option(
+    "--world", type=int, help="The organisms' world [0 if an ID is given, otherwise see above]."
+)
 task_option = click.option(
     "--task", help="Task in which the genomes of a file live [the task that the file names]."
 )

@@ -49,8 +49,8 @@ def compete(
     out: Path | None,
     as_json: bool,
 ) -> None:
-    """Let two genomes compete in empty worlds, without mutation. Measure whose descendants take
-    over.
+    """Let two genomes compete without mutation. In each world, each genome begins in half of the
+    cells. Measure whose descendants take over.
 
     ONE and OTHER each name a run, which stands for its champion, or a genome file, which stands for
     its first genome. `runs/a:17` is organism 17 of world 0. `runs/a:17@2` is organism 17 of world 2.
