@@ -77,9 +77,9 @@ def change_in(law: Law, moments: Remembered, parents: Array) -> Change:
     behaviour in the parents' moments.
 
     For discrete actions it is the share of moments with another choice. For continuous actions it
-    is the root mean square change of the outputs, each at most 1. For an action with parts of both
-    kinds, the larger of the two changes is returned. The change is infinite for a parent without
-    moments, since nothing is known about its children.
+    is the root mean square change of the outputs, where each change counts as 1 at most. For an
+    action with parts of both kinds, the larger of the two changes is returned. The change is
+    infinite for a parent without moments, since nothing is known about its children.
 
     Args:
         law: the law.

@@ -18,7 +18,7 @@ FILLED = Style(color="green")
 CELL = 26
 """Smallest number of columns for one number with its name."""
 MOST = 5
-"""Largest number of values side by side."""
+"""At most this many values stand side by side."""
 SHORTEST, LONGEST = 8, 24
 """Columns of a bar; a shorter one is left out."""
 TOPOLOGIES = {"ring": "on a ring", "torus4": "on a torus", "torus8": "on a torus"}

@@ -69,7 +69,7 @@ def assay_of_lives(short_help: str) -> Callable:
 )  # fmt: skip
 @click.option(
     "--differs", type=click.FloatRange(min=0), multiple=True,
-    help="Also measure a calibrated mutation with this change of behaviour; may be repeated.",
+    help="Also measure a calibrated mutation that changes behaviour by this share; may be repeated.",
 )  # fmt: skip
 @assay_of_lives("Measure how mutations of several sizes change a life.")
 def effects(
