@@ -160,11 +160,13 @@ def test_what_limits_the_comparison_is_said(
         )
     versions = json.loads((run / "versions.json").read_text())
     (run / "versions.json").write_text(json.dumps({**versions, "jaxlib": "0.0.1"}))
-    assert "exactness is off: jaxlib 0.0.1 then" in only_note(revive(Archive(run), number))
+    assert "exact repetition is not sure: jaxlib 0.0.1 then" in only_note(
+        revive(Archive(run), number)
+    )
     (run / "versions.json").write_text(json.dumps(versions))
     reseal(newest(run), lambda content: content["progress"].update(exact=False, restarts=2))
     inexact, restarts = revive(Archive(run), number).notes
-    assert inexact.startswith("exactness is off")
+    assert inexact.startswith("exact repetition is not sure")
     assert "got new bodies 2 times, when the run was resumed" in restarts
     lives = Archive(chain[0]).lives
     row = int(np.flatnonzero(lives.cause == Cause.REPLACED)[0])
