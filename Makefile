@@ -3,8 +3,10 @@ PYTHON ?= python3
 BIN := .venv/bin
 # These versions are tested. `make CONSTRAINTS= demo` takes the newest releases instead.
 CONSTRAINTS ?= --constraint constraints.txt --build-constraint constraints.txt
+# Tests keep the code that they compile, which saves a third of the time when they are run again.
+TESTS := JAX_COMPILATION_CACHE_DIR=$(CURDIR)/.venv/compiled $(BIN)/python -m pytest --numprocesses 2
 
-.PHONY: demo test quick slow check docs format figures bench mutants constraints clean
+.PHONY: demo test quick slow compiled check docs format figures bench mutants constraints clean
 
 demo: .venv/installed  ## evolve pole balancers, draw and report them, and film the first life beside a long one
 	rm -rf runs/demo
@@ -17,14 +19,17 @@ demo: .venv/installed  ## evolve pole balancers, draw and report them, and film 
 	@echo "Explore    runs/demo/report.html in a browser: every organism, its line of descent, the film of its world"
 	@echo 'Read on    docs/tutorial.md, ten minutes; `source .venv/bin/activate` puts `primordia` on the path'
 
-test: .venv/installed-dev  ## run all tests: about twenty minutes on two cores
-	$(BIN)/python -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder
+test: .venv/installed-dev compiled  ## run all tests: about twenty minutes on two cores, a third less the second time
+	$(TESTS) --dist loadfile --no-loadscope-reorder
 
-quick: .venv/installed-dev  ## test each promise once, with the tests in tests/quick.txt: a minute on two cores
-	$(BIN)/python -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder @tests/quick.txt
+quick: .venv/installed-dev compiled  ## test each promise once, with the tests in tests/quick.txt: a minute on two cores
+	$(TESTS) --dist loadfile --no-loadscope-reorder @tests/quick.txt
 
-slow: .venv/installed-dev  ## run the tests marked slow: an hour of kills, forged runs, generated inputs and all goldens
-	$(BIN)/python -m pytest --numprocesses 2 -m slow
+slow: .venv/installed-dev compiled  ## run the tests marked slow: an hour of kills, forged runs, generated inputs and all goldens
+	$(TESTS) -m slow
+
+compiled:
+	@[ "$$(du -sm .venv/compiled 2> /dev/null | cut -f 1)" -lt 1000 ] 2> /dev/null || rm -rf .venv/compiled
 
 check: .venv/installed-dev  ## check format, lint and types, run all tests, and build the site
 	$(BIN)/ruff format --check .
