@@ -167,7 +167,7 @@ def test_the_mutations_without_these_faults(mutation: Mutation) -> None:
         (Real(), r"gives notes as float32 \(32, 1\); the contract says int32 \(32, 1\)"),
         (Ranked(), "gives founders different notes"),
         (Neighbourly(), "instead of 32 are born together"),
-        (Open(), "a season of a setting that it does not have; return"),
+        (Open(), "a season of a setting that the mutation does not have; return"),
         (Closed(), "has a rate scale that no season of scale changes"),
         (Elsewhere(), "a season of .* changes .*size.*, which `rates` lacks"),
         (
