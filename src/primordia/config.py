@@ -66,7 +66,7 @@ class ForkedFrom(Settings):
 
 
 class Config(Settings):
-    """All settings of a run. A run depends only on its settings, package versions and the device."""
+    """All settings of a run. A run depends only on these and on versions, device and instruction set."""
 
     task: str = Field(min_length=1, description="name of the task")
     about: str = Field("", description="the task, in one line")

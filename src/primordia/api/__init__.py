@@ -120,7 +120,7 @@ def experiment(
             raise KeyboardInterrupt
         if result.failed:
             first = result.failed[0]
-            raise Trouble(f"{len(result.failed)} jobs failed; job {first.job}: {first.error}")
+            raise Trouble(f"failed jobs: {len(result.failed)}; job {first.job}: {first.error}")
     if not chosen.left():
         chosen.gather()
     return Experiment(chosen.path)

@@ -98,9 +98,10 @@ class Run:
     def oldest(self, world: int | None = None, after: float = LATE) -> Organism:
         """Return the organism that lived longest, in one world or in all worlds.
 
-        An organism counts only if it was born after the first share `after` of its world's births.
-        In a fork, only births after the fork count. So the founders with which a world begins do
-        not count. If several organisms lived longest, the last-born of them is returned.
+        `after` is a share of each world's births; organisms born earlier than that do not count.
+        In a fork, only births after the fork count. By default, the founders with which a world
+        begins count only if few others were born. If several organisms lived longest, the last-born
+        of them is returned.
         """
         run = self.opened()
         return Organism(run, run.lives.oldest(world, after))

@@ -1,10 +1,10 @@
 """Heredity of lifespan: the regression of offspring on parents, and the Price equation.
 
-Lifespans are compared as natural logarithms, since their ratios matter. The slope of the
-offspring's lifespan on the parent's is the realised heritability if organisms have one parent
-(Falconer & Mackay 1996, ch. 10). The Price equation (Price 1970) divides the change from parents to
-offspring into two terms. Selection: the long-lived have more children. Transmission: children
-differ from their parents.
+Lifespans are compared as natural logarithms, since their ratios matter. If organisms have one
+parent, the slope of the offspring's lifespan on the parent's estimates the heritability (Falconer &
+Mackay 1996, ch. 10). The Price equation (Price 1970) divides the change from parents to offspring
+into two terms. Selection: the long-lived have more children. Transmission: children differ from
+their parents.
 """
 
 from dataclasses import asdict, dataclass
@@ -24,7 +24,7 @@ class Pairs:
     pairs: int
     slope: float | None
     """slope of the child's log lifespan on the parent's; None for fewer than LEAST pairs, or if all
-    parents are equal"""
+    parents lived equally long"""
     as_long: float | None
     """share of the children that live exactly as long as the parent"""
     longer: float | None

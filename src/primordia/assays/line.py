@@ -48,7 +48,8 @@ class Line:
 
     @property
     def good(self) -> Step:
-        """The first step from which on all steps live at least a share GOOD of the last step's life."""
+        """The earliest genome that, like all later ones, lives at least GOOD times as long as the
+        last."""
         enough = GOOD * self.steps[-1].reborn
         below = [k for k, step in enumerate(self.steps) if step.reborn < enough]
         return self.steps[below[-1] + 1 if below else 0]

@@ -44,7 +44,7 @@ class Brain(Settings, ABC):
         """
 
     def memory(self, senses: int, outputs: int) -> int:
-        """Return M, the length of an organism's memory, which is zero at birth."""
+        """Return M, the count of numbers in an organism's memory; all are zero at birth."""
         return 0
 
     @abstractmethod

@@ -12,8 +12,8 @@ class Recurrent(Brain):
     """One hidden layer that feeds back into itself: `h' = tanh(W1 x + R h)`, `y = W2 h'`.
 
     Schmidgall & Hays 2021, "CartPole-survival", describe it as fully connected and recurrent with
-    one hidden layer of 32. The published code has this formula, without biases. With biases the
-    formula is `h' = tanh(W1 x + b + R h)`, `y = W2 h' + c`.
+    one hidden layer of 32 neurons. The published code has this formula, without biases. With biases
+    the formula is `h' = tanh(W1 x + b + R h)`, `y = W2 h' + c`.
     """
 
     hidden: Hidden = 32

@@ -21,7 +21,7 @@ def keep_compiled_code() -> None:
     importing JAX.
 
     Each kind of processor has a separate folder. Machines may share a home folder, and code that
-    was compiled for one machine may crash another.
+    was compiled for one machine may crash on another.
     """
     folder = user_cache_path("primordia", appauthor=False) / "compiled" / processor()
     try:

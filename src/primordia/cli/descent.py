@@ -183,15 +183,16 @@ def _notes(found: "WorldLines", told: dict[str, Any]) -> list[str]:
         "s: slope of ln(x / (1 - x)) over time while the share x is between 5 and 95 %. p: two-sided"
         " p-value from neutral shadows with the same births, deaths and population.",
         f"Effective number of lines at the end: {now:.2f}; in 95 % of {told['shadows']:,} shadows"
-        f" {low:.2f} to {high:.2f}. Test over all instants: p = {told['p_of_effective_lines']:.2g}.",
+        f" {low:.2f} to {high:.2f}. For its mean over time: p = {told['p_of_effective_lines']:.2g}.",
         _sweeps_text(found.sweeps),
         f"Phylogenetic diversity of the living: {found.diversity[-1]:,} ticks.",
     ]
     if found.pairs.mean is not None and found.neutral_pairs.mean is not None:
         notes.append(
             f"{found.pairs.share[-1]:.0%} of the pairs of the living have a common ancestor on"
-            f" record, {found.pairs.mean:,.0f} ticks ago on average. Drift alone would give"
-            f" {found.neutral_pairs.share[-1]:.0%} and {found.neutral_pairs.mean:,.0f} ticks."
+            f" record, {found.pairs.mean:,.0f} ticks ago on average. With drift alone,"
+            f" {found.neutral_pairs.share[-1]:.0%} would have one,"
+            f" {found.neutral_pairs.mean:,.0f} ticks ago."
         )
     return notes
 
@@ -200,7 +201,7 @@ def _sweeps_text(sweeps: "list[Sweep]") -> str:
     durations = sorted(each.duration for each in sweeps if each.duration is not None)
     text = f"Sweeps to all of the living: {len(durations):,}"
     if durations:
-        text += f", in {durations[len(durations) // 2]:,} ticks (median)"
+        text += f"; median duration: {durations[len(durations) // 2]:,} ticks"
     if sweeps and sweeps[-1].half is not None and sweeps[-1].fixed is None:
         last = sweeps[-1]
         text += (

@@ -144,13 +144,13 @@ def _notes(standings: "list[Standing]") -> list[str]:
     worlds = standings[0].to_dict()["worlds"]
     notes = [
         "The best founder is the longest-lived of the founders that it was chosen from. Founders have"
-        " not evolved."
+        " not evolved in this run."
     ]
     if worlds > 1:
         notes.append("Medians over worlds (quartiles) of the median organism of each world.")
     if all(each.evaluations[0].distinct == 1 for each in standings):
         notes.append(
-            "All games of an organism are the same, so champions are judged by the same game for which"
+            "All games of an organism are the same, so champions are judged by the very game by which"
             " they were chosen. Change a setting, such as --sticky 0.25, to make games differ."
         )
     return notes

@@ -34,8 +34,8 @@ def film(run: Path, trust: bool, begin: int | None, end: int | None, **chosen: A
 
     The colour of a cell shows the line of descent. Cells are lighter with age, flash at a birth, and
     fade after a death. A torus is drawn as a square. A ring is drawn as a disc, with the present at
-    the edge and the past inside. The film shows the world for at most half a minute, and then its
-    end for two more seconds. The life beside the world is shown at a different speed.
+    the edge and the past inside. The film shows the world for at most half a minute, and then the
+    last picture for two more seconds. The life beside the world is shown at a different speed.
     """
     from primordia.api import load
 

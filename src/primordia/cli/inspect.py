@@ -156,7 +156,7 @@ def verify(run: Path, device: str, trust: bool) -> None:
 
     differences = load(run, trust).verify(device)
     if differences:
-        raise Trouble(f"{run}, lived again, differs from its records: {differences[0]}")
+        raise Trouble(f"{run} differs from its records when repeated: {differences[0]}")
     click.echo(
         f"{run} is verified: every world was repeated from its beginning with the same result."
     )

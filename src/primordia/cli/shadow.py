@@ -50,8 +50,8 @@ def shadow_text(found: "Shadow") -> str:
     told = found.to_dict()
     longer, shorter = found.longer
     head = (
-        f"{found.name}: {told['organisms']:,} organisms from {found.births:,} births in"
-        f" {told['worlds']} worlds, each born again alone;"
+        f"{found.name}: {told['organisms']:,} organisms, each born again alone, from"
+        f" {found.births:,} births in {told['worlds']} worlds;"
         f" {2 * told['organisms']:,} lives, {told['ticks']:,} ticks"
     )
     lines = [f"{'':12}{'mean life':>12}{f'reach {found.cut:,} ticks':>24}"]

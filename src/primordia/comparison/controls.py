@@ -39,7 +39,7 @@ class Standing:
 
     name: str
     chosen_from: int
-    """largest number of organisms in a world from which one was chosen; 1 if there was no choice"""
+    """largest number of candidates in a world, of which one was chosen; 1 if there was no choice"""
     evaluations: list[Evaluation]
 
     def by_world(self, outcome: str) -> dict[int, float]:

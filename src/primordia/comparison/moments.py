@@ -12,7 +12,7 @@ from primordia.runs.records import Records
 
 
 def first_long(worlds: Sequence[Lives], age: int) -> Measured:
-    """Return the position, among each world's births since a fork, of the first to reach an age.
+    """Number each world's births since a fork; return the number of the first that reaches an age.
 
     The number is known if all organisms born before that birth are dead. Otherwise it is at least
     the number of the first organism that is still alive.

@@ -34,7 +34,7 @@ class Paired(NamedTuple):
 
 
 def same_seeds(run: np.ndarray, reference: np.ndarray) -> Rows | None:
-    """Return the pairs of worlds in the order of seeds, uint64 (W,) for each run.
+    """Return the pairs of worlds in the order of seeds, int64 (W,) for each run.
 
     None unless both runs have the same seeds, each once. Runs with only some common seeds are not
     paired, since their other worlds would be lost.

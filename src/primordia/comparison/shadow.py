@@ -60,7 +60,7 @@ class Shadow:
 
     @property
     def p(self) -> float:
-        """Probability of a split at least this uneven between worlds without selection (sign test)."""
+        """Probability of a split at least this uneven if selection has no effect (sign test)."""
         return sign_test(*self.longer)
 
     @property

@@ -103,7 +103,7 @@ def setting_text(value: Any) -> str:
 
 
 def number_text(value: float) -> str:
-    """Return a number as text with at least three digits, and commas between thousands."""
+    """Return a number as text, precise to at least three digits, with commas between thousands."""
     if math.isinf(value):
         return "inf"
     return f"{value:,.0f}" if abs(value) >= 100 or value == round(value) else f"{value:.3g}"
@@ -188,7 +188,7 @@ def _notes(compared: Comparison) -> list[str]:
     notes += _too_few(compared) + evidence_notes(compared)
     if any(arm.extinctions.crashes.any() for arm in compared.arms):
         notes.append(
-            "Crashes: extinctions after half of the cells were full of founders' descendants."
+            "Crashes: extinctions after founders' descendants had filled half of the cells."
         )
     if compared.begin:
         notes.append(

@@ -18,7 +18,7 @@ class Messages:
         self._of_deaths: list[str] = []
 
     def note_deaths(self, died: np.ndarray) -> None:
-        """Note why the bodies of dead organisms failed, before a reset; `died` is bool (C,)."""
+        """Before a reset, note why the bodies of dead organisms failed; `died` is bool (C,)."""
         self._of_deaths += [self._habitat.message(cell) for cell in np.flatnonzero(died).tolist()]
 
     def of(self, deaths: Rows) -> list[str]:

@@ -33,7 +33,7 @@ class Tallies:
         self._sampled = 0
 
     def note_deaths(self, died: np.ndarray) -> None:
-        """Note the tallies of organisms that died, before a reset of bodies; `died` is bool (C,)."""
+        """Before a reset of bodies, note the tallies of organisms that died; `died` is bool (C,)."""
         if self.names and died.any():
             self._deaths.append(self._habitat.tally()[died].astype(np.uint32))
 

@@ -21,7 +21,7 @@ from primordia.random.wide import wide
 
 
 class Births(NamedTuple):
-    """Seed, tick and cell of K births, which fix the bodies as in a run: int (K,) each."""
+    """Seed, tick and cell of K births, int (K,) each: they determine the bodies, as in a run."""
 
     seeds: np.ndarray
     """seed of the world"""

@@ -1,1 +1,1 @@
-"""Experiments: arms of many worlds, divided into jobs. A job is a run on one core or cluster node."""
+"""Experiments: arms of many worlds, divided into jobs. A job is a run on one core of any machine."""

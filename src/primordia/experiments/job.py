@@ -36,8 +36,7 @@ def live(
         device: the device that computes the job, `cpu` or `gpu`.
 
     Raises:
-        InputError: another process runs the job, or it cannot go on with these versions or
-            settings.
+        InputError: another process runs the job, or the job cannot go on with these versions or settings.
         Trouble: a file cannot be written.
         KeyboardInterrupt: on a signal, after a checkpoint.
     """

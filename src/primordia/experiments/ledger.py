@@ -1,7 +1,7 @@
-"""The ledger: a small file with the state of each job, written at intervals by its process.
+"""The ledger: for each job a small file with its state, which the job's process writes at intervals.
 
-The files show states and counts on any machine, without opening a run. A job is done if its file
-says so and its run exists. If a file is lost, the job is resumed and ends at once.
+Any machine can read states and counts from these files, without opening a run. A job is done if its file
+says so and its run exists. If the file of a done job is lost, the job is resumed and ends at once.
 """
 
 import json

@@ -1,4 +1,4 @@
-"""The figure of a line of descent: lives, mutations, and the share of each ancestor's descendants."""
+"""The figure of a line of descent: lives, mutations, and shares of some ancestors' descendants."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,7 +12,7 @@ CURVES = 7
 
 
 def draw(found: Ancestors) -> Figure:
-    """Draw lifespans, sizes of mutations and shares of the living, over the ticks of birth."""
+    """Draw lifespans and sizes of mutations by tick of birth, and shares of the living over time."""
     figure = Figure(figsize=(style.PAGE, 6.2))
     lives, changes, shares = figure.subplots(3, sharex=True)
     _lives(lives, found)

@@ -1,6 +1,6 @@
 """The colours of a world's cells, moment by moment.
 
-The hue is the line of descent, by the rule of `history.lines`. Cells are lighter with age, flash at a
+The hue shows the line of descent, by the rule of `history.lines`. Cells are lighter with age, flash at a
 birth, and fade after a death.
 """
 

@@ -37,7 +37,7 @@ def shape(placement: Placement, cells: int) -> Shape:
 
 
 class Grid:
-    """Rows and columns of cells; if there are more than SIDE, every second, third, ... is drawn."""
+    """Rows and columns of cells; if there are more than SIDE, only every n-th is drawn."""
 
     def __init__(self, rows: int, columns: int, count: int | None = None) -> None:
         """Take rows and columns, and the number of cells if they do not fill the last row."""

@@ -4,9 +4,10 @@ All habitats share one small grammar: numbers, names, `name[3]`, `name[1:]`, `na
 comparisons, `and or not`, some functions and parentheses. The grammar is a part of Python's, so Python's
 parser reads it. Only the operations listed here are executed, on arrays.
 
-Arithmetic is that of floats. Bytes and counts are taken as float64, in which whole numbers are exact up
-to 2^53 and products do not wrap. A quantity that is a float keeps its precision, so an expression of
-float32 quantities alone is computed in float32. All faults of an expression are found when it is
+Arithmetic is that of floats. On the host, bytes and counts become float64: exact up to 2^53, so
+products do not wrap. In JAX they become float32. A quantity that is a float keeps its precision, so
+an expression of float32 quantities alone is computed in float32. All faults of an expression are
+found when it is
 parsed: names, kinds, lengths, numbers out of range, and nesting.
 """
 

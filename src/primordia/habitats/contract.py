@@ -47,7 +47,7 @@ class Discrete:
 
     @property
     def parts(self) -> "tuple[Discrete]":
-        """Return the action as its only part."""
+        """Return the parts: the action itself is the only one."""
         return (self,)
 
 

@@ -23,7 +23,7 @@ class Clades:
     """whether the reason for a renewal was that one line had taken over, bool (K,)"""
 
     def lines_at(self, rows: np.ndarray, ticks: np.ndarray) -> np.ndarray:
-        """Return the line of each organism in `rows` after a tick of its life, int64.
+        """Return the line of each organism in `rows` after its tick in `ticks`, int64.
 
         `rows` and `ticks` are broadcast against each other.
         """

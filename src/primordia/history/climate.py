@@ -22,11 +22,11 @@ class PastClimate:
             self._metrics = {name: column[order] for name, column in metrics.items()}
 
     def of_lives(self, lives: Lives, ticks: np.ndarray) -> Climates:
-        """Return the settings in force for n organisms, each in one tick (n,)."""
+        """Return the settings in force for n organisms, each at its own tick (n,)."""
         return self.of_worlds(lives.world, ticks)
 
     def of_worlds(self, worlds: np.ndarray, ticks: np.ndarray) -> Climates:
-        """Return the settings in force in n worlds, each in one tick (n,).
+        """Return the settings in force in n worlds, each at its own tick (n,).
 
         A season that acts at the end of tick t is in force from tick t + 1 on; its sample has tick t.
         """

@@ -1,7 +1,8 @@
 """Lineages: the genome of any organism rebuilt from birth records alone, to the last bit.
 
 The founder's genome is made first. Then the mutations along the line of descent are replayed in order, by
-the rule that made them (`law.heredity`). A mutation gives the same bits on every device and version.
+the rule that made them (`law.heredity`). A mutation gives the same bits on every device and with
+every version of the packages.
 """
 
 from collections.abc import Iterator, Sequence

@@ -1,9 +1,9 @@
 """Placement: the cell of each child, and the winner among parents that pick the same cell.
 
-All parents of a tick act at once. Each replicating parent picks a cell. Of several parents on one cell,
-the one with the smallest (random bits, cell number) wins. For blind placement this equals the paper's
-rule, one parent after another in random order. Cells are numbered within their world, and a child never
-leaves its world. Arrays are (W, N): worlds, cells.
+All parents of a tick act at once. Each replicating parent picks a cell. If several pick the same
+cell, the parent with the smallest (random bits, cell number) wins. For blind placement this equals
+the paper's rule, one parent after another in random order. Cells are numbered within their world,
+and a child never leaves its world. Arrays are (W, N): worlds, cells.
 """
 
 import math

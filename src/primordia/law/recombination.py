@@ -38,8 +38,9 @@ class Recombination(Settings):
         probability.
 
         A row is the part of a block at one index of its first axis. A row holds the weights into
-        one neuron if the layer has at least as many inputs as neurons. Blocks with the same number
-        of rows take each row from the same parent, so that a neuron keeps all of its weights.
+        one neuron if the layer has at least as many inputs as neurons. In blocks with the same
+        number of rows, rows with the same index come from the same parent, so that a neuron keeps
+        all of its weights.
         """
         units = self.units(layout)
         count = int(units.max()) + 1

@@ -107,7 +107,7 @@ class Torus:
 
     @property
     def least(self) -> tuple[int, int]:
-        """A character for each cell in letters, or for each two cells in colours."""
+        """With letters, a character for each cell; in colours, one for two cells."""
         return self.columns, self.rows if self.letters else -(-self.rows // 2)
 
     def scale(self, room: Room) -> int:

@@ -45,7 +45,7 @@ class Cells:
 
 
 def skyline(cells: Cells, wide: int, tall: int, letters: bool) -> list[Row]:
-    """Draw a bar for each cell, higher with age, in `tall` rows and `wide` columns for a cell.
+    """Draw a bar for each cell, in `tall` rows and `wide` columns; older cells have higher bars.
 
     With `letters` the lines have no colours, and a row below the bars names the lines.
     """
@@ -79,9 +79,9 @@ def strip(cells: Cells, letters: bool) -> Row:
 
 
 def field(cells: Cells, columns: int, scale: int, letters: bool) -> list[Row]:
-    """Draw rows of `columns` cells as colours, lighter with age, or as letters.
+    """Draw cells, `columns` in a row, as letters or as colours, which are lighter with age.
 
-    A cell is `scale` characters wide, and `scale` / 2 rows of characters high.
+    In colours, a cell is `scale` characters wide, and `scale` / 2 rows of characters high.
     """
     rows = [slice(at, at + columns) for at in range(0, len(cells.line), columns)]
     if letters:
@@ -149,7 +149,7 @@ def _letter(line: int, capital: bool = False) -> str:
 
 @cache
 def colour(hue: int) -> tuple[int, int, int]:
-    """Return a colour at steps of the golden ratio, so that successive hues differ."""
+    """Return the colour of a hue number; each hue is a golden-ratio step from the last."""
     light = 0.6 if hue % 2 else 0.7
     red, green, blue = colorsys.hls_to_rgb(hue * 0.61803398875 % 1.0, light, 0.66)
     return round(255 * red), round(255 * green), round(255 * blue)

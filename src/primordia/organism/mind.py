@@ -23,6 +23,6 @@ class Mind(NamedTuple):
 
 
 def think(law: Law, mind: Mind, memory: Array, senses: Array, tick: Wide) -> Thought:
-    """Return the thoughts of one tick, Wide (1,), from memory (N, M) and senses (N, S)."""
+    """Return thoughts from memory (N, M) and senses (N, S) at one `tick`, a Wide (1,)."""
     key = stream(mind.key, Purpose.MOTOR, tick)
     return life.think(law, mind.genome, memory, senses, key, mind.cell)

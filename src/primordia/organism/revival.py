@@ -180,7 +180,7 @@ def _notes(run: Archive, course: Course) -> list[str]:
     notes = [f"{fault}; an older checkpoint was read" for fault in faults[:1]]
     if course.replaced:
         notes.append(
-            "the record says that a child took the cell in that tick; neighbours were not relived"
+            "the record says that a child took the cell in the last tick; neighbours were not relived"
         )
     if directory.is_written(run.path):
         notes.append(f"the run goes on; the records end at tick {run.ends.max():,}")

@@ -60,7 +60,7 @@ class Genealogy:
         return int(common[-1]) if self.living and len(common) else None
 
     def trunk(self) -> np.ndarray:
-        """Return the rows of the line that starts at the largest root and follows the largest family."""
+        """Return rows of the line whose root, and each next child, has the most living descendants."""
         if not len(self.rows):
             return np.zeros(0, np.int64)
         order = np.lexsort((self.size, self.parent))
@@ -88,7 +88,7 @@ class Times:
     back: np.ndarray
     """int64 (K,), rising"""
     share: np.ndarray
-    """share of pairs whose common ancestor lived at most `back` ticks ago, float64 (K,), rising"""
+    """share of pairs whose lines parted at most `back` ticks ago, float64 (K,), rising"""
 
     @property
     def median(self) -> float | None:

@@ -62,7 +62,7 @@ class Ancestors:
     census: Census
     """the living of the world at instants"""
     branch: np.ndarray
-    """place on the line at which each organism's own line leaves it, int64; see `branches`"""
+    """for each organism of the world, the place where its line leaves this one, int64; see `branches`"""
     common: CommonAncestor | None
     """the common ancestor of the living; None if there is none on record"""
     roots: int
@@ -88,7 +88,7 @@ class Ancestors:
     def telling(self, most: int) -> np.ndarray:
         """Return up to `most` places on the line, rising: the first, the last and the most important.
 
-        Half of the places are of organisms that outlived their parents by the largest ratio. The
+        Almost half of the places are of organisms that outlived their parents by the largest ratio. The
         other places are evenly spaced.
         """
         count = len(self.line)

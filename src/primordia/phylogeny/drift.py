@@ -28,7 +28,7 @@ DRAWS = 10**9
 DEATH, BIRTH, FOUNDER = 0, 1, 2
 """Kinds of events."""
 NO_LINE = 0
-"""The number in place of a line for founders that are born later. Lines are numbered from 1."""
+"""The line number of founders that are born later: they have no line. Lines are numbered from 1."""
 
 
 class Deal(NamedTuple):

@@ -40,7 +40,7 @@ class WorldLines:
     slopes: np.ndarray
     """selection coefficient of each line per tick, float64 (K,); NaN where it cannot be measured"""
     shadow_slopes: dict[int, np.ndarray]
-    """slopes of the shadows of each line with a slope, by the line's place, float64, rising"""
+    """for each line with a slope, by its place: the slopes of its shadows, rising, float64"""
     drift: Drift
     """the course of all lines when they drift together"""
     sweeps: list[Sweep]

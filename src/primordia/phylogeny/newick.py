@@ -20,8 +20,8 @@ from primordia.phylogeny.table import ROWS, ids
 def newick(whole: Phylogeny) -> Iterator[pa.Buffer]:
     """Yield the text of all trees, in pieces; a child's second parent is left out.
 
-    Each organism is written after its children: first `)`, or `,` and `(` as needed; then label and
-    length.
+    Each organism is written after its children. A parent begins with `)`; an organism without
+    children begins with `,` or `(` or both, as needed. Then come label and length.
     """
     lives, parent = whole.lives, whole.lives.parent_row
     order, depth = _children_first(parent)

@@ -11,7 +11,7 @@ from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
 
 MATE = "mate"
-"""Name of the column with the birth number of the second parent, among the facts."""
+"""Name of the column, among the facts, that holds the second parent's birth number."""
 Facts = dict[str, pa.Array]
 """Further columns by name, one value for each organism, null where there is none."""
 

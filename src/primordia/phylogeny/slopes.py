@@ -24,10 +24,10 @@ EVENTS = 2**15
 
 
 class Slopes:
-    """The slopes of the logit shares of N lines, by weighted least squares, one instant after another.
+    """The slopes of the logit shares of N lines, by weighted least squares, as instants are added.
 
-    If m organisms are alive, the weight of an instant is m x (1 - x). It is the inverse of the
-    variance of the logit of x.
+    If m organisms are alive and the line's share is x, the weight of an instant is the product of
+    m, x and 1 - x. It is the inverse of the variance of the logit of x.
     """
 
     def __init__(self, number: int) -> None:

@@ -1,9 +1,9 @@
-"""Simulators in worker processes: one for each cell, stepped in parallel on all cores.
+"""Simulators, one for each cell, in worker processes that step in parallel on all cores.
 
 Workers are started by a command rather than by `multiprocessing`, so scripts need no guard and notebooks
 work. Rows of arrays go through shared memory, commands of one byte through pipes. A pipe closes
-when the process at either end ends. So a worker's death is noticed at once, and no worker outlives
-its run.
+when one of its two processes has ended. So a worker's death is noticed at once, and no worker
+outlives its run.
 """
 
 import json

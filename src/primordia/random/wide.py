@@ -46,7 +46,7 @@ class Wide(NamedTuple):
     def until(self, later: "Wide") -> Array:
         """Return the ticks from this tick to a later one, int32, at most 2^31 - 1.
 
-        If `later` is the earlier one, the result is 2^31 - 1 too.
+        If `later` is this tick or an earlier one, the result is 2^31 - 1 too.
         """
         far = np.uint32(2**31 - 1)
         gap = later - self

@@ -67,7 +67,7 @@ def table(x: np.ndarray, *curves: dict[str, Any]) -> dict[str, Any]:
 
 
 def curve(name: str, values: np.ndarray, colour: str, kind: Kind = "line") -> dict[str, Any]:
-    """Return a curve; NaN leaves a gap. A curve with an empty name is not in the key."""
+    """Return a curve; NaN leaves a gap. A curve without a name is not in the legend."""
     return {"name": name, "values": numbers(values), "colour": colour, "kind": kind}
 
 
@@ -82,7 +82,7 @@ def numbers(values: np.ndarray, digits: int = 5) -> list[float | None]:
 def over_worlds(
     name: str, x: np.ndarray, values: np.ndarray, colour: str, each: bool = True
 ) -> dict[str, Any]:
-    """Return the table of the worlds' curves, (W, X), with their median and quartiles."""
+    """Return a table: median and quartiles of worlds (W, X), and each world's curve if they are few."""
     if len(values) == 1:
         return table(x, curve(name, values[0], colour))
     enough = np.isfinite(values).mean(axis=0) >= 0.5

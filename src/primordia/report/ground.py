@@ -2,7 +2,7 @@
 
 Time runs in births, as in `figures.spacetime`: place p shows the cells after the tick of the p-th birth.
 A world with few births is given completely. For a larger world, the cells are read only after some
-births, and only the organisms found there are given.
+births, and only the organisms found then, and the living, are given.
 """
 
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ WHOLE = 100_000
 SEEN = 400_000
 """Largest number of cells that are read in a larger world, over all moments."""
 MARKS = 12
-"""At most this many of the moments at which all lines began again are marked."""
+"""Largest number of marks; a mark shows a moment at which all lines began again."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Ground:
 
     @cached_property
     def shown(self) -> np.ndarray:
-        """The cells that are shown, int64 (N,): all, or every second or third."""
+        """The cells that are shown, int64 (N,): all, or evenly spaced ones."""
         return np.arange(0, self.cells, -(-self.cells // COLUMNS))
 
     @cached_property
@@ -78,8 +78,8 @@ class Ground:
 
     @cached_property
     def segments(self) -> dict[str, np.ndarray]:
-        """The lives in the shown cells, split where new lines begin; sorted by cell and time, each
-        (S,).
+        """The lives in the shown cells as S segments, sorted by cell and time; each array is (S,).
+        A life is split whenever all lines begin anew.
 
         `row`: row of the organism; `start`, `stop`: the places of time at which the organism
         appears and leaves; `code`: its line, see `line_codes`.

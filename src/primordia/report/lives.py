@@ -24,8 +24,8 @@ again takes about a minute."""
 def films(run: Records) -> dict[str, Any]:
     """Film lives of a run, for `lives.js`.
 
-    A life is lived again in its habitat. So only the code of installed packages, and code that the user
-    has trusted, is executed.
+    A life is lived again in its habitat. This executes only the code of installed packages, and
+    code that the user has trusted.
 
     Returns:
         `films`: each with its `title`, a description (`about`), and `data`, an MP4 in base64;

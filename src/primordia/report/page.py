@@ -1,7 +1,7 @@
 """The page: one HTML file with its style, scripts and content. The page loads no other file.
 
-A Content-Security-Policy in the page allows only these scripts, by their hashes, and forbids all
-requests (W3C, Content Security Policy Level 3).
+A Content-Security-Policy in the page allows only these scripts, by their hashes (W3C, Content
+Security Policy Level 3). It forbids all requests, except those of a live page to its server.
 """
 
 import base64

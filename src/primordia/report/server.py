@@ -1,4 +1,4 @@
-"""The page of a run, served on this machine alone while the run goes on.
+"""The page of a run, served to this machine alone, also while the run goes on.
 
 The server gives three things at fixed names and reads no path from a request: the page, its content as
 JSON, and events that say when the content has changed (server-sent events: WHATWG HTML, section

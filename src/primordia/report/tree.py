@@ -25,8 +25,8 @@ class Node:
     row: int
     alive: bool
     left_by: int
-    """the first organism on this line after the parent node's: the node's organism or one of its
-    ancestors"""
+    """a child of the parent node's organism, on the line to this node: the node's organism or its
+    ancestor"""
     skipped: int = 0
     """number of ancestors between the node and its parent"""
     parent: "Node | None" = None
@@ -78,7 +78,7 @@ def tree(ground: Ground) -> dict[str, Any] | None:
 
 
 def grown(parent_row: np.ndarray, leaves: list[int]) -> list[Node]:
-    """Return the roots of the tree of some organisms, by birth.
+    """Return the roots of the tree of some organisms, in order of birth.
 
     Args:
         parent_row: row of each organism's parent, or -1; int64 (L,), parents before their children.

@@ -11,7 +11,7 @@ from primordia.runs.records import Records
 def watch(
     open_: Callable[[], Records], port: int = PORT, begun: Callable[[str], object] = print
 ) -> None:
-    """Serve the page of a run until the process ends or Ctrl-C is pressed.
+    """Serve the page of a run until this process ends or Ctrl-C is pressed.
 
     Args:
         open_: a function that opens the run for reading; it is called again at each new checkpoint.

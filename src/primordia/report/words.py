@@ -102,8 +102,8 @@ def _many_worlds(worlds: list[dict[str, Any]], run: Records, rate: float | None)
     most = "All" if saturated == len(worlds) else f"{saturated:,} of {len(worlds):,}"
     return [
         f"In up to {longest:,} ticks{simulated(longest, rate)} of each world,"
-        f" {count(total('births'), 'organism')} were born, and {_deaths(worlds)}.",
-        *_extinct(total("extinctions"), run.config, "The worlds"),
+        f" {count(total('births'), 'organism')} were born in all, and {_deaths(worlds)}.",
+        *_extinct(total("extinctions"), run.config, "In all, the worlds"),
         f"{most} worlds are saturated: all cells full, and no death for"
         f" {run.config.saturation_ticks:,} ticks.",
     ]

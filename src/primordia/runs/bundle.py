@@ -4,9 +4,10 @@
     run/births/*.parquet  deaths/*.parquet  metrics/*.parquet
     run/checkpoints/000012/  origin/
 
-Equal runs give bundles with equal bytes. A bundle may come from a stranger and is not trusted: a
-manifest must name each file, with its size and checksum. Nothing is compressed, so unpacking cannot
-take more space than the bundle. Nothing in a bundle is executed.
+Equal runs give bundles with equal bytes. A bundle may come from a stranger and is not trusted:
+except for `versions.json` and the manifests, a manifest must name each file, with its size and
+checksum. Nothing is compressed, so unpacking cannot take more space than the bundle. Nothing in a
+bundle is executed.
 """
 
 import atexit

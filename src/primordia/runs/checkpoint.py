@@ -207,7 +207,7 @@ def _read(run: Path, path: Path, fault_in: FaultIn) -> Checkpoint | str:
 
 
 def remove_leftovers(run: Path, last: Checkpoint | None) -> None:
-    """Delete all files that the given checkpoint does not name, such as unfinished files of a crash."""
+    """Delete later and unfinished checkpoints, and segments that the given checkpoint does not name."""
     before = numbered(run)
     kept = before[: before.index(last.path) + 1] if last and last.path in before else []
     for path in (run / FOLDER).iterdir():

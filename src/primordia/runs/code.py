@@ -49,7 +49,7 @@ def found(modules: Iterable[str]) -> Sources:
 def of_run(
     run: Path, config: Config, about: Description, parts: Sequence[str], edited: bool
 ) -> Sources:
-    """Return the files of the user's own code in a run that these parts execute.
+    """Return the files of the user's own code that these parts of a run execute.
 
     Modules without a copy in the run are found on `sys.path` or in the current folder. With
     `edited`, all modules are looked up in these places first.

@@ -1,7 +1,7 @@
 """Digests: equal runs have equal digests, however they were computed and stored.
 
 Records enter as a sum of row hashes. So a digest can be updated as its run goes on, and does not depend
-on the order of rows, chunks or segments. The state enters unchanged, without its empty cells.
+on the order of rows, chunks or segments. The state enters byte by byte, without its empty cells.
 """
 
 import hashlib

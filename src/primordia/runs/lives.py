@@ -9,7 +9,7 @@ import numpy as np
 from primordia.errors import InputError
 
 LATE = 0.5
-"""Share of a world's births after which a birth is late."""
+"""A birth is late if it comes after this share of its world's births."""
 ALIVE = -1
 """The cause of death of an organism that is alive."""
 

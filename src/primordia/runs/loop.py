@@ -1,6 +1,7 @@
 """The loop of a run: begin or resume, then advance, record and checkpoint.
 
-A run is a directory, whose content is a function of `config.toml`; see `record` and `checkpoint`.
+A run is a directory, whose records follow from the files that it began with; see `record` and
+`checkpoint`.
 """
 
 import time

@@ -11,7 +11,7 @@ from primordia.errors import Trouble
 NULLABLE = ("parent", "mate")
 """Columns that may have no value, for a founder or a child without a mate."""
 MANY = 2**16
-"""Number of rows from which several threads read a segment faster than one thread."""
+"""Smallest number of rows that several threads read faster than one thread does."""
 
 
 def read(path: Path, rows: int, schema: pa.Schema, columns: Sequence[str] | None) -> pa.Table:

@@ -1,4 +1,4 @@
-"""The arrays that a checkpoint must hold, by a run's settings and description."""
+"""The arrays that a checkpoint must hold, according to a run's settings and description."""
 
 from collections.abc import Iterator, Mapping
 from functools import lru_cache

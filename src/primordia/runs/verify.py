@@ -15,7 +15,7 @@ def verify(run: Archive, listen: Listener | None = None) -> list[str]:
     """Repeat a run from its beginning, without writing. Return the differences from its records.
 
     Raises:
-        InputError: the run has no checkpoint yet, or the run is not exact, so it may not repeat.
+        InputError: the run has no checkpoint yet, or the run is not exact, so it cannot be verified.
     """
     config = run.config
     last, faults = run.newest

@@ -1,4 +1,4 @@
-"""Doors: tasks made from only the name of an environment, such as `gym:LunarLander-v3`."""
+"""Doors make tasks from only the name of an environment, such as `gym:LunarLander-v3`."""
 
 from textwrap import fill
 from typing import Any

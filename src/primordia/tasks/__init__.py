@@ -1,1 +1,1 @@
-"""Tasks, one TOML file each: the paper's experiments as data."""
+"""Tasks, one TOML file each: the paper's experiments, and others, as data."""

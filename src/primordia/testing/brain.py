@@ -15,7 +15,7 @@ TICKS = 6
 
 
 def check_brain(brain: Brain, senses: int = 33, outputs: int = 5) -> None:
-    """Check types, purity, and the same bits for every number of organisms, compiled or not.
+    """Check types, purity, and that bits are the same for any number of organisms, compiled or not.
 
     Args:
         brain: the brain with its settings.

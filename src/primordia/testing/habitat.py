@@ -96,7 +96,7 @@ def _abilities(habitat: AnyHabitat) -> None:
     need(
         habitat.rate is None or habitat.rate > 0,
         habitat,
-        f"has rate = {habitat.rate!r}; state ticks per second, or None",
+        f"has rate = {habitat.rate!r}; give the ticks per second, or None",
     )
     need(
         all(isinstance(each, str) for pair in habitat.versions.items() for each in pair),

@@ -78,7 +78,7 @@ class Lives:
         return self._played(np.arange(ALL))
 
     def among(self, count: int) -> list[Past]:
-        """Play only the last lives, in reversed order."""
+        """Play only the lives of the last `count` bodies, which lie in cells in reversed order."""
         return self._played(np.arange(ALL)[::-1][:count])
 
     def interrupted(self) -> list[Past]:
@@ -101,7 +101,7 @@ class Lives:
             return stage.pasts
 
     def restored(self, rows: slice) -> list[Past]:
-        """Play half of all lives; then play the rest of some in a habitat that loads the saved state."""
+        """Play half of each life, then the rest of some lives in a habitat that loads the saved state."""
         with self.opened(np.arange(ALL), ALL) as stage:
             stage.play(HALF)
             saved = stage.saved()

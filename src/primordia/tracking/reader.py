@@ -54,8 +54,8 @@ class Reader:
         """Read the runs at their newest checkpoints. Return each world that has new rows, with the
         rows.
 
-        A resumed run repeats its rows since the last checkpoint to the last bit; these rows are not
-        new.
+        A resumed run writes the rows after its last checkpoint again, bit for bit; these rows are
+        not new.
 
         Args:
             runs: directories of runs by arm; "" is the name of a single arm.

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from primordia.assays.subjects import Subjects
 
 NUMBERED = re.compile(r"(?P<place>.+):(?P<organism>\d+)(@(?P<world>\d+))?")
-"""A run or genome file, an organism of it, and its world."""
+"""A run or a genome file, an organism in it, and the organism's world."""
 
 
 @click.command(cls=HabitatCommand, short_help="Let two genomes compete in one world.")

@@ -14,7 +14,7 @@ SHARES = {
 
 
 def draw(found: list[Effect]) -> Figure:
-    """Draw, for each mutation, the shares of mutants that live as long, longer and shorter.
+    """Draw, for each mutation, the shares of mutants that live as long as the parent, longer or shorter.
 
     Lines and bands are means and quartiles over organisms.
     """

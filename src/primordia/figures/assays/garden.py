@@ -10,7 +10,7 @@ COLOURS = {"oldest": style.BLUE, "late-born": style.ORANGE}
 
 
 def draw(found: list[Bed]) -> Figure:
-    """Draw recorded lives against lives when born again, and the survival curve of each group."""
+    """Draw recorded lives against lives of genomes born again, and the survival curve of each group."""
     figure = Figure(figsize=(style.PAGE, 2.8))
     pairs, again = figure.subplots(1, 2)
     for group, colour in COLOURS.items():

@@ -147,7 +147,7 @@ class Atari(HostHabitat, Settings):
 
     @property
     def words(self) -> int:
-        """Random words for no-ops and sticky actions; without them all games begin alike."""
+        """Number of random words for no-ops and sticky actions; 0 if the settings have neither."""
         return 2 if self.noops or self.sticky else 0
 
     @property

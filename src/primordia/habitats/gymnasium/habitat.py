@@ -2,7 +2,7 @@
 
 Settings define death, food and effort by expressions of the observation, the reward, `terminated`,
 `truncated` and `info`. The environment's own time limit is off. Every birth resets an environment
-with a different seed, the birth's random word. Environments run in worker processes, or in this
+with a seed from the birth's own random word. Environments run in worker processes, or in this
 process.
 """
 

@@ -142,7 +142,7 @@ def screen_shape(env: str, options: Mapping[str, Any], imports: Sequence[str]) -
 
 
 def check_food(env: str, options: Mapping[str, Any], imports: Sequence[str], function: str) -> None:
-    """Try a function that measures food on one step.
+    """Try a food function on the result of one step.
 
     Raises:
         ValueError: there is no such function, or the function returns no number.

@@ -1,4 +1,4 @@
-"""Environments of some cells, in one process. A life begins with a reset whose seed is the birth's word.
+"""Environments of some cells, in one process. A life begins with a reset seeded from the birth's word.
 
 A saved state is restored in one of two ways (`saving`). `snapshot`: the environment's attributes
 are saved as plain data. `replay`: the seed and the actions are saved, and the life is lived again.

@@ -32,7 +32,7 @@ STRETCH = 64
 FEWEST = 16
 """Smallest number of games of a loop. The number is padded, since JAX compiles for every new shape."""
 FEWER = 8
-"""Games that are over leave the loop when at most one in this many of its games goes on."""
+"""Games that are over leave the loop when at most one game in this many still goes on."""
 
 
 class _Table(NamedTuple):

@@ -1,4 +1,4 @@
-"""A life in a habitat on the host, which has one cell; brain and simulator take turns."""
+"""A life in a habitat of one cell on the host; brain and simulator take turns."""
 
 from typing import Any
 

@@ -40,7 +40,7 @@ from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 
 ALONE = (*BODILY, Cause.HAZARD)
-"""Causes of death that are found when a life is lived alone; other causes are acts of neighbours."""
+"""Causes of death that are found when a life is lived alone: all but a neighbour's child and a resume."""
 
 
 @dataclass(frozen=True)
