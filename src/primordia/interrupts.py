@@ -21,7 +21,7 @@ from contextlib import AbstractContextManager, contextmanager, suppress
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 PATIENCE = 2.0
-"""Seconds after which a second signal ends a process that the first one did not end."""
+"""Least number of seconds from a first signal to a second one that ends the process."""
 STATUS = 130
 """Exit status of a command that a signal has ended."""
 

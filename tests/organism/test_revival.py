@@ -171,7 +171,7 @@ def test_what_limits_the_comparison_is_said(
     lives = Archive(chain[0]).lives
     row = int(np.flatnonzero(lives.cause == Cause.REPLACED)[0])
     replaced = Organism(Archive(chain[0]), row).revive()
-    assert "a child took the cell in that tick" in only_note(replaced)
+    assert "a child took the cell in the last tick" in only_note(replaced)
 
 
 def test_a_missing_segment_is_an_error_of_one_line(chain: list[Path], tmp_path: Path) -> None:

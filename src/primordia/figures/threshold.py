@@ -8,7 +8,7 @@ from primordia.history.threshold import Threshold, over_births
 from primordia.runs.records import Records
 
 WINDOWS, ENOUGH = 20, 200
-"""Largest number of bins, and the births needed for each bin (a tenth of the parents count as good)."""
+"""Largest number of bins, and the births needed for each, since only a tenth of the parents are good."""
 
 
 def draw(run: Records, world: int) -> Figure | None:

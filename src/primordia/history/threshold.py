@@ -29,7 +29,7 @@ class Threshold:
     """p, the share of children that are mutants"""
     as_good: float | None
     """v: the share of good parents' mutants that live as long as the parent, divided by the same
-    share of the parents' copies"""
+    share of the parents' copies; at most 1"""
     advantage: float | None
     """s: number of ticks lived per death among copies of good parents, divided by the same ratio
     among all organisms born"""

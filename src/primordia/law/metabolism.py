@@ -17,7 +17,7 @@ from primordia.settings.base import Rate, Settings
 ONE = 1024
 """Fixed-point steps in one unit of energy or food."""
 MOST = 2**30 - 64
-"""Largest energy or change, in steps: 1,048,575.9 units. It is exact in float32, and the sum of two
+"""Largest energy or change, in steps; it is 1,048,575.9 units. It is exact in float32, and the sum of two
 such energies fits in int32."""
 
 

@@ -17,7 +17,7 @@ FRAME = 0.1
 NAP = 0.25
 """Largest number of seconds until a waiting run notices a signal."""
 LEVELS = [step * 10**power for power in range(9) for step in (1, 3)]
-"""Ticks a second that can be chosen by key."""
+"""Speeds that can be chosen by key, in ticks a second."""
 UNKNOWN = 10_000
 """Assumed speed of a run before its speed is known, in ticks a second."""
 

@@ -20,7 +20,7 @@ CELL = 26
 MOST = 5
 """At most this many values stand side by side."""
 SHORTEST, LONGEST = 8, 24
-"""Columns of a bar; a shorter one is left out."""
+"""Least and most columns of a bar; a shorter bar is left out."""
 TOPOLOGIES = {"ring": "on a ring", "torus4": "on a torus", "torus8": "on a torus"}
 
 

@@ -11,7 +11,7 @@ from types import TracebackType
 from typing import Any
 
 SEQUENCE = re.compile(r"\x1b(\[[0-9;?]*[@-~]|O.|.)?", re.DOTALL)
-"""Pattern of what keys such as arrows send; these keys have no meaning here."""
+"""Pattern of the codes of keys such as arrows; these keys have no meaning here."""
 
 
 def show_cursor() -> None:

@@ -32,7 +32,7 @@ WORDS = {
     " one colour or letter.",
     "branch": "Organisms that descend from one child of a founder.",
     "takeovers": "How often only one line was left, so that all the living descend from one ancestor.",
-    "extinctions": "How often no organism was alive. A new founder then begins life again.",
+    "extinctions": "How often no organism was alive. Life then begins again with new founders.",
     "children mutate": "Share of the latest births whose genome differs from the parent's.",
     "mutants as good": "Share of good parents' mutants that live as long as the parent, divided by"
     " that of the parents' copies.",
@@ -49,7 +49,7 @@ WORDS = {
     "time-limit": "A death because the task ends a life after some ticks.",
     "fault": "A death because the simulation or the brain failed, or gave a number that is not finite.",
     "restart": "A death because the run was resumed without the body of the organism.",
-    "energy": "What an organism needs to live. Life and actions take energy, food gives energy.",
+    "energy": "What an organism needs to live. Life and actions take energy; food gives energy.",
     "senses": "What the organism perceives: a bar for each sense, lowest at -1, highest at 1.",
     "memory": "What the brain keeps from tick to tick, drawn as the senses are.",
     "does next": "The action that the brain chooses from these senses.",

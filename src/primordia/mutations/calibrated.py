@@ -17,7 +17,7 @@ from primordia.rounding import rounded_product
 from primordia.settings.base import Rate
 
 STEPS = 7
-"""Steps of the bisection among the 96 lengths from SHORTEST + 1 to 0."""
+"""Steps of the bisection among the 96 values of q from SHORTEST + 1 to 0."""
 
 
 class Calibrated(Mutation):

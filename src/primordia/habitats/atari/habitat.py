@@ -39,7 +39,7 @@ NAMES: Names = {
 }
 """Names in conditions and amounts: RAM and lives after the tick; points and lost lives of the tick."""
 SCALED = (np.arange(256, dtype=np.float32) - 128) / 128
-"""The sense of each value of a byte."""
+"""The number perceived for each value of a byte."""
 FRAME_RATE = 60
 """frames a second"""
 

@@ -186,10 +186,10 @@ def _repeat(trial: _Trial, lives: list[_Life], found: Measured) -> None:
         found.saving = "restart"
         found.faults.append(
             "the same seed and actions give another life: the environment draws random numbers from"
-            " outside, or keeps something between environments"
+            " outside, or keeps something from an earlier environment"
             if begins
             else "a reset with the same seed gives another beginning: the environment "
-            "ignores its seed, or keeps something between environments"
+            "ignores its seed, or keeps something from an earlier environment"
         )
     elif not all(again) or new != [life.seen for life in reversed(lives)]:
         found.fresh = True

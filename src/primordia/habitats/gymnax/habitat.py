@@ -54,7 +54,7 @@ class Gymnax(JaxHabitat, Settings):
     )
     params: dict[str, Any] = Field({}, description="new values of parameters of the environment")
     time_limit: bool = Field(False, description="true: the environment's own time limit ends lives")
-    fatal: str = Field("done", description='condition that ends a life; "": no life ends')
+    fatal: str = Field("done", description='condition that ends a life; "": no condition ends it')
     food: str = Field(
         "",
         description="amount gathered in a tick, such as reward; if it is left out, there is "

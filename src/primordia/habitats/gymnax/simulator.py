@@ -202,4 +202,6 @@ def _as(default: Any, value: Any, name: str) -> Any:
             return array
     elif type(value) is type(default):
         return value
-    raise ValueError(f"params: {name} is {default!r} by default, so it cannot be {value!r}")
+    raise ValueError(
+        f"params: {name}: {value!r} differs from the default {default!r} in type or shape"
+    )

@@ -56,7 +56,7 @@ class MuJoCo(HostHabitat, Settings):
     velocity_sd: float = Field(
         0.0, ge=0, description="velocities at birth are Gaussian with this standard deviation"
     )
-    fatal: str = Field("", description='condition that ends a life; "": no life ends')
+    fatal: str = Field("", description='condition that ends a life; "": no condition ends it')
     food: str = Field("0", description="amount gathered in a tick")
     effort: str = Field("0", description="amount exerted in a tick")
     target: Target | None = Field(None, description="an object that the robot must reach")
