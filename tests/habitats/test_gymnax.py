@@ -148,7 +148,10 @@ WRONG: list[tuple[dict[str, Any], str]] = [
     ({"env": "tests.walks:Nothing"}, "has no default_params, reset_env, step_env"),
     ({"env": "tests.walks:Missing"}, "cannot be made"),
     ({"env": "tests.walks:Walk", "params": {"gust": 1.0}}, "did you mean 'gusts'"),
-    ({"env": "tests.walks:Walk", "params": {"gusts": "strong"}}, "gusts is 0.5 by default"),
+    (
+        {"env": "tests.walks:Walk", "params": {"gusts": "strong"}},
+        "type and shape of its default, 0.5",
+    ),
     ({"env": "tests.walks:Walk", "fatal": "state"}, "'state' has parts"),
     ({"env": "tests.walks:Walk", "fatal": "obs[3] > 0"}, "obs goes from obs[0] to obs[2]"),
     ({"env": "tests.walks:Walk", "food": "lives"}, "known: done, info, obs, reward, state"),

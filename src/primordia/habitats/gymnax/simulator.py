@@ -203,5 +203,5 @@ def _as(default: Any, value: Any, name: str) -> Any:
     elif type(value) is type(default):
         return value
     raise ValueError(
-        f"params: {name}: {value!r} differs from the default {default!r} in type or shape"
+        f"params: {name} is {value!r}; it must have the type and shape of its default, {default!r}"
     )
