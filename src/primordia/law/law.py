@@ -39,7 +39,7 @@ class Law:
     genesis: Literal["one", "fill"]
     seasons: tuple[Schedule | Ratchet, ...]
     saturation_ticks: int
-    """ticks without a death after which a full world is saturated"""
+    """a full world is saturated after this number of ticks without a death"""
     sample_every: int
     """ticks between samples"""
 

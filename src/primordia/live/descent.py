@@ -17,7 +17,7 @@ class Descent:
 
     def __init__(self) -> None:
         self.lines: dict[int, Lines] = {}
-        """lines of descent by number of the world, without the worlds that are not followed"""
+        """world's number -> its lines of descent, for the worlds that are followed"""
         self._followed, self._missed = 0, False
 
     def follow(self, status: Status, shown: int) -> None:

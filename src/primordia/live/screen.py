@@ -22,7 +22,7 @@ LOW = 12
 """least number of rows of a screen that has a legend"""
 
 Draw = Callable[[Room], list[Row]]
-"""Function that draws a part in a room; it returns at most as many rows as the room has."""
+"""Function that draws a part of the screen into a room, a rectangle; it returns no more rows than fit."""
 
 
 def composed(

@@ -27,8 +27,8 @@ class Genealogy:
     size: np.ndarray
     """number of the living among each organism and its descendants, int64 (A,)"""
     merges: np.ndarray
-    """number of pairs of the living whose lines part at each organism's birth: one line goes
-    through the organism, the other one only through its parent"""
+    """for each organism, the number of pairs of the living whose lines part at its birth: one line goes
+    through the organism, and the other one only through its parent"""
 
     @classmethod
     def of(cls, lives: Lives) -> "Genealogy":

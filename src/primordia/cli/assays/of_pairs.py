@@ -55,7 +55,7 @@ def compete(
     ONE and OTHER each name a run, which stands for its champion, or a genome file, which stands for
     its first genome. `runs/a:17` is organism 17 of world 0. `runs/a:17@2` is organism 17 of world 2.
     `some.safetensors:3` is the fourth genome of a file. `Pong-survival:5` is a founder of a task.
-    The worlds follow the settings of ONE. Any setting of the habitat can be changed by a flag.
+    The worlds have the settings of ONE. Any setting of the habitat can be changed by a flag.
     """
     from primordia.assays.compete import compete as measure
 
