@@ -1,7 +1,7 @@
 """Set-up of all tests: JAX, Hypothesis, and a shared cache of compiled code."""
 
 import os
-from collections.abc import Iterator
+from pathlib import Path
 
 import jax
 import pytest
@@ -22,22 +22,41 @@ if EMITTERS not in flags:
 device.prepare()
 
 
-def optimise(wanted: bool) -> None:
-    """Compile from now on with or without optimisation, here and in processes that tests start."""
-    os.environ["JAX_DISABLE_MOST_OPTIMIZATIONS"] = str(not wanted).lower()
-    jax.config.update("jax_disable_most_optimizations", not wanted)
-    jax.clear_caches()
-
-
-optimise(False)
-
-
 @pytest.fixture(scope="module")
-def optimised() -> Iterator[None]:
-    """Compile the code of a module's tests as users do."""
-    optimise(True)
-    yield
-    optimise(False)
+def optimised() -> None:
+    """Compile the code of this file's tests as users do; see `pytest_runtest_setup`."""
+
+
+OPTIMISED: set[Path] = set()
+"""Files of which some tests take the fixture `optimised`."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Begin with optimised code, and with the files that take longest.
+
+    A process changes to other code once, since this makes it forget all its code. No long file is left
+    to one process at the end.
+    """
+    longest = ["docs", "exactness", "shipped", "jobs", "goldens_of_laws", "goldens", "fork", "resume",
+               "sharded", "contract", "life", "code", "evaluation"]  # fmt: skip
+    places = {f"test_{about}.py": place for place, about in enumerate(longest)}
+    OPTIMISED.update(
+        item.path for item in items if "optimised" in getattr(item, "fixturenames", ())
+    )
+    items.sort(
+        key=lambda item: (item.path not in OPTIMISED, places.get(item.path.name, len(places)))
+    )
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Compile a file's tests with or without optimisation, and those of processes that they start."""
+    without = item.path not in OPTIMISED
+    told = str(without).lower()
+    if os.environ.get("JAX_DISABLE_MOST_OPTIMIZATIONS") != told:
+        os.environ["JAX_DISABLE_MOST_OPTIMIZATIONS"] = told
+        jax.config.update("jax_disable_most_optimizations", without)
+        jax.clear_caches()
 
 
 # Processes that tests start, and workers that those start, import this tree, whatever is installed.
@@ -46,14 +65,6 @@ os.environ["PYTHONPATH"] = commands.TREE
 # A slow test is not a wrong test: the machine may be busy, and garbage collection takes up to 0.3 s.
 settings.register_profile("patient", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("patient")
-
-
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Begin with the files that take longest, so that none is left to one process at the end."""
-    longest = ["docs", "exactness", "shipped", "jobs", "goldens_of_laws", "goldens", "fork", "resume",
-               "sharded", "contract", "life", "code", "evaluation"]  # fmt: skip
-    places = {f"test_{about}.py": place for place, about in enumerate(longest)}
-    items.sort(key=lambda item: places.get(item.path.name, len(longest)))
 
 
 @pytest.fixture(autouse=True, scope="session")

@@ -37,12 +37,12 @@ def _holders(spans: np.ndarray) -> np.ndarray:
 
 
 def shown(holders: np.ndarray, least: int) -> np.ndarray:
-    """Return the organism that is shown at each moment, (F,). All but the last stay for `least` or more.
+    """Return the organism that is shown at each moment, (F,). Each stays at least `least` moments.
 
     Args:
         holders: the oldest so far at each moment, (F,).
-        least: smallest number of moments for which an organism is shown; after them, the oldest
-            organism of the moment takes its place.
+        least: smallest number of moments for which an organism is shown; only then may an older one
+            take its place.
     """
     chosen, since = holders.copy(), 0
     for now in range(1, len(holders)):

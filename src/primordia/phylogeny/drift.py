@@ -67,7 +67,7 @@ class Deal(NamedTuple):
         )
 
     def replicates(self, lines: int, fewest: int, most: int) -> int:
-        """Return the number of shadows that each line gets if `lines` lines are dealt one by one."""
+        """Return how many shadows each of a number of lines gets; lines are drawn one after another."""
         return int(np.clip(DRAWS // max(self.places[-1] * lines, 1), fewest, most))
 
     @property

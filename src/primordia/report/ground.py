@@ -54,7 +54,7 @@ class Ground:
 
     @cached_property
     def moments(self) -> np.ndarray:
-        """The places of time at which the cells are read, int64 (T,), ascending."""
+        """The times at which the cells are read, counted in births, int64 (T,), ascending."""
         births = len(self.lives)
         if births <= WHOLE // self.share:
             return np.arange(births)
@@ -81,7 +81,7 @@ class Ground:
         """The lives in the shown cells as S segments, sorted by cell and time; each array is (S,).
         A life is split whenever all lines begin anew.
 
-        `row`: row of the organism; `start`, `stop`: the places of time at which the organism
+        `row`: row of the organism; `start`, `stop`: the times, in births, at which the organism
         appears and leaves; `code`: its line, see `line_codes`.
         """
         lives, births = self.lives, len(self.lives)
@@ -146,7 +146,7 @@ class Ground:
         }
 
     def _marks(self) -> list[dict[str, Any]]:
-        """Return the first renewals of lines: their places of time, and why lines began."""
+        """Return the first renewals of lines: their times, in births, and why lines began."""
         renewals, takeovers = self.clades.renewals[:MARKS], self.clades.by_takeover[:MARKS]
         places = np.searchsorted(self.lives.born, renewals).tolist()
         crowd = f"{crowd_size(self.lives)} alive: each begins a line"

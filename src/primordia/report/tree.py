@@ -40,7 +40,7 @@ def tree(ground: Ground) -> dict[str, Any] | None:
 
     Returns:
         `nodes`, parents before their children, each with the birth `number` of its organism; `parent`:
-        place among the nodes, or -1; `start`, `stop`: places of time at which the node's line
+        place among the nodes, or -1; `start`, `stop`: times, in births, at which the node's line
         leaves the parent's line, and at which the bar ends; `level`: from 0, a level for each of
         the living; `ink` of the line; `skipped`: number of ancestors between the node and its parent.
     """

@@ -24,7 +24,7 @@ DEFAULTS = {"brain": "recurrent", "mutation": "gaussian"}
 CODE = ("env", "food")
 """Settings of a part, beside its name, that may be `module:name`."""
 IMPORTS = "imports"
-"""The setting of a part that lists modules."""
+"""The setting, in a part's table, that lists modules."""
 
 
 def tasks() -> dict[str, dict[str, Any]]:

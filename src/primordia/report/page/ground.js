@@ -44,7 +44,7 @@ function paintFigure({ world, palette, chosen, canvas, view }) {
   canvas.classList.toggle("zoomed", !isWhole(world, view));
 }
 
-// The column and place of time under a pointer, and as shares of the view; null outside of the picture.
+// The column and time in births under a pointer, and as shares of the view; null outside of the picture.
 function under(figure, event) {
   const { canvas, view, world } = figure;
   const box = boxOf(canvas);

@@ -44,7 +44,7 @@ function label(context, text, x, y, align) {
   context.fillText(text, x, y);
 }
 
-// Round ticks, 1, 2 and 5 times powers of ten, at their places of time, not too close.
+// Round ticks, 1, 2 and 5 times powers of ten, at their times in births, not too close.
 function ticksInView(world, view, height) {
   const [first, last] = [tickAt(world, view.top), tickAt(world, view.bottom)];
   const apart = ((view.bottom - view.top) / height) * 22;

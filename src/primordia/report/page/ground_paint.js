@@ -34,7 +34,7 @@ function fillPixels(pixels, columns, rows, first, world, view, lit, colours) {
   }
 }
 
-// The place of time that each row of pixels shows: a moment at which the cells were looked at.
+// The time in births that each row of pixels shows: a moment at which the cells were looked at.
 function placesOfRows(rows, world, view) {
   const height = (view.bottom - view.top) / rows;
   return Float64Array.from({ length: rows }, (_, y) =>

@@ -1,4 +1,4 @@
-// The part of the space-time picture that is in view: columns across, places of time downwards.
+// The part of the space-time picture that is in view: columns across, times in births downwards.
 
 const wholeView = (world) => ({ left: 0, right: world.shown, top: 0, bottom: world.births });
 

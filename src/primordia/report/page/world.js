@@ -1,4 +1,4 @@
-// A world's lives, unpacked: who is in which cell at which place of time, and who descends from whom.
+// A world's lives, unpacked: who is in which cell at which time in births, and who descends from whom.
 
 async function readWorld(packedWorld) {
   const { ground, organisms } = packedWorld;
@@ -14,14 +14,14 @@ function firstOfColumns(column, count) {
   return Array.from({ length: count + 1 }, (_, at) => lastUpTo(column, at - 0.5) + 1);
 }
 
-// The moment at which the cells were looked at last, at a place of time; its own place and its tick.
+// The moment at which the cells were looked at last, at a time in births; its own place and its tick.
 function momentAt(world, place) {
   return Math.max(lastUpTo(world.moments, place), 0);
 }
 
 const tickAt = (world, place) => world.ticks[momentAt(world, place)];
 
-// The segment in a column at a place of time, or -1 if the cell is empty then.
+// The segment in a column at a time in births, or -1 if the cell is empty then.
 function segmentAt(world, column, place) {
   const { start, stop } = world.segments;
   const at = world.moments[momentAt(world, place)];
@@ -56,7 +56,7 @@ function litBy(world, organism) {
   return lit;
 }
 
-// The first and last place of time of an organism in the picture, and its column; null if it has none.
+// The first and last time in births of an organism in the picture, and its column; null if it has none.
 function extentOf(world, organism) {
   const { column, organism: of, start, stop } = world.segments;
   const cell = world.facts.cell[organism];
