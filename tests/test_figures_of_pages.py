@@ -39,7 +39,7 @@ KNOWN = {
     ),
     "8,000": "the length at which games of the first seeds were cut, and lives of tanks in words",
     **dict.fromkeys(
-        ("1,800", "3,589", "12,139"), "reinforcement learning with robots, in tasks.md"
+        ("1,800", "3,589", "12,139", "787"), "reinforcement learning with robots, in tasks.md"
     ),
     **dict.fromkeys(
         ("2,360", "15,820", "16,411", "17,367", "26,300", "37,800", "62,010", "98,235"),
