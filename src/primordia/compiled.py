@@ -7,15 +7,15 @@ from typing import Any
 import jax
 
 KEPT = 64
-"""number of compiled functions that are kept: those used last, each with its code for all shapes of a
+"""number of compiled functions kept: the most recently used, each with its code for all shapes of a
 call"""
 
 
 def shared(function: Callable, *fixed: Any, donate: tuple[int, ...] = ()) -> Callable:
     """Return `jax.jit` of a function with its first arguments bound to `fixed`.
 
-    Calls with equal `function` and `fixed` share one compiled function. If `fixed` cannot be hashed, the
-    function is compiled for this caller alone.
+    Calls share one compiled function if their `function` and `fixed` are equal. If `fixed` cannot
+    be hashed, the function is compiled for this caller alone.
 
     Args:
         function: a pure function of a module or a class.

@@ -180,12 +180,12 @@ class Config(Settings):
         }
 
     def modules_of(self, part: str) -> list[str]:
-        """Return the dotted names of the modules that a part's settings name."""
+        """Return the dotted names of the modules to which a part's settings refer."""
         return modules_of(getattr(self, part), PARTS[part])
 
     @property
     def own_modules(self) -> list[str]:
-        """Return the dotted names of the modules that the settings of all parts name."""
+        """Return the dotted names of the modules to which the settings of all parts refer."""
         return [module for part in PARTS for module in self.modules_of(part)]
 
     @property
@@ -199,7 +199,7 @@ class Config(Settings):
         return 0 if self.fork is None else self.fork.tick
 
     def to_toml(self) -> str:
-        """Return the settings as TOML, from which `validated` makes the same Config."""
+        """Return the settings as TOML; the function `validated` makes the same Config of it."""
         return tomli_w.dumps(replaced(self.model_dump(mode="json"), None, NONE))
 
 

@@ -1,8 +1,9 @@
 """Interrupts: the effects of Ctrl-C, SIGTERM and SIGHUP on commands and runs.
 
 Python's own handler raises KeyboardInterrupt between any two instructions of the main thread. Then
-a library's callback may swallow the exception, and an import may break halfway. While C++ code
-compiles, the exception has to wait. So signals are only noted here, and take effect in one of two ways:
+a library's callback may swallow the exception, and an import may break halfway. While JAX's C++
+code compiles a program, the exception has to wait. So signals are only noted here, and take effect
+in one of two ways:
 
 - A run checks `noted` between two chunks, and writes a checkpoint before it stops. If a chunk does
 not end, since a simulator hangs, a second signal ends the process.
@@ -49,7 +50,7 @@ def end_commands_at_once() -> None:
 
 @contextmanager
 def noting() -> Iterator[list[int]]:
-    """Yield a list that stays empty until a signal comes; its entries are numbers of signals."""
+    """Yield a list that stays empty until a signal comes; its entries are signal numbers."""
     if threading.current_thread() is not threading.main_thread():
         yield []  # the main thread alone receives signals
         return
@@ -72,7 +73,7 @@ def came() -> bool:
 
 
 def deferred() -> AbstractContextManager[None]:
-    """Keep a first signal from ending the process in a `with` block that checks the list of `noting`."""
+    """Keep a first signal from ending the process in a `with` block that checks `noting`'s list."""
     return _entry(_deferred, True)
 
 

@@ -74,7 +74,7 @@ def run(
         chosen = config.load(task, {**(settings or {}), **more})
         if resume and out is None:
             raise InputError(
-                "resume needs the directory of the run; set out (--out on the command line)"
+                "resume needs the directory of the run; give `out` (--out on the command line)"
             )
         path = Path(out) if out is not None else fresh_directory(default_name(chosen))
         live = loop.begin_or_resume if resume else loop.start

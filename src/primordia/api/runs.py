@@ -197,7 +197,7 @@ class Run:
     def plot(
         self, out: str | Path | None = None, world: int = 0, figures: Sequence[str] = ()
     ) -> list[Path]:
-        """Draw figures, by default into the run's `figures`. Return the files; see `plot.plot`."""
+        """Draw figures, by default into the run's folder `figures`. Return the files; see `plot.plot`."""
         from primordia.figures.plot import plot  # Matplotlib takes a second to load
 
         return plot(self.opened(), Path(out) if out is not None else None, world, figures)
@@ -243,7 +243,7 @@ class Run:
         listen: Listener | None = None,
         **more: Any,
     ) -> "Run":
-        """Make a run that goes on from the end of tick `at`, with changed settings; see `runs.fork`."""
+        """Make a run that goes on, with changed settings, from the end of a tick; see `runs.fork`."""
         path = Path(out) if out is not None else fresh_directory(f"{self.path.name}-at{at}")
         with devices.selected(device):
             fork(self.only(), at, path, {**(settings or {}), **more}, listen)
@@ -259,7 +259,7 @@ class Run:
         listen: Listener | None = None,
         **limits: Any,
     ) -> list[str]:
-        """Go on with the run; `limits` are new `ticks`, `births` or `until`. See `loop.resume`."""
+        """Go on with the run; `limits` may change `ticks`, `births` or `until`. See `loop.resume`."""
         every, run = checkpoint_every, self.only().path
         bundle.refuse_changes(run)
         with devices.selected(device):

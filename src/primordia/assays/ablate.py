@@ -45,7 +45,7 @@ class _Loss(NamedTuple):
 def ablate(
     subjects: Subjects, each_sense: bool = False, games: int = GAMES, ticks: int = TICKS
 ) -> list[Ablation]:
-    """Let each subject live several times: without senses, memory, or one block of weights.
+    """Let each subject live again: without senses, without memory, then without each block.
 
     Ablated senses keep their values from the start of each game. An ablated memory is zero in each
     tick. Ablated weights are zero.

@@ -38,8 +38,8 @@ class Competition:
     tick: np.ndarray
     """int64 (T,)"""
     share: np.ndarray
-    """share of the living that descend from `one` at the end of each tick, float64 (W, T); NaN if
-    nothing lives"""
+    """share of the living that descend from the first genome, after each tick, float64 (W, T); NaN
+    if nothing lives"""
 
     @property
     def late_share(self) -> np.ndarray:
@@ -51,7 +51,7 @@ class Competition:
 
     @property
     def won(self) -> tuple[int, int]:
-        """Numbers of worlds that `one` won (`late_share` above one half) and that `other` won (below)."""
+        """Numbers of worlds that the first and second genome won: `late_share` above and below 0.5."""
         late = self.late_share
         return int((late > 0.5).sum()), int((late < 0.5).sum())
 
@@ -81,12 +81,13 @@ def compete(
     """Let two genomes compete in empty worlds.
 
     Founders take the two genomes in turn and fill all cells. If all organisms die, founders fill
-    the cells again. There is no mutation and no recombination. All other settings are those of `one`.
+    the cells again. There is no mutation and no recombination. All other settings are those of the
+    first genome, `one`.
 
     Args:
         one: a single organism or genome, and the law.
         other: a single organism or genome of the same brain.
-        worlds: number of worlds; the seeds count up from the seed of `one`.
+        worlds: number of worlds; the seeds count up from the seed in the first genome's settings.
         ticks: ticks of each world.
 
     Raises:

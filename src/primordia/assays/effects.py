@@ -87,8 +87,8 @@ def effects(
         subjects: the parents.
         scales: standard deviations of Gaussian noise on all weights, as shares of the standard
             deviation of founders' weights in each block.
-        differs: values of `differs` for calibrated mutations; see `mutations.calibrated`. A parent
-            remembers moments of one game.
+        differs: shares by which calibrated mutations change behaviour; see `mutations.calibrated`.
+            A parent remembers moments of one game.
         count: number of mutants that each mutation makes of each parent.
         games: number of games of each genome; 1 if the habitat draws nothing at random.
         ticks: number of ticks after which a game is cut.

@@ -58,7 +58,7 @@ def garden(
     ticks: int = TICKS,
     habitat: Mapping[str, Any] | None = None,
 ) -> list[Bed]:
-    """Let oldest organisms, other late-born organisms and founders of each world play fresh games.
+    """Let the oldest organisms, other late-born organisms and founders of each world play fresh games.
 
     Args:
         run: the run, or an arm.

@@ -23,8 +23,8 @@ class Pairs:
 
     pairs: int
     slope: float | None
-    """slope of the child's log lifespan on the parent's; None for fewer than LEAST pairs, or if all
-    parents lived equally long"""
+    """slope of the child's log lifespan on the parent's; None if pairs are fewer than LEAST, or if
+    all parents lived equally long"""
     as_long: float | None
     """share of the children that live exactly as long as the parent"""
     longer: float | None
@@ -91,7 +91,7 @@ def _pairs(found: Families, which: np.ndarray) -> Pairs:
 
 
 def slope(x: np.ndarray, y: np.ndarray) -> float | None:
-    """Return the slope of y on x by least squares; None for fewer than LEAST points or equal x."""
+    """Return the slope of y on x by least squares; None for too few points (see LEAST) or equal x."""
     if len(x) < LEAST or np.ptp(x) == 0:
         return None
     return float(np.cov(x, y)[0, 1] / np.var(x, ddof=1))

@@ -1,4 +1,4 @@
-"""The lives of an organism's ancestors: each genome on the line of descent lives again."""
+"""The lives of an organism's ancestors: genomes of the line of descent live again."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -24,7 +24,7 @@ class Step:
     """A genome on the line of descent, and its life."""
 
     generation: int
-    """births since the first organism of the line"""
+    """births on the line after its first organism"""
     organism: int
     born: int
     """tick of birth"""
@@ -48,8 +48,7 @@ class Line:
 
     @property
     def good(self) -> Step:
-        """The earliest genome that, like all later ones, lives at least GOOD times as long as the
-        last."""
+        """The earliest good genome after which all genomes are good, too; see GOOD."""
         enough = GOOD * self.steps[-1].reborn
         below = [k for k, step in enumerate(self.steps) if step.reborn < enough]
         return self.steps[below[-1] + 1 if below else 0]

@@ -110,7 +110,7 @@ def moments_of(players: Players, rule: Moments, ticks: int) -> Remembered:
     Moments are at regular ticks from the start of the game.
 
     Args:
-        players: the organisms, K.
+        players: K organisms.
         rule: number of moments that are kept, and the ticks between two moments.
         ticks: number of ticks after which the game is cut.
     """

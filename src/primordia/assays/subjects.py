@@ -29,7 +29,7 @@ GAMES = 5
 TICKS = 20_000
 """Default length at which games are cut, in ticks."""
 FOUNDERS, BEST = 512, 16
-"""Number of a task's founders that live once, and number of the longest-lived that become subjects."""
+"""Numbers of a task's founders: those that live once, and the longest-lived, which become subjects."""
 
 
 class Subjects(NamedTuple):
@@ -133,11 +133,11 @@ def of_file(
 def of_task(
     task: str, numbers: Sequence[int] = (), habitat: Mapping[str, Any] | None = None
 ) -> Subjects:
-    """Return the longest-lived of many founders of a task, in which nothing has evolved yet.
+    """Return founders of a task, before any evolution: by default the longest-lived of many.
 
     Args:
         task: name of a task, or a TOML file.
-        numbers: which founders to take, from 0 to FOUNDERS - 1; by default the BEST that live longest.
+        numbers: which founders to take, from 0 to FOUNDERS - 1; by default the longest-lived; see BEST.
         habitat: as in `of_run`.
 
     Raises:

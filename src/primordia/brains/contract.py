@@ -4,8 +4,8 @@ A genome is a flat float32 vector (P,) in records and files. Brains get genomes 
 of weights, each (N, *shape). A compiled loop that cuts a flat (N, P) array into matrices copies these
 matrices at every tick (measured on a CPU: 2.5 times slower).
 
-`kind` in a task's `[brain]` table is a name in KNOWN, or `module:Class` of any `Brain`. The other
-keys of the table are the class's own settings.
+The setting `kind` in a task's `[brain]` table is a key of KNOWN, or `module:Class` of any `Brain`.
+The other keys of the table are the class's own settings.
 """
 
 from abc import ABC, abstractmethod

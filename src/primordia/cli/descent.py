@@ -71,10 +71,10 @@ def ancestors(
 def lines(run: Path, world: str, at: int | None, out: Path | None, as_json: bool) -> None:
     """Measure how lines of descent replace each other, and compare them with neutral shadows.
 
-    A line consists of an organism that is alive after the tick --at, and of all its descendants. By
-    default, --at is the first tick at whose end at least 16 organisms are alive. If the population
-    never reaches 32, half of its largest size is enough. Ticks before the last extinction do not
-    count. If founders fill the world, --at is their tick of birth.
+    A line consists of an organism that is alive after a certain tick (--at), and of all its
+    descendants. By default, this tick is the first that ends with 16 or more living organisms. If
+    the population never reaches 32, half of its largest size is enough. Ticks before the last
+    extinction do not count. If founders fill the world, the default is their tick of birth.
     """
     from primordia.api import load
 

@@ -31,7 +31,7 @@ def new(file: Path, env: str) -> None:
 @click.command(short_help="Measure whether lives in an environment repeat exactly.")
 @click.argument("env", metavar="ENV")
 def check(env: str) -> None:
-    """Measure whether lives in another library's environment repeat exactly.
+    """Test whether lives in another library's environment repeat exactly.
 
     Lives with random actions are lived again in the same environment, in new environments and from
     saved states. The results are compared bit for bit. The exit status is 1 if the environment has a

@@ -1,4 +1,4 @@
-"""Commands that only read run directories, and the command `tasks`."""
+"""Commands that change no record of a run."""
 
 import json
 from pathlib import Path

@@ -59,7 +59,7 @@ def revive(
     1 if one differs, and 2 if the life cannot be lived again.
 
     The life is lived again from birth, or from the fork if the organism was born before the fork.
-    With --from the life is lived again from a checkpoint. A run keeps its two newest checkpoints,
+    If --from is given, the life is lived again from a checkpoint. A run keeps its two newest checkpoints,
     and a fork also its first checkpoint.
     """
     from primordia.api import load

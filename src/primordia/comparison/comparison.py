@@ -54,11 +54,11 @@ class ComparedArm:
     measured: dict[str, Measured]
     """name in OUTCOMES -> the outcome in each world.
 
-    `first`: number of the first birth whose life reached the comparison's age. `births`, `ticks`: births
-    (founders included) and ticks to saturation. `lifespan`: mean lifespan up to that age, in ticks.
-    `longest`: ticks of the longest life so far. `pace`: ticks lived for each death. `food`: mean food of
-    an organism in a `span` of time. `pace` and `food` are those of the last quarter of the time that is
-    on record in all worlds.
+    `first`: birth number of the first organism that reached the comparison's age. `births`,
+    `ticks`: births (founders included) and ticks to saturation. `lifespan`: mean lifespan up to
+    that age, in ticks. `longest`: ticks of the longest life so far. `pace`: ticks lived for each
+    death. `food`: mean food of an organism in a `span` of time. `pace` and `food` are those of the
+    last quarter of the time that is on record in all worlds.
     """
     survival: Survival
     pace: Pace

@@ -34,25 +34,24 @@ class Contrast:
     coverage: float
     """share of resamples in `interval`: 0.95 for one contrast, more for several simultaneous ones"""
     interval: Bounds | None
-    """interval of the ratio: it holds both bounds of the ratio in a share `coverage` of the
-    resamples of worlds or pairs; None if one of the runs has too few worlds, see
-    `resample.least`"""
+    """interval of the ratio; `coverage` is the share of resamples (of worlds or pairs) with both
+    bounds of the ratio in it; None if one of the runs has too few worlds, see `resample.least`"""
     worlds: int
     """number of worlds of the smaller run"""
 
     @property
     def word(self) -> str | None:
-        """The word for the size of the effect; None if one of the runs has fewer than LEAST worlds."""
+        """The word for the size of the effect; None if one of the runs has fewer worlds than LEAST."""
         if self.worlds < LEAST:
             return None
         return next((word for below, word in WORDS if abs(self.delta) < below), "large")
 
     @property
     def needed(self) -> int | None:
-        """Number of worlds that a run needs: then 80 % of experiments find this effect; see `needed`.
+        """Number of worlds that each run needs so that 80 % of experiments find this effect: `needed`.
 
         The test's significance level is 1 minus the interval's coverage. None if there is no
-        effect, or one of the runs has fewer than LEAST worlds.
+        effect, or one of the runs has fewer worlds than LEAST.
         """
         if self.worlds < LEAST:
             return None

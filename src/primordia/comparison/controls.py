@@ -1,9 +1,9 @@
 """Evaluation of champions and of controls: all living, best of many founders, and some founders.
 
 A champion is the longest-lived of many, by luck as well as by descent. So the control is chosen in
-the same way: for each birth in the world one founder lives once, and the longest-lived of these
-founders is judged. No organism is judged by the game in which it was chosen, unless all games of
-the task are the same.
+the same way: as many founders as the world had births, up to a limit, live once each, and the
+longest-lived of these founders is judged. No organism is judged by the game in which it was chosen,
+unless all games of the task are the same.
 """
 
 from collections.abc import Mapping

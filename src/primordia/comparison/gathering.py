@@ -21,7 +21,7 @@ class Gathering:
 
 
 def gathering(run: Records, worlds: int, begin: int, end: int, span: float) -> Gathering:
-    """Return the food that organisms gather in `span` ticks, in each world of a run.
+    """Return the food that organisms gather in a `span` of ticks, in each world of a run.
 
     All worlds must be on record between the ticks `begin` and `end`. The metrics are not read if no
     world gathered any food.

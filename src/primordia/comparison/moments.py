@@ -12,7 +12,7 @@ from primordia.runs.records import Records
 
 
 def first_long(worlds: Sequence[Lives], age: int) -> Measured:
-    """Number each world's births since a fork; return the number of the first that reaches an age.
+    """Count each world's births since a fork, up to the first birth whose life reaches an age.
 
     The number is known if all organisms born before that birth are dead. Otherwise it is at least
     the number of the first organism that is still alive.
@@ -33,8 +33,8 @@ def saturation(
 ) -> dict[str, Measured]:
     """Return the births and ticks to saturation of each world of a run, counted from tick `begin`.
 
-    Both are 0 in a world that was saturated at `begin`. `lives` are the lives recorded since
-    `begin`.
+    Both are 0 in a world that was saturated at that tick. The argument `lives` holds the lives
+    recorded since that tick.
     """
 
     def by_world(name: str) -> np.ndarray:

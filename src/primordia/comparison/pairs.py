@@ -47,6 +47,6 @@ def same_seeds(run: np.ndarray, reference: np.ndarray) -> Rows | None:
 
 
 def paired(run: Measured, reference: Measured) -> Paired:
-    """Count pairs with a larger and with a smaller value of `run`; pair k is row k of each argument."""
+    """Count pairs where the run's value is larger, and where it is smaller; row k of each is pair k."""
     larger, smaller = run.value > reference.high, reference.value > run.high
     return Paired(len(run.value), int(larger.sum()), int(smaller.sum()))

@@ -26,7 +26,7 @@ OUTSIDE = 10
 
 
 def resamples(worlds: int, stream: int = 0, count: int = RESAMPLES) -> Iterator[np.ndarray]:
-    """Yield `count` resamples, K at once: the numbers of the drawn worlds, int64 (K, worlds).
+    """Yield resamples, `count` in all, K at once: the numbers of the drawn worlds, int64 (K, worlds).
 
     Two runs with independent worlds use different streams, so that their resamples are independent.
     """
@@ -46,7 +46,7 @@ def interval(values: np.ndarray, missed: float = MISSED) -> tuple[np.ndarray, np
 
 
 def enough(missed: float) -> int:
-    """Return the number of resamples for an interval that leaves a share `missed` outside."""
+    """Return the number of resamples for an interval; `missed` is the share outside it."""
     return max(RESAMPLES, math.ceil(2 * OUTSIDE / missed))
 
 

@@ -70,7 +70,7 @@ class Shadow:
 
     @property
     def ratio_interval(self) -> tuple[float, float] | None:
-        """The interval of `ratio` over resampled worlds (95 %); None with fewer than LEAST worlds."""
+        """The 95 % interval of `ratio` over resampled worlds; None if worlds are fewer than LEAST."""
         ratios = np.divide(*self.means)
         if len(ratios) < LEAST:
             return None

@@ -38,7 +38,7 @@ class Survival:
 
     @property
     def steps(self) -> np.ndarray:
-        """Ages of the steps of curves, from 0 to the limit, (A + 2,)."""
+        """Ages at which a curve has values, from 0 to the limit, (A + 2,)."""
         return np.concatenate([[0], self.ages, [self.limit]])
 
     def with_ends(self, curve: np.ndarray) -> np.ndarray:

@@ -58,7 +58,7 @@ def spread_text(values: Iterable[float]) -> str:
 
 
 def effect_text(against: Contrast, outcome: str) -> str:
-    """Return delta with its word and direction as text."""
+    """Return delta as text, with a word for its size, and its direction."""
     smaller, larger = DIRECTIONS[outcome]
     direction = f" {larger if against.delta > 0 else smaller}" if against.delta else ""
     known = (
@@ -74,7 +74,7 @@ def paired_text(against: Contrast) -> str:
 
 
 def needed_text(against: Contrast) -> str:
-    """Return, as text, how many worlds an effect of this size needs; "" if unknown."""
+    """Return, as text, how many worlds an arm needs to show this effect; "" if unknown."""
     return "" if against.needed is None else f"{against.needed:,} worlds an arm"
 
 

@@ -40,7 +40,7 @@ class Decision(NamedTuple):
     remembered: Array
     """bool (): organisms remember a moment at the end of the tick"""
     go_on: Array
-    """bool (): some world runs, and the lists have room"""
+    """bool (): a world is running, and the lists have room"""
     due: Array
     """int32 (): the world must be settled within this number of ticks"""
 
@@ -91,7 +91,7 @@ class _Steps:
         active: Array,
         passed: Array,
     ) -> tuple[Held, Thought, Fates]:
-        """Judge a tick that is `passed` ticks after the last settled one; think for the next."""
+        """Judge a tick, think for the next; `passed` counts the ticks since the last settled one."""
         world = self.form.release(now, Bulk(genome, None))
         keys = keys_of(world.worlds, passed)
         world, fates = judge(self.law, world, thought, senses, outcome, keys, active)

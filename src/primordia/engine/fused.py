@@ -37,7 +37,7 @@ class FusedChunks:
         return State(world, placeholder_bodies(self._habitat, len(world.organisms.alive)))
 
     def advance(self, state: State, limits: Limits, ticks: int) -> tuple[State, int]:
-        """Advance by at most `ticks`, fewer if every world stops or the lists are full.
+        """Advance by this number of ticks, or fewer if every world stops or the lists are full.
 
         Returns:
             state; the number of ticks advanced.
@@ -57,7 +57,7 @@ class FusedChunks:
 def advance(
     law: Law, habitat: JaxHabitat, state: State, events: Events, limits: Limits, ticks: Array
 ) -> tuple[State, Events, Array]:
-    """Advance worlds by at most `ticks`. Return state, events, and the number of ticks, int32 ()."""
+    """Advance worlds by at most this number of ticks. Return state, events, and ticks done, int32 ()."""
 
     def go_on(carry: tuple) -> Array:
         _, events, live_worlds, done = carry

@@ -12,8 +12,8 @@ name = "no-heredity"
 inheritance = "founder"
 
 The first arm is the reference. `[jobs] worlds` is the number of worlds of one job. If the file has
-a table `[fork]`, all arms are forks. The key `of` names what they are forked from: a run, an arm's
-folder, or an arm of another file in the same folder (`other/arm`). The key `at` is the tick of the
+a table `[fork]`, all arms are forks. The key named `of` gives their source: a run, an arm's folder,
+or an arm of another file in the same folder (`other/arm`). The key named `at` gives the tick of the
 fork.
 """
 

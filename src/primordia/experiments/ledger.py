@@ -47,7 +47,7 @@ class Entry(BaseModel):
     error: str | None = None
     worlds: list[WorldCounts] = Field([])
     rate: float | None = None
-    """organism-ticks a second in the last seconds"""
+    """organism-ticks per second, in recent seconds"""
     left_s: float | None = None
     """seconds until the last world reaches a limit; None if unknown"""
     updated: float = 0.0

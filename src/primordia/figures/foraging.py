@@ -11,8 +11,8 @@ BREAK_EVEN = style.ORANGE
 
 
 def draw(run: Records, world: int) -> Figure | None:
-    """Draw the food and the break-even of an organism per second, or per tick if the habitat has
-    no rate.
+    """Draw how much food an organism gathers per second, and the break-even; per tick if the
+    habitat has no rate.
 
     Returns:
         None for a run without a metabolism.

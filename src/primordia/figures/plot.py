@@ -36,7 +36,7 @@ def plot(
     Args:
         run: the run, opened for reading.
         out: folder for the figures; by default `figures` in the run's directory.
-        world: the world of which lines of descent are drawn; all other figures show all worlds.
+        world: the world whose lines of descent are drawn; figures of anything else show all worlds.
         figures: the figures to draw, names in KNOWN or `module:function`; by default all in KNOWN.
 
     Raises:

@@ -147,7 +147,7 @@ def title(axes: Axes, text: str, key: dict[str, str] | None = None) -> None:
 
 
 def worlds_key(count: int) -> dict[str, str]:
-    """Return the key of `curves` of several worlds; it is empty for one world."""
+    """Return the key of a panel drawn by `curves`; it is empty for one world."""
     return {f"median and quartiles of {count} worlds": BLUE} if count > 1 else {}
 
 

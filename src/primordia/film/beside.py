@@ -42,7 +42,7 @@ def oldest(run: Records, lives: Lives, ticks: np.ndarray) -> Iterator[Beside]:
 
 
 def chosen(run: Records, organism: int, world: int, count: int) -> Iterator[Beside]:
-    """Yield the life of one organism, `count` pictures."""
+    """Yield this number of pictures of one organism's life."""
     pictures = pictures_of(run, organism, world)
     for _ in range(count):
         yield Beside(next(pictures), f"organism {organism:,}")

@@ -15,14 +15,13 @@ from primordia.runs.lives import Lives
 GROUND = np.array([22, 25, 33], np.float32)
 """Red, green and blue of an empty cell."""
 DARKEST = 0.5
-"""Light of an organism at birth; at the age `full` the light is 1."""
+"""Light of an organism at birth; it grows with age, up to 1."""
 FLASH = 0.75
 """Share of white in a cell in which an organism was born since the moment before."""
 FADING = 0.8
 """After a death, a cell keeps this share of its light from one moment to the next."""
 MOST = 2**22
-"""Largest number of cells x moments that are computed at once; the lives are sorted once for all of
-them."""
+"""Largest number of cells x moments that are computed together, after one sort of the lives."""
 PALETTE = np.array([colour(hue) for hue in range(HUES)], np.float32)
 
 

@@ -37,7 +37,7 @@ def _holders(spans: np.ndarray) -> np.ndarray:
 
 
 def shown(holders: np.ndarray, least: int) -> np.ndarray:
-    """Return the organism that is shown at each moment, (F,). Each stays at least `least` moments.
+    """Return the organism that is shown at each moment, (F,). Each stays for a while; see `least`.
 
     Args:
         holders: the oldest so far at each moment, (F,).

@@ -26,7 +26,7 @@ class Shape(Protocol):
 
 
 def shape(placement: Placement, cells: int) -> Shape:
-    """Return the form of a world of `cells` cells. In a well-mixed world, places have no meaning."""
+    """Return the form of a world of this many cells. In a well-mixed world, places have no meaning."""
     rows, columns = placement.shape(cells)
     if rows > 1:
         return Grid(rows, columns)

@@ -39,7 +39,7 @@ def insert_bodies(bodies: Bodies, cells: Array, new: Bodies) -> Bodies:
 
 
 def select_bodies(mask: Array, yes: Bodies, no: Bodies) -> Bodies:
-    """Return bodies `yes` where the mask, bool (C,), is true, and `no` elsewhere."""
+    """Return each cell's body: from `yes` where the mask, bool (C,), is true, else from `no`."""
 
     def select_leaf(a: Array, b: Array) -> Array:
         return jnp.where(mask.reshape(-1, *[1] * (a.ndim - 1)), a, b)

@@ -76,7 +76,7 @@ class Expression:
         return self.compute(values)
 
     def of_all(self, values: Values, count: int, dtype: type) -> Any:
-        """Return the value of a condition or an amount for each of `count` bodies, a new array (N,)."""
+        """Return the value of a condition or an amount for each body, a new array (N,); N is `count`."""
         value = self.compute(values)
         return value.astype(dtype) if np.ndim(value) else np.full(count, value, dtype)
 

@@ -41,7 +41,7 @@ Bodies: TypeAlias = Any
 
 @dataclass(frozen=True)
 class Discrete:
-    """An action is one of `size` choices: int32 (N,)."""
+    """An action is a choice, int32 (N,); `size` is the number of choices."""
 
     size: int
 
@@ -57,7 +57,7 @@ class Continuous:
 
     size: int
     bounds: tuple[tuple[float, ...], tuple[float, ...]] | None = None
-    """least and largest effective numbers, `size` each: beyond them a change has no effect; None:
+    """least and largest numbers, (size,) each; beyond them a number has no further effect; None:
     unknown"""
 
     @property
@@ -70,7 +70,7 @@ class Continuous:
 class Compound:
     """An action has several parts: float32 (N, K), the columns of its parts side by side.
 
-    A discrete part has one column, the number of the choice; a continuous part has `size`.
+    A discrete part has one column, the number of the choice; a continuous part has `size` columns.
     """
 
     parts: tuple[Discrete | Continuous, ...]
@@ -195,7 +195,7 @@ class Habitat(ABC):
         return [name for name in needed if getattr(own, name) is getattr(defaults, name)]
 
     def check(self, cells: int) -> None:  # noqa: B027 - a default
-        """Raise ValueError if these settings do not allow a run of `cells` cells."""
+        """Raise ValueError if these settings do not allow a run with this number of cells."""
 
     def original(self) -> "AnyHabitat | None":
         """Return a habitat for the whole game as the standard benchmark scores it; None if there is none.
@@ -219,9 +219,9 @@ class Habitat(ABC):
 class JaxHabitat(Habitat):
     """A habitat in JAX: pure functions, fused with the law into one compiled loop.
 
-    The functions treat each body by itself, give the same bits for every N, and have no random source but
-    `words`. Habitats that are equal share compiled code, so hash and compare them by their settings, as
-    `Settings` do.
+    The functions treat each body by itself, give the same bits for every N, and take all randomness
+    from the argument `words`. Habitats that are equal share compiled code, so hash and compare them
+    by their settings, as `Settings` do.
     """
 
     kind: ClassVar[Literal["jax"]] = "jax"
@@ -252,7 +252,7 @@ class HostHabitat(Habitat):
 
     @abstractmethod
     def open(self, cells: int, watched: bool = False) -> None:
-        """Allocate N = `cells` bodies; `watched` is true if `picture` will be called."""
+        """Allocate a body for each of N cells; `watched` is true if `picture` will be called."""
 
     @abstractmethod
     def reset(self, cells: np.ndarray, words: np.ndarray) -> np.ndarray:
@@ -299,7 +299,7 @@ def _missing(habitat: Habitat, name: str) -> TypeError:
 
 
 def find(name: object) -> type[AnyHabitat]:
-    """Return the habitat class called `name`.
+    """Return the habitat class with this name.
 
     Raises:
         LookupError: there is no such name, module or class, or the class is not a habitat; the message

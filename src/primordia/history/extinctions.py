@@ -1,4 +1,4 @@
-"""Two kinds of extinctions: of founders that never established a population, and crashes.
+"""Two kinds of extinctions: founders die out before they establish a population, or it crashes.
 
 A world begins with founders, and begins again with new founders in the tick in which all organisms
 have died. Most founders leave few descendants and die out. The number of these extinctions measures the

@@ -18,7 +18,7 @@ class Families:
     lives: Lives
     """all lives of the world"""
     born: np.ndarray
-    """row of each organism whose birth counts, founders included, int64"""
+    """row of each birth that is considered, founders included, int64"""
     child: np.ndarray
     """row of each child in `lives`, int64"""
     parent: np.ndarray

@@ -38,7 +38,7 @@ class Harvest(NamedTuple):
     """organism-ticks, float64"""
 
     def between(self, ticks: np.ndarray) -> np.ndarray:
-        """Return the mean food of an organism in a tick, between successive `ticks`, float64.
+        """Return the mean food per organism-tick in each interval between successive `ticks`, float64.
 
         The mean is NaN if no organism lived.
         """
@@ -47,7 +47,7 @@ class Harvest(NamedTuple):
 
 
 def harvests(run: Records, worlds: int) -> list[Harvest]:
-    """Return the harvest of each of the first `worlds` worlds of a run."""
+    """Return a run's harvest in each world numbered below `worlds`."""
     world = run.metrics["world"].to_numpy()
     columns = [run.metrics[name].to_numpy() for name in ("tick", "food", "organism_ticks")]
     begun = _beginning(run, worlds)

@@ -114,7 +114,7 @@ def _in_order(turnover: Turnover) -> Iterator[tuple[int, int, int]]:
 
 
 def turnovers(events: Events, cells: int, worlds: int) -> list[Turnover]:
-    """Return a chunk's births and deaths in each of the first `worlds` worlds, of `cells` cells each."""
+    """Return a chunk's turnover of each world numbered below `worlds`; `cells` is a world's size."""
     births = _split_by_world(events.births, BIRTHS, ("id", "parent", "tick"), cells, worlds)
     deaths = _split_by_world(events.deaths, DEATHS, ("id", "tick"), cells, worlds)
     return [Turnover(*born, *dead) for born, dead in zip(births, deaths, strict=True)]

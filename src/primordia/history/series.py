@@ -45,7 +45,7 @@ def mean_age(lives: Lives, ticks: np.ndarray) -> np.ndarray:
 
 
 def exposure(start: np.ndarray, stop: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    """Return the ticks lived in each bin between `edges`, by lives from `start` to `stop`, int64."""
+    """Return how many ticks all lives, from `start` to `stop`, spend in each bin of `edges`, int64."""
     return np.diff(_lived_by(start, edges) - _lived_by(stop, edges))
 
 
@@ -67,7 +67,7 @@ def middle(edges: np.ndarray) -> np.ndarray:
 
 
 def count_until(rising: np.ndarray, ticks: np.ndarray) -> np.ndarray:
-    """Return, for each tick, how many of the ascending values `rising` are not above it, int64."""
+    """Return how many of the sorted values `rising` are at most as large as each tick, int64."""
     return np.searchsorted(rising, ticks, side="right")
 
 

@@ -122,7 +122,7 @@ def _threshold(worlds: list[dict[str, Any]]) -> list[str]:
     numbers = f"p {p}, v {v}, s {s}: s (1 - p (1 - v)) is {held}"
     if len(worlds) == 1:
         return [f"    good lines {'persist' if above else 'are lost'}: {numbers}"]
-    return [f"    good lines persist in {above:,} of {len(known):,}; medians {numbers}"]
+    return [f"    good lines persist in {above:,} of {len(known):,} worlds; medians {numbers}"]
 
 
 def _causes(worlds: list[dict[str, Any]]) -> str:

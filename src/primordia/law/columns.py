@@ -38,8 +38,7 @@ class Columns:
         return jnp.stack(words, axis=1)
 
     def rows(self, **values: np.ndarray) -> np.ndarray:
-        """Return the rows of `words` on the host, from integers (K,); values of 64 bits are int64
-        or uint64."""
+        """Return the rows of `words` as a NumPy array; `values` are integers (K,), pairs int64 or uint64."""
         assert set(values) == set(self.names)
         words: list[np.ndarray] = []
         for name in self.names:

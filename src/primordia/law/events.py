@@ -16,7 +16,7 @@ from primordia.law.law import Law
 from primordia.law.world import Cause
 
 BIRTHS = Columns(("cell", "id", "parent", "tick", "cause"), frozenset({"id", "parent", "tick"}))
-"""Columns of all births. In place of a founder's parent or a missing mate stands 2^64 - 1."""
+"""Columns of all births. 2^64 - 1 stands in place of a founder's parent or a missing mate."""
 DEATHS = Columns(("cell", "id", "tick", "cause", "energy", "food"), frozenset({"id", "tick"}))
 """Columns of a death."""
 TOTALS = (

@@ -26,7 +26,7 @@ def begin(law: Law, seeds: np.ndarray, tick: int = 0, births: int = 0) -> World:
 
 
 def empty_worlds(law: Law, tick: int, births: int, seed: Wide) -> World:
-    """Return the worlds of `begin`. Callers compile this function, which cuts its time to a third."""
+    """Make the worlds for `begin`. Callers compile this function, which cuts its time to a third."""
     count, cells, mutation = len(seed.lo), law.worlds * law.cells, law.heredity.mutation
     worlds = Worlds(
         seed=seed,

@@ -113,7 +113,7 @@ class Heredity:
         return Newborn(genome, notes, mutated)
 
     def rebuild_genomes(self, birth: Birth, parents: Array, notes: Array) -> Array:
-        """Return the genomes of recorded births from the recorded notes, (K, P) and (K, n)."""
+        """Return the genomes (K, P) of recorded births from their recorded notes (K, n)."""
         return self._genomes(birth, parents, notes)[0]
 
     def _genomes(self, birth: Birth, parents: Array, notes: Array) -> tuple[Array, Array]:

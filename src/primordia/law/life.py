@@ -1,7 +1,7 @@
 """One tick of N organisms without neighbours: brains think, motors act, outcomes are judged.
 
 Both engines, revived lives and evaluations use these functions, so an organism's tick has the same
-rules everywhere. `tick` and `turnover` add neighbours, worlds and chance.
+rules everywhere. The modules `tick` and `turnover` add neighbours, worlds, accidents and births.
 """
 
 from typing import NamedTuple

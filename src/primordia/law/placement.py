@@ -56,7 +56,7 @@ class Placement(Settings):
     )
 
     def shape(self, cells: int) -> tuple[int, int]:
-        """Return rows and columns of a world of `cells` cells.
+        """Return a world's rows and columns; `cells` is its size.
 
         Raises:
             ValueError: the cells do not make a torus with two or more rows and columns.
@@ -82,7 +82,7 @@ class Placement(Settings):
         return jnp.stack(self._neighbours(~occupied)).any(axis=0)
 
     def near(self, cells: Array, count: int) -> Array:
-        """Return the neighbours of K cells as a mask over a world's `count` cells, bool (K, count)."""
+        """Return the neighbours of K cells as a mask over all cells of a world, bool (K, count)."""
         every = jnp.arange(count)
         if self.topology == "well-mixed":
             return every != cells[:, None]

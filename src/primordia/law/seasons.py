@@ -1,4 +1,4 @@
-"""Seasons: settings of the law that change in a run. Their values are part of the world's state."""
+"""Seasons: changes of settings in a run. The settings' values are part of the world's state."""
 
 from collections.abc import Callable
 from itertools import count

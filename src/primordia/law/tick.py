@@ -1,7 +1,7 @@
-"""One tick of all cells: `life` for each organism, then accidents, replication and worlds' food.
+"""One tick of all cells: each organism's tick (`life`), then accidents, replication and worlds' food.
 
 Brains of empty cells and of stopped worlds think too, since it would cost more to leave them out.
-`rest` then restores the organisms that must not change.
+The function `rest` then restores the organisms that must not change.
 """
 
 from typing import NamedTuple

@@ -21,7 +21,7 @@ class Descent:
         self._followed, self._missed = 0, False
 
     def follow(self, status: Status, shown: int) -> None:
-        """Take the births and deaths of a chunk, for the first `shown` worlds."""
+        """Take the births and deaths of a chunk in the first worlds; `shown` is their number."""
         law, events = status.engine.law, status.engine.events
         if shown * law.cells > self.CELLS:
             return self._give_up()

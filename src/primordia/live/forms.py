@@ -21,7 +21,7 @@ class Room(NamedTuple):
     width: int
     height: int
     letters: bool
-    """whether lines of descent are letters, since the terminal has too few colours"""
+    """whether letters mark lines of descent: true if the terminal has too few colours"""
 
 
 class Form(Protocol):

@@ -32,11 +32,11 @@ class Cells:
     line: np.ndarray
     """int64, or EMPTY"""
     age: np.ndarray
-    """float64 on a logarithmic scale, from 0 at birth to 1"""
+    """float64 on a logarithmic scale, 0 at birth, 1 from a set age on"""
 
     @classmethod
     def of(cls, line: np.ndarray, ticks: np.ndarray, full: int) -> "Cells":
-        """Make cells from ages in ticks, int64; an age of `full` ticks or more becomes 1."""
+        """Make cells from ages in ticks, int64; the age `full` and all higher ages become 1."""
         return cls(line, np.minimum(np.log1p(np.maximum(ticks, 0)) / log1p(full), 1.0))
 
     def take(self, index: slice | np.ndarray) -> "Cells":
@@ -45,7 +45,7 @@ class Cells:
 
 
 def skyline(cells: Cells, wide: int, tall: int, letters: bool) -> list[Row]:
-    """Draw a bar for each cell, in `tall` rows and `wide` columns; older cells have higher bars.
+    """Draw a bar for each cell; older cells have higher bars. A bar has `wide` x `tall` characters.
 
     With `letters` the lines have no colours, and a row below the bars names the lines.
     """
@@ -81,7 +81,7 @@ def strip(cells: Cells, letters: bool) -> Row:
 def field(cells: Cells, columns: int, scale: int, letters: bool) -> list[Row]:
     """Draw cells, `columns` in a row, as letters or as colours, which are lighter with age.
 
-    In colours, a cell is `scale` characters wide, and `scale` / 2 rows of characters high.
+    In colours, the width of a cell is `scale` characters, and its height is `scale` / 2 rows.
     """
     rows = [slice(at, at + columns) for at in range(0, len(cells.line), columns)]
     if letters:

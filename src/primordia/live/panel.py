@@ -81,7 +81,7 @@ def numbers(
 
 
 def panel(values: dict[str, str], census: Census, bar: Row, width: int, height: int) -> list[Row]:
-    """Return names and values side by side, causes of death and a bar, in `height` rows at most."""
+    """Return names and values side by side, the causes of death, and a bar; `height` limits the rows."""
     rows = _columns(values, width)[: max(height - 2, 1)]
     return [*rows, _causes(census, width), bar][:height]
 

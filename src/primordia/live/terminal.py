@@ -61,7 +61,7 @@ class Keyboard:
                 self._before = None
 
     def pressed(self, seconds: float) -> str:
-        """Return the keys pressed since the last call; wait at most `seconds` for a key.
+        """Return the keys pressed since the last call; `seconds` is the longest wait for a key.
 
         A signal does not end the wait.
         """

@@ -30,8 +30,8 @@ from primordia.runs.loop import Status
 class View:
     """A listener that draws the living and the counts in place, in a `with` block, and obeys keys.
 
-    The view follows the births of every chunk. It draws as often as SHARE of the time allows, and
-    more often while the run waits.
+    The view follows the births of every chunk. Drawing may take the part SHARE of the time, and
+    more while the run waits.
     """
 
     SHARE = 0.01

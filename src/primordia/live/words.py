@@ -57,7 +57,7 @@ WORDS = {
 
 
 def pages(width: int, height: int) -> list[list[Row]]:
-    """Return keys and words with their explanations, `height` rows at most on each page."""
+    """Return pages of keys and words with their explanations; `height` limits the rows of a page."""
     room = max(min(width, WIDE) - NAME, 8)
     found: list[list[Row]] = [[]]
     for name, text in {**KEYS, **WORDS}.items():

@@ -25,11 +25,11 @@ class Calibrated(Mutation):
 
     The direction is random: noise with the standard deviation of founders' weights in each block.
     This noise is multiplied by 2^(q / 4). Bisection finds a q from -96 to 0. With this q, child and
-    parent act differently in at most a share `differs` of the parent's moments. With q + 1, unless
-    q is 0, they act differently in a larger share. For continuous actions, `differs` limits the
-    root mean square change of the outputs. This is SM-R of Lehman et al. 2018, arXiv:1712.06563,
-    but lengths are whole steps, so that genomes can be rebuilt. The note `quarters` is q, and 0 for
-    a copy.
+    parent act differently in some of the parent's moments; their share is at most `differs`. With q
+    + 1, unless q is 0, they act differently in a larger share. For continuous actions, `differs`
+    limits the root mean square change of the outputs. This is SM-R of Lehman et al. 2018,
+    arXiv:1712.06563, but lengths are whole steps, so that genomes can be rebuilt. The note
+    `quarters` is q, and 0 for a copy.
     """
 
     notes: ClassVar = ("quarters",)

@@ -4,7 +4,7 @@ A mutation is used twice: when an organism is born, and when its genome is rebui
 line of descent. Both give the same bits on any device. So a mutation is made of integer draws, table
 look-ups, and float32 products and sums that are each rounded (`noise`).
 
-`kind` in a task's `[mutation]` table is one of those listed here, or `module:Class` of any `Mutation`.
+`kind` in a task's `[mutation]` table is one of the names in `KNOWN`, or `module:Class` of any `Mutation`.
 The other keys of the table are the class's own settings.
 """
 
@@ -36,7 +36,7 @@ class Draws(NamedTuple):
     """Random words of K births; they depend on world, tick and cell of a birth, and on nothing else."""
 
     streams: Streams
-    """keys for each of PURPOSES, (K,)"""
+    """keys for each purpose in PURPOSES, (K,)"""
     cell: Array
     """cell of each birth within its world, int32 (K,)"""
 
@@ -71,7 +71,7 @@ class Moments(NamedTuple):
     """number of moments; they are the latest of a line of descent, since a child begins with the
     parent's moments"""
     every: int
-    """ticks between two moments; `kept` times `every` is at most 2^16"""
+    """ticks between two moments; multiplied by `kept`, it is at most 2^16"""
 
 
 Change: TypeAlias = Callable[[Array], Array]
@@ -83,13 +83,13 @@ class Mutation(Settings, ABC):
     """A mutation's settings and its behaviour.
 
     Seasons may change settings that are declared as `Rate`. Methods get the present values of these
-    settings as `rates`, by the names of `rates_of`. The first axis of all arrays is the births, K.
-    Births do not depend on each other.
+    settings in `Family.rates`, under the names that the method `rates` returns. The first axis of
+    all arrays is the births, K. Births do not depend on each other.
     """
 
     notes: ClassVar[tuple[str, ...]] = ()
     """Names of the notes: small integers that an organism has in addition to its genome, such as a
-    heritable rate. `note` makes the child's notes from the parent's notes. Notes are columns of the
+    heritable rate. The method `note` makes the child's notes from the parent's. Notes are columns of the
     births table."""
 
     @property
@@ -99,8 +99,7 @@ class Mutation(Settings, ABC):
 
     @property
     def notes_from(self) -> Literal["parent", "cell"]:
-        """Return the source of the notes for `note`: the parent, or the last organism born in the
-        cell."""
+        """Return the organism whose notes `note` gets: the parent, or the last one born in the cell."""
         return "parent"
 
     def rates(self, layout: Layout) -> dict[str, float]:

@@ -62,7 +62,7 @@ class Gaussian(Mutation):
         }
 
     def governed(self, setting: str, layout: Layout) -> list[str]:
-        """Return the rates that a season of `scale`, or of `blocks.input.scale`, changes."""
+        """Return the rates that change if a season changes `scale` or `blocks.input.scale`."""
         for field in SEASONAL_FIELDS:
             if setting == field:
                 return [

@@ -97,8 +97,9 @@ def evaluate(
         organisms: birth number and world of each organism.
         games: number of games of each organism; one game if all would be the same.
         ticks: length at which a game is cut; whole games are also cut at the habitat's `episode`.
-        senses: `live`; `frozen`: senses keep their values from the start of a game; `ignored`: each
-            organism repeats the actions of one game with its task's settings.
+        senses: `live`: as usual; `frozen`: senses keep their values from the start of a game;
+            `ignored`: each organism repeats the actions of an earlier game, which it played with
+            its task's settings.
         habitat: changed settings of the habitat, such as `{"senses": [49, 50]}`.
         changes: further changed settings as keywords, such as `sticky=0.25, noops=30`.
 

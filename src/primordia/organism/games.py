@@ -47,7 +47,7 @@ class Players(NamedTuple):
 
 
 class Games(NamedTuple):
-    """Results of E games of each of K players, each (K, E); or of one player, each (E,)."""
+    """Results when each of K players plays E games, arrays (K, E); or of one player, arrays (E,)."""
 
     ticks: np.ndarray
     """int64: length until the game was over or cut"""
@@ -86,8 +86,7 @@ def play(
         players: the organisms.
         games: number of games of each player.
         ticks: length at which a game is cut.
-        frozen: the senses and memory of each player that keep their values from the start of a
-            game.
+        frozen: the inputs of each player, senses and memory, whose values stay as at the start of a game.
         script: earlier games of the same players, whose actions are repeated regardless of senses.
         at_once: number of games played side by side.
     """
@@ -104,14 +103,14 @@ def play(
 
 
 def lifespans(players: Players, ticks: int) -> np.ndarray:
-    """Return the ticks that each player lives in one game, at most `ticks`: int64 (K,)."""
+    """Return each player's lifespan in one game, in ticks; `ticks` is the limit: int64 (K,)."""
     return lifespans_in_games(players, 1, ticks)[:, 0]
 
 
 def lifespans_in_games(
     players: Players, games: int, ticks: int, frozen: Frozen | None = None
 ) -> np.ndarray:
-    """Return the ticks that each player lives in each of its games, at most `ticks`: int64 (K, E)."""
+    """Return each player's lifespan in each game, in ticks; `ticks` is the limit: int64 (K, E)."""
     at_once = AT_ONCE if players.habitat.kind == "host" else AT_ONCE_IN_JAX
     size, lived = max(at_once // games, 1), []
     for first in range(0, len(players.genomes), size):

@@ -102,7 +102,7 @@ def parts_of(
     ages: tuple[int | None, int | None] = (None, None),
     seconds: float | None = None,
 ) -> list[range]:
-    """Return the ages to show, in ticks; for a long life `seconds` at each end, by default PART.
+    """Return the ages to show, in ticks; `seconds` (or PART) is the time for each end of a long life.
 
     Raises:
         InputError: no age is left to show, or the habitat draws no pictures.

@@ -32,7 +32,7 @@ def nearest(parent_row: np.ndarray, marked: np.ndarray) -> np.ndarray:
 
 
 def with_ancestors(rows: np.ndarray, *parents: np.ndarray) -> np.ndarray:
-    """Return the rows of some organisms and all their ancestors, rising, int64.
+    """Return the rows of some organisms and all their ancestors, in ascending order, int64.
 
     Args:
         rows: rows of the organisms, int64.
@@ -54,7 +54,7 @@ def with_ancestors(rows: np.ndarray, *parents: np.ndarray) -> np.ndarray:
 
 
 def places_of(rising: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """Return the place of each row among `rising`, which holds all of them; -1 for row -1."""
+    """Return the place of each row in the sorted array `rising`, which has all rows; -1 for row -1."""
     return np.where(rows < 0, -1, np.searchsorted(rising, rows))
 
 

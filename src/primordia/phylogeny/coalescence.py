@@ -60,7 +60,7 @@ class Genealogy:
         return int(common[-1]) if self.living and len(common) else None
 
     def trunk(self) -> np.ndarray:
-        """Return rows of the line whose root, and each next child, has the most living descendants."""
+        """Return the rows of the line with the most living descendants at its root and at each child."""
         if not len(self.rows):
             return np.zeros(0, np.int64)
         order = np.lexsort((self.size, self.parent))
@@ -88,7 +88,7 @@ class Times:
     back: np.ndarray
     """int64 (K,), rising"""
     share: np.ndarray
-    """share of pairs whose lines parted at most `back` ticks ago, float64 (K,), rising"""
+    """share of pairs whose lines parted at most `back` ticks ago, float64 (K,), ascending"""
 
     @property
     def median(self) -> float | None:
@@ -105,7 +105,7 @@ class Times:
 
 
 def observed(genealogy: Genealogy) -> Times:
-    """Return the coalescence times of all pairs of the living of one world, exact."""
+    """Return the exact coalescence times of all pairs of organisms that are alive in one world."""
     ticks, pairs = genealogy.coalescences()
     all_pairs = genealogy.living * (genealogy.living - 1) // 2
     return Times(_end(genealogy.lives) - ticks, pairs.cumsum() / max(all_pairs, 1))

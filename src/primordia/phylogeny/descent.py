@@ -35,7 +35,7 @@ class CommonAncestor:
     born: int
     """tick of its birth"""
     since: int
-    """tick after which all the living have been the organism or its descendants"""
+    """first tick after which all the living were the organism or its descendants"""
     generation: int
     """number of births from the root of the line to the organism"""
 
@@ -60,13 +60,13 @@ class Ancestors:
     """for each of SHARES, the first tick after which each organism's descendants were more than
     this share of the living (for a share of 1, all of the living), int64 (D,), or UNKNOWN"""
     census: Census
-    """the living of the world at instants"""
+    """the living of the world at chosen instants"""
     branch: np.ndarray
-    """for each organism of the world, the place where its line leaves this one, int64; see `branches`"""
+    """place where the line of each organism of the world leaves this line, int64; see `branches`"""
     common: CommonAncestor | None
     """the common ancestor of the living; None if there is none on record"""
     roots: int
-    """number of ancestors of the living without a parent on record"""
+    """number of roots of the living: ancestors without a parent on record"""
 
     @cached_property
     def size(self) -> np.ndarray | None:
@@ -78,7 +78,7 @@ class Ancestors:
         (T, K).
 
         Args:
-            places: places on the line, rising, int64 (K,).
+            places: places on the line, in ascending order, int64 (K,).
         """
         group = np.searchsorted(places, self.branch, side="right") - 1
         counts = self.census.counts(group, len(places))
@@ -86,9 +86,9 @@ class Ancestors:
         return from_each / np.maximum(self.census.living, 1)[:, None]
 
     def telling(self, most: int) -> np.ndarray:
-        """Return up to `most` places on the line, rising: the first, the last and the most important.
+        """Return the first, last and most important places on the line, in order; `most` limits them.
 
-        Almost half of the places are of organisms that outlived their parents by the largest ratio. The
+        Almost half of the places are those with the largest ratio of lifespan to parent's lifespan. The
         other places are evenly spaced.
         """
         count = len(self.line)

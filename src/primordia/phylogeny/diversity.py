@@ -47,7 +47,7 @@ def hill_numbers(counts: np.ndarray) -> np.ndarray:
     of the probability that two of the living, drawn with replacement, are of one line.
 
     Args:
-        counts: living of each line, (..., K).
+        counts: how many of each line are alive, (..., K).
 
     Source: Hill 1973, "Diversity and evenness: a unifying notation and its consequences".
     """

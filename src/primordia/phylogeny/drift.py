@@ -28,7 +28,7 @@ DRAWS = 10**9
 DEATH, BIRTH, FOUNDER = 0, 1, 2
 """Kinds of events."""
 NO_LINE = 0
-"""The line number of founders that are born later: they have no line. Lines are numbered from 1."""
+"""Number in place of a line's, for founders born after the first instant. Lines are numbered from 1."""
 
 
 class Deal(NamedTuple):
@@ -49,7 +49,7 @@ class Deal(NamedTuple):
     def of(
         cls, lives: Lives, turnover: Turnover, ticks: np.ndarray, seed: int, what: int
     ) -> "Deal":
-        """Prepare the turnover of one world; draws follow from its seed, the first tick and `what`."""
+        """Prepare a world's turnover; draws follow from seed, first tick and the number `what`."""
         device.prepare()
         places = np.searchsorted(turnover.tick, ticks, side="right")
         events = slice(places[0], places[-1])
@@ -67,12 +67,12 @@ class Deal(NamedTuple):
         )
 
     def replicates(self, lines: int, fewest: int, most: int) -> int:
-        """Return how many shadows each of a number of lines gets; lines are drawn one after another."""
+        """Return the number of shadows of each line, if this many lines are dealt one after another."""
         return int(np.clip(DRAWS // max(self.places[-1] * lines, 1), fewest, most))
 
     @property
     def parts(self) -> Iterator[tuple[int, int, int, int]]:
-        """For each instant: its place, begin and end of its events, and the number of living."""
+        """For each instant: its place, the beginning and end of its events, and the number of living."""
         begin = np.append(0, self.places[:-1])
         rows = np.array([np.arange(len(begin)), begin, self.places, self.living])
         return map(tuple, rows.T.tolist())
@@ -96,7 +96,7 @@ def drift(lives: Lives, turnover: Turnover, ticks: np.ndarray, lines: int, seed:
     Args:
         lives: lives of one world.
         turnover: births and deaths of the world.
-        ticks: T instants, rising; each organism alive after the first begins a line.
+        ticks: T instants, in ascending order; each organism alive after the first begins a line.
         lines: K, the number of lines.
         seed: the world's seed.
     """
@@ -156,10 +156,10 @@ def deal_one_line(
 ) -> Array:
     """In each shadow, deal births and deaths to one line and to the rest of the living.
 
-    Return the number of living of the line, int32 (R,).
+    Return how many of the line are then alive in each shadow, int32 (R,).
 
     Args:
-        counts: living of the line in each shadow, int32 (R,).
+        counts: how many of the line are alive in each shadow, int32 (R,).
         which: numbers of the shadows, int32 (R,); the draws of a shadow depend on its number.
         first: the first event.
         last: the event before which to stop.

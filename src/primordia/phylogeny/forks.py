@@ -22,7 +22,7 @@ from primordia.runs.opening import archive
 AS_INHERITED = ("world", "id", "parent", "cell", "birth_cause", "born")
 """Columns that a fork copies from the births of the organisms alive at the fork."""
 Say = Callable[[str], object]
-"""A function that is called with a line for the user."""
+"""A function that is called with a line of text for the user."""
 
 
 class Past(NamedTuple):

@@ -27,7 +27,7 @@ def founding_tick(lives: Lives) -> int:
 
 
 def instants(at: int, last: int) -> np.ndarray:
-    """Return ticks from `at` to `last`, denser at first, since most lines are lost early; int64 (T,)."""
+    """Return int64 (T,): ticks from tick `at` to tick `last`, denser early, when most lines are lost."""
     after = np.geomspace(1, max(last - at, 1), INSTANTS).round().astype(np.int64)
     return np.unique(np.concatenate([[at], at + after[at + after <= last]]))
 

@@ -19,7 +19,7 @@ from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 
 BAND = (2.5, 97.5)
-"""Percentiles of shadows between which 95 % of them lie."""
+"""95 % of the shadows lie between these percentiles."""
 
 
 @dataclass(frozen=True)
@@ -34,13 +34,13 @@ class WorldLines:
     ticks: np.ndarray
     """instants at which lines were counted, int64 (T,); at the first they were founded"""
     counts: np.ndarray
-    """living of each line, int64 (T, K)"""
+    """number of living in each line, int64 (T, K)"""
     living: np.ndarray
     """all living, int64 (T,)"""
     slopes: np.ndarray
     """selection coefficient of each line per tick, float64 (K,); NaN where it cannot be measured"""
     shadow_slopes: dict[int, np.ndarray]
-    """for each line with a slope, by its place: the slopes of its shadows, rising, float64"""
+    """for each line with a slope, by its place: the sorted slopes of its shadows, float64"""
     drift: Drift
     """the course of all lines when they drift together"""
     sweeps: list[Sweep]
@@ -63,7 +63,7 @@ class WorldLines:
 
     @cached_property
     def lifespan(self) -> float | None:
-        """Ticks lived for each death since the lines were founded; None without a death."""
+        """Ticks lived since the lines were founded, divided by the deaths; None without a death."""
         late = self.lives.ended > self.ticks[0]
         deaths = int((self.lives.died & late).sum())
         lived = (self.lives.ended - np.maximum(self.lives.born, self.ticks[0]))[late].sum()
@@ -85,7 +85,7 @@ class WorldLines:
 
     @cached_property
     def p_of_effective(self) -> float:
-        """Two-sided p value of the effective number of lines (order 2), averaged over the instants."""
+        """Two-sided p value of the mean, over instants, of the effective number of lines (order 2)."""
         null = np.sort(self.drift.effective.mean(axis=1))
         return float(two_sided(self.effective[2].mean(), null))
 
@@ -192,7 +192,7 @@ def two_sided(values: np.ndarray, null: np.ndarray) -> np.ndarray:
 
     Args:
         values: of any shape.
-        null: values of the null hypothesis, rising, (N,).
+        null: values of the null hypothesis, in ascending order, (N,).
     """
     at_most = 1 + np.searchsorted(null, values, side="right")
     at_least = 1 + len(null) - np.searchsorted(null, values, side="left")

@@ -8,7 +8,7 @@ import numpy as np
 from primordia.runs.lives import Lives
 
 NEVER = np.iinfo(np.int64).max
-"""The tick of death of an organism that is alive."""
+"""The number for the living, in place of a tick of death."""
 
 
 def stops(lives: Lives) -> np.ndarray:
@@ -30,7 +30,7 @@ def last_era(lives: Lives) -> Lives:
 
 @dataclass(frozen=True)
 class Census:
-    """The living of one world after each of T rising ticks; A counts the pairs of tick and organism."""
+    """The living of one world after each of T ticks in order; A counts the pairs of tick and organism."""
 
     lives: Lives
     ticks: np.ndarray

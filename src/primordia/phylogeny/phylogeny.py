@@ -51,7 +51,7 @@ class Phylogeny:
         return lives.rows_of(lives.world, mate)
 
     def take(self, rows: slice | np.ndarray) -> "Phylogeny":
-        """Return the organisms in the given rows, rising."""
+        """Return the organisms in the given rows, which are in ascending order."""
         return Phylogeny(
             self.lives.take(rows), taken(self.of_births, rows), taken(self.of_deaths, rows)
         )

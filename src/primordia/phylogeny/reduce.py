@@ -21,7 +21,7 @@ def chosen(
     Args:
         whole: the phylogeny.
         organism: birth number; only this organism and its ancestors.
-        world: only this world; with `organism` by default world 0.
+        world: only this world; if `organism` is given, world 0 by default.
         extant: only the living and their ancestors.
         collapse: without organisms on unbranched stretches; see `collapsed`.
 

@@ -13,8 +13,8 @@ from primordia.phylogeny.drift import Deal, deal_one_line
 from primordia.phylogeny.living import Census, Turnover
 
 LOW, HIGH = 0.05, 0.95
-"""Smallest and largest share of the living at which the slope of a line is measured: below and
-above, chance alone decides."""
+"""Smallest and largest share of the living at which the slope of a line is measured: outside this
+range, chance is too strong."""
 LEAST = 5
 """Smallest number of instants for a slope."""
 MOST, FEWEST = 1000, 200
@@ -36,7 +36,7 @@ class Slopes:
         self._instants = np.zeros(number, np.int64)
 
     def add(self, tick: int, counts: np.ndarray, living: int) -> None:
-        """Add an instant: the number of living of each line (N,), and of all lines."""
+        """Add an instant: how many of each line are alive, (N,), and how many organisms in all."""
         rows = np.flatnonzero(between(counts, living))
         count = counts[rows].astype(float)
         weight, logit = count * (living - count) / max(living, 1), np.log(count / (living - count))
@@ -46,7 +46,7 @@ class Slopes:
 
     @property
     def slopes(self) -> np.ndarray:
-        """The slope of each line per tick, float64 (N,); NaN with fewer than LEAST instants."""
+        """The slope of each line per tick, float64 (N,); NaN with too few instants (see LEAST)."""
         w, wt, wtt, wy, wty = self._sums
         spread = w * wtt - wt**2
         known = (self._instants >= LEAST) & (spread > 0)
@@ -62,7 +62,7 @@ def observed(counts: np.ndarray, living: np.ndarray, ticks: np.ndarray) -> np.nd
     """Return the slopes of K lines, float64 (K,); NaN for a line without a slope.
 
     Args:
-        counts: living of each line at T instants, int64 (T, K).
+        counts: how many of each line are alive at T instants, int64 (T, K).
         living: all living at each instant, int64 (T,).
         ticks: the instants, int64 (T,).
     """
@@ -83,8 +83,8 @@ def of_shadows(census: Census, turnover: Turnover, counts: np.ndarray, seed: int
     Args:
         census: the living of one world at T instants.
         turnover: births and deaths of the world.
-        counts: living of each line at each instant, int64 (T, M); the share of each line is between
-            LOW and HIGH at some instant.
+        counts: how many of each line are alive at each instant, int64 (T, M); the share of each
+            line is between LOW and HIGH at some instant.
         seed: the world's seed.
     """
     lines = counts.shape[1]

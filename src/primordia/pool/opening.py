@@ -26,8 +26,8 @@ def open_pool(
         fields: dtype and shape of the arrays by name.
         cells: number of simulators.
         workers: number of worker processes, at most one for each cell; 0: the simulators are in this
-            process; None: one worker for each core, or none if there is one core or one simulator,
-            since a process takes a second to start.
+            process; None: one worker for each core, but 0 if there is only one core or one
+            simulator, since a process takes a second to start.
         modules: the user's own modules that the simulators import.
 
     Raises:

@@ -89,9 +89,9 @@ def streams(seed: Wide, tick: Wide, *purposes: Purpose) -> Streams:
     """Return the streams of one tick of each world for several purposes.
 
     One call for all purposes compiles faster than one call for each. Call it outside the compiled loop or
-    branch that draws with the streams: XLA stores what crosses that border. Inside it, XLA derives the
-    keys again for every cell (measured: 20 us a tick in 16 worlds of 32 cells; optimisation barriers do
-    not help).
+    branch that draws with the streams: XLA stores keys that come from outside. If the call is
+    inside, XLA derives the keys again for every cell (measured: 20 us a tick in 16 worlds of 32
+    cells; optimisation barriers do not help).
     """
     tick_key = threefry(seed, tick)
     numbers = np.array(purposes, np.uint32).reshape(-1, *[1] * tick_key.lo.ndim)

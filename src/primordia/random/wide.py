@@ -35,7 +35,7 @@ class Wide(NamedTuple):
         return Wide(self.hi[index], self.lo[index])
 
     def plus(self, n: Array) -> "Wide":
-        """Return the sum with a bool or non-negative integer array."""
+        """Return the counts plus a bool or non-negative integer array."""
         n = n.astype(jnp.uint32)
         return self + Wide(jnp.zeros_like(n), n)
 
@@ -124,7 +124,7 @@ def never(shape: tuple[int, ...]) -> Wide:
 
 
 def happened(value: Wide) -> Array:
-    """Return whether a tick is not `never`."""
+    """Return whether a tick differs from `never`."""
     return (value.hi & value.lo) != np.uint32(2**32 - 1)
 
 

@@ -20,9 +20,9 @@ from primordia.runs.records import Records
 FEW = 8
 """Largest number of worlds whose curves are drawn one by one."""
 DOTS = 2000
-"""Largest number of dots, for the dead and for the living."""
+"""Largest number of dots for each group: the dead, and the living."""
 POINTS = 600
-"""Largest number of points of a curve over samples."""
+"""Largest number of points in a curve that is thinned."""
 
 Panel = dict[str, Any]
 Kind = Literal["line", "faint", "low", "high", "dots", "steps", "limit"]

@@ -49,8 +49,9 @@ def _shown(run: Records) -> Config:
 def commands(config: Config, name: str, own_code: bool) -> list[str]:
     """Return the commands that repeat a run and show whether the result is the same.
 
-    A run of a built-in task whose settings fit into flags needs nothing else. Other runs need the
-    `config.toml` in the page. A fork, or a run with its own genomes or code, needs its directory.
+    The commands are enough if the task is built in and the run's settings fit into flags. Other
+    runs need the `config.toml` in the page. A fork, or a run with its own genomes or code, needs
+    its directory.
 
     Args:
         config: the settings.

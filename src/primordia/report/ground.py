@@ -25,7 +25,7 @@ from primordia.report.packed import packed
 from primordia.runs.lives import Lives
 
 WHOLE = 100_000
-"""Largest number of births of a world whose organisms are all in the page."""
+"""A world with at most this many births has all its organisms in the page."""
 SEEN = 400_000
 """Largest number of cells that are read in a larger world, over all moments."""
 MARKS = 12
@@ -81,8 +81,8 @@ class Ground:
         """The lives in the shown cells as S segments, sorted by cell and time; each array is (S,).
         A life is split whenever all lines begin anew.
 
-        `row`: row of the organism; `start`, `stop`: the times, in births, at which the organism
-        appears and leaves; `code`: its line, see `line_codes`.
+        `row`: row of the organism; `start`, `stop`: the times, in births, at which the segment
+        begins and ends; `code`: its line, see `line_codes`.
         """
         lives, births = self.lives, len(self.lives)
         rows = self.rows[np.isin(lives.cell[self.rows], self.shown)]

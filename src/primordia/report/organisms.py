@@ -18,12 +18,13 @@ def organisms(lives: Lives, rows: np.ndarray) -> dict[str, Any]:
 
     Args:
         lives: the lives of the world.
-        rows: rows of the organisms, int64 (R,), rising.
+        rows: rows of the organisms, int64 (R,), ascending.
 
     Returns:
-        Packed arrays (R,). `parent`: birth number of the parent plus 1, or 0. `ancestor`: place of the
-        nearest ancestor among these organisms plus 1, or 0. `cause`: cause of death plus 1; 0 if
-        alive. `born`: ticks from the first birth on record; add `first` to get the tick.
+        Packed arrays (R,). `parent`: the parent's birth number plus 1; 0 if none. `ancestor`: 1 +
+        the place, among these organisms, of the nearest ancestor; 0 if none. `cause`: cause of
+        death plus 1; 0 if alive. `born`: ticks from the first birth on record; add `first` to get
+        the tick.
     """
     some = lives.take(rows)
     first = int(lives.born[0])
@@ -60,11 +61,11 @@ def generations(parent_row: np.ndarray) -> np.ndarray:
 
 
 def nearest_among(parent_row: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """Return the place in `rows` of the nearest ancestor of each of these organisms, int64 (R,), or -1.
+    """Return where in `rows` each of these organisms has its nearest ancestor, int64 (R,); -1 if nowhere.
 
     Args:
         parent_row: row of each organism's parent, or -1; int64 (L,).
-        rows: some organisms, int64 (R,), rising.
+        rows: some organisms, int64 (R,), ascending.
     """
     known = np.append(nearest(parent_row, rows), -1)  # the last entry is for a missing parent, -1
     return places_of(rows, known[parent_row[rows]])

@@ -63,7 +63,7 @@ class Watched:
         """Return the state as JSON when it differs from the last reported one, or after some
         seconds.
 
-        `count` increases with each new content; `going` is whether a process writes the run.
+        `count` increases with each new content; `going` says whether a process writes the run.
         """
         with self._changed:
             self._changed.wait_for(lambda: self._state() != told, patience)

@@ -52,7 +52,7 @@ class Archive(Records):
         self.path, self.edited = Path(path), edited
         self.config: Config = directory.read_config(self.path)
         self.fault_in = cache(files.fault_in)
-        """`files.fault_in`, which remembers results, so that no file is read twice"""
+        """`files.fault_in` with a memory of results, so that no file is read twice"""
         self._fitting: set[Path] = set()  # the checkpoints whose arrays fit the settings
 
     @property

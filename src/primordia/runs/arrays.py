@@ -28,8 +28,8 @@ class Arrays(Mapping[str, np.ndarray]):
     """State and open tails of a checkpoint by name, each read and checked at its first use.
 
     The arrays can be read even after the run has gone on and removed the file. A small file is read
-    at opening, since an arm may have thousands of runs, and a process can open about a thousand
-    files. A large file stays open. The arrays are read-only.
+    at opening, since an arm may have thousands of runs, and a process can keep only about a
+    thousand files open. A large file stays open. The arrays are read-only.
     """
 
     def __init__(self, file: Path, fault_of: FaultOf) -> None:

@@ -5,9 +5,9 @@
     run/checkpoints/000012/  origin/
 
 Equal runs give bundles with equal bytes. A bundle may come from a stranger and is not trusted:
-except for `versions.json` and the manifests, a manifest must name each file, with its size and
-checksum. Nothing is compressed, so unpacking cannot take more space than the bundle. Nothing in a
-bundle is executed.
+a manifest must name each file, with its size and checksum; only `versions.json` and the manifests
+themselves are exempt. Nothing is compressed, so unpacking cannot take more space than the bundle.
+Nothing in a bundle is executed.
 """
 
 import atexit
@@ -134,7 +134,7 @@ def opened(file: Path) -> Path:
 
 
 def origin_of(path: Path) -> Path:
-    """Return the bundle from which `opened` made the copy at `path`; `path` if it is no such copy."""
+    """If `path` is a copy that `opened` made, return the copy's bundle; otherwise return `path`."""
     return _bundles.get(path, path)
 
 
@@ -164,7 +164,7 @@ def unbundle(file: Path, folder: Path) -> None:
 
 
 def refuse_changes(path: Path) -> None:
-    """Raise InputError if a path is a bundle, or the copy of a bundle that `opened` made."""
+    """Raise InputError if a path is a bundle, or a copy that `opened` made of a bundle."""
     if path.is_file() or path in _bundles:
         file = origin_of(path)
         raise InputError(

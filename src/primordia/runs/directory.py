@@ -28,7 +28,7 @@ FORMAT = 2
 VERSIONS, LOCK = "versions.json", "lock"
 FOLDERS = (*TABLES, checkpoint.FOLDER)
 GLANCE = 0.05
-"""Seconds to wait for a lock that `is_written` holds in another process for a moment."""
+"""Seconds to wait for a lock, since `is_written` in another process may hold it briefly."""
 OWN = (VERSIONS, *FOLDERS, code.FOLDER, checkpoint.ORIGIN, *INPUTS, LOCK)
 """The names in a new run's directory."""
 

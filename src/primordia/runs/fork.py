@@ -34,9 +34,9 @@ OF_ANY_LENGTH = "bodies.states"
 """The array of saved states; all its rows are as long as the longest of these states
 (`habitats.states`)."""
 OF_MUTATION = (".notes", ".moments.")
-"""Parts of the names of arrays that begin empty if the kind of mutation changes."""
+"""Arrays with these parts in their names begin empty if the kind of mutation changes."""
 RENEWED = (*OF_MUTATION, ".looks.", ".climate.")
-"""Parts of the names of arrays in which a fork may differ from its source."""
+"""A fork may differ from its source in arrays with these parts in their names."""
 
 
 def fork(

@@ -19,8 +19,8 @@ def join(
     """Join the births and deaths of a run; each segment is released once it is read.
 
     Args:
-        births: one or more segments, in the order of events; those of a world are in the order of
-            birth numbers.
+        births: one or more segments, in the order of events; the births of each world are in the
+            order of their numbers.
         deaths: segments; the columns world, id, tick and cause are enough.
         ends: last tick of each world so far, int64 (W,).
         begins: the records begin at the end of this tick.

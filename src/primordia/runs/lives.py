@@ -11,13 +11,13 @@ from primordia.errors import InputError
 LATE = 0.5
 """A birth is late if it comes after this share of its world's births."""
 ALIVE = -1
-"""The cause of death of an organism that is alive."""
+"""The number for the living, in place of a cause of death."""
 
 
 @dataclass(frozen=True)
 class Lives:
-    """Lives as arrays (L,), sorted by world and birth number. The living are censored at their
-    world's end."""
+    """Lives as arrays (L,), sorted by world and birth number. The living are censored at the last tick of
+    their world."""
 
     world: np.ndarray
     """int32"""
@@ -50,8 +50,8 @@ class Lives:
     def entered(self) -> np.ndarray:
         """Age from which the life is on record, int64 (L,): above 0 for organisms alive at a fork.
 
-        Organisms of the same generation that died before the fork are not on record. So these lives
-        carry no information about younger ages.
+        Organisms that were born at the same times, but died before the fork, are not on record. So
+        these lives carry no information about younger ages.
         """
         return self.seen - self.born
 
@@ -79,12 +79,12 @@ class Lives:
         return self if rows == slice(0, len(self)) else self.take(rows)
 
     def recorded_since(self, tick: int) -> "Lives":
-        """Return the lives of a record that began at the end of a tick."""
+        """Return the lives that a record begun at the end of a tick would hold."""
         later = self.take(np.flatnonzero(~self.died | (self.ended > tick)))
         return replace(later, seen=np.maximum(later.seen, tick))
 
     def recorded_until(self, tick: int) -> "Lives":
-        """Return the lives of a record that stopped at the end of a tick."""
+        """Return the lives that a record stopped at the end of a tick would hold."""
         before = self.take(np.flatnonzero(self.born <= tick))
         late = before.ended > tick
         return replace(
@@ -173,7 +173,7 @@ class Lives:
 
 
 def joined(parts: Sequence[Lives], firsts: np.ndarray) -> Lives:
-    """Join the lives of R runs; the first world of each run gets its number in `firsts`, int64 (R,)."""
+    """Join the lives of R runs; `firsts`, int64 (R,), has the new number of each run's first world."""
     columns = {
         each.name: np.concatenate([getattr(part, each.name) for part in parts])
         for each in fields(Lives)

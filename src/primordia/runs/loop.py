@@ -29,7 +29,7 @@ from primordia.runs.record import Recorder
 from primordia.runs.schema import Schema
 
 EARLY = (1.0, 4.0, 10.0)
-"""Seconds from each early checkpoint to the next; early ones let a run be read soon."""
+"""Seconds to wait before each early checkpoint; these let a run be read soon."""
 
 
 @dataclass
@@ -243,7 +243,7 @@ class Saver:
         return time.perf_counter() - self._began
 
     def save(self) -> None:
-        """Write a checkpoint, unless the run's folder has been removed."""
+        """Write a checkpoint; raise Trouble if the run's folder was removed or replaced."""
         self._check()
         self._progress.wall_s = self._before + self.seconds
         checkpoint.save(self._run, self._engine.arrays(), self._recorder, self._progress)

@@ -75,7 +75,7 @@ class Progress(Part):
     """number of resumes at which the living got new bodies, since the habitat cannot save them"""
 
     def gone_on(self, exact: bool) -> "Progress":
-        """Return the progress of a resumed run; unless `exact`, the living have got new bodies."""
+        """Return the progress of a resumed run; if not `exact`, it counts one more restart."""
         return self.model_copy(update={"restarts": self.restarts + (not exact)})
 
 

@@ -78,7 +78,7 @@ def arm_paths(experiment: Path) -> list[Path]:
 
 
 def split_name(place: str) -> tuple[str | None, str]:
-    """Return the name and the place in `name=place`; the name is None if `place` has no name."""
+    """Return the name and the place of a text `name=place`; the name is None if the text has none."""
     named = re.fullmatch(r"([^=/*?\[\]]+)=(.+)", place, re.DOTALL)
     if named is None or Path(place).exists():
         return None, place

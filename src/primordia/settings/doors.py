@@ -37,7 +37,7 @@ def values(task: str) -> dict[str, Any]:
 
 
 def replication(lifespan: float) -> float:
-    """Return a probability of replication in a tick; `lifespan` is the mean in ticks for random actions.
+    """Return the probability of replication in a tick, from the mean ticks of a life with random actions.
 
     An organism replicates about once in such a life, since the paper makes the probability "loosely
     proportional to the average lifespan of the initial organisms".
@@ -53,9 +53,9 @@ def text(env: str) -> str:
         f"A task in {env}: `primordia run FILE` runs it. Change any setting.",
         *facts,
         *(f"Found: {fault}." for fault in faults),
-        f"fatal is a condition that ends a life, such as: {fatal} or obs[0] < -1.",
-        "food is an amount, such as: max(reward, 0); it needs a [metabolism] with store, drain"
-        " and gain.",
+        f"The setting fatal is a condition that ends a life, such as: {fatal} or obs[0] < -1.",
+        "The setting food is an amount, such as: max(reward, 0); it needs a [metabolism] with store,"
+        " drain and gain.",
     ]
     comments = [fill(line, WIDTH, initial_indent="# ", subsequent_indent="#   ") for line in lines]
     return "\n".join([*comments, "", tomli_w.dumps(table)])

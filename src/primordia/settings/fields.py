@@ -26,7 +26,7 @@ def setting_fields(model: type, prefix: str = "") -> dict[str, Any]:
 
 
 def rates_of(group: Settings, prefix: str = "") -> dict[str, float]:
-    """Return the values of a group's settings declared as `Rate`, by name with a prefix."""
+    """Return the values of a group's `Rate` settings, by name; `prefix` is put before each name."""
     fields = type(group).model_fields.items()
     return {
         prefix + name: getattr(group, name) for name, field in fields if SEASONAL in field.metadata

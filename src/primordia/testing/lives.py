@@ -41,7 +41,7 @@ def judged(habitat: object, outcome: Any, count: int) -> None:
 
 
 def actions(kind: Action) -> np.ndarray:
-    """Return pseudo-random actions of a kind, for TICKS ticks of ALL bodies."""
+    """Return pseudo-random actions of a kind for each tick and body, (TICKS, ALL, ...)."""
     if isinstance(kind, Discrete):
         return (words(1, TICKS, ALL) % np.uint32(kind.size)).astype(np.int32)
     if isinstance(kind, Continuous):
@@ -55,7 +55,7 @@ def actions(kind: Action) -> np.ndarray:
 
 
 class Lives:
-    """The lives of ALL bodies of a habitat. They must be the same in every order of play."""
+    """The lives of ALL bodies of a habitat. They must be the same however they are played."""
 
     def __init__(self, habitat: AnyHabitat) -> None:
         self.habitat = habitat

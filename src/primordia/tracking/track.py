@@ -28,7 +28,7 @@ class Dashboard(Protocol):
         """Append rows of a world."""
 
     def finish(self) -> None:
-        """Complete the files of all worlds so far, which get no more rows."""
+        """Complete the files of all worlds so far; no more rows follow."""
 
     def close(self) -> None:
         """Finish, and release all resources."""
@@ -62,7 +62,7 @@ def track(
         look: a function that returns the present runs.
         group: a name for all runs.
         tensorboard: folder for TensorBoard, in which each world has a folder.
-        wandb: folder for Weights & Biases, whose subfolder `wandb` holds the runs. Nothing connects
+        wandb: folder for Weights & Biases; its runs are in the subfolder `wandb`. Nothing connects
             to the network: wandb's error reports are switched off in this process.
         follow: read again until all runs have stopped.
         every: seconds between two readings.

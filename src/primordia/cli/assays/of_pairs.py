@@ -52,10 +52,11 @@ def compete(
     """Let two genomes compete without mutation. In each world, each genome begins in half of the
     cells. Measure whose descendants take over.
 
-    ONE and OTHER each name a run, which stands for its champion, or a genome file, which stands for
-    its first genome. `runs/a:17` is organism 17 of world 0. `runs/a:17@2` is organism 17 of world 2.
-    `some.safetensors:3` is the fourth genome of a file. `Pong-survival:5` is a founder of a task.
-    The worlds have the settings of ONE. Any setting of the habitat can be changed by a flag.
+    The arguments ONE and OTHER are two runs or genome files. A run stands for its champion, and a
+    genome file for its first genome. `runs/a:17` is organism 17 of world 0. `runs/a:17@2` is
+    organism 17 of world 2. `some.safetensors:3` is the fourth genome of a file. `Pong-survival:5`
+    is a founder of a task. The worlds have the settings of the first argument, ONE. Any setting of
+    the habitat can be changed by a flag.
     """
     from primordia.assays.compete import compete as measure
 

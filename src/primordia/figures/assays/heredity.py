@@ -8,7 +8,7 @@ from primordia.figures.assays.strips import strips
 
 
 def draw(found: list[Inherited]) -> Figure:
-    """Draw slopes of children's log life on parents', and Price's terms: a dot for each world."""
+    """Draw Price's terms, and slopes of children's log life on their parents': a dot for each world."""
     figure = Figure(figsize=(style.PAGE, 2.6))
     slopes, shares, terms = figure.subplots(1, 3, width_ratios=(1, 1.1, 0.9))
     key = {"worlds": style.SKY, "median": style.BLUE}

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ale_py import ALEInterface, ALEState
 
 RAM = 128
-"""bytes of an Atari 2600"""
+"""bytes of RAM in an Atari 2600"""
 FIELDS = {
     "action": ("int32", ()),
     "words": ("uint32", (2,)),
@@ -39,7 +39,7 @@ REFUSED = {
         "the emulator does not restore its states exactly, so no run could be repeated",
     ),
 }
-"""Games that cannot be habitats, and why. All others are exact (measured with ale-py 0.12.1)."""
+"""Games that cannot be habitats, and why. All others are restored exactly (tested with ale-py 0.12.1)."""
 SCREEN = "screen"
 """An optional field, uint8 (height, width, 3), which is filled after each tick."""
 
@@ -153,7 +153,7 @@ class Arcade:
         return self._held[cell]
 
     def reset(self, cell: int) -> None:
-        """Begin a game at its start, or after a random number of no-ops, up to `noops`."""
+        """Begin a game at its start, or after a random number of no-ops; `noops` is the limit."""
         (ale, _), words = self._consoles[cell], self._arrays["words"][cell].tolist()
         ale.restoreState(self._start)
         for _ in range(words[0] % (self._noops + 1)):

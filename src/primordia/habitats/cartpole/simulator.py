@@ -1,7 +1,7 @@
 """The motion of a pole on a cart (Barto, Sutton & Anderson 1983), as in Gymnasium's CartPole-v1.
 
 Units, constants and order of integration (explicit Euler) are Gymnasium's;
-`tests/habitats/test_cartpole.py` compares the two.
+`tests/habitats/test_cartpole.py` compares this motion with Gymnasium's.
 """
 
 import jax.numpy as jnp

@@ -52,7 +52,7 @@ class _Life:
     rows: np.ndarray
     """actions as rows, float64 (T, K)"""
     seen: list[bytes] = field(default_factory=list)
-    """observation, reward and ends at each age, from birth on"""
+    """for each age from birth on: observation, reward, whether life ended"""
     ended: bool = False
 
 

@@ -87,7 +87,7 @@ def _info(env: str, options: str, imports: tuple[str, ...]) -> dict[str, int]:
 def random_play(
     env: str, options: Mapping[str, Any], imports: Sequence[str]
 ) -> list[tuple[np.ndarray, Mapping[str, Any]]]:
-    """Return observation rows and infos of TICKS random steps and the resets; an error ends a life."""
+    """Return observation and info of each reset and each of TICKS random steps; an error ends a life."""
     made = environment.make(env, options, imports)
     observation = Observation(made.observation_space)
     seen: list[tuple[np.ndarray, Mapping[str, Any]]] = []

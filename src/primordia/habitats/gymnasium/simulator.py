@@ -142,7 +142,7 @@ class Environments:
         self._arrays["message"][cell, : len(text)] = np.frombuffer(text, np.uint8)
 
     def save(self, cell: int) -> bytes:
-        """Return the saved form of the present state; empty if no life has begun."""
+        """Return the present state in saved form; before a life or after a failure, seed and error."""
         life = self._lives[cell]
         if life.seed is None or life.failed is not None:
             return json.dumps({"seed": life.seed, "failed": life.failed}).encode()

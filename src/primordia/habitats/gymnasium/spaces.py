@@ -37,7 +37,7 @@ class Leaf(NamedTuple):
 
     @property
     def first(self) -> Any:
-        """The number that the space gives to its first choice; in a row it is 0. For other parts, 0."""
+        """The space's number for its first choice, which a row stores as 0. For other parts, 0."""
         return self.space.start if isinstance(self.space, spaces.Discrete | MultiDiscrete) else 0
 
 

@@ -110,7 +110,7 @@ class _Reader:
         self._made: list[Any] = []
 
     def read(self, stored: Any, now: Any, place: str) -> Any:
-        """Return a stored value; `now` is what the environment has there now."""
+        """Return a stored value; `now` is the environment's present value at the same place."""
         if not isinstance(stored, list):
             return stored
         kind, *rest = stored

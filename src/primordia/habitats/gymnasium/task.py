@@ -11,9 +11,9 @@ from primordia.settings.doors import replication
 PLAIN = 5.0
 """Unbounded observations that stay below this in random play are not scaled."""
 SAVING = {
-    "snapshot": "After an interruption lives go on exactly from their saved states",
-    "replay": "After an interruption lives are lived again from their seed and actions, exactly",
-    "restart": "After an interruption lives cannot go on exactly",
+    "snapshot": "After an interruption, lives go on exactly from their saved states",
+    "replay": "After an interruption, lives are repeated exactly, from their seed and actions",
+    "restart": "After an interruption, lives cannot go on exactly",
 }
 
 
@@ -105,5 +105,5 @@ def _facts(env: str, about: Any, found: Any, keys: dict[str, int]) -> list[str]:
         SAVING[found.saving] + (f" ({found.why})." if found.why else "."),
         f"With random actions, a life has {found.lifespan:,.0f} ticks on average."
         if found.ended
-        else "No life ended in random play: name a condition for fatal, or add a metabolism.",
+        else "No life ended in random play: set `fatal` to a condition, or add a metabolism.",
     ]

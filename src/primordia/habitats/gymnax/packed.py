@@ -24,7 +24,7 @@ class Packed(NamedTuple):
         return lax.bitcast_convert_type(self.words[..., :size], jnp.float32)
 
     def state(self, senses_size: int, template: Any) -> Any:
-        """Return one body's state, a tree of the form of the template."""
+        """Return one body's state, a tree with the template's form."""
         leaves, form = jax.tree.flatten(template)
         words, arrays = iter(self.words[senses_size:]), iter(self.arrays)
         state = [

@@ -27,7 +27,7 @@ BLOCK = 64
 
 
 def rendered(env: Any, state: Any, params: Any) -> Image.Image | None:
-    """Return the picture of a state by the environment's library; None if the library draws none.
+    """Return the picture that the environment's library draws of a state; None if it draws none.
 
     Raises:
         InputError: this machine cannot draw robots.
@@ -63,7 +63,7 @@ def _framed(pixels: Any) -> Image.Image:
 
 
 def draw(senses: np.ndarray, grid: tuple[int, ...] | None) -> Image.Image:
-    """Return a picture of senses (S,), which are a grid (height, width, channels) if one is given."""
+    """Return a picture of senses (S,) as a `grid` (height, width, channels), or as bars if it is None."""
     return framed(_coloured(senses.reshape(grid)) if grid else _bars(senses))
 
 

@@ -3,9 +3,9 @@
 A compiler may contract a product and a sum into a fused multiply-add, which rounds once. Whether the
 compiler does so depends on what else the program computes: the results of gymnax's Pendulum in a
 loop differed from those tick by tick. Here the operations of a function are executed one by one.
-After each product of floats comes an integer operation that changes nothing, but the compiler does
-not know this (see `primordia.rounding`). Sums over axes, also those of matrix products, are trees
-of additions, whatever the number of bodies.
+An integer operation follows each float32 product to which something may be added. It changes
+nothing, but the compiler does not know this (see `primordia.rounding`). Sums over axes, also those
+of matrix products, are trees of additions, whatever the number of bodies.
 """
 
 from collections.abc import Callable, Sequence

@@ -153,7 +153,7 @@ KEY = jax.ShapeDtypeStruct((2,), jnp.uint32)
 
 @contextmanager
 def traced() -> Iterator[None]:
-    """Let JAX make and split keys in one way, whatever the user has set, and suppress warnings."""
+    """Suppress warnings, and let JAX make and split keys in one way, whatever the user has set."""
     with (
         jax.threefry_partitionable(True),
         jax.default_prng_impl("threefry2x32"),

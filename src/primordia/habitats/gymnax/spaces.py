@@ -48,7 +48,7 @@ class Actions:
 
 
 class Senses:
-    """Observations as senses: flat, float32; numbers with bounds beyond -1 or 1 are scaled to -1 to 1."""
+    """Observations as flat float32 senses; a number with a bound beyond -1 or 1 is scaled to [-1, 1]."""
 
     def __init__(self, space: Any, example: Any, squash: bool) -> None:
         """Use the space, or None, and an observation's shapes and types."""

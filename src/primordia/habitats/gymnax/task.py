@@ -56,10 +56,10 @@ def report(env: str) -> tuple[list[str], list[str]]:
         f"The environment's time limit ({limits}) is off; time_limit = true turns the limit on."
         if limits
         else "The environment has no time limit.",
-        "After an interruption lives go on exactly from their saved states.",
+        "After an interruption, lives go on exactly from their saved states.",
         f"With random actions, a life has {found.lifespan:,.0f} ticks on average."
         if found.ended
-        else f"None of {BODIES} lives ended in {TICKS} ticks of random play: name a condition for fatal,"
+        else f"None of {BODIES} lives ended in {TICKS} ticks of random play: set `fatal` to a condition,"
         " or add a metabolism.",
     ]
     return facts, found.faults

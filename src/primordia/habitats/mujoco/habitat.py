@@ -1,4 +1,4 @@
-"""Any MuJoCo model as a habitat. Bodies are stepped in parallel on all cores of the process.
+"""Any MuJoCo model as a habitat. Bodies are stepped in parallel on all cores that the process may use.
 
 Schmidgall & Hays 2021, "Reacher", "HalfCheetah", "Walker". Settings define senses, death, food and effort
 by expressions of named parts of the state. The simulator is MuJoCo's batch (extra `primordia[mujoco]`).

@@ -30,7 +30,7 @@ from primordia.random.wide import Wide, wide
 STRETCH = 64
 """Ticks of one compiled loop."""
 FEWEST = 16
-"""Smallest number of games of a loop. The number is padded, since JAX compiles for every new shape."""
+"""Smallest number of games of a loop. Loops are padded, since JAX compiles for every new shape."""
 FEWER = 8
 """Games that are over leave the loop when at most one game in this many still goes on."""
 

@@ -23,7 +23,7 @@ Script = Callable[[int], np.ndarray]
 
 
 class Frozen(NamedTuple):
-    """The senses and memory of N players that keep their values from the start of a game."""
+    """The inputs of N players, senses and memory, whose values stay as at the start of a game."""
 
     senses: np.ndarray
     """bool (N, S)"""
@@ -104,7 +104,7 @@ def mark(senses: Any) -> Any:
 
 
 def begun(law: Law, words: int, seated: Seats) -> Begun:
-    """Return games at their start, with `words` random words for each body."""
+    """Return games at their start; `words` is the number of random words of each body."""
     cells, store = jnp.asarray(seated.cells), to_fixed_point(seated.rates.store)
     drawn = body_words(stream(seated.keys, Purpose.BODY, wide([0])), cells, words)
     mind = Mind(law.heredity.layout.split(jnp.asarray(seated.genomes)), seated.keys, cells)

@@ -78,7 +78,7 @@ class Course:
         return -1 if self._last is None else int(self._last.cause[-1])
 
     def found(self) -> dict[str, Value]:
-        """Return the values found in the life, by the names of `recorded`."""
+        """Return the values found in the life, under the names that `recorded` returns."""
         if self._cause < 0 and not self.replaced:
             ended = {"cause": ALIVE} | ({"tick": self.tick} if self._life.cause is None else {})
             held = _of_living(self._held)

@@ -40,7 +40,7 @@ class LifeInJax:
     def live(
         self, now: Instant, ticks: np.ndarray, rates: Rates, count: int
     ) -> tuple[Instant, Stretch]:
-        """Live the first `count` of TICKS ticks with their rates (TICKS,), and ignore the other ticks."""
+        """Live the first ticks, `count` in number, with their rates (TICKS,); ignore the other ticks."""
         real = np.arange(len(ticks)) < count
         now, lived = self._lived(self._mind, now, (wide(ticks), rates, real))
         columns = jax.tree.map(lambda each: np.asarray(each)[:count, 0], lived)

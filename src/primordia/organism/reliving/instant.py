@@ -36,7 +36,7 @@ class Stretch(NamedTuple):
     eaten: np.ndarray
     """int32, fixed point: food since birth"""
     cause: np.ndarray
-    """int32: cause of death in the tick (by brain, body, store or accident), or -1"""
+    """int32: cause of death in the tick (from brain, body, energy or accident), or -1"""
     counts: np.ndarray
     """int32 (n, K): the habitat's counts after the tick"""
 

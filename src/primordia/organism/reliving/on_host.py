@@ -44,7 +44,7 @@ class LifeOnHost:
     def live(
         self, now: Instant, ticks: np.ndarray, rates: Rates, count: int
     ) -> tuple[Instant, Stretch]:
-        """Live the first `count` of TICKS ticks, with their rates (TICKS,)."""
+        """Live the first ticks, `count` in number, with their rates (TICKS,)."""
         # NumPy arrays, since slicing a JAX array takes longer than a frame
         tick = jax.tree.map(np.asarray, wide(ticks))
         memory, senses, lived = now.memory, now.bodies, []
