@@ -16,8 +16,10 @@ ALIVE = -1
 
 @dataclass(frozen=True)
 class Lives:
-    """Lives as arrays (L,), sorted by world and birth number. The living are censored at the last tick of
-    their world."""
+    """Lives as arrays (L,), sorted by world and birth number.
+
+    The living are censored at the last tick of their world.
+    """
 
     world: np.ndarray
     """int32"""
