@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from primordia.phylogeny.sweeps import Sweep
 
 ROWS, LINES = 20, 10
-"""Largest number of ancestors in a table of ancestors, and of lines in a table of a world's lines."""
+"""Largest numbers of rows: of the table of ancestors, and of the table of lines of descent."""
 
 
 @click.command(short_help="Show the line of descent of an organism.")

@@ -121,7 +121,7 @@ class _Steps:
         return Bulk.of(world), events, self.form.hold(world), decision
 
     def remember(self, bulk: Bulk, held: Held, senses: Array, ran: Array) -> Bulk:
-        """Let organisms remember a moment at the end of a settled tick, when the newborn have senses."""
+        """Store each organism's senses and memory of a settled tick, once the newborn have senses."""
         return Bulk.of(remember(self.law, self.form.release(held, bulk), senses, ran))
 
     def _decide(

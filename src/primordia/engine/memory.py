@@ -33,7 +33,7 @@ def check(law: Law, habitat: AnyHabitat, devices: list[jax.Device]) -> None:
 
 
 def bytes_needed(law: Law, habitat: AnyHabitat, devices: int = 1) -> int:
-    """Return the bytes that worlds, event lists and bodies (on the host: senses) need on all devices."""
+    """Return the bytes that a run needs on all devices: worlds, event lists, and bodies or senses."""
     law = replace(law, worlds=law.worlds // devices)
     cells = law.worlds * law.cells
 

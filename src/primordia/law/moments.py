@@ -21,7 +21,7 @@ from primordia.random.wide import modulo
 
 
 def none(cells: int, rule: Moments | None, senses: int, memory: int) -> Remembered | None:
-    """Return the moments of cells without organisms; None if nothing is remembered."""
+    """Return memories without moments, for empty cells; None if organisms remember no moments."""
     if rule is None:
         return None
     return Remembered(

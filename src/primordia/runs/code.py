@@ -20,7 +20,7 @@ from primordia.runs.description import Description
 
 FOLDER = "code"
 _trusted: set[str] = set()
-"""Checksums of the files trusted in this process, even if they cannot be stored."""
+"""Checksums of the files that this process trusts, for the case that they cannot be stored."""
 
 
 def copy(config: Config, run: Path) -> dict[str, str]:

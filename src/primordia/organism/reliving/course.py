@@ -15,7 +15,7 @@ Value: TypeAlias = int | float | str | None
 ALIVE = "alive"
 """The word for the living, in place of a cause of death."""
 OWN = tuple(f"world.organisms.{name}" for name in ("memory", "energy", "eaten"))
-"""The names, in a state, of those arrays of an organism that change during its life."""
+"""Names of the arrays in a state whose values change during an organism's life."""
 BODIES, SENSES, COUNTS = "bodies", ("bodies.senses",), "bodies.tally"
 """Names in a state: the prefix of a body's arrays, the senses of a habitat on the host, the counts."""
 
