@@ -106,5 +106,5 @@ def test_the_command_takes_runs_organisms_and_files(poles: primordia.Run, tmp_pa
     assert found["worlds"] == 2
     assert (tmp_path / "compete.png").is_file()
     table = here("assay", "compete", poles.path, file, *options[:4])
-    assert "share of the late living" in table.stdout
+    assert "share of the living, late" in table.stdout
     assert here("assay", "compete", f"{file}:1", file).returncode == 2

@@ -21,7 +21,7 @@ FLASH = 0.75
 FADING = 0.8
 """After a death, a cell keeps this share of its light from one moment to the next."""
 MOST = 2**22
-"""Largest number of cells x moments that are computed together, after one sort of the lives."""
+"""Largest number of cells x moments that are computed together; their lives are sorted once."""
 PALETTE = np.array([colour(hue) for hue in range(HUES)], np.float32)
 
 

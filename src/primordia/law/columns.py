@@ -38,7 +38,7 @@ class Columns:
         return jnp.stack(words, axis=1)
 
     def rows(self, **values: np.ndarray) -> np.ndarray:
-        """Return the rows of `words` as NumPy; `values` are integers (K,), pairs int64 or uint64."""
+        """Return the rows of `words` as a NumPy array; each pair is given as one int64 or uint64."""
         assert set(values) == set(self.names)
         words: list[np.ndarray] = []
         for name in self.names:

@@ -83,9 +83,9 @@ def revive(
     """Live a life again, tick for tick, and compare it with its record.
 
     A living organism lives up to the run's newest checkpoint. There its memory is compared too. So
-    is its body; in a habitat on the host, its senses are compared instead. Death by a neighbour's
-    child counts as repeated if the organism is alive at its last tick and, by the records, a child
-    was born in its cell in that tick. Other deaths happen again in the life itself.
+    is its body; in a habitat on the host, its senses are compared instead. A death by a neighbour's
+    child agrees with its record if the organism is alive at its last tick, and the records have a
+    birth in its cell in that tick. Other deaths happen again in the life itself.
 
     Args:
         run: the organism's run.

@@ -49,7 +49,7 @@ class Deal(NamedTuple):
     def of(
         cls, lives: Lives, turnover: Turnover, ticks: np.ndarray, seed: int, what: int
     ) -> "Deal":
-        """Prepare a world's turnover; draws follow from seed, first tick and the number `what`."""
+        """Prepare a world's turnover. Its draws depend on the seed, the first tick and `what`."""
         device.prepare()
         places = np.searchsorted(turnover.tick, ticks, side="right")
         events = slice(places[0], places[-1])

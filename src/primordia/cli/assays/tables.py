@@ -153,7 +153,7 @@ def compete(name: str, found: list[Any]) -> Told:
         worlds = f"{len(each.share):,}"
         rows.append((each.one, worlds, f"{won:,}", f"{spread(late)}"))
         rows.append((each.other, worlds, f"{lost:,}", f"{spread(1 - share for share in late)}"))
-    head = ("", "worlds", "won", "share of the late living")
+    head = ("", "worlds", "won", "share of the living, late")
     notes = [
         "Late: mean over the later half of the ticks. Won: worlds in which this share is above one half."
         f" Sign test over worlds: p = {each.p:.2g}."
