@@ -53,7 +53,7 @@ def test_the_summary_says_whether_good_lines_persist() -> None:
     assert f"good lines are lost: {numbers} 0.9\n" in summarised([world(threshold=held(0.9))])
     assert "good lines" not in summarised([world()])
     some = [world(threshold=held(value)) for value in (0.5, 0.9, 2.0)] + [world()] * 3
-    assert f"    good lines persist in 1 of 3; medians {numbers} 0.9" in summarised(some)
+    assert f"    good lines persist in 1 of 3 worlds; medians {numbers} 0.9" in summarised(some)
 
 
 def test_the_summary_says_what_food_keeps_an_organism_alive() -> None:
