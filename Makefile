@@ -19,7 +19,7 @@ demo: .venv/installed  ## evolve pole balancers, draw and report them, and film 
 	@echo "Explore    runs/demo/report.html in a browser: every organism, its line of descent, the film of its world"
 	@echo 'Read on    docs/tutorial.md, ten minutes; `source .venv/bin/activate` puts `primordia` on the path'
 
-test: .venv/installed-dev compiled  ## run all tests: about twenty minutes on two cores, a third less the second time
+test: .venv/installed-dev compiled  ## run all tests: about twenty minutes on two cores, less the second time
 	$(TESTS) --dist loadfile --no-loadscope-reorder
 
 quick: .venv/installed-dev compiled  ## test each promise once, with the tests in tests/quick.txt: a minute on two cores
