@@ -209,3 +209,7 @@ def test_a_brain_that_cannot_be_made_is_an_error_that_says_why(
         build(table)
     with pytest.raises(InputError, match=f"^mill: .*{says}"):
         config({**MILL, "brain": table})
+
+
+def test_a_brain_must_say_which_weights_it_has_and_how_it_thinks() -> None:
+    assert Brain.__abstractmethods__ == {"blocks", "__call__"}

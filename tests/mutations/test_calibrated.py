@@ -11,7 +11,7 @@ from primordia.brains.layout import Layout
 from primordia.mutations.blocks import FounderBlock
 from primordia.mutations.calibrated import Calibrated
 from primordia.mutations.contract import PURPOSES, Change, Draws, Family
-from primordia.mutations.lengths import LENGTHS, SHORTEST
+from primordia.mutations.lengths import LENGTHS, LONGEST, SHORTEST
 from primordia.random.keys import Purpose, streams
 from primordia.random.wide import wide
 from primordia.testing import ContractError, check_mutation
@@ -92,6 +92,7 @@ def test_noise_has_the_proportions_of_founders() -> None:
 def test_lengths_double_with_every_fourth_step() -> None:
     np.testing.assert_array_equal(LENGTHS[4:], 2 * LENGTHS[:-4])
     assert LENGTHS[-SHORTEST] == 1
+    assert (LENGTHS[0], LENGTHS[-1]) == (2.0 ** (SHORTEST // 4), 2.0 ** (LONGEST // 4))
     np.testing.assert_allclose(LENGTHS[1:] / LENGTHS[:-1], 2**0.25, rtol=1e-6)
 
 

@@ -26,6 +26,10 @@ def test_mutations_that_keep_their_contract(name: str) -> None:
     check_mutation(mutations.find(name)())
 
 
+def test_a_mutation_must_say_how_it_makes_children_and_founders() -> None:
+    assert Mutation.__abstractmethods__ == {"inherit", "founders"}
+
+
 def test_a_mutation_with_settings_for_the_blocks_of_a_layout() -> None:
     blocks = {"slide-2": Block(probability=0.0), "0": Block(scale=0.3)}
     mutation = Gaussian(probability=0.4, blocks=blocks)
