@@ -85,6 +85,7 @@ def replace_text(path: Path, text: str) -> None:
     """
     temporary = path.with_name(TEMPORARY + path.name)
     try:
+        temporary.unlink(missing_ok=True)  # it could be a link, which would be followed
         temporary.write_text(text, encoding="utf-8")
         temporary.replace(path)
     except OSError as error:
@@ -123,6 +124,8 @@ def make_folder(path: Path) -> None:
         for folder in reversed([path, *missing]):
             folder.mkdir(exist_ok=True)
             sync(folder.parent)
+    except (FileExistsError, NotADirectoryError):
+        raise InputError(f"{path} is not a folder, or leads through a file; name another") from None
     except OSError as error:
         raise Trouble(f"{path} cannot be written: {error.strerror or error}") from None
 

@@ -97,11 +97,20 @@ def load(module: str) -> ModuleType:
     """Import a module that is admitted, installed, on `sys.path`, or in the current folder.
 
     Raises:
-        Exception: any error of the import.
+        LookupError: the text is not the dotted name of a module. Exception: any error of the import.
     """
+    if not is_dotted(module):  # settings that list modules to be trusted leave such a name out
+        raise LookupError(f"{module!r} is not the name of a module")
+    if module.partition(".")[0] in sys.stdlib_module_names:  # its functions are no parts of a run
+        raise LookupError(f"{module} is a module of Python's standard library; name another module")
     if module not in sys.modules and module not in _admitted.sources:
         admit(found(module))
     return importlib.import_module(module)
+
+
+def is_dotted(text: str) -> bool:
+    """Return whether a text is the dotted name of a module: identifiers with dots between them."""
+    return all(each.isidentifier() for each in text.split("."))
 
 
 def admit(code: Sources) -> None:

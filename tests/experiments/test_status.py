@@ -1,8 +1,16 @@
 """The figures of arms so far, from the counts of jobs alone."""
 
+import json
+from pathlib import Path
+from typing import Any
+
 import numpy as np
 import pytest
+import tomli_w
 
+from primordia.errors import InputError
+from primordia.experiments.ledger import Entry, Ledger, WorldCounts
+from primordia.experiments.plan import Job, recorded
 from primordia.experiments.status import _interval
 
 
@@ -18,3 +26,42 @@ def test_the_interval_of_a_median_holds_it_as_often_as_promised(worlds: int) -> 
 def test_few_worlds_have_no_interval() -> None:
     assert _interval(np.arange(4.0)) is None
     assert _interval(np.arange(5.0)) == (0.0, 4.0)
+
+
+ARM = {"name": "a", "settings": {"seeds": 2}}
+DAMAGED: dict[str, list[dict[str, Any]]] = {
+    "two arms have one name": [ARM, ARM],
+    "a name that no arm can have": [{**ARM, "name": "jobs"}],
+    "seeds of arm a must be a whole number": [{**ARM, "settings": {}}],
+    "from 1 to 65536": [{**ARM, "settings": {"seeds": 2**62}}],
+    "a whole number from 1": [{**ARM, "settings": {"seeds": "two"}}],
+    "more than 100,000 jobs": [{"name": name, "settings": {"seeds": 2**16}} for name in ("a", "b")],
+}
+
+
+@pytest.mark.parametrize("fault", DAMAGED)
+def test_a_damaged_plan_is_one_line(fault: str, tmp_path: Path) -> None:
+    plan = {"question": "?", "worlds": 1, "arms": DAMAGED[fault]}
+    (tmp_path / "experiment.toml").write_text(tomli_w.dumps(plan))
+    with pytest.raises(InputError, match=f"experiment.toml is damaged: .*{fault}"):
+        recorded(tmp_path)
+
+
+@pytest.mark.parametrize(
+    "forged",
+    [
+        {"arm": "zzz"},
+        {"job": 7},
+        {"process": 2**70},
+        {"rate": float("nan")},
+        {"left_s": float("inf")},
+        {"worlds": [{**dict.fromkeys(WorldCounts.model_fields, 1), "organism_ticks": 10**400}]},
+    ],
+    ids=lambda forged: next(iter(forged)),
+)
+def test_a_forged_entry_counts_as_none(forged: dict[str, Any], tmp_path: Path) -> None:
+    job = Job(0, "a", 0, 1, "a/0")
+    entry = {"job": 0, "arm": "a", "state": "failed", **forged}
+    (tmp_path / "jobs").mkdir()
+    (tmp_path / "jobs" / "000000.json").write_text(json.dumps(entry))
+    assert Ledger(tmp_path, [job]).entry(job) == Entry(job=0, arm="a")

@@ -351,3 +351,16 @@ def test_a_module_that_was_imported_before_goes_to_another_process_too(
     importlib.import_module("pond")
     assert "pond" not in own_code._admitted.sources
     assert set(own_code.admitted(["pond"])) == {"pond.py", "pond_depth.py"}
+
+
+@pytest.mark.parametrize("name", ["evil-x", "folder.evil-x", "", "a..b", "antigravity"])
+def test_only_names_of_modules_that_can_be_trusted_are_loaded(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Settings list what is to be trusted by the same rule; all else would be executed untrusted."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "folder").mkdir()
+    for file in (tmp_path / "evil-x.py", tmp_path / "folder" / "evil-x.py"):
+        file.write_text("raise SystemExit('executed')")
+    with pytest.raises(LookupError, match=r"name of a module|standard library"):
+        own_code.load(name)

@@ -25,7 +25,7 @@ def test_a_place_where_no_run_can_be_made_is_an_error(tmp_path: Path) -> None:
     file = tmp_path / "file"
     file.write_text("mine")
     below = here("run", *SMALL, "--ticks", "10", "--out", file / "run")
-    complains(below, 1, str(file / "run"), "cannot be written", "Not a directory")
+    complains(below, 2, str(file / "run"), "leads through a file; name another")
     nowhere = here("run", *SMALL, "--ticks", "10", "--out", "/proc/run")
     complains(nowhere, 1, "/proc/run", "cannot be written")
     assert file.read_text() == "mine"

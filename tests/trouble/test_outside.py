@@ -11,10 +11,13 @@ import pytest
 
 from primordia import files, interrupts
 from primordia.errors import InputError, Trouble
+from primordia.experiments import job
+from primordia.experiments.plan import Plan
 from primordia.runs import directory, loop
 from primordia.runs.directory import LOCK
 from tests.commands import complains, here
 from tests.trouble import SMALL, contents, goes_on, started
+from tests.worlds import MEADOW, config
 
 PLOT = ("plot", "--figure", "ages")
 FOLDERS: dict[str, tuple[str, ...]] = {
@@ -277,3 +280,38 @@ def test_a_run_whose_folder_is_removed_stops(tmp_path: Path, replaced: bool) -> 
         assert contents(run).keys() == {path.replace("moved", "run") for path in contents(moved)}
     else:
         assert not run.exists()
+
+
+def test_a_link_in_place_of_an_unfinished_text_is_not_followed(
+    outside: Path, tmp_path: Path
+) -> None:
+    file = tmp_path / "text.json"
+    file.with_name(files.TEMPORARY + file.name).symlink_to(outside / "mine.txt")
+    files.replace_text(file, "new")
+    assert (file.read_text(), (outside / "mine.txt").read_text()) == ("new", "mine")
+
+
+def test_a_job_writes_through_no_link_in_place_of_its_arm(outside: Path, tmp_path: Path) -> None:
+    plan = Plan.model_validate({
+        "question": "?",
+        "worlds": 1,
+        "arms": [{"name": "arm", "settings": config(MEADOW).model_dump(mode="json")}],
+    })  # fmt: skip
+    (out := tmp_path / "out").mkdir()
+    (out / "arm").symlink_to(outside)
+    before = contents(outside)
+    with pytest.raises(InputError, match="arm is a symbolic link, not a folder"):
+        job.live(plan, plan.jobs()[0], out)
+    assert contents(outside) == before
+
+
+def test_a_pipe_in_place_of_a_lock_holds_up_no_reader(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / LOCK)
+    assert not directory.is_written(tmp_path)
+
+
+@pytest.mark.parametrize("name", ["file", "file/inner"])
+def test_a_folder_is_not_made_in_place_of_a_file(name: str, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("mine")
+    with pytest.raises(InputError, match="is not a folder, or leads through a file"):
+        files.make_folder(tmp_path / name)

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from primordia import device
+from primordia import config, device
 from primordia.errors import InputError
 from tests.commands import COMMAND, complains, environment, here
 from tests.trouble import TASK
@@ -46,8 +46,10 @@ WRONG = {
     (TASK, "--habitat.name", ":Pond"): ["no habitat named ':Pond'"],
     (TASK, "--habitat.name", "no.such:Pond"): ["'no.such:Pond'", "No module named 'no'"],
     (TASK, "--habitat.name", "tests.toys:Pond"): ["'tests.toys:Pond'", "no attribute 'Pond'"],
-    (TASK, "--habitat.name", "json:JSONDecoder"): [
-        "JSONDecoder is not a habitat",
+    (TASK, "--habitat.name", "json:JSONDecoder"): ["json", "standard library"],
+    (TASK, "--habitat.name", "not-a-name:Pond"): ["'not-a-name' is not the name of a module"],
+    (TASK, "--habitat.name", "numpy:ndarray"): [
+        "ndarray is not a habitat",
         "JaxHabitat",
         "senses_size",
     ],
@@ -62,6 +64,7 @@ WRONG = {
     (TASK, "--device", "nonsense"): ["--device", "finds no 'nonsense' device"],
     (TASK, "--checkpoint-every", "-1"): ["--checkpoint-every", "-1"],
     (TASK, "--checkpoint-every", "nan"): ["--checkpoint-every", "nan"],
+    (TASK, "--speed", "nan"): ["--speed", "nan"],
     (TASK, "--checkpoint-every", "often"): ["--checkpoint-every", "'often'"],
     (): ["Missing argument 'TASK|FILE.toml|gym:NAME'"],
     ("no/such/file.toml",): ["no/such/file.toml cannot be read", "No such file"],
@@ -96,6 +99,7 @@ FILES = {
     "cells = 4": "task is missing (and 1 more)",
     "task = []": "task: input should be a valid string, not []",
     "task = 'own'": "habitat is missing",
+    "task = 'CartPole-survivl'": "did you mean 'CartPole-survival'?",
     "task = 'own'\nhabitat = {}": "no habitat named ''",
 }
 
@@ -106,6 +110,18 @@ def test_a_wrong_word_in_a_file_is_an_error(text: str, tmp_path: Path) -> None:
     file.write_text(text)
     complains(here("run", file, "--out", out), 2, str(file), FILES[text])
     assert not out.exists()
+
+
+def test_a_file_may_begin_with_a_mark_of_its_byte_order(tmp_path: Path) -> None:
+    (file := tmp_path / "mine.toml").write_text(f"task = '{TASK}'\ncells = 5", encoding="utf-8-sig")
+    assert config.load(str(file)).cells == 5
+
+
+@pytest.mark.parametrize(
+    "words", [("heredity", "--after"), ("garden", "--after"), ("effects", "--scale")], ids=" ".join
+)
+def test_nan_is_in_no_range(words: tuple[str, str]) -> None:
+    complains(here("assay", words[0], "RUN", words[1], "nan"), 2, words[1], "nan")
 
 
 def test_files_that_are_no_text_are_errors(tmp_path: Path) -> None:

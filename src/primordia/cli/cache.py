@@ -23,10 +23,10 @@ def keep_compiled_code() -> None:
     Each kind of processor has a separate folder. Machines may share a home folder, and code that
     was compiled for one machine may crash on another.
     """
-    folder = user_cache_path("primordia", appauthor=False) / "compiled" / processor()
     try:
+        folder = user_cache_path("primordia", appauthor=False) / "compiled" / processor()
         folder.mkdir(parents=True, exist_ok=True)
-    except OSError:  # the home folder cannot be written
+    except (OSError, RuntimeError):  # the home folder cannot be written, or is unknown
         return
     # A full disk only slows the start of the next run, so no warning is shown.
     warnings.filterwarnings("ignore", message="Error (reading|writing) persistent compilation")

@@ -6,6 +6,7 @@ from typing import Any
 
 import click
 
+from primordia.cli.numbers import Finite
 from primordia.errors import InputError
 from primordia.settings.tables import parsed_toml
 from primordia.settings.values import check_values
@@ -39,7 +40,7 @@ video_option = click.option(
 )
 speed_option = click.option(
     "--speed",
-    type=click.FloatRange(min=0, min_open=True, max=1e9),
+    type=Finite(min=0, min_open=True, max=1e9),
     metavar="TICKS",
     help="Run at most this number of ticks per second.",
 )

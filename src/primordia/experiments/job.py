@@ -7,6 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from primordia import device as devices
+from primordia import files
 from primordia.config import Config
 from primordia.errors import InputError, InUseError, Trouble
 from primordia.experiments.ending import Ending
@@ -50,6 +51,7 @@ def live(
 
 def _live(plan: Plan, job: Job, out: Path, checkpoint_every: float, watch: "_Watch") -> None:
     config, run = configuration(plan, job), out / job.folder
+    files.own_folder(run.parent)
     unbegun = directory.clear_unbegun(run)
     if unbegun and job.source is not None and plan.fork is not None:
         source = Path(os.path.normpath(out / job.source))

@@ -9,7 +9,7 @@ import os
 import socket
 import time
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
@@ -22,17 +22,21 @@ SILENT = 600.0
 State = Literal["waiting", "running", "done", "failed"]
 
 
+Count = Annotated[int, Field(ge=0, lt=2**64)]
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+
+
 class WorldCounts(BaseModel):
     """The counts of a world."""
 
     model_config = ConfigDict(extra="forbid", strict=True)
 
-    seed: int
-    ticks: int
-    births: int
-    deaths: int
-    organism_ticks: int
-    saturated: int | None
+    seed: Count
+    ticks: Count
+    births: Count
+    deaths: Count
+    organism_ticks: Count
+    saturated: Count | None
     """tick of saturation, or None"""
 
 
@@ -46,14 +50,14 @@ class Entry(BaseModel):
     state: State = "waiting"
     error: str | None = None
     worlds: list[WorldCounts] = Field([])
-    rate: float | None = None
+    rate: Finite | None = None
     """organism-ticks per second, in recent seconds"""
-    left_s: float | None = None
+    left_s: Finite | None = None
     """seconds until the last world reaches a limit; None if unknown"""
-    updated: float = 0.0
+    updated: Finite = 0.0
     """seconds since 1970"""
     host: str = ""
-    process: int = 0
+    process: int = Field(0, ge=0, lt=2**31)
 
 
 class Ledger:
@@ -91,7 +95,7 @@ class Ledger:
             entry = Entry.model_validate_json(files.read(self._file(job)))
         except (OSError, ValidationError):
             return _nothing_of(job)
-        return entry
+        return entry if (entry.job, entry.arm) == (job.number, job.arm) else _nothing_of(job)
 
     def write(self, job: Job, entry: Entry) -> None:
         """Write the entry of a job.
@@ -114,7 +118,7 @@ def _nothing_of(job: Job) -> Entry:
 
 def _is_lived(entry: Entry) -> bool:
     """Return whether the process that writes an entry seems to be alive."""
-    if entry.state != "running":
+    if entry.state != "running" or entry.process == 0:
         return False
     if entry.host != socket.gethostname():
         return time.time() - entry.updated < SILENT

@@ -121,9 +121,26 @@ def recorded(out: Path) -> Plan:
     """
     file = out / EXPERIMENT
     try:
-        return Plan.model_validate(from_toml(file))
+        plan = Plan.model_validate(from_toml(file))
     except ValidationError as error:
         raise InputError(f"{file} is damaged: {first_fault(error, Plan)}") from None
+    if fault := _fault(plan):
+        raise InputError(f"{file} is damaged: {fault}")
+    return plan
+
+
+def _fault(plan: Plan) -> str:
+    """Return what is wrong with a plan whose values are each valid, or ""."""
+    names = [arm.name for arm in plan.arms]
+    if len(set(names)) < len(names) or RESERVED & set(names):
+        return "two arms have one name, or an arm has a name that no arm can have"
+    jobs = 0
+    for arm in plan.arms:
+        seeds = arm.settings.get("seeds")
+        if type(seeds) is not int or not 1 <= seeds <= 2**16:
+            return f"seeds of arm {arm.name} must be a whole number from 1 to 65536"
+        jobs += -(-seeds // plan.worlds)
+    return f"it has more than {LARGEST:,} jobs" if jobs > LARGEST else ""
 
 
 def check(plan: Plan, out: Path) -> None:

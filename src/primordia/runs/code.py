@@ -109,7 +109,7 @@ def trust(code: Sources) -> None:
     new = {source.sha256 for source in code.values()} - _stored()
     _trusted.update(new)
     if new:
-        with suppress(OSError):
+        with suppress(OSError, RuntimeError):  # the home folder may be unknown
             _store().parent.mkdir(parents=True, exist_ok=True)
             with _store().open("a", encoding="utf-8") as file:
                 file.writelines(f"{each}\n" for each in sorted(new))
@@ -120,7 +120,7 @@ def _is_trusted(code: Sources) -> bool:
 
 
 def _stored() -> set[str]:
-    with suppress(OSError, ValueError):
+    with suppress(OSError, RuntimeError, ValueError):
         return set(_store().read_text(encoding="utf-8").split())
     return set()
 

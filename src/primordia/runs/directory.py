@@ -223,7 +223,7 @@ def locked(run: Path) -> Iterator[None]:
 def is_written(run: Path) -> bool:
     """Return whether a process holds the run's lock; this check writes nothing and refuses no writer."""
     try:
-        handle = os.open(run / LOCK, os.O_RDONLY)
+        handle = os.open(run / LOCK, os.O_RDONLY | os.O_NONBLOCK)  # a pipe would wait for a writer
     except OSError:
         return False
     try:

@@ -9,6 +9,7 @@ from typing import Any
 
 from primordia import files
 from primordia.errors import InputError
+from primordia.own_code import is_dotted
 from primordia.settings import doors
 from primordia.settings.values import check_values
 
@@ -50,7 +51,10 @@ def values_of(task: str) -> dict[str, Any]:
         return doors.values(task)
     if task.endswith(".toml") or isfile(task):
         values = from_toml(Path(task))
-        return merged(known.get(str(values.get("task")), {}), values)
+        name = str(values.get("task"))
+        if name not in known and "habitat" not in values and (near := did_you_mean(name, [*known])):
+            raise InputError(f"{task}: there is no task {name!r}{near}")
+        return merged(known.get(name, {}), values)
     raise InputError(
         f"there is no task {task!r}{did_you_mean(task, list(known))}; give a name that `primordia"
         " tasks` lists, a file FILE.toml, or an environment gym:NAME"
@@ -66,7 +70,7 @@ def from_toml(path: Path) -> dict[str, Any]:
         InputError: the file cannot be read, or is not TOML.
     """
     try:
-        values = parsed_toml(files.read(path).decode())
+        values = parsed_toml(files.read(path).decode("utf-8-sig"))
     except ValueError as error:
         raise InputError(f"{path} is not valid TOML: {error}") from None
     except OSError as error:
@@ -106,14 +110,10 @@ def merged(base: dict[str, Any], change: dict[str, Any]) -> dict[str, Any]:
 def modules_of(table: dict[str, Any], key: str) -> list[str]:
     """Return the modules that a part's table names: for its class, its functions and its imports."""
     named = [str(table.get(each, "")).partition(":") for each in (key, *CODE)]
-    modules = [module for module, colon, name in named if colon and name and _is_dotted(module)]
+    modules = [module for module, colon, name in named if colon and name and is_dotted(module)]
     imports = table.get(IMPORTS, ())
     listed = [str(each) for each in imports] if isinstance(imports, list | tuple) else []
-    return [*modules, *(each for each in listed if _is_dotted(each))]
-
-
-def _is_dotted(text: str) -> bool:
-    return all(each.isidentifier() for each in text.split("."))
+    return [*modules, *(each for each in listed if is_dotted(each))]
 
 
 def with_full_paths(folder: Path, values: dict[str, Any]) -> dict[str, Any]:

@@ -16,6 +16,7 @@ from primordia.cli.assays.options import (
 )
 from primordia.cli.cache import cache_option
 from primordia.cli.flags import HabitatCommand, trust_option
+from primordia.cli.numbers import Finite
 
 if TYPE_CHECKING:
     from primordia.assays.subjects import Subjects
@@ -63,12 +64,12 @@ def assay_of_lives(short_help: str) -> Callable:
     help="Number of mutants of each organism, for each mutation.",
 )  # fmt: skip
 @click.option(
-    "--scale", "scales", type=click.FloatRange(min=0, min_open=True), multiple=True,
+    "--scale", "scales", type=Finite(min=0, min_open=True, max=1e30), multiple=True,
     help="Standard deviation of the noise, as a multiple of the founders' standard deviation; may be"
     " repeated [0.001 0.003 0.01 0.03 0.1 0.3].",
 )  # fmt: skip
 @click.option(
-    "--differs", type=click.FloatRange(min=0), multiple=True,
+    "--differs", type=Finite(min=0), multiple=True,
     help="Also measure a calibrated mutation that changes behaviour by this share; may be repeated.",
 )  # fmt: skip
 @assay_of_lives("Measure how mutations of several sizes change a life.")

@@ -10,6 +10,7 @@ import click
 
 from primordia import files
 from primordia.cli.assays.tables import Told
+from primordia.cli.numbers import Finite
 from primordia.cli.table import show_table
 
 if TYPE_CHECKING:
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 
 after_option = click.option(
     "--after",
-    type=click.FloatRange(0, 1, max_open=True),
+    type=Finite(0, 1, max_open=True),
     default=0.5,
     show_default=True,
     help="Leave out this share of each world's births, the earliest ones.",
