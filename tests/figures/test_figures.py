@@ -250,7 +250,7 @@ def test_a_run_that_cannot_be_drawn_gives_one_line_of_message(run: Path, tmp_pat
     complains(here("plot", run, "--world", 3), 2, "no world 3", "0 to 2")
     complains(here("plot", run, "--world", -1), 2, "no world -1")
     (tmp_path / "file").write_text("")
-    complains(here("plot", run, "--out", tmp_path / "file" / "in"), 1, "cannot be written")
+    complains(here("plot", run, "--out", tmp_path / "file" / "in"), 2, "leads through a file")
     (tmp_path / "taken" / "ages.png").mkdir(parents=True)
     complains(here("plot", run, "--out", tmp_path / "taken"), 2, "ages.png is a folder")
     empty = Path(shutil.copytree(run, tmp_path / "run"))
