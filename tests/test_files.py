@@ -57,9 +57,10 @@ def test_a_folder_is_made_with_its_parents_or_a_line_says_why_not(tmp_path: Path
     files.make_folder(tmp_path / "a" / "b")
     assert (tmp_path / "a" / "b").is_dir()
     (tmp_path / "file").touch()
-    with pytest.raises(Trouble) as raised:
+    with pytest.raises(
+        InputError, match="b is not a folder, or leads through a file; name another"
+    ):
         files.make_folder(tmp_path / "file" / "b")
-    assert str(raised.value) == f"{tmp_path / 'file' / 'b'} cannot be written: Not a directory"
     for name in ("a\0b", "a\udcff"):
         with pytest.raises(InputError, match="choose another name"):
             files.make_folder(tmp_path / name)

@@ -235,7 +235,7 @@ def test_what_cannot_be_written_is_one_clear_line(
     loop.start(config({**SETTINGS, "stop": {"ticks": 5}}), early)
     complains(here("track", early, *words[:2]), 2, "no row of metrics yet")
     (tmp_path / "file").touch()
-    complains(here("track", run, "--wandb", tmp_path / "file"), 1, "cannot be written")
+    complains(here("track", run, "--wandb", tmp_path / "file"), 2, "is not a folder")
     for name, module in {"tensorboard": "tensorboardX.event_file_writer", "wandb": "wandb"}.items():
         monkeypatch.setitem(sys.modules, module, None)
         line = f"pip install 'primordia[{name}]'"
