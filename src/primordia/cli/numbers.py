@@ -7,13 +7,13 @@ import click
 
 
 class Finite(click.FloatRange):
-    """A number in a range, and not NaN, which no bound of a range refuses."""
+    """A number in a range, but neither NaN, which no bound refuses, nor infinity."""
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> float:
         """Return the number. A wrong value is a usage error."""
         number = float(super().convert(value, param, ctx))
-        if math.isnan(number):
-            self.fail(f"{value!r} is not a number", param, ctx)
+        if not math.isfinite(number):
+            self.fail(f"{value!r} is not a finite number", param, ctx)
         return number

@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError
 
 from primordia import files
 from primordia.experiments.plan import Job
@@ -20,10 +20,7 @@ FOLDER = "jobs"
 SILENT = 600.0
 """Seconds without an update after which a job on another machine counts as interrupted."""
 State = Literal["waiting", "running", "done", "failed"]
-
-
 Count = Annotated[int, Field(ge=0, lt=2**64)]
-Finite = Annotated[float, Field(allow_inf_nan=False)]
 
 
 class WorldCounts(BaseModel):
@@ -50,11 +47,11 @@ class Entry(BaseModel):
     state: State = "waiting"
     error: str | None = None
     worlds: list[WorldCounts] = Field([])
-    rate: Finite | None = None
+    rate: FiniteFloat | None = None
     """organism-ticks per second, in recent seconds"""
-    left_s: Finite | None = None
+    left_s: FiniteFloat | None = None
     """seconds until the last world reaches a limit; None if unknown"""
-    updated: Finite = 0.0
+    updated: FiniteFloat = 0.0
     """seconds since 1970"""
     host: str = ""
     process: int = Field(0, ge=0, lt=2**31)

@@ -26,7 +26,7 @@ class Recombination(Settings):
         1.0,
         ge=0,
         le=1,
-        description="chance that a child recombines if a neighbour besides the parent is alive",
+        description="probability that a child has two parents, if its cell has another living neighbour",
     )
     unit: Literal["block", "row"] = Field(
         "row",

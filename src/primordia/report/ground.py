@@ -79,7 +79,7 @@ class Ground:
     @cached_property
     def segments(self) -> dict[str, np.ndarray]:
         """The lives in the shown cells as S segments, sorted by cell and time; each array is (S,).
-        A life is split whenever all lines begin anew.
+        A life is split at each moment at which new lines begin.
 
         `row`: row of the organism; `start`, `stop`: the times, in births, at which the segment
         begins and ends; `code`: its line, see `line_codes`.
