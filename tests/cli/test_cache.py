@@ -6,7 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from primordia import own_code
 from primordia.cli import cache
+from primordia.runs import code
 from tests.commands import COMMAND, environment
 
 CPU = (
@@ -49,6 +51,22 @@ def test_a_cache_that_cannot_be_written_is_not_used(
     monkeypatch.delenv("JAX_COMPILATION_CACHE_DIR", raising=False)
     cache.keep_compiled_code()
     assert "JAX_COMPILATION_CACHE_DIR" not in os.environ
+
+
+def test_without_a_home_folder_nothing_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A container may start a process of a user that the system does not know."""
+
+    def unknown(*_: object, **__: object) -> Path:
+        raise RuntimeError("could not determine the home directory")
+
+    monkeypatch.setattr(cache, "user_cache_path", unknown)
+    monkeypatch.setattr(code, "_store", unknown)
+    monkeypatch.setattr(code, "_trusted", set())
+    monkeypatch.delenv("JAX_COMPILATION_CACHE_DIR", raising=False)
+    cache.keep_compiled_code()
+    assert "JAX_COMPILATION_CACHE_DIR" not in os.environ
+    code.trust({"a.py": own_code.Source(Path("a.py"), b"")})
+    assert code._stored() == set()
 
 
 def test_the_users_own_cache_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
