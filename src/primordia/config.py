@@ -4,11 +4,11 @@ from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, Self
 
 import numpy as np
 import tomli_w
-from pydantic import Field, ValidationError
+from pydantic import Field, ValidationError, model_validator
 
 from primordia.brains import contract as brains
 from primordia.brains import genomes
@@ -25,7 +25,7 @@ from primordia.law.placement import Placement
 from primordia.law.recombination import Recombination
 from primordia.law.seasons import Season
 from primordia.mutations import contract as mutations
-from primordia.settings.base import Rate, Settings
+from primordia.settings.base import UNREACHED, Rate, Settings
 from primordia.settings.fields import first_fault, rates_of, setting_fields
 from primordia.settings.making import make
 from primordia.settings.tables import (
@@ -48,9 +48,9 @@ CONTRACTS: dict[str, Any] = {"habitat": habitats, "brain": brains, "mutation": m
 class Stop(Settings):
     """The limits of a world; a stopped world is frozen while the run's other worlds go on."""
 
-    ticks: int | None = Field(None, ge=1, lt=2**63, description="ticks after which a world stops")
+    ticks: int | None = Field(None, ge=1, lt=UNREACHED, description="ticks until a world stops")
     births: int | None = Field(
-        None, ge=1, lt=2**63, description="births (founders included) after which a world stops"
+        None, ge=1, lt=UNREACHED, description="births (founders included) until a world stops"
     )
     until: Literal["saturation"] | None = Field(
         None,
@@ -62,7 +62,7 @@ class ForkedFrom(Settings):
     """The source of a fork. Its first checkpoint is in the run's directory, under `origin`."""
 
     run: str = Field(description="the run that was forked")
-    tick: int = Field(ge=1, lt=2**63, description="the tick after which the run was forked")
+    tick: int = Field(ge=1, lt=UNREACHED, description="the tick after which the run was forked")
 
 
 class Config(Settings):
@@ -117,6 +117,13 @@ class Config(Settings):
     )
     stop: Stop = Stop()
     fork: ForkedFrom | None = Field(None, description="set by `primordia fork`")
+
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        self.placement.shape(self.cells)
+        if self.seed + self.seeds > 2**64:
+            raise ValueError("seeds must be below 2^64; choose a lower seed or fewer")
+        return self
 
     def build_habitat(self) -> AnyHabitat:
         """Return the habitat, made from its class and settings.
@@ -227,7 +234,7 @@ def validated(values: dict[str, Any], source: str) -> Config:
 
 
 def parsed(values: dict[str, Any], source: str) -> Config:
-    """Return a Config of these values. Each value is checked alone; no code of a part is executed.
+    """Return a Config of these values, checked as far as no code of a part is executed.
 
     Raises:
         InputError: a value is wrong; the message, one line, names the setting and the source.
@@ -303,11 +310,6 @@ def limits(values: dict[str, Any]) -> dict[str, Any]:
 def _check(config: Config) -> None:
     """Raise an error if settings that are each valid do not fit together."""
     habitat = config.build_habitat()
-    config.placement.shape(config.cells)
-    if config.seed + config.seeds > 2**64:
-        raise InputError(
-            "seed + seeds: seeds must be below 2^64; choose a lower seed or fewer seeds"
-        )
     if config.cells * config.seeds > 2**26:
         raise InputError(
             f"cells x seeds: {config.cells * config.seeds} cells are more than 2^26; spread them"

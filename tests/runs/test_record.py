@@ -71,8 +71,8 @@ def test_segments_of_any_size_hold_the_same_rows(
     assert [world["digest"] for world in run.info()["worlds"]] == lived.digests()
     for name in TABLES:
         *full, last = segments(run.path, name)
-        assert set(full) <= {record.SEGMENT_ROWS}
-        assert 0 < last <= record.SEGMENT_ROWS
+        assert set(full) <= {size}
+        assert 0 < last <= size
         assert sum(full) + last == len(np.concatenate(lived.rows[name]))
 
 

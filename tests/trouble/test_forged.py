@@ -40,11 +40,23 @@ COMMANDS = [
     ["evaluate", "{run}", "--games", "1", "--ticks", "10"],
     ["revive", "{run}", "3", "--world", "1", "--save", "{new}.npz"],
     ["bundle", "{run}", "{new}"],
+    ["film", "{run}", "--out", "{new}.mp4", "--to", "20"],
+    ["ancestors", "{run}"],
+    ["lines", "{run}"],
+    ["track", "{run}", "--tensorboard", "{new}"],
+    ["replay", "{run}", "--to", "5", "--out", "{new}.mp4"],
+    ["shadow", "{run}", "--organisms", "4", "--ticks", "20"],
+    ["assay", "heredity", "{run}"],
+    ["assay", "threshold", "{run}"],
+    ["assay", "line", "{run}", "--ticks", "20"],
 ]
 SECONDS = 120
 """A command that takes longer waits for something that never comes."""
 
-NUMBERS: list[Any] = [0, -1, 2**31, 2**63, 2**64, 10**400, 0.5, -0.0, float("nan"), float("inf")]
+NUMBERS: list[Any] = [
+    *(0, -1, 2**30, 2**31, 2**53 - 1, 2**62, 2**63, 2**64, 10**400),
+    *(0.5, -0.0, 5e-324, 1e308, float("nan"), float("inf")),
+]
 ODD: list[Any] = [
     *NUMBERS,
     None,

@@ -31,7 +31,7 @@ from primordia.experiments import plan as plans
 from primordia.experiments.plan import RESERVED, ArmPlan, Fork, Plan, Source
 from primordia.runs import opening
 from primordia.runs.directory import read_config
-from primordia.settings.base import Settings
+from primordia.settings.base import UNREACHED, Settings
 from primordia.settings.fields import first_fault
 from primordia.settings.tables import (
     NONE,
@@ -56,7 +56,7 @@ class _Jobs(Settings):
 
 class _ForkOf(Settings):
     of: str = Field(min_length=1)
-    at: int = Field(ge=1, lt=2**63)
+    at: int = Field(ge=1, lt=UNREACHED)
 
 
 def read(file: Path, out: Path) -> Plan:

@@ -19,7 +19,7 @@ from primordia import files
 from primordia.config import Config, parsed
 from primordia.errors import InputError
 from primordia.runs.opening import EXPERIMENT
-from primordia.settings.base import Settings
+from primordia.settings.base import UNREACHED, Settings
 from primordia.settings.fields import first_fault
 from primordia.settings.tables import flat, from_toml
 
@@ -40,7 +40,7 @@ class Source(Settings):
 class Fork(Settings):
     """The runs from which all arms are forked, and the tick of the fork."""
 
-    at: int = Field(ge=1, lt=2**63)
+    at: int = Field(ge=1, lt=UNREACHED)
     sources: tuple[Source, ...] = Field(min_length=1, strict=False)
 
 

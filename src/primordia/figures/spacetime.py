@@ -60,9 +60,12 @@ def clades_of(lives: Lives) -> Clades:
 def occupants(lives: Lives, cells: np.ndarray, ticks: np.ndarray) -> np.ndarray:
     """Return the row of the organism in each cell of a world after each tick, or EMPTY: int64 (T, N)."""
     order = np.lexsort((lives.born, lives.cell))
-    span = int(lives.ended.max()) + 1
-    begun = lives.cell[order].astype(np.int64) * span + lives.born[order]
-    at = np.searchsorted(begun, cells * span + ticks[:, None], side="right") - 1
+    births = np.unique(lives.born)  # numbered, since cell x tick may exceed 64 bits
+    begun = lives.cell[order].astype(np.int64) * len(births) + np.searchsorted(
+        births, lives.born[order]
+    )
+    latest = np.searchsorted(births, ticks, side="right") - 1
+    at = np.searchsorted(begun, cells * len(births) + latest[:, None], side="right") - 1
     row = order[np.maximum(at, 0)]
     there = (at >= 0) & (lives.cell[row] == cells)
     there &= ~lives.died[row] | (lives.ended[row] > ticks[:, None])

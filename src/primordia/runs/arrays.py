@@ -38,15 +38,13 @@ class Arrays(Mapping[str, np.ndarray]):
         try:
             small = file.stat().st_size <= SMALL
             self._archive = zipfile.ZipFile(io.BytesIO(file.read_bytes()) if small else file)
+            self._sizes = _sizes(self._archive, file.stat().st_size)
         except Exception:  # zipfile raises errors of many kinds for other files
             raise self._damaged() from None
-        names = (name.removesuffix(NPY) for name in self._archive.namelist())
-        # Runs of the same arm share these texts.
-        self._names = dict.fromkeys(map(sys.intern, names))
         self._read: dict[str, np.ndarray] = {}
 
     def __getitem__(self, name: str) -> np.ndarray:
-        if name not in self._names:
+        if name not in self._sizes:
             raise KeyError(name)
         if name not in self._read:
             try:
@@ -59,13 +57,17 @@ class Arrays(Mapping[str, np.ndarray]):
         return self._read[name]
 
     def __contains__(self, name: object) -> bool:
-        return name in self._names
+        return name in self._sizes
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._names)
+        return iter(self._sizes)
 
     def __len__(self) -> int:
-        return len(self._names)
+        return len(self._sizes)
+
+    def size(self, name: str) -> int:
+        """Return the number of bytes that an array takes in the file; the array is not read."""
+        return self._sizes[name]
 
     def unfit(self, fault: str) -> Trouble:
         """Return the error for arrays that do not fit their run."""
@@ -75,6 +77,18 @@ class Arrays(Mapping[str, np.ndarray]):
         return Trouble(
             f"{self._file} is damaged: it is not an archive of arrays; restore it from a copy"
         )
+
+
+def _sizes(archive: zipfile.ZipFile, most: int) -> dict[str, int]:
+    """Return the size of each array in bytes; raise ValueError if the file, of `most` bytes, cannot
+    hold the arrays."""
+    entries = archive.infolist()
+    # A small file could hold compressed arrays, or overlapping ones, of many gigabytes.
+    stored = all(each.compress_type == zipfile.ZIP_STORED for each in entries)
+    if not stored or sum(each.file_size for each in entries) > most:
+        raise ValueError
+    # Runs of the same arm share the names.
+    return {sys.intern(each.filename.removesuffix(NPY)): each.file_size for each in entries}
 
 
 def _array(content: bytes) -> np.ndarray:

@@ -9,9 +9,10 @@ from typing import Annotated
 from pydantic import BaseModel, ConfigDict, Field
 
 from primordia import files
-from primordia.habitats.contract import AnyHabitat
+from primordia.habitats.contract import RATES, AnyHabitat
 from primordia.law.law import Law
 from primordia.runs import stored
+from primordia.settings.values import LARGEST
 
 FILE = "description.json"
 
@@ -21,7 +22,7 @@ class Description(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
 
-    rate: float | None = Field(gt=0, allow_inf_nan=False)
+    rate: float | None = Field(ge=RATES[0], le=RATES[1])
     """ticks in a second of the habitat; None if the habitat has no clock"""
     tallies: tuple[str, ...]
     """names of the habitat's counts"""
@@ -31,7 +32,7 @@ class Description(BaseModel):
     """whether children may have a second parent"""
     moments: int = Field(0, ge=0, le=2**16)
     """number of moments that an organism remembers for the mutation"""
-    beginning: dict[str, Annotated[float, Field(allow_inf_nan=False)]]
+    beginning: dict[str, Annotated[float, Field(ge=-LARGEST, le=LARGEST)]]
     """the settings that seasons may change: dotted name -> value at the beginning"""
     blocks: dict[str, tuple[Annotated[int, Field(ge=1, lt=2**31)], ...]]
     """shape of each block of weights in a genome"""

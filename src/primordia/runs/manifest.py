@@ -17,6 +17,8 @@ from primordia.runs.schema import TABLES
 
 INPUTS = ("config.toml", DESCRIPTION, FOUNDERS)
 """Files that a run needs to go on, except checkpoints and the user's own code."""
+SEGMENT_ROWS = 2**20
+"""Largest number of rows of a segment."""
 Word = Annotated[int, Field(ge=0, lt=2**64)]
 
 
@@ -59,7 +61,7 @@ class Segment(Seal):
     """A closed segment of a table."""
 
     name: str = Field(pattern=r"^[0-9]{6,18}\.parquet$")
-    rows: int = Field(ge=0)
+    rows: int = Field(ge=0, le=SEGMENT_ROWS)
 
 
 class Progress(Part):

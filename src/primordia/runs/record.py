@@ -13,10 +13,8 @@ import pyarrow.parquet as pq
 from primordia import files
 from primordia.law.events import Events
 from primordia.runs.digest import row_hashes
-from primordia.runs.manifest import Segment
+from primordia.runs.manifest import SEGMENT_ROWS, Segment
 from primordia.runs.schema import TABLES, Schema
-
-SEGMENT_ROWS = 2**20
 
 
 @dataclass

@@ -1,12 +1,14 @@
 """The schema of a run's tables: the law's words become Arrow columns."""
 
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
 import pyarrow as pa
 
 from primordia.engine.tallies import tally_columns
+from primordia.errors import InputError
 from primordia.law.columns import Columns
 from primordia.law.events import DEATHS, birth_columns, sample_columns
 from primordia.law.law import Law
@@ -31,6 +33,21 @@ class Schema:
     """settings that seasons may change"""
     tallies: tuple[str, ...]
     """names of the habitat's counts"""
+
+    def __post_init__(self) -> None:
+        """Raise InputError if a note, rate or tally has the name of another column."""
+        added = {
+            "births": self.notes,
+            "deaths": self.tallies,
+            "metrics": (*self.rates, *tally_columns(self.tallies)),
+        }
+        for table, names in added.items():
+            for name in names:
+                if names.count(name) > 1 or name in _own_columns()[table]:
+                    raise InputError(
+                        f"the table {table} would have two columns {name!r}; rename one of the"
+                        " habitat's tallies or of the mutation's notes"
+                    )
 
     @classmethod
     def of(cls, law: Law, tallies: tuple[str, ...]) -> "Schema":
@@ -113,6 +130,17 @@ class Schema:
                 for name in tally_columns(self.tallies)
             },
         }
+
+
+@cache
+def _own_columns() -> dict[str, set[str]]:
+    """Return the names of columns and of words that each table has in every run."""
+    plain = Schema(cells=2, mates=True, notes=(), rates=(), tallies=())
+    columns = {table: plain.columns(table) for table in TABLES}
+    return {
+        table: {*own.names, *plain.arrow(table, np.zeros((0, own.width), np.uint32)).schema.names}
+        for table, own in columns.items()
+    }
 
 
 def _named(codes: np.ndarray, names: type[BirthCause] | type[Cause]) -> pa.Array:

@@ -32,14 +32,16 @@ def read(path: Path, rows: int, schema: pa.Schema, columns: Sequence[str] | None
             wanted = {field.name: field.type for field in schema}
             if len(file.schema_arrow) != len(found) or found != wanted:
                 raise Trouble(f"{path} is damaged: its columns are not those of this table")
+            # Compared before reading, since a small file can hold very many equal rows.
+            if file.metadata.num_rows != rows:
+                has = f"it has {file.metadata.num_rows} rows instead of {rows}"
+                raise Trouble(f"{path} is damaged: {has}")
             table = file.read(columns, use_threads=rows >= MANY)
             names = list(columns) if columns else schema.names
             table = table.select(names).cast(pa.schema([schema.field(name) for name in names]))
     except (OSError, pa.ArrowException, MemoryError, ValueError) as error:
         message = str(error).partition("\n")[0]
         raise Trouble(f"{path} is damaged: {message}; restore it from a copy") from None
-    if table.num_rows != rows:
-        raise Trouble(f"{path} is damaged: it has {table.num_rows} rows instead of {rows}")
     if any(table[name].null_count for name in table.column_names if name not in NULLABLE):
         raise Trouble(f"{path} is damaged: values are missing")
     return table

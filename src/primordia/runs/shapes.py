@@ -1,16 +1,18 @@
 """The arrays that a checkpoint must hold, according to a run's settings and description."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from functools import lru_cache
+from math import prod
 
 import numpy as np
 
 from primordia.config import Config
 from primordia.law.seasons import ratchets
 from primordia.law.world import BirthCause, Cause
-from primordia.runs.arrays import NEVER, read_count
+from primordia.runs.arrays import NEVER, Arrays, read_count
 from primordia.runs.description import Description
 from primordia.runs.schema import TABLES, Schema
+from primordia.settings.base import UNREACHED
 
 Kind = tuple[str, tuple[int | None, ...]]
 """Type and shape of an array; None is an unknown length."""
@@ -22,6 +24,8 @@ COUNTS = (
     *("saturated", "saturated_births", "fixed", "fixed_births"),
 )
 """Names of the 64-bit values of each world."""
+GENOME = "world.organisms.genome."
+"""Prefix of the names of the arrays of weights."""
 BODIES = "bodies"
 """Prefix of the names of a habitat's arrays, which have a row for each cell."""
 
@@ -33,25 +37,29 @@ class Expected:
         self._schema = Schema.described(config.cells, about)
         self._worlds, self._cells = config.seeds, config.seeds * config.cells
         looks = len(ratchets(config.seasons))
-        blocks = tuple(about.blocks.items())
-        self._kinds = _kinds(self._schema, blocks, about.moments, config.seeds, looks)
+        self._blocks = tuple(about.blocks.items())
+        self._kinds = _kinds(self._schema, self._blocks, about.moments, config.seeds, looks)
         self._tally: Kind = "int32", (self._cells, len(about.tallies))
 
-    def fault(self, arrays: Mapping[str, np.ndarray]) -> str | None:
-        """Return a fault: an array is missing or unknown, or a count of a world is impossible.
-        Return None if there is no fault.
+    def fault(self, arrays: Arrays) -> str | None:
+        """Return a fault: an array is missing, unknown or too small, or a count of a world is
+        impossible. Return None if there is no fault.
 
         Only the counts of each world are read; `fault_of` checks every other array when it is read.
         """
         for name in self._kinds:
             if name not in arrays:
                 return f"there is no array {name}"
+        for block, shape in self._blocks:  # before a command makes room for such genomes
+            if arrays.size(name := f"{GENOME}{block}") < self._cells * prod(shape) * 4:
+                return f"{name} is too small for {self._cells} blocks of weights of shape {shape}"
         for name in arrays:
             if name not in self._kinds and not name.startswith(BODIES):
                 return f"there is an unknown array {name}"
         for name in set(COUNTS) - {"seed", "food"}:
             count = read_count(arrays, f"world.worlds.{name}")
-            if ((count >= 2**63) & (count != NEVER)).any():
+            most = 2**63 if name == "organism_ticks" else UNREACHED
+            if ((count >= most) & (count != NEVER)).any():
                 return f"world.worlds.{name} is too large"
         return None
 
@@ -128,7 +136,7 @@ def _of_worlds(schema: Schema, worlds: int, looks: int) -> Iterator[tuple[str, K
 def _of_organisms(schema: Schema, blocks: Blocks, cells: int) -> Iterator[tuple[str, Kind]]:
     yield "world.organisms.alive", ("bool", (cells,))
     for name, shape in blocks:
-        yield f"world.organisms.genome.{name}", ("float32", (cells, *shape))
+        yield f"{GENOME}{name}", ("float32", (cells, *shape))
     yield "world.organisms.notes", ("int32", (cells, len(schema.notes)))
     yield "world.organisms.memory", ("float32", (cells, None))
     for name in ("energy", "eaten"):

@@ -4,6 +4,9 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict
 
+UNREACHED = 2**53
+"""More ticks or births than any world reaches; below it, float64 numbers, as in figures, are exact."""
+
 SEASONAL = "seasonal"
 Rate = Annotated[float, SEASONAL]
 """A setting that seasons may change while a run goes on. The setting is part of every world's

@@ -1,0 +1,147 @@
+"""Forged sizes: a small file that stands for gigabytes, and numbers that no run reaches."""
+
+import json
+import tomllib
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+import tomli_w
+
+from primordia.runs import checkpoint
+from tests.commands import complains, here
+from tests.trouble import newest, reseal
+
+READING = ["info", "plot", "report", "film", "export", "ancestors", "lines", "track"]
+
+
+def tried(command: str, run: Path, folder: Path) -> Any:
+    """Execute a reading command; its output, if there is one, is below `folder`."""
+    out = folder / "out"
+    words: dict[str, list[object]] = {
+        "plot": ["--out", out],
+        "report": ["--out", out.with_suffix(".html")],
+        "film": ["--out", out.with_suffix(".mp4")],
+        "export": [out],
+        "track": ["--tensorboard", out],
+    }
+    return here(command, run, *words.get(command, []))
+
+
+def described(run: Path, change: Callable[[dict[str, Any]], object]) -> None:
+    """Change the description of a run, and seal it again."""
+    path = run / "description.json"
+    content = json.loads(path.read_text())
+    change(content)
+    path.write_text(json.dumps(content))
+    reseal(newest(run))
+
+
+def test_compressed_arrays_are_not_unpacked(run: Path) -> None:
+    folder = newest(run)
+    with np.load(folder / "state.npz") as stored:
+        np.savez_compressed(folder / "state.npz", allow_pickle=False, **stored)
+    reseal(folder)
+    complains(here("info", run), 1, "state.npz is damaged")
+
+
+def test_arrays_are_no_larger_than_their_file(run: Path) -> None:
+    """Entries of a zip may overlap, so that one content is read many times."""
+    folder = newest(run)
+    with zipfile.ZipFile(folder / "state.npz", "a") as archive:
+        first, *others = archive.infolist()
+        for each in others:
+            each.header_offset, each.file_size, each.CRC = first.header_offset, 2**40, first.CRC
+            each.compress_size = each.file_size
+        archive.comment = b"changed"  # so that the directory is written
+    reseal(folder)
+    complains(here("info", run), 1, "state.npz is damaged")
+
+
+def test_rows_are_counted_before_they_are_read(run: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (path,) = (run / "births").iterdir()
+    rows = pq.read_metadata(path).num_rows
+    table = pq.read_table(path)
+    pq.write_table(table.take([0] * (rows + 1)), path)
+    reseal(newest(run))
+
+    def read(*_: object, **__: object) -> None:
+        pytest.fail("rows were read")
+
+    monkeypatch.setattr(pq.ParquetFile, "read", read)
+    complains(here("plot", run), 1, f"{path} is damaged: it has {rows + 1} rows instead of {rows}")
+
+
+def test_a_segment_has_no_more_rows_than_a_writer_puts_into_one(run: Path) -> None:
+    def change(content: dict[str, Any]) -> None:
+        content["segments"]["births"][0]["rows"] = 2**20 + 1
+
+    for folder in checkpoint.numbered(run):
+        reseal(folder, change)
+    complains(here("info", run), 1, "no checkpoint of", "manifest.json is missing or damaged")
+
+
+@pytest.mark.parametrize("command", READING)
+def test_weights_that_the_state_does_not_hold_are_refused(
+    command: str, run: Path, tmp_path: Path
+) -> None:
+    described(run, lambda content: content["blocks"].update(input=[2**30, 2**30]))
+    complains(tried(command, run, tmp_path), 1, "is not a checkpoint of this run", "too small")
+
+
+@pytest.mark.parametrize("command", READING)
+@pytest.mark.parametrize("tick", [2**50, 2**53 - 1])
+def test_a_last_tick_that_no_run_reaches_breaks_no_figure(
+    command: str, tick: int, run: Path, tmp_path: Path
+) -> None:
+    folder = newest(run)
+    with np.load(folder / "state.npz") as stored:
+        arrays = dict(stored)
+    arrays["world.worlds.tick.hi"][:] = tick >> 32
+    arrays["world.worlds.tick.lo"][:] = tick & 0xFFFFFFFF
+    np.savez(folder / "state.npz", allow_pickle=False, **arrays)
+    reseal(folder)
+    done = tried(command, run, tmp_path)
+    assert done.returncode == 0 or len(done.stderr.strip().splitlines()) == 1, done.stderr
+    assert "Warning" not in done.stderr
+
+
+@pytest.mark.parametrize("command", READING)
+def test_settings_whose_numbers_do_not_fit_are_refused(
+    command: str, run: Path, tmp_path: Path
+) -> None:
+    values = tomllib.loads((run / "config.toml").read_text())
+    values["placement"] |= {"topology": "torus4", "rows": 3}
+    (run / "config.toml").write_text(tomli_w.dumps(values))
+    reseal(newest(run))
+    complains(tried(command, run, tmp_path), 2, "8 cells do not make a torus")
+
+
+@pytest.mark.parametrize("rate", [5e-324, 1e308, -1.0, 0.0])
+def test_a_rate_of_ticks_is_within_bounds(rate: float, run: Path) -> None:
+    described(run, lambda content: content.update(rate=rate))
+    complains(here("info", run), 2, "description.json is missing or damaged")
+
+
+def test_a_setting_at_the_beginning_fits_float32(run: Path) -> None:
+    described(run, lambda content: content["beginning"].update(replication=1e308))
+    complains(here("info", run), 2, "description.json is missing or damaged")
+
+
+@pytest.mark.parametrize(
+    ("key", "names", "table"),
+    [
+        ("notes", ["cause"], "births"),
+        ("notes", ["world"], "births"),
+        ("notes", ["step", "step"], "births"),
+        ("tallies", ["energy"], "deaths"),
+        ("tallies", ["food"], "deaths"),
+    ],
+)
+def test_a_column_has_a_name_of_its_own(key: str, names: list[str], table: str, run: Path) -> None:
+    described(run, lambda content: content.update({key: names}))
+    complains(here("info", run), 2, f"the table {table} would have two columns {names[0]!r}")
