@@ -36,11 +36,16 @@ def prepare() -> None:
     (measured: no slower). A limit that is already in XLA_FLAGS is kept. XLA reads the flag once in
     a process, and ignores the flag as a compiler option of `jax.jit`. If the program has already used
     JAX, nothing is changed, and the run records the instruction set that XLA_FLAGS allow.
+
+    Raises:
+        InputError: XLA_FLAGS names a file, or JAX_PLATFORMS allows no device of this machine.
     """
     if backends_are_initialized():
         return
     cores.limit_threads()
-    flags = os.environ.get("XLA_FLAGS", "")
+    flags = os.environ.get("XLA_FLAGS", "").strip()
+    if flags and not flags.startswith("-"):
+        raise InputError(f"XLA_FLAGS: {flags} names a file; put its flags into the variable itself")
     if ISA_FLAG not in flags:
         # The flag stays set: by this flag JAX's cache tells code compiled for AVX2 from other code.
         os.environ["XLA_FLAGS"] = f"{flags} {ISA_FLAG}=AVX2".strip()
@@ -51,6 +56,11 @@ def prepare() -> None:
     jax.config.update(name, False)
     try:
         jax.devices()
+    except (AssertionError, RuntimeError):  # JAX raises both
+        named = f"JAX_PLATFORMS={os.environ.get('JAX_PLATFORMS')}"
+        raise InputError(
+            f"JAX finds no device that the variable {named} allows; unset the variable"
+        ) from None
     finally:
         jax.config.update(name, before)
 

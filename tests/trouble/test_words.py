@@ -15,6 +15,8 @@ from tests.trouble import TASK
 
 WRONG = {
     ("CartPole-survivl",): ["no task 'CartPole-survivl'", "did you mean 'CartPole-survival'?"],
+    (TASK, "--tick", "5"): ["no setting 'tick'", "did you mean 'stop.ticks'?"],
+    (TASK, "--out", ""): ["--out", "the path is empty"],
     (TASK, "--celsl", "64"): ["no setting 'celsl'", "did you mean 'cells'?"],
     (TASK, "--mutation.scal=1"): ["'mutation.scal'", "did you mean 'mutation.scale'?"],
     (TASK, "--scale", "1"): ["'scale'", "did you mean 'mutation.scale'?"],
@@ -154,6 +156,8 @@ def test_a_pipe_is_not_opened(words: tuple[str, ...], part: str, tmp_path: Path)
     [
         (["frobnicate"], ["No such command 'frobnicate'"]),
         (["info"], ["Missing argument 'RUN...'"]),
+        (["info", ""], ["RUN", "the path is empty"]),
+        (["plot", "x", "--out", ""], ["--out", "the path is empty"]),
         (["info", "--yaml", "x"], ["No such option '--yaml'"]),
         (["resume", "--cells", "4", "x"], ["No such option '--cells'"]),
         (["resume", "x", "--ticks"], ["'--ticks' requires an argument"]),

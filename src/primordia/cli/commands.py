@@ -1,6 +1,7 @@
 """All commands. A user's error is one line on stderr with exit status 2; trouble has status 1."""
 
 import errno
+import logging
 
 import click
 
@@ -23,6 +24,7 @@ from primordia.cli import (
 from primordia.cli.assays import group as assays
 from primordia.cli.cache import keep_compiled_code
 from primordia.cli.streams import flush, report
+from primordia.cli.variables import check_variables
 from primordia.errors import InputError, Trouble
 
 
@@ -69,7 +71,6 @@ for command in (each for part in PARTS for each in part.COMMANDS):
 
 def execute() -> int:
     """Execute the command in `sys.argv`. Return its exit status."""
-    keep_compiled_code()
     try:
         return _outcome()
     finally:
@@ -79,6 +80,9 @@ def execute() -> int:
 def _outcome() -> int:
     try:
         with interrupts.giving_way():
+            logging.getLogger("matplotlib").setLevel(logging.ERROR)  # hints on its own folders
+            check_variables()
+            keep_compiled_code()
             return commands(standalone_mode=False) or 0
     except SystemExit as end:
         return int(end.code or 0)

@@ -9,6 +9,7 @@ import click
 from primordia import cores, interrupts
 from primordia.cli.cache import cache_option
 from primordia.cli.flags import checkpoint_option, device_option, quiet_option, trust_option
+from primordia.cli.paths import PathType
 from primordia.cli.streams import report
 from primordia.errors import InputError
 
@@ -21,10 +22,10 @@ if TYPE_CHECKING:
 
 
 @click.command(short_help="Run arms of many worlds on all cores.")
-@click.argument("file", metavar="FILE.toml|DIR", type=click.Path(path_type=Path))
+@click.argument("file", metavar="FILE.toml|DIR", type=PathType())
 @click.option(
     "--out",
-    type=click.Path(path_type=Path),
+    type=PathType(),
     help="Directory of the runs [runs/NAME for NAME.toml].",
 )
 @click.option(

@@ -16,6 +16,7 @@ from primordia.cli.flags import (
     trust_option,
     video_option,
 )
+from primordia.cli.paths import PathType
 from primordia.errors import Trouble
 
 if TYPE_CHECKING:
@@ -41,9 +42,7 @@ def info(runs: tuple[Path, ...], as_json: bool) -> None:
 
 @click.command(short_help="Draw figures of a run.")
 @runs_argument
-@click.option(
-    "--out", type=click.Path(path_type=Path), help="Folder for the figures [RUN/figures]."
-)
+@click.option("--out", type=PathType(), help="Folder for the figures [RUN/figures].")
 @click.option("--world", default=0, help="World whose lines of descent are drawn [0].")
 @click.option(
     "--figure",
@@ -103,7 +102,7 @@ def replay(
 @click.option("--world", type=int, default=0, help="The organisms' world [0].")
 @trust_option
 @cache_option
-@click.argument("file", type=click.Path(path_type=Path))
+@click.argument("file", type=PathType())
 def export(run: Path, organisms: tuple[int, ...], world: int, trust: bool, file: Path) -> None:
     """Write genomes to a safetensors FILE, which `primordia run --ancestor` takes.
 
@@ -119,8 +118,8 @@ def export(run: Path, organisms: tuple[int, ...], world: int, trust: bool, file:
 
 
 @click.command("import", short_help="Write a state dictionary as a genome file.")
-@click.argument("state", type=click.Path(path_type=Path))
-@click.argument("file", type=click.Path(path_type=Path))
+@click.argument("state", type=PathType())
+@click.argument("file", type=PathType())
 @click.option("--task", required=True, help="Task, or FILE.toml, whose brain has these weights.")
 def import_(state: Path, file: Path, task: str) -> None:
     """Write weights from another program as a genome FILE, which `primordia run --ancestor` takes.
@@ -181,7 +180,7 @@ def tasks() -> None:
 )
 @click.option(
     "--out",
-    type=click.Path(path_type=Path, file_okay=False),
+    type=PathType(file_okay=False),
     default=Path(),
     help="Folder for compare.png and compare.svg [the current folder].",
 )

@@ -3,10 +3,12 @@
 import io
 import os
 import sys
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 
 import click
 
+from primordia.errors import Trouble
 from primordia.printable import printable
 
 
@@ -15,8 +17,28 @@ class Printable(io.TextIOWrapper):
 
     def write(self, text: str) -> int:
         """Write a text. Return its length."""
-        super().write(printable(text))
+        with self._named():
+            super().write(printable(text))
         return len(text)
+
+    def flush(self) -> None:
+        """Write what is left.
+
+        Raises:
+            Trouble: it cannot be written, such as to a file on a full disk.
+        """
+        with self._named():
+            super().flush()
+
+    @contextmanager
+    def _named(self) -> Iterator[None]:
+        try:
+            yield
+        except BrokenPipeError:  # the reader has read enough
+            raise
+        except OSError as error:
+            name = "standard error" if self.fileno() == 2 else "standard output"
+            raise Trouble(f"{name} cannot be written: {error.strerror or error}") from None
 
 
 def prepare() -> None:
@@ -39,12 +61,14 @@ def flush() -> None:
     for stream in (sys.stdout, sys.stderr):
         try:
             stream.flush()
-        except OSError:
+        except (OSError, Trouble):
             os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def report(message: object) -> None:
     """Print a message as one line on stderr."""
     line = " ".join(map(str.strip, str(message).splitlines()))
-    with suppress(OSError):  # stderr may be closed, and there is no other place for the message
+    with suppress(
+        OSError, Trouble
+    ):  # stderr may be closed, and there is no other place for the message
         click.echo(f"primordia: {printable(line)}", err=True)

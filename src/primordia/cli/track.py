@@ -7,17 +7,16 @@ import click
 
 from primordia import interrupts
 from primordia.cli.flags import runs_argument
+from primordia.cli.paths import PathType
 from primordia.cli.streams import report
 
 
 @click.command(short_help="Write metrics for TensorBoard or W&B.")
 @runs_argument
-@click.option(
-    "--tensorboard", type=click.Path(path_type=Path), metavar="DIR", help="Folder for TensorBoard."
-)
+@click.option("--tensorboard", type=PathType(), metavar="DIR", help="Folder for TensorBoard.")
 @click.option(
     "--wandb",
-    type=click.Path(path_type=Path),
+    type=PathType(),
     metavar="DIR",
     help="Folder for Weights & Biases, in its offline format.",
 )

@@ -67,12 +67,13 @@ def first_fault(
     path = (prefix + ".".join(str(part) for part in fault["loc"])).removesuffix(".")
     more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
     if fault["type"] == "extra_forbidden":
-        known = [*setting_fields(model, prefix), *others]
+        own = (name for name in setting_fields(model, prefix) if not name.startswith("fork."))
+        known = [*own, *others]  # without the settings that only `primordia fork` sets
         known += sorted({name.rpartition(".")[0] for name in known} - {""})
         return f"there is no setting {shown(path)}{did_you_mean(path, known)}{more}"
     if fault["type"] == "missing":
         return f"{path} is missing{more}"
     if fault["type"] == "value_error":  # an error of our validators, whose message is complete
-        return f"{path}: {fault['ctx']['error']}{more}"
+        return f"{path}: {fault['ctx']['error']}{more}".removeprefix(": ")
     message = fault["msg"][0].lower() + fault["msg"][1:]
     return f"{path}: {message}, not {shown(fault['input'])}{more}"

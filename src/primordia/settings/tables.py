@@ -153,8 +153,12 @@ def flat(values: dict[str, Any], prefix: str = "") -> dict[str, Any]:
 
 
 def did_you_mean(name: str, known: list[str]) -> str:
-    """Return the nearest known name as the end of a sentence; "" if none is near."""
+    """Return the nearest known name as the end of a sentence; "" if none is near.
+
+    If no whole name is near, the last parts of dotted names are compared.
+    """
+    of_last = {path.rpartition(".")[2]: path for path in reversed(known)}
     close = difflib.get_close_matches(name, known, 1) or [
-        path for path in known if path.rpartition(".")[2] == name.rpartition(".")[2]
+        of_last[last] for last in difflib.get_close_matches(name.rpartition(".")[2], of_last, 1)
     ]
     return f"; did you mean {close[0]!r}?" if close else ""

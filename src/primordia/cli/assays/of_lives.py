@@ -17,6 +17,7 @@ from primordia.cli.assays.options import (
 from primordia.cli.cache import cache_option
 from primordia.cli.flags import HabitatCommand, trust_option
 from primordia.cli.numbers import Finite
+from primordia.cli.paths import PathType
 
 if TYPE_CHECKING:
     from primordia.assays.subjects import Subjects
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 SUFFIX = ".safetensors"
 """The suffix of a genome file."""
 
-source_argument = click.argument("run", type=click.Path(path_type=Path))
+source_argument = click.argument("run", type=PathType())
 organisms_argument = click.argument("organisms", type=int, nargs=-1, metavar="[ID]...")
 world_option = click.option(
     "--world", type=int, help="The organisms' world [0 if an ID is given, otherwise see above]."
