@@ -16,7 +16,8 @@ from primordia.brains.contract import Brain
 from primordia.brains.layout import Layout
 from primordia.errors import InputError
 from primordia.habitats import contract as habitats
-from primordia.habitats.contract import AnyHabitat, Continuous
+from primordia.habitats.checks import check_arrays, check_properties
+from primordia.habitats.contract import AnyHabitat, Continuous, JaxHabitat
 from primordia.law.heredity import Heredity
 from primordia.law.law import Law
 from primordia.law.metabolism import Metabolism
@@ -32,9 +33,9 @@ from primordia.settings.tables import (
     DEFAULTS,
     NONE,
     PARTS,
+    code_of,
     did_you_mean,
     merged,
-    modules_of,
     replaced,
     values_of,
     with_full_paths,
@@ -132,10 +133,8 @@ class Config(Settings):
             InputError: there is no such habitat, or the habitat does not take these settings.
         """
         habitat = make("habitat", self.habitat, habitats.find)
-        try:
-            return habitats.complete(habitat)
-        except TypeError as error:
-            raise InputError(f"habitat: {error}") from None
+        check_properties(habitat)
+        return habitat
 
     def build_brain(self) -> Brain:
         """Return the brain of the run's organisms."""
@@ -186,14 +185,14 @@ class Config(Settings):
             **rates_of(self.metabolism or Metabolism(), "metabolism."),
         }
 
-    def modules_of(self, part: str) -> list[str]:
-        """Return the dotted names of the modules to which a part's settings refer."""
-        return modules_of(getattr(self, part), PARTS[part])
+    def code_of(self, part: str) -> list[str]:
+        """Return the code that a part's settings name, as `module:name` or as a module."""
+        return code_of(getattr(self, part), PARTS[part])
 
     @property
     def own_modules(self) -> list[str]:
         """Return the dotted names of the modules to which the settings of all parts refer."""
-        return [module for part in PARTS for module in self.modules_of(part)]
+        return [each.partition(":")[0] for part in PARTS for each in self.code_of(part)]
 
     @property
     def world_seeds(self) -> np.ndarray:
@@ -310,15 +309,15 @@ def limits(values: dict[str, Any]) -> dict[str, Any]:
 def _check(config: Config) -> None:
     """Raise an error if settings that are each valid do not fit together."""
     habitat = config.build_habitat()
-    if config.cells * config.seeds > 2**26:
-        raise InputError(
-            f"cells x seeds: {config.cells * config.seeds} cells are more than 2^26; spread them"
-            " over several runs"
-        )
+    if (cells := config.cells * config.seeds) > 2**26:
+        says = f"{cells} cells are more than 2^26; spread them over several runs"
+        raise InputError(f"cells x seeds: {says}")
     try:
-        habitat.check(config.cells * config.seeds)
+        habitat.check(cells)
     except ValueError as error:
         raise InputError(f"habitat: {error}") from None
+    if isinstance(habitat, JaxHabitat) and config.code_of("habitat"):
+        check_arrays(habitat)  # of the user's own: tracing every habitat would take long
     continuous = any(isinstance(part, Continuous) for part in habitat.action.parts)
     if config.motor.kind == "gaussian" and not continuous:
         raise InputError(

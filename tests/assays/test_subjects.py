@@ -49,6 +49,24 @@ def test_a_file_must_hold_the_genome_and_say_its_task(poles: primordia.Run, tmp_
         of_file(file, task="Hopper-survival")
 
 
+@pytest.mark.parametrize(
+    "named", ["gym:evil:Pond-v0", "gymnax:evil:Pond", "evil.toml", "/etc/passwd"]
+)
+def test_a_file_chooses_no_code_and_no_other_file(
+    named: str, poles: primordia.Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "evil.py").write_text("open('executed', 'w')")
+    (tmp_path / "evil.toml").write_text("task = 'evil'\nhabitat = {name = 'evil:Pond'}")
+    layout, file = poles.opened().layout, tmp_path / "one.safetensors"
+    genomes.write(file, layout, np.zeros((1, layout.length), np.float32), {"task": named})
+    with pytest.raises(
+        InputError, match=f"'{named}', which is no task of Primordia; name the task"
+    ):
+        of_file(file)
+    assert not (tmp_path / "executed").exists()
+
+
 def test_a_changed_habitat_must_have_the_setting(poles: primordia.Run) -> None:
     with pytest.raises(InputError, match="no setting 'gravity'"):
         of_run(poles.opened(), habitat={"gravity": 1.0})

@@ -1,5 +1,6 @@
 """Genome files, and runs that start from them."""
 
+import json
 from pathlib import Path
 
 import jax
@@ -115,6 +116,17 @@ def broken(path: Path, kind: str) -> None:
     elif kind == "torn":
         genomes.write(path, LAYOUT, some(2), {})
         save_file({**load_file(path), "output": np.zeros((1, 2, 6), np.float32)}, path)
+    elif kind == "float8":  # a type that NumPy does not have
+        genomes.write(path, LAYOUT, some(2), {})
+        content = path.read_bytes()
+        size = 8 + int.from_bytes(content[:8], "little")
+        header = json.loads(content[8:size])
+        header.pop("__metadata__", None)
+        for each in header.values():
+            each.update(dtype="F8_E5M2", data_offsets=[at // 4 for at in each["data_offsets"]])
+        text = json.dumps(header).encode()
+        weights = bytes((len(content) - size) // 4)
+        path.write_bytes(len(text).to_bytes(8, "little") + text + weights)
     elif kind == "no organism":
         genomes.write(path, LAYOUT, some(0), {})
 
@@ -126,6 +138,7 @@ def broken(path: Path, kind: str) -> None:
         ("no safetensors", "is not a safetensors file"),
         ("another brain", "holds genomes of another brain: .*5x5.*this task's brain is .*6x6"),
         ("no numbers", "not finite numbers"),
+        ("float8", "has the type F8_E5M2; weights have F32, F64, F16"),
         ("torn", "holds no complete genome"),
         ("no organism", "holds no complete genome"),
     ],

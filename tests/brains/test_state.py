@@ -47,6 +47,9 @@ def test_a_state_dictionary_becomes_a_founder_and_its_policy_has_the_weights(
         ({"input": "turned"}, "transpose the block"),
         ({"bias": np.zeros(3)}, "bias is not a block of this task's brain, which has input"),
         ({"output": np.full((2, 32), np.nan)}, "not finite numbers"),
+        ({"output": np.full((2, 32), 1e300)}, "not finite numbers in float32"),
+        ({"output": np.ones((2, 32), np.int64)}, "output has the type I64; weights have F32"),
+        ({"output": np.ones((2, 32), np.complex64)}, "output has the type C64"),
     ],
 )
 def test_what_does_not_fit_is_named(

@@ -147,3 +147,25 @@ def test_bundles_are_runs_of_an_arm(run: Path, file: Path, tmp_path: Path) -> No
     sent = primordia.load([file, tmp_path / "other.zip"]).info()
     assert sent["worlds"] == primordia.load([run, tmp_path / "other"]).info()["worlds"]
     complains(here("plot", file, tmp_path / "other.zip"), 2, "is a bundle and cannot be changed")
+
+
+def test_one_process_unpacks_a_bundle_into_a_folder(file: Path, tmp_path: Path) -> None:
+    unfinished = tmp_path / ".writing-run"
+    unfinished.mkdir()
+    (unfinished / "births").mkdir()  # of a process that was killed
+    with directory.locked(unfinished):
+        done = here("unbundle", file, tmp_path / "run")
+        complains(done, 2, "is being written by another process")
+    assert (unfinished / "births").exists()
+    assert here("unbundle", file, tmp_path / "run").returncode == 0
+    assert not unfinished.exists()
+    assert here("info", tmp_path / "run").returncode == 0
+
+
+def test_a_bundle_that_is_refused_leaves_no_folder(file: Path, tmp_path: Path) -> None:
+    (other := tmp_path / "other.zip").write_bytes(b"no bundle")
+    complains(here("unbundle", other, tmp_path / "a" / "b" / "run"), 2, "nor a bundle")
+    (tmp_path / "empty").mkdir()
+    (tmp_path / "link").symlink_to("empty")
+    complains(here("unbundle", file, tmp_path / "link"), 2, "exists already")
+    assert sorted(os.listdir(tmp_path)) == ["empty", "link", "other.zip"]

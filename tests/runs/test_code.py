@@ -2,14 +2,17 @@
 
 import importlib
 import importlib.util
+import json
 import py_compile
 import shutil
 import subprocess
 import sys
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+import tomli_w
 
 import primordia
 from primordia import own_code
@@ -18,6 +21,7 @@ from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import code
 from primordia.runs.archive import Archive
 from tests.commands import COMMAND, complains, environment, here
+from tests.trouble import newest, reseal
 
 POND = """
 from typing import Any
@@ -117,7 +121,7 @@ def test_a_bundle_executes_nothing_until_it_is_trusted(
         assert here(command[0], folder.parent / "sent.zip", *command[1:]).returncode == 0
     assert "pond" not in sys.modules
     stopped = here("revive", folder.parent / "sent.zip", 3)
-    complains(stopped, 2, "executes code from outside installed packages")
+    complains(stopped, 2, "executes code that is not part of Primordia")
     assert "pond" not in sys.modules
     done = here("revive", folder.parent / "sent.zip", 3, "--trust")
     assert done.returncode == 0, done.stderr
@@ -308,3 +312,36 @@ def test_a_module_that_was_imported_before_goes_to_another_process_too(
     importlib.import_module("pond")
     assert "pond" not in own_code._admitted.sources
     assert set(own_code.admitted(["pond"])) == {"pond.py", "pond_depth.py"}
+
+
+def test_a_run_of_a_stranger_chooses_no_function_of_an_installed_package(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run = begun(folder)
+    values = tomllib.loads((run / "config.toml").read_text())
+    values["habitat"] = {"name": "gymnax", "env": "pytest:main"}
+    (run / "config.toml").write_text(tomli_w.dumps(values))
+    shutil.rmtree(run / "code")
+    about = json.loads((run / "description.json").read_text())
+    (run / "description.json").write_text(json.dumps({**about, "code": {}}))
+    reseal(newest(run))
+    called: list[object] = []
+    monkeypatch.setattr(pytest, "main", lambda: called.append(1))
+    for command in LIVING:
+        complains(here(*words(command, run)), 2, "pytest:main", "--trust")
+    assert not called
+    complains(here(*words(LIVING[0], run), "--trust"), 2, "pytest:main has no default_params")
+
+
+@pytest.mark.parametrize("kind", ["deep", "link"])
+def test_a_folder_of_code_is_not_searched_without_end(folder: Path, kind: str) -> None:
+    run = begun(folder)
+    if kind == "deep":
+        deep = run / "code" / "/".join("d" * 500)
+        for each in [*reversed(deep.parents), deep]:
+            each.mkdir(exist_ok=True)
+    else:
+        (run / "code").rename(folder / "elsewhere")
+        (run / "code").symlink_to(folder / "elsewhere")
+    says = {"deep": "code/d is missing, or was added", "link": "code is a symbolic link"}[kind]
+    complains(here("verify", run), 1, says)

@@ -1,5 +1,6 @@
 """What a forger makes of a bundle is refused in one line, or makes no difference."""
 
+import hashlib
 import json
 import os
 import struct
@@ -114,6 +115,23 @@ def contradicting(parts: list[Entry]) -> None:
             parts.append((plain("run/origin/manifest.json"), json.dumps(told).encode()))
 
 
+def naming(*names: str) -> Callable[[list[Entry]], None]:
+    """Let the manifest name files of the user's own code."""
+
+    def change(parts: list[Entry]) -> None:
+        for place, (entry, content) in enumerate(parts):
+            if entry.filename.endswith("manifest.json"):
+                told = json.loads(content)
+                del told["sha256"]
+                seal = {"bytes": 0, "sha256": hashlib.sha256(b"").hexdigest()}
+                told["inputs"] |= dict.fromkeys(names, seal)
+                told["sha256"] = manifest._checksum(told)
+                parts[place] = entry, json.dumps(told).encode()
+        parts.extend((plain(f"run/{name}"), b"") for name in names)
+
+    return change
+
+
 HOSTILE: dict[str, tuple[Callable[[list[Entry]], Any], str]] = {
     "outside": (adding("evil"), "'evil' is not the path of a file in a run"),
     "above": (adding("run/../evil"), "not the path of a file in a run"),
@@ -153,6 +171,8 @@ HOSTILE: dict[str, tuple[Callable[[list[Entry]], Any], str]] = {
     "no JSON": (replacing("manifest.json", lambda content: b"\xff" + content), "cannot be read"),
     "deep JSON": (replacing("manifest.json", lambda _: b"[" * 10**5), "cannot be read"),
     "compressed": (compressing, "is compressed"),
+    "deep folders": (naming(f"code/{'d/' * 1000}x.py"), "not that of a run"),
+    "many folders": (naming(*(f"code/{each}/x.py" for each in range(5000))), "not that of a run"),
     "a bomb": (bombing, "is compressed"),
 }
 

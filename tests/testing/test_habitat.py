@@ -123,7 +123,7 @@ JAX_FAULTS: list[tuple[Any, str]] = [
     (Shared(), "array float32 .3,.; its first axis must be bodies"),
     (Mute(), "returns .* from step; return an Outcome"),
     (Senseless(), "has no 'senses_size'; define senses_size as an attribute"),
-    (Unready(), "has words = -1; it must be a whole number of at least 0"),
+    (Unready(), "has words = -1; it must be a whole number from 0 to"),
     (Choiceless(), r"has action = Discrete\(size=1\); it must be Discrete\(2\) or more"),
     (Scribble(), "returns str from picture; return a PIL.Image.Image"),
 ]

@@ -77,6 +77,15 @@ def test_a_world_has_no_count_that_no_run_can_reach(run: Path, name: str, count:
         info(Archive(run))
 
 
+@pytest.mark.parametrize(
+    ("name", "value"), [("sample_wait", 0), ("sample_wait", -(2**31)), ("calm", -1)]
+)
+def test_a_world_does_not_wait_for_ever(run: Path, name: str, value: int) -> None:
+    rewrite(newest(run), lambda arrays: arrays[f"world.worlds.{name}"].fill(value))
+    for command in ("resume", "verify"):
+        complains(here(command, run), 1, f"world.worlds.{name} is below")
+
+
 def test_columns_in_another_order_are_the_same_columns(run: Path) -> None:
     """Another program may have written the segment."""
     before = Archive(run)

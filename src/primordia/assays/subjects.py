@@ -23,6 +23,8 @@ from primordia.organism.players import players_of
 from primordia.random.keys import Purpose, stream, streams
 from primordia.random.wide import wide
 from primordia.runs.records import Records
+from primordia.settings.tables import tasks
+from primordia.settings.values import shown
 
 GAMES = 5
 """Default number of games of each genome; one game if the habitat draws nothing at random."""
@@ -109,18 +111,14 @@ def of_file(
     Args:
         file: a genome file, such as `primordia export` writes.
         numbers: numbers of the genomes in the file, counted from 0; by default all.
-        task: the task in which they live; by default the task that the file names.
+        task: the task in which they live; by default the task of Primordia that the file names.
         habitat: as in `of_run`.
 
     Raises:
         InputError: the file cannot be read, names no task or has no such genome; or its genomes do
             not fit the task's brain.
     """
-    named = task or genomes.about(file).get("task")
-    if named is None:
-        raise InputError(
-            f"{file} does not say which task its genomes live in; name the task: --task"
-        )
+    named = task or _task_of(file)
     device.prepare()
     chosen = changed(config.load(named), habitat or {})
     everyone = genomes.read([str(file)], chosen.build_layout(chosen.build_habitat()))
@@ -128,6 +126,24 @@ def of_file(
         _check_number(file, number, len(everyone))
     which = np.array(numbers or range(len(everyone)), np.int64)
     return _fresh(str(file), chosen, which, everyone[which])
+
+
+def _task_of(file: Path) -> str:
+    """Return the task that a genome file names.
+
+    Raises:
+        InputError: the file names no task of Primordia. Any other task could be a stranger's code.
+    """
+    named = genomes.about(file).get("task")
+    if named is None:
+        raise InputError(
+            f"{file} does not say which task its genomes live in; name the task: --task"
+        )
+    if named not in tasks():
+        raise InputError(
+            f"{file} names {shown(named)}, which is no task of Primordia; name the task: --task"
+        )
+    return named
 
 
 def of_task(

@@ -17,6 +17,8 @@ from primordia.errors import InputError
 
 FOUNDERS = "founders.safetensors"
 """The file in a run's directory that keeps its ancestors."""
+FLOATS = ("F32", "F64", "F16")
+"""The types of weights in a file, as safetensors names them; weights become float32."""
 MOST_ANCESTORS = 2**16
 """The largest number of ancestors among which 32-bit arithmetic can choose one for a founder."""
 
@@ -50,14 +52,13 @@ def read(paths: Sequence[str], layout: Layout) -> np.ndarray:
 def of_state(path: Path, layout: Layout) -> np.ndarray:
     """Return the genome of a state dictionary in a safetensors file, float32 (1, P).
 
-    The file has a tensor (*shape) for each block of the brain, in any float type.
+    The file has a tensor (*shape) for each block of the brain, of one of the types FLOATS.
 
     Raises:
         InputError: the file cannot be read, or a block is missing, unknown or of another shape; the
             message says which.
     """
-    with _opening(path):
-        state = load_file(path)
+    state = _tensors(path)
     wanted = _described(dict(layout.blocks))
     for name, shape in layout.blocks:
         found = state[name].shape if name in state else None
@@ -72,10 +73,7 @@ def of_state(path: Path, layout: Layout) -> np.ndarray:
         raise InputError(
             f"{path}: {unknown[0]} is not a block of this task's brain, which has {wanted}"
         )
-    genome = layout.join({name: state[name][None] for name in layout.names}).astype(np.float32)
-    if not np.isfinite(genome).all():
-        raise InputError(f"{path} has weights that are not finite numbers")
-    return genome
+    return _finite(path, layout.join({name: state[name][None] for name in layout.names}))
 
 
 def about(path: Path) -> dict[str, str]:
@@ -102,8 +100,7 @@ def _opening(path: Path) -> Iterator[None]:
 
 
 def _read(path: Path, layout: Layout) -> np.ndarray:
-    with _opening(path):
-        blocks = load_file(path)
+    blocks = _tensors(path)
     shapes = {name: block.shape[1:] for name, block in blocks.items()}
     if shapes != dict(layout.blocks):
         raise InputError(
@@ -113,9 +110,30 @@ def _read(path: Path, layout: Layout) -> np.ndarray:
     counts = {len(block) for block in blocks.values()}
     if len(counts) != 1 or 0 in counts:
         raise InputError(f"{path} holds no complete genome; export the genomes again")
-    genomes = layout.join(blocks).astype(np.float32)
+    return _finite(path, layout.join(blocks))
+
+
+def _tensors(path: Path) -> dict[str, np.ndarray]:
+    """Return the tensors of a file by name; raise InputError if they are not float numbers."""
+    with _opening(path), safe_open(path, "numpy") as opened:
+        kinds = {name: opened.get_slice(name).get_dtype() for name in opened.keys()}  # noqa: SIM118
+    for name, kind in kinds.items():
+        if kind not in FLOATS:
+            raise InputError(
+                f"{path}: {name} has the type {kind}; weights have {', '.join(FLOATS)}"
+            )
+    with _opening(path):
+        return load_file(path)
+
+
+def _finite(path: Path, genomes: np.ndarray) -> np.ndarray:
+    """Return genomes as float32; raise InputError if a weight is not finite, or becomes infinite."""
+    with np.errstate(over="ignore"):
+        genomes = genomes.astype(np.float32)
     if not np.isfinite(genomes).all():
-        raise InputError(f"{path} has weights that are not finite numbers; use another genome")
+        raise InputError(
+            f"{path} has weights that are not finite numbers in float32; use another genome"
+        )
     return genomes
 
 

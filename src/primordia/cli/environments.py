@@ -5,12 +5,12 @@ from pathlib import Path
 import click
 
 from primordia import files
-from primordia.cli.paths import PathType
+from primordia.cli.paths import OutputPath
 from primordia.errors import InputError
 
 
 @click.command(short_help="Write a task file for an environment.")
-@click.argument("file", metavar="FILE.toml", type=PathType(dir_okay=False))
+@click.argument("file", metavar="FILE.toml", type=OutputPath(dir_okay=False))
 @click.option(
     "--env", required=True, metavar="ENV", help="Environment, such as gym:LunarLander-v3."
 )

@@ -166,7 +166,7 @@ def _drive(path: Path, quiet: bool, speed: float | None, go: Callable[[Any], obj
                 go(listen and _while_shown(listen, partial(stopped, " and saved")))
         except KeyboardInterrupt:
             click.echo(stopped(" and saved"), err=True)
-            raise SystemExit(interrupts.STATUS) from None
+            raise click.Abort from None
     if not quiet:
         click.echo(summary(Run(path).info()))
         click.echo(f"Figures: primordia plot {path}")

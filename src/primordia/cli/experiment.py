@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from primordia import cores, interrupts
+from primordia import cores
 from primordia.cli.cache import cache_option
 from primordia.cli.flags import checkpoint_option, device_option, quiet_option, trust_option
-from primordia.cli.paths import PathType
+from primordia.cli.paths import OutputPath, PathType
 from primordia.cli.streams import report
 from primordia.errors import InputError
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 @click.argument("file", metavar="FILE.toml|DIR", type=PathType())
 @click.option(
     "--out",
-    type=PathType(),
+    type=OutputPath(),
     help="Directory of the runs [runs/NAME for NAME.toml].",
 )
 @click.option(
@@ -111,7 +111,7 @@ def _live_one(chosen: "Campaign", number: int, checkpoint_every: float, device: 
         ending = ending_of(chosen.plan, job, chosen.path, checkpoint_every, device)
     if ending.state == "stopped":
         report(f"job {number} stopped; the same command goes on with this job")
-        raise SystemExit(interrupts.STATUS)
+        raise click.Abort
     if ending.state == "elsewhere":
         raise InputError(f"job {number} is being run by another process")
     if ending.state == "failed":
@@ -152,7 +152,7 @@ def _end_unless_done(chosen: "Campaign", result: "Result") -> None:
     """Report the jobs that are not done, and exit."""
     if result.stopped:
         report(f"Stopped and saved. Go on with: primordia experiment {chosen.path}")
-        raise SystemExit(interrupts.STATUS)
+        raise click.Abort
     if result.failed:
         report(f"{_jobs(len(result.failed))} failed; give the same command to try again")
         raise SystemExit(1)

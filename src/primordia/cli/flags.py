@@ -7,14 +7,16 @@ from typing import Any
 import click
 
 from primordia.cli.numbers import Finite
-from primordia.cli.paths import PathType
+from primordia.cli.paths import OutputPath, PathType
 from primordia.errors import InputError
 from primordia.settings.tables import parsed_toml
 from primordia.settings.values import check_values
 
 run_argument = click.argument("run", type=PathType())
 runs_argument = click.argument("runs", type=PathType(), nargs=-1, required=True, metavar="RUN...")
-out_option = click.option("--out", type=PathType(), help="Directory of the new run [under runs/].")
+out_option = click.option(
+    "--out", type=OutputPath(), help="Directory of the new run [under runs/]."
+)
 device_option = click.option(
     "--device",
     default="cpu",
@@ -33,7 +35,7 @@ trust_option = click.option(
     "--trust", is_flag=True, help="Allow the run's own code to be executed from now on."
 )
 video_option = click.option(
-    "--out", type=PathType(), help="File to write: .mp4 or .gif [under RUN/videos]."
+    "--out", type=OutputPath(), help="File to write: .mp4 or .gif [under RUN/videos]."
 )
 speed_option = click.option(
     "--speed",

@@ -16,7 +16,7 @@ from primordia.cli.flags import (
     trust_option,
     video_option,
 )
-from primordia.cli.paths import PathType
+from primordia.cli.paths import OutputPath, PathType
 from primordia.errors import Trouble
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ def info(runs: tuple[Path, ...], as_json: bool) -> None:
 
 @click.command(short_help="Draw figures of a run.")
 @runs_argument
-@click.option("--out", type=PathType(), help="Folder for the figures [RUN/figures].")
+@click.option("--out", type=OutputPath(), help="Folder for the figures [RUN/figures].")
 @click.option("--world", default=0, help="World whose lines of descent are drawn [0].")
 @click.option(
     "--figure",
@@ -102,7 +102,7 @@ def replay(
 @click.option("--world", type=int, default=0, help="The organisms' world [0].")
 @trust_option
 @cache_option
-@click.argument("file", type=PathType())
+@click.argument("file", type=OutputPath())
 def export(run: Path, organisms: tuple[int, ...], world: int, trust: bool, file: Path) -> None:
     """Write genomes to a safetensors FILE, which `primordia run --ancestor` takes.
 
@@ -119,7 +119,7 @@ def export(run: Path, organisms: tuple[int, ...], world: int, trust: bool, file:
 
 @click.command("import", short_help="Write a state dictionary as a genome file.")
 @click.argument("state", type=PathType())
-@click.argument("file", type=PathType())
+@click.argument("file", type=OutputPath())
 @click.option("--task", required=True, help="Task, or FILE.toml, whose brain has these weights.")
 def import_(state: Path, file: Path, task: str) -> None:
     """Write weights from another program as a genome FILE, which `primordia run --ancestor` takes.
@@ -180,7 +180,7 @@ def tasks() -> None:
 )
 @click.option(
     "--out",
-    type=PathType(file_okay=False),
+    type=OutputPath(file_okay=False),
     default=Path(),
     help="Folder for compare.png and compare.svg [the current folder].",
 )

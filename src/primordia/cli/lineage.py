@@ -6,7 +6,7 @@ from typing import Any
 import click
 
 from primordia.cli.flags import run_argument
-from primordia.cli.paths import PathType
+from primordia.cli.paths import OutputPath
 from primordia.cli.streams import report
 
 
@@ -15,7 +15,7 @@ from primordia.cli.streams import report
 @click.argument("organism", type=int, required=False, metavar="[ID]")
 @click.option(
     "--out",
-    type=PathType(),
+    type=OutputPath(),
     required=True,
     metavar="FILE",
     help="File to write: .parquet, .csv, .nwk or .tsv.",

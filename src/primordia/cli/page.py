@@ -7,12 +7,12 @@ import click
 from primordia import interrupts
 from primordia.cli.cache import cache_option
 from primordia.cli.flags import run_argument, runs_argument, trust_option
-from primordia.cli.paths import PathType
+from primordia.cli.paths import OutputPath
 
 
 @click.command(short_help="Write a page with interactive figures.")
 @runs_argument
-@click.option("--out", type=PathType(), help="File to write: .html [RUN/report.html].")
+@click.option("--out", type=OutputPath(), help="File to write: .html [RUN/report.html].")
 @trust_option
 @cache_option
 def report(runs: tuple[Path, ...], out: Path | None, trust: bool) -> None:

@@ -1,5 +1,6 @@
 """Paths as arguments and values of options."""
 
+import os
 from pathlib import Path
 from typing import Any
 
@@ -18,3 +19,19 @@ class PathType(click.Path):
         if value == "":
             self.fail("the path is empty; `.` is the current folder", param, ctx)
         return super().convert(value, param, ctx)
+
+
+class OutputPath(PathType):
+    """The path of a file or folder to write; a run's own records are never replaced."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Return the path."""
+        path = super().convert(value, param, ctx)
+        whole = Path(os.path.realpath(path.parent), path.name)
+        for run in whole.parents:
+            if (run / "versions.json").is_file():
+                from primordia.runs.directory import OWN
+
+                if whole.relative_to(run).parts[0] in OWN:
+                    self.fail(f"{path} is part of the run {run}; name another path", param, ctx)
+        return path

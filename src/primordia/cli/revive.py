@@ -8,7 +8,7 @@ import click
 
 from primordia.cli.cache import cache_option
 from primordia.cli.flags import run_argument, trust_option
-from primordia.cli.paths import PathType
+from primordia.cli.paths import OutputPath
 from primordia.cli.table import show_table
 from primordia.errors import Trouble
 
@@ -29,13 +29,13 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--save",
-    type=PathType(),
+    type=OutputPath(),
     metavar="FILE",
     help="Write senses, actions, energy and food of each tick: .npz, .parquet or .csv.",
 )
 @click.option(
     "--video",
-    type=PathType(),
+    type=OutputPath(),
     metavar="FILE",
     help="Also write a video (.mp4 or .gif). It shows only the first and last 30 seconds of a long life.",
 )

@@ -5,18 +5,17 @@ from typing import Any
 
 import click
 
-from primordia import interrupts
 from primordia.cli.flags import runs_argument
-from primordia.cli.paths import PathType
+from primordia.cli.paths import OutputPath
 from primordia.cli.streams import report
 
 
 @click.command(short_help="Write metrics for TensorBoard or W&B.")
 @runs_argument
-@click.option("--tensorboard", type=PathType(), metavar="DIR", help="Folder for TensorBoard.")
+@click.option("--tensorboard", type=OutputPath(), metavar="DIR", help="Folder for TensorBoard.")
 @click.option(
     "--wandb",
-    type=PathType(),
+    type=OutputPath(),
     metavar="DIR",
     help="Folder for Weights & Biases, in its offline format.",
 )
@@ -54,7 +53,7 @@ def track(
         load(runs).track(tensorboard, wandb, seen=say, **options)
     except KeyboardInterrupt:
         report("stopped; everything read so far is written")
-        raise SystemExit(interrupts.STATUS) from None
+        raise click.Abort from None
 
 
 def _how_to_look(tensorboard: Path | None, wandb: Path | None) -> list[str]:

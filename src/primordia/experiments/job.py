@@ -17,6 +17,7 @@ from primordia.history.info import info
 from primordia.live.census import Census, Speed
 from primordia.runs import code, directory, loop
 from primordia.runs.archive import Archive
+from primordia.runs.code import Code
 from primordia.runs.fork import fork
 from primordia.runs.loop import Status
 
@@ -104,9 +105,8 @@ def _changes(config: Config) -> dict[str, object]:
 
 def _go_on(run: Path, config: Config, checkpoint_every: float, watch: "_Watch") -> None:
     archive = Archive(run)
-    held = archive.code()
-    here = {source.sha256 for source in code.found(config.own_modules).values()}
-    if {source.sha256 for source in held.values()} <= here:
+    held = Code(archive.code().files)
+    if held.marks <= code.found(config).marks:
         code.trust(held)  # these are the user's own files; a folder from elsewhere may hold others
     limits = config.stop.model_dump()
     loop.resume(run, limits, checkpoint_every=checkpoint_every, listen=watch)

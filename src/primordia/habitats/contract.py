@@ -35,9 +35,6 @@ KNOWN = {
     "gymnasium": "primordia.habitats.gymnasium.habitat:Gymnasium",
 }
 
-RATES = (1e-6, 1e9)
-"""Least and largest number of ticks in a second of simulated time."""
-
 Bodies: TypeAlias = Any
 """A tree of arrays, each with cells as its first axis."""
 
@@ -169,8 +166,7 @@ class Habitat(ABC):
 
     @default
     def rate(self) -> float | None:
-        """Return the ticks in a second of simulated time, within RATES; None if simulated time has no
-        unit."""
+        """Return the ticks in a second of simulated time; None if simulated time has no unit."""
         return None
 
     @default
@@ -317,24 +313,3 @@ def find(name: object) -> type[AnyHabitat]:
             " senses_size, action and words"
         )
     return kind
-
-
-def complete(habitat: AnyHabitat) -> AnyHabitat:
-    """Return the habitat after a check that it states everything that has no default.
-
-    Raises:
-        TypeError: something is missing; the message says what.
-    """
-    for name in ("senses_size", "action", "words"):
-        getattr(habitat, name)
-    if habitat.tallies and not habitat.can(Ability.TALLY):
-        raise TypeError(
-            f"{type(habitat).__name__} has tallies, so it must be a HostHabitat that defines tally()"
-        )
-    low, high = RATES
-    if habitat.rate is not None and not low <= habitat.rate <= high:
-        raise TypeError(
-            f"{type(habitat).__name__} has the rate {habitat.rate}; use {low:g} to {high:g} ticks in a"
-            " second, or None"
-        )
-    return habitat

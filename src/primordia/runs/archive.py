@@ -15,10 +15,10 @@ from primordia.habitats.contract import AnyHabitat
 from primordia.law.heredity import Heredity
 from primordia.law.law import Law
 from primordia.law.metabolism import Metabolism
-from primordia.own_code import Sources
 from primordia.runs import checkpoint, code, description, directory, segment
 from primordia.runs.arrays import Arrays
 from primordia.runs.checkpoint import Checkpoint
+from primordia.runs.code import Code
 from primordia.runs.description import Description
 from primordia.runs.join import join
 from primordia.runs.lives import Lives
@@ -73,8 +73,8 @@ class Archive(Records):
             raise InputError(f"{self.path / description.FILE} does not describe this run")
         return about
 
-    def code(self, *parts: str) -> Sources:
-        """Return the files of the user's own code that these parts, or all parts, would execute here."""
+    def code(self, *parts: str) -> Code:
+        """Return the code that these parts, or all parts, would execute here."""
         wanted = parts or tuple(PARTS)
         return code.of_run(self.path, self.config, self.description, wanted, self.edited)
 

@@ -30,7 +30,7 @@ from primordia.errors import InputError, Trouble
 from primordia.runs import checkpoint, directory, manifest
 from primordia.runs.archive import Archive
 from primordia.runs.checkpoint import FOLDER, MANIFEST, NUMBER, ORIGIN, STATE
-from primordia.runs.directory import VERSIONS
+from primordia.runs.directory import LOCK, VERSIONS
 from primordia.runs.manifest import Manifest, Seal
 
 TOP = "run/"
@@ -142,25 +142,35 @@ def unbundle(file: Path, folder: Path) -> None:
     """Make a run's directory from a bundle.
 
     Raises:
-        InputError: the file is not a bundle, or differs from its manifests; or the folder is taken.
+        InputError: the file is not a bundle, or differs from its manifests; or the folder is taken,
+            or another process unpacks a bundle into it.
         Trouble: the directory cannot be written.
     """
     files.check_name(folder)
     if not file.is_file():
         raise InputError(f"there is no bundle {file}")
-    if os.path.lexists(folder) and not (folder.is_dir() and not any(folder.iterdir())):
+    empty = folder.is_dir() and not folder.is_symlink() and not any(folder.iterdir())
+    if os.path.lexists(folder) and not empty:
         raise InputError(f"{folder} exists already; name another folder")
-    files.make_folder(folder.parent)
+    missing = [path for path in folder.parents if not path.exists()]
     temporary = folder.with_name(files.TEMPORARY + folder.name)
-    if os.path.lexists(temporary):
-        files.remove(temporary)
-    with interrupts.undone_by(partial(shutil.rmtree, temporary, ignore_errors=True)):
-        _extract(file, temporary)
-        try:
-            temporary.rename(folder)
-            files.sync(folder.parent)
-        except OSError as error:
-            raise Trouble(f"{folder} cannot be written: {error.strerror or error}") from None
+    with interrupts.undone_by(partial(directory.remove_empty, missing)):
+        files.own_folder(temporary)
+        with directory.locked(temporary), interrupts.undone_by(partial(_discard, temporary)):
+            for each in set(temporary.iterdir()) - {
+                temporary / LOCK
+            }:  # of a process that was killed
+                files.remove(each)
+            _extract(file, temporary)
+            try:
+                temporary.rename(folder)
+                files.sync(folder.parent)
+            except OSError as error:
+                raise Trouble(f"{folder} cannot be written: {error.strerror or error}") from None
+
+
+def _discard(folder: Path) -> None:
+    shutil.rmtree(folder, ignore_errors=True)
 
 
 def refuse_changes(path: Path) -> None:

@@ -3,12 +3,18 @@
 RUN/code holds the files; their checksums are in the run's description. A run may come from a
 stranger, and so may its code. The code is executed only after the user has trusted exactly these
 files, once on each machine. Code with which the user has begun a run is trusted.
+
+A run may also name classes and functions of installed packages. Even an installed function can do
+harm if a stranger chooses it. So they are trusted by name, except those of LIBRARIES.
 """
 
+import hashlib
+import os
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
+from typing import NamedTuple
 
 from platformdirs import user_state_path
 
@@ -17,10 +23,33 @@ from primordia.config import Config
 from primordia.errors import InputError, Trouble
 from primordia.own_code import Sources
 from primordia.runs.description import Description
+from primordia.settings.tables import PARTS
 
 FOLDER = "code"
+LIBRARIES = ("ale_py", "craftax", "gymnasium", "gymnax", "octax", "playground")
+"""Packages of environments, whose classes and functions every run may name."""
 _trusted: set[str] = set()
-"""Checksums of the files that this process trusts, for the case that they cannot be stored."""
+"""Marks of the code that this process trusts, for the case that they cannot be stored."""
+
+
+class Code(NamedTuple):
+    """The code that a run executes, beside Primordia's own and that of its LIBRARIES."""
+
+    files: Sources
+    """files outside installed packages"""
+    installed: frozenset[str] = frozenset()
+    """parts of installed packages, as `module:name` or as a module"""
+
+    @property
+    def marks(self) -> set[str]:
+        """The checksum of each file, and of the name of each installed part."""
+        names = (hashlib.sha256(name.encode()).hexdigest() for name in self.installed)
+        return {*(source.sha256 for source in self.files.values()), *names}
+
+    @property
+    def names(self) -> str:
+        """The files and the installed parts, for a message."""
+        return ", ".join([*(str(source.file) for source in self.files.values()), *self.installed])
 
 
 def copy(config: Config, run: Path) -> dict[str, str]:
@@ -29,27 +58,39 @@ def copy(config: Config, run: Path) -> dict[str, str]:
     Raises:
         Trouble: a file cannot be written.
     """
-    code = found(config.own_modules)
-    for name, source in code.items():
+    code = found(config)
+    for name, source in code.files.items():
         path = run / FOLDER / name
         files.make_folder(path.parent)
         files.write_bytes(path, source.text)
     trust(code)
-    return {name: code[name].sha256 for name in sorted(code)}
+    return {name: code.files[name].sha256 for name in sorted(code.files)}
 
 
-def found(modules: Iterable[str]) -> Sources:
-    """Return the files of modules that are on `sys.path` or in the current folder."""
-    code: Sources = {}
-    for module in modules:
-        code |= own_code.found(module)
-    return code
+def found(config: Config) -> Code:
+    """Return the code that the settings name and that is installed, on `sys.path` or in the current
+    folder."""
+    sources: Sources = {}
+    for module in config.own_modules:
+        sources |= own_code.found(module)
+    return Code(sources, _installed(config, PARTS))
+
+
+def _installed(config: Config, parts: Iterable[str]) -> frozenset[str]:
+    """Return the parts of installed packages, other than LIBRARIES, that settings name."""
+    named = [each for part in parts for each in config.code_of(part)]
+    modules = {each: each.partition(":")[0] for each in named}
+    return frozenset(
+        each
+        for each, module in modules.items()
+        if module.partition(".")[0] not in LIBRARIES and own_code.is_installed(module)
+    )
 
 
 def of_run(
     run: Path, config: Config, about: Description, parts: Sequence[str], edited: bool
-) -> Sources:
-    """Return the files of the user's own code that these parts of a run execute.
+) -> Code:
+    """Return the code that these parts of a run execute.
 
     Modules without a copy in the run are found on `sys.path` or in the current folder. With
     `edited`, all modules are looked up in these places first.
@@ -57,36 +98,52 @@ def of_run(
     Raises:
         Trouble: the copy differs from the description.
     """
-    folder, code = run / FOLDER, Sources()
-    held = {each.relative_to(folder).as_posix() for each in folder.rglob("*") if not each.is_dir()}
-    if held != set(about.code):
-        odd = min(held ^ set(about.code))
-        raise Trouble(f"{folder / odd} is missing, or was added after the run began")
+    folder, sources = run / FOLDER, Sources()
+    _check_files(folder, set(about.code))
     for part in parts:
-        for module in config.modules_of(part):
+        for module in (each.partition(":")[0] for each in config.code_of(part)):
             ways = [partial(own_code.below, folder, module), partial(own_code.found, module)]
-            code |= next(filter(None, (way() for way in (ways[::-1] if edited else ways))), {})
-    for name, source in code.items():
+            sources |= next(filter(None, (way() for way in (ways[::-1] if edited else ways))), {})
+    for name, source in sources.items():
         if source.file == folder / name and source.sha256 != about.code[name]:
             raise Trouble(f"{source.file} was changed or damaged: its checksum differs")
-    return code
+    return Code(sources, _installed(config, parts))
 
 
-def admit(run: Path, code: Sources) -> None:
-    """Allow the code of a run to be imported.
+def _check_files(folder: Path, described: set[str]) -> None:
+    """Raise Trouble unless the folder of a run's code holds exactly the described files."""
+    if folder.is_symlink():
+        raise Trouble(f"{folder} is a symbolic link; put the run's own folder in its place")
+    # Other folders are not read, since a forged run may hold very many.
+    folders = {str(parent) for name in described for parent in Path(name).parents}
+    waiting, held = [folder] if folder.is_dir() else [], set[str]()
+    while waiting:
+        for each in os.scandir(waiting.pop()):
+            name = Path(each.path).relative_to(folder).as_posix()
+            if each.is_dir(follow_symlinks=False) and name in folders:
+                waiting.append(Path(each.path))
+            else:
+                held.add(name)
+    if held != described:
+        odd = min(held ^ described)
+        raise Trouble(f"{folder / odd} is missing, or was added after the run began")
+
+
+def admit(run: Path, code: Code) -> None:
+    """Allow the code of a run to be executed.
 
     Raises:
         InputError: the user has not trusted the code yet, or the process has imported another
             module of the same name.
     """
-    if not own_code.is_loaded(code) and not _is_trusted(code):
-        names = ", ".join(str(source.file) for source in code.values())
+    asked = Code({} if own_code.is_loaded(code.files) else code.files, code.installed)
+    if not asked.marks <= _trusted | _stored():
         raise InputError(
-            f"{run} executes code from outside installed packages: {names}. Read this code; then add"
-            " --trust once, or call primordia.load(run, trust=True)"
+            f"{run} executes code that is not part of Primordia: {asked.names}. Read this code; then"
+            " add --trust once, or call primordia.load(run, trust=True)"
         )
     try:
-        own_code.admit(code)
+        own_code.admit(code.files)
     except LookupError as error:
         raise InputError(str(error)) from None
 
@@ -98,25 +155,20 @@ def changes(config: Config, recorded: dict[str, str]) -> list[str]:
     """
     return [
         f"{source.file} has changed" if name in recorded else f"{source.file} is new"
-        for name, source in sorted(found(config.own_modules).items())
+        for name, source in sorted(found(config).files.items())
         if recorded.get(name) != source.sha256
     ]
 
 
-def trust(code: Sources) -> None:
-    """Trust these files from now on: in this process, and on this machine if their checksums can be
-    stored."""
-    new = {source.sha256 for source in code.values()} - _stored()
+def trust(code: Code) -> None:
+    """Trust this code from now on: in this process, and on this machine if its marks can be stored."""
+    new = code.marks - _stored()
     _trusted.update(new)
     if new:
         with suppress(OSError, RuntimeError):  # the home folder may be unknown
             _store().parent.mkdir(parents=True, exist_ok=True)
             with _store().open("a", encoding="utf-8") as file:
                 file.writelines(f"{each}\n" for each in sorted(new))
-
-
-def _is_trusted(code: Sources) -> bool:
-    return {source.sha256 for source in code.values()} <= _trusted | _stored()
 
 
 def _stored() -> set[str]:
@@ -126,5 +178,5 @@ def _stored() -> set[str]:
 
 
 def _store() -> Path:
-    """Return the file that holds the checksums of trusted files."""
+    """Return the file that holds the marks of trusted code."""
     return user_state_path("primordia", appauthor=False) / "trusted"

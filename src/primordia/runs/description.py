@@ -9,7 +9,8 @@ from typing import Annotated
 from pydantic import BaseModel, ConfigDict, Field
 
 from primordia import files
-from primordia.habitats.contract import RATES, AnyHabitat
+from primordia.habitats.checks import RATES
+from primordia.habitats.contract import AnyHabitat
 from primordia.law.law import Law
 from primordia.runs import stored
 from primordia.settings.values import LARGEST

@@ -54,7 +54,7 @@ def create(run: Path, config: Config, fill: Callable[[], object] | None = None) 
     law = config.build_law(habitat)
     versions = {"format": FORMAT, **versions_here(config, habitat)}
     missing = [path for path in (run, *run.parents) if not path.exists()]
-    with interrupts.undone_by(partial(_remove_empty, missing)):
+    with interrupts.undone_by(partial(remove_empty, missing)):
         files.make_folder(run)
         with locked(run), interrupts.undone_by(partial(_remove_lock, run)):
             refuse_if_taken(run)  # another process may have made the directory since
@@ -108,7 +108,8 @@ def _remove_lock(run: Path) -> None:
             (run / LOCK).unlink()
 
 
-def _remove_empty(folders: list[Path]) -> None:
+def remove_empty(folders: list[Path]) -> None:
+    """Remove those of the folders that are empty, in this order."""
     for path in folders:
         with suppress(OSError):
             path.rmdir()

@@ -19,12 +19,16 @@ INPUTS = ("config.toml", DESCRIPTION, FOUNDERS)
 """Files that a run needs to go on, except checkpoints and the user's own code."""
 SEGMENT_ROWS = 2**20
 """Largest number of rows of a segment."""
+DEEPEST = 16
+"""Largest number of names in the path of a file of the user's own code, below the folder of code."""
+MOST_INPUTS = 4096
+"""Largest number of inputs. Each may need DEEPEST folders, which a bundle does not hold itself."""
 Word = Annotated[int, Field(ge=0, lt=2**64)]
 
 
 def _is_input(name: str) -> str:
     folder, *parts = name.split("/")
-    if name not in INPUTS and (folder != CODE or not parts or ".." in parts):
+    if name not in INPUTS and (folder != CODE or not 0 < len(parts) <= DEEPEST or ".." in parts):
         raise ValueError(f"{name} is not a file of a run")
     return name
 
@@ -85,7 +89,7 @@ class Manifest(Part):
     """The content of `manifest.json`, without the checksum of the content."""
 
     progress: Progress
-    inputs: dict[Input, Seal]
+    inputs: dict[Input, Seal] = Field(max_length=MOST_INPUTS)
     """files that a run needs to go on, except checkpoints, by their path below the run"""
     state: Seal
     segments: dict[Table, list[Segment]] = Field(min_length=len(TABLES))

@@ -24,6 +24,8 @@ COUNTS = (
     *("saturated", "saturated_births", "fixed", "fixed_births"),
 )
 """Names of the 64-bit values of each world."""
+LEAST = {"world.worlds.sample_wait": 1, "world.worlds.looks.wait": 1, "world.worlds.calm": 0}
+"""Least values of counts of ticks: from a smaller one, a world would count for ever."""
 GENOME = "world.organisms.genome."
 """Prefix of the names of the arrays of weights."""
 BODIES = "bodies"
@@ -68,6 +70,8 @@ class Expected:
         kind = self._tally if name == f"{BODIES}.tally" else self._kinds.get(name)
         if not (array.shape[:1] == (self._cells,) if kind is None else _fits(array, kind)):
             return f"{name} is {array.dtype} {array.shape}, which does not fit the settings"
+        if (least := LEAST.get(name)) is not None and (array < least).any():
+            return f"{name} is below {least}"
         folder, _, table = name.partition(".")
         return self._odd_row(table, array) if folder == "tail" else None
 

@@ -107,13 +107,19 @@ def merged(base: dict[str, Any], change: dict[str, Any]) -> dict[str, Any]:
     return result
 
 
-def modules_of(table: dict[str, Any], key: str) -> list[str]:
-    """Return the modules that a part's table names: for its class, its functions and its imports."""
-    named = [str(table.get(each, "")).partition(":") for each in (key, *CODE)]
-    modules = [module for module, colon, name in named if colon and name and is_dotted(module)]
+def code_of(table: dict[str, Any], key: str) -> list[str]:
+    """Return the code that a part's table names: `module:name` for its class and its functions, and
+    the modules that it lists as imports."""
+    named = [str(table.get(each, "")) for each in (key, *CODE)]
     imports = table.get(IMPORTS, ())
     listed = [str(each) for each in imports] if isinstance(imports, list | tuple) else []
-    return [*modules, *(each for each in listed if is_dotted(each))]
+    given = [*(each for each in named if all(each.partition(":"))), *listed]
+    return [each for each in given if is_dotted(each.partition(":")[0])]
+
+
+def modules_of(table: dict[str, Any], key: str) -> list[str]:
+    """Return the modules of the code that a part's table names; see `code_of`."""
+    return [each.partition(":")[0] for each in code_of(table, key)]
 
 
 def with_full_paths(folder: Path, values: dict[str, Any]) -> dict[str, Any]:

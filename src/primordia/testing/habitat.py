@@ -1,26 +1,22 @@
 """The check of habitats."""
 
-from typing import Any
-
 import jax
 import numpy as np
 from jax import Array, lax
 
+from primordia.errors import InputError
 from primordia.habitats.bodies import fresh
+from primordia.habitats.checks import check_arrays, check_properties
 from primordia.habitats.contract import (
     Ability,
     AnyHabitat,
     Bodies,
-    Compound,
-    Continuous,
-    Discrete,
     JaxHabitat,
     Outcome,
-    complete,
 )
 from primordia.law.events import DEATHS
-from primordia.testing.lives import TICKS, Lives, Past, actions, judged
-from primordia.testing.report import ROUNDED, ContractError, advise, need, typed
+from primordia.testing.lives import TICKS, Lives, Past
+from primordia.testing.report import ROUNDED, ContractError, advise, need
 from primordia.testing.trial import ALL, COUNTS
 
 
@@ -36,7 +32,6 @@ def check_habitat(habitat: AnyHabitat) -> None:
     """
     _stated(habitat)
     if isinstance(habitat, JaxHabitat):
-        _types(habitat)
         advise(habitat)
     lives = Lives(habitat)
     expected = lives.whole()
@@ -67,37 +62,18 @@ def check_habitat(habitat: AnyHabitat) -> None:
 
 
 def _stated(habitat: AnyHabitat) -> None:
-    """Check the habitat's properties."""
+    """Check the habitat's properties and, in JAX, its shapes and dtypes."""
     try:
-        complete(habitat)
-    except TypeError as error:
-        raise ContractError(str(error)) from None
-    for name, least in (("senses_size", 1), ("words", 0)):
-        value = getattr(habitat, name)
-        need(
-            type(value) is int and value >= least,
-            habitat,
-            f"has {name} = {value!r}; it must be a whole number of at least {least}",
-        )
-    action = habitat.action
-    need(
-        isinstance(action, Discrete | Continuous | Compound)
-        and all(part.size > isinstance(part, Discrete) for part in action.parts)
-        and action.size > 0,
-        habitat,
-        f"has action = {action!r}; it must be Discrete(2) or more, Continuous(1) or more, or a"
-        " Compound of such parts",
-    )
+        check_properties(habitat)
+        if isinstance(habitat, JaxHabitat):
+            check_arrays(habitat)
+    except InputError as error:
+        raise ContractError(str(error).removeprefix("habitat: ")) from None
     _abilities(habitat)
 
 
 def _abilities(habitat: AnyHabitat) -> None:
     """Check optional properties and methods."""
-    need(
-        habitat.rate is None or habitat.rate > 0,
-        habitat,
-        f"has rate = {habitat.rate!r}; give the ticks per second, or None",
-    )
     need(
         all(isinstance(each, str) for pair in habitat.versions.items() for each in pair),
         habitat,
@@ -117,37 +93,6 @@ def _abilities(habitat: AnyHabitat) -> None:
             f"defines {', '.join(sorted(set(methods) - set(lacking)))} without"
             f" {', '.join(lacking)}; define both, or neither",
         )
-
-
-def _types(habitat: JaxHabitat) -> None:
-    """Check shapes and dtypes without computing anything."""
-    words = jax.ShapeDtypeStruct((ALL, habitat.words), np.uint32)
-    acted = actions(habitat.action)[0]
-    bodies = jax.eval_shape(habitat.reset, words)
-    for leaf in jax.tree.leaves(bodies):
-        need(
-            leaf.shape[:1] == (ALL,),
-            habitat,
-            f"makes bodies with an array {leaf.dtype} {leaf.shape}; its first axis must be bodies",
-        )
-    senses = jax.eval_shape(habitat.sense, bodies)
-    typed(habitat, "senses", senses, (ALL, habitat.senses_size), np.float32)
-    stepped: Any = jax.eval_shape(
-        habitat.step, bodies, jax.ShapeDtypeStruct(acted.shape, acted.dtype)
-    )
-    need(
-        isinstance(stepped, tuple) and len(stepped) == 2,
-        habitat,
-        "does not return a pair from step; return bodies and an Outcome",
-    )
-    need(
-        len({jax.tree.structure(each) for each in (stepped[0], bodies)}) == 1,
-        habitat,
-        "makes bodies of different forms in step and in reset; return the same tree of arrays from both",
-    )
-    for after, before in zip(jax.tree.leaves(stepped[0]), jax.tree.leaves(bodies), strict=True):
-        typed(habitat, "bodies after a step", after, before.shape, before.dtype)
-    judged(habitat, stepped[1], ALL)
 
 
 def _in_a_loop(habitat: JaxHabitat, lives: Lives, expected: list[Past]) -> None:

@@ -11,7 +11,7 @@ import click
 from primordia import files
 from primordia.cli.assays.tables import Told
 from primordia.cli.numbers import Finite
-from primordia.cli.paths import PathType
+from primordia.cli.paths import OutputPath
 from primordia.cli.table import show_table
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ after_option = click.option(
 json_option = click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 out_option = click.option(
     "--out",
-    type=PathType(file_okay=False),
+    type=OutputPath(file_okay=False),
     help="Draw a figure into this folder, as PNG and SVG.",
 )
 games_option = click.option(
