@@ -65,7 +65,7 @@ def test_without_a_home_folder_nothing_is_kept(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.delenv("JAX_COMPILATION_CACHE_DIR", raising=False)
     cache.keep_compiled_code()
     assert "JAX_COMPILATION_CACHE_DIR" not in os.environ
-    code.trust({"a.py": own_code.Source(Path("a.py"), b"")})
+    code.trust(code.Code({"a.py": own_code.Source(Path("a.py"), b"")}))
     assert code._stored() == set()
 
 

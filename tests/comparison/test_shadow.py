@@ -85,7 +85,7 @@ def test_the_command_prints_what_python_gives(poles: dict[str, primordia.Run]) -
     text = here("shadow", run.path, "--organisms", 10, "--ticks", 100).stdout
     assert text.startswith("parent: 60 organisms, each born again alone, from ")
     assert "95 % interval" in text
-    complains(here("shadow", run.path, "--organisms", 0), 2, "at least one organism")
+    complains(here("shadow", run.path, "--organisms", 0), 2, "--organisms", "0")
     complains(here("shadow", run.path.parent / "no"), 2, "no")
 
 

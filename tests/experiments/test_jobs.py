@@ -164,8 +164,8 @@ def test_a_job_that_fails_stops_nobody_else(tmp_path: Path) -> None:
     assert done.returncode == 1
     lines = done.stderr.strip().splitlines()
     assert lines[0].startswith("primordia: job 2 (mild) failed: ")
-    assert lines[0].endswith("; the job is tried again")
-    assert len(lines) == 4
+    assert "tried again" not in lines[0]  # it would end in the same way
+    assert len(lines) == 2
     assert lines[-1].endswith("1 job failed; give the same command to try again")
     told = json.loads(here("experiment", out, "--status", "--json").stdout)
     assert told["jobs"] == {"done": 3, "running": 0, "failed": 1, "waiting": 0}

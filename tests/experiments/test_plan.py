@@ -138,3 +138,21 @@ def test_a_fork_has_the_jobs_and_settings_of_its_source(tmp_path: Path) -> None:
     ]
     with pytest.raises(InputError, match="a fork takes task, seeds and cells from one/harsh"):
         read(write(tmp_path, "two", fork=fork, **other), tmp_path / "runs" / "two")
+
+
+@pytest.mark.parametrize("names", [["one"], ["one", "two"], ["one", "two", "three"]])
+def test_experiments_do_not_fork_each_other_in_a_circle(names: list[str], tmp_path: Path) -> None:
+    for name, other in zip(names, [*names[1:], names[0]], strict=True):
+        (tmp_path / f"{name}.toml").write_text(
+            f"fork = {{ of = '{other}/a', at = 3 }}\nstop = {{ ticks = 9 }}\narms = [{{ name = 'a' }}]"
+        )
+    done = here("experiment", tmp_path / "one.toml", "--out", tmp_path / "out")
+    complains(done, 2, "one.toml is a fork of itself")
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("name", ["jobs", "fork"])
+def test_a_table_of_an_experiment_is_a_table(name: str, tmp_path: Path) -> None:
+    complains(
+        here("experiment", write(tmp_path, **{name: 0})), 2, f"{name} must be a table [{name}]"
+    )

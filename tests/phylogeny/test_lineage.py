@@ -192,6 +192,9 @@ def test_without_its_source_a_fork_begins_with_roots(tmp_path: Path) -> None:
         assert phyloframe.alifestd_validate(rows)
 
     without()
+    source.symlink_to(source.name)  # a circle
+    without()
+    source.unlink()
     source.write_text("no run")
     without()
     source.unlink()

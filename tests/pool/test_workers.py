@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from primordia import interrupts
 from primordia.errors import Trouble
 from primordia.pool import workers as pools
 from primordia.pool.board import STEP
@@ -147,3 +148,13 @@ def test_workers_end_with_their_run_however_it_ends(kill: int) -> None:
     run.stdout.close()
     for worker in workers:
         wait_until_gone(worker)
+
+
+def test_a_signal_that_ends_the_run_kills_its_workers() -> None:
+    """A simulator may hang, so that its worker reads no command."""
+    before = list(interrupts._undo)
+    with counters() as pool:
+        (kill,) = [each for each in interrupts._undo if each not in before]
+        kill()
+        assert [worker.wait(30) for worker in pool._workers] == [-signal.SIGKILL] * 3
+    assert interrupts._undo == before

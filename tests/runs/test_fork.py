@@ -196,6 +196,14 @@ def test_forks_of_forks_keep_the_promises(poles: Path, tmp_path: Path) -> None:
     assert same(straight.path, two.path)
 
 
+def test_a_fork_is_forked_where_it_has_lived(poles: Path, tmp_path: Path) -> None:
+    one = primordia.load(poles).fork(500, tmp_path / "one", seed=3)
+    done = here("fork", one.path, "--at", 499, "--out", tmp_path / "two")
+    says = f"from 500 to 3000; for an earlier tick, fork {poles}"
+    complains(done, 2, "--at 499", says)
+    assert here("fork", one.path, "--at", 500, "--out", tmp_path / "two").returncode == 0
+
+
 def test_a_fork_whose_checkpoints_are_lost_starts_again(poles: Path, tmp_path: Path) -> None:
     fork = primordia.load(poles).fork(500, tmp_path / "fork", seed=3)
     before = arrays(fork.path)

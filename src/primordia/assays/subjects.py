@@ -80,8 +80,11 @@ def of_run(
         habitat: changed settings of the habitat, such as `{"sticky": 0.25, "noops": 30}`.
 
     Raises:
-        InputError: no such organism was born, nothing was born, or the habitat has no such setting.
+        InputError: no such organism was born, one is given twice, or nothing was born; or the
+            habitat has no such setting.
     """
+    if len(set(organisms)) < len(organisms):
+        raise InputError(f"{run.path}: an organism is given twice")
     lives = run.lives
     rows = np.array([lives.row(*each) for each in organisms]) if organisms else lives.champions()
     if not len(rows):

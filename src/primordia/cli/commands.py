@@ -101,6 +101,9 @@ def _outcome() -> int:
     except Trouble as error:
         report(error)
         return 1
+    except MemoryError as error:
+        report(f"there is not enough memory: {error}; ask for less".replace(": ;", ";"))
+        return 1
     except OSError as error:
         if error.errno == errno.ENAMETOOLONG:
             report(f"the file name {str(error.filename)[:40]}... is too long; give a shorter one")

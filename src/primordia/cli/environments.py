@@ -44,7 +44,7 @@ def check(env: str) -> None:
     faults += _broken_contract(env)
     click.echo("\n".join([*facts, *(f"Found: {fault}." for fault in faults)]))
     if faults:
-        raise SystemExit(1)
+        raise click.exceptions.Exit(1)
 
 
 def _broken_contract(env: str) -> list[str]:

@@ -8,6 +8,7 @@ import click
 
 from primordia.cli.cache import cache_option
 from primordia.cli.flags import HabitatCommand, run_argument, trust_option
+from primordia.cli.numbers import COUNT, TICKS
 from primordia.cli.table import show_table, spread
 from primordia.errors import InputError
 
@@ -32,17 +33,21 @@ SENSES = {
     type=int,
     help="World of --organism [0]; without --organism, measure this world alone [all].",
 )
-@click.option("--games", default=30, show_default=True, help="Number of games.")
+@click.option("--games", type=COUNT, default=30, show_default=True, help="Number of games.")
 @click.option(
     "--founders",
-    type=click.IntRange(min=1),
+    type=click.IntRange(1, 2**20),
     default=500,
     show_default=True,
     help="Choose the best of this number of founders. If the run had fewer births, try as many"
     " founders as births.",
 )
 @click.option(
-    "--ticks", default=100_000, show_default=True, help="Cut games at this number of ticks."
+    "--ticks",
+    type=TICKS,
+    default=100_000,
+    show_default=True,
+    help="Cut games at this number of ticks.",
 )
 @click.option(
     "--freeze-senses",

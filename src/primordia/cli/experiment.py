@@ -116,7 +116,7 @@ def _live_one(chosen: "Campaign", number: int, checkpoint_every: float, device: 
         raise InputError(f"job {number} is being run by another process")
     if ending.state == "failed":
         report(f"job {number} ({job.arm}) failed: {ending.error}")
-        raise SystemExit(1)
+        raise click.exceptions.Exit(1)
 
 
 def _live_all(
@@ -155,10 +155,10 @@ def _end_unless_done(chosen: "Campaign", result: "Result") -> None:
         raise click.Abort
     if result.failed:
         report(f"{_jobs(len(result.failed))} failed; give the same command to try again")
-        raise SystemExit(1)
+        raise click.exceptions.Exit(1)
     if result.elsewhere:
         report(f"{_jobs(result.elsewhere)} under way in other processes; see --status")
-        raise SystemExit(0)
+        raise click.exceptions.Exit(0)
 
 
 def _jobs(count: int) -> str:

@@ -5,6 +5,11 @@ from typing import Any
 
 import click
 
+TICKS = click.IntRange(1, 2**31 - 1)
+"""A number of ticks."""
+COUNT = click.IntRange(1, 2**16)
+"""A number of games, worlds, mutants or other copies of an organism."""
+
 
 class Finite(click.FloatRange):
     """A number in a range, but neither NaN, which no bound refuses, nor infinity."""

@@ -8,6 +8,7 @@ import click
 
 from primordia.cli.cache import cache_option
 from primordia.cli.flags import runs_argument, trust_option
+from primordia.cli.numbers import COUNT, TICKS
 
 if TYPE_CHECKING:
     from primordia.comparison.shadow import Shadow
@@ -17,11 +18,12 @@ if TYPE_CHECKING:
 @runs_argument
 @click.option(
     "--organisms",
+    type=COUNT,
     default=500,
     show_default=True,
     help="Largest number of organisms from each world.",
 )
-@click.option("--ticks", type=int, help="Cut lives at this age [the task's saturation_ticks].")
+@click.option("--ticks", type=TICKS, help="Cut lives at this age [the task's saturation_ticks].")
 @trust_option
 @cache_option
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")

@@ -229,11 +229,17 @@ def _worlds(lives: Lives) -> list[Lives]:
 def _configs(runs: Sequence[Records]) -> list[Config]:
     """Return the settings of runs; raise InputError if the runs cannot be compared."""
     if len(runs) < 2:
-        raise InputError("compare needs two or more runs; the first is the reference of the others")
+        raise InputError(
+            "compare needs two or more runs, or an experiment of two or more arms; the first is the"
+            " reference of the others"
+        )
+    named = [str(run.path) for run in runs]
     paths = [path.resolve() for run in runs for path in run.paths]
     if len(set(paths)) < len(paths):
         twice = next(path for path in paths if paths.count(path) > 1)
         raise InputError(f"{twice} is given twice; worlds cannot be compared with themselves")
+    if len(set(named)) < len(named):
+        raise InputError(f"two runs are named {max(named, key=named.count)}; name them differently")
     first, *others = runs
     for run in others:
         if run.config.task != first.config.task:

@@ -69,7 +69,7 @@ def live_all(
                 look()
                 for job, ending in _ended(ended):
                     if ending.state == "failed":
-                        again = tries[job.number] < ATTEMPTS
+                        again = ending.again and tries[job.number] < ATTEMPTS
                         failed(job, ending, again)
                         if again:
                             submit(job)

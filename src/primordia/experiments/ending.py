@@ -11,3 +11,5 @@ class Ending(NamedTuple):
     """elsewhere: another process runs the job; stopped: a signal came, and the job can go on"""
     error: str | None = None
     """the error in one line, if the job failed"""
+    again: bool = True
+    """whether another try may end otherwise; a request that cannot be carried out never does"""

@@ -59,16 +59,19 @@ class _ForkOf(Settings):
     at: int = Field(ge=1, lt=UNREACHED)
 
 
-def read(file: Path, out: Path) -> Plan:
+def read(file: Path, out: Path, forks: tuple[Path, ...] = ()) -> Plan:
     """Return the plan of an experiment from its file.
 
     Args:
         file: the experiment's file.
         out: the directory of the experiment; it need not exist yet.
+        forks: files of the experiments that fork this one, and of those that fork these.
 
     Raises:
         InputError: the file cannot be read or has a fault; the message says which.
     """
+    if (here := file.resolve()) in forks:
+        raise InputError(f"{file} is a fork of itself, directly or through other experiments")
     values = from_toml(file)
     own = {name: values.pop(name) for name in OWN if name in values}
     _refuse_unknown(values, file)
@@ -82,7 +85,7 @@ def read(file: Path, out: Path) -> Plan:
     )
     sources: Fork | None = None
     if fork is not None:
-        base, sources = _origin(fork, file, out)
+        base, sources = _origin(fork, file, out, (*forks, here))
         if {"task", "seeds", "cells"} & {*values, *(name for arm in arms for name in arm)}:
             raise InputError(
                 f"{file}: a fork takes task, seeds and cells from {fork.of}; remove these settings"
@@ -116,6 +119,8 @@ def _table(own: dict[str, Any], name: str, kind: type[Settings], file: Path) -> 
     """Return one of the file's own tables, checked; None if it is missing."""
     if name not in own:
         return None
+    if not isinstance(own[name], dict):
+        raise InputError(f"{file}: {name} must be a table [{name}]")
     try:
         return kind.model_validate(own[name])
     except ValidationError as error:
@@ -156,12 +161,14 @@ def _arm(shared: dict[str, Any], own: dict[str, Any], file: Path, complete: bool
         raise InputError(f"{file}: arm {name!r}: {first_fault(error, ArmPlan)}") from None
 
 
-def _origin(fork: _ForkOf, file: Path, out: Path) -> tuple[dict[str, Any], Fork]:
+def _origin(
+    fork: _ForkOf, file: Path, out: Path, forks: tuple[Path, ...]
+) -> tuple[dict[str, Any], Fork]:
     """Return the settings of the forked worlds, and their runs."""
     other, _, arm = fork.of.partition("/")
     try:
         if (sibling := file.with_name(f"{other}.toml")).is_file() and arm:
-            settings, runs = _of_experiment(sibling, out.parent / other, arm)
+            settings, runs = _of_experiment(sibling, out.parent / other, arm, forks)
         else:
             settings, runs = _of_runs(Path(fork.of))
     except InputError as error:
@@ -172,11 +179,11 @@ def _origin(fork: _ForkOf, file: Path, out: Path) -> tuple[dict[str, Any], Fork]
 
 
 def _of_experiment(
-    file: Path, out: Path, arm: str
+    file: Path, out: Path, arm: str, forks: tuple[Path, ...]
 ) -> tuple[dict[str, Any], list[tuple[Path, int]]]:
     """Return the settings of another experiment's arm, and its runs, each with its number of worlds."""
     begun = (out / opening.EXPERIMENT).is_file()
-    plan = plans.recorded(out) if begun else read(file, out)
+    plan = plans.recorded(out) if begun else read(file, out, forks)
     runs = [(out / job.folder, job.worlds) for job in plan.jobs() if job.arm == arm]
     return dict(plan.arm(arm).settings), runs
 

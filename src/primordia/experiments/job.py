@@ -75,7 +75,7 @@ def ending_of(
         return Ending(job.number, "elsewhere")
     except (InputError, Trouble, OSError) as error:
         note_failure(job, out, str(error))
-        return Ending(job.number, "failed", str(error))
+        return Ending(job.number, "failed", str(error), again=not isinstance(error, InputError))
     except Exception as error:  # an error of the user's code or of ours: the other jobs go on
         traceback.print_exc()
         text = f"{type(error).__name__}: {error}".splitlines()[0]

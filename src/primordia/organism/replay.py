@@ -117,8 +117,8 @@ def parts_of(
     shown = range(max(first, begin or 0), min(last, last if end is None else end) + 1)
     if not len(shown):
         raise InputError(
-            f"organism {life.record.id[0]} can be seen from age {first} to {last}, not from {begin}"
-            f" to {end}"
+            f"organism {life.record.id[0]} can be seen from age {first} to {last}, not from"
+            f" {first if begin is None else begin} to {last if end is None else end}"
         )
     return [shown]
 

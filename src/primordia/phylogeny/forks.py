@@ -4,6 +4,7 @@ A fork's records begin with the births of the organisms then alive. Their ancest
 before, are on record in the run that was forked.
 """
 
+import os
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -45,16 +46,16 @@ def whole_past(run: Archive, say: Say) -> Past:
         InputError: nothing has lived in the run yet.
         Trouble: the run's records are damaged.
     """
-    past, runs, seen = recorded(run), [run], {bundle.origin_of(run.path).resolve()}
+    past, runs, seen = recorded(run), [run], {_real(bundle.origin_of(run.path))}
     while (fork := runs[-1].config.fork) is not None:
         run = runs[-1]
         for place in _places(run):
-            if place.resolve() in seen:
+            if _real(place) in seen:
                 continue
             try:
                 source = archive(place)
                 longer = _joined(_until(source, fork.tick), past, run)
-            except (InputError, Trouble):
+            except (InputError, Trouble, OSError):
                 continue
             if longer is not None:
                 past = longer
@@ -66,7 +67,7 @@ def whole_past(run: Archive, say: Say) -> Past:
                 f" replaced by another run: the organisms alive at tick {fork.tick} are roots"
             )
             break
-        seen.add(place.resolve())
+        seen.add(_real(place))
     return Past(past.rooted(), runs)
 
 
@@ -74,7 +75,12 @@ def _places(run: Archive) -> list[Path]:
     """Return the paths at which the run that was forked may be: as named, or beside the fork."""
     assert run.config.fork is not None
     named = Path(run.config.fork.run)
-    return [named, bundle.origin_of(run.path).resolve().parent / named.name]
+    return [named, _real(bundle.origin_of(run.path)).parent / named.name]
+
+
+def _real(path: Path) -> Path:
+    """Return a path without links; `Path.resolve` raises an error for links in a circle."""
+    return Path(os.path.realpath(path))
 
 
 def _until(run: Archive, tick: int) -> Phylogeny:

@@ -13,11 +13,13 @@ import subprocess
 import sys
 import weakref
 from collections.abc import Sequence
+from contextlib import ExitStack
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from primordia import own_code
+from primordia import interrupts, own_code
 from primordia.errors import Trouble
 from primordia.pool import board
 from primordia.pool.board import LOAD, READY, RESET, SAVE, STEP
@@ -64,7 +66,10 @@ class Workers(Pool):
             ],
         }
         self._workers = [_spawn(file.fileno()) for _ in range(self._count)]
-        self._finalizer = weakref.finalize(self, _stop, self._workers)
+        # A signal may end the run while a simulator hangs and reads no commands.
+        ended = ExitStack()
+        ended.enter_context(interrupts.before_end(partial(_kill, self._workers)))
+        self._finalizer = weakref.finalize(self, _stop, self._workers, ended)
         file.close()
         for first, worker in enumerate(self._workers):
             _send(worker, json.dumps({**setup, "first": first}).encode() + b"\n")
@@ -178,8 +183,14 @@ def _has_ended(worker: subprocess.Popen) -> Trouble:
     )
 
 
-def _stop(workers: list[subprocess.Popen]) -> None:
+def _kill(workers: list[subprocess.Popen]) -> None:
+    for worker in workers:
+        worker.kill()
+
+
+def _stop(workers: list[subprocess.Popen], ended: ExitStack) -> None:
     """Close the workers' input, which ends them, and kill those that are alive a second later."""
+    ended.close()
     for worker in workers:
         assert worker.stdin is not None
         assert worker.stdout is not None

@@ -60,9 +60,7 @@ def fork(
         InputError: no such tick, a setting that cannot change in a living world, or `out` is taken.
         Trouble: a file cannot be written, or the source does not repeat as recorded.
     """
-    ticks = int(source.ends.min())
-    if not 1 <= at <= ticks:
-        raise InputError(f"--at {at}: {source.path} can be forked at any tick from 1 to {ticks}")
+    check_tick(source, at)
     source.admit()
     changed = _fork_config(source.path, settings, at)
     directory.refuse_if_taken(out)
@@ -78,6 +76,17 @@ def fork(
 
     with directory.create(out, changed, save_origin):
         pass
+
+
+def check_tick(source: Archive, at: int) -> None:
+    """Raise InputError unless a run can be forked at this tick."""
+    first, last = max(source.config.begins, 1), int(source.ends.min())
+    if not first <= at <= last:
+        of = source.config.fork
+        before = "" if of is None or at > last else f"; for an earlier tick, fork {of.run}"
+        raise InputError(
+            f"--at {at}: {source.path} can be forked at any tick from {first} to {last}{before}"
+        )
 
 
 def _fork_config(source: Path, settings: dict[str, Any], at: int) -> Config:

@@ -16,7 +16,7 @@ from primordia.cli.assays.options import (
 )
 from primordia.cli.cache import cache_option
 from primordia.cli.flags import HabitatCommand, trust_option
-from primordia.cli.numbers import Finite
+from primordia.cli.numbers import COUNT, Finite
 from primordia.cli.paths import PathType
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def assay_of_lives(short_help: str) -> Callable:
 
 
 @click.option(
-    "--mutants", type=click.IntRange(min=1), default=24, show_default=True,
+    "--mutants", type=COUNT, default=24, show_default=True,
     help="Number of mutants of each organism, for each mutation.",
 )  # fmt: skip
 @click.option(

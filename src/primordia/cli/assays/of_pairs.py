@@ -11,11 +11,12 @@ from primordia.cli.assays.of_lives import SUFFIX, subjects_of
 from primordia.cli.assays.options import json_option, out_option, tell
 from primordia.cli.cache import cache_option
 from primordia.cli.flags import HabitatCommand, trust_option
+from primordia.cli.numbers import COUNT, TICKS
 
 if TYPE_CHECKING:
     from primordia.assays.subjects import Subjects
 
-NUMBERED = re.compile(r"(?P<place>.+):(?P<organism>\d+)(@(?P<world>\d+))?")
+NUMBERED = re.compile(r"(?P<place>.+):(?P<organism>[0-9]{1,18})(@(?P<world>[0-9]{1,18}))?")
 """A run or a genome file, an organism in it, and the organism's world."""
 
 
@@ -25,11 +26,9 @@ NUMBERED = re.compile(r"(?P<place>.+):(?P<organism>\d+)(@(?P<world>\d+))?")
 @click.option(
     "--task", help="Task in which the genomes of a file live [the task that the file names]."
 )
+@click.option("--worlds", type=COUNT, default=10, show_default=True, help="Number of worlds.")
 @click.option(
-    "--worlds", type=click.IntRange(min=1), default=10, show_default=True, help="Number of worlds."
-)
-@click.option(
-    "--ticks", type=click.IntRange(min=1), default=5_000, show_default=True,
+    "--ticks", type=TICKS, default=5_000, show_default=True,
     help="Number of ticks of each world.",
 )  # fmt: skip
 @out_option

@@ -18,6 +18,7 @@ from primordia.cli.assays.options import (
 )
 from primordia.cli.cache import cache_option
 from primordia.cli.flags import HabitatCommand, trust_option
+from primordia.cli.numbers import COUNT
 
 
 @click.command(
@@ -25,7 +26,7 @@ from primordia.cli.flags import HabitatCommand, trust_option
 )
 @source_argument
 @click.option(
-    "--each", type=click.IntRange(min=1), default=20, show_default=True,
+    "--each", type=COUNT, default=20, show_default=True,
     help="Number of organisms of each group in each world.",
 )  # fmt: skip
 @after_option

@@ -10,7 +10,7 @@ import click
 
 from primordia import files
 from primordia.cli.assays.tables import Told
-from primordia.cli.numbers import Finite
+from primordia.cli.numbers import COUNT, TICKS, Finite
 from primordia.cli.paths import OutputPath
 from primordia.cli.table import show_table
 
@@ -32,14 +32,14 @@ out_option = click.option(
 )
 games_option = click.option(
     "--games",
-    type=click.IntRange(min=1),
+    type=COUNT,
     default=5,
     show_default=True,
     help="Number of games of each genome; one is enough if nothing in the habitat is random.",
 )
 ticks_option = click.option(
     "--ticks",
-    type=click.IntRange(min=1),
+    type=TICKS,
     default=20_000,
     show_default=True,
     help="Cut games at this number of ticks.",

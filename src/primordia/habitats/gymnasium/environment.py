@@ -44,6 +44,10 @@ def make(
             )
     except (Exception, SystemExit) as error:  # an error of a module or environment of the user's
         raise ValueError(f"env: {env} cannot be made: {line(error)}") from None
+    if made.spec is not None and made.spec.id != (name := env.rpartition(":")[2]):
+        made.close()
+        whole = env.removesuffix(name) + made.spec.id  # the name of a version, which may change
+        raise ValueError(f"env: there is no {env}; did you mean {whole}?")
     return made
 
 
