@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from primordia.cli.streams import Printable
+from primordia.cli.streams import Printable, report
 from primordia.errors import Trouble
 
 
@@ -62,3 +62,8 @@ def test_a_reader_that_has_read_enough_is_no_trouble(file: Full, text: str) -> N
     file.error = errno.EPIPE
     with pytest.raises(BrokenPipeError):
         say(file, text)
+
+
+def test_a_message_has_an_end(capsys: pytest.CaptureFixture[str]) -> None:
+    report("x" * 10**6)
+    assert len(capsys.readouterr().err) < 3000

@@ -1,5 +1,7 @@
 """One forgery at a time: what is sealed again is noticed by the part of the run that it contradicts."""
 
+import errno
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -12,11 +14,11 @@ import primordia
 from primordia.errors import Trouble
 from primordia.history.info import info
 from primordia.law.world import BirthCause, Cause
-from primordia.runs import checkpoint
+from primordia.runs import checkpoint, manifest
 from primordia.runs.archive import Archive
 from primordia.runs.schema import TABLES
 from tests.commands import complains, here
-from tests.trouble import TICKS, newest, reseal
+from tests.trouble import TICKS, contents, newest, reseal
 
 CELLS = 8
 """Cells of the run, which has one world."""
@@ -108,9 +110,32 @@ def test_a_manifest_names_all_tables(run: Path, part: str) -> None:
 
     for folder in checkpoint.numbered(run):
         reseal(folder, change)
-    manifest = str(newest(run) / "manifest.json")
+    file = newest(run) / "manifest.json"
     for command in ("info", "resume"):
-        complains(here(command, run), 1, "no checkpoint of", f"{manifest} is missing or damaged")
+        complains(here(command, run), 1, "no checkpoint of", f"{file} is missing or damaged")
+
+
+@pytest.mark.parametrize("name", ["checkpoints", "checkpoints/000001/manifest.json"])
+def test_what_the_user_may_not_read_is_not_damaged(
+    name: str, run: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A test may run as root, who may read everything, so the refusal is made here."""
+    before = contents(run)
+
+    def refuse(function: Callable[..., Any]) -> Callable[..., Any]:
+        def refusing(path: Any, *rest: Any) -> Any:
+            if Path(path) == run / name:
+                raise PermissionError(errno.EACCES, "Permission denied", str(path))
+            return function(path, *rest)
+
+        return refusing
+
+    monkeypatch.setattr(os, "listdir", refuse(os.listdir))
+    monkeypatch.setattr(manifest, "read", refuse(manifest.read))
+    for command in ("info", "resume", "export"):
+        words = [run / "genome"] if command == "export" else []
+        complains(here(command, run, *words), 1, f"{run / name} cannot be read: Permission denied")
+    assert contents(run) == before
 
 
 def test_the_last_number_of_a_checkpoint_has_none_after_it(run: Path) -> None:

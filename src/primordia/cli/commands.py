@@ -108,5 +108,6 @@ def _outcome() -> int:
         if error.errno == errno.ENAMETOOLONG:
             report(f"the file name {str(error.filename)[:40]}... is too long; give a shorter one")
             return 2
-        report(error)
+        named = error.filename is not None and error.strerror is not None
+        report(f"{error.filename}: {error.strerror}" if named else error)
         return 1

@@ -11,6 +11,9 @@ import click
 from primordia.errors import Trouble
 from primordia.printable import printable
 
+LONGEST = 2000
+"""Largest length of a message, in characters."""
+
 
 class Printable(io.TextIOWrapper):
     """A stream of text on which control characters are spelled out."""
@@ -68,6 +71,8 @@ def flush() -> None:
 def report(message: object) -> None:
     """Print a message as one line on stderr."""
     line = " ".join(map(str.strip, str(message).splitlines()))
+    if len(line) > LONGEST:  # a stranger's file may hold a name of a megabyte
+        line = f"{line[:LONGEST]}..."
     with suppress(
         OSError, Trouble
     ):  # stderr may be closed, and there is no other place for the message

@@ -7,6 +7,7 @@ RUN/checkpoints/000012/state.npz        the state's arrays, and `tail.*`: rows i
 A fork begins at its own checkpoint, RUN/origin, which is never deleted.
 """
 
+import os
 import re
 import shutil
 from collections.abc import Callable, Iterator
@@ -140,9 +141,22 @@ def exists(run: Path) -> bool:
 
 
 def numbered(run: Path) -> list[Path]:
-    """Return the folders of the run's checkpoints, oldest first."""
-    folders = (path for path in (run / FOLDER).glob("[0-9]*") if NUMBER.fullmatch(path.name))
-    return sorted(folders, key=lambda path: int(path.name))
+    """Return the folders of the run's checkpoints, oldest first.
+
+    Raises:
+        Trouble: the user may not read their folder.
+    """
+    try:
+        names = os.listdir(run / FOLDER)
+    except PermissionError as error:
+        raise _unreadable(error) from None
+    except OSError:
+        return []
+    return [run / FOLDER / name for name in sorted(filter(NUMBER.fullmatch, names), key=int)]
+
+
+def _unreadable(error: OSError) -> Trouble:
+    return Trouble(f"{error.filename} cannot be read: {error.strerror}")
 
 
 def newest(run: Path, fault_in: FaultIn = files.fault_in) -> tuple[Checkpoint | None, list[str]]:
@@ -188,13 +202,16 @@ def _read(run: Path, path: Path, fault_in: FaultIn) -> Checkpoint | str:
     """Return a checkpoint, or its fault.
 
     Raises:
-        Trouble: one of INPUTS has changed, so that no checkpoint can be used.
+        Trouble: one of INPUTS has changed, so that no checkpoint can be used; or the user may not
+            read the checkpoint.
     """
     try:
         manifest = manifests.read(path / MANIFEST)
         sealed: list[tuple[Path, Seal]] = [(path / STATE, manifest.state)]
         for table in TABLES:
             sealed += [(run / table / each.name, each) for each in manifest.segments[table]]
+    except PermissionError as error:  # the checkpoint may be good, so no earlier one is used
+        raise _unreadable(error) from None
     except (OSError, ValueError):
         return f"{path / MANIFEST} is missing or damaged"
     for name, seal in manifest.inputs.items():
