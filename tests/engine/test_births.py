@@ -7,6 +7,7 @@ import numpy as np
 from jax import Array
 
 from primordia.habitats.bodies import fresh
+from primordia.habitats.checks import BODIES
 from primordia.law.events import batch
 from tests.toys import Meadow, Slope
 from tests.worlds import MEADOW, Lived, config
@@ -23,12 +24,12 @@ class Costly(Meadow):
 
 
 def test_bodies_are_never_made_for_all_cells() -> None:
-    """On a CPU bodies are made one by one, elsewhere in batches; both are traced."""
+    """On a CPU bodies are made one by one, elsewhere in batches; both are traced, and so is a check."""
     cells = 1024
     costly = {"name": f"{__name__}:Costly"}
     lived = Lived(config(MEADOW, habitat=costly, cells=cells, genesis="fill"), 5)
     assert np.asarray(lived.engine.state.world.organisms.alive).all()
-    assert Costly.asked == {1, batch(cells)}
+    assert Costly.asked == {1, batch(cells), BODIES}
     assert batch(cells) < 10
 
 

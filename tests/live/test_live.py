@@ -17,8 +17,10 @@ from primordia.engine.state import Limits, State
 from primordia.law.world import World
 from primordia.live import view as live
 from primordia.live.census import Census, Speed
+from primordia.live.forms import Room
 from primordia.live.paint import EMPTY, Cells, Row, field, skyline, strip
 from primordia.live.panel import duration, with_prefix
+from primordia.live.scene import Grid, _labelled
 from primordia.live.watching import Plain
 from primordia.random.wide import Wide, wide
 from primordia.runs import loop
@@ -57,6 +59,17 @@ def test_a_torus_is_drawn_with_two_rows_in_a_line() -> None:
     assert [len(row) for row in rows] == [1, 2], "there is a segment for each stretch of one style"
     assert len(field(some, columns=2, scale=4, letters=False)) == 6
     assert text(field(some, columns=2, scale=1, letters=True)) == ["BB", "CC", "D·"]
+
+
+def test_tiles_side_by_side_are_equally_wide() -> None:
+    drawn: list[Row] = [[Segment("ab")], [Segment("abcd"), Segment("e")], []]
+
+    def widths(across: int) -> list[int]:
+        grid = Grid(across, 2, Room(6, 3, letters=False), 0)
+        return [len(row) for row in text(_labelled(drawn, "7 ", " \u2713", grid))]
+
+    assert widths(across=2) == [10, 10, 10]
+    assert widths(across=1) == [6, 7, 2], "alone in its row it needs no padding"
 
 
 def test_numbers_are_written_in_short_form() -> None:

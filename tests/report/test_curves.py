@@ -115,3 +115,13 @@ def test_a_control_is_told_apart() -> None:
     replacing = setting(config(TORUS, placement={"topology": "well-mixed", "rule": "replacing"}))
     assert "whose organism dies" in replacing
     assert "all of which are neighbours" in replacing
+
+
+def test_axes_of_time_age_and_rate_are_logarithmic(torus: Path) -> None:
+    panels = named(torus).items()
+    scales = {title: (each.get("log_x"), each.get("log_y")) for title, each in panels}
+    assert scales["Mean age of the living"] == (True, True)
+    assert scales["Age at death"] == (None, True)
+    assert scales["Organisms alive"] == (True, None)
+    assert scales["Births and deaths"] == (True, True)
+    assert scales["Alive at each age"] == (True, None)

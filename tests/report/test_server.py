@@ -16,6 +16,7 @@ from urllib.parse import urlsplit
 import pytest
 
 import primordia
+from primordia.report import watched
 from primordia.report.content import of_run
 from primordia.report.page import embedded
 from primordia.report.server import HERE, Server
@@ -218,3 +219,20 @@ def test_the_page_in_a_browser_shows_what_is_new(run: Path, page: Page) -> None:
         asked_for = {urlsplit(each).path for each in page.requests() if each.startswith("http")}
         assert asked_for == {"/", "/events", "/data"}
         page.driver.get("about:blank")
+
+
+def test_a_page_follows_its_run(run: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(watched, "EVERY", 0.001)
+    content, ended = Watched(primordia.load(run).opened), threading.Event()
+    told = content.news(None, 0.0)
+    thread = threading.Thread(target=content.follow, args=(ended,))
+    thread.start()
+    try:
+        primordia.load(run).resume(ticks=1000)
+        while json.loads(told)["count"] == 0:
+            before, told = told, content.news(told, 20.0)
+            assert told != before, "nothing has been read"
+    finally:
+        ended.set()
+        thread.join()
+    assert content.data() == embedded(of_run(Archive(run), filmed=False)).encode()

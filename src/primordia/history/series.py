@@ -63,7 +63,7 @@ def per_tick(at: np.ndarray, lived: np.ndarray, edges: np.ndarray) -> np.ndarray
 
 def middle(edges: np.ndarray) -> np.ndarray:
     """Return the middle of the ticks in each bin on a logarithmic axis, float64."""
-    return np.sqrt(edges[:-1] + 1) * np.sqrt(edges[1:])
+    return np.sqrt((edges[:-1] + 1.0) * edges[1:])  # as integers they could overflow
 
 
 def count_until(rising: np.ndarray, ticks: np.ndarray) -> np.ndarray:
