@@ -26,8 +26,9 @@ from primordia.law.placement import Placement
 from primordia.law.recombination import Recombination
 from primordia.law.seasons import Season
 from primordia.mutations import contract as mutations
-from primordia.settings.base import UNREACHED, Rate, Settings
+from primordia.settings.base import Rate, Settings
 from primordia.settings.fields import first_fault, rates_of, setting_fields
+from primordia.settings.limits import ForkedFrom, Stop
 from primordia.settings.making import make
 from primordia.settings.tables import (
     DEFAULTS,
@@ -44,26 +45,6 @@ from primordia.settings.values import check_values
 
 CONTRACTS: dict[str, Any] = {"habitat": habitats, "brain": brains, "mutation": mutations}
 """Name of a replaceable part's table -> the module with the contract of that part."""
-
-
-class Stop(Settings):
-    """The limits of a world; a stopped world is frozen while the run's other worlds go on."""
-
-    ticks: int | None = Field(None, ge=1, lt=UNREACHED, description="ticks until a world stops")
-    births: int | None = Field(
-        None, ge=1, lt=UNREACHED, description="births (founders included) until a world stops"
-    )
-    until: Literal["saturation"] | None = Field(
-        None,
-        description="saturation: a world stops once it is saturated; see saturation_ticks",
-    )
-
-
-class ForkedFrom(Settings):
-    """The source of a fork. Its first checkpoint is in the run's directory, under `origin`."""
-
-    run: str = Field(description="the run that was forked")
-    tick: int = Field(ge=1, lt=UNREACHED, description="the tick after which the run was forked")
 
 
 class Config(Settings):

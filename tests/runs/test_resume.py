@@ -10,12 +10,12 @@ from typing import Any
 import pytest
 
 import primordia
-from primordia.config import Stop
 from primordia.errors import InputError
 from primordia.history.info import info
 from primordia.runs import checkpoint, loop
 from primordia.runs.archive import Archive
 from primordia.runs.manifest import Progress
+from primordia.settings.limits import Stop
 from tests.commands import begin, complains, here
 
 WHAT = ("CartPole-survival", "--seeds", "8", "--cells", "64", "--stop.until", "saturation")

@@ -72,7 +72,7 @@ class Engine:
         """Return the limits of all worlds, from settings of `stop`.
 
         Args:
-            stop: settings of `config.Stop`; a missing setting or None means no limit.
+            stop: settings of `settings.limits.Stop`; a missing setting or None means no limit.
             ticks: a limit in ticks for each world, (W,); it replaces the limit in `stop`.
         """
 

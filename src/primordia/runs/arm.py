@@ -14,7 +14,7 @@ import pyarrow as pa
 
 from primordia import files
 from primordia.brains.genomes import FOUNDERS
-from primordia.config import Config, Stop
+from primordia.config import Config
 from primordia.errors import InputError
 from primordia.habitats.contract import AnyHabitat
 from primordia.law.heredity import Heredity
@@ -25,6 +25,7 @@ from primordia.runs.description import Description
 from primordia.runs.lives import Lives, joined
 from primordia.runs.manifest import Progress
 from primordia.runs.records import Records
+from primordia.settings.limits import Stop
 from primordia.settings.tables import flat
 
 OWN = ("about", "seed", "seeds", "stop", "fork")

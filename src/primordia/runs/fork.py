@@ -11,7 +11,7 @@ from typing import Any
 import jax.numpy as jnp
 import numpy as np
 
-from primordia.config import Config, ForkedFrom, validated
+from primordia.config import Config, validated
 from primordia.engine.engine import Engine
 from primordia.engine.state import State
 from primordia.errors import InputError, Trouble
@@ -26,6 +26,7 @@ from primordia.runs.arrays import world_ticks
 from primordia.runs.lives import Lives
 from primordia.runs.loop import Listener, Status, recorder_for
 from primordia.runs.manifest import Progress
+from primordia.settings.limits import ForkedFrom
 from primordia.settings.tables import from_toml, merged
 
 HARMLESS = {"stop", "fork", "about", "sample_every"}

@@ -10,10 +10,10 @@ from pydantic.dataclasses import dataclass
 
 from primordia import files
 from primordia.brains.genomes import FOUNDERS
-from primordia.config import Stop
 from primordia.runs.code import FOLDER as CODE
 from primordia.runs.description import FILE as DESCRIPTION
 from primordia.runs.schema import TABLES
+from primordia.settings.limits import Stop
 
 INPUTS = ("config.toml", DESCRIPTION, FOUNDERS)
 """Files that a run needs to go on, except checkpoints and the user's own code."""

@@ -1,0 +1,27 @@
+"""The limits of a run in time: the end of its worlds, and the tick of a fork."""
+
+from typing import Literal
+
+from pydantic import Field
+
+from primordia.settings.base import UNREACHED, Settings
+
+
+class Stop(Settings):
+    """The limits of a world; a stopped world is frozen while the run's other worlds go on."""
+
+    ticks: int | None = Field(None, ge=1, lt=UNREACHED, description="ticks until a world stops")
+    births: int | None = Field(
+        None, ge=1, lt=UNREACHED, description="births (founders included) until a world stops"
+    )
+    until: Literal["saturation"] | None = Field(
+        None,
+        description="saturation: a world stops once it is saturated; see saturation_ticks",
+    )
+
+
+class ForkedFrom(Settings):
+    """The source of a fork. Its first checkpoint is in the run's directory, under `origin`."""
+
+    run: str = Field(description="the run that was forked")
+    tick: int = Field(ge=1, lt=UNREACHED, description="the tick after which the run was forked")
