@@ -12,6 +12,7 @@ from pydantic import Field, ValidationError, model_validator
 
 from primordia.brains import contract as brains
 from primordia.brains import genomes
+from primordia.brains.checks import check_brain
 from primordia.brains.contract import Brain
 from primordia.brains.layout import Layout
 from primordia.errors import InputError
@@ -26,6 +27,7 @@ from primordia.law.placement import Placement
 from primordia.law.recombination import Recombination
 from primordia.law.seasons import Season
 from primordia.mutations import contract as mutations
+from primordia.mutations.checks import check_mutation
 from primordia.settings.base import Rate, Settings
 from primordia.settings.fields import first_fault, rates_of, setting_fields
 from primordia.settings.limits import ForkedFrom, Stop
@@ -297,8 +299,7 @@ def _check(config: Config) -> None:
         habitat.check(cells)
     except ValueError as error:
         raise InputError(f"habitat: {error}") from None
-    if isinstance(habitat, JaxHabitat) and config.code_of("habitat"):
-        check_arrays(habitat)  # of the user's own: tracing every habitat would take long
+    _check_own_code(config, habitat)
     continuous = any(isinstance(part, Continuous) for part in habitat.action.parts)
     if config.motor.kind == "gaussian" and not continuous:
         raise InputError(
@@ -312,6 +313,17 @@ def _check(config: Config) -> None:
         raise InputError(f"mutation.{error}") from None
     for season in config.seasons:
         _check_season(season.setting, config, law)
+
+
+def _check_own_code(config: Config, habitat: AnyHabitat) -> None:
+    """Trace the parts of the user's own. To trace every part would take long."""
+    if config.code_of("habitat") and isinstance(habitat, JaxHabitat):
+        check_arrays(habitat)
+    if config.code_of("brain"):
+        check_brain(config.build_brain(), habitat.senses_size, habitat.action.size)
+    if config.code_of("mutation"):
+        mutation = make("mutation", config.mutation, mutations.find)
+        check_mutation(mutation, config.build_layout(habitat))
 
 
 def _check_season(setting: str, config: Config, law: Law) -> None:

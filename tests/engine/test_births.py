@@ -7,8 +7,8 @@ import numpy as np
 from jax import Array
 
 from primordia.habitats.bodies import fresh
-from primordia.habitats.checks import BODIES
 from primordia.law.events import batch
+from primordia.settings.tracing import COUNT
 from tests.toys import Meadow, Slope
 from tests.worlds import MEADOW, Lived, config
 
@@ -29,7 +29,7 @@ def test_bodies_are_never_made_for_all_cells() -> None:
     costly = {"name": f"{__name__}:Costly"}
     lived = Lived(config(MEADOW, habitat=costly, cells=cells, genesis="fill"), 5)
     assert np.asarray(lived.engine.state.world.organisms.alive).all()
-    assert Costly.asked == {1, batch(cells), BODIES}
+    assert Costly.asked == {1, batch(cells), COUNT}
     assert batch(cells) < 10
 
 

@@ -105,7 +105,7 @@ class Listed(Plain):
         (Forgetful(), r"gives its memory as float32 \(32, 2\); the contract says float32 \(32, 3\)"),
         (Alone(), "does not return a pair; return memory and output"),
         (Greedy(), "changes its genome argument"),
-        (Misnamed(), "Misnamed: brain: 'my weights' cannot name a block .*; use letters"),
+        (Misnamed(), "'my weights' cannot name a block .*; use letters"),
         (Growing(), "has different blocks of weights at each call"),
         (Half(), "has a memory of length 0.5; return a whole number"),
     ],

@@ -84,8 +84,9 @@ def _outcome() -> int:
             check_variables()
             keep_compiled_code()
             return commands(standalone_mode=False) or 0
-    except SystemExit as end:  # of the user's own code; click's are exceptions of click
-        report(f"the run's code has ended the process: exit({end.code!r})")
+    except SystemExit as end:
+        if end.code != 1:  # click's status if the reader of a pipe has gone
+            report(f"the run's code has ended the process: exit({end.code!r})")
         return 1
     except click.Abort:
         return interrupts.STATUS

@@ -8,7 +8,6 @@ from contextlib import contextmanager, suppress
 
 import click
 
-from primordia.errors import Trouble
 from primordia.printable import printable
 
 LONGEST = 2000
@@ -18,6 +17,9 @@ LONGEST = 2000
 class Printable(io.TextIOWrapper):
     """A stream of text on which control characters are spelled out."""
 
+    title = "standard output"
+    """name of the stream in errors"""
+
     def write(self, text: str) -> int:
         """Write a text. Return its length."""
         with self._named():
@@ -25,23 +27,17 @@ class Printable(io.TextIOWrapper):
         return len(text)
 
     def flush(self) -> None:
-        """Write what is left.
-
-        Raises:
-            Trouble: it cannot be written, such as to a file on a full disk.
-        """
+        """Write what is left."""
         with self._named():
             super().flush()
 
     @contextmanager
     def _named(self) -> Iterator[None]:
+        """Name the stream in the error if it cannot be written, such as to a file on a full disk."""
         try:
             yield
-        except BrokenPipeError:  # the reader has read enough
-            raise
         except OSError as error:
-            name = "standard error" if self.fileno() == 2 else "standard output"
-            raise Trouble(f"{name} cannot be written: {error.strerror or error}") from None
+            raise OSError(error.errno, error.strerror, self.title) from None
 
 
 def prepare() -> None:
@@ -56,7 +52,9 @@ def prepare() -> None:
 def _stream(number: int) -> Printable:
     file = open(number, "wb", closefd=False)  # noqa: SIM115
     lines = number == 2 or file.isatty()
-    return Printable(file, "utf-8", "backslashreplace", line_buffering=lines)
+    stream = Printable(file, "utf-8", "backslashreplace", line_buffering=lines)
+    stream.title = {1: "standard output", 2: "standard error"}[number]
+    return stream
 
 
 def flush() -> None:
@@ -64,7 +62,7 @@ def flush() -> None:
     for stream in (sys.stdout, sys.stderr):
         try:
             stream.flush()
-        except (OSError, Trouble):
+        except OSError:
             os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
@@ -73,7 +71,5 @@ def report(message: object) -> None:
     line = " ".join(map(str.strip, str(message).splitlines()))
     if len(line) > LONGEST:  # a stranger's file may hold a name of a megabyte
         line = f"{line[:LONGEST]}..."
-    with suppress(
-        OSError, Trouble
-    ):  # stderr may be closed, and there is no other place for the message
+    with suppress(OSError):  # stderr may be closed, and there is no other place for the message
         click.echo(f"primordia: {printable(line)}", err=True)

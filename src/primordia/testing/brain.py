@@ -5,10 +5,10 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array, lax
 
+from primordia.brains import checks
 from primordia.brains.contract import Brain, Genome
-from primordia.errors import InputError
 from primordia.random.trials import normal
-from primordia.testing.report import ROUNDED, ContractError, advise, need, same, typed
+from primordia.testing.report import ROUNDED, advise, kept, need, same
 from primordia.testing.trial import ALL, COUNTS, last
 
 TICKS = 6
@@ -25,8 +25,10 @@ def check_brain(brain: Brain, senses: int = 33, outputs: int = 5) -> None:
     Raises:
         ContractError: the brain does not keep the contract of `brains.contract`.
     """
+    with kept():
+        checks.check_brain(brain, senses, outputs)
     genome, memory, seen = _minds(brain, senses, outputs)
-    _types(brain, genome, memory, seen[0], outputs)
+    _keeps_its_arguments(brain, genome, memory, seen[0])
     think = jax.jit(lambda *given: brain(*given))
     whole = think(genome, memory, seen[0])
     _depends_on_its_own_only(brain, whole, genome, memory, seen[0])
@@ -48,10 +50,7 @@ def check_brain(brain: Brain, senses: int = 33, outputs: int = 5) -> None:
 
 def _minds(brain: Brain, senses: int, outputs: int) -> tuple[Genome, Array, Array]:
     """Return genomes and memories of ALL organisms, and their senses (TICKS, ALL, S)."""
-    try:
-        layout = brain.layout(senses, outputs)
-    except InputError as error:
-        raise ContractError(f"{type(brain).__name__}: {error}") from None
+    layout = brain.layout(senses, outputs)
     need(
         layout == brain.layout(senses, outputs),
         brain,
@@ -59,11 +58,6 @@ def _minds(brain: Brain, senses: int, outputs: int) -> tuple[Genome, Array, Arra
         " outputs only",
     )
     length = brain.memory(senses, outputs)
-    need(
-        type(length) is int and length >= 0,
-        brain,
-        f"has a memory of length {length!r}; return a whole number, 0 for none",
-    )
     genome = {
         name: jnp.asarray(normal(place, ALL, *shape))
         for place, (name, shape) in enumerate(layout.blocks)
@@ -72,16 +66,8 @@ def _minds(brain: Brain, senses: int, outputs: int) -> tuple[Genome, Array, Arra
     return genome, memory, jnp.asarray(normal(len(genome) + 1, TICKS, ALL, senses))
 
 
-def _types(brain: Brain, genome: Genome, memory: Array, seen: Array, outputs: int) -> None:
+def _keeps_its_arguments(brain: Brain, genome: Genome, memory: Array, seen: Array) -> None:
     given = dict(genome)
-    thought = jax.eval_shape(lambda *mind: brain(*mind), given, memory, seen)
-    need(
-        isinstance(thought, tuple) and len(thought) == 2,
-        brain,
-        "does not return a pair; return memory and output",
-    )
-    typed(brain, "its memory", thought[0], memory.shape, np.float32)
-    typed(brain, "its output", thought[1], (ALL, outputs), np.float32)
     brain(given, memory, seen)
     need(
         list(given) == list(genome) and all(given[name] is genome[name] for name in given),

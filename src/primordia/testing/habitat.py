@@ -4,7 +4,6 @@ import jax
 import numpy as np
 from jax import Array, lax
 
-from primordia.errors import InputError
 from primordia.habitats.bodies import fresh
 from primordia.habitats.checks import check_arrays, check_properties
 from primordia.habitats.contract import (
@@ -16,7 +15,7 @@ from primordia.habitats.contract import (
 )
 from primordia.law.events import DEATHS
 from primordia.testing.lives import TICKS, Lives, Past
-from primordia.testing.report import ROUNDED, ContractError, advise, need
+from primordia.testing.report import ROUNDED, advise, kept, need
 from primordia.testing.trial import ALL, COUNTS
 
 
@@ -63,12 +62,10 @@ def check_habitat(habitat: AnyHabitat) -> None:
 
 def _stated(habitat: AnyHabitat) -> None:
     """Check the habitat's properties and, in JAX, its shapes and dtypes."""
-    try:
+    with kept():
         check_properties(habitat)
         if isinstance(habitat, JaxHabitat):
             check_arrays(habitat)
-    except InputError as error:
-        raise ContractError(str(error).removeprefix("habitat: ")) from None
     _abilities(habitat)
 
 

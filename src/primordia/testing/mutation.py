@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -11,12 +11,13 @@ from jax import Array, lax
 
 from primordia.brains.layout import Layout
 from primordia.law.events import BIRTHS
+from primordia.mutations import checks
 from primordia.mutations.contract import PURPOSES, Change, Draws, Family, Mutation
 from primordia.random.keys import streams
 from primordia.random.trials import normal, words
 from primordia.random.wide import wide
 from primordia.settings.fields import rates_of
-from primordia.testing.report import ROUNDED, ContractError, advise, need, same, typed
+from primordia.testing.report import ROUNDED, ContractError, advise, kept, need, same, typed
 from primordia.testing.trial import ALL, COUNTS, last
 
 LAYOUT = Layout((("input", (3, 7)), ("recurrent", (7, 7)), ("output", (2, 7))))
@@ -47,8 +48,10 @@ def check_mutation(mutation: Mutation, layout: Layout | None = None) -> None:
     """
     layout = layout or LAYOUT
     _stated(mutation, layout)
+    with kept():
+        checks.check_mutation(mutation, layout)
     family = _family(mutation, layout)
-    _types(mutation, layout, family)
+    _same_notes(mutation)
     births: Callable[[Family], Made] = partial(_births, mutation, layout)
     made = jax.jit(births)(family)
     says = (
@@ -143,29 +146,14 @@ def _one_by_one(births: Callable[[Family], Made], family: Family) -> Made:
     return lax.scan(birth, None, jnp.arange(ALL))[1]
 
 
-def _types(mutation: Mutation, layout: Layout, family: Family) -> None:
-    count = len(mutation.notes)
+def _same_notes(mutation: Mutation) -> None:
+    """Check that all founders have the same notes."""
     one, all_ = (mutation.founders_notes(each) for each in (1, ALL))
-    typed(mutation, "founders' notes", all_, (ALL, count), np.int32)
     need(
         (np.asarray(all_) == np.asarray(one)).all(),
         mutation,
         "gives founders different notes; those of all founders must be the same",
     )
-    change = _change(family.parents)
-    notes = jax.eval_shape(lambda each: mutation.note(layout, each, change), family)
-    typed(mutation, "notes", notes, (ALL, count), np.int32)
-    pair: Any = jax.eval_shape(partial(mutation.inherit, layout), family)
-    need(
-        isinstance(pair, tuple) and len(pair) == 2,
-        mutation,
-        "does not return a pair from inherit; return genomes, and which are mutants",
-    )
-    shape = (ALL, layout.length)
-    typed(mutation, "genomes of children", pair[0], shape, np.float32)
-    typed(mutation, "which children are mutants", pair[1], (ALL,), np.bool_)
-    founders = jax.eval_shape(partial(mutation.founders, layout), family.draws)
-    typed(mutation, "genomes of founders", founders, shape, np.float32)
 
 
 def _copies(mutation: Mutation, layout: Layout, made: Made, family: Family) -> None:

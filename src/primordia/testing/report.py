@@ -1,10 +1,14 @@
 """Functions for all checks: comparisons bit for bit, and messages about a part that fails."""
 
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import jax
 import numpy as np
+
+from primordia.errors import InputError
 
 ROUNDED = (
     "; compilers differ in the rounding of products that are added, and in the order of sums: use"
@@ -15,6 +19,15 @@ ROUNDED = (
 
 class ContractError(AssertionError):
     """A part does not keep its contract."""
+
+
+@contextmanager
+def kept() -> Iterator[None]:
+    """Raise ContractError in place of the InputError of a check that is made before a run, too."""
+    try:
+        yield
+    except InputError as error:
+        raise ContractError(str(error).partition(": ")[2]) from None
 
 
 def need(holds: object, part: object, says: str) -> None:

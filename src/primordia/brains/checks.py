@@ -1,0 +1,47 @@
+"""The check of a brain before a run: its blocks and memory, and what it returns."""
+
+import jax
+import jax.numpy as jnp
+
+from primordia.brains.contract import Brain
+from primordia.settings.tracing import COUNT, Tracing
+
+LARGEST = 2**24
+"""Largest number of numbers in an organism's memory."""
+
+
+def check_brain(brain: Brain, senses: int, outputs: int) -> None:
+    """Call and trace the methods of a brain. No thought is computed.
+
+    Args:
+        brain: the brain with its settings.
+        senses: S, the count of numbers that an organism perceives.
+        outputs: A, the count of numbers that the motor takes.
+
+    Raises:
+        InputError: a method fails, or its result does not keep the contract; the message says how.
+    """
+    tracing = Tracing("brain", brain)
+    blocks = tracing.called(brain.blocks, senses, outputs)
+    tracing.need(
+        isinstance(blocks, dict),
+        f"gives blocks as {blocks!r}; return a dictionary of names and shapes",
+    )
+    layout = brain.layout(senses, outputs)
+    length = tracing.called(brain.memory, senses, outputs)
+    tracing.need(
+        type(length) is int and 0 <= length <= LARGEST,
+        f"has a memory of length {length!r}; return a whole number, 0 for none",
+    )
+    genome = {name: _floats(*shape) for name, shape in layout.blocks}
+    thought = tracing.traced(brain.__call__, genome, _floats(length), _floats(senses))
+    tracing.need(
+        isinstance(thought, tuple) and len(thought) == 2,
+        "does not return a pair; return memory and output",
+    )
+    tracing.typed("its memory", thought[0], (COUNT, length), jnp.float32)
+    tracing.typed("its output", thought[1], (COUNT, outputs), jnp.float32)
+
+
+def _floats(*shape: int) -> jax.ShapeDtypeStruct:
+    return jax.ShapeDtypeStruct((COUNT, *shape), jnp.float32)

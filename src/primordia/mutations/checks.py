@@ -1,0 +1,70 @@
+"""The check of a mutation before a run: what it returns for children and for founders."""
+
+from functools import partial
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from primordia.brains.layout import Layout
+from primordia.mutations.contract import PURPOSES, Draws, Family, Mutation
+from primordia.random.keys import streams
+from primordia.random.wide import wide
+from primordia.settings.tracing import COUNT, Tracing
+
+
+def check_mutation(mutation: Mutation, layout: Layout) -> None:
+    """Call and trace the methods of a mutation. No genome is computed.
+
+    Args:
+        mutation: the mutation with its settings.
+        layout: layout of the genomes.
+
+    Raises:
+        InputError: a method fails, or its result does not keep the contract; the message says how.
+    """
+    tracing, size = Tracing("mutation", mutation), len(mutation.notes)
+    rates = tracing.called(mutation.rates, layout)
+    tracing.need(
+        isinstance(rates, dict) and all(isinstance(each, float) for each in rates.values()),
+        f"gives rates as {rates!r}; return a dictionary of names and floats",
+    )
+    family = _family(mutation, layout, rates)
+    notes = tracing.called(mutation.founders_notes, COUNT)
+    tracing.typed("founders' notes", notes, (COUNT, size), jnp.int32)
+    if mutation.moments is None:
+        noted = tracing.traced(_named("note", partial(_note, mutation, layout)), family)
+        tracing.typed("notes", noted, (COUNT, size), jnp.int32)
+    pair: Any = tracing.traced(_named("inherit", partial(mutation.inherit, layout)), family)
+    tracing.need(
+        isinstance(pair, tuple) and len(pair) == 2,
+        "does not return a pair from inherit; return genomes, and which are mutants",
+    )
+    tracing.typed("genomes of children", pair[0], (COUNT, layout.length), jnp.float32)
+    tracing.typed("which children are mutants", pair[1], (COUNT,), jnp.bool_)
+    founders = _named("founders", partial(mutation.founders, layout))
+    made = tracing.traced(founders, family.draws)
+    tracing.typed("genomes of founders", made, (COUNT, layout.length), jnp.float32)
+
+
+def _family(mutation: Mutation, layout: Layout, rates: dict[str, float]) -> Family:
+    """Return shapes and dtypes of births in place of arrays."""
+    drawn = Draws(
+        streams(wide(np.zeros(COUNT)), wide(np.zeros(COUNT)), *PURPOSES), jnp.arange(COUNT)
+    )
+    shaped = jax.eval_shape(lambda draws: draws, drawn)
+    floats: Any = partial(jax.ShapeDtypeStruct, dtype=jnp.float32)
+    notes: Any = jax.ShapeDtypeStruct((COUNT, len(mutation.notes)), jnp.int32)
+    each = {name: floats((COUNT,)) for name in rates}
+    return Family(floats((COUNT, layout.length)), notes, each, shaped)
+
+
+def _note(mutation: Mutation, layout: Layout, family: Family) -> Any:
+    return mutation.note(layout, family, None)
+
+
+def _named(name: str, function: Any) -> Any:
+    """Return a partial function that has the name of the method that it calls."""
+    function.__name__ = name
+    return function
