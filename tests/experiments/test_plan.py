@@ -156,3 +156,21 @@ def test_a_table_of_an_experiment_is_a_table(name: str, tmp_path: Path) -> None:
     complains(
         here("experiment", write(tmp_path, **{name: 0})), 2, f"{name} must be a table [{name}]"
     )
+
+
+def test_names_of_arms_differ_by_more_than_case(tmp_path: Path) -> None:
+    """Each arm is a folder, and some file systems take a and A as the same name."""
+    file = write(tmp_path, arms=[{"name": "mild"}, {"name": "Mild", "hazard": 0.05}])
+    complains(here("experiment", file), 2, "'mild' cannot name an arm, or names two arms")
+
+
+def test_one_arm_is_lived_and_not_compared(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    file = write(tmp_path, arms=[{"name": "mild"}], stop={"ticks": 9})
+    done = here("experiment", file, "--out", out, "--quiet", "--jobs", 1)
+    assert (done.returncode, done.stdout) == (0, "")
+    assert (
+        done.stderr
+        == f"primordia: one arm has nothing to be compared with; see `primordia info {out}`\n"
+    )
+    complains(here("compare", out), 2, "an experiment of two or more arms")

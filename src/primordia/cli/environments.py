@@ -25,7 +25,9 @@ def new(file: Path, env: str) -> None:
 
     if file.exists():
         raise InputError(f"{file} exists; give another name")
-    files.write_text(file, doors.text(env))
+    content = doors.text(env)
+    files.make_folder(file.parent)
+    files.write_text(file, content)
     click.echo(f"{file}: primordia run {file}")
 
 

@@ -139,7 +139,11 @@ def _live_all(
         _end_unless_done(chosen, result)
     if chosen.left():
         return report(f"{_jobs(len(chosen.left()))} of other arms left to do")
-    for path in chosen.gather():
+    if not (written := chosen.gather()):
+        return report(
+            f"one arm has nothing to be compared with; see `primordia info {chosen.path}`"
+        )
+    for path in written:
         click.echo(path)
 
 

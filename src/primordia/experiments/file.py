@@ -94,7 +94,7 @@ def read(file: Path, out: Path, forks: tuple[Path, ...] = ()) -> Plan:
     elif "task" not in values:
         raise InputError(f"{file}: `task` is missing; set it to the name of a task, or a file")
     chosen = [_arm(values, arm, file, fork is not None) for arm in arms]
-    names = Counter(arm.name for arm in chosen)
+    names = Counter(arm.name.casefold() for arm in chosen)  # some file systems ignore case
     if twice := [name for name, count in names.items() if count > 1 or name in RESERVED]:
         raise InputError(
             f"{file}: {twice[0]!r} cannot name an arm, or names two arms; choose another name"
