@@ -105,11 +105,16 @@ def own_folder(path: Path) -> None:
         InputError: the path exists and is not a folder.
         Trouble: the folder cannot be made.
     """
+    check_own_folder(path)
+    if not path.exists():
+        make_folder(path)
+
+
+def check_own_folder(path: Path) -> None:
+    """Raise InputError unless the path is free or a folder; a link may lead out of the run."""
     kind = _kind(path)
     if kind not in (None, KINDS[stat.S_IFDIR]):
         raise InputError(f"{path} is {kind}, not a folder; a run writes only into its own folders")
-    if kind is None:
-        make_folder(path)
 
 
 def make_folder(path: Path) -> None:

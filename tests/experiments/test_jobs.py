@@ -23,7 +23,7 @@ from primordia.experiments.campaign import Campaign, begin
 from primordia.experiments.dispatch import live_all
 from primordia.experiments.ending import Ending
 from primordia.experiments.plan import Job
-from primordia.runs import loop
+from primordia.runs import directory, loop
 from tests import commands, toys
 from tests.commands import complains, here
 from tests.experiments.meadows import write
@@ -125,6 +125,7 @@ def test_what_a_kill_leaves_is_taken_up(tmp_path: Path, alone: dict[str, list[st
     half = chosen.path / chosen.jobs[0].folder
     (half / "births").mkdir(parents=True)
     (half / "config.toml").write_text("begun")
+    (half / directory.UNBEGUN).touch()
     config = jobs.configuration(chosen.plan, chosen.jobs[1])
     part = config.model_copy(update={"stop": config.stop.model_copy(update={"ticks": 77})})
     loop.start(part, chosen.path / chosen.jobs[1].folder)
@@ -226,7 +227,6 @@ def test_some_arms_are_run_alone(tmp_path: Path) -> None:
 
 
 def test_a_job_that_another_process_lives_is_left_to_it(tmp_path: Path) -> None:
-    from primordia.runs import directory
 
     chosen = begin(write(tmp_path), tmp_path / "out")
     run = chosen.path / chosen.jobs[0].folder

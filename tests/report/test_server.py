@@ -236,3 +236,14 @@ def test_a_page_follows_its_run(run: Path, monkeypatch: pytest.MonkeyPatch) -> N
         ended.set()
         thread.join()
     assert content.data() == embedded(of_run(Archive(run), filmed=False)).encode()
+
+
+def test_a_connection_that_a_browser_closes_prints_nothing(
+    server: Server, capfd: pytest.CaptureFixture[str]
+) -> None:
+    for error, printed in ((ConnectionResetError(), False), (ValueError(), True)):
+        try:
+            raise error
+        except Exception:
+            server.handle_error(None, (HERE, 1))
+        assert bool(capfd.readouterr().err) == printed

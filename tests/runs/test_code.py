@@ -15,7 +15,7 @@ import pytest
 import tomli_w
 
 import primordia
-from primordia import own_code
+from primordia import files, own_code
 from primordia.errors import InputError
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import code
@@ -314,17 +314,22 @@ def test_a_module_that_was_imported_before_goes_to_another_process_too(
     assert set(own_code.admitted(["pond"])) == {"pond.py", "pond_depth.py"}
 
 
-def test_a_run_of_a_stranger_chooses_no_function_of_an_installed_package(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    run = begun(folder)
+def forged(run: Path, **habitat: str) -> None:
+    """Let a run name another habitat and hold no code, and seal it again."""
     values = tomllib.loads((run / "config.toml").read_text())
-    values["habitat"] = {"name": "gymnax", "env": "pytest:main"}
+    values["habitat"] = habitat
     (run / "config.toml").write_text(tomli_w.dumps(values))
     shutil.rmtree(run / "code")
     about = json.loads((run / "description.json").read_text())
     (run / "description.json").write_text(json.dumps({**about, "code": {}}))
     reseal(newest(run))
+
+
+def test_a_run_of_a_stranger_chooses_no_function_of_an_installed_package(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run = begun(folder)
+    forged(run, name="gymnax", env="pytest:main")
     called: list[object] = []
     monkeypatch.setattr(pytest, "main", lambda: called.append(1))
     for command in LIVING:
@@ -345,3 +350,58 @@ def test_a_folder_of_code_is_not_searched_without_end(folder: Path, kind: str) -
         (run / "code").symlink_to(folder / "elsewhere")
     says = {"deep": "code/d is missing, or was added", "link": "code is a symbolic link"}[kind]
     complains(here("verify", run), 1, says)
+
+
+@pytest.mark.parametrize("name", ["gymnasium", "gymnax"])
+@pytest.mark.parametrize("env", ["evil:", "evil:Pond", "IPython.__main__:", "gymnax.utils:x"])
+def test_every_module_that_a_run_of_a_stranger_names_is_asked_for(
+    env: str, name: str, folder: Path
+) -> None:
+    run = begun(folder)
+    forged(run, name=name, env=env)
+    (folder / "evil.py").write_text("open('executed', 'w')")
+    assert (
+        here(*words(LIVING[0], run)).returncode == 2
+    )  # the code is new, so `resume` stops earlier
+    for command in LIVING[1:]:
+        complains(here(*words(command, run)), 2, env.partition(":")[0], "--trust")
+    assert not (folder / "executed").exists()
+    assert "evil" not in sys.modules
+
+
+HIDDEN = """
+import importlib
+
+importlib.import_module("pond_" + "depth")
+"""
+
+
+def test_code_that_is_imported_in_a_hidden_way_is_trusted_too(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A run of the same stranger may hold the trusted file beside another one."""
+    run = elsewhere(folder, begun(folder), monkeypatch)
+    other = Path(shutil.copytree(run, run.parent / "second"))
+    for each, depth in ((run, "DEPTH = 3.0"), (other, "DEPTH = 3.0; open('executed', 'w')")):
+        (each / "code" / "pond.py").write_text(
+            POND.replace("from pond_depth import DEPTH", HIDDEN).replace("= DEPTH", "= 3.0")
+        )
+        (each / "code" / "pond_depth.py").write_text(depth)
+        about = json.loads((each / "description.json").read_text())
+        code_ = {name: files.seal(each / "code" / name)["sha256"] for name in about["code"]}
+        (each / "description.json").write_text(json.dumps({**about, "code": code_}))
+        reseal(newest(each))
+    assert here("evaluate", run, "--ticks", "9", "--games", "1", "--trust").returncode == 0
+    forget()
+    done = here("evaluate", other, "--ticks", "9", "--games", "1")
+    complains(done, 2, str(other / "code" / "pond_depth.py"), "--trust")
+    assert not Path("executed").exists()
+
+
+def test_no_file_is_trusted_by_the_name_of_an_installed_part() -> None:
+    text = "numpy:x"
+    named = code.Code({}, frozenset([text]))
+    held = code.Code({"a.py": own_code.Source(Path("a.py"), text.encode())})
+    moved = code.Code({"b.py": own_code.Source(Path("a.py"), text.encode())})
+    assert not named.marks & held.marks
+    assert not held.marks & moved.marks

@@ -182,7 +182,89 @@ def test_a_mutation_that_does_not_work_is_named(line: str, pond: Path) -> None:
     assert not Path("run").exists()
 
 
+@pytest.mark.parametrize(
+    ("line", "says"),
+    [
+        ("notes = 'ab'", "has notes = 'ab'; it must be a tuple of names"),
+        ("notes_from = property(lambda self: 'nobody')", "has notes_from = 'nobody'"),
+        ("moments = property(lambda self: 3)", "has moments = 3"),
+        ("rates = lambda self, layout: {'x': float('nan')}", "gives rates as {'x': nan}"),
+        (
+            "rates = lambda self, layout: 1 / 0",
+            "ZeroDivisionError: division by zero (pond.py, line 10)",
+        ),
+    ],
+)
+def test_a_property_of_a_mutation_that_cannot_be_used_is_named(
+    line: str, says: str, pond: Path
+) -> None:
+    head = "class Still(Mutation):\n"
+    text = MUTATION.replace(head, f"{head}    {line}\n")
+    complains(own(pond.parent, "mutation", text), 2, "mutation: Still", says)
+
+
 @pytest.mark.parametrize(("kind", "text"), [("brain", BRAIN), ("mutation", MUTATION)])
 def test_parts_that_work_are_lived_with(kind: str, text: str, pond: Path) -> None:
     done = own(pond.parent, kind, text)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+HOST = """
+import numpy as np
+
+from primordia.habitats import Discrete, HostHabitat, Outcome
+from primordia.settings.base import Settings
+
+
+class Pond(HostHabitat, Settings):
+    senses_size: int = 1
+    action: Discrete = Discrete(2)
+    words: int = 1
+
+    @property
+    def versions(self):
+        return {"pond": "1"}
+
+    def open(self, cells, watched=False):
+        self.__dict__["cells"] = cells
+
+    def reset(self, cells, words):
+        return np.zeros((len(cells), 1), np.float32)
+
+    def step(self, action, alive):
+        return np.zeros((self.cells, 1), np.float32), Outcome(np.zeros(self.cells, bool))
+
+    def save(self):
+        return {"age": np.zeros(self.cells, np.int32)}
+
+    def load(self, arrays):
+        pass
+"""
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "says"),
+    [
+        ('{"pond": "1"}', '{"pond": 1}', "has versions = {'pond': 1}"),
+        ('{"pond": "1"}', '["pond"]', "has versions = ['pond']"),
+        ("words: int = 1", "words: int = 1\n    tallies: str = 'ab'", "has tallies = 'ab'"),
+        ("words: int = 1", "words: int = 1\n    rate: str = 'x'", "has the rate 'x'"),
+        (
+            "np.zeros(self.cells, np.int32)",
+            "[1, 2]",
+            "save gives age of shape (2,); the first axis",
+        ),
+    ],
+)
+def test_a_host_habitat_that_could_not_be_resumed_does_not_begin(
+    before: str, after: str, says: str, pond: Path
+) -> None:
+    pond.write_text(HOST.replace(before, after))
+    complains(here("run", *WORDS, "--out", "run"), 2, "habitat: ", says)
+    assert not Path("run").exists()
+
+
+def test_a_host_habitat_that_works_is_lived_in(pond: Path) -> None:
+    pond.write_text(HOST)
+    done = here("run", *WORDS, "--out", "run")
     assert (done.returncode, done.stderr) == (0, "")

@@ -12,10 +12,12 @@ import pytest
 from primordia import files, interrupts
 from primordia.errors import InputError, Trouble
 from primordia.experiments import job
+from primordia.experiments.campaign import begin
 from primordia.experiments.plan import Plan
 from primordia.runs import directory, loop
 from primordia.runs.directory import LOCK
 from tests.commands import complains, here
+from tests.experiments.meadows import write
 from tests.trouble import SMALL, contents, goes_on, started
 from tests.worlds import MEADOW, config
 
@@ -315,3 +317,32 @@ def test_a_folder_is_not_made_in_place_of_a_file(name: str, tmp_path: Path) -> N
     (tmp_path / "file").write_text("mine")
     with pytest.raises(InputError, match="is not a folder, or leads through a file"):
         files.make_folder(tmp_path / name)
+
+
+def test_no_file_of_the_user_is_removed_for_a_run(tmp_path: Path) -> None:
+    """A folder of the user's may hold files with the names of a run's files."""
+    mine = tmp_path / "mine"
+    for name in ("code/a.py", "metrics/a.csv", "checkpoints/weights.pt", "config.toml", "lock"):
+        (mine / name).parent.mkdir(parents=True, exist_ok=True)
+        (mine / name).write_text("mine")
+    before = contents(mine)
+    done = here("run", *SMALL, "--ticks", 9, "--resume", "--out", mine)
+    complains(done, 2, f"{mine} exists already and is not a run")
+    assert contents(mine) == before
+
+
+def test_an_experiment_writes_into_no_folder_behind_a_link(tmp_path: Path) -> None:
+    mine = tmp_path / "mine"
+    (mine / "code").mkdir(parents=True)
+    (mine / "code" / "a.py").write_text("mine")
+    file = write(tmp_path / "experiment")
+    chosen = begin(file, tmp_path / "out")
+    link = chosen.path / chosen.jobs[0].folder
+    link.parent.mkdir()
+    link.symlink_to(mine)
+    ending = job.ending_of(chosen.plan, chosen.jobs[0], chosen.path)
+    assert (
+        ending.error
+        == f"{link} is a symbolic link, not a folder; a run writes only into its own folders"
+    )
+    assert [path.name for path in mine.rglob("*")] == ["code", "a.py"]

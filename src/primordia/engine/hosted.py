@@ -15,7 +15,7 @@ from primordia.engine.held import NO_BULK, Bulk, Form, Held
 from primordia.engine.messages import Messages
 from primordia.engine.state import Limits, State, filled, named_leaves
 from primordia.engine.tallies import Tallies
-from primordia.errors import Trouble
+from primordia.errors import InputError, Trouble
 from primordia.habitats.contract import Ability, HostHabitat
 from primordia.law import events as log
 from primordia.law.genesis import begin, body_words
@@ -121,6 +121,12 @@ class HostedChunks:
         """Return the arrays of the whole state, with the habitat's bodies, by name."""
         bodies = {f"bodies.{name}": array for name, array in self._habitat.save().items()}
         bodies["bodies.senses"] = np.asarray(state.bodies)
+        for name, array in bodies.items():
+            if np.shape(array)[:1] != np.shape(state.bodies)[:1]:
+                raise InputError(
+                    f"habitat: save gives {name.removeprefix('bodies.')} of shape {np.shape(array)};"
+                    f" the first axis must be the {len(state.bodies)} cells"
+                )
         return {
             f"world.{name}": np.asarray(leaf) for name, leaf in named_leaves(state.world)
         } | bodies

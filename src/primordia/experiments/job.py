@@ -53,6 +53,7 @@ def live(
 def _live(plan: Plan, job: Job, out: Path, checkpoint_every: float, watch: "_Watch") -> None:
     config, run = configuration(plan, job), out / job.folder
     files.own_folder(run.parent)
+    files.check_own_folder(run)
     unbegun = directory.clear_unbegun(run)
     if unbegun and job.source is not None and plan.fork is not None:
         source = Path(os.path.normpath(out / job.source))

@@ -32,12 +32,13 @@ def check_properties(habitat: AnyHabitat) -> None:
     Raises:
         InputError: a property is missing or wrong; the message says which.
     """
+    tracing = Tracing("habitat", habitat)
     try:
         sizes = {"senses_size": (habitat.senses_size, 1), "words": (habitat.words, 0)}
         action, tallies, rate = habitat.action, habitat.tallies, habitat.rate
+        versions = habitat.versions
     except TypeError as error:  # a property has no default and is missing
         raise InputError(f"habitat: {error}") from None
-    tracing = Tracing("habitat", habitat)
     for name, (value, least) in sizes.items():
         tracing.need(
             type(value) is int and least <= value <= LARGEST,
@@ -49,12 +50,21 @@ def check_properties(habitat: AnyHabitat) -> None:
         " Compound of such parts",
     )
     tracing.need(
+        isinstance(versions, dict)
+        and all(isinstance(each, str) for pair in versions.items() for each in pair),
+        f"has versions = {versions!r}; names and versions must be strings",
+    )
+    tracing.need(
+        isinstance(tallies, tuple) and all(isinstance(each, str) for each in tallies),
+        f"has tallies = {tallies!r}; it must be a tuple of names",
+    )
+    tracing.need(
         not tallies or habitat.can(Ability.TALLY),
         "has tallies, so it must be a HostHabitat that defines tally()",
     )
     low, high = RATES
     tracing.need(
-        rate is None or low <= rate <= high,
+        rate is None or (isinstance(rate, int | float) and low <= rate <= high),
         f"has the rate {rate!r}; use {low:g} to {high:g} ticks in a second, or None",
     )
 

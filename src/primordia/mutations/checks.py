@@ -8,10 +8,13 @@ import jax.numpy as jnp
 import numpy as np
 
 from primordia.brains.layout import Layout
-from primordia.mutations.contract import PURPOSES, Draws, Family, Mutation
+from primordia.mutations.contract import PURPOSES, Draws, Family, Moments, Mutation
 from primordia.random.keys import streams
 from primordia.random.wide import wide
 from primordia.settings.tracing import COUNT, Tracing
+
+MOST_TICKS = 2**16
+"""Longest time over which an organism remembers moments, in ticks."""
 
 
 def check_mutation(mutation: Mutation, layout: Layout) -> None:
@@ -24,11 +27,13 @@ def check_mutation(mutation: Mutation, layout: Layout) -> None:
     Raises:
         InputError: a method fails, or its result does not keep the contract; the message says how.
     """
-    tracing, size = Tracing("mutation", mutation), len(mutation.notes)
-    rates = tracing.called(mutation.rates, layout)
+    tracing = Tracing("mutation", mutation)
+    _check_properties(tracing, mutation)
+    size, rates = len(mutation.notes), tracing.called(mutation.rates, layout)
     tracing.need(
-        isinstance(rates, dict) and all(isinstance(each, float) for each in rates.values()),
-        f"gives rates as {rates!r}; return a dictionary of names and floats",
+        isinstance(rates, dict)
+        and all(isinstance(each, float) and np.isfinite(each) for each in rates.values()),
+        f"gives rates as {rates!r}; return a dictionary of names and finite floats",
     )
     family = _family(mutation, layout, rates)
     notes = tracing.called(mutation.founders_notes, COUNT)
@@ -46,6 +51,26 @@ def check_mutation(mutation: Mutation, layout: Layout) -> None:
     founders = _named("founders", partial(mutation.founders, layout))
     made = tracing.traced(founders, family.draws)
     tracing.typed("genomes of founders", made, (COUNT, layout.length), jnp.float32)
+
+
+def _check_properties(tracing: Tracing, mutation: Mutation) -> None:
+    notes, moments = mutation.notes, mutation.moments
+    tracing.need(
+        isinstance(notes, tuple) and all(isinstance(each, str) for each in notes),
+        f"has notes = {notes!r}; it must be a tuple of names",
+    )
+    tracing.need(
+        mutation.notes_from in ("parent", "cell"),
+        f"has notes_from = {mutation.notes_from!r}; it must be 'parent' or 'cell'",
+    )
+    fits = moments is None or (
+        isinstance(moments, Moments)
+        and min(moments) >= 1
+        and moments.kept * moments.every <= MOST_TICKS
+    )
+    tracing.need(
+        fits, f"has moments = {moments!r}; it must be None, or Moments of 2^16 ticks or less"
+    )
 
 
 def _family(mutation: Mutation, layout: Layout, rates: dict[str, float]) -> Family:

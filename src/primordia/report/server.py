@@ -6,9 +6,11 @@ JSON, and events that say when the content has changed (server-sent events: WHAT
 site can read the run through another name (DNS rebinding).
 """
 
+import sys
 from collections.abc import Callable
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from typing import Any
 
 from primordia.errors import InputError
 from primordia.report.watched import Watched
@@ -51,6 +53,11 @@ class Server(ThreadingHTTPServer):
         except OSError as error:
             why = error.strerror or error
             raise InputError(f"--port {port}: {why}; choose another, or 0 for any") from None
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """Print nothing if a browser has closed its connection."""
+        if not isinstance(sys.exc_info()[1], OSError):
+            super().handle_error(request, client_address)
 
     @property
     def address(self) -> str:

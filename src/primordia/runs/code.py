@@ -21,13 +21,13 @@ from platformdirs import user_state_path
 from primordia import files, own_code
 from primordia.config import Config
 from primordia.errors import InputError, Trouble
-from primordia.own_code import Sources
+from primordia.own_code import Source, Sources
 from primordia.runs.description import Description
 from primordia.settings.tables import PARTS
 
 FOLDER = "code"
 LIBRARIES = ("ale_py", "craftax", "gymnasium", "gymnax", "octax", "playground")
-"""Packages of environments, whose classes and functions every run may name."""
+"""Packages of environments, which every run may name in front of an environment: `gymnax:NAME`."""
 _trusted: set[str] = set()
 """Marks of the code that this process trusts, for the case that they cannot be stored."""
 
@@ -42,9 +42,12 @@ class Code(NamedTuple):
 
     @property
     def marks(self) -> set[str]:
-        """The checksum of each file, and of the name of each installed part."""
-        names = (hashlib.sha256(name.encode()).hexdigest() for name in self.installed)
-        return {*(source.sha256 for source in self.files.values()), *names}
+        """The checksum of each file with its name, and of the name of each installed part."""
+        files = (
+            b"file %s %s" % (name.encode(), source.text) for name, source in self.files.items()
+        )
+        installed = (b"installed %s" % name.encode() for name in self.installed)
+        return {hashlib.sha256(each).hexdigest() for each in (*files, *installed)}
 
     @property
     def names(self) -> str:
@@ -83,7 +86,7 @@ def _installed(config: Config, parts: Iterable[str]) -> frozenset[str]:
     return frozenset(
         each
         for each, module in modules.items()
-        if module.partition(".")[0] not in LIBRARIES and own_code.is_installed(module)
+        if module not in LIBRARIES and own_code.is_installed(module)
     )
 
 
@@ -104,6 +107,9 @@ def of_run(
         for module in (each.partition(":")[0] for each in config.code_of(part)):
             ways = [partial(own_code.below, folder, module), partial(own_code.found, module)]
             sources |= next(filter(None, (way() for way in (ways[::-1] if edited else ways))), {})
+    if not edited:  # code may import the other files in ways that reading does not show
+        held = {name: Source(folder / name, (folder / name).read_bytes()) for name in about.code}
+        sources = {**held, **sources} if sources else {}
     for name, source in sources.items():
         if source.file == folder / name and source.sha256 != about.code[name]:
             raise Trouble(f"{source.file} was changed or damaged: its checksum differs")

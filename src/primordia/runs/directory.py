@@ -29,7 +29,9 @@ VERSIONS, LOCK = "versions.json", "lock"
 FOLDERS = (*TABLES, checkpoint.FOLDER)
 GLANCE = 0.05
 """Seconds to wait for a lock, since `is_written` in another process may hold it briefly."""
-OWN = (VERSIONS, *FOLDERS, code.FOLDER, checkpoint.ORIGIN, *INPUTS, LOCK)
+UNBEGUN = f"{files.TEMPORARY}run"
+"""The file that marks a directory in which a run is being started; other files are never removed."""
+OWN = (VERSIONS, *FOLDERS, code.FOLDER, checkpoint.ORIGIN, *INPUTS, LOCK, UNBEGUN)
 """The names in a new run's directory."""
 
 
@@ -59,6 +61,7 @@ def create(run: Path, config: Config, fill: Callable[[], object] | None = None) 
         with locked(run), interrupts.undone_by(partial(_remove_lock, run)):
             refuse_if_taken(run)  # another process may have made the directory since
             with held(run) as check, interrupts.undone_by(partial(_remove_unbegun, run, check)):
+                files.write_text(run / UNBEGUN, "")
                 make_folders(run)
                 if (founders := law.heredity.ancestors) is not None:
                     genomes.write(run / genomes.FOUNDERS, law.heredity.layout, founders, {})
@@ -68,6 +71,7 @@ def create(run: Path, config: Config, fill: Callable[[], object] | None = None) 
                 if fill is not None:
                     fill()
                 files.write_text(run / VERSIONS, json.dumps(versions, indent=1))
+                files.remove(run / UNBEGUN)
                 yield
 
 
@@ -92,6 +96,8 @@ def clear_unbegun(run: Path) -> bool:
     files.check_name(run)
     if not run.is_dir() or (run / VERSIONS).exists():
         return not run.is_dir()
+    if not (run / UNBEGUN).is_file():  # the files are the user's own
+        return True
     with locked(run):
         if (run / VERSIONS).exists():
             return False

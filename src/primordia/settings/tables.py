@@ -109,11 +109,11 @@ def merged(base: dict[str, Any], change: dict[str, Any]) -> dict[str, Any]:
 
 def code_of(table: dict[str, Any], key: str) -> list[str]:
     """Return the code that a part's table names: `module:name` for its class and its functions, and
-    the modules that it lists as imports."""
+    the modules that it lists as imports. The name after the colon may be missing or wrong."""
     named = [str(table.get(each, "")) for each in (key, *CODE)]
     imports = table.get(IMPORTS, ())
     listed = [str(each) for each in imports] if isinstance(imports, list | tuple) else []
-    given = [*(each for each in named if all(each.partition(":"))), *listed]
+    given = [*(each for each in named if ":" in each), *listed]
     return [each for each in given if is_dotted(each.partition(":")[0])]
 
 

@@ -71,11 +71,6 @@ def _stated(habitat: AnyHabitat) -> None:
 
 def _abilities(habitat: AnyHabitat) -> None:
     """Check optional properties and methods."""
-    need(
-        all(isinstance(each, str) for pair in habitat.versions.items() for each in pair),
-        habitat,
-        f"has versions = {habitat.versions!r}; names and versions must be strings",
-    )
     taken = sorted({"world", *DEATHS.names} & set(habitat.tallies))
     need(
         not taken,
