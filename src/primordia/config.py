@@ -1,5 +1,6 @@
 """Settings of a run: one validated, frozen object, made from a task's TOML, a file and flags."""
 
+import os
 from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
@@ -192,7 +193,7 @@ class Config(Settings):
         return tomli_w.dumps(replaced(self.model_dump(mode="json"), None, NONE))
 
 
-def load(task: str, settings: dict[str, Any] | None = None) -> Config:
+def load(task: str | Path, settings: dict[str, Any] | None = None) -> Config:
     """Return the configuration of a task, by its name or TOML file, with some settings changed.
 
     A file whose `task` is a built-in name starts from the settings of that task. Any other file is
@@ -201,8 +202,8 @@ def load(task: str, settings: dict[str, Any] | None = None) -> Config:
     Raises:
         InputError: there is no such task or file, or a setting is unknown or out of range.
     """
-    changes = with_full_paths(Path(), settings or {})
-    return validated(merged(values_of(task), changes), source=task)
+    name, changes = os.fspath(task), with_full_paths(Path(), settings or {})
+    return validated(merged(values_of(name), changes), source=name)
 
 
 def validated(values: dict[str, Any], source: str) -> Config:

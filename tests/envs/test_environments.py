@@ -10,6 +10,7 @@ import pytest
 pytest.importorskip("gymnasium")
 
 import gymnasium
+from gymnasium.error import ResetNeeded
 from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode
 
@@ -164,3 +165,69 @@ def test_survival_has_no_reward_but_life_and_no_limit() -> None:
         assert not cut
         tick += 1
     assert rewards == [2.0] * (tick - 1) + [0.0]
+
+
+@pytest.mark.parametrize("action", [2, -1, 0.5, [0], None, "left", True])
+def test_an_action_that_does_not_exist_is_an_error(action: Any) -> None:
+    env = LifeEnv("CartPole-survival")
+    env.reset(seed=1)
+    with pytest.raises(ValueError, match="a whole number from 0 to 1"):
+        env.step(action)
+    many = LifeVectorEnv("CartPole-survival", 2)
+    many.reset(seed=1)
+    with pytest.raises(ValueError, match="a whole number from 0 to 1"):
+        many.step([0, action])
+
+
+@pytest.mark.parametrize("action", [[0.1], [0.1, 0.2, 0.3], 0.1])
+def test_an_action_has_the_shape_of_the_space(action: Any) -> None:
+    needed("Reacher-forager")
+    env = LifeEnv("Reacher-forager")
+    env.reset(seed=1)
+    with pytest.raises(ValueError, match=r"an action has the shape \(2,\)"):
+        env.step(action)
+    env.close()
+
+
+def test_a_life_begins_with_reset_and_ends_with_death() -> None:
+    env = LifeEnv("CartPole-survival")
+    with pytest.raises(ResetNeeded):
+        env.step(0)
+    env.reset(seed=1)
+    while not env.step(0)[2]:
+        pass
+    with pytest.raises(ResetNeeded):
+        env.step(0)
+    many = LifeVectorEnv("CartPole-survival", 2)
+    with pytest.raises(ResetNeeded):
+        many.step([0, 0])
+    many.reset(seed=[3, 4])
+    with pytest.raises(ValueError, match="one action for each of 2 bodies, not 3"):
+        many.step([0, 0, 0])
+
+
+@pytest.mark.parametrize(
+    "options", [{"tik": 1}, {"tick": -1}, {"tick": 2**31}, {"cell": 1.5}, {"cell": "a"}]
+)
+def test_a_place_of_birth_must_exist(options: dict[str, Any]) -> None:
+    with pytest.raises(ValueError, match="options: "):
+        LifeEnv("CartPole-survival").reset(options=options)
+
+
+def test_wrong_arguments_of_environments_are_errors() -> None:
+    with pytest.raises(ValueError, match="render_mode: 'human'"):
+        LifeEnv("CartPole-survival", render_mode="human")
+    for count in (0, -1, 2.0, "2", 10**9):
+        with pytest.raises(ValueError, match="num_envs"):
+            LifeVectorEnv("CartPole-survival", count)
+    many = LifeVectorEnv("CartPole-survival", 2)
+    for wrong in ({"seed": [1]}, {"options": {"reset_mask": [True]}}):
+        with pytest.raises(ValueError, match="for each of 2 bodies"):
+            many.reset(**wrong)
+
+
+def test_a_task_may_be_a_path(tmp_path: Path) -> None:
+    (file := tmp_path / "small.toml").write_text("task = 'CartPole-survival'\ncells = 4")
+    assert LifeEnv(file).observation_space.shape == (4,)
+    with pytest.raises(TypeError, match="NoneType"):
+        LifeEnv(None)

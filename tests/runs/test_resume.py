@@ -12,7 +12,7 @@ import pytest
 import primordia
 from primordia.errors import InputError
 from primordia.history.info import info
-from primordia.runs import checkpoint, loop
+from primordia.runs import checkpoint, directory, loop
 from primordia.runs.archive import Archive
 from primordia.runs.manifest import Progress
 from primordia.settings.limits import Stop
@@ -182,6 +182,7 @@ def test_a_script_begins_a_run_or_goes_on_with_it(tmp_path: Path) -> None:
 def test_what_a_killed_start_has_left_is_no_obstacle(tmp_path: Path) -> None:
     (tmp_path / "run" / "births").mkdir(parents=True)
     (tmp_path / "run" / "config.toml").write_text("half")
+    (tmp_path / "run" / directory.UNBEGUN).touch()
     run = primordia.run(
         "CartPole-survival", tmp_path / "run", cells=4, stop={"ticks": 5}, resume=True
     )

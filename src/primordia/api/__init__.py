@@ -41,7 +41,7 @@ __all__ = [
 
 
 def run(
-    task: str,
+    task: str | Path,
     out: str | Path | None = None,
     settings: Mapping[str, Any] | None = None,
     *,
@@ -171,6 +171,8 @@ def load(run: str | Path | Sequence[str | Path], trust: bool = False) -> Run:
         InputError: there is no run, or the runs do not belong to one arm.
     """
     places = [run] if isinstance(run, str | Path) else list(run)
+    if not places:
+        raise InputError("no run is given")
     first, *others = map(Path, places)
     loaded = Experiment(first) if is_experiment(first) and not others else Run(first, tuple(others))
     for path in loaded.directories():

@@ -120,9 +120,28 @@ def _part_space(part: Discrete | Continuous) -> Space:
 
 
 def as_row(action: Any, kind: Any) -> np.ndarray:
-    """Return a body's action in the habitat's form: int32 () or float32 (K,)."""
+    """Return a body's action in the habitat's form: int32 () or float32 (K,).
+
+    Raises:
+        ValueError: there is no such action.
+    """
     if isinstance(kind, Discrete):
+        _check_choice(action, kind)
         return np.array(action, np.int32)
     if isinstance(kind, Compound):
-        return np.concatenate([np.ravel(part) for part in action]).astype(np.float32)
-    return np.asarray(action, np.float32)
+        parts = tuple(action)
+        if len(parts) != len(kind.parts):
+            raise ValueError(f"an action has {len(kind.parts)} parts, not {len(parts)}")
+        return np.concatenate(
+            [as_row(part, own).ravel() for part, own in zip(parts, kind.parts, strict=True)]
+        ).astype(np.float32)
+    row = np.asarray(action, np.float32)
+    if row.shape != (kind.size,):
+        raise ValueError(f"an action has the shape ({kind.size},), not {row.shape}")
+    return row
+
+
+def _check_choice(action: Any, kind: Discrete) -> None:
+    choice = np.asarray(action)
+    if choice.shape or choice.dtype.kind not in "iu" or not 0 <= choice < kind.size:
+        raise ValueError(f"an action is a whole number from 0 to {kind.size - 1}, not {action!r}")

@@ -1,10 +1,12 @@
 """One body of a task as a Gymnasium environment."""
 
+from pathlib import Path
 from typing import Any
 
 import gymnasium
 import jax
 import numpy as np
+from gymnasium.error import ResetNeeded
 
 from primordia import config
 from primordia.envs.bodies import Births, Bodies, action_space, as_row, label, observation_space
@@ -25,7 +27,7 @@ class LifeEnv(gymnasium.Env):
 
     def __init__(
         self,
-        task: str,
+        task: str | Path,
         settings: dict[str, Any] | None = None,
         reward: float = 0.0,
         render_mode: str | None = None,
@@ -40,7 +42,10 @@ class LifeEnv(gymnasium.Env):
 
         Raises:
             InputError: there is no such task, or a setting is wrong.
+            ValueError: there is no such render mode.
         """
+        if render_mode not in (None, *self.metadata["render_modes"]):
+            raise ValueError(f"render_mode: {render_mode!r}; use 'rgb_array' or None")
         self.render_mode = render_mode
         self._reward, self._episode = reward, 0
         self._bodies = Bodies(config.load(task, settings), 1, watched=render_mode is not None)
@@ -55,10 +60,22 @@ class LifeEnv(gymnasium.Env):
 
         `options` may have `tick` and `cell`. With the seed of a run's world, the body is that of
         the organism born at this tick in this cell.
+
+        Raises:
+            ValueError: an option is unknown, or not a whole number from 0 to 2^31 - 1.
         """
         super().reset(seed=seed)
         self._episode = 0 if seed is not None else self._episode + 1
         born = options or {}
+        for name, value in born.items():
+            if (
+                name not in ("tick", "cell")
+                or not isinstance(value, int | np.integer)
+                or not 0 <= value < 2**31
+            ):
+                raise ValueError(
+                    f"options: {name} = {value!r}; give whole numbers as tick and cell"
+                )
         place = born.get("tick", self._episode), born.get("cell", 0)
         seeds = np.array([(self.np_random_seed or 0) % 2**64], np.uint64)
         self._bodies.begin(FIRST, Births(seeds, *(np.array([each]) for each in place)))
@@ -67,10 +84,17 @@ class LifeEnv(gymnasium.Env):
         return self._bodies.senses[0].copy(), self._info(-1)
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
-        """Live one tick."""
+        """Live one tick.
+
+        Raises:
+            ResetNeeded: no life has begun, or the body has died.
+            ValueError: there is no such action.
+        """
+        if not self._alive[0]:
+            raise ResetNeeded("there is no life to go on with: call reset first")
         self._action = as_row(action, self._bodies.habitat.action)[None]
         cause = int(self._bodies.step(self._action, self._alive)[0])
-        died = cause >= 0
+        self._alive[0] = not (died := cause >= 0)
         senses = self._bodies.senses[0].copy()
         return senses, 0.0 if died else self._reward, died, False, self._info(cause)
 

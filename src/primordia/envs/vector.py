@@ -1,9 +1,11 @@
 """N bodies of a task as a Gymnasium vector environment: one call steps them all."""
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+from gymnasium.error import ResetNeeded
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space, iterate
 
@@ -21,7 +23,7 @@ class LifeVectorEnv(VectorEnv):
 
     def __init__(
         self,
-        task: str,
+        task: str | Path,
         num_envs: int = 1,
         settings: dict[str, Any] | None = None,
         reward: float = 0.0,
@@ -41,8 +43,11 @@ class LifeVectorEnv(VectorEnv):
 
         Raises:
             InputError: there is no such task, or a setting is wrong.
-            ValueError: the autoreset mode is SAME_STEP, which loses the last observation of a life.
+            ValueError: the autoreset mode is SAME_STEP, which loses the last observation of a life; or
+                `num_envs` is not a whole number from 1 to 2^24.
         """
+        if type(num_envs) is not int or not 1 <= num_envs <= 2**24:
+            raise ValueError(f"num_envs: {num_envs!r} is not a whole number from 1 to 2^24")
         mode = AutoresetMode(autoreset_mode)
         if mode is AutoresetMode.SAME_STEP:
             raise ValueError("autoreset_mode: use NEXT_STEP or DISABLED")
@@ -54,7 +59,7 @@ class LifeVectorEnv(VectorEnv):
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
         self._seeds, self._lives = np.zeros(num_envs, np.uint64), np.zeros(num_envs, np.int64)
-        self._alive = np.zeros(num_envs, bool)
+        self._alive, self._begun = np.zeros(num_envs, bool), False
 
     def reset(
         self,
@@ -65,9 +70,17 @@ class LifeVectorEnv(VectorEnv):
         """Begin lives in all bodies, or in those of `options["reset_mask"]`, bool (N,).
 
         With a single seed s, body i gets the seed s + i.
+
+        Raises:
+            ValueError: there is not one seed, or one value of the mask, for each body.
         """
         chosen = np.asarray((options or {}).get("reset_mask", np.ones(self.num_envs, bool)), bool)
         first = self._seeds_of(seed)
+        if chosen.shape != (self.num_envs,) or len(first) != self.num_envs:
+            raise ValueError(
+                f"give one seed and one value of reset_mask for each of {self.num_envs} bodies"
+            )
+        self._begun = True
         self._lives[chosen] += 1
         for cell, own in enumerate(first):
             if own is not None and chosen[cell]:
@@ -94,10 +107,20 @@ class LifeVectorEnv(VectorEnv):
     def step(
         self, actions: Any
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
-        """Live one tick in the living bodies; with NEXT_STEP the other bodies begin a life."""
+        """Live one tick in the living bodies; with NEXT_STEP the other bodies begin a life.
+
+        Raises:
+            ResetNeeded: `reset` was not called.
+            ValueError: there is no such action, or not one action for each body.
+        """
+        if not self._begun:
+            raise ResetNeeded("no life has begun: call reset first")
         kind, alive = self._bodies.habitat.action, self._alive.copy()
         rows = iterate(self.action_space, actions) if isinstance(kind, Compound) else actions
-        cause = self._bodies.step(np.stack([as_row(row, kind) for row in rows]), alive)
+        each = [as_row(row, kind) for row in rows]
+        if len(each) != self.num_envs:
+            raise ValueError(f"give one action for each of {self.num_envs} bodies, not {len(each)}")
+        cause = self._bodies.step(np.stack(each), alive)
         died = cause >= 0
         self._alive &= ~died
         if self.metadata["autoreset_mode"] is AutoresetMode.NEXT_STEP and not alive.all():
