@@ -57,9 +57,10 @@ def prepare() -> None:
     try:
         jax.devices()
     except (AssertionError, RuntimeError):  # JAX raises both
-        named = f"JAX_PLATFORMS={os.environ.get('JAX_PLATFORMS')}"
+        if (wanted := os.environ.get("JAX_PLATFORMS")) is None:
+            raise
         raise InputError(
-            f"JAX finds no device that the variable {named} allows; unset the variable"
+            f"JAX finds no device that the variable JAX_PLATFORMS={wanted} allows; unset the variable"
         ) from None
     finally:
         jax.config.update(name, before)

@@ -35,8 +35,7 @@ def check_properties(habitat: AnyHabitat) -> None:
     tracing = Tracing("habitat", habitat)
     try:
         sizes = {"senses_size": (habitat.senses_size, 1), "words": (habitat.words, 0)}
-        action, tallies, rate = habitat.action, habitat.tallies, habitat.rate
-        versions = habitat.versions
+        action = habitat.action
     except TypeError as error:  # a property has no default and is missing
         raise InputError(f"habitat: {error}") from None
     for name, (value, least) in sizes.items():
@@ -49,6 +48,12 @@ def check_properties(habitat: AnyHabitat) -> None:
         f"has action = {action!r}; it must be Discrete(2) or more, Continuous(1) or more, or a"
         " Compound of such parts",
     )
+    _check_options(tracing, habitat)
+
+
+def _check_options(tracing: Tracing, habitat: AnyHabitat) -> None:
+    """Check the properties that have defaults."""
+    versions, tallies, rate = habitat.versions, habitat.tallies, habitat.rate
     tracing.need(
         isinstance(versions, dict)
         and all(isinstance(each, str) for pair in versions.items() for each in pair),
