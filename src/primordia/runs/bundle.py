@@ -157,9 +157,8 @@ def unbundle(file: Path, folder: Path) -> None:
     with interrupts.undone_by(partial(directory.remove_empty, missing)):
         files.own_folder(temporary)
         with directory.locked(temporary), interrupts.undone_by(partial(_discard, temporary)):
-            for each in set(temporary.iterdir()) - {
-                temporary / LOCK
-            }:  # of a process that was killed
+            left = set(temporary.iterdir()) - {temporary / LOCK}  # by a process that was killed
+            for each in left:
                 files.remove(each)
             _extract(file, temporary)
             try:

@@ -44,9 +44,9 @@ class Code(NamedTuple):
     def marks(self) -> set[str]:
         """The checksum of each file with its name, and of the name of each installed part."""
         files = (
-            b"file %s %s" % (name.encode(), source.text) for name, source in self.files.items()
+            b"file\0%s\0%s" % (name.encode(), source.text) for name, source in self.files.items()
         )
-        installed = (b"installed %s" % name.encode() for name in self.installed)
+        installed = (b"installed\0%s" % name.encode() for name in self.installed)
         return {hashlib.sha256(each).hexdigest() for each in (*files, *installed)}
 
     @property

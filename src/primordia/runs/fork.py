@@ -61,7 +61,7 @@ def fork(
         InputError: no such tick, a setting that cannot change in a living world, or `out` is taken.
         Trouble: a file cannot be written, or the source does not repeat as recorded.
     """
-    check_tick(source, at)
+    _check_tick(source, at)
     source.admit()
     changed = _fork_config(source.path, settings, at)
     directory.refuse_if_taken(out)
@@ -79,7 +79,7 @@ def fork(
         pass
 
 
-def check_tick(source: Archive, at: int) -> None:
+def _check_tick(source: Archive, at: int) -> None:
     """Raise InputError unless a run can be forked at this tick."""
     first, last = max(source.config.begins, 1), int(source.ends.min())
     if not first <= at <= last:
