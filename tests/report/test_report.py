@@ -17,7 +17,8 @@ from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests.commands import complains, here
 from tests.experiments.meadows import write
-from tests.runs.test_code import begun, elsewhere, folder
+from tests.runs.conftest import folder
+from tests.strangers import begun, elsewhere
 from tests.worlds import config
 
 __all__ = ["folder"]

@@ -1,0 +1,191 @@
+"""Code of a stranger's run: it is executed only when trusted, and never by looking."""
+
+import json
+import shutil
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+import tomli_w
+
+import primordia
+from primordia import files, own_code
+from primordia.errors import InputError
+from primordia.organism.reliving.relived import RelivedLife
+from primordia.runs import code
+from primordia.runs.archive import Archive
+from tests.commands import complains, here
+from tests.strangers import LIVING, POND, begun, elsewhere, forget, words
+from tests.trouble import newest, reseal
+
+
+def test_a_bundle_executes_nothing_until_it_is_trusted(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run = begun(folder)
+    file = primordia.load(run).bundle(folder / "sent.zip")
+    shutil.move(file, folder.parent / "sent.zip")
+    elsewhere(folder, run, monkeypatch)
+    for command in (["info"], ["plot", "--out", "figures", "--figure", "ages"]):
+        assert here(command[0], folder.parent / "sent.zip", *command[1:]).returncode == 0
+    assert "pond" not in sys.modules
+    stopped = here("revive", folder.parent / "sent.zip", 3)
+    complains(stopped, 2, "executes code that is not part of Primordia")
+    assert "pond" not in sys.modules
+    done = here("revive", folder.parent / "sent.zip", 3, "--trust")
+    assert done.returncode == 0, done.stderr
+
+
+def test_code_from_elsewhere_is_executed_only_when_trusted(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run = elsewhere(folder, begun(folder), monkeypatch)
+    for command in LIVING:
+        complains(here(*words(command, run)), 2, f"{run / 'code' / 'pond.py'}", "--trust")
+    assert "pond" not in sys.modules
+    assert not (run.parent / "new").exists()
+    with pytest.raises(InputError, match="trust=True"):
+        primordia.load(run).policy()
+    trusting = [*words(LIVING[0], run), "--trust"]
+    assert here(*trusting).returncode == 0
+    for command in LIVING[1:]:
+        forget()
+        done = here(*words(command, run))
+        assert (done.returncode, done.stderr) == (0, "")
+    assert Archive(run.parent / "new").description.code == Archive(run).description.code
+    forget()
+    (run / "code" / "pond_depth.py").write_text("DEPTH = 4.0\n")
+    complains(here("verify", run), 1, "pond_depth.py was changed or damaged")
+
+
+def test_a_life_of_code_from_elsewhere_is_lived_again(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run = elsewhere(folder, begun(folder), monkeypatch)
+    oldest = primordia.load(run, trust=True).oldest()
+    life = RelivedLife.of(oldest.run, oldest.id, oldest.world)
+    assert sum(len(each.tick) for each in life.stretches()) == oldest.age == 21
+
+
+def test_looking_executes_no_code_of_a_run(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    run = elsewhere(folder, begun(folder), monkeypatch)
+    twin = shutil.copytree(run, run.parent / "twin")
+    text = (run / "config.toml").read_text().replace("[stop]", "[stopp]")
+    for command in (
+        ["info", run],
+        ["info", run, "--json"],
+        ["plot", run, "--out", run.parent / "figures"],
+        ["report", run, "--out", run.parent / "report.html"],
+        ["export", run, run.parent / "genome.safetensors"],
+        ["lineage", run, "--out", run.parent / "lineage.csv"],
+        ["compare", run, twin, "--out", run.parent],
+    ):
+        done = here(*command)
+        assert done.returncode == 0, done.stderr
+    opened = primordia.load(run)
+    assert len(opened.lives()) == opened.table("births").num_rows > 8
+    assert len(opened.rebuild(0)) == Archive(run).layout.length
+    (run / "config.toml").write_text(text)
+    complains(here("info", run), 2, "stopp")
+    assert not {"pond", "pond_depth"} & set(sys.modules)
+
+
+def test_parts_in_several_files_are_trusted_together(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also where the trust cannot be stored, as in a home folder that is read-only."""
+    mutation = (
+        "from primordia.mutations.gaussian import Gaussian\n\n\nclass Own(Gaussian):\n    pass\n"
+    )
+    (folder / "pond_mutation.py").write_text(mutation)
+    (folder / "task.toml").write_text(
+        'mutation = { kind = "pond_mutation:Own" }\n' + (folder / "task.toml").read_text()
+    )
+    run = elsewhere(folder, begun(folder), monkeypatch)
+    sys.modules.pop("pond_mutation")
+    genome = run.parent / "genome.safetensors"
+    complains(here("export", run, genome), 2, "pond_mutation.py", "--trust")
+    monkeypatch.setenv("XDG_STATE_HOME", "/proc/nothing")
+    for command in (["export", run, genome, "--trust"], [*words(LIVING[3], run), "--trust"]):
+        done = here(*command)
+        assert (done.returncode, done.stderr) == (0, "")
+
+
+def forged(run: Path, **habitat: str) -> None:
+    """Let a run name another habitat and hold no code, and seal it again."""
+    values = tomllib.loads((run / "config.toml").read_text())
+    values["habitat"] = habitat
+    (run / "config.toml").write_text(tomli_w.dumps(values))
+    shutil.rmtree(run / "code")
+    about = json.loads((run / "description.json").read_text())
+    (run / "description.json").write_text(json.dumps({**about, "code": {}}))
+    reseal(newest(run))
+
+
+def test_a_run_of_a_stranger_chooses_no_function_of_an_installed_package(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run = begun(folder)
+    forged(run, name="gymnax", env="pytest:main")
+    called: list[object] = []
+    monkeypatch.setattr(pytest, "main", lambda: called.append(1))
+    for command in LIVING:
+        complains(here(*words(command, run)), 2, "pytest:main", "--trust")
+    assert not called
+    complains(here(*words(LIVING[0], run), "--trust"), 2, "pytest:main has no default_params")
+
+
+@pytest.mark.parametrize("name", ["gymnasium", "gymnax"])
+@pytest.mark.parametrize("env", ["evil:", "evil:Pond", "IPython.__main__:", "gymnax.utils:x"])
+def test_every_module_that_a_run_of_a_stranger_names_is_asked_for(
+    env: str, name: str, folder: Path
+) -> None:
+    run = begun(folder)
+    forged(run, name=name, env=env)
+    (folder / "evil.py").write_text("open('executed', 'w')")
+    assert (
+        here(*words(LIVING[0], run)).returncode == 2
+    )  # the code is new, so `resume` stops earlier
+    for command in LIVING[1:]:
+        complains(here(*words(command, run)), 2, env.partition(":")[0], "--trust")
+    assert not (folder / "executed").exists()
+    assert "evil" not in sys.modules
+
+
+HIDDEN = """
+import importlib
+
+importlib.import_module("pond_" + "depth")
+"""
+
+
+def test_code_that_is_imported_in_a_hidden_way_is_trusted_too(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A run of the same stranger may hold the trusted file beside another one."""
+    run = elsewhere(folder, begun(folder), monkeypatch)
+    other = Path(shutil.copytree(run, run.parent / "second"))
+    for each, depth in ((run, "DEPTH = 3.0"), (other, "DEPTH = 3.0; open('executed', 'w')")):
+        (each / "code" / "pond.py").write_text(
+            POND.replace("from pond_depth import DEPTH", HIDDEN).replace("= DEPTH", "= 3.0")
+        )
+        (each / "code" / "pond_depth.py").write_text(depth)
+        about = json.loads((each / "description.json").read_text())
+        code_ = {name: files.seal(each / "code" / name)["sha256"] for name in about["code"]}
+        (each / "description.json").write_text(json.dumps({**about, "code": code_}))
+        reseal(newest(each))
+    assert here("evaluate", run, "--ticks", "9", "--games", "1", "--trust").returncode == 0
+    forget()
+    done = here("evaluate", other, "--ticks", "9", "--games", "1")
+    complains(done, 2, str(other / "code" / "pond_depth.py"), "--trust")
+    assert not Path("executed").exists()
+
+
+def test_no_file_is_trusted_by_the_name_of_an_installed_part() -> None:
+    text = "numpy:x"
+    named = code.Code({}, frozenset([text]))
+    held = code.Code({"a.py": own_code.Source(Path("a.py"), text.encode())})
+    moved = code.Code({"b.py": own_code.Source(Path("a.py"), text.encode())})
+    assert not named.marks & held.marks
+    assert not held.marks & moved.marks
