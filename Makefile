@@ -57,7 +57,7 @@ constraints:  ## write the newest releases into constraints.txt; run `make check
 	rm -rf .venv
 	$(MAKE) CONSTRAINTS= .venv/installed-mutants .venv/installed-docs
 	sed -n '/^#/p' constraints.txt > .venv/constraints
-	$(BIN)/python -m pip freeze --exclude-editable | sed 's/$$/; python_version < "3.14"/' >> .venv/constraints
+	$(BIN)/python -m pip freeze --exclude-editable | sed '/^pymdown-extensions/d; s/$$/; python_version < "3.14"/' >> .venv/constraints
 	mv .venv/constraints constraints.txt
 
 clean:
