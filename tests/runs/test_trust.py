@@ -31,7 +31,7 @@ def test_a_bundle_executes_nothing_until_it_is_trusted(
         assert here(command[0], folder.parent / "sent.zip", *command[1:]).returncode == 0
     assert "pond" not in sys.modules
     stopped = here("revive", folder.parent / "sent.zip", 3)
-    complains(stopped, 2, "executes code that is not part of Primordia")
+    complains(stopped, 2, "executes code that Primordia does not know")
     assert "pond" not in sys.modules
     done = here("revive", folder.parent / "sent.zip", 3, "--trust")
     assert done.returncode == 0, done.stderr
@@ -189,3 +189,17 @@ def test_no_file_is_trusted_by_the_name_of_an_installed_part() -> None:
     moved = code.Code({"b.py": own_code.Source(Path("a.py"), text.encode())})
     assert not named.marks & held.marks
     assert not held.marks & moved.marks
+
+
+def test_an_installed_part_with_which_the_user_began_is_trusted(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kind = "primordia.mutations.gaussian:Gaussian"
+    task = f"task = 'CartPole-survival'\ncells = 4\nmutation = {{ kind = '{kind}' }}"
+    (folder / "task.toml").write_text(f"{task}\nstop = {{ ticks = 60, until = 'none' }}")
+    run = begun(folder)
+    assert here(*words(LIVING[0], run)).returncode == 0
+    run = elsewhere(folder, run, monkeypatch)
+    complains(here(*words(LIVING[0], run)), 2, "gaussian:Gaussian", "--trust")
+    assert here(*words(LIVING[0], run), "--trust").returncode == 0
+    assert here(*words(LIVING[1], run)).returncode == 0, "once is enough"

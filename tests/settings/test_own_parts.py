@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from primordia import own_code
+from primordia import config, own_code
 from tests.commands import complains, here
 
 POND = """
@@ -62,153 +62,6 @@ class Still(Mutation):
     def founders(self, layout, draws):
         return jnp.zeros((len(draws.cell), layout.length), jnp.float32)
 """
-LINE = POND.splitlines().index("        return bodies") + 1
-
-FAULTS = {
-    "raise ValueError('deep\\nwater')": f"fails in sense: ValueError: deep (pond.py, line {LINE})",
-    "raise KeyError": f"fails in sense: KeyError (pond.py, line {LINE})",
-    "raise StopIteration": "fails in sense: StopIteration",
-    "raise OSError(5, 'x')": "fails in sense: OSError: [Errno 5] x",
-    "sys.exit('bye')": "fails in sense: SystemExit: bye",
-    "sys.exit(3)": "fails in sense: SystemExit: 3",
-    "return bodies[:, :1]": "gives senses as float32 (32, 1); the contract says float32 (32, 2)",
-    "return bodies.astype(int)": "gives senses as int32 (32, 2)",
-    "return None": "gives senses as None",
-    "return bodies if bodies[0, 0] > 0 else 0": "fails in sense: TracerBoolConversionError",
-}
-
-
-@pytest.fixture
-def pond(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
-    sys.modules.pop("pond", None)
-    own_code._admitted.sources.pop("pond", None)
-    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
-    return tmp_path / "pond.py"
-
-
-WORDS = ("CartPole-survival", "--habitat.name", "pond:Pond", "--cells", 4, "--ticks", 9, "--quiet")
-
-
-@pytest.mark.parametrize("line", FAULTS)
-def test_a_function_that_does_not_work_is_named(line: str, pond: Path) -> None:
-    pond.write_text(POND.replace("        return bodies\n", f"        {line}\n"))
-    complains(here("run", *WORDS, "--out", "run"), 2, f"habitat: Pond {FAULTS[line]}")
-    assert not Path("run").exists()
-
-
-@pytest.mark.parametrize(
-    ("before", "after", "says"),
-    [
-        ("senses_size: int = 2", "senses_size: int = 10**12", "from 1 to 1048576"),
-        ("words: int = 1", "words: int = -1", "has words = -1; it must be a whole number from 0"),
-        (
-            "action: Discrete = Discrete(2)",
-            "action: int = 3",
-            "has action = 3; it must be Discrete",
-        ),
-        ("words: int = 1", "words: int = 1\n    rate: float = 1e-300", "has the rate 1e-300; use"),
-    ],
-)
-def test_a_property_that_no_run_can_use_is_named(
-    before: str, after: str, says: str, pond: Path
-) -> None:
-    pond.write_text(POND.replace(before, after))
-    complains(here("run", *WORDS, "--out", "run"), 2, "habitat: Pond has", says)
-    assert not Path("run").exists()
-
-
-def test_a_habitat_that_works_is_lived_in(pond: Path) -> None:
-    pond.write_text(POND)
-    assert here("run", *WORDS, "--out", "run").returncode == 0
-
-
-def own(folder: Path, kind: str, text: str) -> Any:
-    """Run CartPole with a brain or a mutation of this text."""
-    name = {"brain": "pond:Mind", "mutation": "pond:Still"}[kind]
-    (folder / "pond.py").write_text(text)
-    words = ("--cells", 4, "--ticks", 9, "--quiet", "--out", "run")
-    return here("run", "CartPole-survival", f"--{kind}.kind", name, *words)
-
-
-BRAINS = {
-    "return memory, None": "gives its output as None; the contract says float32 (32, 2)",
-    "return memory": "does not return a pair; return memory and output",
-    "return memory, senses": "gives its output as float32 (32, 4)",
-    "return senses, (genome['output'] * senses[:, None]).sum(axis=2)": "gives its memory as",
-    "raise ValueError('deep')": "fails in __call__: ValueError: deep (pond.py, line 14)",
-    "sys.exit(3)": "fails in __call__: SystemExit: 3",
-    "return memory, genome['input']": "fails in __call__: KeyError: 'input'",
-}
-
-
-@pytest.mark.parametrize("line", BRAINS)
-def test_a_brain_that_does_not_work_is_named(line: str, pond: Path) -> None:
-    *before, _ = BRAIN.rstrip().split("\n")
-    done = own(pond.parent, "brain", "\n".join([*before, f"        {line}"]))
-    complains(done, 2, f"brain: Mind {BRAINS[line]}")
-    assert not Path("run").exists()
-
-
-@pytest.mark.parametrize(
-    ("blocks", "says"),
-    [
-        ("None", "gives blocks as None"),
-        ("sys.exit('bye')", "fails in blocks: SystemExit: bye (pond.py, line 11)"),
-        ("{'output': (0, 4)}", "block 'output' has the shape (0, 4)"),
-    ],
-)
-def test_blocks_of_a_brain_that_cannot_be_used_are_named(
-    blocks: str, says: str, pond: Path
-) -> None:
-    text = BRAIN.replace("""{"output": (outputs, senses)}""", blocks)
-    complains(own(pond.parent, "brain", text), 2, "brain: ", says)
-
-
-MUTATIONS = {
-    "return family.parents": "does not return a pair from inherit",
-    "return family.parents, None": "gives which children are mutants as None",
-    "return family.parents[:, 1:], jnp.zeros(32, bool)": "gives genomes of children as float32",
-    "raise ValueError": "fails in inherit: ValueError (pond.py, line 11)",
-    "sys.exit(3)": "fails in inherit: SystemExit: 3",
-}
-
-
-@pytest.mark.parametrize("line", MUTATIONS)
-def test_a_mutation_that_does_not_work_is_named(line: str, pond: Path) -> None:
-    before = "return family.parents, jnp.zeros(len(family.parents), bool)"
-    done = own(pond.parent, "mutation", MUTATION.replace(before, line))
-    complains(done, 2, f"mutation: Still {MUTATIONS[line]}")
-    assert not Path("run").exists()
-
-
-@pytest.mark.parametrize(
-    ("line", "says"),
-    [
-        ("notes = 'ab'", "has notes = 'ab'; it must be a tuple of names"),
-        ("notes_from = property(lambda self: 'nobody')", "has notes_from = 'nobody'"),
-        ("moments = property(lambda self: 3)", "has moments = 3"),
-        ("rates = lambda self, layout: {'x': float('nan')}", "gives rates as {'x': nan}"),
-        (
-            "rates = lambda self, layout: 1 / 0",
-            "ZeroDivisionError: division by zero (pond.py, line 10)",
-        ),
-    ],
-)
-def test_a_property_of_a_mutation_that_cannot_be_used_is_named(
-    line: str, says: str, pond: Path
-) -> None:
-    head = "class Still(Mutation):\n"
-    text = MUTATION.replace(head, f"{head}    {line}\n")
-    complains(own(pond.parent, "mutation", text), 2, "mutation: Still", says)
-
-
-@pytest.mark.parametrize(("kind", "text"), [("brain", BRAIN), ("mutation", MUTATION)])
-def test_parts_that_work_are_lived_with(kind: str, text: str, pond: Path) -> None:
-    done = own(pond.parent, kind, text)
-    assert (done.returncode, done.stderr) == (0, "")
-
-
 HOST = """
 import numpy as np
 
@@ -241,30 +94,123 @@ class Pond(HostHabitat, Settings):
         pass
 """
 
+TEXTS = {
+    "in JAX": (POND, ("--habitat.name", "pond:Pond")),
+    "on the host": (HOST, ("--habitat.name", "pond:Pond")),
+    "brain": (BRAIN, ("--brain.kind", "pond:Mind")),
+    "mutation": (MUTATION, ("--mutation.kind", "pond:Still")),
+}
+"""A text of each kind of part that works, and the words that choose it."""
 
-@pytest.mark.parametrize(
-    ("before", "after", "says"),
-    [
-        ('{"pond": "1"}', '{"pond": 1}', "has versions = {'pond': 1}"),
-        ('{"pond": "1"}', '["pond"]', "has versions = ['pond']"),
-        ("words: int = 1", "words: int = 1\n    tallies: str = 'ab'", "has tallies = 'ab'"),
-        ("words: int = 1", "words: int = 1\n    rate: str = 'x'", "has the rate 'x'"),
-        (
-            "np.zeros(self.cells, np.int32)",
-            "[1, 2]",
-            "save gives age of shape (2,); the first axis",
-        ),
+SENSE, ACTION, WORDS = "return bodies\n", "Discrete = Discrete(2)", "words: int = 1"
+THINK = """return memory, (genome["output"] * senses[:, None]).sum(axis=2)"""
+BLOCKS = """{"output": (outputs, senses)}"""
+INHERIT = "return family.parents, jnp.zeros(len(family.parents), bool)"
+STEP = "return np.zeros((self.cells, 1)"
+OF = "(Mutation):\n"
+VERSIONS = """{"pond": "1"}"""
+
+FAULTS = {
+    "in JAX": [
+        (SENSE, "raise ValueError('deep\\nwater')\n", "sense: ValueError: deep (pond.py, line 19)"),
+        (SENSE, "raise KeyError\n", "Pond fails in sense: KeyError (pond.py, line 19)"),
+        (SENSE, "raise StopIteration\n", "Pond fails in sense: StopIteration"),
+        (SENSE, "raise OSError(5, 'x')\n", "Pond fails in sense: OSError: [Errno 5] x"),
+        (SENSE, "sys.exit('bye')\n", "Pond fails in sense: SystemExit: bye"),
+        (SENSE, "return bodies[:, :1]\n", "gives senses as float32 (32, 1); the"),
+        (SENSE, "return bodies.astype(int)\n", "gives senses as int32 (32, 2)"),
+        (SENSE, "return None\n", "gives senses as None"),
+        (SENSE, "return 0 if bodies[0, 0] > 0 else 1\n", "sense: TracerBoolConversionError"),
+        ("senses_size: int = 2", "senses_size: int = 10**12", "from 1 to 1048576"),
+        (WORDS, "words: int = -1", "has words = -1; it must be a whole number from 0"),
+        (ACTION, "int = 3", "has action = 3; it must be Discrete"),
+        (WORDS, f"{WORDS}\n    rate: float = 1e-300", "has the rate 1e-300; use"),
     ],
-)
-def test_a_host_habitat_that_could_not_be_resumed_does_not_begin(
-    before: str, after: str, says: str, pond: Path
+    "on the host": [
+        (WORDS, f"{WORDS}\n    rate: str = 'x'", "has the rate 'x'"),
+        (WORDS, f"{WORDS}\n    tallies: str = 'ab'", "has tallies = 'ab'"),
+        (VERSIONS, "{'pond': 1}", "has versions = {'pond': 1}"),
+        (VERSIONS, "['pond']", "has versions = ['pond']"),
+        ("np.zeros(self.cells, np.int32)", "[1, 2]", "save gives age of shape (2,)"),
+    ],
+    "brain": [
+        (THINK, "return memory, None", "Mind gives its output as None; the contract says float32"),
+        (THINK, "return memory", "Mind does not return a pair; return memory and output"),
+        (THINK, "return memory, senses", "Mind gives its output as float32 (32, 4)"),
+        ("return memory, (", "return senses, (", "Mind gives its memory as float32 (32, 4)"),
+        (THINK, "sys.exit(3)", "Mind fails in __call__: SystemExit: 3 (pond.py, line 14)"),
+        (THINK, "return memory, genome['input']", "Mind fails in __call__: KeyError: 'input'"),
+        (BLOCKS, "None", "Mind gives blocks as None"),
+        (BLOCKS, "sys.exit('bye')", "Mind fails in blocks: SystemExit: bye (pond.py, line 11)"),
+        (BLOCKS, "{'output': (0, 4)}", "block 'output' has the shape (0, 4)"),
+    ],
+    "mutation": [
+        (INHERIT, "return family.parents", "Still does not return a pair from inherit"),
+        (INHERIT, "return family.parents, None", "gives which children are mutants as"),
+        ("return family.parents,", "return family.parents[:, 1:],", "Still gives genomes of children as"),
+        (INHERIT, "raise ValueError", "Still fails in inherit: ValueError (pond.py, line 11)"),
+        (OF, f"{OF}    notes = 'ab'\n", "has notes = 'ab'; it must be a tuple"),
+        (OF, f"{OF}    notes_from = property(lambda self: 'cells')\n", "has notes_from = 'cells'"),
+        (OF, f"{OF}    moments = property(lambda self: 3)\n", "has moments = 3"),
+        (OF, f"{OF}    rates = lambda self, layout: 1 / 0\n", "fails in rates: ZeroDivisionError"),
+        (OF, f"{OF}    rates = lambda self, layout: {{'x': float('nan')}}\n", "gives rates as"),
+    ],
+}  # fmt: skip
+"""Kind of a part -> a piece of the text that works, another piece in its place, and what is said."""
+CASES = [(kind, *fault) for kind, faults in FAULTS.items() for fault in faults]
+
+
+@pytest.fixture
+def pond(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Return the file of a module that no test before has imported."""
+    monkeypatch.chdir(tmp_path)
+    sys.modules.pop("pond", None)
+    own_code._admitted.sources.pop("pond", None)
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    return tmp_path / "pond.py"
+
+
+def begun(kind: str) -> Any:
+    """Begin a run with the part in the file pond.py."""
+    words = ("--cells", 4, "--ticks", 9, "--quiet", "--out", "run")
+    return here("run", "CartPole-survival", *TEXTS[kind][1], *words)
+
+
+@pytest.mark.parametrize(("kind", "before", "after", "says"), CASES)
+def test_a_part_that_does_not_work_is_named(
+    kind: str, before: str, after: str, says: str, pond: Path
 ) -> None:
-    pond.write_text(HOST.replace(before, after))
-    complains(here("run", *WORDS, "--out", "run"), 2, "habitat: ", says)
+    text, _ = TEXTS[kind]
+    assert before in text
+    pond.write_text(text.replace(before, after))
+    table = "habitat" if kind in ("in JAX", "on the host") else kind
+    complains(begun(kind), 2, f"{table}: ", says)
     assert not Path("run").exists()
 
 
-def test_a_host_habitat_that_works_is_lived_in(pond: Path) -> None:
-    pond.write_text(HOST)
-    done = here("run", *WORDS, "--out", "run")
+@pytest.mark.parametrize("kind", TEXTS)
+def test_a_part_that_works_is_lived_with(kind: str, pond: Path) -> None:
+    pond.write_text(TEXTS[kind][0])
+    done = begun(kind)
     assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_a_habitat_that_ends_the_process_is_reported(pond: Path) -> None:
+    pond.write_text(
+        HOST.replace("import numpy", "import sys\n\nimport numpy").replace(
+            STEP, f"sys.exit(3)\n        {STEP}"
+        )
+    )
+    complains(begun("on the host"), 1, "the run's code has ended the process: exit(3)")
+
+
+def test_an_environment_of_a_library_is_not_traced_before_a_run(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """To trace a large one takes seconds, and the library has its own tests."""
+
+    def traced(*_: object) -> None:
+        pytest.fail("the environment was traced")
+
+    monkeypatch.setattr(config, "check_arrays", traced)
+    config.load("gymnax:gymnax:Catch-bsuite")

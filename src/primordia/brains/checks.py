@@ -22,19 +22,19 @@ def check_brain(brain: Brain, senses: int, outputs: int) -> None:
         InputError: a method fails, or its result does not keep the contract; the message says how.
     """
     tracing = Tracing("brain", brain)
-    blocks = tracing.called(brain.blocks, senses, outputs)
+    blocks = tracing.called("blocks", brain.blocks, senses, outputs)
     tracing.need(
         isinstance(blocks, dict),
         f"gives blocks as {blocks!r}; return a dictionary of names and shapes",
     )
     layout = brain.layout(senses, outputs)
-    length = tracing.called(brain.memory, senses, outputs)
+    length = tracing.called("memory", brain.memory, senses, outputs)
     tracing.need(
         type(length) is int and 0 <= length <= LARGEST,
         f"has a memory of length {length!r}; return a whole number, 0 for none",
     )
     genome = {name: _floats(*shape) for name, shape in layout.blocks}
-    thought = tracing.traced(brain.__call__, genome, _floats(length), _floats(senses))
+    thought = tracing.traced("__call__", brain, genome, _floats(length), _floats(senses))
     tracing.need(
         isinstance(thought, tuple) and len(thought) == 2,
         "does not return a pair; return memory and output",

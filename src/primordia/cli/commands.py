@@ -103,7 +103,7 @@ def _outcome() -> int:
         report(error)
         return 1
     except MemoryError as error:
-        report(f"there is not enough memory: {error}; ask for less".replace(": ;", ";"))
+        report(f"{str(error) or 'there is not enough memory'}; ask for less")
         return 1
     except OSError as error:
         if error.errno == errno.ENAMETOOLONG:

@@ -26,12 +26,11 @@ class OutputPath(PathType):
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Return the path."""
+        from primordia.runs.directory import OWN, VERSIONS
+
         path = super().convert(value, param, ctx)
         whole = Path(os.path.realpath(path.parent), path.name)
         for run in whole.parents:
-            if (run / "versions.json").is_file():
-                from primordia.runs.directory import OWN
-
-                if whole.relative_to(run).parts[0] in OWN:
-                    self.fail(f"{path} is part of the run {run}; name another path", param, ctx)
+            if (run / VERSIONS).is_file() and whole.relative_to(run).parts[0] in OWN:
+                self.fail(f"{path} is part of the run {run}; name another path", param, ctx)
         return path

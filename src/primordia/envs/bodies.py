@@ -9,7 +9,7 @@ from gymnasium import Space, spaces
 from primordia import device
 from primordia.compiled import shared
 from primordia.config import Config
-from primordia.habitats.contract import Compound, Continuous, Discrete, JaxHabitat
+from primordia.habitats.contract import Action, Compound, Continuous, Discrete, JaxHabitat
 from primordia.habitats.on_host import OnHost
 from primordia.law import life
 from primordia.law.genesis import body_words
@@ -119,29 +119,29 @@ def _part_space(part: Discrete | Continuous) -> Space:
     return spaces.Box(np.array(low, np.float32), np.array(high, np.float32))
 
 
-def as_row(action: Any, kind: Any) -> np.ndarray:
-    """Return a body's action in the habitat's form: int32 () or float32 (K,).
+def as_rows(actions: Any, kind: Action, count: int) -> np.ndarray:
+    """Return the actions of bodies in the habitat's form: int32 (N,) or float32 (N, K).
+
+    Args:
+        actions: actions of the batched space; for a compound action a tuple with an entry for each
+            part.
+        kind: the kind of one body's action.
+        count: the number N of bodies.
 
     Raises:
-        ValueError: there is no such action.
+        ValueError: there is no such action, or not one for each body.
     """
-    if isinstance(kind, Discrete):
-        _check_choice(action, kind)
-        return np.array(action, np.int32)
     if isinstance(kind, Compound):
-        parts = tuple(action)
-        if len(parts) != len(kind.parts):
-            raise ValueError(f"an action has {len(kind.parts)} parts, not {len(parts)}")
-        return np.concatenate(
-            [as_row(part, own).ravel() for part, own in zip(parts, kind.parts, strict=True)]
-        ).astype(np.float32)
-    row = np.asarray(action, np.float32)
-    if row.shape != (kind.size,):
-        raise ValueError(f"an action has the shape ({kind.size},), not {row.shape}")
-    return row
-
-
-def _check_choice(action: Any, kind: Discrete) -> None:
-    choice = np.asarray(action)
-    if choice.shape or choice.dtype.kind not in "iu" or not 0 <= choice < kind.size:
-        raise ValueError(f"an action is a whole number from 0 to {kind.size - 1}, not {action!r}")
+        pairs = zip(actions, kind.parts, strict=True)
+        columns = [as_rows(part, own, count).reshape(count, -1) for part, own in pairs]
+        return np.concatenate(columns, axis=1).astype(np.float32)
+    rows = np.asarray(actions)
+    if isinstance(kind, Continuous):
+        if rows.shape != (count, kind.size):
+            raise ValueError(f"actions: give the shape {(count, kind.size)}, not {rows.shape}")
+        return rows.astype(np.float32)
+    whole = rows.shape == (count,) and rows.dtype.kind in "iu"
+    if not whole or not ((rows >= 0) & (rows < kind.size)).all():
+        wanted = f"give {count} of the whole numbers from 0 to {kind.size - 1}"
+        raise ValueError(f"actions: {wanted}, not {np.array2string(rows, threshold=8)}")
+    return rows.astype(np.int32)

@@ -9,8 +9,8 @@ import numpy as np
 from gymnasium.error import ResetNeeded
 
 from primordia import config
-from primordia.envs.bodies import Births, Bodies, action_space, as_row, label, observation_space
-from primordia.habitats.contract import Ability
+from primordia.envs.bodies import Births, Bodies, action_space, as_rows, label, observation_space
+from primordia.habitats.contract import Ability, Compound
 
 FIRST = np.array([0])
 
@@ -68,14 +68,10 @@ class LifeEnv(gymnasium.Env):
         self._episode = 0 if seed is not None else self._episode + 1
         born = options or {}
         for name, value in born.items():
-            if (
-                name not in ("tick", "cell")
-                or not isinstance(value, int | np.integer)
-                or not 0 <= value < 2**31
-            ):
-                raise ValueError(
-                    f"options: {name} = {value!r}; give whole numbers as tick and cell"
-                )
+            whole = isinstance(value, int | np.integer) and 0 <= value < 2**31
+            if name not in ("tick", "cell") or not whole:
+                says = "give whole numbers as tick and cell"
+                raise ValueError(f"options: {name} = {value!r}; {says}")
         place = born.get("tick", self._episode), born.get("cell", 0)
         seeds = np.array([(self.np_random_seed or 0) % 2**64], np.uint64)
         self._bodies.begin(FIRST, Births(seeds, *(np.array([each]) for each in place)))
@@ -92,7 +88,9 @@ class LifeEnv(gymnasium.Env):
         """
         if not self._alive[0]:
             raise ResetNeeded("there is no life to go on with: call reset first")
-        self._action = as_row(action, self._bodies.habitat.action)[None]
+        kind = self._bodies.habitat.action
+        one = [[part] for part in action] if isinstance(kind, Compound) else [action]
+        self._action = as_rows(one, kind, 1)
         cause = int(self._bodies.step(self._action, self._alive)[0])
         self._alive[0] = not (died := cause >= 0)
         senses = self._bodies.senses[0].copy()

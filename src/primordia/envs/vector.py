@@ -7,11 +7,10 @@ from typing import Any
 import numpy as np
 from gymnasium.error import ResetNeeded
 from gymnasium.vector import AutoresetMode, VectorEnv
-from gymnasium.vector.utils import batch_space, iterate
+from gymnasium.vector.utils import batch_space
 
 from primordia import config
-from primordia.envs.bodies import Births, Bodies, action_space, as_row, label, observation_space
-from primordia.habitats.contract import Compound
+from primordia.envs.bodies import Births, Bodies, action_space, as_rows, label, observation_space
 
 
 class LifeVectorEnv(VectorEnv):
@@ -115,12 +114,9 @@ class LifeVectorEnv(VectorEnv):
         """
         if not self._begun:
             raise ResetNeeded("no life has begun: call reset first")
-        kind, alive = self._bodies.habitat.action, self._alive.copy()
-        rows = iterate(self.action_space, actions) if isinstance(kind, Compound) else actions
-        each = [as_row(row, kind) for row in rows]
-        if len(each) != self.num_envs:
-            raise ValueError(f"give one action for each of {self.num_envs} bodies, not {len(each)}")
-        cause = self._bodies.step(np.stack(each), alive)
+        alive = self._alive.copy()
+        rows = as_rows(actions, self._bodies.habitat.action, self.num_envs)
+        cause = self._bodies.step(rows, alive)
         died = cause >= 0
         self._alive &= ~died
         if self.metadata["autoreset_mode"] is AutoresetMode.NEXT_STEP and not alive.all():

@@ -60,10 +60,9 @@ def clades_of(lives: Lives) -> Clades:
 def occupants(lives: Lives, cells: np.ndarray, ticks: np.ndarray) -> np.ndarray:
     """Return the row of the organism in each cell of a world after each tick, or EMPTY: int64 (T, N)."""
     order = np.lexsort((lives.born, lives.cell))
-    births = np.unique(lives.born)  # numbered, since cell x tick may exceed 64 bits
-    begun = lives.cell[order].astype(np.int64) * len(births) + np.searchsorted(
-        births, lives.born[order]
-    )
+    # Ticks of births are numbered, since a product of a cell and a tick may exceed 64 bits.
+    births, birth = np.unique(lives.born, return_inverse=True)
+    begun = lives.cell[order].astype(np.int64) * len(births) + birth[order]
     latest = np.searchsorted(births, ticks, side="right") - 1
     at = np.searchsorted(begun, cells * len(births) + latest[:, None], side="right") - 1
     row = order[np.maximum(at, 0)]

@@ -92,13 +92,13 @@ def check_arrays(habitat: JaxHabitat) -> None:
     """
     tracing = Tracing("habitat", habitat)
     words = jax.ShapeDtypeStruct((COUNT, habitat.words), jnp.uint32)
-    bodies = tracing.traced(habitat.reset, words)
+    bodies = tracing.traced("reset", habitat.reset, words)
     for leaf in jax.tree.leaves(bodies):
         made = f"makes bodies with an array {leaf.dtype} {leaf.shape}"
         tracing.need(leaf.shape[:1] == (COUNT,), f"{made}; its first axis must be bodies")
-    senses = tracing.traced(habitat.sense, bodies)
+    senses = tracing.traced("sense", habitat.sense, bodies)
     tracing.typed("senses", senses, (COUNT, habitat.senses_size), jnp.float32)
-    stepped = tracing.traced(habitat.step, bodies, _shape_of(habitat.action))
+    stepped = tracing.traced("step", habitat.step, bodies, _shape_of(habitat.action))
     tracing.need(
         isinstance(stepped, tuple) and len(stepped) == 2,
         "does not return a pair from step; return bodies and an Outcome",
@@ -111,7 +111,7 @@ def check_arrays(habitat: JaxHabitat) -> None:
     )
     for one, other in zip(jax.tree.leaves(after), jax.tree.leaves(bodies), strict=True):
         tracing.typed("bodies after a step", one, other.shape, other.dtype)
-    _check_outcome(tracing, outcome)
+    check_outcome(tracing, outcome, COUNT)
 
 
 def _shape_of(action: Action) -> jax.ShapeDtypeStruct:
@@ -122,9 +122,10 @@ def _shape_of(action: Action) -> jax.ShapeDtypeStruct:
     return jax.ShapeDtypeStruct((COUNT, columns), jnp.float32)
 
 
-def _check_outcome(tracing: Tracing, outcome: Any) -> None:
+def check_outcome(tracing: Tracing, outcome: Any, count: int) -> None:
+    """Check that a step reports an Outcome of `count` bodies."""
     tracing.need(isinstance(outcome, Outcome), f"returns {outcome!r} from step; return an Outcome")
     for name, each in outcome._asdict().items():
         if each is not None or name == "fatal":
             dtype = jnp.bool_ if name in FLAGS else jnp.float32
-            tracing.typed(f"outcome.{name}", each, (COUNT,), dtype)
+            tracing.typed(f"outcome.{name}", each, (count,), dtype)

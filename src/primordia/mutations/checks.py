@@ -6,6 +6,7 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jax import Array
 
 from primordia.brains.layout import Layout
 from primordia.mutations.contract import PURPOSES, Draws, Family, Moments, Mutation
@@ -29,27 +30,25 @@ def check_mutation(mutation: Mutation, layout: Layout) -> None:
     """
     tracing = Tracing("mutation", mutation)
     _check_properties(tracing, mutation)
-    size, rates = len(mutation.notes), tracing.called(mutation.rates, layout)
+    size, rates = len(mutation.notes), tracing.called("rates", mutation.rates, layout)
     tracing.need(
         isinstance(rates, dict)
         and all(isinstance(each, float) and np.isfinite(each) for each in rates.values()),
         f"gives rates as {rates!r}; return a dictionary of names and finite floats",
     )
     family = _family(mutation, layout, rates)
-    notes = tracing.called(mutation.founders_notes, COUNT)
+    notes = tracing.called("founders_notes", mutation.founders_notes, COUNT)
     tracing.typed("founders' notes", notes, (COUNT, size), jnp.int32)
-    if mutation.moments is None:
-        noted = tracing.traced(_named("note", partial(_note, mutation, layout)), family)
-        tracing.typed("notes", noted, (COUNT, size), jnp.int32)
-    pair: Any = tracing.traced(_named("inherit", partial(mutation.inherit, layout)), family)
+    noted = tracing.traced("note", partial(_note, mutation, layout), family)
+    tracing.typed("notes", noted, (COUNT, size), jnp.int32)
+    pair: Any = tracing.traced("inherit", partial(mutation.inherit, layout), family)
     tracing.need(
         isinstance(pair, tuple) and len(pair) == 2,
         "does not return a pair from inherit; return genomes, and which are mutants",
     )
     tracing.typed("genomes of children", pair[0], (COUNT, layout.length), jnp.float32)
     tracing.typed("which children are mutants", pair[1], (COUNT,), jnp.bool_)
-    founders = _named("founders", partial(mutation.founders, layout))
-    made = tracing.traced(founders, family.draws)
+    made = tracing.traced("founders", partial(mutation.founders, layout), family.draws)
     tracing.typed("genomes of founders", made, (COUNT, layout.length), jnp.float32)
 
 
@@ -86,10 +85,7 @@ def _family(mutation: Mutation, layout: Layout, rates: dict[str, float]) -> Fami
 
 
 def _note(mutation: Mutation, layout: Layout, family: Family) -> Any:
-    return mutation.note(layout, family, None)
+    def unchanged(children: Array) -> Array:
+        return jnp.zeros(len(children), jnp.float32)
 
-
-def _named(name: str, function: Any) -> Any:
-    """Return a partial function that has the name of the method that it calls."""
-    function.__name__ = name
-    return function
+    return mutation.note(layout, family, None if mutation.moments is None else unchanged)

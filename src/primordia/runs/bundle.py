@@ -156,7 +156,8 @@ def unbundle(file: Path, folder: Path) -> None:
     temporary = folder.with_name(files.TEMPORARY + folder.name)
     with interrupts.undone_by(partial(directory.remove_empty, missing)):
         files.own_folder(temporary)
-        with directory.locked(temporary), interrupts.undone_by(partial(_discard, temporary)):
+        discard = partial(shutil.rmtree, temporary, ignore_errors=True)
+        with directory.locked(temporary), interrupts.undone_by(discard):
             left = set(temporary.iterdir()) - {temporary / LOCK}  # by a process that was killed
             for each in left:
                 files.remove(each)
@@ -166,10 +167,6 @@ def unbundle(file: Path, folder: Path) -> None:
                 files.sync(folder.parent)
             except OSError as error:
                 raise Trouble(f"{folder} cannot be written: {error.strerror or error}") from None
-
-
-def _discard(folder: Path) -> None:
-    shutil.rmtree(folder, ignore_errors=True)
 
 
 def refuse_changes(path: Path) -> None:

@@ -5,7 +5,7 @@ stranger, and so may its code. The code is executed only after the user has trus
 files, once on each machine. Code with which the user has begun a run is trusted.
 
 A run may also name classes and functions of installed packages. Even an installed function can do
-harm if a stranger chooses it. So they are trusted by name, except those of LIBRARIES.
+harm if a stranger chooses it. So they are trusted by name, except those of `own_code.LIBRARIES`.
 """
 
 import hashlib
@@ -26,14 +26,12 @@ from primordia.runs.description import Description
 from primordia.settings.tables import PARTS
 
 FOLDER = "code"
-LIBRARIES = ("ale_py", "craftax", "gymnasium", "gymnax", "octax", "playground")
-"""Packages of environments, which every run may name in front of an environment: `gymnax:NAME`."""
 _trusted: set[str] = set()
 """Marks of the code that this process trusts, for the case that they cannot be stored."""
 
 
 class Code(NamedTuple):
-    """The code that a run executes, beside Primordia's own and that of its LIBRARIES."""
+    """The code that a run executes, beside Primordia's own and that of its libraries."""
 
     files: Sources
     """files outside installed packages"""
@@ -80,13 +78,13 @@ def found(config: Config) -> Code:
 
 
 def _installed(config: Config, parts: Iterable[str]) -> frozenset[str]:
-    """Return the parts of installed packages, other than LIBRARIES, that settings name."""
+    """Return the parts of installed packages, other than libraries, that settings name."""
     named = [each for part in parts for each in config.code_of(part)]
     modules = {each: each.partition(":")[0] for each in named}
     return frozenset(
         each
         for each, module in modules.items()
-        if module not in LIBRARIES and own_code.is_installed(module)
+        if module not in own_code.LIBRARIES and own_code.is_installed(module)
     )
 
 
@@ -145,7 +143,7 @@ def admit(run: Path, code: Code) -> None:
     asked = Code({} if own_code.is_loaded(code.files) else code.files, code.installed)
     if not asked.marks <= _trusted | _stored():
         raise InputError(
-            f"{run} executes code that is not part of Primordia: {asked.names}. Read this code; then"
+            f"{run} executes code that Primordia does not know: {asked.names}. Read this code; then"
             " add --trust once, or call primordia.load(run, trust=True)"
         )
     try:

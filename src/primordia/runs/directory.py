@@ -61,7 +61,7 @@ def create(run: Path, config: Config, fill: Callable[[], object] | None = None) 
         with locked(run), interrupts.undone_by(partial(_remove_lock, run)):
             refuse_if_taken(run)  # another process may have made the directory since
             with held(run) as check, interrupts.undone_by(partial(_remove_unbegun, run, check)):
-                files.write_text(run / UNBEGUN, "")
+                files.mark(run / UNBEGUN)
                 make_folders(run)
                 if (founders := law.heredity.ancestors) is not None:
                     genomes.write(run / genomes.FOUNDERS, law.heredity.layout, founders, {})

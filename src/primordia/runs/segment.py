@@ -33,15 +33,19 @@ def read(path: Path, rows: int, schema: pa.Schema, columns: Sequence[str] | None
             if len(file.schema_arrow) != len(found) or found != wanted:
                 raise Trouble(f"{path} is damaged: its columns are not those of this table")
             # Compared before reading, since a small file can hold very many equal rows.
-            if file.metadata.num_rows != rows:
-                has = f"it has {file.metadata.num_rows} rows instead of {rows}"
-                raise Trouble(f"{path} is damaged: {has}")
+            _check_count(path, file.metadata.num_rows, rows)
             table = file.read(columns, use_threads=rows >= MANY)
             names = list(columns) if columns else schema.names
             table = table.select(names).cast(pa.schema([schema.field(name) for name in names]))
     except (OSError, pa.ArrowException, MemoryError, ValueError) as error:
         message = str(error).partition("\n")[0]
         raise Trouble(f"{path} is damaged: {message}; restore it from a copy") from None
+    _check_count(path, table.num_rows, rows)
     if any(table[name].null_count for name in table.column_names if name not in NULLABLE):
         raise Trouble(f"{path} is damaged: values are missing")
     return table
+
+
+def _check_count(path: Path, found: int, rows: int) -> None:
+    if found != rows:
+        raise Trouble(f"{path} is damaged: it has {found} rows instead of {rows}")

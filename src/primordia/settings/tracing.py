@@ -23,8 +23,8 @@ class Tracing:
         """Take the part, and the name of its table in settings."""
         self._part, self._start = part, f"{kind}: {type(part).__name__} "
 
-    def called(self, function: Callable[..., Result], *arguments: Any) -> Result:
-        """Return what a function returns.
+    def called(self, name: str, function: Callable[..., Result], *arguments: Any) -> Result:
+        """Return what a function returns; `name` is its name in the contract.
 
         Raises:
             InputError: the function fails.
@@ -36,21 +36,11 @@ class Tracing:
         except (Exception, SystemExit) as error:  # the part may be the user's
             text = (str(error).splitlines() or [""])[0]
             says = f"{type(error).__name__}: {text}".removesuffix(": ")
-            name = getattr(function, "__name__", type(function).__name__)
             raise self.fault(f"fails in {name}: {says}{self._line_of(error)}") from None
 
-    def traced(self, function: Callable[..., Any], *arguments: Any) -> Any:
-        """Return the shapes and dtypes of what a function returns; nothing is computed.
-
-        Raises:
-            InputError: the function fails.
-        """
-
-        def trace(*arguments: Any) -> Any:
-            return jax.eval_shape(function, *arguments)
-
-        trace.__name__ = getattr(function, "__name__", "__call__")
-        return self.called(trace, *arguments)
+    def traced(self, name: str, function: Callable[..., Any], *arguments: Any) -> Any:
+        """Return the shapes and dtypes of what a function returns; nothing is computed. See `called`."""
+        return self.called(name, jax.eval_shape, function, *arguments)
 
     def need(self, holds: object, says: str) -> None:
         """Raise InputError unless a condition holds."""

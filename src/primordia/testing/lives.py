@@ -9,6 +9,7 @@ import jax
 import numpy as np
 from PIL.Image import Image
 
+from primordia.habitats.checks import check_outcome
 from primordia.habitats.contract import (
     Ability,
     Action,
@@ -17,11 +18,11 @@ from primordia.habitats.contract import (
     Discrete,
     HostHabitat,
     JaxHabitat,
-    Outcome,
 )
 from primordia.habitats.on_host import OnHost
 from primordia.random.trials import normal, words
-from primordia.testing.report import ContractError, need, typed
+from primordia.settings.tracing import Tracing
+from primordia.testing.report import ContractError, kept, need, typed
 from primordia.testing.trial import ALL
 
 TICKS = 12
@@ -33,11 +34,8 @@ Past: TypeAlias = list[tuple[Any, ...]]
 
 def judged(habitat: object, outcome: Any, count: int) -> None:
     """Raise ContractError if a step does not report an Outcome of `count` bodies."""
-    need(isinstance(outcome, Outcome), habitat, f"returns {outcome!r} from step; return an Outcome")
-    for name, each in outcome._asdict().items():
-        if each is not None or name == "fatal":
-            dtype = np.bool_ if name in ("fatal", "fault", "expired") else np.float32
-            typed(habitat, f"outcome.{name}", each, (count,), dtype)
+    with kept():
+        check_outcome(Tracing("habitat", habitat), outcome, count)
 
 
 def actions(kind: Action) -> np.ndarray:

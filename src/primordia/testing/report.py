@@ -9,6 +9,7 @@ import jax
 import numpy as np
 
 from primordia.errors import InputError
+from primordia.settings.tracing import Tracing
 
 ROUNDED = (
     "; compilers differ in the rounding of products that are added, and in the order of sums: use"
@@ -38,10 +39,8 @@ def need(holds: object, part: object, says: str) -> None:
 
 def typed(part: object, what: str, array: Any, shape: tuple[int, ...], dtype: Any) -> None:
     """Raise ContractError if an array has another shape or dtype than these."""
-    wanted = f"{np.dtype(dtype)} {shape}"
-    is_array = isinstance(array, np.ndarray | jax.Array | jax.ShapeDtypeStruct)
-    found = f"{array.dtype} {tuple(array.shape)}" if is_array else f"{array!r}"
-    need(found == wanted, part, f"gives {what} as {found}; the contract says {wanted}")
+    with kept():
+        Tracing("part", part).typed(what, array, shape, dtype)
 
 
 def same(part: object, one: Any, other: Any, says: str, first: int = 0) -> None:
