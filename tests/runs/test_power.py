@@ -15,7 +15,7 @@ import primordia
 from primordia import files
 from primordia.errors import InputError
 from primordia.history.info import info
-from primordia.runs import checkpoint, loop, record
+from primordia.runs import checkpoint, directory, loop, record
 from primordia.runs.archive import Archive
 from primordia.runs.arrays import world_ticks
 from tests.disk import Disk, Instant
@@ -118,6 +118,18 @@ def test_a_power_cut_loses_no_checkpoint_and_changes_no_life(
     for number, cut in enumerate(draw.sample(range(1, last + 1), 9)):
         how = ["forgets", "names", f"chooses {number}"][number % 3]
         assert_goes_on(lived, cut, how, tmp_path / str(number))
+
+
+@pytest.mark.parametrize("how", ["forgets", "names", "chooses 1"])
+def test_a_start_that_was_cut_off_is_no_obstacle(lived: Recorded, tmp_path: Path, how: str) -> None:
+    """What it has left is removed, and only that: no other files count as left by a start."""
+    before_the_first = min(number for number, _ in lived.saved)
+    for cut in range(1, before_the_first):
+        lived.disk.left(lived.disk.instants[cut - 1], folder := tmp_path / str(cut), how)
+        run = folder / "some" / "run"
+        if directory.clear_unbegun(run):
+            directory.refuse_if_taken(run)
+        shutil.rmtree(folder)
 
 
 @pytest.mark.slow

@@ -12,12 +12,10 @@ import pytest
 from primordia import files, interrupts
 from primordia.errors import InputError, Trouble
 from primordia.experiments import job
-from primordia.experiments.campaign import begin
 from primordia.experiments.plan import Plan
 from primordia.runs import directory, loop
 from primordia.runs.directory import LOCK
 from tests.commands import complains, here
-from tests.experiments.meadows import write
 from tests.trouble import SMALL, contents, goes_on, started
 from tests.worlds import MEADOW, config
 
@@ -317,79 +315,3 @@ def test_a_folder_is_not_made_in_place_of_a_file(name: str, tmp_path: Path) -> N
     (tmp_path / "file").write_text("mine")
     with pytest.raises(InputError, match="is not a folder, or leads through a file"):
         files.make_folder(tmp_path / name)
-
-
-def test_no_file_of_the_user_is_removed_for_a_run(tmp_path: Path) -> None:
-    """A folder of the user's may hold files with the names of a run's files."""
-    mine = tmp_path / "mine"
-    for name in ("code/a.py", "metrics/a.csv", "checkpoints/weights.pt", "config.toml", "lock"):
-        (mine / name).parent.mkdir(parents=True, exist_ok=True)
-        (mine / name).write_text("mine")
-    before = contents(mine)
-    done = here("run", *SMALL, "--ticks", 9, "--resume", "--out", mine)
-    complains(done, 2, f"{mine} exists already and is not a run")
-    assert contents(mine) == before
-
-
-def test_an_experiment_writes_into_no_folder_behind_a_link(tmp_path: Path) -> None:
-    mine = tmp_path / "mine"
-    (mine / "code").mkdir(parents=True)
-    (mine / "code" / "a.py").write_text("mine")
-    file = write(tmp_path / "experiment")
-    chosen = begin(file, tmp_path / "out")
-    link = chosen.path / chosen.jobs[0].folder
-    link.parent.mkdir()
-    link.symlink_to(mine)
-    ending = job.ending_of(chosen.plan, chosen.jobs[0], chosen.path)
-    assert (
-        ending.error
-        == f"{link} is a symbolic link, not a folder; a run writes only into its own folders"
-    )
-    assert [path.name for path in mine.rglob("*")] == ["code", "a.py"]
-
-
-PLACES = [
-    ["bundle", "{run}", "{run}/config.toml"],
-    ["bundle", "{run}", "{run}/lock"],
-    ["export", "{run}", "{run}/checkpoints/000000/state.npz"],
-    ["lineage", "{run}", "--out", "{run}/births/000000.parquet"],
-    ["revive", "{run}", "3", "--save", "{run}/deaths/000000.parquet"],
-    ["plot", "{run}", "--out", "{run}/births"],
-    ["report", "{run}", "--out", "{link}/versions.json"],
-    ["film", "{run}", "--out", "{run}/metrics/a.mp4"],
-    ["track", "{run}", "--tensorboard", "{run}/deaths/a"],
-    ["assay", "heredity", "{run}", "--out", "{run}/checkpoints"],
-    ["new", "{run}/origin", "--env", "gym:CartPole-v1"],
-]
-
-
-@pytest.mark.parametrize("words", PLACES, ids=lambda words: words[0])
-def test_no_output_takes_the_place_of_a_part_of_a_run(
-    words: list[str], run: Path, tmp_path: Path
-) -> None:
-    (tmp_path / "link").symlink_to(run)
-    before = contents(run)
-    done = here(*(word.format(run=run, link=tmp_path / "link") for word in words))
-    complains(done, 2, f"is part of the run {run}; name another path")
-    assert contents(run) == before
-
-
-def test_an_output_may_lie_in_a_run(run: Path) -> None:
-    assert here("export", run, run / "genome").returncode == 0
-    assert here("plot", run, "--figure", "ages", "--out", run / "mine").returncode == 0
-
-
-@pytest.mark.parametrize("name", ["births", "checkpoints"])
-def test_a_file_in_place_of_a_folder_of_a_run_is_named(run: Path, name: str) -> None:
-    files.remove(run / name)
-    (run / name).write_text("mine")
-    done = here("resume", run, "--ticks", 9)
-    assert done.returncode in (1, 2)
-    complains(done, done.returncode, str(run / name))
-    assert (run / name).read_text() == "mine"
-
-
-def test_a_file_is_no_folder_of_a_run(tmp_path: Path) -> None:
-    (tmp_path / "births").write_text("mine")
-    with pytest.raises(InputError, match="births is not a folder"):
-        files.own_folder(tmp_path / "births")

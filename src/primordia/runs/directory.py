@@ -31,7 +31,7 @@ GLANCE = 0.05
 """Seconds to wait for a lock, since `is_written` in another process may hold it briefly."""
 UNBEGUN = f"{files.TEMPORARY}run"
 """The file that marks a directory in which a run is being started; other files are never removed."""
-OWN = (VERSIONS, *FOLDERS, code.FOLDER, checkpoint.ORIGIN, *INPUTS, LOCK, UNBEGUN)
+OWN = (VERSIONS, *FOLDERS, code.FOLDER, checkpoint.ORIGIN, *INPUTS, LOCK)
 """The names in a new run's directory."""
 
 
@@ -81,9 +81,18 @@ def _remove_unbegun(run: Path, check: Callable[[], None]) -> None:
         return
     with suppress(Trouble):
         check()
-        for name in OWN:
-            if os.path.lexists(run / name):
-                files.remove(run / name)
+        _remove_start(run)
+
+
+def _remove_start(run: Path) -> None:
+    """Remove what the start of a run has made, except the lock. The mark goes last, so that a process
+    that is killed meanwhile leaves no files without a mark."""
+    for path in run.iterdir():
+        name = path.name.removeprefix(files.TEMPORARY)
+        if name in OWN and name != LOCK:
+            files.remove(path)
+    if (run / UNBEGUN).exists():
+        files.remove(run / UNBEGUN)
 
 
 def clear_unbegun(run: Path) -> bool:
@@ -101,9 +110,7 @@ def clear_unbegun(run: Path) -> bool:
     with locked(run):
         if (run / VERSIONS).exists():
             return False
-        for name in OWN:
-            if name != LOCK and os.path.lexists(run / name):
-                files.remove(run / name)
+        _remove_start(run)
     return True
 
 
