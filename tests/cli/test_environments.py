@@ -149,3 +149,11 @@ def test_what_is_wrong_with_an_environment_in_jax_is_found() -> None:
     wrong = here("check", "gymnax:tests.walks:Overwriting")
     assert wrong.returncode == 1
     assert "Found: step changes the state that it is given." in wrong.stdout
+
+
+def test_a_task_file_may_lie_in_a_new_folder(tmp_path: Path) -> None:
+    file = tmp_path / "new" / "pond.toml"
+    assert here("new", file, "--env", POND).returncode == 0
+    assert tomllib.loads(file.read_text())["task"] == "Pond-v0"
+    complains(here("new", tmp_path / "other" / "x.toml", "--env", "gym:No-v0"), 2, "No")
+    assert not (tmp_path / "other").exists()

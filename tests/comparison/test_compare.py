@@ -218,6 +218,7 @@ def test_runs_that_cannot_be_compared_are_refused(runs: list[Path], tmp_path: Pa
     complains(here("compare"), 2, "two or more runs")
     complains(here("compare", runs[0]), 2, "two or more runs")
     complains(here("compare", runs[0], runs[0]), 2, "given twice")
+    complains(here("compare", f"a={runs[0]}", f"a={runs[1]}"), 2, "two runs are named a")
     complains(here("compare", runs[0], other), 2, "meadow", "pasture")
     complains(here("compare", runs[0], tmp_path / "none"), 2, "none")
     complains(here("compare", *runs, "--ticks", 601), 2, "--ticks 601", "stopped at 600")

@@ -86,7 +86,7 @@ def _sizes(archive: zipfile.ZipFile, most: int) -> dict[str, int]:
     # A small file could hold compressed arrays, or overlapping ones, of many gigabytes.
     stored = all(each.compress_type == zipfile.ZIP_STORED for each in entries)
     if not stored or sum(each.file_size for each in entries) > most:
-        raise ValueError
+        raise ValueError("the arrays are compressed, or larger than their file")
     # Runs of the same arm share the names.
     return {sys.intern(each.filename.removesuffix(NPY)): each.file_size for each in entries}
 
