@@ -14,6 +14,7 @@ not end, since a simulator hangs, a second signal ends the process.
 
 import atexit
 import os
+import select
 import signal
 import threading
 import time
@@ -145,12 +146,18 @@ def _ignore() -> None:
 
 def _wait_and_end(woken: int) -> None:
     first = float("inf")
+    patience = None  # before a first signal, and after the line on it
     while True:
+        if not select.select([woken], [], [], patience)[0]:
+            patience = None
+            if _deferred:
+                _say("Stopping when the simulator answers; press Ctrl-C once more to stop at once")
+            continue
         os.read(woken, 1)  # the system writes the number of each signal
         now = time.monotonic()
         if not _deferred or now - first >= PATIENCE:
             _end()
-        first = min(first, now)
+        first, patience = min(first, now), PATIENCE
 
 
 def _end() -> None:
@@ -161,6 +168,11 @@ def _end() -> None:
             with suppress(Exception):
                 undo()
         with suppress(Exception):
-            os.write(2, f"{_last_words[-1]()}\n".encode(errors="backslashreplace"))
+            _say(_last_words[-1]())
     finally:
         os._exit(STATUS)
+
+
+def _say(line: str) -> None:
+    with suppress(OSError):
+        os.write(2, f"{line}\n".encode(errors="backslashreplace"))

@@ -13,6 +13,7 @@ import importlib.util
 import site
 import sys
 import sysconfig
+import traceback
 import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
@@ -214,6 +215,14 @@ def is_installed(module: str) -> bool:
     return any(file.is_relative_to(folder) for file in files for folder in _INSTALLED)
 
 
+def place_of(error: BaseException) -> str | None:
+    """Return the file and line of admitted code in which an error arose; None if it arose elsewhere."""
+    files = {str(source.file) for source in _admitted.sources.values()}
+    frames = traceback.extract_tb(error.__traceback__)
+    places = [f"{each.filename}, line {each.lineno}" for each in frames if each.filename in files]
+    return places[-1] if places else None
+
+
 def packages(modules: Iterable[str]) -> dict[str, str]:
     """Return the versions of the installed packages that hold some of these modules, by name."""
     tops = {module.partition(".")[0] for module in modules if is_installed(module)} - {"primordia"}
@@ -249,10 +258,7 @@ def _loaded(module: str) -> Source | None:
 def _spec(name: str) -> ModuleSpec | None:
     try:
         return importlib.util.find_spec(name)
-    except (
-        ValueError,
-        ImportError,
-    ):  # a module such as __main__ may not state its file
+    except (ValueError, ImportError):  # a module such as __main__ may not state its file
         return None
 
 
@@ -275,12 +281,7 @@ def _imports(text: bytes, name: str) -> set[str]:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             tree = ast.parse(text)
-    except (
-        SyntaxError,
-        ValueError,
-        RecursionError,
-        MemoryError,
-    ):  # the import will report the error
+    except (SyntaxError, ValueError, RecursionError, MemoryError):  # the import will report it
         return imported
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):

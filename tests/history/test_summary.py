@@ -22,7 +22,7 @@ def world(**changed: Any) -> dict[str, Any]:
 
 def summarised(worlds: list[dict[str, Any]], **changed: Any) -> str:
     base = {"task": "T", "cells": 8, "inheritance": "parent", "exact": True, "restarts": 0}
-    return summary({**base, "worlds": worlds, **changed})
+    return summary({**base, "damaged": [], "worlds": worlds, **changed})
 
 
 def test_the_summary_of_one_world_names_its_moments() -> None:

@@ -38,11 +38,14 @@ def test_a_checkpoint_with_a_damaged_state_is_skipped(
 ) -> None:
     state = newest(run) / "state.npz"
     damage(state)
-    assert here("info", run).returncode == 0
+    shown = here("info", run)
+    assert (shown.returncode, shown.stderr) == (0, "")
+    assert f"not the newest state, since a checkpoint is damaged: {state}" in shown.stdout
     complains(here("verify", run), 1, str(state))
     done = here("resume", run, "--ticks", TICKS, "--quiet")
     complains(done, 0, "a damaged checkpoint was not used", str(state))
     assert digest(run) == through
+    assert "damaged" not in here("info", run).stdout
 
 
 @pytest.mark.parametrize("damage", [flip, miscount, garble, empty, Path.unlink])

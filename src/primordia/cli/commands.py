@@ -5,7 +5,7 @@ import logging
 
 import click
 
-from primordia import interrupts
+from primordia import interrupts, own_code
 from primordia.cli import (
     bundle,
     descent,
@@ -105,10 +105,21 @@ def _outcome() -> int:
     except MemoryError as error:
         report(f"{str(error) or 'there is not enough memory'}; ask for less")
         return 1
-    except OSError as error:
-        if error.errno == errno.ENAMETOOLONG:
-            report(f"the file name {str(error.filename)[:40]}... is too long; give a shorter one")
+    except Exception as error:
+        if (place := own_code.place_of(error)) is not None:
+            text = " ".join(str(error).split())
+            report(f"{place}: {type(error).__name__}: {text}".removesuffix(": "))
             return 2
-        named = error.filename is not None and error.strerror is not None
-        report(f"{error.filename}: {error.strerror}" if named else error)
-        return 1
+        if isinstance(error, OSError):
+            return _of_system(error)
+        raise
+
+
+def _of_system(error: OSError) -> int:
+    """Report an error of the operating system. Return the exit status."""
+    if error.errno == errno.ENAMETOOLONG:
+        report(f"the file name {str(error.filename)[:40]}... is too long; give a shorter one")
+        return 2
+    named = error.filename is not None and error.strerror is not None
+    report(f"{error.filename}: {error.strerror}" if named else error)
+    return 1

@@ -23,12 +23,13 @@ def info(run: Records) -> dict[str, Any]:
     among the later half of the births; see `threshold`.
     `saturation` and `fixation` each hold a tick and the number of births until then (founders
     included); each is None if it has not happened. `restarts` is the number of times that the run
-    was resumed with bodies as at birth, since its habitat cannot save them. Ages, in ticks, and the
-    habitat's counts (`tallies`) are those of the living. `break_even` holds the food per tick and
-    the food per second that keep energy constant, without effort, under the present climate.
-    `tries_per_life` tells how often an organism tries to copy itself in a life of mean length, at
-    the present rate of replication. If the number is below one, lineages die out. The fields of a
-    single world also appear at the top level.
+    was resumed with bodies as at birth, since its habitat cannot save them. `damaged` holds a line
+    for each newer checkpoint that is damaged, so that the numbers come from an earlier one. Ages, in
+    ticks, and the habitat's counts (`tallies`) are those of the living. `break_even` holds the food
+    per tick and the food per second that keep energy constant, without effort, under the present
+    climate. `tries_per_life` tells how often an organism tries to copy itself in a life of mean
+    length, at the present rate of replication. If the number is below one, lineages die out. The
+    fields of a single world also appear at the top level.
     """
     config, progress = run.config, run.progress
     worlds = [
@@ -47,6 +48,7 @@ def info(run: Records) -> dict[str, Any]:
         "wall_s": progress.wall_s,
         "exact": progress.exact,
         "restarts": progress.restarts,
+        "damaged": run.damaged,
         "limits": progress.limits.model_dump(),
         "versions": run.versions,
     }

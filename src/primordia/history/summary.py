@@ -23,6 +23,9 @@ def summary(info: dict[str, Any]) -> str:
         lines += _all_worlds(worlds)
     if not info["exact"]:
         lines.append("  not exact: parts of this run cannot be repeated bit for bit")
+    lines += [
+        f"  not the newest state, since a checkpoint is damaged: {each}" for each in info["damaged"]
+    ]
     if times := info["restarts"]:
         often = "once" if times == 1 else f"{times:,} times"
         lines.append(f"  the living got new bodies {often}, when the run was resumed")

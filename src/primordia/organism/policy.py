@@ -7,6 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from primordia.compiled import shared
+from primordia.errors import InputError
 from primordia.habitats.contract import Discrete
 from primordia.law.law import Law
 from primordia.law.motor import chosen
@@ -49,8 +50,13 @@ class Policy:
 
         Returns:
             The chosen number if actions are discrete; else float32 (K,), without the motor's noise.
+
+        Raises:
+            InputError: there are more or fewer senses than the brain has.
         """
         row = jnp.asarray(senses, jnp.float32).reshape(1, -1)
+        if row.shape[1] != self._law.senses:
+            raise InputError(f"{row.shape[1]} senses are given; the brain has {self._law.senses}")
         self._memory, output = self._think(self._genome, self._memory, row)
         action = chosen(self._law.action, output, output)[0]
         return int(action) if isinstance(self._law.action, Discrete) else np.asarray(action)

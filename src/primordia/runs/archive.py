@@ -142,6 +142,11 @@ class Archive(Records):
         return checkpoint.newest(self.path, self.fault_in)
 
     @property
+    def damaged(self) -> list[str]:
+        """The fault of each damaged checkpoint that is newer than `last`."""
+        return self.newest[1]
+
+    @property
     def last(self) -> Checkpoint:
         """The newest whole checkpoint.
 

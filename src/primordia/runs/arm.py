@@ -100,6 +100,11 @@ class Arm(Records):
             restarts=sum(one.restarts for one in each),
         )
 
+    @property
+    def damaged(self) -> list[str]:
+        """The fault of each damaged checkpoint that is newer than the state of its run."""
+        return [fault for run in self.runs for fault in run.damaged]
+
     @cached_property
     def row_digests(self) -> dict[str, np.ndarray]:
         """The sums of row hashes of each table, uint64 (W, 2)."""

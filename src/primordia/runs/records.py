@@ -64,6 +64,11 @@ class Records(ABC):
 
     @property
     @abstractmethod
+    def damaged(self) -> list[str]:
+        """The fault of each damaged checkpoint that is newer than the state."""
+
+    @property
+    @abstractmethod
     def row_digests(self) -> dict[str, np.ndarray]:
         """The sums of row hashes of each table, uint64 (W, 2)."""
 
