@@ -31,6 +31,13 @@ def test_only_regular_files_up_to_a_size_are_read(
         assert raised.value.errno == code
 
 
+def test_a_text_is_written_whether_or_not_its_file_exists(tmp_path: Path) -> None:
+    file = tmp_path / "text"
+    for text in ("one", "two"):
+        files.replace_text(file, text)
+        assert (file.read_text(), os.listdir(tmp_path)) == (text, ["text"])
+
+
 def test_a_file_that_cannot_be_written_is_one_line(tmp_path: Path) -> None:
     path = tmp_path / "no" / "file"
     with pytest.raises(Trouble) as raised:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import primordia
-from primordia.assays.garden import garden
+from primordia.assays.garden import Bed, garden
 from primordia.errors import InputError
 
 
@@ -26,6 +26,11 @@ def test_each_world_has_a_bed_of_each_group(poles: primordia.Run) -> None:
     for bed in found[4:]:
         assert (bed.recorded, bed.kept, len(bed.organism)) == (None, None, 6)
         assert bed.to_dict()["reborn"] == bed.reborn.tolist()
+
+
+def test_organisms_without_a_recorded_life_keep_nothing() -> None:
+    bed = Bed("oldest", 0, np.arange(2), np.zeros(2, int), np.array([3.0, 4.0]))
+    assert bed.kept is None
 
 
 def test_the_reborn_live_as_in_an_evaluation(poles: primordia.Run) -> None:

@@ -169,6 +169,28 @@ def test_survival_has_no_reward_but_life_and_no_limit() -> None:
     assert rewards == [2.0] * (tick - 1) + [0.0]
 
 
+def test_bodies_keep_the_seeds_that_they_were_given() -> None:
+    one = LifeEnv("CartPole-survival")
+    lives = {seed: [one.reset(seed=seed)[0], one.reset()[0]] for seed in (5, 3, 9)}
+    many = LifeVectorEnv("CartPole-survival", 3)
+    np.testing.assert_array_equal(
+        many.reset(seed=[5, 3, 9])[0], [each[0] for each in lives.values()]
+    )
+    np.testing.assert_array_equal(many.reset()[0], [each[1] for each in lives.values()])
+    many.reset(seed=np.int64(5))
+    masked = LifeVectorEnv("CartPole-survival", 3)
+    masked.reset(seed=[5, 3, 9], options={"reset_mask": [True, False, False]})
+    np.testing.assert_array_equal(masked.reset()[0], [lives[5][1], lives[3][0], lives[9][0]])
+
+
+def test_bodies_without_a_seed_get_random_ones() -> None:
+    first, second = (
+        LifeVectorEnv("CartPole-survival", 3).reset(seed=[5, None, None])[0] for _ in "ab"
+    )
+    np.testing.assert_array_equal(first[0], second[0])
+    assert len(np.unique([*first, *second], axis=0)) == 5
+
+
 @pytest.mark.parametrize("action", [2, -1, 0.5, [0], None, "left"])
 def test_an_action_that_does_not_exist_is_an_error(action: Any) -> None:
     env = LifeEnv("CartPole-survival")

@@ -221,7 +221,7 @@ def test_every_cause_of_death_has_its_own_colour() -> None:
 @pytest.mark.parametrize(
     ("number", "text"),
     [(0, "0"), (0.5, "0.5"), (0.01, "1/100"), (1e-4, "1/10k"), (999, "999"), (1500, "1.5k"),
-     (1e6, "1M"), (2.5e9, "2.5G")],
+     (999.6, "1k"), (999_499, "999k"), (999_700, "1M"), (1e6, "1M"), (2.5e9, "2.5G")],
 )  # fmt: skip
 def test_numbers_are_written_in_short_form(number: float, text: str) -> None:
     assert style.short(number) == text

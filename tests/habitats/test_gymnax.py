@@ -1,5 +1,6 @@
 """Environments in JAX: lives from words and age, senses, actions, death, food, and errors."""
 
+from types import SimpleNamespace
 from typing import Any
 
 import jax
@@ -13,6 +14,7 @@ from primordia.errors import InputError
 from primordia.habitats.contract import Ability, Continuous, Discrete
 from primordia.habitats.gymnax.habitat import Gymnax
 from primordia.habitats.gymnax.rounded import rounded, uses_first
+from primordia.habitats.gymnax.spaces import Senses
 from primordia.testing import check_habitat
 
 WORDS = np.arange(8, dtype=np.uint32).reshape(4, 2)
@@ -101,6 +103,12 @@ def test_senses_are_scaled_where_their_space_has_bounds() -> None:
     squashed = squashing.sense(lived(squashing, 3, np.ones((4, 2), np.float32))[0])
     np.testing.assert_allclose(squashed[:, 0], place[:, 0] / (1 + np.abs(place[:, 0])), 1e-6)
     np.testing.assert_array_equal(squashed[:, 1], place[:, 1])
+
+
+def test_a_box_whose_width_needs_no_scale_is_moved_to_the_middle() -> None:
+    space = SimpleNamespace(low=0, high=2, shape=(3,))
+    senses = Senses(space, jax.ShapeDtypeStruct((3,), jnp.float32), squash=False)
+    np.testing.assert_array_equal(senses.of(jnp.array([0.0, 1.0, 2.0])), [-1, 0, 1])
 
 
 def test_a_choice_is_an_action_and_rooms_are_senses_of_which_one_is_one() -> None:

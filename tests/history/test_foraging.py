@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 import primordia
 from primordia.figures import foraging as figure
 from primordia.figures import style
-from primordia.history.foraging import Harvest, foraging
+from primordia.history.foraging import Harvest, foraging, harvests
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests.commands import here
@@ -84,12 +84,30 @@ def test_only_runs_with_food_have_the_figure(runs: dict[str, Path], tmp_path: Pa
         assert words in svg
 
 
-def test_the_figure_of_a_run_without_a_sample_says_so(tmp_path: Path) -> None:
-    loop.start(config(FED, stop={"ticks": 30}), tmp_path / "run")
+def test_the_figure_of_a_fork_that_has_not_lived_says_so(
+    runs: dict[str, Path], tmp_path: Path
+) -> None:
+    forked = primordia.load(runs["fed"]).fork(30, tmp_path / "fork", stop={"ticks": 30})
     with style.applied():
-        drawn = figure.draw(Archive(tmp_path / "run"), 0)
+        drawn = figure.draw(Archive(forked.path), 0)
         drawn.draw_without_rendering()
     assert "no samples yet" in {text.get_text() for text in drawn.axes[0].texts}
+
+
+def test_food_is_known_up_to_the_end_of_a_run(tmp_path: Path) -> None:
+    """The last sample may be long before the end."""
+    for name, food in (("fed", FOOD), ("less", FOOD / 2)):
+        settings = {**FED, "habitat": {**FED["habitat"], "food": food}}
+        loop.start(config(settings, stop={"ticks": 70}), tmp_path / name)
+    compared = primordia.compare(tmp_path / "fed", tmp_path / "less")
+    values = [arm.measured["food"].value.tolist() for arm in compared.arms]
+    np.testing.assert_allclose(values, [[FOOD] * 2, [FOOD / 2] * 2])
+    (harvest, _), every = harvests(Archive(tmp_path / "fed"), 2), tmp_path / "every"
+    loop.start(config(FED, sample_every=1, stop={"ticks": 70}), every)
+    assert harvest.tick.tolist() == [0, 40, 70]
+    sampled = harvests(Archive(every), 2)[0]
+    for some, each in zip(harvest, sampled, strict=True):
+        np.testing.assert_array_equal(some, each[[0, 40, 70]])
 
 
 def test_food_that_no_organism_can_live_on_has_no_break_even(tmp_path: Path) -> None:

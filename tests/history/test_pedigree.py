@@ -32,8 +32,10 @@ def noted(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def forked(noted: Path) -> Path:
-    """Fork it: some organisms were alive then, and others are born later."""
-    return primordia.load(noted).fork(200, noted.parent / "fork", stop={"ticks": 320}).path
+    """Fork it in a tick of a birth: some organisms were alive then, and others are born later."""
+    born = primordia.load(noted).lives().born
+    at = int(born[born <= 200].max())
+    return primordia.load(noted).fork(at, noted.parent / "fork", stop={"ticks": 320}).path
 
 
 @pytest.mark.parametrize("which", ["noted", "forked"])
@@ -59,6 +61,17 @@ def test_a_redrawn_genome_is_another_one_and_always_the_same(noted: Path) -> Non
     assert redrawn.std() == pytest.approx(recorded.std(), rel=0.5)
 
 
+def test_redrawn_genomes_do_not_depend_on_recorded_notes(
+    noted: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A redrawn child mutates by the redrawn notes of its parent; the recorded ones were selected."""
+    run = Archive(noted)
+    rows = np.arange(len(run.lives))
+    redrawn = genomes(run, rows, redrawn=True)
+    monkeypatch.setattr(Archive, "notes_of", lambda _, lives: np.full((len(lives), 1), 7, np.int32))
+    assert genomes(Archive(noted), rows, redrawn=True).tobytes() == redrawn.tobytes()
+
+
 def test_a_redrawn_child_differs_from_its_redrawn_parent_as_mutations_do(tmp_path: Path) -> None:
     settings = {
         "mutation": {"probability": 1.0, "scale": 0.02, "founder_scale": 1.0},
@@ -75,8 +88,10 @@ def test_a_redrawn_child_differs_from_its_redrawn_parent_as_mutations_do(tmp_pat
 
 def test_organisms_that_were_alive_at_a_fork_keep_their_genomes(forked: Path) -> None:
     run = Archive(forked)
-    inherited = np.flatnonzero(run.lives.entered > 0)
+    inherited = np.flatnonzero(run.lives.inherited)
+    assert (run.lives.entered[inherited] == 0).any()  # born in the very tick of the fork
+    assert not run.lives.late(0.0)[inherited].any()
     assert len(inherited) > 5
     assert (genomes(run, inherited, redrawn=True) == genomes(run, inherited)).all()
-    born = np.flatnonzero((run.lives.entered == 0) & (run.lives.birth_cause == 2))
+    born = np.flatnonzero(~run.lives.inherited & (run.lives.birth_cause == 2))
     assert (genomes(run, born, redrawn=True) != genomes(run, born)).any(axis=1).all()

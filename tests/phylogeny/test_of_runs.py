@@ -11,11 +11,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import primordia
+from primordia.cli.descent import _sweeps_text
 from primordia.errors import InputError
 from primordia.history.lineage import changes
 from primordia.history.pedigree import genomes
 from primordia.law.world import BirthCause
 from primordia.phylogeny.descent import Ancestors
+from primordia.phylogeny.sweeps import Sweep
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests.commands import complains, here
@@ -268,3 +270,8 @@ def test_a_table_has_the_first_the_last_and_the_largest_gain(lived: list[int]) -
     gains = span[1:] / span[:-1]
     if len(gains) and (gains == gains.max()).sum() == 1:
         assert gains.argmax() + 1 in places
+
+
+def test_the_median_of_an_even_number_of_sweeps_is_between_the_middle_two() -> None:
+    done = [Sweep(number, "copy", 0, 1, fixed, 3) for number, fixed in enumerate((1000, 4003))]
+    assert _sweeps_text(done) == "Sweeps to all of the living: 2; median duration: 2,501.5 ticks."

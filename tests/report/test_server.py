@@ -165,9 +165,23 @@ def test_a_checkpoint_that_cannot_be_read_leaves_the_page_as_it_was(run: Path) -
     before = watched.data()
     for folder in (run / "checkpoints").iterdir():
         (folder / "manifest.json").write_text("{}")
-    watched._versions = []
+    watched._versions, watched._going = [], True
     watched.look()
     assert watched.data() == before
+    assert json.loads(watched.news(None, 0)) == {"count": 0, "going": False}
+
+
+def test_more_pages_than_it_serves_are_refused(run: Path) -> None:
+    with served(run) as server:
+        while server.listeners.acquire(blocking=False):
+            pass
+        assert asked(server, "/events")[0].status == 503
+        server.listeners.release()
+        assert asked(server, "/events", "HEAD")[0].status == 200
+        told = events(server)
+        assert next(told)["count"] == 0
+        assert asked(server, "/events")[0].status == 503
+        told.close()
 
 
 def test_a_run_that_cannot_be_shown_is_one_line(run: Path, tmp_path: Path) -> None:

@@ -35,8 +35,10 @@ class Bed:
 
     @property
     def kept(self) -> float | None:
-        """Mean life in the games, as a share of the mean recorded life."""
-        return None if self.recorded is None else float(self.reborn.mean() / self.recorded.mean())
+        """Mean life in the games, as a share of the mean recorded life; None if no life was recorded."""
+        if self.recorded is None or not self.recorded.any():
+            return None
+        return float(self.reborn.mean() / self.recorded.mean())
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain values for JSON."""

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from functools import partial
 from math import isnan
 from pathlib import Path
+from statistics import median
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -198,10 +199,10 @@ def _notes(found: "WorldLines", told: dict[str, Any]) -> list[str]:
 
 
 def _sweeps_text(sweeps: "list[Sweep]") -> str:
-    durations = sorted(each.duration for each in sweeps if each.duration is not None)
+    durations = [each.duration for each in sweeps if each.duration is not None]
     text = f"Sweeps to all of the living: {len(durations):,}"
     if durations:
-        text += f"; median duration: {durations[len(durations) // 2]:,} ticks"
+        text += f"; median duration: {median(durations):,.10g} ticks"
     if sweeps and sweeps[-1].half is not None and sweeps[-1].fixed is None:
         last = sweeps[-1]
         text += (

@@ -160,7 +160,7 @@ def _champions(run: Records, world: int | None) -> np.ndarray:
 def _births(run: Records, worlds: np.ndarray) -> np.ndarray:
     """Return the number of births in each of these worlds since the run began."""
     lives = run.lives
-    return np.bincount(lives.world[lives.entered == 0], minlength=lives.worlds)[worlds]
+    return np.bincount(lives.world[~lives.inherited], minlength=lives.worlds)[worlds]
 
 
 def _recorded(run: Records, name: str, chosen_from: int, rows: np.ndarray) -> Group:

@@ -18,7 +18,7 @@ def first_long(worlds: Sequence[Lives], age: int) -> Measured:
     the number of the first organism that is still alive.
     """
     value, known = [], []
-    for lived in (world.take(np.flatnonzero(world.entered == 0)) for world in worlds):
+    for lived in (world.take(np.flatnonzero(~world.inherited)) for world in worlds):
         long = lived.lifespan >= age
         first, undecided = (
             int(each.argmax()) if each.any() else len(lived) for each in (long, ~long & ~lived.died)
@@ -41,7 +41,7 @@ def saturation(
         return run.count(f"world.worlds.{name}").astype(np.int64)
 
     known = run.count("world.worlds.saturated") != NEVER
-    since = np.bincount(lives.world[lives.entered == 0], minlength=len(known))
+    since = np.bincount(lives.world[~lives.inherited], minlength=len(known))
     before = {"births": by_world("births") - since, "ticks": begin}
     columns = {"births": ("births", "saturated_births"), "ticks": ("tick", "saturated")}
     measured = {}

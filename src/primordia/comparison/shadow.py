@@ -115,7 +115,7 @@ def shadow(run: Records, organisms: int = ORGANISMS, ticks: int | None = None) -
     cut = run.config.saturation_ticks if ticks is None else ticks
     if organisms < 1 or cut < 1:
         raise InputError("shadow needs at least one organism and one tick")
-    own = np.flatnonzero(run.lives.entered == 0)
+    own = np.flatnonzero(~run.lives.inherited)
     rows = _sample(run.lives.world[own], own, organisms) if len(own) else own
     if not len(rows):
         raise InputError(

@@ -79,23 +79,24 @@ class LifeVectorEnv(VectorEnv):
             raise ValueError(
                 f"give one seed and one value of reset_mask for each of {self.num_envs} bodies"
             )
+        for cell, own in enumerate(first):
+            if own is not None and (chosen[cell] or not self._begun):
+                self._seeds[cell], self._lives[cell] = own % 2**64, -1
         self._begun = True
         self._lives[chosen] += 1
-        for cell, own in enumerate(first):
-            if own is not None and chosen[cell]:
-                self._seeds[cell], self._lives[cell] = own % 2**64, 0
         self._begin(chosen)
         return self._bodies.senses.copy(), self._info(np.full(self.num_envs, -1))
 
     def _seeds_of(self, seed: int | Sequence[int | None] | None) -> list[int | None]:
-        """Return the seed given to each body; None: no seed is given."""
-        if seed is None and self._np_random_seed is None:
-            seed = self.np_random_seed
-        elif isinstance(seed, int):
-            self._np_random_seed = seed
-        if isinstance(seed, int):
-            return [seed + cell for cell in range(self.num_envs)]
-        return [None] * self.num_envs if seed is None else list(seed)
+        """Return the new seed of each body; None: it keeps its own. Before the first life, bodies
+        without a given seed get random ones."""
+        if isinstance(seed, int | np.integer):
+            self._np_random_seed = int(seed)
+            return [int(seed) + cell for cell in range(self.num_envs)]
+        given = [None] * self.num_envs if seed is None else list(seed)
+        if self._begun:
+            return given
+        return [self.np_random_seed + i if own is None else own for i, own in enumerate(given)]
 
     def _begin(self, chosen: np.ndarray) -> None:
         cells = np.flatnonzero(chosen)

@@ -114,7 +114,7 @@ def short(value: float) -> str:
     if 0 < value < 0.1:
         return f"1/{short(round(1 / value))}"
     for size, unit in ((1e9, "G"), (1e6, "M"), (1e3, "k")):
-        if value >= size:
+        if float(f"{value:.3g}") >= size:
             return f"{value / size:.3g}{unit}"
     return f"{value:g}"
 

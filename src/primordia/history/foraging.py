@@ -1,5 +1,7 @@
-"""Food that organisms gathered over time, from the metrics."""
+"""Food that organisms gathered over time, from the metrics and the state."""
 
+from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -9,6 +11,7 @@ from primordia.law.metabolism import ONE, break_even
 from primordia.runs.arrays import read_count
 from primordia.runs.records import Records
 
+TOTALS = "tick", "food", "organism_ticks"
 STRETCHES = 60
 """Largest number of intervals of a world's time."""
 
@@ -28,10 +31,10 @@ class Foraging(NamedTuple):
 
 
 class Harvest(NamedTuple):
-    """Running totals of one world at its beginning and at its S samples, each (S + 1,)."""
+    """Running totals of one world at its beginning, at its samples and at its end, each (S,)."""
 
     tick: np.ndarray
-    """int64, ascending from 0 or from the tick of the fork"""
+    """float64, ascending from 0 or from the tick of the fork"""
     food: np.ndarray
     """food gathered, float64"""
     lived: np.ndarray
@@ -49,26 +52,24 @@ class Harvest(NamedTuple):
 def harvests(run: Records, worlds: int) -> list[Harvest]:
     """Return a run's harvest in each world numbered below `worlds`."""
     world = run.metrics["world"].to_numpy()
-    columns = [run.metrics[name].to_numpy() for name in ("tick", "food", "organism_ticks")]
-    begun = _beginning(run, worlds)
-    return [
-        Harvest._make(
-            np.insert(column[world == number], 0, start[number])
-            for column, start in zip(columns, begun, strict=True)
-        )
-        for number in range(worlds)
-    ]
+    columns = [run.metrics[name].to_numpy() for name in TOTALS]
+    begun = np.zeros((len(TOTALS), worlds))
+    if run.origin is not None:
+        begun = _totals(partial(read_count, run.origin))
+    ended = _totals(run.count)
+    found = []
+    for number in range(worlds):
+        sampled = np.array([column[world == number] for column in columns], float)
+        totals = np.column_stack([begun[:, number], sampled, ended[:, number]])
+        _, first = np.unique(totals[0], return_index=True)  # the last sample may be at the end
+        found.append(Harvest._make(totals[:, first]))
+    return found
 
 
-def _beginning(run: Records, worlds: int) -> list[np.ndarray]:
-    """Return tick, food and organism-ticks of each world before its first recorded tick, each (W,)."""
-    if run.origin is None:
-        return [np.zeros(worlds, np.int64)] * 3
-    names = "tick", "food", "organism_ticks"
-    tick, food, lived = (
-        read_count(run.origin, f"world.worlds.{name}").astype(np.int64) for name in names
-    )
-    return [tick, food / ONE, lived]
+def _totals(count: Callable[[str], np.ndarray]) -> np.ndarray:
+    """Return the TOTALS of each world in a state, float64 (3, W)."""
+    tick, food, lived = (count(f"world.worlds.{name}").astype(float) for name in TOTALS)
+    return np.array([tick, food / ONE, lived])
 
 
 def foraging(run: Records) -> Foraging:

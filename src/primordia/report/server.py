@@ -10,6 +10,7 @@ import sys
 from collections.abc import Callable
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from threading import BoundedSemaphore
 from typing import Any
 
 from primordia.errors import InputError
@@ -47,7 +48,7 @@ class Server(ThreadingHTTPServer):
         Raises:
             InputError: the port is in use, or the user may not use it.
         """
-        self.watched, self.listeners = watched, 0
+        self.watched, self.listeners = watched, BoundedSemaphore(MOST_LISTENERS)
         try:
             super().__init__((HERE, port), Handler)
         except OSError as error:
@@ -102,19 +103,17 @@ class Handler(BaseHTTPRequestHandler):
 
     def _events(self) -> None:
         """Send an event at each change of the content, until the page is closed."""
-        server = self.server
-        if server.listeners >= MOST_LISTENERS:
+        listeners = self.server.listeners
+        if not listeners.acquire(blocking=False):
             return self._refuse(HTTPStatus.SERVICE_UNAVAILABLE)
-        self._begin(HTTPStatus.OK, "text/event-stream")
-        if self.command == "HEAD":
-            return
-        server.listeners += 1
         try:
-            self._tell()
+            self._begin(HTTPStatus.OK, "text/event-stream")
+            if self.command != "HEAD":
+                self._tell()
         except OSError:  # the page is closed
             pass
         finally:
-            server.listeners -= 1
+            listeners.release()
 
     def _tell(self) -> None:
         told = None

@@ -3,6 +3,7 @@
 import json
 import threading
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
 from primordia.errors import InputError, Trouble
@@ -44,10 +45,8 @@ class Watched:
         now, going = self._now(), self._goes_on()
         content = None
         if now != self._versions:
-            try:
+            with suppress(InputError, Trouble, OSError):
                 content = of_run(self._open(), filmed=False)
-            except (InputError, Trouble, OSError):
-                return
         with self._changed:
             if content is not None:
                 self._content, self._versions, self._count = content, now, self._count + 1

@@ -58,6 +58,12 @@ class Lives:
         return self.seen - self.born
 
     @property
+    def inherited(self) -> np.ndarray:
+        """Whether the organism was alive at the fork with which these lives begin, bool (L,)."""
+        older = self.entered > 0
+        return older | (self.born == self.seen[older].min()) if older.any() else older
+
+    @property
     def rank(self) -> np.ndarray:
         """Index in the world's order of birth, from 0, int64 (L,).
 
@@ -98,7 +104,7 @@ class Lives:
     def since_fork(self) -> "Lives":
         """Return the lives with time counted from the fork; organisms alive at the fork are born
         before 0."""
-        inherited = self.entered > 0
+        inherited = self.inherited
         then = int(self.seen[inherited].min()) if inherited.any() else 0
         return replace(self, born=self.born - then, seen=self.seen - then, ended=self.ended - then)
 
@@ -109,7 +115,7 @@ class Lives:
         are late. Organisms that were alive at a fork were born before the fork, so they are not
         late and do not count.
         """
-        own = self.entered == 0
+        own = ~self.inherited
         ordinal = np.cumsum(own) - 1  # index among the births of all worlds
         first, count = (np.zeros(self.worlds, np.int64) for _ in range(2))
         np.add.at(count, self.world[own], 1)

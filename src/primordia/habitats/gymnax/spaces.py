@@ -79,7 +79,7 @@ class Senses:
         flat = flattened(observation)
         if self._choices:
             return (jnp.arange(self._choices) == flat[0]).astype(jnp.float32)
-        if (self._scale != 1).any():
+        if (self._scale != 1).any() or self._middle.any():
             flat = (flat - self._middle) * self._scale
         if self._squash:
             flat = jnp.where(self._unbounded, flat / (1 + jnp.abs(flat)), flat)
