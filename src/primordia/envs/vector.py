@@ -93,10 +93,11 @@ class LifeVectorEnv(VectorEnv):
         if isinstance(seed, int | np.integer):
             self._np_random_seed = int(seed)
             return [int(seed) + cell for cell in range(self.num_envs)]
-        given = [None] * self.num_envs if seed is None else list(seed)
+        given: list[int | None] = [None] * self.num_envs if seed is None else list(seed)
         if self._begun:
             return given
-        return [self.np_random_seed + i if own is None else own for i, own in enumerate(given)]
+        first = self.np_random_seed or 0
+        return [first + cell if own is None else own for cell, own in enumerate(given)]
 
     def _begin(self, chosen: np.ndarray) -> None:
         cells = np.flatnonzero(chosen)

@@ -68,7 +68,7 @@ def harvests(run: Records, worlds: int) -> list[Harvest]:
 
 def _totals(count: Callable[[str], np.ndarray]) -> np.ndarray:
     """Return the TOTALS of each world in a state, float64 (3, W)."""
-    tick, food, lived = (count(f"world.worlds.{name}").astype(float) for name in TOTALS)
+    tick, food, lived = (count(f"world.worlds.{name}").astype(np.int64) for name in TOTALS)
     return np.array([tick, food / ONE, lived])
 
 
