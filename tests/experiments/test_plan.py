@@ -1,5 +1,6 @@
 """Plans of experiments: what a file says, how arms are cut into jobs, and what is refused."""
 
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -11,8 +12,10 @@ from primordia.experiments.campaign import begin
 from primordia.experiments.file import read
 from primordia.experiments.job import configuration
 from primordia.experiments.plan import Job
+from primordia.runs import loop
 from tests.commands import complains, here
 from tests.experiments.meadows import ARMS, write
+from tests.worlds import MEADOW, config
 
 
 def jobs(file: Path) -> list[Job]:
@@ -72,6 +75,8 @@ def test_words_of_a_question_may_change_and_settings_may_not(tmp_path: Path) -> 
     [
         ({"arms": [{"name": "a"}, {"name": "a"}]}, "'a' cannot name an arm, or names two arms"),
         ({"arms": [{"name": "jobs"}]}, "'jobs' cannot name an arm"),
+        ({"arms": [{"name": "Results.md"}]}, "'results.md' cannot name an arm"),
+        ({"arms": [{"name": "experiment.toml"}]}, "'experiment.toml' cannot name an arm"),
         ({"arms": [{"name": "a/b"}]}, "arm 'a/b': name"),
         ({"arms": [{"name": ".."}]}, "arm '..': name"),
         ({"arms": [{"hazard": 0.1}]}, "table has no `name`"),
@@ -121,6 +126,19 @@ def test_a_wrong_request_is_one_clear_line(tmp_path: Path) -> None:
     (tmp_path / "full" / "a").touch()
     complains(here("experiment", file, "--out", tmp_path / "full"), 2, "is not an experiment")
     assert (tmp_path / "full" / "a").exists()
+
+
+def test_runs_whose_seeds_have_a_gap_are_no_arm_to_fork(tmp_path: Path) -> None:
+    """The worlds after the gap would go on with other seeds than they had."""
+    for seed in (0, 2, 5):
+        loop.start(config(MEADOW, seed=seed, seeds=2, stop={"ticks": 9}), tmp_path / f"h{seed}")
+    fork = {"of": str(tmp_path / "h*"), "at": 5}
+    names = ("task", "seed", "seeds", "replication", "saturation_ticks", "hazard", "brain", "jobs")
+    own = {"fork": fork, "arms": [{"name": "same"}], **dict.fromkeys(names)}
+    with pytest.raises(InputError, match="no world of seed 4, but one of 5; an arm has successive"):
+        read(write(tmp_path, **own), tmp_path / "out")
+    shutil.rmtree(tmp_path / "h5")
+    assert len(read(write(tmp_path, **own), tmp_path / "out").jobs()) == 2
 
 
 def test_a_fork_has_the_jobs_and_settings_of_its_source(tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ import primordia
 from primordia import files
 from primordia.errors import InputError
 from primordia.history.info import info
-from primordia.runs import checkpoint, directory, loop, record
+from primordia.runs import bundle, checkpoint, directory, loop, record
 from primordia.runs.archive import Archive
 from primordia.runs.arrays import world_ticks
 from tests.disk import Disk, Instant
@@ -130,6 +130,24 @@ def test_a_start_that_was_cut_off_is_no_obstacle(lived: Recorded, tmp_path: Path
         if directory.clear_unbegun(run):
             directory.refuse_if_taken(run)
         shutil.rmtree(folder)
+
+
+def test_a_run_that_was_unpacked_is_whole_under_its_name(tmp_path: Path) -> None:
+    """A cut before the end may leave a folder of another name."""
+    loop.start(config(SETTINGS), tmp_path / "run")
+    file = primordia.load(tmp_path / "run").bundle(tmp_path / "run.zip")
+    (root := tmp_path / "disk").mkdir()
+    disk = Disk(root)
+    with disk.watched():
+        bundle.unbundle(file, root / "run")
+    for number, instant in enumerate(disk.instants):
+        for how in ("forgets", "names", f"chooses {number}"):
+            disk.left(instant, folder := tmp_path / f"{number} {how}", how)
+            if (left := folder / "run").exists():
+                assert digests(left) == digests(tmp_path / "run")
+                assert Archive(left).versions == Archive(tmp_path / "run").versions
+    assert (folder / "run").exists()
+    disk.close()
 
 
 @pytest.mark.slow

@@ -19,6 +19,7 @@ fork.
 
 import os
 from collections import Counter
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -192,6 +193,12 @@ def _of_runs(place: Path) -> tuple[dict[str, Any], list[tuple[Path, int]]]:
     """Return the settings of runs of one arm, and the runs, each with its number of worlds."""
     paths = opening.opened([place]).paths
     configs = [read_config(path) for path in paths]
+    for one, after in pairwise(configs):
+        if (following := one.seed + one.seeds) != after.seed:
+            raise InputError(
+                f"its runs have no world of seed {following}, but one of {after.seed}; an arm has"
+                " successive seeds, so fork some of the runs by a pattern"
+            )
     settings = replaced(configs[0].model_dump(mode="json"), None, NONE)
     settings["seeds"] = sum(each.seeds for each in configs)
     settings["ancestors"] = [str(paths[0] / genomes) for genomes in configs[0].ancestors]

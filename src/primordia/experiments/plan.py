@@ -23,8 +23,11 @@ from primordia.settings.base import UNREACHED, Settings
 from primordia.settings.fields import first_fault
 from primordia.settings.tables import flat, from_toml
 
-RESERVED = {"jobs", "figures"}
-"""Folder names that no arm can have."""
+RESERVED = {
+    *("jobs", "figures", EXPERIMENT, "workers.log"),
+    *("results.md", "results.csv", "results.png"),
+}
+"""Names in an experiment's folder that no arm can have."""
 LARGEST = 100_000
 """Largest number of jobs of an experiment."""
 
@@ -131,7 +134,7 @@ def recorded(out: Path) -> Plan:
 
 def _fault(plan: Plan) -> str:
     """Return what is wrong with a plan whose values are each valid, or ""."""
-    names = [arm.name for arm in plan.arms]
+    names = [arm.name.casefold() for arm in plan.arms]  # some file systems ignore case
     if len(set(names)) < len(names) or RESERVED & set(names):
         return "two arms have one name, or an arm has a name that no arm can have"
     jobs = 0

@@ -198,6 +198,8 @@ def _extract(file: Path, folder: Path) -> None:
             directory.make_folders(folder)
             for name, seal in seals.items():
                 _copy(_pieces(bundle, entries[name]), folder / name, seal)
+            for each in {(folder / name).parent for name in seals}:
+                files.sync(each)
     except (InputError, Trouble):
         raise
     except Exception as error:  # zipfile raises errors of many kinds for other files
@@ -271,6 +273,7 @@ def _copy(pieces: Iterable[bytes], path: Path, seal: Seal | None) -> None:
             for piece in pieces:
                 digest.update(piece)
                 file.write(piece)
+        files.sync(path)
     except OSError as error:
         raise Trouble(f"{path} cannot be written: {error.strerror or error}") from None
     if seal is not None and digest.hexdigest() != seal.sha256:
