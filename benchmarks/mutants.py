@@ -25,7 +25,11 @@ from cosmic_ray.work_db import WorkDB, use_db
 from cosmic_ray.work_item import TestOutcome, WorkerOutcome, WorkItem, WorkResult
 
 ROOT = Path(__file__).parent.parent
-COPIED = "src", "tests", "examples"
+COPIED = (
+    *("src", "tests", "examples", "docs", "experiments", "benchmarks", "notebooks"),
+    *("README.md", "CONTRIBUTING.md", "SECURITY.md", "CHANGELOG.md", "Makefile", "pyproject.toml"),
+)
+"""The files and folders that tests read."""
 PYTEST = "-m pytest -x -q -p no:cacheprovider"
 
 
@@ -41,9 +45,9 @@ def main() -> None:
     scores = {}
     with tempfile.TemporaryDirectory() as folder:
         tree = Path(folder)
-        shutil.copy(ROOT / "pyproject.toml", tree)
         for name in COPIED:
-            shutil.copytree(ROOT / name, tree / name)
+            copy = shutil.copytree if (ROOT / name).is_dir() else shutil.copy
+            copy(ROOT / name, tree / name)
         for name in chosen.files or table["tests"]:
             tests = tests_of(name, table["tests"])
             drawn = None if chosen.sample is None else (chosen.sample, chosen.seed)

@@ -93,6 +93,11 @@ def test_weights_that_the_state_does_not_hold_are_refused(
     complains(tried(command, run, tmp_path), 1, "is not a checkpoint of this run", "too small")
 
 
+def test_weights_fill_their_array(run: Path) -> None:
+    described(run, lambda content: content["blocks"]["input"].insert(0, 2))
+    complains(here("info", run), 1, "is not a checkpoint of this run", "input is too small")
+
+
 @pytest.mark.parametrize("command", READING)
 @pytest.mark.parametrize("tick", [2**50, 2**53 - 1])
 def test_a_last_tick_that_no_run_reaches_breaks_no_figure(
