@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 import primordia
-from primordia.assays.ablate import ablate
+from primordia.assays.ablate import _losses, ablate
 from primordia.assays.subjects import of_run
 from primordia.runs import loop
 from tests.worlds import MEADOW, config
@@ -41,6 +41,21 @@ def test_a_block_without_weights_is_a_block_of_zeros(poles: primordia.Run) -> No
     found = ablate(subjects, games=1, ticks=100)
     own = [each.lifespan for each in found if each.without == "output weights"]
     assert own == [each.intact for each in expected[: len(own)]]
+
+
+def test_no_loss_takes_more_than_it_says(poles: primordia.Run) -> None:
+    """Each block of weights is lost alone, and a loss of senses or memory leaves all weights."""
+    subjects = of_run(poles.opened())
+    layout, whole = subjects.law.heredity.layout, subjects.players.genomes
+    for loss in _losses(subjects, each_sense=True):
+        left, before = layout.split(loss.genomes), layout.split(whole)
+        lost = {name for name in layout.names if (left[name] != before[name]).any()}
+        assert lost == {name for name in layout.names if loss.name == f"{name} weights"}
+        assert not any(left[name].any() for name in lost)
+        senses, memory = loss.frozen
+        assert memory.all() == memory.any() == (loss.name == "memory")
+        single = [f"sense {k}" for k in range(senses.shape[1])]
+        assert (senses == [loss.name in ("senses", each) for each in single]).all()
 
 
 def test_where_nothing_matters_nothing_is_needed(tmp_path: Path) -> None:

@@ -49,6 +49,16 @@ def test_mutants_are_made_as_in_the_run_and_no_copy_is_among_them(subjects: Subj
     assert len(np.unique(made.reshape(100, -1), axis=0)) == 100
 
 
+def test_however_few_children_mutate_no_two_mutants_are_the_same(subjects: Subjects) -> None:
+    own = own_operator(subjects)
+    rarely = {
+        name: np.full_like(rate, 0.1) if name.endswith("probability") else rate
+        for name, rate in own.rates.items()
+    }
+    made = mutants(subjects, own._replace(rates=rarely), 50, None)
+    assert len(np.unique(made.reshape(100, -1), axis=0)) == 100
+
+
 def test_a_mutation_that_never_happens_is_refused(subjects: Subjects) -> None:
     never = Operator.of("never", Gaussian(probability=0.0), subjects)
     with pytest.raises(InputError, match="makes no mutants"):

@@ -64,8 +64,10 @@ def test_bounds_hold_for_every_future_of_the_worlds(run: list, on: list[int]) ->
     known = Measured(np.array(later, float), np.ones(len(later), bool))
     base = figures([(5, True), (9, True), (12, True)])
     sure, unsure = contrast(known, base), contrast(figures(run), base)
-    assert unsure.ratio[0] <= sure.ratio[0] == sure.ratio[1] <= unsure.ratio[1]
-    assert abs(sure.delta - unsure.delta) <= 1 - unsure.decided + 1e-9
+    of_base = contrast(base, known), contrast(base, figures(run))
+    for then, now in ((sure, unsure), of_base):
+        assert now.ratio[0] <= then.ratio[0] == then.ratio[1] <= now.ratio[1]
+        assert abs(then.delta - now.delta) <= 1 - now.decided + 1e-9
 
 
 @given(SOME, st.integers(1, 25))

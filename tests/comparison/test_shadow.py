@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.stats import binomtest
 
 import primordia
-from primordia.comparison.shadow import Shadow
+from primordia.comparison.shadow import Shadow, _lifespans
 from primordia.runs import loop
 from tests.commands import complains, here
 from tests.worlds import MEADOW, config
@@ -56,6 +56,16 @@ def test_nothing_is_found_where_only_accidents_kill(tmp_path: Path) -> None:
     found = primordia.load(tmp_path / "run").shadow(20, 50)
     assert (found.original == found.shadow).all()
     assert (found.longer, found.p, found.ratio) == ((0, 0), 1.0, 1.0)
+
+
+def test_a_life_is_the_same_beside_any_others(poles: dict[str, primordia.Run]) -> None:
+    run = poles["parent"].opened()
+    rows = np.flatnonzero(run.lives.rank < 60)[::6]
+    for redrawn in (False, True):
+        together = _lifespans(run, rows, redrawn, 100)
+        assert len(np.unique(together)) > 10
+        alone = _lifespans(run, rows[1::2], redrawn, 100)
+        np.testing.assert_array_equal(alone, together[1::2])
 
 
 @given(st.lists(st.tuples(st.integers(1, 9), st.integers(1, 9)), min_size=1, max_size=30))

@@ -48,8 +48,8 @@ LIVES = some_lives()
 WORLDS = [LIVES.of_world(world) for world in range(3)]
 
 
-def axes_of(draw: Any) -> list[Axes]:
-    run: Any = SimpleNamespace(lives=LIVES, config=config(MEADOW, cells=64, seeds=3))
+def axes_of(draw: Any, lives: Lives = LIVES) -> list[Axes]:
+    run: Any = SimpleNamespace(lives=lives, config=config(MEADOW, cells=64, seeds=3))
     with style.applied():
         figure = draw(run, 0)
     return figure.axes
@@ -97,7 +97,15 @@ def test_population_is_drawn_as_counted() -> None:
     numbers = np.array([[len(counted(world, tick)) for tick in ticks] for world in WORLDS], float)
     check_worlds(living, numbers, ticks, population.LIVING)
     check_fates(fates, ticks)
-    check_rates(rates)
+    check_rates(rates, LIVES)
+
+
+def test_a_world_that_stopped_early_adds_no_ticks_to_later_rates() -> None:
+    then, early = 40, LIVES.world == 1
+    lives = LIVES.take(np.flatnonzero(~early | (LIVES.born <= then)))
+    late = (lives.world == 1) & (lives.ended > then)
+    lives.ended[late], lives.cause[late] = then, ALIVE
+    check_rates(axes_of(population.draw, lives)[-1], lives)
 
 
 def check_fates(axes: Axes, ticks: np.ndarray) -> None:
@@ -110,16 +118,17 @@ def check_fates(axes: Axes, ticks: np.ndarray) -> None:
         assert heights == [*dead, sum(len(counted(world, tick)) for world in WORLDS)]
 
 
-def check_rates(axes: Axes) -> None:
+def check_rates(axes: Axes, lives: Lives) -> None:
     edges = series.bins(UNTIL)
-    events = [LIVES.born, *(LIVES.ended[LIVES.cause == cause] for cause in CAUSES)]
+    ends = [lives.of_world(world).ended.max() for world in range(3)]
+    events = [lives.born, *(lives.ended[lives.cause == cause] for cause in CAUSES)]
     drawn = lines(axes)
     assert len(drawn) == len(events)
     for (x, y), at in zip(drawn, events, strict=True):
         assert ((edges[:-1] < x) & (x <= edges[1:])).all()
         for k, value in enumerate(y):
             count = ((edges[k] < at) & (at <= edges[k + 1])).sum()
-            expected = count / (3 * (edges[k + 1] - edges[k]))
+            expected = count / np.diff(np.minimum.outer(edges[k : k + 2], ends).sum(axis=1))[0]
             assert (value == expected) if count >= series.MIN_EVENTS else np.isnan(value)
 
 

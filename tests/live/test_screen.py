@@ -10,9 +10,10 @@ import pytest
 from rich.console import Console
 
 from primordia.engine.engine import Engine
+from primordia.law.metabolism import ONE
 from primordia.law.world import Cause
 from primordia.live.census import Census
-from primordia.live.companion import Companion
+from primordia.live.companion import Companion, _perceived
 from primordia.live.ground import Medians
 from primordia.live.paint import photograph, width_of
 from primordia.live.panel import Outlook, numbers, saturation
@@ -107,6 +108,21 @@ def test_the_oldest_organism_is_shown_and_then_the_next() -> None:
     die(made, *order)
     assert companion.find(made, None) is None
     assert "nothing is alive" in "\n".join(screen(made, "o", 80, 24))
+
+
+def test_what_it_does_next_is_what_it_then_does() -> None:
+    """The food of this habitat is the action, of which the motor draws a part."""
+    watch = {**MEADOW, "habitat": {"name": "tests.toys:Watch"}, "brain": {"kind": "feed-forward"}}
+    motor = {"kind": "gaussian", "sd": 30.0}
+    made = Engine(config(watch, motor=motor, genesis="fill", replication=0.0))
+
+    def eaten_until(tick: int) -> np.ndarray:
+        made.advance(made.limits({"ticks": tick}))
+        return np.array(made.state.world.organisms.eaten) / ONE
+
+    before = eaten_until(1)
+    next_ = [_perceived(made, cell, world=0)[2].action[0] for cell in range(16)]
+    np.testing.assert_allclose(eaten_until(2) - before, next_, atol=1 / ONE)
 
 
 def die(made: Engine, *cells: int) -> None:

@@ -197,6 +197,11 @@ def test_the_commands_print_tables_and_json_and_draw(run: Path, tmp_path: Path) 
     of_all = json.loads(here("lines", run, "--world", "all", "--json").stdout)
     (of_one,) = json.loads(here("lines", run, "--world", 1, "--json").stdout)
     assert of_all[1] == of_one
+    for told in of_all:
+        now = told["effective_lines"]["2"][-1]
+        low, high = (edge[-1] for edge in told["bands"]["effective_lines"])
+        line = f"{now:.2f}; in 95 % of {told['shadows']:,} shadows {low:.2f} to {high:.2f}."
+        assert f"Effective number of lines at the end: {line}" in " ".join(done.stdout.split())
     assert sum(line["final_share"] for line in of_one["lines"]) == pytest.approx(1)
 
 

@@ -10,8 +10,8 @@ from primordia.phylogeny.drift import drift
 from primordia.phylogeny.frequencies import founders, founding_tick, instants, lines_of
 from primordia.phylogeny.lines import WorldLines, lines_of_world, two_sided
 from primordia.phylogeny.living import Census, Turnover
-from primordia.phylogeny.slopes import observed
-from tests.pedigrees import HISTORY, Event, line_to, living_after, moran, walked
+from primordia.phylogeny.slopes import observed, of_shadows
+from tests.pedigrees import HISTORY, Event, line_to, lives_of, living_after, moran, walked
 
 
 def test_the_slope_of_a_logistic_rise_is_its_coefficient() -> None:
@@ -92,6 +92,18 @@ def test_a_strong_advantage_is_told_from_drift() -> None:
         p.append(world.p_of_slopes[winner])
         assert world.slopes[winner] > 0
     assert np.median(p) < 0.05
+
+
+@pytest.mark.usefixtures("quick")
+def test_where_nothing_drifts_a_shadow_has_the_slope_of_its_line() -> None:
+    """Lines keep their numbers while founders are born; the larger line begins later, below 95 %."""
+    born = [0] * 40 + list(range(1, 41))
+    lives = lives_of([-1] * 80, born, [40] * 80, [False] * 80)
+    census = Census(lives, np.arange(0, 42, 2))
+    counts = np.tile([39, 20], (21, 1))
+    slopes = observed(counts, census.living, census.ticks)
+    shadows = of_shadows(census, Turnover.of(lives), counts, seed=1)
+    np.testing.assert_allclose(shadows, np.tile(slopes[:, None], 200), rtol=1e-9)
 
 
 def test_a_shadow_has_the_recorded_population_and_repeats() -> None:

@@ -100,10 +100,13 @@ def test_the_command_in_the_page_lives_the_run_again(
 
 
 def test_a_run_that_flags_do_not_tell_is_told_by_its_settings(tmp_path: Path) -> None:
+    """Its limits are those with which it was resumed."""
     season = {"kind": "schedule", "setting": "hazard", "at": 50, "value": 0.01}
-    loop.start(config(cells=8, stop={"ticks": 200}, seasons=[season]), tmp_path / "run")
+    loop.start(config(cells=8, stop={"ticks": 100}, seasons=[season]), tmp_path / "run")
+    loop.resume(tmp_path / "run", {"ticks": 200})
     told = facts(Archive(tmp_path / "run"), primordia.load(tmp_path / "run").info())
     assert told["commands"][0] == "primordia run config.toml --out again"
+    assert told["settings"]["stop.ticks"] == "200"
     (tmp_path / "config.toml").write_text(told["toml"])
     primordia.run(str(tmp_path / "config.toml"), tmp_path / "again")
     again = primordia.load(tmp_path / "again").info()["worlds"]

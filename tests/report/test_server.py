@@ -171,6 +171,25 @@ def test_a_checkpoint_that_cannot_be_read_leaves_the_page_as_it_was(run: Path) -
     assert json.loads(watched.news(None, 0)) == {"count": 0, "going": False}
 
 
+def test_checkpoints_written_while_the_run_is_read_are_shown_too(
+    torus: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    newest = 0
+
+    def read(*_: Any, filmed: bool) -> int:
+        nonlocal newest
+        found, newest = newest, min(newest + 1, 3)
+        return found
+
+    monkeypatch.setattr(watched, "newest_version", lambda _: ("checkpoint", newest))
+    monkeypatch.setattr(watched, "of_run", read)
+    content = Watched(primordia.load(torus).opened)
+    for shown in (0, 1, 2, 3, 3):
+        assert content.data() == str(shown).encode()
+        assert json.loads(content.news(None, 0))["count"] == shown
+        content.look()
+
+
 def test_more_pages_than_it_serves_are_refused(run: Path) -> None:
     with served(run) as server:
         while server.listeners.acquire(blocking=False):
