@@ -147,11 +147,16 @@ def test_a_life_older_than_a_fork_is_refused_if_bodies_cannot_be_saved(
 
 @pytest.mark.parametrize("kind", ["Meadow", "Mirror"])
 def test_a_failed_simulation_is_a_fault_even_if_it_reports_death(kind: str, tmp_path: Path) -> None:
+    """It is a fault also in a tick in which an accident strikes, as it does from the ninth tick on."""
     inner = {"inner": "meadow"} if kind == "Mirror" else {}
     broken = {"name": f"tests.toys:{kind}", **inner, "lifespan": 9, "broken_at": 9}
-    loop.start(config(MEADOW, habitat=broken, stop={"ticks": 30}), tmp_path / "run")
+    accidents = [{"kind": "schedule", "setting": "hazard", "at": 8, "value": 1.0}]
+    loop.start(
+        config(MEADOW, habitat=broken, seasons=accidents, stop={"ticks": 30}), tmp_path / "run"
+    )
     run = Archive(tmp_path / "run")
     lives = run.lives
+    assert Cause.HAZARD in lives.cause
     row = np.flatnonzero(lives.cause == Cause.FAULT)[0]
     (seen,) = RelivedLife.of(run, lives.id[row]).stretches()
     assert len(seen.tick) == 9
@@ -219,6 +224,9 @@ def test_an_organism_has_the_properties_that_are_recorded(poles: Path) -> None:
     deaths = {row["id"]: row for row in run.table("deaths").to_pylist()}
     opened = run.opened()
     by_id = {row["id"]: Organism(opened, opened.lives.row(row["id"])) for row in births}
+    parents = [row["parent"] for row in births]
+    assert {None, 0} <= {*parents}
+    assert [by_id[row["id"]].parent for row in births] == parents
     for row in births[::40]:
         organism = by_id[row["id"]]
         assert (organism.parent, organism.cell, organism.born) == (
