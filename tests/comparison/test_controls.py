@@ -15,6 +15,7 @@ from primordia.errors import InputError
 from primordia.history.founders import founders
 from primordia.organism.evaluation import Evaluation
 from primordia.organism.games import lifespans, play
+from primordia.organism.players import founders_of
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
 from tests.commands import complains, here
@@ -65,9 +66,11 @@ def test_the_best_founder_is_the_last_of_the_longest_lived(poles: primordia.Run)
 def test_no_game_that_chose_an_organism_judges_it(poles: primordia.Run) -> None:
     run = poles.opened()
     best, _ = unevolved(run, 30)
+    world, everyone = founders_of(run, np.arange(2), np.full(2, 30))
     numbers = np.array([number for number, _ in best.numbers])
-    keys = stream(wide(run.world_seeds), Purpose.CONTROL, wide(numbers))
-    choosing = play(best.players._replace(keys=keys), 1, LONG)
+    chosen_ones = everyone.take(np.searchsorted(world, np.arange(2)) + numbers)
+    np.testing.assert_array_equal(chosen_ones.genomes, best.players.genomes)
+    choosing = play(chosen_ones, 1, LONG)
     judging = best.evaluate(games=5, ticks=LONG).evaluations
     for chosen, each in zip(choosing.course[:, 0], judging, strict=True):
         assert chosen not in each.lived.course

@@ -4,15 +4,19 @@ import json
 import shutil
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from primordia.law.metabolism import ONE
 from primordia.law.world import Cause
+from primordia.organism.reliving.course import Course
 from primordia.organism.revival import revive
 from primordia.runs.archive import Archive
 from tests.commands import complains, here
@@ -34,7 +38,7 @@ def otherwise(row: Row) -> None:
 
 
 def replaced(row: Row) -> None:
-    row["cause"] = "replaced"
+    row["cause"] = "replaced" if row["cause"] != "replaced" else "hazard"
 
 
 def richer(row: Row) -> None:
@@ -65,7 +69,8 @@ def test_a_forged_death_is_noticed(
     lives = Archive(run).lives.of_world(0)
     likely = (lives.lifespan > 3) & (lives.ended < 149)
     chosen = [
-        int(lives.id[likely & (lives.cause == cause)][0]) for cause in (Cause.STARVED, Cause.HAZARD)
+        int(lives.id[likely & (lives.cause == cause)][0])
+        for cause in (Cause.STARVED, Cause.HAZARD, Cause.REPLACED)
     ]
     for path in run.glob("deaths/*.parquet"):
         before = pq.read_table(path)
@@ -84,6 +89,25 @@ def test_a_forged_death_is_noticed(
     shown = here("revive", run, chosen[0])
     assert shown.returncode == 1
     assert "NO" in shown.stdout
+
+
+@given(*(st.tuples(*[st.integers(0, 2)] * 3) for _ in range(2)))
+def test_only_a_child_born_in_its_cell_in_its_last_tick_replaces_an_organism(
+    place: tuple[int, int, int], birth: tuple[int, int, int]
+) -> None:
+    world, cell, ends = place
+    names = "world", "cell", "born"
+    lives = SimpleNamespace(
+        **{name: np.array([value]) for name, value in zip(names, birth, strict=True)}
+    )
+    life: Any = SimpleNamespace(
+        run=SimpleNamespace(lives=lives),
+        world=world,
+        record=SimpleNamespace(cell=np.array([cell])),
+        ends=ends,
+        cause=Cause.REPLACED,
+    )
+    assert Course(life).replaced == (place == birth)
 
 
 @pytest.mark.parametrize("name", ["energy", "eaten", "memory"])

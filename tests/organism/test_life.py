@@ -1,10 +1,12 @@
 """Lives lived again, videos, and the properties of an organism, all from its records."""
 
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import av
 import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
 from PIL import Image
@@ -13,6 +15,7 @@ import primordia
 from primordia.engine.state import named_leaves
 from primordia.errors import InputError, Trouble
 from primordia.habitats.cartpole.habitat import CartPole
+from primordia.law.life import BODILY
 from primordia.law.world import Cause
 from primordia.organism import replay
 from primordia.organism.organism import Organism
@@ -20,6 +23,7 @@ from primordia.organism.reliving.in_jax import LifeInJax
 from primordia.organism.reliving.instant import Stretch
 from primordia.organism.reliving.on_host import LifeOnHost
 from primordia.organism.reliving.relived import ALONE, RelivedLife
+from primordia.random.wide import wide
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests.commands import complains, here
@@ -147,14 +151,34 @@ def test_a_life_older_than_a_fork_is_refused_if_bodies_cannot_be_saved(
 
 @pytest.mark.parametrize("kind", ["Meadow", "Mirror"])
 def test_a_failed_simulation_is_a_fault_even_if_it_reports_death(kind: str, tmp_path: Path) -> None:
+    """It is a fault also in a tick in which an accident strikes, as it does from the ninth tick on."""
     inner = {"inner": "meadow"} if kind == "Mirror" else {}
     broken = {"name": f"tests.toys:{kind}", **inner, "lifespan": 9, "broken_at": 9}
-    loop.start(config(MEADOW, habitat=broken, stop={"ticks": 30}), tmp_path / "run")
+    accidents = [{"kind": "schedule", "setting": "hazard", "at": 8, "value": 1.0}]
+    loop.start(
+        config(MEADOW, habitat=broken, seasons=accidents, stop={"ticks": 30}), tmp_path / "run"
+    )
     run = Archive(tmp_path / "run")
     lives = run.lives
+    assert Cause.HAZARD in lives.cause
     row = np.flatnonzero(lives.cause == Cause.FAULT)[0]
     (seen,) = RelivedLife.of(run, lives.id[row]).stretches()
     assert len(seen.tick) == 9
+
+
+def test_an_accident_kills_only_what_dies_of_nothing_else() -> None:
+    """Neither in a tick without an accident nor in one with it does another cause change."""
+    causes, none = np.array([-1, *BODILY], np.int32), np.zeros(0)
+    ticks = np.arange(2 * len(causes))
+    stretch = Stretch(ticks, none, none, None, none, none, np.tile(causes, 2), none)
+    life: Any = SimpleNamespace(
+        law=SimpleNamespace(has_hazard=True),
+        record=SimpleNamespace(cell=np.zeros(1, np.int32)),
+        _seed=wide([7]),
+    )
+    hazard = jnp.repeat(jnp.array([0, 1], jnp.float32), len(causes))
+    found = RelivedLife._with_accidents(life, stretch, ticks, {"hazard": hazard})
+    assert found.cause.tolist() == [*causes, Cause.HAZARD, *BODILY]
 
 
 def test_a_habitat_on_the_host_is_closed_after_a_life(
@@ -219,6 +243,9 @@ def test_an_organism_has_the_properties_that_are_recorded(poles: Path) -> None:
     deaths = {row["id"]: row for row in run.table("deaths").to_pylist()}
     opened = run.opened()
     by_id = {row["id"]: Organism(opened, opened.lives.row(row["id"])) for row in births}
+    parents = [row["parent"] for row in births]
+    assert {None, 0} <= {*parents}
+    assert [by_id[row["id"]].parent for row in births] == parents
     for row in births[::40]:
         organism = by_id[row["id"]]
         assert (organism.parent, organism.cell, organism.born) == (

@@ -8,6 +8,7 @@ import pytest
 import primordia
 from primordia.habitats.contract import JaxHabitat
 from primordia.habitats.on_host import OnHost
+from primordia.organism import games
 from primordia.organism.games import Games, Players, lifespans_in_games, play, stretches
 from primordia.organism.players import players_of
 from primordia.organism.playing import in_jax
@@ -54,14 +55,20 @@ def some_frozen(players: Players) -> Frozen:
     return Frozen(np.tile(number % 3 == 0, (1, players.law.senses)), number % 4 == 0)
 
 
-def test_only_what_is_frozen_changes_a_game(players: Players) -> None:
+def test_only_what_is_frozen_changes_a_game(
+    players: Players, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """This holds also for players who play in parts, of which each freezes something else."""
     frozen = some_frozen(players)
     free, held = play(players, 2, 150), play(players, 2, 150, frozen=frozen)
     whole = ~(frozen.senses.any(axis=1) | frozen.memory[:, 0])
     np.testing.assert_array_equal(free.course[whole], held.course[whole])
     assert (free.course[~whole] != held.course[~whole]).any()
-    spans = lifespans_in_games(players, 2, 150, frozen)
-    np.testing.assert_array_equal(spans, held.ticks)
+    each = len(players.genomes) // 3
+    for at_once in (games.AT_ONCE_IN_JAX, 2 * each):
+        monkeypatch.setattr(games, "AT_ONCE_IN_JAX", at_once)
+        spans = lifespans_in_games(players, 2, 150, frozen)
+        np.testing.assert_array_equal(spans, held.ticks)
 
 
 def test_watched_games_tell_what_brains_think_from(players: Players) -> None:

@@ -3,6 +3,7 @@
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -24,6 +25,35 @@ def test_a_life_is_shown_in_two_parts_once_it_is_longer_than_both(
         assert len(shown) == parts
         assert (shown[0][0], shown[-1][-1]) == (1, ticks)
         assert sum(map(len, shown)) == (ticks if parts == 1 else both)
+
+
+@given(*(st.integers(1, most) for most in (60, 40, 9, 20)), st.booleans())
+def test_a_film_that_leaves_out_ticks_still_shows_the_tick_of_death(
+    age: int, length: int, step: int, ticks: int, whole: bool
+) -> None:
+    """Of each part it shows the first tick, each `step`-th after it, and the last tick of the life."""
+    born, length = 70, min(length, age)
+    parts = [range(1, length + 1)]
+    if whole:
+        parts = [*parts, range(max(length, age - length) + 1, age + 1)]
+    stretches = [
+        SimpleNamespace(tick=born + np.arange(first, min(first + ticks, age + 1)))
+        for first in range(1, age + 1, ticks)
+    ]
+    life: Any = SimpleNamespace(
+        record=SimpleNamespace(born=[born]),
+        ends=born + age,
+        stretches=lambda watched: iter(stretches),
+    )
+    seen = [
+        (part, int(stretch.tick[i]) - born)
+        for part, stretch, i in replay.moments(life, parts, step)
+    ]
+    assert seen == [
+        (number, at)
+        for number, part in enumerate(parts)
+        for at in sorted({*part[::step], *({age} & {*part})})
+    ]
 
 
 @pytest.mark.parametrize("rate", [RATE, 0.1])

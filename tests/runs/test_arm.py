@@ -9,6 +9,7 @@ import pytest
 
 import primordia
 from primordia.api import Run
+from primordia.brains import genomes
 from primordia.errors import InputError
 from primordia.history.foraging import foraging
 from primordia.history.lineage import rebuild_all
@@ -87,6 +88,17 @@ def test_organisms_of_an_arm_are_those_of_one_run(both: tuple[Run, Run]) -> None
     np.testing.assert_array_equal(other, one)
     results = (each.evaluate(games=3, ticks=50).to_dict() for each in (whole, arm))
     assert next(results) == next(results)
+
+
+@pytest.mark.parametrize("world", range(3))
+def test_an_exported_genome_tells_the_seed_of_its_own_world(
+    both: tuple[Run, Run], world: int, tmp_path: Path
+) -> None:
+    for run in both:
+        (number,) = run.export(tmp_path / "x.safetensors", world=world)
+        about = genomes.about(tmp_path / "x.safetensors")
+        seed = str(SETTINGS["seed"] + world)
+        assert about == {"task": "mill", "seed": seed, "organisms": str(number)}
 
 
 def test_figures_of_an_arm_are_put_in_its_folder(runs: Path) -> None:
