@@ -157,6 +157,18 @@ def test_a_forager_starves_as_the_law_says() -> None:
     assert (info["cause"], info["food"]) == ("starved", 10.0)
 
 
+@pytest.mark.parametrize(
+    ("edge", "store", "cause"), [(1e9, 1.0, "starved"), (-1.0, 1.0, "fatal"), (-1.0, 9.0, "fatal")]
+)
+def test_a_fall_is_the_cause_of_death_whether_or_not_the_energy_ends_with_it(
+    edge: float, store: float, cause: str
+) -> None:
+    env = Forager(gymnasium.make("tests.ponds:Pond-v0", edge=edge), lambda *_: 0.0, store=store)
+    env.reset(seed=0)
+    _, _, died, _, info = env.step(env.action_space.sample())
+    assert (died, info["cause"], info["energy"]) == (True, cause, store - 1)
+
+
 def test_survival_has_no_reward_but_life_and_no_limit() -> None:
     env = Survival(gymnasium.make("tests.ponds:Pond-v0"), reward=2.0)
     env.reset(seed=1)
@@ -181,6 +193,8 @@ def test_bodies_keep_the_seeds_that_they_were_given() -> None:
     masked = LifeVectorEnv("CartPole-survival", 3)
     masked.reset(seed=[5, 3, 9], options={"reset_mask": [True, False, False]})
     np.testing.assert_array_equal(masked.reset()[0], [lives[5][1], lives[3][0], lives[9][0]])
+    masked.reset(seed=[9, 9, 3], options={"reset_mask": [True, False, False]})
+    np.testing.assert_array_equal(masked.reset()[0], [lives[9][1], lives[3][1], lives[9][1]])
 
 
 def test_bodies_without_a_seed_get_random_ones() -> None:

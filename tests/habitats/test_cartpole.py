@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from itertools import permutations
 from typing import Any
 
 import gymnasium
@@ -10,7 +11,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from primordia.habitats.cartpole.habitat import CartPole
+from primordia.habitats.cartpole.habitat import COORDINATES, CartPole
 from primordia.habitats.cartpole.picture import draw
 
 LIMITS = np.array([2.4, np.inf, np.deg2rad(12), np.inf])
@@ -109,6 +110,14 @@ def test_hidden_senses_are_positions_only() -> None:
     hidden = CartPole(senses=("x", "theta"))
     assert hidden.senses_size == 2
     np.testing.assert_array_equal(hidden.sense(states), states[:, [0, 2]])
+
+
+@pytest.mark.parametrize("count", range(1, 5))
+def test_senses_come_in_the_order_of_the_settings(count: int) -> None:
+    states = jnp.asarray(random_states(5))
+    for places in permutations(range(4), count):
+        ordered = CartPole(senses=tuple(COORDINATES[place] for place in places))
+        np.testing.assert_array_equal(ordered.sense(states), np.asarray(states)[:, places])
 
 
 @pytest.mark.parametrize(

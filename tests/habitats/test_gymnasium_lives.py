@@ -82,6 +82,19 @@ def test_death_food_effort_and_time_limit_are_settings() -> None:
         np.testing.assert_array_equal(deaths["energy"], 9 + 20 - 4)
 
 
+def test_what_is_scored_has_the_reward_and_none_of_the_rules_of_lives() -> None:
+    rules = {"fatal": "obs[0] < 100", "food": "2", "effort": "1", "time_limit": 4}
+    calm = {"env": "tests.ponds:Pond-v0", "options": {"edge": 1e9}, "workers": 0}
+    game = Gymnasium(**calm, **rules).original()
+    game.open(1)
+    game.reset(np.array([0]), np.array([[3]], np.uint32))
+    for _ in range(8):
+        _, outcome = game.step(np.ones((1, 1), np.float32), np.ones(1, bool))
+        assert [outcome.fatal, outcome.expired, outcome.effort] == [False, False, 0]
+        assert outcome.food == game.seen()["reward"].astype(np.float32)
+    game.close()
+
+
 def test_an_error_kills_its_organism_and_leaves_its_last_line(tmp_path: Path, capfd: Any) -> None:
     settings = {"cells": 6, "habitat": {"workers": 2}, "stop": {"ticks": 150}}
     run = primordia.run("gym:tests.ponds:Crashing-v0", tmp_path / "run", settings)

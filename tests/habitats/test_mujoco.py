@@ -244,6 +244,36 @@ def test_named_amounts_are_those_of_the_model() -> None:
     np.testing.assert_allclose(gone, position[:, 0] - start, atol=1e-5)
 
 
+@pytest.mark.parametrize(
+    "amount", ["height", "pitch", 'xpos["ffoot"][0]', "forward", "com_forward", "travelled"]
+)
+def test_an_amount_that_nothing_else_observes_is_that_of_the_end_of_the_tick(amount: str) -> None:
+    """So MuJoCo derives positions after a tick for the sake of each amount alone."""
+    habitat = opened(1, food=amount, velocity_noise=1.0)
+    born(habitat, 1)
+    data = mujoco.MjData(habitat._model)
+
+    def place() -> tuple[float, np.ndarray]:
+        data.qpos[:] = habitat._bodies.views["qpos"][0]
+        mujoco.mj_kinematics(habitat._model, data)
+        mujoco.mj_comPos(habitat._model, data)
+        return data.qpos[0], data.subtree_com[0, :2].copy()
+
+    for _ in range(3):
+        x, com = place()
+        _, outcome = habitat.step(np.full((1, 6), -0.4, np.float32), np.ones(1, bool))
+        new_x, new_com = place()
+        expected = {
+            "height": data.body("torso").xpos[2],
+            "pitch": data.qpos[2],
+            'xpos["ffoot"][0]': data.body("ffoot").xpos[0],
+            "forward": new_x - x,
+            "com_forward": (new_com - com)[0],
+            "travelled": np.hypot(*(new_com - com)),
+        }
+        np.testing.assert_allclose(outcome.food, expected[amount], rtol=1e-6)
+
+
 def test_controls_are_clipped_to_their_ranges() -> None:
     habitat = opened(effort="sum(ctrl * ctrl)")
     born(habitat)
