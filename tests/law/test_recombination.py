@@ -101,8 +101,11 @@ def test_a_child_is_made_of_parent_and_mate_as_they_are_when_it_is_born(rule: st
         organisms = lived.engine.state.world.organisms
         numbers = np.asarray(organisms.number.lo)[np.asarray(organisms.alive)]
         genomes.update(zip(numbers.tolist(), lived.genomes(), strict=True))
-    births = lived.table("births")
-    for number, parent, mate in zip(births["id"], births["parent"], births["mate"], strict=True):
+    births, deaths = lived.table("births"), lived.table("deaths")
+    died = dict(zip(deaths["id"], zip(deaths["tick"], deaths["cause"], strict=True), strict=True))
+    for number, tick, parent, mate in zip(
+        *(births[name] for name in ("id", "tick", "parent", "mate")), strict=True
+    ):
         if np.isnan(parent) or number not in genomes:
             continue
         own, of_parent = genomes[number], genomes[int(parent)]
@@ -110,6 +113,8 @@ def test_a_child_is_made_of_parent_and_mate_as_they_are_when_it_is_born(rule: st
             np.testing.assert_array_equal(own, of_parent)
             continue
         assert mate not in (parent, number)
+        end, cause = died.get(mate, (tick + 1, ""))
+        assert end > tick or (end == tick and cause == "replaced")
         of_mate = genomes[int(mate)]
         assert ((own == of_parent) | (own == of_mate)).all()
         mixed += bool((own != of_parent).any() and (own != of_mate).any())
