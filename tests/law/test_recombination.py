@@ -61,6 +61,9 @@ def test_every_candidate_is_as_likely_to_be_the_mate() -> None:
         assert binomial(int((mates[K // 2 :] == cell).sum()), K // 2, 1 / 3)
     few = np.asarray(Recombination(probability=0.25).mates(word, jnp.asarray(candidates)))
     assert binomial(int((few[1:] >= 0).sum()), K - 1, 0.25)
+    with_all = few[K // 2 :]
+    for cell in (1, 4, 5):
+        assert binomial(int((with_all == cell).sum()), int((with_all >= 0).sum()), 1 / 3)
 
 
 @pytest.mark.parametrize(
