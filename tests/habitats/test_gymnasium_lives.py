@@ -156,6 +156,25 @@ def test_wrong_settings_are_one_line(habitat: dict[str, Any], says: str) -> None
     assert "\n" not in str(caught.value)
 
 
+def test_bodies_that_begin_again_are_those_of_the_births(monkeypatch: pytest.MonkeyPatch) -> None:
+    words, reset = dict[int, list[int]](), Gymnasium.reset
+
+    def noting(self: Gymnasium, cells: np.ndarray, given: np.ndarray) -> np.ndarray:
+        words.update(zip(cells.tolist(), given.tolist(), strict=True))
+        return reset(self, cells, given)
+
+    monkeypatch.setattr(Gymnasium, "reset", noting)
+    before = Lived(config(pond("Hidden", saving="restart")), 20)
+    organisms = before.engine.state.world.organisms
+    alive = np.flatnonzero(organisms.alive)
+    assert len(np.unique(np.asarray(organisms.born.lo)[alive])) > 2
+    born = {cell: words[cell] for cell in alive.tolist()}
+    after = Lived(config(pond("Hidden", saving="restart")), 1)
+    words.clear()
+    after.engine.load(before.engine.arrays())
+    assert words == born
+
+
 def test_where_nothing_can_be_saved_bodies_begin_again_and_that_is_counted(tmp_path: Path) -> None:
     settings = {"cells": 6, "habitat": {"workers": 0}, "stop": {"ticks": 30}}
     run = primordia.run("gym:tests.ponds:Hidden-v0", tmp_path / "run", settings)
