@@ -98,6 +98,14 @@ class Hidden(Pond):
         return super().step(action)
 
 
+class Moody(Pond):
+    """A reward that depends on the state of the module; nothing else does."""
+
+    def step(self, action: Any) -> tuple[Any, float, bool, bool, dict]:
+        observation, reward, *others = super().step(action)
+        return observation, reward + next(NUMBERS), *others
+
+
 class Worn(Pond):
     """A reset that does not restore all."""
 
@@ -178,8 +186,8 @@ def food(observation: Any, reward: Any, terminated: Any, truncated: Any, info: A
 
 
 KINDS = (
-    Pond, Odd, Unseeded, Hidden, Worn, Grasping, Outside, Broken, Crashing, Unborn, Talking, Still,
-    Closed,
+    Pond, Odd, Unseeded, Hidden, Moody, Worn, Grasping, Outside, Broken, Crashing, Unborn, Talking,
+    Still, Closed,
 )  # fmt: skip
 for kind in KINDS:
     gymnasium.register(

@@ -13,6 +13,7 @@ from primordia.habitats.gymnasium.environment import make
 FAULTS = {
     "Unseeded": ("restart", False, "another beginning: the environment ignores its seed"),
     "Hidden": ("restart", False, "the same seed and actions give another life"),
+    "Moody": ("restart", False, "the same seed and actions give another life"),
     "Worn": ("snapshot", True, "reset does not restore everything"),
     "Grasping": ("snapshot", False, "step changes the action"),
     "Outside": ("snapshot", False, "outside the declared space"),

@@ -7,6 +7,8 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
 from jax import lax
 
 from primordia.config import validated
@@ -105,10 +107,18 @@ def test_senses_are_scaled_where_their_space_has_bounds() -> None:
     np.testing.assert_array_equal(squashed[:, 1], place[:, 1])
 
 
-def test_a_box_whose_width_needs_no_scale_is_moved_to_the_middle() -> None:
-    space = SimpleNamespace(low=0, high=2, shape=(3,))
+@given(st.integers(-800, 800), st.integers(0, 800))
+@example(0, 16)
+@example(40, 8)
+def test_a_box_becomes_minus_one_to_one_unless_it_is_within_these_or_a_point(
+    first: int, count: int
+) -> None:
+    low, width = first / 8, count / 8  # exact, so that a bound of 1 is no more than 1
+    space = SimpleNamespace(low=low, high=low + width, shape=(3,))
     senses = Senses(space, jax.ShapeDtypeStruct((3,), jnp.float32), squash=False)
-    np.testing.assert_array_equal(senses.of(jnp.array([0.0, 1.0, 2.0])), [-1, 0, 1])
+    places = np.float32([low, low + width / 2, low + width])
+    kept = width == 0 or max(-low, low + width) <= 1
+    np.testing.assert_allclose(senses.of(places), places if kept else [-1, 0, 1], atol=1e-3)
 
 
 def test_a_choice_is_an_action_and_rooms_are_senses_of_which_one_is_one() -> None:
