@@ -19,8 +19,8 @@ def test_events_of_a_tick_keep_their_order_and_devices_follow_each_other(
     ticks: list[list[int]],
 ) -> None:
     """Within a tick a world's births are in the order of their numbers."""
-    place = list(BIRTHS.unpacked(np.arange(BIRTHS.width)[None].astype(np.uint32))["tick"])[0]
-    low = int(place) & 0xFFFFFFFF
+    place = BIRTHS.unpacked(np.arange(BIRTHS.width)[None].astype(np.uint32))["tick"].item()
+    low = place & 0xFFFFFFFF
     rows = np.zeros((len(ticks), 200, BIRTHS.width), np.uint32)
     rows[:, :, 0] = np.arange(200)
     for device, each in enumerate(ticks):

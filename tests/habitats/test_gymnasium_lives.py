@@ -164,12 +164,13 @@ def test_bodies_that_begin_again_are_those_of_the_births(monkeypatch: pytest.Mon
         return reset(self, cells, given)
 
     monkeypatch.setattr(Gymnasium, "reset", noting)
-    before = Lived(config(pond("Hidden", saving="restart")), 20)
+    settings = config(pond("Hidden", saving="restart"), hazard=0.1, replication=0.5)
+    before = Lived(settings, 20)
     organisms = before.engine.state.world.organisms
     alive = np.flatnonzero(organisms.alive)
     assert len(np.unique(np.asarray(organisms.born.lo)[alive])) > 2
     born = {cell: words[cell] for cell in alive.tolist()}
-    after = Lived(config(pond("Hidden", saving="restart")), 1)
+    after = Lived(settings, 1)
     words.clear()
     after.engine.load(before.engine.arrays())
     assert words == born
