@@ -236,22 +236,42 @@ def test_a_job_that_another_process_lives_is_left_to_it(tmp_path: Path) -> None:
         complains(here("experiment", chosen.path, "--job", 0), 2, "run by another process")
 
 
+class Fated:
+    """A place in which each job ends as foretold, try by try."""
+
+    def __init__(self, *fates: list[Ending]) -> None:
+        self.fates = fates
+
+    def submit(self, job: Job) -> Future[Ending]:
+        future: Future[Ending] = Future()
+        future.set_result(self.fates[job.number].pop(0))
+        return future
+
+    def stop(self) -> None: ...
+
+
 def test_a_job_whose_process_alone_is_stopped_goes_on(tmp_path: Path) -> None:
     """A place that stops each job once; the loop ends when all are done."""
-    stopped: set[int] = set()
-
-    class Restless:
-        def submit(self, job: Job) -> Future[Ending]:
-            future: Future[Ending] = Future()
-            future.set_result(Ending(job.number, "done" if job.number in stopped else "stopped"))
-            stopped.add(job.number)
-            return future
-
-        def stop(self) -> None: ...
-
     chosen = begin(write(tmp_path), tmp_path / "out")
-    result = live_all(chosen.jobs, Restless(), lambda: None, lambda *_: None)
+    place = Fated(*([Ending(number, "stopped"), Ending(number, "done")] for number in range(4)))
+    result = live_all(chosen.jobs, place, lambda: None, lambda *_: None)
     assert (result.done, result.stopped) == (4, False)
+
+
+def test_each_job_that_might_succeed_is_tried_three_times(tmp_path: Path) -> None:
+    """However often others have failed."""
+    chosen, told = begin(write(tmp_path), tmp_path / "out"), list[tuple[int, bool]]()
+    fail, lost = (lambda job: Ending(job, "failed")), Ending(1, "failed", again=False)
+    done = [Ending(number, "done") for number in range(4)]
+    place = Fated([fail(0)] * 4, [lost] * 2, [fail(2), fail(2), done[2]], [fail(3), done[3]])
+    result = live_all(
+        chosen.jobs, place, lambda: None, lambda job, _, again: told.append((job.number, again))
+    )
+    assert (result.done, [ending.job for ending in result.failed]) == (2, [1, 0])
+    assert [len(fates) for fates in place.fates] == [1, 1, 0, 0]
+    assert sorted(told) == [
+        (0, False), (0, True), (0, True), (1, False), (2, True), (2, True), (3, True)
+    ]  # fmt: skip
 
 
 def test_code_of_a_folder_from_elsewhere_is_not_executed(

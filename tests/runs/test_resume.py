@@ -48,17 +48,20 @@ def test_checkpoint_intervals_make_no_difference(through: list[str], tmp_path: P
 def test_a_run_can_be_looked_at_soon_after_its_start(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, every: float, expected: list[float]
 ) -> None:
-    """A run of a clock that ticks every half a second; nothing is written."""
-    now, saved = [0.0], list[float]()
+    """A run of a clock that ticks every half a second; nothing is written.
+
+    Each checkpoint holds the time spent: that before the run was resumed, and that since then.
+    """
+    now, saved = [0.0], list[tuple[float, float]]()
+    progress = Progress(limits=Stop(), wall_s=20.0, exact=True)
     monkeypatch.setattr(time, "perf_counter", lambda: now[0])
-    monkeypatch.setattr(checkpoint, "save", lambda *_: saved.append(now[0]))
+    monkeypatch.setattr(checkpoint, "save", lambda *_: saved.append((now[0], progress.wall_s)))
     nothing: Any = SimpleNamespace(arrays=dict)
-    progress = Progress(limits=Stop(), wall_s=0.0, exact=True)
     saver = loop.Saver(nothing, nothing, tmp_path, progress, every, 0.0, lambda: None)
     while now[0] < expected[-1]:
         now[0] += 0.5
         saver.save_if_due()
-    assert saved == expected
+    assert saved == [(at, 20 + at) for at in expected]
 
 
 def test_ticks_added_later_equal_ticks_lived_at_once(through: list[str], tmp_path: Path) -> None:

@@ -137,40 +137,49 @@ def process(script: str, *words: str) -> subprocess.CompletedProcess[str]:
 
 
 DEFERRED = """
-import os, select, signal, sys, threading
+import os, select, signal, sys, threading, time
 from primordia import interrupts
 
 looked, wait = threading.Semaphore(0), select.select
+times = [float(each.partition("@")[2]) for each in sys.argv[1:]]
+now, due = 0.0, float("inf")
 
 def look(*given):
-    if given[-1] is None:
-        looked.release()
-    return wait(*given)
+    *what, patience = given
+    if patience is not None and now + patience < due:
+        return [], [], []
+    looked.release()
+    return wait(*what)
 
-select.select, interrupts.PATIENCE = look, 0.0
+select.select, time.monotonic = look, lambda: now
 interrupts.end_commands_at_once()
 with interrupts.deferred():
-    for each in sys.argv[1:]:
+    for each, at, then in zip(sys.argv[1:], times, [*times[1:], due]):
         looked.acquire()
-        os.kill(os.getpid(), getattr(signal, each))
+        now, due = at, then
+        os.kill(os.getpid(), getattr(signal, each.partition("@")[0]))
     looked.acquire()
 print("finished")
 """
-"""Work that sends signals to its own process, and ends when the last of them has had its effect.
-It takes longer than the time after which the first signal is answered with a line."""
+"""Work that sends signals to its own process, each at a second of a clock that leaps from one to the
+next, and that ends when the last of them has had its effect. It takes longer than the time after
+which the first signal is answered with a line."""
 STOPPING = "Stopping when the simulator answers; press Ctrl-C once more to stop at once\n"
 
 
 @pytest.mark.parametrize(
     ("signals", "outcome"),
     [
-        (["SIGINT"], (0, "finished\n", STOPPING)),
-        (["SIGINT", "SIGTERM"], (interrupts.STATUS, "", f"{STOPPING}Stopped\n")),
+        (["SIGINT@0"], (0, "finished\n", STOPPING)),
+        (["SIGINT@0", "SIGTERM@9"], (interrupts.STATUS, "", f"{STOPPING}Stopped\n")),
+        (["SIGHUP@0", "SIGTERM@1.5"], (0, "finished\n", STOPPING)),
+        (["SIGINT@0", "SIGINT@1.5", "SIGINT@3"], (interrupts.STATUS, "", "Stopped\n")),
     ],
 )
-def test_a_second_signal_ends_work_that_defers_the_first(
+def test_a_signal_ends_work_that_has_deferred_one_for_two_seconds(
     signals: list[str], outcome: tuple[int, str, str]
 ) -> None:
+    """Two that come at once are one, as when a terminal is closed. Impatience ends work no later."""
     done = process(DEFERRED, *signals)
     assert (done.returncode, done.stdout, done.stderr) == outcome
 
