@@ -151,7 +151,7 @@ def _wait_and_end(woken: int) -> None:
         if not select.select([woken], [], [], patience)[0]:
             patience = None
             if _deferred:
-                _say("Stopping when the simulator answers; press Ctrl-C once more to stop at once")
+                _say("Stopping after the present step; press Ctrl-C once more to stop at once")
             continue
         os.read(woken, 1)  # the system writes the number of each signal
         now = time.monotonic()

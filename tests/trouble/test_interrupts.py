@@ -164,7 +164,7 @@ print("finished")
 """Work that sends signals to its own process, each at a second of a clock that leaps from one to the
 next, and that ends when the last of them has had its effect. It takes longer than the time after
 which the first signal is answered with a line."""
-STOPPING = "Stopping when the simulator answers; press Ctrl-C once more to stop at once\n"
+STOPPING = "Stopping after the present step; press Ctrl-C once more to stop at once\n"
 
 
 @pytest.mark.parametrize(

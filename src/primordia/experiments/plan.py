@@ -23,10 +23,8 @@ from primordia.settings.base import UNREACHED, Settings
 from primordia.settings.fields import first_fault
 from primordia.settings.tables import flat, from_toml
 
-RESERVED = {
-    *("jobs", "figures", EXPERIMENT, "workers.log"),
-    *("results.md", "results.csv", "results.png"),
-}
+OWN_FILES = EXPERIMENT, "workers.log", "results.md", "results.csv", "results.png"
+RESERVED = {"jobs", "figures", *OWN_FILES}
 """Names in an experiment's folder that no arm can have."""
 LARGEST = 100_000
 """Largest number of jobs of an experiment."""

@@ -59,7 +59,10 @@ class Lives:
 
     @property
     def inherited(self) -> np.ndarray:
-        """Whether the organism was alive at the fork with which these lives begin, bool (L,)."""
+        """Whether the organism was alive at the fork with which these lives begin, bool (L,).
+
+        The tick of the fork is that from which older organisms are on record.
+        """
         older = self.entered > 0
         return older | (self.born == self.seen[older].min()) if older.any() else older
 
