@@ -172,14 +172,14 @@ STOPPING = "Stopping after the present step; press Ctrl-C once more to stop at o
     [
         (["SIGINT@0"], (0, "finished\n", STOPPING)),
         (["SIGINT@0", "SIGTERM@9"], (interrupts.STATUS, "", f"{STOPPING}Stopped\n")),
-        (["SIGHUP@0", "SIGTERM@1.5"], (0, "finished\n", STOPPING)),
+        (["SIGTERM@0", "SIGTERM@1.5"], (0, "finished\n", STOPPING)),
         (["SIGINT@0", "SIGINT@1.5", "SIGINT@3"], (interrupts.STATUS, "", "Stopped\n")),
     ],
 )
 def test_a_signal_ends_work_that_has_deferred_one_for_two_seconds(
     signals: list[str], outcome: tuple[int, str, str]
 ) -> None:
-    """Two that come at once are one, as when a terminal is closed. Impatience ends work no later."""
+    """Two that come at once are one. Impatience ends work no later."""
     done = process(DEFERRED, *signals)
     assert (done.returncode, done.stdout, done.stderr) == outcome
 
