@@ -6,7 +6,7 @@ code compiles a program, the exception has to wait. So signals are only noted he
 in one of two ways:
 
 - A run checks `noted` between two chunks, and writes a checkpoint before it stops. If a chunk does
-not end, since a simulator hangs, a second signal ends the process.
+not end, since a simulator hangs, a second signal ends the process. A line says so after PATIENCE.
 - At all other times a signal ends the process at once. This is safe, since a run survives even kill
 -9. The process is ended by a thread, which the system wakes whatever the main thread does
 (`end_commands_at_once`).

@@ -1,4 +1,4 @@
-"""Runs whose organisms die in every way, for all tests of revived lives."""
+"""Runs for all tests of lives: poles and mills, and worlds in which organisms die in every way."""
 
 from pathlib import Path
 from typing import Any
@@ -33,3 +33,17 @@ def chain(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     fork = run.fork(100, folder / "fork", seed=9, stop={"ticks": 200})
     again = fork.fork(180, folder / "again", seed=300, stop={"ticks": 260})
     return [run.path, fork.path, again.path]
+
+
+@pytest.fixture(scope="package")
+def mill(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Make a run of two worlds with a noisy motor and seasons that change the metabolism."""
+    run = tmp_path_factory.mktemp("mill") / "run"
+    loop.start(config({**MILL, "seeds": 2, "seed": 5, "stop": {"ticks": 700}}), run)
+    return run
+
+
+@pytest.fixture(scope="package")
+def poles(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    run = tmp_path_factory.mktemp("poles") / "run"
+    return primordia.run("CartPole-survival", run, stop={"ticks": 6000, "until": "none"}).path

@@ -163,6 +163,8 @@ def unbundle(file: Path, folder: Path) -> None:
                 files.remove(each)
             _extract(file, temporary)
             try:
+                for each in (*temporary.rglob("*"), temporary):
+                    files.sync(each)
                 temporary.rename(folder)
                 files.sync(folder.parent)
             except OSError as error:
@@ -198,8 +200,6 @@ def _extract(file: Path, folder: Path) -> None:
             directory.make_folders(folder)
             for name, seal in seals.items():
                 _copy(_pieces(bundle, entries[name]), folder / name, seal)
-            for each in {(folder / name).parent for name in seals}:
-                files.sync(each)
     except (InputError, Trouble):
         raise
     except Exception as error:  # zipfile raises errors of many kinds for other files
@@ -273,7 +273,6 @@ def _copy(pieces: Iterable[bytes], path: Path, seal: Seal | None) -> None:
             for piece in pieces:
                 digest.update(piece)
                 file.write(piece)
-        files.sync(path)
     except OSError as error:
         raise Trouble(f"{path} cannot be written: {error.strerror or error}") from None
     if seal is not None and digest.hexdigest() != seal.sha256:

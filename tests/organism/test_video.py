@@ -1,0 +1,132 @@
+"""Videos of lives, and the pictures that they are made of."""
+
+from pathlib import Path
+
+import av
+import numpy as np
+import pytest
+from PIL import Image
+
+import primordia
+from primordia.habitats.cartpole.habitat import CartPole
+from primordia.organism import replay
+from primordia.organism.reliving.relived import RelivedLife
+from primordia.runs import loop
+from primordia.runs.archive import Archive
+from tests.commands import complains, here
+from tests.toys import HOST_CARTPOLE, HostCartPole
+from tests.worlds import config
+
+
+def frames(path: Path) -> list[Image.Image]:
+    with av.open(str(path)) as container:
+        return [frame.to_image() for frame in container.decode(video=0)]
+
+
+def test_a_video_shows_the_whole_of_a_short_life(poles: Path, tmp_path: Path) -> None:
+    lives = Archive(poles).lives
+    row = int(np.flatnonzero(lives.died & (lives.lifespan < 60))[0])
+    path = tmp_path / "life.mp4"
+    done = here("replay", poles, "--organism", lives.id[row], "--out", path)
+    assert (done.returncode, done.stdout.strip()) == (0, str(path))
+    seen = frames(path)
+    assert len(seen) == lives.lifespan[row] + 50  # the last picture is shown for a second
+    assert seen[0].size == (640, 360)
+    assert seen[0].tobytes() != seen[-1].tobytes()
+
+
+def test_a_video_shows_the_beginning_and_the_end_of_a_long_life(
+    poles: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """They are half a minute each; here they are shorter, to save time."""
+    assert replay.PART == 30
+    monkeypatch.setattr(replay, "PART", 4.0)
+    done = here("replay", poles)
+    assert done.returncode == 0, done.stderr
+    oldest = primordia.load(poles).oldest()
+    assert oldest.age > 1000
+    assert done.stdout.strip() == str(poles / "videos" / f"world0-organism{oldest.id}.mp4")
+    assert len(frames(Path(done.stdout.strip()))) == 200 + 50 + 200 + 50
+
+
+def test_lives_are_shown_side_by_side_in_the_order_of_birth(poles: Path) -> None:
+    lives = Archive(poles).lives
+    short = np.flatnonzero(lives.died & (lives.lifespan < 60))
+    first, second = short[0], short[np.argmax(lives.lifespan[short] != lives.lifespan[short[0]])]
+    numbers = lives.id[[first, second]].tolist()
+    both = here("replay", poles, "--organism", numbers[1], "--beside", numbers[0])
+    assert both.returncode == 0, both.stderr
+    path = poles / "videos" / f"world0-organism{numbers[0]}-{numbers[1]}.mp4"
+    assert both.stdout.strip() == str(path)
+    seen = frames(path)
+    assert len(seen) == max(lives.lifespan[[first, second]]) + 50
+    assert seen[0].size == (2 * 640 + replay.GAP, 360)
+    one = Path(here("replay", poles, "--organism", numbers[0]).stdout.strip())
+    left, right = (
+        np.asarray(seen[5].crop((place, 0, place + 640, 360)), float)
+        for place in (0, 640 + replay.GAP)
+    )
+    alone = np.asarray(frames(one)[5], float)  # compressed too, so not equal
+    assert 10 * np.square(left - alone).mean() < np.square(right - alone).mean()
+    complains(here("replay", poles, "--beside", 10**6), 2, "no organism 1000000")
+
+
+def test_a_part_of_a_life_is_written_as_a_gif(poles: Path, tmp_path: Path) -> None:
+    path = tmp_path / "life.gif"
+    done = here("replay", poles, "--from", 10, "--to", 49, "--out", path)
+    assert done.returncode == 0, done.stderr
+    with Image.open(path) as gif:
+        shown = getattr(gif, "n_frames", 1)
+        assert gif.size == (320, 180)
+        assert 2 <= shown <= 20 + 25
+        total = 0
+        for number in range(shown):
+            gif.seek(number)
+            total += gif.info["duration"]
+    assert total == (20 + 25) * 40
+
+
+def test_a_picture_shows_where_the_cart_is_and_the_push() -> None:
+    habitat = CartPole()
+    middle, right = (
+        np.asarray(habitat.picture(np.array([x, 0, 0, 0], np.float32), np.int32(1)))
+        for x in (0.0, 2.0)
+    )
+    cart = np.array([35, 57, 91])
+    at = [np.flatnonzero((each == cart).all(axis=2).any(axis=0)).mean() for each in (middle, right)]
+    assert at[0] == pytest.approx(319.5, abs=1)
+    assert at[1] == pytest.approx(319.5 + 260 * 2.0 / 2.4, abs=1.5)
+    assert arrow_at(habitat, action=1) < 320 - 37 < 320 + 37 < arrow_at(habitat, action=0)
+
+
+def arrow_at(habitat: CartPole, action: int) -> float:
+    """Return where the push is drawn: on the side that it comes from."""
+    picture = np.asarray(habitat.picture(np.zeros(4, np.float32), np.int32(action)))
+    push = (picture == np.array([224, 160, 48])).all(axis=2)
+    return float(np.flatnonzero(push.any(axis=0)).mean())
+
+
+def test_wrong_input_is_an_error_that_says_why(poles: Path, mill: Path, tmp_path: Path) -> None:
+    complains(here("replay", poles, "--organism", 10**6), 2, "no organism 1000000")
+    complains(here("replay", poles, "--world", 2), 2, "no world 2")
+    complains(here("replay", poles, "--from", 10**7), 2, "can be seen from age 1 to")
+    complains(here("replay", poles, "--out", tmp_path / "x.avi"), 2, ".mp4 or .gif")
+    complains(here("replay", mill), 2, "draws no pictures, since it has no `picture` and no `rate`")
+    complains(here("replay", tmp_path), 2, "is not a run")
+
+
+def test_a_habitat_without_pictures_gives_no_video(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    values = {"task": "host", "habitat": HOST_CARTPOLE, "cells": 4, "stop": {"ticks": 20}}
+    loop.start(config(values), tmp_path / "run")
+    no_pictures = "draws no pictures, since it has no "
+    complains(here("replay", tmp_path / "run"), 2, no_pictures, "`picture` and no `seen`")
+    monkeypatch.setattr(HostCartPole, "picture", None, raising=False)
+    complains(
+        here("replay", tmp_path / "run"),
+        2,
+        "draws no pictures, since it has no `seen` and no `rate`",
+    )
+    (seen,) = RelivedLife.of(Archive(tmp_path / "run"), 0).stretches()
+    assert seen.bodies is None
