@@ -97,6 +97,7 @@ def lives_of(parent: list[int], born: list[int], ended: list[int], died: list[bo
         birth_cause=np.where(of < 0, BirthCause.FOUNDER, BirthCause.MUTANT).astype(np.int8),
         born=np.array(born, np.int64),
         seen=np.array(born, np.int64),
+        inherited=np.zeros(count, bool),
         ended=np.array(ended, np.int64),
         cause=np.where(died, Cause.FATAL, ALIVE).astype(np.int8),
     )

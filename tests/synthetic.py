@@ -24,6 +24,7 @@ def world_of(lived: list[tuple[int, int, bool]], until: int = 90) -> Lives:
         birth_cause=np.zeros(len(born), np.int8),
         born=born,
         seen=born,
+        inherited=np.zeros(len(born), bool),
         ended=np.where(died, born + 1 + lifespan, until),
         cause=np.where(died, Cause.FATAL, ALIVE).astype(np.int8),
     )

@@ -25,6 +25,7 @@ def lives(*rows: tuple[int, BirthCause, int] | tuple[int, BirthCause, int, str])
         birth_cause=np.array([row[1] for row in rows], np.int8),
         born=number,
         seen=number,
+        inherited=np.zeros(count, bool),
         ended=number + lifespan,
         cause=np.where(alive, ALIVE, Cause.FATAL).astype(np.int8),
     )

@@ -33,7 +33,8 @@ def made(worlds: list[list[tuple[int, bool]]]) -> Lives:
     world, lifespan, died = (np.array(column) for column in zip(*rows, strict=True))
     nothing = np.zeros(len(rows), np.int64)
     cause = np.where(died, 0, ALIVE).astype(np.int8)
-    return Lives(world, nothing, nothing - 1, nothing, nothing, nothing, nothing, lifespan, cause)
+    times = {"born": nothing, "seen": nothing, "inherited": nothing > 0, "ended": lifespan}
+    return Lives(world, nothing, nothing - 1, nothing, nothing, **times, cause=cause)
 
 
 @given(LIVED, st.integers(1, 40))

@@ -52,6 +52,7 @@ def lived(cohorts: list) -> tuple[Lives, list[bool]]:
         birth_cause=np.zeros(len(rows), np.int8),
         born=born,
         seen=born,
+        inherited=np.zeros(len(born), bool),
         ended=ended,
         cause=np.where(last, ALIVE, Cause.FATAL).astype(np.int8),
     )

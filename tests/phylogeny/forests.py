@@ -43,6 +43,7 @@ def forest(*worlds: list[tuple[int, int, bool]]) -> Phylogeny:
         birth_cause=np.where(parent < 0, BirthCause.FOUNDER, BirthCause.COPY).astype(np.int8),
         born=born,
         seen=born,
+        inherited=np.zeros(len(born), bool),
         ended=np.where(alive, END, born + 1 + number % 5),
         cause=np.where(alive, ALIVE, Cause.FATAL).astype(np.int8),
     )

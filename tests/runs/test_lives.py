@@ -85,10 +85,10 @@ def test_the_oldest_is_the_last_of_the_longest_late_lives(
     """Late are the births after a share of those of their world; those before a fork do not count."""
     lives = lives_of(worlds, 1)
     late: list[int] = []
-    # The fork, at tick 40, is known by the organisms that are older.
-    fork = 40 if (lives.born < 40).any() else -1
     for world in dict.fromkeys(lives.world.tolist()):
-        born = np.flatnonzero((lives.world == world) & (lives.born > fork))
+        born = np.flatnonzero(
+            (lives.world == world) & (lives.born > 40)
+        )  # 40: the tick of the fork
         here = born[int(after * len(born)) :].tolist()
         late += here
         if here:

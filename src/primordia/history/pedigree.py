@@ -82,8 +82,7 @@ class _Pedigree:
         and its generation: 0 for founders, -1 for organisms that were alive at a fork.
         """
         lives, known = self._lives, np.zeros(len(self._lives), bool)
-        inherited = lives.born <= self._run.config.begins  # alive at the fork; at tick 0, founders
-        root = (lives.birth_cause == BirthCause.FOUNDER) | inherited
+        root = (lives.birth_cause == BirthCause.FOUNDER) | lives.inherited
         mate_row = self._mate_rows()
         new = np.unique(rows)
         while len(new):
@@ -96,8 +95,7 @@ class _Pedigree:
             _places(members, np.where(root[members], -1, of[members]))
             for of in (lives.parent_row, mate_row)
         )
-        in_origin = inherited if self._run.origin is not None else np.zeros(len(lives), bool)
-        generation = np.where(in_origin[members], -1, 0)
+        generation = np.where(lives.inherited[members], -1, 0)
         for place in np.flatnonzero(parents >= 0):  # parents have lower rows than children
             both = generation[parents[place]], generation[mates[place]] if mates[place] >= 0 else 0
             generation[place] = max(*both, 0) + 1

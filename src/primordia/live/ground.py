@@ -56,6 +56,7 @@ class Ground:
             birth_cause=born["cause"].astype(np.int8),
             born=born["tick"],
             seen=born["tick"],
+            inherited=np.zeros(count, bool),
             ended=ticks[world],
             cause=np.full(count, ALIVE, np.int8),
         )

@@ -110,9 +110,8 @@ def _joined(earlier: Phylogeny, later: Phylogeny, fork: Archive) -> Phylogeny | 
         fork: the fork itself.
     """
     assert fork.config.fork is not None
-    inherited = later.lives.born <= fork.config.fork.tick
-    alive, again = np.flatnonzero(~earlier.lives.died), np.flatnonzero(inherited)
-    own = np.flatnonzero(~inherited)
+    alive, again = np.flatnonzero(~earlier.lives.died), np.flatnonzero(later.lives.inherited)
+    own = np.flatnonzero(~later.lives.inherited)
     same = _agree(earlier.lives.take(alive), later.lives.take(again))
     if not (same and _follow(later.lives.take(own), earlier.lives, fork)):
         return None
@@ -127,7 +126,7 @@ def _joined(earlier: Phylogeny, later: Phylogeny, fork: Archive) -> Phylogeny | 
     def column(name: str, rows: np.ndarray) -> np.ndarray:
         return np.concatenate([getattr(each.lives, name) for each in (earlier, later)])[rows]
 
-    born = {name: column(name, begun) for name in (*AS_INHERITED, "seen")}
+    born = {name: column(name, begun) for name in (*AS_INHERITED, "seen", "inherited")}
     lives = Lives(**born, ended=column("ended", ended), cause=column("cause", ended))
     return Phylogeny(
         lives,

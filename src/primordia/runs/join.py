@@ -6,7 +6,7 @@ import numpy as np
 import pyarrow as pa
 
 from primordia.law.world import BirthCause, Cause, Named
-from primordia.runs.lives import ALIVE, Lives, find_rows
+from primordia.runs.lives import ALIVE, Lives, alive_at_fork, find_rows
 
 
 def join(
@@ -23,7 +23,7 @@ def join(
             order of their numbers.
         deaths: segments; the columns world, id, tick and cause are enough.
         ends: last tick of each world so far, int64 (W,).
-        begins: the records begin at the end of this tick.
+        begins: tick of the fork at whose end the records begin; 0 if the run is no fork.
         cells: number of cells of one world.
 
     Raises:
@@ -53,7 +53,8 @@ def join(
         cell=born["cell"],
         birth_cause=born["cause"],
         born=born["tick"],
-        seen=np.maximum(born["tick"], begins) if begins else born["tick"],
+        seen=np.maximum(born["tick"], begins),
+        inherited=alive_at_fork(born["tick"], begins),
         ended=ended,
         cause=cause,
     )

@@ -35,6 +35,8 @@ class Lives:
     """int64, tick"""
     seen: np.ndarray
     """int64, tick from which the life is on record: birth, or the fork at which the organism was alive"""
+    inherited: np.ndarray
+    """bool: the organism was alive at the fork with which its run began"""
     ended: np.ndarray
     """int64, tick of death, or the world's last tick so far"""
     cause: np.ndarray
@@ -56,15 +58,6 @@ class Lives:
         these lives carry no information about younger ages.
         """
         return self.seen - self.born
-
-    @property
-    def inherited(self) -> np.ndarray:
-        """Whether the organism was alive at the fork with which these lives begin, bool (L,).
-
-        The tick of the fork is that from which older organisms are on record.
-        """
-        older = self.entered > 0
-        return older | (self.born == self.seen[older].min()) if older.any() else older
 
     @property
     def rank(self) -> np.ndarray:
@@ -90,9 +83,10 @@ class Lives:
         return self if rows == slice(0, len(self)) else self.take(rows)
 
     def recorded_since(self, tick: int) -> "Lives":
-        """Return the lives that a record begun at the end of a tick would hold."""
+        """Return the lives that a fork at the end of a tick would record; 0 changes nothing."""
         later = self.take(np.flatnonzero(~self.died | (self.ended > tick)))
-        return replace(later, seen=np.maximum(later.seen, tick))
+        inherited = later.inherited | alive_at_fork(later.born, tick)
+        return replace(later, seen=np.maximum(later.seen, tick), inherited=inherited)
 
     def recorded_until(self, tick: int) -> "Lives":
         """Return the lives that a record stopped at the end of a tick would hold."""
@@ -108,7 +102,7 @@ class Lives:
         """Return the lives with time counted from the fork; organisms alive at the fork are born
         before 0."""
         inherited = self.inherited
-        then = int(self.seen[inherited].min()) if inherited.any() else 0
+        then = int(self.seen[inherited][0]) if inherited.any() else 0
         return replace(self, born=self.born - then, seen=self.seen - then, ended=self.ended - then)
 
     def late(self, after: float = LATE) -> np.ndarray:
@@ -191,6 +185,16 @@ def joined(parts: Sequence[Lives], firsts: np.ndarray) -> Lives:
     }
     shift = np.repeat(firsts, [len(part) for part in parts]).astype(np.int32)
     return Lives(**{**columns, "world": columns["world"] + shift})
+
+
+def alive_at_fork(born: np.ndarray, tick: int) -> np.ndarray:
+    """Return whether organisms on record were born before a fork or in its tick, bool (L,).
+
+    Args:
+        born: ticks of their births, int64 (L,).
+        tick: tick of the fork, at whose end the records begin; 0 if there was no fork.
+    """
+    return (born <= tick) & (tick > 0)
 
 
 def find_rows(
