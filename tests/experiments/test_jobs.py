@@ -259,11 +259,12 @@ def test_a_job_whose_process_alone_is_stopped_goes_on(tmp_path: Path) -> None:
 
 
 def test_each_job_that_might_succeed_is_tried_three_times(tmp_path: Path) -> None:
-    """However often others have failed."""
+    """Neither failures of other jobs count, nor signals to the job's own process."""
     chosen, told = begin(write(tmp_path), tmp_path / "out"), list[tuple[int, bool]]()
     fail, lost = (lambda job: Ending(job, "failed")), Ending(1, "failed", again=False)
+    signal = Ending(0, "stopped")
     done = [Ending(number, "done") for number in range(4)]
-    place = Fated([fail(0)] * 4, [lost] * 2, [fail(2), fail(2), done[2]], [fail(3), done[3]])
+    place = Fated([signal, signal, *[fail(0)] * 4], [lost] * 2, [fail(2), fail(2), done[2]], [fail(3), done[3]])
     result = live_all(
         chosen.jobs, place, lambda: None, lambda job, _, again: told.append((job.number, again))
     )

@@ -55,10 +55,9 @@ def live_all(
             will be tried again.
     """
     ended: queue.SimpleQueue[tuple[Job, Future[Ending]]] = queue.SimpleQueue()
-    result, tries = Result(), Counter[int]()
+    result, failures = Result(), Counter[int]()
 
     def submit(job: Job) -> None:
-        tries[job.number] += 1
         place.submit(job).add_done_callback(lambda future: ended.put((job, future)))
 
     with interrupts.noting() as noted, interrupts.deferred():
@@ -69,7 +68,8 @@ def live_all(
                 look()
                 for job, ending in _ended(ended):
                     if ending.state == "failed":
-                        again = ending.again and tries[job.number] < ATTEMPTS
+                        failures[job.number] += 1
+                        again = ending.again and failures[job.number] < ATTEMPTS
                         failed(job, ending, again)
                         if again:
                             submit(job)
