@@ -83,6 +83,16 @@ def test_no_chunk_and_no_other_world_changes_anything(
     assert alone.digests() == whole.digests()[1:]
 
 
+def test_what_is_remembered_in_a_quiet_time_does_not_depend_on_chunks() -> None:
+    """Organisms remember moments also if nothing is born and nothing dies for many ticks."""
+    quiet = {"mutation": SOME, "hazard": 0.004, "replication": 0.02, "metabolism": None}
+    whole = Lived(config(BASE, **quiet), TICKS)
+    births = whole.table("births")
+    assert np.max(np.diff(births["tick"][births["world"] == 0])) > SOME["every"]
+    assert (births["quarters"] != 0).any()
+    assert Lived(config(BASE, **quiet), TICKS, 7).digests() == whole.digests()
+
+
 def test_a_run_that_was_stopped_goes_on_and_is_rebuilt(whole: Lived, run: Path) -> None:
     assert digests(run) == whole.digests()
     assert primordia.load(run).verify() == []

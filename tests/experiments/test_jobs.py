@@ -264,7 +264,12 @@ def test_each_job_that_might_succeed_is_tried_three_times(tmp_path: Path) -> Non
     fail, lost = (lambda job: Ending(job, "failed")), Ending(1, "failed", again=False)
     signal = Ending(0, "stopped")
     done = [Ending(number, "done") for number in range(4)]
-    place = Fated([signal, signal, *[fail(0)] * 4], [lost] * 2, [fail(2), fail(2), done[2]], [fail(3), done[3]])
+    place = Fated(
+        [signal, signal, *[fail(0)] * 4],
+        [lost] * 2,
+        [fail(2), fail(2), done[2]],
+        [fail(3), done[3]],
+    )
     result = live_all(
         chosen.jobs, place, lambda: None, lambda job, _, again: told.append((job.number, again))
     )

@@ -71,7 +71,10 @@ def test_organisms_play_side_by_side_as_they_play_alone(
 
 
 def test_repeating_its_actions_blindly_gives_the_same_life(pong: Path) -> None:
-    """Its actions, repeated in the same game, give the same life; with sticky buttons they do not."""
+    """Its actions, repeated in the same game, give the same life; with sticky buttons they do not.
+
+    With them it still repeats the actions of its own game.
+    """
     run = Archive(pong)
     oldest = Organism(run, int(np.argmax(np.where(run.lives.died, run.lives.lifespan, 0))))
     live, ignored = oldest.evaluate(), oldest.evaluate(senses="ignored")
@@ -81,6 +84,9 @@ def test_repeating_its_actions_blindly_gives_the_same_life(pong: Path) -> None:
     assert len(live.lived.actions[0]) == oldest.age
     sticky = oldest.evaluate(senses="ignored", games=3, sticky=0.5, noops=30)
     assert sticky.distinct == 3
+    (blind,), (seeing,) = sticky.lived.actions, live.lived.actions
+    both = min(len(blind), len(seeing))
+    assert np.array_equal(blind[:both], seeing[:both])
 
 
 def test_frozen_senses_stay_as_they_are_at_the_start(tmp_path: Path) -> None:

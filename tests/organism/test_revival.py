@@ -67,6 +67,19 @@ def test_a_life_revived_from_a_checkpoint_agrees_too(chain: list[Path]) -> None:
         Organism(run, 0).revive(since=100)
 
 
+def test_a_life_does_not_begin_with_the_state_in_which_it_ends(chain: list[Path]) -> None:
+    """That state would agree with itself."""
+    run = Archive(chain[0])
+    lives = run.lives
+    for row in np.flatnonzero(~lives.died & (lives.born > 120))[:3]:
+        with pytest.raises(InputError, match="keeps no checkpoint of these ticks"):
+            Organism(run, int(row)).revive(since=10**20)
+    older = np.flatnonzero((lives.born <= 120) & (lives.ended == 150))
+    for row in older[:3]:
+        assert Organism(run, int(row)).revive(since=10**20).begins == 120
+    assert len(older)
+
+
 def test_a_fork_is_a_state_to_begin_with(chain: list[Path]) -> None:
     run = Archive(chain[1])
     row = int(np.flatnonzero((run.lives.born < 90) & (run.lives.ended > 110))[0])

@@ -84,6 +84,16 @@ def test_a_worker_that_hangs_is_noticed_after_a_time_limit(monkeypatch: pytest.M
             pool.step(ALL)
 
 
+def test_states_are_restored_without_a_time_limit(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A simulator without a state of its own lives a whole life again."""
+    with counters() as pool:
+        pool.reset(ALL)
+        states = pool.save()
+        monkeypatch.setattr(pools, "PATIENCE", 0)
+        pool.load(states)
+    assert pool.arrays["total"].tolist() == [100] * 7
+
+
 def test_a_worker_that_cannot_start_is_an_error_that_says_why(
     capfd: pytest.CaptureFixture[str],
 ) -> None:
