@@ -105,6 +105,14 @@ def test_games_start_at_random_where_lives_do(poles: Path) -> None:
     np.testing.assert_array_equal(evaluation.lived.ticks, again.lived.ticks)
 
 
+def test_one_random_game_is_not_taken_for_all_games(poles: Path) -> None:
+    one = here("evaluate", poles, "--organism", 0, "--games", 1).stdout
+    assert "  1 distinct game\n" in one
+    champions = here("evaluate", poles, "--games", 1, "--founders", 5, "--ticks", 50).stdout
+    assert "champion" in champions
+    assert "are the same" not in champions
+
+
 def test_an_organism_starves_by_the_metabolism_of_its_task(tmp_path: Path) -> None:
     hungry = {"metabolism": {"store": 30.0, "gain": 0.5}, "stop": {"ticks": 10}}
     loop.start(
@@ -123,6 +131,7 @@ def test_the_command_prints_figures_and_json(pong: Path) -> None:
     organism = "--organism", str(primordia.load(pong).oldest().id)
     one = here("evaluate", pong, *organism).stdout
     assert "1 distinct game; nothing is random" in one
+    assert "All games of an organism are the same" in here("evaluate", pong, "--founders", 2).stdout
     sticky = "--games", "3", "--sticky", "0.25", "--ticks", "300"
     many = here("evaluate", pong, *organism, *sticky).stdout
     assert "3 games, sticky 0.25" in many
