@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 import primordia
+from primordia.cli.evaluate import _quartiles
 from primordia.errors import InputError
 from primordia.organism import games
-from primordia.organism.evaluation import evaluate
+from primordia.organism.evaluation import Spread, evaluate
 from primordia.organism.organism import Organism
 from primordia.runs import loop
 from primordia.runs.archive import Archive
@@ -138,7 +139,14 @@ def test_the_command_prints_figures_and_json(pong: Path) -> None:
     assert "3 still going on when cut" in many
     printed = json.loads(here("evaluate", pong, *organism, "--freeze-senses", "--json").stdout)
     assert (printed["games"], printed["senses"]) == (1, "frozen")
-    assert set(printed["score"]) == {"q1", "median", "q3", "maximum"}
+    assert set(printed["score"]) == {"minimum", "q1", "median", "q3", "maximum"}
+
+
+def test_a_number_alone_means_that_all_games_have_it() -> None:
+    some, every = np.array([20] * 7 + [100] * 23), np.full(30, 100)
+    text = "median 100 (quartiles 100, 100), minimum 20, maximum 100"
+    assert _quartiles(Spread.of(some)._asdict()) == text
+    assert _quartiles(Spread.of(every)._asdict()) == "100"
 
 
 def test_any_setting_of_the_habitat_is_a_flag(poles: Path) -> None:

@@ -171,10 +171,11 @@ def _games(count: int, kind: str = "") -> str:
 
 
 def _quartiles(spread: dict[str, float]) -> str:
-    if spread["q1"] == spread["maximum"]:
+    if spread["minimum"] == spread["maximum"]:
         return f"{spread['median']:,.0f}"
     quartiles = f"quartiles {spread['q1']:,.0f}, {spread['q3']:,.0f}"
-    return f"median {spread['median']:,.0f} ({quartiles}), maximum {spread['maximum']:,.0f}"
+    extremes = f"minimum {spread['minimum']:,.0f}, maximum {spread['maximum']:,.0f}"
+    return f"median {spread['median']:,.0f} ({quartiles}), {extremes}"
 
 
 def _cut(count: int, state: str) -> str:

@@ -26,8 +26,9 @@ Senses = Literal["live", "frozen", "ignored"]
 
 
 class Spread(NamedTuple):
-    """Quartiles and maximum."""
+    """Minimum, quartiles and maximum."""
 
+    minimum: float
     q1: float
     median: float
     q3: float
@@ -36,7 +37,7 @@ class Spread(NamedTuple):
     @classmethod
     def of(cls, values: np.ndarray) -> "Spread":
         """Return the spread of one value over games, (E,)."""
-        return cls(*np.percentile(values, [25, 50, 75, 100]).tolist())
+        return cls(*np.percentile(values, [0, 25, 50, 75, 100]).tolist())
 
 
 @dataclass(frozen=True)
