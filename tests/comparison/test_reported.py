@@ -130,6 +130,6 @@ def test_bounds_of_quartiles_are_order_statistics(worlds: list[tuple[int, bool]]
     assert all(low <= high for low, high in pairwise(quartiles))
 
 
-def test_the_spread_of_games_is_quartiles_and_maximum() -> None:
-    assert Spread.of(np.array([40.0, 10, 20, 30, 0])) == (10, 20, 30, 40)
-    assert Spread.of(np.array([1.0, 2.0])) == (1.25, 1.5, 1.75, 2.0)
+def test_the_spread_of_games_is_minimum_quartiles_and_maximum() -> None:
+    assert Spread.of(np.array([40.0, 10, 20, 30, 0])) == (0, 10, 20, 30, 40)
+    assert Spread.of(np.array([1.0, 2.0])) == (1, 1.25, 1.5, 1.75, 2.0)

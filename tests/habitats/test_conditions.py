@@ -2,6 +2,7 @@
 
 from typing import Any, Literal
 
+import jax.numpy as jnp
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -182,6 +183,16 @@ def test_arithmetic_of_counts_does_not_wrap(kind: type, text: str) -> None:
     values = {**VALUES, "lives": np.array(counts, kind)}
     amounts = parse(text, "amount", NAMES)(values)
     np.testing.assert_allclose(amounts, [float(eval(text, {"lives": n})) for n in counts])
+
+
+@pytest.mark.parametrize("library", [np, jnp])
+@pytest.mark.parametrize("text", ["truths[0] + truths[1]", "-truths[0]", "sum(truths[:2])"])
+def test_a_truth_value_in_a_list_counts_as_one_or_zero(library: Any, text: str) -> None:
+    truths = [[True, True], [False, True], [False, False]]
+    amounts = parse(text, "amount", {"truths": 2})({"truths": library.array(truths)})
+    known = {"sum": sum}
+    assert amounts.tolist() == [eval(text, known, {"truths": each}) for each in truths]
+    assert amounts.dtype.kind == "f"
 
 
 def test_what_is_perceived_names_a_quantity() -> None:

@@ -14,6 +14,7 @@ from primordia.errors import InputError, Trouble
 from primordia.habitats.gymnasium.habitat import Gymnasium
 from primordia.testing import check_habitat
 from tests.commands import here
+from tests.ponds import CRASH
 from tests.worlds import Lived, config
 
 POND: dict[str, Any] = {
@@ -106,6 +107,20 @@ def test_an_error_kills_its_organism_and_leaves_its_last_line(tmp_path: Path, ca
         who = f"world 0, organism {row['id']}, tick {row['tick']}"
         assert line == f"{who}: ZeroDivisionError: the pond is empty"
     assert "splash" not in "".join(capfd.readouterr())
+
+
+@pytest.mark.parametrize("food", ["1", "tests.ponds:food", 'info["age"]', "1 + 0 * obs[0]"])
+def test_a_tick_that_fails_has_no_food_and_no_effort(food: str) -> None:
+    game = Gymnasium(env="tests.ponds:Crashing-v0", food=food, effort="2 + reward", workers=0)
+    game.open(1)
+    game.reset(np.array([0]), np.array([[3]], np.uint32))
+    for age in range(1, CRASH + 1):
+        _, outcome = game.step(np.zeros((1, 1), np.float32), np.ones(1, bool))
+        failed = age == CRASH
+        assert outcome.fault == failed
+        assert [bool(outcome.food), bool(outcome.effort)] == [not failed] * 2
+    assert game.seen()["reward"] == 0
+    game.close()
 
 
 def test_a_life_that_cannot_begin_is_a_fault() -> None:

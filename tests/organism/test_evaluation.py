@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 import primordia
+from primordia.cli.evaluate import _quartiles
 from primordia.errors import InputError
 from primordia.organism import games
-from primordia.organism.evaluation import evaluate
+from primordia.organism.evaluation import Spread, evaluate
 from primordia.organism.organism import Organism
 from primordia.runs import loop
 from primordia.runs.archive import Archive
@@ -111,6 +112,14 @@ def test_games_start_at_random_where_lives_do(poles: Path) -> None:
     np.testing.assert_array_equal(evaluation.lived.ticks, again.lived.ticks)
 
 
+def test_one_random_game_is_not_taken_for_all_games(poles: Path) -> None:
+    one = here("evaluate", poles, "--organism", 0, "--games", 1).stdout
+    assert "  1 distinct game\n" in one
+    champions = here("evaluate", poles, "--games", 1, "--founders", 5, "--ticks", 50).stdout
+    assert "champion" in champions
+    assert "are the same" not in champions
+
+
 def test_an_organism_starves_by_the_metabolism_of_its_task(tmp_path: Path) -> None:
     hungry = {"metabolism": {"store": 30.0, "gain": 0.5}, "stop": {"ticks": 10}}
     loop.start(
@@ -129,13 +138,21 @@ def test_the_command_prints_figures_and_json(pong: Path) -> None:
     organism = "--organism", str(primordia.load(pong).oldest().id)
     one = here("evaluate", pong, *organism).stdout
     assert "1 distinct game; nothing is random" in one
+    assert "All games of an organism are the same" in here("evaluate", pong, "--founders", 2).stdout
     sticky = "--games", "3", "--sticky", "0.25", "--ticks", "300"
     many = here("evaluate", pong, *organism, *sticky).stdout
     assert "3 games, sticky 0.25" in many
     assert "3 still going on when cut" in many
     printed = json.loads(here("evaluate", pong, *organism, "--freeze-senses", "--json").stdout)
     assert (printed["games"], printed["senses"]) == (1, "frozen")
-    assert set(printed["score"]) == {"q1", "median", "q3", "maximum"}
+    assert set(printed["score"]) == {"minimum", "q1", "median", "q3", "maximum"}
+
+
+def test_a_number_alone_means_that_all_games_have_it() -> None:
+    some, every = np.array([20] * 7 + [100] * 23), np.full(30, 100)
+    text = "median 100 (quartiles 100, 100), minimum 20, maximum 100"
+    assert _quartiles(Spread.of(some)._asdict()) == text
+    assert _quartiles(Spread.of(every)._asdict()) == "100"
 
 
 def test_any_setting_of_the_habitat_is_a_flag(poles: Path) -> None:

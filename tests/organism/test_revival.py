@@ -225,6 +225,15 @@ def test_what_cannot_be_revived_is_refused(
             Organism(older, 0).revive()
 
 
+def test_a_file_that_cannot_be_written_has_the_status_that_the_help_states(
+    chain: list[Path],
+) -> None:
+    number = dead(Archive(chain[0]))
+    complains(here("revive", chain[0], number, "--save", "/proc/a.npz"), 1, "cannot be written")
+    told = " ".join(here("revive", "--help").stdout.split())
+    assert "1 if one differs or a file cannot be written" in told
+
+
 def test_an_organism_that_was_just_born_agrees_and_has_nothing_to_save(
     chain: list[Path], tmp_path: Path
 ) -> None:

@@ -112,7 +112,7 @@ def evaluation_text(result: "Evaluation", changes: dict[str, Any]) -> str:
     """Return the results in a few lines."""
     values = result.to_dict()
     distinct = f"{_games(result.distinct, 'distinct ')}"
-    if result.games == 1:
+    if result.deterministic:
         distinct += "; nothing is random, so all games are the same"
     lines = [
         f"organism {result.organism} of world {result.world}: "
@@ -153,10 +153,11 @@ def _notes(standings: "list[Standing]") -> list[str]:
     ]
     if worlds > 1:
         notes.append("Medians over worlds (quartiles) of the median organism of each world.")
-    if all(each.evaluations[0].distinct == 1 for each in standings):
+    if all(each.repeats for each in standings[0].evaluations):
         notes.append(
             "All games of an organism are the same, so champions are judged by the very game by which"
-            " they were chosen. Change a setting, such as --sticky 0.25, to make games differ."
+            " they were chosen. Games differ if a setting makes them random, such as --sticky 0.25 in"
+            " Atari games."
         )
     return notes
 
@@ -170,10 +171,11 @@ def _games(count: int, kind: str = "") -> str:
 
 
 def _quartiles(spread: dict[str, float]) -> str:
-    if spread["q1"] == spread["maximum"]:
+    if spread["minimum"] == spread["maximum"]:
         return f"{spread['median']:,.0f}"
     quartiles = f"quartiles {spread['q1']:,.0f}, {spread['q3']:,.0f}"
-    return f"median {spread['median']:,.0f} ({quartiles}), maximum {spread['maximum']:,.0f}"
+    extremes = f"minimum {spread['minimum']:,.0f}, maximum {spread['maximum']:,.0f}"
+    return f"median {spread['median']:,.0f} ({quartiles}), {extremes}"
 
 
 def _cut(count: int, state: str) -> str:

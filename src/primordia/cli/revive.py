@@ -57,7 +57,7 @@ def revive(
     The comparison covers the tick and the cause of death, the energy left, the food eaten, and the
     habitat's tallies. If the organism is still alive, its life is lived again until the newest
     checkpoint, and its memory and body are compared too. The exit status is 0 if all of them agree,
-    1 if one differs, and 2 if the life cannot be lived again.
+    1 if one differs or a file cannot be written, and 2 if the life cannot be lived again.
 
     The life is lived again from birth, or from the fork if the organism was born before the fork.
     If --from is given, the life is lived again from a checkpoint. A run keeps its two newest checkpoints,

@@ -188,9 +188,7 @@ class _Reader:
         if isinstance(kind, Mapping):
             example = next(iter(kind), "...")
             raise self._error(node, f'{name!r} has parts; say which: {name}["{example}"]')
-        if kind == "condition":
-            return kind, lambda values: values[name]
-        return kind, lambda values: _as_float(values[name])
+        return kind, _quantity(kind, lambda values: values[name])
 
     def _read_subscript(self, node: ast.Subscript) -> tuple[Kind, Compute]:
         base = node.value
@@ -211,7 +209,7 @@ class _Reader:
         part = node.slice.value if isinstance(node.slice, ast.Constant) else None
         if not isinstance(part, str) or part not in known:
             raise self._error(node, f"{name} has the parts {', '.join(known)}")
-        return known[part], lambda values: _as_float(values[name][part])
+        return known[part], _quantity(known[part], lambda values: values[name][part])
 
     def _selection(
         self, node: ast.Subscript, name: str, count: int, numbers: Compute
@@ -317,12 +315,18 @@ def _elementwise(name: str, parts: list[Compute]) -> Compute:
     return compute
 
 
+def _quantity(kind: Kind, named: Compute) -> Compute:
+    """Return a function that computes a named quantity: a condition, or numbers as floats."""
+    return named if kind == "condition" else lambda values: _as_float(named(values))
+
+
 def _as_float(numbers: Any) -> Any:
     """Return integers as float64, in which products of counts do not wrap, and floats unchanged.
 
-    JAX has no float64 here: its integers become float32, in which counts are exact up to 2^24.
+    A truth value becomes 1 or 0. JAX has no float64 here: its integers become float32, in which
+    counts are exact up to 2^24.
     """
-    if numbers.dtype.kind not in "iu":
+    if numbers.dtype.kind not in "biu":
         return numbers
     return numbers.astype(np.float64 if isinstance(numbers, np.ndarray) else np.float32)
 

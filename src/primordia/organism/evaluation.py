@@ -26,8 +26,9 @@ Senses = Literal["live", "frozen", "ignored"]
 
 
 class Spread(NamedTuple):
-    """Quartiles and maximum."""
+    """Minimum, quartiles and maximum."""
 
+    minimum: float
     q1: float
     median: float
     q3: float
@@ -36,7 +37,7 @@ class Spread(NamedTuple):
     @classmethod
     def of(cls, values: np.ndarray) -> "Spread":
         """Return the spread of one value over games, (E,)."""
-        return cls(*np.percentile(values, [25, 50, 75, 100]).tolist())
+        return cls(*np.percentile(values, [0, 25, 50, 75, 100]).tolist())
 
 
 @dataclass(frozen=True)
@@ -50,6 +51,8 @@ class Evaluation:
     """games under the law of the task: a game is over when the organism dies"""
     whole: Games | None
     """whole games, in which food is the score; None if the habitat has no original task"""
+    deterministic: bool
+    """whether nothing is random in the games, so that one game is enough"""
 
     @property
     def games(self) -> int:
@@ -61,6 +64,12 @@ class Evaluation:
         """Number of distinct games; two games are distinct if any of their senses or their food
         differ."""
         return len(np.unique((self.whole or self.lived).course))
+
+    @property
+    def repeats(self) -> bool:
+        """Whether all games of the organism are the same. A single game shows this only if nothing is
+        random."""
+        return self.deterministic or self.distinct == 1 < self.games
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain values for JSON."""
@@ -130,7 +139,8 @@ def judged(
         raise InputError("evaluate needs at least one game of at least one tick")
     players = own._replace(habitat=changed(config, habitat).build_habitat())
     script = play(own, 1, ticks) if senses == "ignored" else None
-    count = 1 if players.deterministic else games
+    fixed = players.deterministic
+    count = 1 if fixed else games
     frozen = all_senses(players) if senses == "frozen" else None
     play_all = partial(play, games=count, frozen=frozen, script=script)
     lived, original = play_all(players, ticks=ticks), _in_the_original(players)
@@ -138,7 +148,9 @@ def judged(
         episode = original.habitat.episode or ticks
         whole = play_all(original, ticks=min(ticks, episode))
     return [
-        Evaluation(organism, world, senses, lived.of_player(k), original and whole.of_player(k))
+        Evaluation(
+            organism, world, senses, lived.of_player(k), original and whole.of_player(k), fixed
+        )
         for k, (organism, world) in enumerate(numbers)
     ]
 

@@ -31,12 +31,12 @@ def export(
         Trouble: the file cannot be written.
     """
     chosen = tuple(organisms) or (int(run.lives.id[run.lives.oldest(world)]),)
+    rebuilt = rebuild_all(run, [(each, world) for each in chosen])
     about = {
         "task": run.config.task,
         "seed": str(run.world_seeds[world]),
         "organisms": " ".join(map(str, chosen)),
     }
-    rebuilt = rebuild_all(run, [(each, world) for each in chosen])
     if out.suffix != ONNX:
         genomes.write(out, run.layout, rebuilt, about)
     elif len(chosen) == 1:

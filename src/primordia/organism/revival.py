@@ -111,7 +111,9 @@ def revive(
         life = RelivedLife.of(archive, organism, own, _stored(archive, organism, own, since))
         _refuse_restart(life)
         told = recorded(life)
-    except Trouble as error:  # so that status 1 has one meaning: the life differs from the record
+    except (
+        Trouble
+    ) as error:  # status 1 would mean that the life was lived and differs from the record
         raise InputError(f"organism {organism} cannot be revived: {error}") from None
     parts = replay.parts_of(life) if film is not None else []
     course = _lived(life, save)

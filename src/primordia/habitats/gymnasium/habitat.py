@@ -246,7 +246,10 @@ class Gymnasium(HostHabitat, Settings):
         if fault.any():
             self._count_faults(fault)
         expired: Any = arrays["truncated"] | (self._age >= (self.time_limit or 2**62))
-        outcome = Outcome(**self._measured(values), expired=expired, fault=fault)
+        measured = self._measured(values)
+        for each in measured.values():
+            each[fault] = 0  # since the observation is still that of the tick before
+        outcome = Outcome(**measured, expired=expired, fault=fault)
         return self._senses(arrays["obs"]), outcome
 
     def _measured(self, values: dict[str, Any]) -> dict[str, Any]:

@@ -93,15 +93,18 @@ class Environments:
                 life.env.close()
             life.env = environment.make(*self._making)
         life.seed, life.actions, life.failed = seed, [], None
-        arrays = self._arrays
-        for name in ("reward", "food", "terminated", "truncated", "fault", "info"):
-            arrays[name][cell] = 0
+        self._clear(cell)
         try:
             observation, info = life.env.reset(seed=seed)
             self._tell(cell, observation, info)
         except Exception as error:
-            arrays["obs"][cell] = 0
+            self._arrays["obs"][cell] = 0
             life.failed = environment.line(error)
+
+    def _clear(self, cell: int) -> None:
+        """Erase the results of the last tick, except for the observation."""
+        for name in ("reward", "food", "terminated", "truncated", "fault", "info"):
+            self._arrays[name][cell] = 0
 
     def _act(self, cell: int, row: np.ndarray) -> None:
         life, arrays = self._lives[cell], self._arrays
@@ -134,8 +137,9 @@ class Environments:
             self._arrays[SCREEN][cell] = self._lives[cell].env.render()
 
     def _fail(self, cell: int, message: str) -> None:
-        """Report a fault; the next life in the cell gets a new environment."""
+        """Report a fault, and no results; the next life in the cell gets a new environment."""
         self._lives[cell].failed = message
+        self._clear(cell)
         text = message.encode()[:MESSAGE]
         self._arrays["fault"][cell] = True
         self._arrays["message"][cell] = 0
