@@ -3,8 +3,10 @@
     python experiments/effects.py Pong-survival Boxing-survival-fight
 
 Nothing has to be run before. Of each task 512 founders live once. Mutants of the 16 longest-lived
-live in the games of their parents (`primordia assay effects TASK`). The tables go to `results/` of the
-folder `mutation` beside this file: all organisms as CSV, a summary as Markdown.
+live in the games of their parents (`primordia assay effects TASK`). The parents were chosen in another
+game. When the committed tables were made, that game was one of the five
+(`docs/explanation/heredity.md`). The tables go to `results/` of the folder `mutation` beside this file:
+all organisms as CSV, a summary as Markdown.
 """
 
 import sys

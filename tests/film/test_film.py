@@ -51,6 +51,21 @@ def test_a_world_whose_habitat_draws_nothing_is_filmed_alone(tmp_path: Path) -> 
     assert inside.max() > 100 > 60 > beside.max()
 
 
+def test_the_film_of_a_fork_counts_the_births_before_it(
+    poles: primordia.Run, tmp_path: Path
+) -> None:
+    """An unchanged fork goes on as its source, so both count alike at each tick."""
+    fork = poles.fork(200, tmp_path / "fork", stop={"ticks": 300})
+    ticks = np.arange(200, 301)
+    counts = [
+        films.births_until(run.opened(), run.opened().lives, ticks).tolist()
+        for run in (poles, fork)
+    ]
+    assert counts[0] == counts[1]
+    assert counts[0][-1] == poles.info()["births"] > len(fork.lives())
+    assert counts[0] == [(poles.lives().born <= tick).sum() for tick in ticks]
+
+
 def test_what_cannot_be_filmed_is_one_line(poles: primordia.Run, tmp_path: Path) -> None:
     for words, line in (
         (("--world", 3), "has no world 3; the worlds are 0 to 0"),

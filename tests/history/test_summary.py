@@ -96,3 +96,10 @@ def test_the_summary_of_many_worlds_gives_quartiles() -> None:
         worlds + half
     )
     assert "0 of 9 saturated\n" in summarised(half) + "\n"
+
+
+def test_three_quarters_of_the_worlds_reach_the_third_quartile() -> None:
+    """Five of seven worlds are fewer than three quarters of them."""
+    worlds = [world(saturation={"tick": 9, "births": births}) for births in (1, 2, 3, 4, 5)]
+    line = "5 of 7 saturated, births until then: median 4 (quartiles 2, later)"
+    assert line in summarised([*worlds, world(saturation=None), world(saturation=None)])

@@ -1,18 +1,23 @@
 """The curves of a page are those of the records, counted one by one."""
 
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
 from primordia.history.info import info
 from primordia.report import curves
-from primordia.report.words import setting, words
+from primordia.report.words import _lives, setting, words
 from primordia.runs import loop
 from primordia.runs.archive import Archive
+from primordia.runs.lives import Lives
 from tests.report.conftest import TORUS
-from tests.synthetic import alive
+from tests.synthetic import alive, world_of, worlds_of
 from tests.worlds import config
+
+SIZES = (400, *[20] * 10)
+"""Births of worlds, of which one is much larger than the others."""
 
 
 def named(run: Path) -> dict[str, Any]:
@@ -108,6 +113,27 @@ def test_words_of_one_world_are_in_the_singular(tmp_path: Path) -> None:
     )
     (table,) = named(tmp_path / "run")["Age at death"]["tables"]
     assert (table["x"], table["curves"][0]["values"]) == ([1], [50])
+
+
+def test_words_divide_the_births_of_each_world_and_of_a_fork_alone() -> None:
+    """In each world the first quarter lives 10 ticks, and all others 90. A fork holds no short life
+    of those born before it."""
+
+    def told(lives: Lives) -> str:
+        run: Any = SimpleNamespace(lives=lives)
+        return _lives(run, None)[0]
+
+    worlds = [[(n, 9 if 4 * n < births else 89, True) for n in range(births)] for births in SIZES]
+    assert told(worlds_of(*worlds, until=900)) == (
+        "In the first quarter of the births, half of the organisms lived 10 ticks or more; in the last"
+        " quarter, half lived 90 ticks or more so far."
+    )
+    born = [(n, 499 if n < 50 and n % 2 else 19, True) for n in range(100)]
+    fork = told(world_of(born).recorded_since(50))
+    assert fork.startswith(
+        "In the first quarter of the births since the fork, half of the organisms"
+    )
+    assert "lived 20 ticks or more; in the last" in fork
 
 
 def test_a_control_is_told_apart() -> None:

@@ -6,13 +6,14 @@ import shlex
 import shutil
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
 import primordia
 from primordia.report.facts import facts
-from primordia.report.lives import films
+from primordia.report.lives import chosen, films
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests.commands import complains, here
@@ -86,6 +87,17 @@ def test_long_lives_are_not_filmed(cart: Path, monkeypatch: pytest.MonkeyPatch) 
     found = films(Archive(cart))
     assert found["films"] == []
     assert "too long for a page" in found["missing"]
+
+
+def test_the_first_life_in_the_page_of_a_fork_was_born_in_the_fork(cart: Path) -> None:
+    lives = Archive(cart).lives
+    fork = lives.recorded_since(1000)
+    for of_run, born in ((lives, 0), (fork, lives.born[lives.born > 1000].min())):
+        first, champion = chosen(of_run).values()
+        assert of_run.born[first] == born
+        assert champion == of_run.oldest()
+    unborn: Any = SimpleNamespace(lives=fork.recorded_until(1000))
+    assert films(unborn) == {"films": [], "missing": "nothing has been born since the fork"}
 
 
 def test_the_command_in_the_page_lives_the_run_again(

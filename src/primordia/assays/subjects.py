@@ -128,7 +128,7 @@ def of_file(
     for number in numbers:
         _check_number(file, number, len(everyone))
     which = np.array(numbers or range(len(everyone)), np.int64)
-    return _fresh(str(file), chosen, which, everyone[which])
+    return _fresh(str(file), chosen, which, everyone[which], key=which)
 
 
 def _task_of(file: Path) -> str:
@@ -154,6 +154,9 @@ def of_task(
 ) -> Subjects:
     """Return founders of a task, before any evolution: by default the longest-lived of many.
 
+    Each of the many lives once, so that the longest-lived can be chosen. The subjects' own games
+    have other keys.
+
     Args:
         task: name of a task, or a TOML file.
         numbers: which founders to take, from 0 to FOUNDERS - 1; by default the longest-lived; see BEST.
@@ -167,13 +170,16 @@ def of_task(
     for number in numbers:
         _check_number(task, number, FOUNDERS)
     made = founders(chosen, FOUNDERS)
-    everyone = _fresh(task, chosen, np.arange(FOUNDERS), made)
-    if numbers:
-        best = np.array(numbers)
-    else:
-        lived = lifespans(everyone.players, TICKS)
-        best = np.argsort(-lived, kind="stable")[:BEST]
-    return _fresh(task, chosen, best, made[best])
+    which = np.array(numbers) if numbers else _longest_lived(chosen, made)
+    # No founder is judged by the game in which it was chosen, so these keys differ from those.
+    return _fresh(task, chosen, which, made[which], key=FOUNDERS + which)
+
+
+def _longest_lived(chosen: Config, made: np.ndarray) -> np.ndarray:
+    """Return the numbers of the BEST longest-lived in one game of each founder (FOUNDERS, P)."""
+    everyone = np.arange(FOUNDERS)
+    lived = lifespans(_fresh("", chosen, everyone, made, key=everyone).players, TICKS)
+    return np.argsort(-lived, kind="stable")[:BEST]
 
 
 def founders(chosen: Config, count: int) -> np.ndarray:
@@ -184,12 +190,17 @@ def founders(chosen: Config, count: int) -> np.ndarray:
     return np.asarray(heredity.mutation.founders(heredity.layout, draws))
 
 
-def _fresh(source: str, chosen: Config, number: np.ndarray, own: np.ndarray) -> Subjects:
-    """Return subjects that come from no run: `own` are genomes (K, P), `number` is (K,)."""
+def _fresh(
+    source: str, chosen: Config, number: np.ndarray, own: np.ndarray, *, key: np.ndarray
+) -> Subjects:
+    """Return subjects that come from no run: `own` are genomes (K, P), `number` is (K,).
+
+    Subjects with different numbers `key` (K,) play games with different random keys.
+    """
     habitat, count = chosen.build_habitat(), len(number)
     law = chosen.build_law(habitat)
     climate = {name: np.asarray(each) for name, each in initial_climate(law, count).items()}
-    keys = stream(wide(np.full(count, chosen.seed)), Purpose.EVALUATION, wide(number))
+    keys = stream(wide(np.full(count, chosen.seed)), Purpose.EVALUATION, wide(key))
     rates = Rates.of(jax.tree.map(jnp.asarray, climate))
     players = Players(law, habitat, own, keys, rates)
     notes = np.asarray(law.heredity.mutation.founders_notes(count))

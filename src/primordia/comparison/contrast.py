@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 
 from primordia.comparison import needed
-from primordia.comparison.measured import Bounds, Measured, quantile
+from primordia.comparison.measured import Bounds, Measured
 from primordia.comparison.pairs import Paired, Rows, paired
 from primordia.comparison.resample import LEAST, MISSED, enough, interval, least, resamples
+from primordia.history.quantiles import quantile
 
 WORDS = ((0.147, "negligible"), (0.33, "small"), (0.474, "medium"))
 """The word for an absolute delta below each number; from the last number on it is "large" (Romano et al.

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from primordia.errors import InputError
+from primordia.history.quantiles import quantile
 
 Bounds = tuple[float, float]
 """Lower and upper bound of a value; infinity if no upper bound is known."""
@@ -53,9 +54,3 @@ class Measured:
         exceed."""
         low, high = (quantile(each, q) for each in (self.value, self.high))
         return float(low), float(high)
-
-
-def quantile(values: np.ndarray, q: float) -> np.ndarray:
-    """Return a quantile along the last axis, as an order statistic: infinities are allowed."""
-    place = max(int(np.ceil(q * values.shape[-1])) - 1, 0)
-    return np.partition(values, place, axis=-1)[..., place]

@@ -86,7 +86,7 @@ def _pictures(
     form = shape(config.placement, config.cells)
     world = f", world {lives.world[0]}" if config.seeds > 1 else ""
     frames = Frames(f"{config.task}{world}", replay.lacking(run.habitat) != [])
-    births = np.searchsorted(lives.born, shown, side="right")
+    births = births_until(run, lives, shown)
     alive = series.population(lives, shown)
     of_cells = colours(lives, form.cells, shown, config.saturation_ticks)
     for number, (seen, life) in enumerate(zip(of_cells, lived, strict=True)):
@@ -96,3 +96,14 @@ def _pictures(
         yield picture
     for _ in range(STILL):
         yield picture
+
+
+def births_until(run: Records, lives: Lives, ticks: np.ndarray) -> np.ndarray:
+    """Return the number of births in one world until the end of each tick, int64 (F,).
+
+    Births before a fork are counted, as in `info`. The records of a fork leave out those that died
+    before it, so the count is the birth number of the next to be born.
+    """
+    born = run.count("world.worlds.births")[lives.world[0]]
+    numbers = np.append(lives.id, np.int64(born))
+    return numbers[series.count_until(lives.born, ticks)]

@@ -5,6 +5,8 @@ from typing import Any
 
 import numpy as np
 
+from primordia.history.quantiles import quantile
+
 MAX_LISTED = 4
 """Largest number of worlds that are described one by one."""
 
@@ -135,9 +137,9 @@ def _causes(worlds: list[dict[str, Any]]) -> str:
 
 def _share(worlds: list[dict[str, Any]], name: str, what: str) -> str:
     """Return how many worlds passed a moment, and after how many births; other worlds count as later."""
-    births = [world[name]["births"] if world[name] else np.inf for world in worlds]
+    births = np.array([world[name]["births"] if world[name] else np.inf for world in worlds])
     share = f"{np.isfinite(births).sum():,} of {len(worlds):,} {what}"
-    q1, median, q3 = np.percentile(births, [25, 50, 75], method="lower")
+    q1, median, q3 = (quantile(births, q) for q in (0.25, 0.5, 0.75))
     if not np.isfinite(q1):
         return share
     middle, high = (f"{b:,.0f}" if np.isfinite(b) else "later" for b in (median, q3))

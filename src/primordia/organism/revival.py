@@ -111,9 +111,7 @@ def revive(
         life = RelivedLife.of(archive, organism, own, _stored(archive, organism, own, since))
         _refuse_restart(life)
         told = recorded(life)
-    except (
-        Trouble
-    ) as error:  # status 1 would mean that the life was lived and differs from the record
+    except Trouble as error:  # not status 1: no life was lived that could differ from the record
         raise InputError(f"organism {organism} cannot be revived: {error}") from None
     parts = replay.parts_of(life) if film is not None else []
     course = _lived(life, save)

@@ -3,10 +3,11 @@
 import base64
 import shutil
 import tempfile
-from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from primordia import device, interrupts
 from primordia.errors import InputError, Trouble
@@ -31,8 +32,9 @@ def films(run: Records) -> dict[str, Any]:
         `films`: each with its `title`, a description (`about`), and `data`, an MP4 in base64;
         `missing`: the reason why a life is not shown, or "".
     """
-    shown, reasons = [], []
-    for title, row in chosen(run.lives).items():
+    rows = chosen(run.lives)
+    shown, reasons = [], [] if rows else ["nothing has been born since the fork"]
+    for title, row in rows.items():
         try:
             shown.append(_film(run, title, row))
         except (InputError, Trouble) as error:
@@ -41,11 +43,17 @@ def films(run: Records) -> dict[str, Any]:
 
 
 def chosen(lives: Lives) -> dict[str, int]:
-    """Return the rows of the lives that are filmed, by title: the first organism and the champion."""
-    rows = {"The first organism": 0}
-    with suppress(InputError):  # no birth since the fork
-        rows["The champion: the longest-lived of the later half"] = lives.oldest()
-    return rows
+    """Return the rows of the lives that are filmed, by title: the first organism and the champion.
+
+    Both were born in the run itself. If nothing has been born since a fork, the dict is empty.
+    """
+    born = np.flatnonzero(~lives.inherited)
+    if not len(born):
+        return {}
+    return {
+        "The first organism born in this run": int(born[0]),
+        "The champion: the longest-lived of the later half": lives.oldest(),
+    }
 
 
 def _film(run: Records, title: str, row: int) -> dict[str, str]:

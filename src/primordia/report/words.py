@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from primordia.config import Config
+from primordia.figures.survival import quarters
 from primordia.live.panel import duration
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records
@@ -25,6 +26,9 @@ DEATHS = {
     "time-limit": "at the time limit of the task",
     "restart": "when the run was resumed without their bodies",
 }
+
+FEWEST = 10
+"""Smallest number of lives in a quarter of the births whose median is told."""
 
 
 def words(run: Records, info: dict[str, Any]) -> list[str]:
@@ -137,12 +141,12 @@ def _lives(run: Records, rate: float | None) -> list[str]:
     """Return sentences that compare early and late lives, and name the longest life."""
     lives = run.lives
     parts = []
-    quarter = max(len(lives) // 4, 1)
-    order = np.argsort(lives.rank, kind="stable")
-    early, late = (lives.take(rows) for rows in (order[:quarter], order[-quarter:]))
-    if len(lives) >= 40:
+    # Of the organisms born before a fork only those that lived until then are on record.
+    early, *_, late = quarters(lives.take(~lives.inherited))
+    if min(len(early), len(late)) >= FEWEST:
+        births = "births since the fork" if lives.inherited.any() else "births"
         parts.append(
-            f"In the first quarter of the births, half of the organisms lived {_median(early)}; in the"
+            f"In the first quarter of the {births}, half of the organisms lived {_median(early)}; in the"
             f" last quarter, half lived {_median(late)} so far."
         )
     row = int(lives.lifespan.argmax())
