@@ -107,6 +107,22 @@ def test_tiny_mutations_change_nothing_and_huge_ones_kill(subjects: Subjects) ->
     assert [each.lifespan for each in own] == spans.tolist()
 
 
+def test_mutants_play_the_games_of_their_own_parents(poles: primordia.Run) -> None:
+    """When mutants of the first founders of both worlds die depends on the game, since most die early."""
+    pair = of_run(poles.opened(), [(0, 0), (0, 1)])
+    found = effects(pair, (), count=8, games=GAMES, ticks=300)
+    made = mutants(pair, own_operator(pair), 8, None)
+
+    def lived(*hosts: int) -> np.ndarray:
+        """Return the ticks that each parent's mutants live in the games of one host, (2, 8)."""
+        players = pair.players.take(np.array([[host] * 8 for host in hosts]).ravel())
+        spans = lifespans_in_games(players._replace(genomes=np.concatenate(made)), GAMES, 300)
+        return spans.mean(axis=1).reshape(2, 8)
+
+    np.testing.assert_array_equal([each.mutants for each in found], lived(0, 1))
+    assert (lived(0, 1) != lived(1, 0)).any(axis=1).all(), "other games would be other lives"
+
+
 def test_an_organism_has_the_same_mutants_alone(poles: primordia.Run, subjects: Subjects) -> None:
     second = of_run(poles.opened(), [(int(subjects.organism[1]), 1)])
     together = effects(subjects, (0.1,), (0.05,), count=5, games=1, ticks=100)

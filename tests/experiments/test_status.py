@@ -1,17 +1,19 @@
-"""The figures of arms so far, from the counts of jobs alone."""
+"""The figures of arms so far and the time left, from the states and counts of jobs alone."""
 
 import json
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 import tomli_w
 
+from primordia.cli.campaign_view import Clock, line
 from primordia.errors import InputError
 from primordia.experiments.ledger import Entry, Ledger, WorldCounts
 from primordia.experiments.plan import Job, recorded
-from primordia.experiments.status import _interval
+from primordia.experiments.status import CampaignStatus, _interval
 
 
 @pytest.mark.parametrize("worlds", [5, 6, 9, 20, 100])
@@ -65,3 +67,26 @@ def test_a_forged_entry_counts_as_none(forged: dict[str, Any], tmp_path: Path) -
     (tmp_path / "jobs").mkdir()
     (tmp_path / "jobs" / "000000.json").write_text(json.dumps(entry))
     assert Ledger(tmp_path, [job]).entry(job) == Entry(job=0, arm="a")
+
+
+@pytest.mark.parametrize("before", [0, 10])
+def test_time_left_follows_from_the_jobs_done_since_the_command_began(
+    before: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In a resumed experiment, the jobs that were done before took none of this command's time."""
+    now: Any = SimpleNamespace(perf_counter=lambda: now.seconds, strftime=lambda _: "12:00:00")
+    now.seconds = 1000.0
+    monkeypatch.setattr("primordia.cli.campaign_view.time", now)
+    clock = Clock()
+
+    def status(done: int) -> CampaignStatus:
+        jobs = {"done": before + done, "running": 0, "failed": 0, "waiting": 30 - done}
+        return CampaignStatus("?", jobs, (), (), ())
+
+    assert clock.left(status(0)) is None
+    now.seconds += 60
+    assert clock.left(status(0)) is None
+    assert clock.left(status(2)) == 28 * 60 / 2
+    now.seconds += 40
+    assert clock.left(status(20)) == 10 * 100 / 20
+    assert line(status(20), clock).endswith("; about 50 s left")

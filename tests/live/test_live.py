@@ -198,15 +198,17 @@ def test_the_view_follows_the_living(running: tuple[str, Engine]) -> None:
         assert set(lines.line_of) == set(number[alive].tolist())
 
 
-def test_time_left_is_that_of_the_world_that_stops_last() -> None:
-    def census(tick: list[int], births: list[int]) -> Census:
-        each = np.zeros(2, np.int64)
-        return Census(
-            tick=np.array(tick), alive=each, births=np.array(births), deaths=each, calm=each,
-            extinctions=each, organism_ticks=10 * np.array(tick), saturated=np.array([-1, -1]),
-            mean_age=0.0, oldest=0,
-        )  # fmt: skip
+def census(tick: list[int], births: list[int], saturated: tuple[int, int] = (-1, -1)) -> Census:
+    """Return the census of two worlds."""
+    each = np.zeros(2, np.int64)
+    return Census(
+        tick=np.array(tick), alive=each, births=np.array(births), deaths=each, calm=each,
+        extinctions=each, organism_ticks=10 * np.array(tick), saturated=np.array(saturated),
+        mean_age=0.0, oldest=0,
+    )  # fmt: skip
 
+
+def test_time_left_is_that_of_the_world_that_stops_last() -> None:
     def left(ticks: int, births: int) -> float | None:
         saturation = jnp.bool_(False)
         return speed.seconds_left(Limits(wide([ticks] * 2), wide([births] * 2), saturation))
@@ -220,6 +222,22 @@ def test_time_left_is_that_of_the_world_that_stops_last() -> None:
     assert left(500, never) == pytest.approx(8.0)
     assert left(500, 40) == pytest.approx(4.0), "the second world reaches its 500 ticks in 3"
     assert left(never, 40) is None, "the second world has no births"
+
+
+@pytest.mark.parametrize(
+    ("saturated", "ends", "goes_on"),
+    [((-1, -1), 8.0, 8.0), ((50, -1), 3.0, 8.0), ((-1, 50), 8.0, 8.0), ((50, 60), 0.0, 8.0)],
+)
+def test_a_saturated_world_has_time_left_unless_the_run_stops_at_saturation(
+    saturated: tuple[int, int], ends: float, goes_on: float
+) -> None:
+    """In 2 s the worlds lived 100 and 200 ticks of 500, so they need another 8 s and 3 s."""
+    speed = Speed()
+    speed.add(10.0, census([0, 0], [0, 0]))
+    speed.add(12.0, census([100, 200], [0, 0], saturated))
+    for stops, expected in ((True, ends), (False, goes_on)):
+        limits = Limits(wide([500] * 2), wide([2**64 - 1] * 2), jnp.bool_(stops))
+        assert speed.seconds_left(limits) == pytest.approx(expected)
 
 
 def test_a_frame_spells_out_control_characters() -> None:

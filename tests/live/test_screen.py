@@ -1,6 +1,7 @@
 """The screen: nothing is cut or folded, the organism that is shown, and words that are all explained."""
 
 import io
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -177,6 +178,30 @@ def test_saturated_is_said_only_of_a_world_that_is(width: int) -> None:
     assert "saturated" not in said(census(7, 0, -1))
     assert "saturated" not in said(census(8, 999, -1))
     assert "saturated" in said(census(7, 3, 1234))
+
+
+@pytest.mark.parametrize(
+    ("alive", "calm", "said", "filled"),
+    [
+        ([7], [500], "full and calm for 0 of 1,000 ticks", 0),
+        ([8], [500], "full and calm for 500 of 1,000 ticks", 12),
+        ([8], [2000], "full and calm for 1,000 of 1,000 ticks", 24),
+        ([7, 8], [900, 250], "one world full and calm for 250 of 1,000 ticks", 6),
+        ([7, 0], [900, 900], "no world full and calm for 1,000 ticks", 0),
+    ],
+)
+def test_a_bar_of_24_columns_grows_only_with_the_calm_of_full_worlds(
+    alive: list[int], calm: list[int], said: str, filled: int
+) -> None:
+    some = replace(
+        census(0, 0, -1),
+        tick=np.ones(len(alive), np.int64),
+        alive=np.array(alive),
+        calm=np.array(calm),
+        saturated=np.full(len(alive), -1),
+    )
+    row = "".join(segment.text for segment in saturation(some, 8, 1000, 80))
+    assert row == "━" * filled + "╌" * (24 - filled) + f"  {said}"
 
 
 def test_every_word_is_explained_and_fits() -> None:

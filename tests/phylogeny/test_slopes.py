@@ -12,6 +12,7 @@ from primordia.phylogeny.lines import WorldLines, lines_of_world, two_sided
 from primordia.phylogeny.living import Census, Turnover
 from primordia.phylogeny.slopes import observed, of_shadows
 from tests.pedigrees import HISTORY, Event, line_to, lives_of, living_after, moran, walked
+from tests.synthetic import alive, world_of
 
 
 def test_the_slope_of_a_logistic_rise_is_its_coefficient() -> None:
@@ -157,3 +158,20 @@ def test_a_tick_that_is_not_on_record_is_refused() -> None:
 def test_p_values_count_the_value_itself_and_both_sides() -> None:
     null = np.arange(1.0, 10.0)
     assert two_sided(np.array([0.0, 5.0, 9.0, 10.0]), null) == pytest.approx([0.2, 1, 0.4, 0.2])
+
+
+def test_a_lifespan_counts_only_ticks_and_deaths_since_the_lines_were_founded() -> None:
+    """Two died before the founding or in its tick, two began earlier and lived on, two came later."""
+    lived = [
+        (0, 9, True),
+        (3, 16, True),
+        (5, 24, True),
+        (10, 0, False),
+        (25, 15, True),
+        (60, 0, False),
+    ]
+    world, founded, last = world_of(lived, until=90), 20, 90
+    expected = (10 + 70 + 16 + 30) / 2
+    ticks = sum(alive(world, row, tick) for row in range(6) for tick in range(founded, last))
+    assert ticks == 2 * expected, "one for each organism and tick at whose beginning it was alive"
+    assert lines_of_world(0, world, founded, seed=0).lifespan == expected
