@@ -144,6 +144,13 @@ def test_a_life_can_be_seen() -> None:
     assert len(np.unique(picture)) > 1
 
 
+@pytest.mark.parametrize(("task", "rate"), [("CartPole-survival", 50), ("gym:CartPole-v1", 50)])
+def test_films_of_a_life_have_the_speed_of_its_habitat(task: str, rate: float) -> None:
+    """Gymnasium's recorders play as many pictures for each second as the metadata say."""
+    assert LifeEnv(task).metadata["render_fps"] == pytest.approx(rate)
+    assert LifeEnv.metadata["render_fps"] == 30
+
+
 def test_a_forager_starves_as_the_law_says() -> None:
     """A store of 10 that drains by 1 and gets 0.5 a tick is empty after 20 ticks."""
     env = Forager(gymnasium.make("tests.ponds:Pond-v0", edge=1e9), lambda *_: 0.5, store=10.0)

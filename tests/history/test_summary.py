@@ -1,7 +1,11 @@
 """The summary that is printed at the end of a run."""
 
+from collections.abc import Iterable
 from typing import Any
 
+import pytest
+
+from primordia.history.seeds import seeds_text
 from primordia.history.summary import summary
 
 UNKNOWN = {"mutated": 0.5, "as_good": None, "advantage": 2.0, "held": None}
@@ -96,6 +100,23 @@ def test_the_summary_of_many_worlds_gives_quartiles() -> None:
         worlds + half
     )
     assert "0 of 9 saturated\n" in summarised(half) + "\n"
+
+
+@pytest.mark.parametrize(
+    ("seeds", "text"),
+    [
+        ([7], "seed 7"),
+        ([3, 4, 5], "seeds 3 to 5"),
+        ([10, 11, 1, 2, 0], "seeds 0 to 2, 10 to 11"),
+        ([2**64 - 1, 0], f"seeds 0, {2**64 - 1}"),
+        (range(0, 8, 2), "seeds 0, 2, 4, 6"),
+        (range(0, 20, 2), "seeds 0, 2, 4, others up to 18"),
+    ],
+)
+def test_seeds_with_gaps_are_told_as_they_are(seeds: Iterable[int], text: str) -> None:
+    """The worlds of several runs stand in the order of the runs."""
+    assert seeds_text(seeds) == text
+    assert f"  {text}: " in summarised([world(seed=seed) for seed in seeds] * 5)
 
 
 def test_three_quarters_of_the_worlds_reach_the_third_quartile() -> None:

@@ -29,7 +29,8 @@ def last_deaths(run: Records, compared: Comparison) -> list[dict[str, float]]:
             tick, here = deaths["tick"].to_numpy(), deaths["world"].to_numpy() == number
             score = deaths["score"].to_numpy()
             then = here & (begins < tick) & (tick <= ends)
-            best = score[here & (tick <= ends)].max(initial=0)
+            every = score[here & (tick <= ends)]
+            best = every.max() if len(every) else np.nan
             world |= {"late_score": _median(score[then]), "best_score": best}
         figures.append(world)
     return figures

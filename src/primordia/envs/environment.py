@@ -24,6 +24,7 @@ class LifeEnv(gymnasium.Env):
     """
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 30}  # noqa: RUF012
+    """`render_fps` of an instance is the habitat's ticks for each second; 30 if it has no clock."""
 
     def __init__(
         self,
@@ -49,6 +50,8 @@ class LifeEnv(gymnasium.Env):
         self.render_mode = render_mode
         self._reward, self._episode = reward, 0
         self._bodies = Bodies(config.load(task, settings), 1, watched=render_mode is not None)
+        if (rate := self._bodies.habitat.rate) is not None:
+            self.metadata = {**self.metadata, "render_fps": rate}
         self.observation_space = observation_space(self._bodies)
         self.action_space = action_space(self._bodies)
         self._alive = np.zeros(1, bool)

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from primordia.history.quantiles import quantile
+from primordia.history.seeds import seeds_text
 
 MAX_LISTED = 4
 """Largest number of worlds that are described one by one."""
@@ -104,7 +105,7 @@ def _all_worlds(worlds: list[dict[str, Any]]) -> list[str]:
     crashes = total("crashes")
     risen = f" ({crashes:,} after half of the cells were full)" if crashes else ""
     return [
-        f"  seeds {worlds[0]['seed']} to {worlds[-1]['seed']}: {total('ticks'):,} ticks, "
+        f"  {seeds_text(world['seed'] for world in worlds)}: {total('ticks'):,} ticks, "
         f"{total('births'):,} births, deaths: {_causes(worlds)}",
         f"    {total('alive'):,} alive, oldest {oldest:,}; extinctions: "
         f"{total('extinctions'):,}{risen}",

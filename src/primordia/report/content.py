@@ -6,6 +6,7 @@ from typing import Any
 
 from primordia.experiments.campaign import Campaign
 from primordia.history.info import info
+from primordia.history.seeds import seeds_text
 from primordia.report.arms import arms, names
 from primordia.report.curves import panels
 from primordia.report.facts import facts
@@ -41,7 +42,7 @@ def of_run(run: Records, filmed: bool = True) -> dict[str, Any]:
         "palette": palette(),
         "arms": None,
         "title": run.config.task,
-        "subtitle": f"{_name(run.path)}, {_seeds(seeds)}",
+        "subtitle": f"{_name(run.path)}, {seeds_text(seeds)}",
         "words": words(run, numbers),
         "numbers": _numbers(numbers["worlds"]),
         "panels": panels(run),
@@ -102,10 +103,6 @@ def view(run: Records, world: int, name: str, share: int) -> dict[str, Any]:
 
 def _name(path: Path) -> str:
     return path.resolve().name
-
-
-def _seeds(seeds: Sequence[int]) -> str:
-    return f"seed {seeds[0]}" if len(seeds) == 1 else f"seeds {seeds[0]} to {seeds[-1]}"
 
 
 def _numbers(worlds: Sequence[dict[str, Any]]) -> list[dict[str, str]]:

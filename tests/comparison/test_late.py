@@ -1,0 +1,44 @@
+"""How organisms died in the last quarter: the scores at their deaths, and what is unknown."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+
+from primordia.comparison.late import last_deaths
+from primordia.experiments.results import world_rows
+from tests.synthetic import worlds_of
+
+EDGES = np.linspace(0, 120, 13).astype(int)
+COMPARED: Any = SimpleNamespace(
+    arms=[SimpleNamespace(name="only", pace=SimpleNamespace(edges=EDGES), measured={})], outcomes={}
+)
+
+
+def last(*worlds: list[tuple[int, int]]) -> list[dict[str, float]]:
+    """Return the columns of worlds, each of which has deaths of (tick, score)."""
+    lives = worlds_of(*([(0, tick - 1, True) for tick, _ in world] for world in worlds), until=120)
+    world = np.repeat(np.arange(len(worlds)), [*map(len, worlds)])
+    tick, score = np.array([death for world in worlds for death in world]).T
+    deaths = pa.table({"world": world, "tick": tick, "score": score.astype(np.int32)})
+    run: Any = SimpleNamespace(
+        lives=lives, schema=SimpleNamespace(tallies=["score"]), table=lambda _: deaths
+    )
+    return last_deaths(run, COMPARED)
+
+
+def test_the_best_score_may_be_below_zero() -> None:
+    """The last quarter begins after tick 90, and the best score is that of any death."""
+    first, second = last([(40, -1), (95, -7), (100, -9)], [(30, 3), (110, -2)])
+    assert (first["best_score"], second["best_score"]) == (-1, 3)
+    assert (first["late_score"], second["late_score"]) == (-8, -2)
+    assert (first["late_deaths"], second["late_lifespan"]) == (2, 110)
+
+
+def test_scores_of_no_deaths_are_unknown_and_their_cells_are_empty() -> None:
+    ends = last([(40, 5)], [(100, -4)])
+    assert np.isnan(ends[0]["late_score"])
+    head, *rows = world_rows(COMPARED, [{"seed": np.array([8, 9])}], [ends]).splitlines()
+    assert head == "arm,seed,late_deaths,late_lifespan,late_score,best_score"
+    assert rows == ["only,8,0,,,5", "only,9,1,100.0,-4.0,-4"]
