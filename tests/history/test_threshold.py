@@ -54,6 +54,18 @@ def test_what_is_alive_counts_once_it_is_known() -> None:
     assert as_long[known].tolist() == [True, False]
 
 
+def test_ticks_of_the_living_count_in_the_ticks_lived_per_death() -> None:
+    """Two copies are alive at three times the age at which their parent died."""
+    copies: list = [(0, COPY, 100)] * 10 + [(0, COPY, 300, "alive")] * 2
+    mutants: list = [(0, MUTANT, 100)] * 5 + [(0, MUTANT, 1)] * 5 + [(0, MUTANT, 40, "alive")] * 3
+    others: list = [(-1, FOUNDER, 1)] * 200 + [(-1, FOUNDER, 20, "alive")] * 50
+    found = measured(lives((-1, FOUNDER, 100), *copies, *mutants, *others))
+    of_copies = (10 * 100 + 2 * 300) / 10
+    of_all = (100 + 10 * 100 + 2 * 300 + 5 * 100 + 5 * 1 + 3 * 40 + 200 * 1 + 50 * 20) / 221
+    assert found.advantage == pytest.approx(of_copies / of_all)
+    assert found.held == pytest.approx(of_copies / of_all * (1 - 13 / 25 * (1 - 0.5)))
+
+
 def test_a_world_in_which_nothing_is_known_says_so() -> None:
     assert measured(lives((-1, FOUNDER, 5))) == Threshold(0, None, None, None)
     assert Threshold(0, 0.5, None, 2.0).held is None
