@@ -3,17 +3,21 @@
 import re
 import shutil
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+import pyarrow as pa
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 import primordia
+from primordia.comparison.gathering import gathering
 from primordia.figures import foraging as figure
 from primordia.figures import style
 from primordia.history.foraging import Harvest, foraging, harvests
+from primordia.law.metabolism import ONE
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests.commands import here
@@ -108,6 +112,25 @@ def test_food_is_known_up_to_the_end_of_a_run(tmp_path: Path) -> None:
     sampled = harvests(Archive(every), 2)[0]
     for some, each in zip(harvest, sampled, strict=True):
         np.testing.assert_array_equal(some, each[[0, 40, 70]])
+
+
+def test_late_food_is_that_of_the_last_quarter() -> None:
+    """The compared time is ticks 24 to 144, so each of its 12 windows ends with a sample."""
+    draw, span = np.random.default_rng(2), 50.0
+    tick = np.array([0, *range(24, 145, 10)])
+    food, lived = draw.integers(1, 99, (2, 2, len(tick) - 1)) * [[[1]], [[100]]]
+    sums = [np.insert(np.cumsum(each, axis=1), 0, 0, axis=1) for each in (food, lived)]
+    columns = [np.repeat([0, 1], len(tick)), np.tile(tick, 2), *(each.ravel() for each in sums)]
+    metrics = pa.table(dict(zip(("world", "tick", "food", "organism_ticks"), columns, strict=True)))
+    ends = {"tick": np.full(2, 144), "food": sums[0][:, -1] * ONE, "organism_ticks": sums[1][:, -1]}
+    run: Any = SimpleNamespace(
+        metrics=metrics, origin=None, count=lambda name: ends[name.removeprefix("world.worlds.")]
+    )
+    found = gathering(run, 2, 24, 144, span)
+    np.testing.assert_allclose(found.curve, span * food[:, 1:] / lived[:, 1:])
+    late = food[:, -3:].sum(axis=1) / lived[:, -3:].sum(axis=1)
+    np.testing.assert_allclose(found.late.value, span * late)
+    assert found.late.known.all()
 
 
 def test_food_that_no_organism_can_live_on_has_no_break_even(tmp_path: Path) -> None:
