@@ -8,6 +8,7 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
+from matplotlib.text import Annotation
 
 from primordia.comparison.comparison import ComparedArm, Comparison
 from primordia.comparison.gathering import Gathering
@@ -15,11 +16,13 @@ from primordia.comparison.measured import Measured
 from primordia.comparison.pace import WINDOWS, Pace
 from primordia.comparison.survival import survival as survived
 from primordia.figures import ages, comparison, foraging, population, style, survival, threshold
+from primordia.figures import lines as descents
 from primordia.history import series
 from primordia.history.extinctions import Extinctions
 from primordia.history.foraging import Foraging
 from primordia.history.threshold import over_births
 from primordia.law.world import Cause
+from primordia.phylogeny.lines import lines_of_world
 from primordia.runs.lives import ALIVE, Lives
 from tests.assays.lives import COPY, FOUNDER, MUTANT
 from tests.assays.lives import lives as lives_of
@@ -183,6 +186,26 @@ def test_survival_is_drawn_as_counted() -> None:
     check_risk(risk, LIVES.ended, LIVES.ended[LIVES.died], LIVES.born)
 
 
+@pytest.mark.parametrize("fork", [None, 60])
+def test_numbers_at_risk_are_counted_at_each_labelled_age(fork: int | None) -> None:
+    """An organism is at risk up to the age at which its life ends. If it was alive at a fork, it is at
+    risk only after its age there."""
+    lives = LIVES if fork is None else LIVES.recorded_since(fork)
+    alive_axes, _, _ = axes_of(survival.draw, lives)
+    drawn = [each for each in alive_axes.texts if isinstance(each, Annotation)]
+    quarter = lives.rank * 4 // np.bincount(lives.world)[lives.world]
+    assert (lives.lifespan == 10).any(), "some lives end at a labelled age"
+    for number, (name, colour) in enumerate(survival.COHORTS.items()):
+        cohort = lives.take(quarter == number)
+        written = {each.xy[0]: each.get_text() for each in drawn if each.get_color() == colour}
+        assert written.pop(0.3) == name
+        assert {1, 10} <= written.keys()
+        for age, text in written.items():
+            ends, begins = cohort.lifespan.tolist(), (cohort.seen - cohort.born).tolist()
+            at_risk = sum(a < age <= b for a, b in zip(begins, ends, strict=True))
+            assert text == str(at_risk)
+
+
 def check_risk(drawn: np.ndarray, stop: np.ndarray, died: np.ndarray, start: np.ndarray) -> None:
     edges = series.bins(int(LIVES.lifespan.max() if not start.any() else UNTIL))
     for k, value in enumerate(drawn):
@@ -234,6 +257,17 @@ def test_the_threshold_is_drawn_stretch_by_stretch() -> None:
         np.testing.assert_allclose(y, [getattr(each, name) for each in expected])
     few: Any = SimpleNamespace(lives=lives_of(*rows[:300]))
     assert threshold.draw(few, 0) is None
+
+
+def test_new_common_ancestors_are_marked_at_the_time_since_the_lines_were_founded() -> None:
+    """Organism 1 is the common ancestor from tick 30 on, and organism 2 from tick 60 on."""
+    rows: list = [(-1, FOUNDER, 30), (0, COPY, 59), (1, COPY, 98, "alive"), (2, COPY, 97, "alive")]
+    for founded, expected in ((10, [20, 50]), (40, [20]), (70, [])):
+        found = lines_of_world(0, lives_of(*rows), founded, 0)
+        with style.applied():
+            diversity = descents.draw(found).axes[2]
+        marks = [x.tolist() for x, _ in lines(diversity, style.ORANGE)]
+        assert marks == [[since, since] for since in expected]
 
 
 SEEDS = np.arange(3)
