@@ -45,6 +45,17 @@ def test_middle_and_spread_are_quartiles_of_the_worlds(torus: Path) -> None:
     np.testing.assert_allclose(kinds["high"], high, rtol=1e-4)
 
 
+def test_middle_and_spread_end_where_fewer_than_half_of_the_worlds_have_a_value() -> None:
+    """Of 4 worlds all, 3, 2 and 1 have a value; half of them is enough."""
+    nan = np.nan
+    values = np.array([[1, 1, 1, 1], [3, 3, 5, nan], [5, 8, nan, nan], [7, nan, nan, nan]], float)
+    table = curves.over_worlds("some", np.arange(1, 5), values, "#000000", each=False)
+    kinds = {each["kind"]: each["values"] for each in table["curves"]}
+    assert kinds["line"] == [4, 3, 3, None]
+    assert kinds["low"] == [2.5, 2, 2, None]
+    assert kinds["high"] == [5.5, 5.5, 4, None]
+
+
 def test_ages_at_death_are_lifespans_in_order_of_birth(torus: Path) -> None:
     lives = Archive(torus).lives
     dead, living, _ = named(torus)["Age at death"]["tables"]
