@@ -11,6 +11,7 @@ import pytest
 from rich.console import Console
 
 from primordia.engine.engine import Engine
+from primordia.history.threshold import Threshold
 from primordia.law.metabolism import ONE
 from primordia.law.world import Cause
 from primordia.live.census import Census
@@ -93,6 +94,22 @@ def test_one_world_after_another_is_shown() -> None:
     ):
         rows = "\n".join(screen(made, "w" * presses, 80, 24))
         assert f"{count} of {cells}" in rows
+
+
+def test_whether_good_lines_hold_is_told_of_the_worlds_that_are_shown() -> None:
+    """The numbers of world 2 are unknown, so the medians of all worlds are halfway between the others."""
+    made, view = posed(cells=16, seeds=3), View(terminal(120, 24))
+    known = [Threshold(0, 0.2, 0.1, 2.0), Threshold(1, 0.6, 0.5, 3.0), Threshold(2, 0.4, None, 1.0)]
+    ground: Any = SimpleNamespace(measured=lambda _: known)
+    view._ground, status = ground, Status(made, 1.0)
+    view._descent.follow(status, 1)
+    names = ("children mutate", "mutants as good", "good lines hold")
+    of_each = [("20%", "10%", "1.64"), ("60%", "50%", "2.10"), None]
+    for values in (("40%", "30%", "1.87"), *of_each):
+        told = " ".join("\n".join(text(view._rows(status))).split())
+        for name, value in zip(names, values or names, strict=True):
+            assert f"{name} {value}" in told if values else name not in told
+        view._obey("w", status)
 
 
 def test_the_oldest_organism_is_shown_and_then_the_next() -> None:
