@@ -280,3 +280,11 @@ def test_a_table_has_the_first_the_last_and_the_largest_gain(lived: list[int]) -
 def test_the_median_of_an_even_number_of_sweeps_is_between_the_middle_two() -> None:
     done = [Sweep(number, "copy", 0, 1, fixed, 3) for number, fixed in enumerate((1000, 4003))]
     assert _sweeps_text(done) == "Sweeps to all of the living: 2; median duration: 2,501.5 ticks."
+
+
+def test_one_long_sweep_does_not_move_the_median_of_three() -> None:
+    """A sweep that is under way has no duration."""
+    times = ((0, 40), (10, 17), (20, 9020), (30, None))
+    some = [Sweep(n, "copy", born, born + 1, fixed, 3) for n, (born, fixed) in enumerate(times)]
+    text = _sweeps_text(some)
+    assert text.startswith("Sweeps to all of the living: 3; median duration: 40 ticks.")
