@@ -158,25 +158,6 @@ def test_after_an_error_the_next_life_has_a_new_environment() -> None:
     assert {seen[-1][1] for seen in alone[:-1]} == {False, True}
 
 
-def test_an_error_counts_once_however_long_its_cell_stays_empty() -> None:
-    """Two cells fail in one tick, which is as many errors as are allowed; a third one is too many."""
-    game = Gymnasium(env="tests.ponds:Crashing-v0", faults=2, workers=0)
-    game.open(3)
-    game.reset(np.arange(3), np.full((3, 1), 3, np.uint32))
-    idle = np.zeros((3, 1), np.float32)
-    for age in range(1, CRASH + 1):
-        _, outcome = game.step(idle, np.array([True, True, False]))
-        assert np.array_equal(outcome.fault, [age == CRASH, age == CRASH, False])
-    for _ in range(4):
-        _, outcome = game.step(idle, np.zeros(3, bool))
-        assert not np.any(outcome.fault)
-    for _ in range(CRASH - 1):
-        game.step(idle, np.array([False, False, True]))
-    with pytest.raises(Trouble, match="3 organisms died of errors"):
-        game.step(idle, np.array([False, False, True]))
-    game.close()
-
-
 def test_too_many_errors_stop_the_run() -> None:
     says = (
         r"\d organisms died of errors in tests.ponds:Crashing-v0, the last error: ZeroDivisionError"
