@@ -148,6 +148,23 @@ class Crashing(Pond):
         return found
 
 
+class Spoiled(Crashing):
+    """A crashing environment that works no more after an error."""
+
+    spoiled = False
+
+    def reset(self, *, seed: int | None = None, options: Any = None) -> tuple[Any, dict]:
+        if self.spoiled:
+            raise RuntimeError("the pond is spoiled")
+        return super().reset(seed=seed)
+
+    def step(self, action: Any) -> tuple[Any, float, bool, bool, dict]:
+        self.spoiled = True
+        found = super().step(action)
+        self.spoiled = False
+        return found
+
+
 class Unborn(Pond):
     """An environment whose reset raises an error for some seeds."""
 
@@ -186,8 +203,8 @@ def food(observation: Any, reward: Any, terminated: Any, truncated: Any, info: A
 
 
 KINDS = (
-    Pond, Odd, Unseeded, Hidden, Moody, Worn, Grasping, Outside, Broken, Crashing, Unborn, Talking,
-    Still, Closed,
+    Pond, Odd, Unseeded, Hidden, Moody, Worn, Grasping, Outside, Broken, Crashing, Spoiled, Unborn,
+    Talking, Still, Closed,
 )  # fmt: skip
 for kind in KINDS:
     gymnasium.register(

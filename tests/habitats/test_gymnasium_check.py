@@ -2,13 +2,15 @@
 
 from typing import Any
 
+import numpy as np
 import pytest
 
 pytest.importorskip("gymnasium")
 
 from primordia.habitats.gymnasium import state
-from primordia.habitats.gymnasium.check import measure
+from primordia.habitats.gymnasium.check import LIVES, measure
 from primordia.habitats.gymnasium.environment import make
+from tests.ponds import Pond
 
 FAULTS = {
     "Unseeded": ("restart", False, "another beginning: the environment ignores its seed"),
@@ -38,6 +40,33 @@ def test_sound_environments_have_no_fault(name: str, saving: str) -> None:
     found = measure(f"tests.ponds:{name}-v0", {}, ())
     assert (found.saving, found.fresh, found.faults) == (saving, False, [])
     assert found.ended
+
+
+def test_the_lifespan_is_the_mean_of_the_first_lives_as_far_as_they_were_lived(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The pond counts its own steps in each life; some of the lives are longer than they are lived."""
+    spans, left = list[int](), list[bool]()
+    reset, step = Pond.reset, Pond.step
+
+    def begin(self: Pond, **given: Any) -> Any:
+        spans.append(0)
+        left.append(False)
+        return reset(self, **given)
+
+    def go_on(self: Pond, action: Any) -> Any:
+        found = step(self, action)
+        spans[-1] += 1
+        left[-1] = found[2]
+        return found
+
+    monkeypatch.setattr(Pond, "reset", begin)
+    monkeypatch.setattr(Pond, "step", go_on)
+    found = measure("tests.ponds:Pond-v0", {"edge": 4.0}, ())
+    assert found.lifespan == pytest.approx(np.mean(spans[:LIVES]))
+    assert found.ended == sum(left[:LIVES])
+    assert abs(np.mean(spans[:LIVES]) - np.median(spans[:LIVES])) > 1
+    assert 0 < found.ended < LIVES
 
 
 @pytest.mark.parametrize("name", ["CartPole-v1", "Acrobot-v1", "Blackjack-v1", "FrozenLake-v1"])

@@ -132,6 +132,32 @@ def test_a_life_that_cannot_begin_is_a_fault() -> None:
     assert all(deaths["tick"][k] == born[deaths["id"][k]] + 1 for k in failed)
 
 
+def senses_and_faults(game: Gymnasium, word: int) -> list[tuple[bytes, bool]]:
+    """Live in the only cell until the tick of an error. Return senses and fault at each age."""
+    seen = [(game.reset(np.array([0]), np.array([[word]], np.uint32)).tobytes(), False)]
+    for _ in range(CRASH):
+        senses, outcome = game.step(np.zeros((1, 1), np.float32), np.ones(1, bool))
+        seen.append((senses.tobytes(), bool(np.any(outcome.fault))))
+    return seen
+
+
+def test_after_an_error_the_next_life_has_a_new_environment() -> None:
+    """The lives that follow in the cell are as they are in a cell of their own."""
+    words = range(2, 14, 2)
+    one = Gymnasium(env="tests.ponds:Spoiled-v0", workers=0)
+    one.open(1)
+    after_others = [senses_and_faults(one, word) for word in words]
+    one.close()
+    alone = []
+    for word in words:
+        other = Gymnasium(env="tests.ponds:Spoiled-v0", workers=0)
+        other.open(1)
+        alone.append(senses_and_faults(other, word))
+        other.close()
+    assert after_others == alone
+    assert {seen[-1][1] for seen in alone[:-1]} == {False, True}
+
+
 def test_too_many_errors_stop_the_run() -> None:
     says = (
         r"\d organisms died of errors in tests.ponds:Crashing-v0, the last error: ZeroDivisionError"

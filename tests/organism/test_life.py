@@ -13,6 +13,7 @@ import primordia
 from primordia.engine.state import named_leaves
 from primordia.errors import InputError, Trouble
 from primordia.law.life import BODILY
+from primordia.law.metabolism import ONE
 from primordia.law.world import Cause
 from primordia.organism.organism import Organism
 from primordia.organism.reliving.in_jax import LifeInJax
@@ -160,6 +161,20 @@ def test_an_accident_kills_only_what_dies_of_nothing_else() -> None:
     hazard = jnp.repeat(jnp.array([0, 1], jnp.float32), len(causes))
     found = RelivedLife._with_accidents(life, stretch, ticks, {"hazard": hazard})
     assert found.cause.tolist() == [*causes, Cause.HAZARD, *BODILY]
+
+
+@pytest.mark.parametrize("which", ["mill", "mirror"])
+def test_a_life_begins_with_the_store_in_force_in_the_tick_of_its_birth(
+    which: str, request: pytest.FixtureRequest
+) -> None:
+    """In this past the store is another in each tick."""
+    run = Archive(request.getfixturevalue(which))
+    past = SimpleNamespace(of_lives=lambda lives, ticks: {"metabolism.store": np.float32(ticks)})
+    for row in np.flatnonzero(run.lives.born > 0)[[0, 9, -1]]:
+        life = RelivedLife.of(run, run.lives.id[row], run.lives.world[row])
+        life.__dict__["_past"] = past
+        held, _ = next(life.instants())
+        assert held["world.organisms.energy"] == run.lives.born[row] * ONE
 
 
 def test_a_habitat_on_the_host_is_closed_after_a_life(

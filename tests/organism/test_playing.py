@@ -103,6 +103,24 @@ def test_games_are_the_same_in_both(players: Players, freezes: bool) -> None:
     )
 
 
+@pytest.mark.parametrize("where", ["in JAX", "on the host"])
+def test_a_brain_whose_thoughts_are_not_finite_ends_its_game_in_its_first_tick(
+    players: Players, where: str
+) -> None:
+    """The games of the other players stay the same."""
+    seated = on_host(players) if where == "on the host" else players
+    sound, genomes = play(seated, 2, 60), players.genomes.copy()
+    broken = np.arange(len(genomes)) % 2 == 0
+    genomes[broken] = np.nan
+    found = play(seated._replace(genomes=genomes), 2, 60)
+    assert (sound.ticks[broken] > 1).all()
+    assert (found.ticks[broken] == 1).all()
+    assert found.over[broken].all()
+    for name in ("ticks", "over", "food"):
+        ours, theirs = getattr(found, name)[~broken], getattr(sound, name)[~broken]
+        np.testing.assert_array_equal(ours, theirs, name)
+
+
 def test_no_game_depends_on_those_that_leave_the_loop(
     players: Players, monkeypatch: pytest.MonkeyPatch
 ) -> None:

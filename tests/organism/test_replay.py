@@ -56,6 +56,31 @@ def test_a_film_that_leaves_out_ticks_still_shows_the_tick_of_death(
     ]
 
 
+def test_a_caption_counts_the_age_from_the_birth_wherever_the_film_begins(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The film begins with the birth, or later with a fork or a checkpoint."""
+    written: list[tuple[str, ...]] = []
+    monkeypatch.setattr(replay, "_captioned", lambda picture, *words: written.append(words))
+    habitat = SimpleNamespace(picture=lambda *given: None, caption=lambda *given: "push")
+    ticks = np.array([1301, 2570])
+    stretch: Any = SimpleNamespace(tick=ticks, bodies=ticks, action=ticks, energy=ticks)
+    for begins in (70, 1300):
+        life: Any = SimpleNamespace(
+            record=SimpleNamespace(id=[4], born=[70]),
+            begins=begins,
+            ends=9000,
+            habitat=habitat,
+            law=SimpleNamespace(metabolism=None),
+        )
+        for i in range(len(ticks)):
+            replay.picture_of(life, stretch, i)
+    assert written == 2 * [
+        ("organism 4   age 1,231", "tick 1,301", "push"),
+        ("organism 4   age 2,500", "tick 2,570", "push"),
+    ]
+
+
 @pytest.mark.parametrize("rate", [RATE, 0.1])
 def test_cards_and_the_last_picture_stay_at_least_one_frame(
     rate: float, monkeypatch: pytest.MonkeyPatch
