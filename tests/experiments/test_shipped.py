@@ -211,6 +211,42 @@ def test_shadows_are_reported(ponged: Path) -> None:
     assert [float(row["mean_life"]) for row in rows] == means
 
 
+def test_the_share_of_starts_that_a_world_masters_is_counted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.syspath_prepend(str(EXPERIMENTS))
+    monkeypatch.chdir(tmp_path)
+    starts = import_module("starts")
+    monkeypatch.setattr(starts, "TICKS", 60)
+    monkeypatch.setattr(starts, "MOST", 20)
+    games = {"champion": 6, "all alive": 3, "best founder": 2, "founder": 2}
+    monkeypatch.setattr(starts, "GAMES", games)
+    arms = [{"name": "with"}, {"name": "none", "inheritance": "founder"}]
+    shared = {"task": "CartPole-survival", "cells": 8, "seeds": 2, "seed": 3}
+    values = {"question": "Any?", **shared, "stop": {"ticks": 1500, "until": "none"}, "arms": arms}
+    (file := tmp_path / "poles" / "any.toml").parent.mkdir()
+    file.write_text(tomli_w.dumps(values))
+    primordia.experiment(file)
+    starts.report(file)
+    rows = list(
+        csv.DictReader((tmp_path / "poles/results/any-starts.csv").read_text().splitlines())
+    )
+    run, lives = primordia.load("runs/any/with"), primordia.load("runs/any/with").lives()
+    for world, row in enumerate(row for row in rows if row["who"] == "with: all alive"):
+        alive = [int(n) for n in lives.id[(lives.world == world) & ~lives.died]]
+        played = run.evaluate(
+            [run.organism(n, world) for n in alive], games=3, ticks=60, spread=0.2
+        )
+        shares = [each.to_dict()["alive_when_cut"] / 3 for each in played]
+        assert (int(row["seed"]), int(row["organisms"])) == (3 + world, len(alive))
+        assert float(row["share"]) == pytest.approx(np.mean(shares), abs=1e-4)
+    who = [row["who"] for row in rows]
+    assert who.count("with: best founder") == who.count("none: champion") == 2
+    assert "none: founder" not in who
+    assert rows[-1]["share"] == "1.0"
+    assert "with: champion | 2 |" in (tmp_path / "poles/results/any-starts.md").read_text()
+
+
 def test_the_way_of_an_arm_to_its_targets_is_measured(monkeypatch: pytest.MonkeyPatch) -> None:
     """A tip moves between two places: first straight, then three times as far as needed."""
     monkeypatch.syspath_prepend(str(EXPERIMENTS))
