@@ -11,7 +11,7 @@ import primordia
 from primordia.cli.evaluate import _quartiles
 from primordia.errors import InputError
 from primordia.organism import games
-from primordia.organism.evaluation import Spread, evaluate
+from primordia.organism.evaluation import Evaluation, Spread, evaluate
 from primordia.organism.organism import Organism
 from primordia.runs import loop
 from primordia.runs.archive import Archive
@@ -34,6 +34,24 @@ def pong(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def poles(tmp_path_factory: pytest.TempPathFactory) -> Path:
     run = tmp_path_factory.mktemp("poles") / "run"
     return primordia.run("CartPole-survival", run, stop={"ticks": 3000, "until": "none"}).path
+
+
+def games_of(ticks: list[int], over: list[bool], food: list[float]) -> games.Games:
+    course = np.arange(len(ticks), dtype=np.uint64)
+    return games.Games(np.array(ticks), np.array(over), np.array(food), course, [])
+
+
+def test_lives_and_whole_games_have_numbers_of_their_own() -> None:
+    lived = games_of([5, 1, 4, 2, 3], [True, True, False, True, True], [9.0] * 5)
+    whole = games_of([70, 50, 90, 60, 80], [True, False, False, True, False], [0, 4, 3, 1, 2])
+    assert Evaluation(7, 1, "frozen", lived, whole, deterministic=False).to_dict() == {
+        "organism": 7, "world": 1, "games": 5, "distinct": 5, "senses": "frozen",
+        "lifespan": {"minimum": 1, "q1": 2, "median": 3, "q3": 4, "maximum": 5},
+        "alive_when_cut": 1,
+        "score": {"minimum": 0, "q1": 1, "median": 2, "q3": 3, "maximum": 4},
+        "length": {"minimum": 50, "q1": 60, "median": 70, "q3": 80, "maximum": 90},
+        "cut": 3,
+    }  # fmt: skip
 
 
 @pytest.mark.slow
