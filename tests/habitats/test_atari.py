@@ -133,11 +133,13 @@ def test_a_life_depends_on_its_words_alone() -> None:
 
 
 def test_saved_lives_continue_in_another_pool() -> None:
-    options = {"sticky": 0.25}
+    """A button that is held goes on being held, mostly longer than a tick."""
+    options = {"sticky": 0.9}
     (one, a), (other, b) = arcade(**options), arcade(**options)
     a["words"][0] = (1, 2)
     one.reset(0)
     played(one, a, 100)
+    assert one._held[0] != NOOP
     other.load(1, one.save(0))
     assert played(one, a, 300, cell=0) == played(other, b, 300, cell=1)
     assert one.save(0) == other.save(1)
