@@ -133,8 +133,8 @@ def test_a_life_depends_on_its_words_alone() -> None:
 
 
 def test_saved_lives_continue_in_another_pool() -> None:
-    """A button that is held goes on being held, mostly longer than a tick."""
-    options = {"sticky": 0.9}
+    """A button that moves the paddle is down, and mostly stays down for some ticks."""
+    options = {"sticky": 0.9, "actions": [0, 3, 4]}
     (one, a), (other, b) = arcade(**options), arcade(**options)
     a["words"][0] = (1, 2)
     one.reset(0)
