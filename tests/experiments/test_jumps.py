@@ -1,0 +1,68 @@
+"""Sudden jumps of a world's course, as `experiments/jumps.py` finds them."""
+
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from primordia.runs import loop
+from tests.experiments.test_shipped import EXPERIMENTS
+from tests.worlds import MEADOW, config
+
+
+def test_jumps_are_found_where_they_are_and_nowhere_else(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Steps are found at their places; an order without meaning has none, as often as promised."""
+    monkeypatch.syspath_prepend(str(EXPERIMENTS))
+    jumps, noise = import_module("jumps"), np.random.default_rng(3)
+    stairs = np.repeat([2.0, 4.0, 3.0, 6.0], [120, 200, 80, 100])
+
+    def parted(series: np.ndarray) -> Any:
+        return jumps.cut(series, jumps.penalty(series))
+
+    steps = parted(stairs + 0.5 * noise.standard_normal(500))
+    assert np.abs(np.array(steps.ends) - [120, 320, 400, 500]).max() <= 3
+    np.testing.assert_allclose(np.log(steps.factors), [2, -1, 3], atol=0.3)
+    steps_of_stairs = jumps.described(stairs)
+    assert (steps_of_stairs["jumps"], steps_of_stairs["falls"]) == (2, 1)
+    assert steps_of_stairs["largest jump"] == pytest.approx(np.exp(3), rel=0.01)
+    flat = [len(parted(noise.standard_normal(200)).ends) > 1 for _ in range(60)]
+    assert sum(flat) <= 10  # a twentieth of 60 is 3; more than 10 occur once in 3,000 tries
+    assert len(parted(np.arange(19.0)).ends) == 1
+
+
+def test_a_smooth_rise_has_no_sudden_jumps_and_a_step_has_one(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Both have jumps: a staircase runs along a smooth rise."""
+    monkeypatch.syspath_prepend(str(EXPERIMENTS))
+    jumps, noise, at = import_module("jumps"), np.random.default_rng(5), np.linspace(0, 1, 300)
+    smooth = [3 * at, 3 / (1 + np.exp(-12 * (at - 0.5))), 2 * np.sqrt(at), np.log1p(20 * at)]
+    rises = [jumps.described(smooth[n % 4] + 0.4 * noise.standard_normal(300)) for n in range(48)]
+    assert np.median([each["jumps"] for each in rises]) >= 2
+    assert abs(np.mean([each["jumps"] - each["jumps if smooth"] for each in rises])) < 1
+    assert sum(each["sudden jumps"] > 0 for each in rises) <= 6  # 2.4 are a twentieth
+    assert sum(each["p of the largest"] <= 0.05 for each in rises) <= 6
+    step = 2.0 * (at > 0.4)
+    steps = [jumps.described(step + 0.3 * noise.standard_normal(300)) for _ in range(12)]
+    assert all(each["jumps"] == 1 for each in steps)
+    assert sum(each["sudden jumps"] == 1 for each in steps) >= 11
+    assert sum(each["p of the largest"] <= 0.05 for each in steps) >= 11
+
+
+def test_jumps_of_a_run_are_found_in_each_world(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.syspath_prepend(str(EXPERIMENTS))
+    settings = {**MEADOW, "brain": {"hidden": 1}, "seeds": 2, "hazard": 0.05, "replication": 0.3}
+    safer = {"kind": "schedule", "setting": "hazard", "at": 500, "value": 0.005}
+    loop.start(config({**settings, "seasons": [safer], "stop": {"ticks": 3000}}), tmp_path / "a")
+    jumps = import_module("jumps")
+    rows = jumps.steps_of(tmp_path / "a")
+    assert all(1 <= row["jumps"] <= 2 for row in rows), (
+        "organisms that die soon after the change lived before it"
+    )
+    assert [row["falls"] for row in rows] == [0, 0]
+    assert all(5 < row["largest jump"] < 20 for row in rows)
+    assert "| a | 2 | " in jumps.summary(rows)
