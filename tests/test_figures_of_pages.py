@@ -33,7 +33,6 @@ KNOWN = {
     "7,141": "the ticks of a round of Boxing",
     "8,192": "the ticks of a game of Freeway",
     "3,000": "the length of games from any start, in starts.py",
-    **dict.fromkeys(("107", "300,000"), "the last seed and the length of trials from any start"),
     "512": "founders of a trial, as the assay draws them",
     "1.7": "0.3 times the root of 32, a spectral radius",
     **dict.fromkeys(

@@ -20,6 +20,7 @@ import reference
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from primordia import config
+from primordia.assays.signs import sign_test
 from primordia.comparison.resample import least
 from primordia.comparison.tables import number_text, spread_text
 from primordia.settings.tables import tasks
@@ -240,6 +241,7 @@ def pages() -> dict[Path, str]:
         standings=standings,
         games=games,
         share=share,
+        sign_test=sign_test,
         ratio=ratio,
         budget=budget,
         unseen=unseen,
