@@ -15,6 +15,10 @@ WORLDS = st.lists(st.lists(st.booleans(), max_size=30), min_size=1, max_size=4)
 """Which birth numbers are on record in each world: all of them, except in a fork."""
 
 
+FORK = 40
+"""The tick of the fork with which all records begin."""
+
+
 def dictionary(codes: np.ndarray, names: type[BirthCause] | type[Cause]) -> pa.Array:
     return pa.DictionaryArray.from_arrays(codes.astype(np.int8), [each.label for each in names])
 
@@ -50,7 +54,7 @@ def end(world: list[bool]) -> int:
 
 def lives_of(worlds: list[list[bool]], cuts: int) -> Lives:
     births, deaths = tables(worlds, cuts)
-    return join(births, deaths, np.array([*map(end, worlds)]), 40, 7)
+    return join(births, deaths, np.array([*map(end, worlds)]), FORK, 7)
 
 
 @given(WORLDS, st.integers(1, 3))
@@ -86,9 +90,7 @@ def test_the_oldest_is_the_last_of_the_longest_late_lives(
     lives = lives_of(worlds, 1)
     late: list[int] = []
     for world in dict.fromkeys(lives.world.tolist()):
-        born = np.flatnonzero(
-            (lives.world == world) & (lives.born > 40)
-        )  # 40: the tick of the fork
+        born = np.flatnonzero((lives.world == world) & (lives.born > FORK))
         here = born[int(after * len(born)) :].tolist()
         late += here
         if here:

@@ -28,7 +28,7 @@ DEATHS = {
 }
 
 FEWEST = 10
-"""Smallest number of lives in a quarter of the births whose median is told."""
+"""The medians of the first and the last quarter are left out if either has fewer lives than this."""
 
 
 def words(run: Records, info: dict[str, Any]) -> list[str]:
