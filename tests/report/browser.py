@@ -38,7 +38,13 @@ class Page:
         self.driver.get(address)
         self.until(lambda: self.script("return document.getElementById('main').dataset.drawn"))
         self.until(lambda: self.script("return [...document.images].every((i) => i.complete)"))
+        self.wait_for_figures()
         return self
+
+    def wait_for_figures(self) -> None:
+        """Wait for two frames: figures are drawn in the first, when their width is known."""
+        code = "requestAnimationFrame(() => requestAnimationFrame(arguments[0]))"
+        self.driver.execute_async_script(code)
 
     def open_file(self, path: Path) -> "Page":
         return self.open(path.as_uri())

@@ -242,11 +242,24 @@ def test_the_phylogeny_is_read_by_mouse_and_keys(torus_page: Path, page: Page) -
     readout = page.text(".tree + .readout")
     told = re.match(r"organism ([\d,]+), born at tick [\d,]+, alive, ", readout)
     assert told, readout
-    assert page.all(".tree .on")
+    page.until(lambda: page.all(".tree .on"))
     page.keys(page.one(".tree"), Keys.ENTER)
     assert page.text(".organism h3") == f"Organism {told[1]}"
     page.hover(page.all(".tree .hit")[3], 0.5, 0.5)
     page.until(lambda: page.text(".tree + .readout") != readout)
+
+
+def test_a_line_of_descent_stays_marked_when_the_tree_is_drawn_again(
+    torus_page: Path, page: Page
+) -> None:
+    page.open_file(torus_page)
+    page.keys(page.one(".tree"), Keys.ARROW_DOWN)
+    marked = "return [...document.querySelectorAll('.tree .on')].map((each) => each.dataset.node)"
+    line = page.until(lambda: page.script(marked))
+    drawn = page.one(".tree svg")
+    page.size(900, 900)
+    page.until(lambda: page.one(".tree svg") != drawn)
+    assert page.script(marked) == line
 
 
 def test_another_world_is_shown_when_it_is_chosen(torus_page: Path, page: Page) -> None:

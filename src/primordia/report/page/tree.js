@@ -12,22 +12,30 @@ function treeSection(world, palette, chosen, show) {
   const tellNode = (at) => {
     state.at = at;
     readout.textContent = at < 0 ? "\u00a0" : nodeText(tree.nodes, at);
-    drawing.querySelectorAll(".on").forEach((each) => each.classList.remove("on"));
-    for (let up = at; up >= 0; up = tree.nodes[up].parent) {
-      drawing.querySelectorAll(`[data-node="${up}"]`).forEach((each) => each.classList.add("on"));
-    }
+    markLine(drawing, tree.nodes, at);
   };
   const showNode = (at) => {
     const organism = organismOf(world, tree.nodes[at].number);
     if (organism >= 0) show(organism);
   };
-  const draw = () => drawing.clientWidth
-    && drawing.replaceChildren(drawnTree(world, palette, drawing.clientWidth, tellNode, showNode));
+  const draw = () => {
+    if (!drawing.clientWidth) return;
+    drawing.replaceChildren(drawnTree(world, palette, drawing.clientWidth, tellNode, showNode));
+    markLine(drawing, tree.nodes, state.at);
+  };
   onWidth(drawing, draw);
   painters.add(draw);
   treeKeys(drawing, tree.nodes, state, tellNode, showNode);
   return section("Phylogeny of the living", about, drawing, readout,
     element("p", { class: "hint" }, "Move over a line to read its organism; click to see the organism in the space-time picture."));
+}
+
+// Mark an organism's line of descent: its bar, and those of all its ancestors.
+function markLine(drawing, nodes, at) {
+  drawing.querySelectorAll(".on").forEach((each) => each.classList.remove("on"));
+  for (let up = at; up >= 0; up = nodes[up].parent) {
+    drawing.querySelectorAll(`[data-node="${up}"]`).forEach((each) => each.classList.add("on"));
+  }
 }
 
 function nodeText(nodes, at) {
