@@ -73,14 +73,14 @@ def test_a_forged_entry_counts_as_none(forged: dict[str, Any], tmp_path: Path) -
 def test_time_left_follows_from_the_jobs_done_since_the_command_began(
     before: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """In a resumed experiment, the jobs that were done before took none of this command's time."""
+    """The jobs that were done before took none of this command's time, and failed jobs take no more."""
     now: Any = SimpleNamespace(perf_counter=lambda: now.seconds, strftime=lambda _: "12:00:00")
     now.seconds = 1000.0
     monkeypatch.setattr("primordia.cli.campaign_view.time", now)
     clock = Clock()
 
     def status(done: int) -> CampaignStatus:
-        jobs = {"done": before + done, "running": 0, "failed": 0, "waiting": 30 - done}
+        jobs = {"done": before + done, "running": 0, "failed": 3, "waiting": 30 - done}
         return CampaignStatus("?", jobs, (), (), ())
 
     assert clock.left(status(0)) is None

@@ -58,7 +58,7 @@ class Clock:
         done = status.jobs["done"]
         if self._done < 0:
             self._done = done
-        open_jobs = sum(status.jobs.values()) - done
+        open_jobs = status.jobs["waiting"] + status.jobs["running"]
         if done > self._done:
             return self.seconds() / (done - self._done) * open_jobs
         longest = max((entry.left_s or 0.0 for entry in status.running), default=0.0)

@@ -12,12 +12,10 @@ from pathlib import Path
 from primordia import cores, files
 from primordia.experiments.ending import Ending
 from primordia.experiments.job import note_failure
-from primordia.experiments.plan import Job
+from primordia.experiments.plan import LOG, Job
 
 PATIENCE = 15.0
 """Seconds that a process has for a checkpoint when the process must stop."""
-LOG = "workers.log"
-"""The file in the experiment's directory with the output of workers and their libraries."""
 
 
 class Here:

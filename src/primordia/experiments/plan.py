@@ -23,7 +23,9 @@ from primordia.settings.base import UNREACHED, Settings
 from primordia.settings.fields import first_fault
 from primordia.settings.tables import flat, from_toml
 
-OWN_FILES = EXPERIMENT, "workers.log", "results.md", "results.csv", "results.png"
+LOG = "workers.log"
+"""The file in the experiment's directory with the output of workers and their libraries."""
+OWN_FILES = EXPERIMENT, LOG, "results.md", "results.csv", "results.png"
 RESERVED = {"jobs", "figures", *OWN_FILES}
 """Names in an experiment's folder that no arm can have."""
 LARGEST = 100_000

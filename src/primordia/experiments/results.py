@@ -61,7 +61,7 @@ def write(stem: Path, question: str, arms: Sequence[Records]) -> list[Path]:
     ends = [late.last_deaths(arm, compared) for arm in arms] if "pace" in compared.outcomes else []
     if ends:
         parts.insert(2, dying(compared, ends))
-    text = "\n\n".join([*parts, made(arms[0])])
+    text = "\n\n".join([*parts, made([each.name for each in compared.arms], arms)])
     paths = [stem.with_name(f"{stem.name}.{suffix}") for suffix in ("md", "csv", "png")]
     files.write_text(paths[0], text + "\n")
     files.write_text(paths[1], world_rows(compared, counted, ends))
@@ -157,12 +157,31 @@ def table(head: list[str], rows: list[list[Any]]) -> str:
     return "\n".join(f"| {' | '.join(map(str, line))} |" for line in lines)
 
 
-def made(arm: Records) -> str:
-    """Return the date and versions of the experiment, and the limits at which it stopped."""
-    begun = datetime.date.fromtimestamp((arm.paths[0] / VERSIONS).stat().st_mtime)
-    what = ", ".join(f"{name} {version}" for name, version in arm.versions.items())
-    limits = [f"{name} {value}" for name, value in arm.progress.limits if value is not None]
-    return f"Run on {begun} with {what}. Each world stopped at: {' or '.join(limits)}."
+def made(names: Sequence[str], arms: Sequence[Records]) -> str:
+    """Return the first day and the versions of the experiment, and the limits at which worlds stopped."""
+    files_of_start = [path / VERSIONS for arm in arms for path in arm.paths]
+    begun = datetime.date.fromtimestamp(min(file.stat().st_mtime for file in files_of_start))
+    versions = _by_arm(names, [", ".join(map(_named, arm.versions.items())) for arm in arms])
+    limits = _by_arm(names, [" or ".join(map(_named, _limits(arm))) for arm in arms])
+    return f"Run on {begun} with {versions}. Each world stopped at: {limits}."
+
+
+def _named(pair: tuple[str, Any]) -> str:
+    return f"{pair[0]} {pair[1]}"
+
+
+def _limits(arm: Records) -> list[tuple[str, Any]]:
+    return [limit for limit in arm.progress.limits if limit[1] is not None]
+
+
+def _by_arm(names: Sequence[str], texts: Sequence[str]) -> str:
+    """Return the arms' text, once if it is the same for all of them, or else with their names."""
+    arms: dict[str, list[str]] = {}
+    for name, text in zip(names, texts, strict=True):
+        arms.setdefault(text, []).append(name)
+    if len(arms) == 1:
+        return texts[0]
+    return "; ".join(f"{text} ({', '.join(which)})" for text, which in arms.items())
 
 
 def world_rows(

@@ -63,8 +63,17 @@ def pictures_of(run: Records, organism: int, world: int) -> Iterator[Image.Image
     life = RelivedLife.of(run, organism, world)
     rate, born = replay.picture_rate(life), int(life.record.born[0])
     whole = [range(life.begins + 1 - born, life.ends - born + 1)]
-    each = max(round(RATE / rate), 1)
-    for _, stretch, i in replay.moments(life, whole, ceil(rate / RATE)):
-        picture = replay.picture_of(life, stretch, i)
-        yield from repeat(picture, each)
+    for tick, (_, stretch, i) in enumerate(replay.moments(life, whole, 1)):
+        number = pictures_at(tick, rate)
+        if number or stretch.tick[i] == life.ends:
+            picture = replay.picture_of(life, stretch, i)
+        yield from repeat(picture, number)
     yield from repeat(picture)
+
+
+def pictures_at(tick: int, rate: float) -> int:
+    """Return the number of pictures of a tick, 0 or more, of a life at `rate` ticks a second.
+
+    The first n ticks, from tick 0 on, have ceil(n RATE / rate) pictures together.
+    """
+    return ceil((tick + 1) * RATE / rate) - ceil(tick * RATE / rate)
