@@ -133,6 +133,12 @@ def test_late_food_is_that_of_the_last_quarter() -> None:
     assert found.late.known.all()
 
 
+def test_food_of_intervals_shorter_than_a_tick_is_that_of_the_tick() -> None:
+    """A comparison of a run of six ticks has intervals of half a tick."""
+    harvest = Harvest(*np.array([[0.0, 1, 2], [0, 0.25, 0.75], [0, 1, 2]]))
+    np.testing.assert_allclose(harvest.between(np.arange(5) / 2), [0.25, 0.25, 0.5, 0.5])
+
+
 def test_food_that_no_organism_can_live_on_has_no_break_even(tmp_path: Path) -> None:
     hungry = {"metabolism": {"store": 30.0, "gain": 0.0}, "seasons": []}
     loop.start(config(FED, **hungry), tmp_path / "run")
