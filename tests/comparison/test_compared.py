@@ -7,7 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from primordia.comparison import comparison as module
 from primordia.comparison.comparison import compare
+from primordia.comparison.gathering import Gathering
+from primordia.comparison.measured import Measured
 from primordia.errors import InputError
 from primordia.runs.arrays import NEVER
 from primordia.runs.lives import Lives
@@ -181,6 +184,24 @@ def test_settings_are_told_if_any_run_has_another_value() -> None:
     assert [arm.settings["hazard"] for arm in arms] == [0.0, 0.1, 0.0, 0.0]
     assert all(name == "hazard" or name.startswith("metabolism") for name in arms[0].settings)
     assert arms[0].settings.keys() == arms[3].settings.keys()
+
+
+@pytest.mark.parametrize(("rate", "unit", "span"), [(50.0, "second", 50), (None, "tick", 1)])
+def test_food_is_compared_in_the_unit_of_its_title(
+    rate: float | None, unit: str, span: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is gathered in all worlds of each run, between the first and the last common tick."""
+    asked = []
+
+    def gathering(run: Any, worlds: int, *rest: float) -> Gathering:
+        asked.append((run.path.name, worlds, *rest))
+        return Gathering(np.ones((worlds, 12)), Measured(np.ones(worlds), np.ones(worlds, bool)))
+
+    monkeypatch.setattr(module, "gathering", gathering)
+    one, two = lived(3, 1), lived(2, 2).recorded_until(70)
+    compared = compare([run("a", one, rate=rate), run("b", two, rate=rate)])
+    assert (compared.span, compared.outcomes["food"]) == (unit, f"food a {unit}, late")
+    assert asked == [("a", 3, 0, 70, span), ("b", 2, 0, 70, span)]
 
 
 def test_the_run_that_cannot_be_compared_is_named() -> None:

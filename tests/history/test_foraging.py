@@ -134,6 +134,28 @@ def test_late_food_is_that_of_the_last_quarter() -> None:
     assert found.late.known.all()
 
 
+def test_food_is_known_if_any_world_gathered_some() -> None:
+    """The second world gathered nothing. Where no world did, metrics are not read."""
+    tick = np.arange(0, 121, 10)
+    sums = np.concatenate([2 * tick, 0 * tick]), np.tile(5 * tick, 2)
+    columns = dict(zip(("food", "organism_ticks"), sums, strict=True))
+    metrics = pa.table({"world": np.repeat([0, 1], 13), "tick": np.tile(tick, 2), **columns})
+    ends = {"tick": [120, 120], "food": [240 * ONE, 0], "organism_ticks": [600, 600]}
+    run: Any = SimpleNamespace(
+        metrics=metrics,
+        origin=None,
+        count=lambda name: np.array(ends[name.removeprefix("world.worlds.")]),
+    )
+    found = gathering(run, 2, 0, 120, 10)
+    assert (found.late.value.tolist(), found.late.known.tolist()) == ([4, 0], [True, True])
+    np.testing.assert_allclose(found.curve, np.repeat([[4.0], [0.0]], 12, axis=1))
+    ends["food"], run.metrics = [0, 0], None
+    none = gathering(run, 2, 0, 120, 10)
+    assert (none.late.value.tolist(), none.late.known.tolist()) == ([0, 0], [False, False])
+    assert np.isnan(none.curve).all()
+    assert none.curve.shape == (2, 12)
+
+
 @pytest.mark.parametrize("begun", [0, 30])
 def test_worlds_of_unequal_length_share_their_intervals(begun: int) -> None:
     """Two worlds of a run or a fork: their food, and their climates, which seasons changed."""
