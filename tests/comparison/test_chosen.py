@@ -69,6 +69,12 @@ def test_champions_and_the_living_are_those_of_worlds_with_births(run: Any) -> N
     assert [group.name for group in evolved(run)] == ["champion"]
 
 
+def chosen(run: Any, most: int | None) -> tuple[Any, Any]:
+    """Return the best founders and some founders, whose players are `Seats`."""
+    best, some = unevolved(run, most)
+    return best, some
+
+
 @pytest.mark.parametrize(
     ("most", "counts"), [(500, (30, 4)), (None, (30, 4)), (29, (29, 4)), (21, (21, 4)), (3, (3, 3))]
 )
@@ -76,7 +82,7 @@ def test_founders_are_as_many_as_births_up_to_the_limit(
     run: Any, most: int | None, counts: tuple[int, int]
 ) -> None:
     """The best is the last of the longest-lived of its world; 20 founders of a world are typical."""
-    best, some = unevolved(run, most)
+    best, some = chosen(run, most)
     first, third = counts
     last = [max(row for row in range(first) if row % 7 == 2)]
     rows = range(first, first + third)
@@ -126,7 +132,7 @@ def test_options_of_an_evaluation_are_used(
     options = {"games": played, "ticks": 70, "senses": "ignored", "habitat": {"angle_limit": 3.0}}
     assert asked == [("settings", "players", [(3, 1)], options)]
     group.evaluate()
-    usual = {
+    usual: dict[str, Any] = {
         "games": 30 if chosen_from > 1 else 1,
         "ticks": 100_000,
         "senses": "live",

@@ -114,7 +114,7 @@ def test_each_world_has_its_own_threshold() -> None:
     good += [(0, COPY, 100)] * 10 + [(0, MUTANT, 100)] * 5 + [(0, MUTANT, 1)] * 5
     worlds = [lives(*good), lives(*few), lives(*good, *[(0, MUTANT, 100)] * 20)]
     run: Any = SimpleNamespace(lives=joined(worlds, np.arange(3)))
-    found = threshold(run, 0.0)
+    found: list[Any] = threshold(run, 0.0)
     assert [each.world for each in found] == [0, 1, 2]
     assert [each.mutated for each in found] == pytest.approx([10 / 20, 0, 30 / 40])
     assert [each.as_good for each in found] == [0.5, None, 25 / 30]
