@@ -141,3 +141,17 @@ def test_pairs_are_complete_once_both_are_dead() -> None:
     assert found.child.tolist() == [2, 3, 4, 5]
     assert found.parent.tolist() == [0, 0, 1, 1]
     assert found.mutant.tolist() == [False, True, False, False]
+
+
+def test_organisms_alive_at_a_fork_are_parents_but_no_births() -> None:
+    """Those that were alive had lived long by then; only the births since the fork are measured."""
+    rows: list = [(-1, FOUNDER, 100)] + [(0, MUTANT, 500)] * 20
+    later: list = [(0, COPY, 100)] * 10 + [(0, MUTANT, 100)] * 5 + [(0, MUTANT, 1)] * 5
+    later += [(-1, FOUNDER, 1)] * 100
+    world = lives(*rows, *later)
+    world.inherited[: len(rows)] = True
+    (found,) = over_births(0, world, np.array([0, len(world)]))
+    assert (found.mutated, found.as_good) == (0.5, 0.5)
+    of_all = (15 * 100 + 105) / 120
+    assert found.advantage == pytest.approx(100 / of_all)
+    assert over_births(0, world, np.array([0, len(rows)])) == [Threshold(0, None, None, None)]
