@@ -115,6 +115,14 @@ def test_the_direction_of_an_effect_is_told(outcome: str, smaller: str, larger: 
     assert tables.effect_text(few, outcome) == f"-1.00 {smaller}; order known in 99 % of pairs"
 
 
+@pytest.mark.parametrize("pairs", [25, 100, 900])
+def test_the_share_of_pairs_is_told_in_whole_percent(pairs: int) -> None:
+    """It is rounded down, so 100 % are never told of a share."""
+    for known in range(pairs):
+        words = f"; order known in {100 * known // pairs} % of pairs"
+        assert tables.effect_text(effect(decided=known / pairs), "births").endswith(words)
+
+
 def test_pairs_and_needed_worlds_are_told_if_there_are_any() -> None:
     pairs = Paired(8, 6, 2)
     assert tables.paired_text(effect(paired=pairs)) == "+0.50"
