@@ -11,6 +11,7 @@ from primordia.comparison import comparison as module
 from primordia.comparison.comparison import compare
 from primordia.comparison.gathering import Gathering
 from primordia.comparison.measured import Measured
+from primordia.comparison.moments import saturation
 from primordia.errors import InputError
 from primordia.runs.arrays import NEVER
 from primordia.runs.lives import Lives
@@ -140,6 +141,19 @@ def test_a_world_saturates_only_before_both_horizons() -> None:
     words = r"--births 41: in runs/c, world 2 stopped at 40 before it saturated.* at 41"
     with pytest.raises(InputError, match=words):
         compare([run("a", lives, moments), run("c", lives, {0: (29, 59), 1: (30, 59)})], births=41)
+
+
+def test_births_and_ticks_to_saturation_count_from_the_fork() -> None:
+    """A world was saturated before the fork in tick 50, one is saturated after it, and one is not."""
+    lives, moments = lived(3, 1), {0: (12, 40), 1: (36, 70)}
+    before = [int((lives.of_world(world).born <= 50).sum()) for world in range(3)]
+    assert len(set(before)) > 1
+    assert before[0] > 12
+    assert before[1] < 36
+    found = saturation(run("a", lives, moments), lives.recorded_since(50), 50, None, None)
+    assert found["births"].value.tolist() == [0, 36 - before[1], 40 - before[2]]
+    assert found["ticks"].value.tolist() == [0, 20, UNTIL - 50]
+    assert [each.known.tolist() for each in found.values()] == [[True, True, False]] * 2
 
 
 def test_runs_are_named_by_their_folders_or_whole_paths() -> None:
