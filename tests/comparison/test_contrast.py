@@ -1,14 +1,17 @@
 """Contrasts of two runs' worlds: pairs, bounds and intervals, for worlds stopped for any reason."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from primordia.comparison import resample
+from primordia.comparison import needed, resample
 from primordia.comparison.contrast import contrast
 from primordia.comparison.measured import Measured
+from primordia.comparison.pairs import Paired
 from primordia.comparison.resample import LEAST, resamples
 from primordia.errors import InputError
 
@@ -146,6 +149,44 @@ def test_effects_have_a_word_for_their_size(delta: float, word: str) -> None:
     effect = contrast(run, figures([(2, True)] * LEAST))
     assert effect.delta == pytest.approx(delta, abs=0.02)
     assert effect.word == word
+
+
+@pytest.mark.parametrize(
+    ("bound", "below", "above"),
+    [(0.147, "negligible", "small"), (0.33, "small", "medium"), (0.474, "medium", "large")],
+)
+def test_words_change_at_the_bounds_of_romano(bound: float, below: str, above: str) -> None:
+    effect = contrast(figures([(1, True)] * LEAST), figures([(1, True)] * LEAST))
+    for delta, word in ((bound - 1e-9, below), (bound, above), (bound + 1e-9, above)):
+        assert replace(effect, delta=delta).word == replace(effect, delta=-delta).word == word
+
+
+def test_plain_values_of_a_contrast_are_its_own() -> None:
+    """Two worlds are censored, so 3 of 36 pairs are undecided; infinity becomes None."""
+    run = figures([(2, True), (3, True), (4, False), (5, True), (6, True), (9, False)])
+    reference = figures([(1, True), (2, True), (3, True), (4, True), (5, True), (6, True)])
+    rows = np.arange(6), np.arange(6)
+    effect = contrast(run, reference, rows, contrasts=2)
+    larger = sum(value > other for value in (2, 3, 4, 5, 6, 9) for other in range(1, 7))
+    smaller = sum(value < other for value in (2, 3, 5, 6) for other in range(1, 7))
+    equal = 4
+    assert larger + smaller + equal == 33
+    assert effect.to_dict() == {
+        "delta": (larger - smaller) / 36,
+        "word": "medium",
+        "decided": (larger + smaller + equal) / 36,
+        "same_seeds": {"pairs": 6, "delta": 1.0},
+        "ratio": [4 / 3, 5 / 3],
+        "interval": [effect.interval[0], None],
+        "coverage": 0.975,
+        "needed": needed.of_pairs(Paired(6, 6, 0), 0.025),
+    }
+    assert effect.interval[1] == np.inf
+    alone = contrast(run, reference).to_dict()
+    assert (alone["same_seeds"], alone["coverage"]) == (None, 0.95)
+    assert alone["needed"] == needed.of_each_run(effect.delta, 0.05)
+    few = contrast(run.take(rows[0][:4]), reference)
+    assert (few.worlds, few.to_dict()["interval"], few.needed) == (4, None, None)
 
 
 @pytest.mark.parametrize("values", [(3, -1), (-1, 3), (3, 0), (-2, -1)])

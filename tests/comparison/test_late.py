@@ -36,6 +36,27 @@ def test_the_best_score_may_be_below_zero() -> None:
     assert (first["late_deaths"], second["late_lifespan"]) == (2, 110)
 
 
+def test_the_last_quarter_begins_after_its_first_tick_and_has_its_last() -> None:
+    """It is from after tick 90 up to tick 120; a later death is not compared."""
+    before, within, after = [(20, 5), (90, 70)], [(91, 4), (100, 1), (120, 30)], [(121, 99)]
+    first, second, third = last([*before, *within], [*within, *after], [*before, *after])
+    assert first == {
+        "late_deaths": 3, "late_lifespan": 100, "late_score": 4, "best_score": 70,
+    }  # fmt: skip
+    assert second == {**first, "best_score": 30}
+    assert (third["late_deaths"], third["best_score"]) == (0, 70)
+    assert np.isnan([third["late_lifespan"], third["late_score"]]).all()
+
+
+def test_the_living_are_no_deaths_and_scores_are_left_out_where_there_are_none() -> None:
+    """One organism of the first world is alive in tick 120; the lives count, not the ticks."""
+    lives = worlds_of([(0, 99, True), (60, 49, True), (3, 0, False)], [(80, 0, False)], until=120)
+    run: Any = SimpleNamespace(lives=lives, schema=SimpleNamespace(tallies=[]), table=None)
+    one, other = last_deaths(run, COMPARED)
+    assert one == {"late_deaths": 2, "late_lifespan": (100 + 50) / 2}
+    assert (other["late_deaths"], np.isnan(other["late_lifespan"])) == (0, True)
+
+
 def test_scores_of_no_deaths_are_unknown_and_their_cells_are_empty() -> None:
     ends = last([(40, 5)], [(100, -4)])
     assert np.isnan(ends[0]["late_score"])

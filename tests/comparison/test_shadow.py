@@ -1,7 +1,10 @@
 """The neutral shadow: it finds selection where there was some, and nothing where there was none."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,9 +13,13 @@ from hypothesis import strategies as st
 from scipy.stats import binomtest
 
 import primordia
-from primordia.comparison.shadow import Shadow, _lifespans
+from primordia.comparison import shadow as module
+from primordia.comparison.resample import resamples
+from primordia.comparison.shadow import Shadow, _lifespans, _sample, shadow
+from primordia.errors import InputError
 from primordia.runs import loop
 from tests.commands import complains, here
+from tests.synthetic import worlds_of
 from tests.worlds import MEADOW, config
 
 pytestmark = pytest.mark.usefixtures("optimised")  # a pedigree is thousands of small calls
@@ -28,10 +35,10 @@ def poles(tmp_path_factory: pytest.TempPathFactory, optimised: None) -> dict[str
     }
 
 
-def of(original: list[list[int]], shadow: list[list[int]], cut: int = 100) -> Shadow:
+def of(original: list[list[int]], redrawn: list[list[int]], cut: int = 100) -> Shadow:
     """Return a result with these lives in each world."""
     world = np.repeat(np.arange(len(original)), [len(each) for each in original])
-    lives = (np.concatenate(each).astype(np.int64) for each in (original, shadow))
+    lives = (np.concatenate(each).astype(np.int64) for each in (original, redrawn))
     return Shadow("run", len(world), world.astype(np.int32), *lives, cut)  # type: ignore[call-arg]
 
 
@@ -85,6 +92,73 @@ def test_means_are_taken_world_by_world() -> None:
     told = found.to_dict()
     assert told["original"] == {"mean": pytest.approx(80 / 3), "reached_cut": 1}
     assert told["ticks"] == 80 + 40
+
+
+def test_numbers_over_worlds_are_medians_of_their_ratios() -> None:
+    """Six worlds of unequal size, with ratios 1/2, 1, 2, 3, 4 and 60; some lives reach the cut."""
+    original = [[10], [10, 30], [40], [60, 60, 60], [20, 60], [600, 600]]
+    shadow = [[20], [20, 20], [20], [20, 10, 30], [10, 10], [10, 10]]
+    found = replace(of(original, shadow, cut=60), births=99)
+    ratios = np.array([0.5, 1, 2, 3, 4, 60])
+    assert found.longer == (4, 1)
+    assert found.p == pytest.approx(binomtest(4, 5).pvalue)
+    assert found.ratio == 2.5
+    (drawn,) = resamples(6)
+    medians = np.sort([np.median(ratios[rows]) for rows in drawn])
+    assert found.ratio_interval == (medians[25], medians[-1 - 25])
+    told = found.to_dict()
+    lives = [np.concatenate(each) for each in (original, shadow)]
+    assert [told[line]["mean"] for line in ("original", "shadow")] == [
+        pytest.approx(each.mean()) for each in lives
+    ]
+    assert told["original"]["reached_cut"] == 6
+    assert told["shadow"]["reached_cut"] == 0
+    expected = {
+        "name": "run", "worlds": 6, "births": 99, "organisms": 11, "cut": 60,
+        "ticks": lives[0].sum() + lives[1].sum(), "worlds_longer": 4, "worlds_shorter": 1,
+        "p": found.p, "ratio": 2.5, "interval": found.ratio_interval,
+    }  # fmt: skip
+    assert expected.items() <= told.items()
+
+
+def test_organisms_are_those_in_the_middle_of_equal_parts_without_the_last_birth() -> None:
+    """World 3 has nine births, world 5 three, world 6 one, and world 8 two."""
+    worlds = np.repeat([3, 5, 6, 8], [9, 3, 1, 2])
+    rows = 100 + 2 * np.arange(len(worlds))
+    third, fifth, eighth = rows[:8], rows[9:11], rows[13:14]
+    assert _sample(worlds, rows, 2).tolist() == [*third[[2, 6]], *fifth, *eighth]
+    assert _sample(worlds, rows, 4).tolist() == [*third[[1, 3, 5, 7]], *fifth, *eighth]
+    assert _sample(worlds, rows, 1).tolist() == [third[4], fifth[1], *eighth]
+    assert _sample(worlds, rows, 100).tolist() == [*third, *fifth, *eighth]
+
+
+def test_lives_are_cut_where_saturation_is_unless_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Organisms that were alive at a fork are not counted; those of the second world are too few."""
+    cuts: list[int] = []
+
+    def lifespans(run: Any, rows: np.ndarray, redrawn: bool, cut: int) -> np.ndarray:
+        cuts.append(cut)
+        return rows + 1000 * redrawn
+
+    monkeypatch.setattr(module, "_lifespans", lifespans)
+    lives = worlds_of([(k, 0, True) for k in range(10)], [(3, 1, True)] * 4, until=50)
+    lives.inherited[[0, 1, 2, 10, 11, 12]] = True
+    run: Any = SimpleNamespace(
+        config=SimpleNamespace(saturation_ticks=77), lives=lives, path=Path("runs/a")
+    )
+    found = shadow(run)
+    assert (found.name, found.births, found.cut) == ("a", 8, 77)
+    assert found.original.tolist() == [*range(3, 9)]
+    assert (found.shadow - found.original).tolist() == [1000] * 6
+    assert found.world.tolist() == [0] * 6
+    assert shadow(run, 3, 1).cut == 1
+    assert cuts == [77, 77, 1, 1]
+    for numbers in ((0, 1), (1, 0)):
+        with pytest.raises(InputError, match="at least one organism and one tick"):
+            shadow(run, *numbers)
+    lives.inherited[:9] = True
+    with pytest.raises(InputError, match="runs/a: shadow needs two births in a world"):
+        shadow(run)
 
 
 def test_the_command_prints_what_python_gives(poles: dict[str, primordia.Run]) -> None:

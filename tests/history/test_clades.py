@@ -1,10 +1,12 @@
 """Lines of descent follow their rule, checked one organism and one tick at a time."""
 
 import numpy as np
+import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from primordia.history.clades import Clades, find_clades
+from primordia.history.clades import Clades, crowd_size, find_clades
+from tests.synthetic import world_of
 
 FEW = st.lists(st.integers(0, 30), max_size=3)
 HISTORY = st.lists(st.tuples(FEW, FEW), max_size=30)
@@ -89,3 +91,12 @@ def test_lines_of_a_world_that_was_never_crowded_are_its_founders() -> None:
     lines = world.lines(crowd=5)
     assert lines.renewals.tolist() == []
     assert lines.lines_at(np.arange(4), np.array([0, 1, 2, 3])).tolist() == [0, 0, 2, 2]
+
+
+@pytest.mark.parametrize(
+    ("most", "crowd"), [(1, 1), (2, 1), (3, 1), (5, 2), (31, 15), (32, 16), (33, 16), (100, 16)]
+)
+def test_a_crowd_is_16_or_half_of_the_largest_population(most: int, crowd: int) -> None:
+    """The population is largest in tick 2. As many are born after it, one after another."""
+    lived = [(2, 1, True)] * most + [(10 + 3 * later, 0, True) for later in range(most)]
+    assert crowd_size(world_of(lived, until=400)) == crowd

@@ -38,3 +38,6 @@ def test_a_season_is_in_force_from_the_tick_after_the_one_at_whose_end_it_acts(
         expected.append(now)
     found = PastClimate(run).of_worlds(*np.array(asked).T)
     assert found["metabolism.gain"].tolist() == expected
+    lives: Any = SimpleNamespace(world=np.array(asked)[:, 0], born=np.zeros(len(asked), int))
+    of_lives = PastClimate(run).of_lives(lives, np.array(asked)[:, 1])
+    assert of_lives["metabolism.gain"].tolist() == expected

@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from primordia.history.extinctions import Extinctions, extinctions
 from primordia.law.world import Cause
 from primordia.runs import loop
 from primordia.runs.archive import Archive
-from primordia.runs.lives import ALIVE, Lives
+from primordia.runs.lives import ALIVE, Lives, joined
 from tests.commands import here
 from tests.worlds import CLOCKWORK, MEADOW, config
 
@@ -78,6 +79,54 @@ def test_a_record_that_begins_later_holds_the_extinctions_since(
     later = extinctions([world.recorded_since(begin)], CELLS)
     assert later.total.tolist() == [(starts > begin).sum()]
     assert later.crashes[0] <= extinctions([world], CELLS).crashes[0]
+
+
+def test_extinctions_are_told_with_the_number_of_worlds_that_crashed() -> None:
+    def text(*crashes: int) -> str:
+        return Extinctions(np.full(len(crashes), 3000), np.array(crashes)).text
+
+    assert text(0, 0) == "0"
+    assert text(0, 1, 0) == "1 in 1 world"
+    assert text(0, 2, 3, 1) == "6 in 3 worlds"
+    assert text(*[1] * 1200) == "1,200 in 1,200 worlds"
+
+
+def words(counts: list[int]) -> dict[str, np.ndarray]:
+    """Return counts as the arrays of a state."""
+    low = np.array(counts, np.uint32)
+    return {f"{module.NAME}.hi": np.zeros_like(low), f"{module.NAME}.lo": low}
+
+
+def worlds_with(before: list[int] | None, counts: list[int], lives: Lives | None) -> Any:
+    """Return a stand-in for a run, or for a fork of worlds with `before` extinctions."""
+
+    class Run:
+        config = SimpleNamespace(cells=CELLS)
+        origin = None if before is None else words(before)
+
+        def count(self, name: str) -> np.ndarray:
+            assert name == module.NAME
+            return np.array(counts, np.uint32)
+
+        @property
+        def lives(self) -> Lives:
+            if lives is None:
+                pytest.fail("lives are read")
+            return lives
+
+    return Run()
+
+
+def test_crashes_are_those_of_their_own_worlds() -> None:
+    """Worlds that did not die out, or not since the fork, stand between the others."""
+    risen, flat = (lived([(1, 9, [(1, 5)] * n), (1, 9, [])] * 2)[0] for n in (4, 3))
+    calm, _ = lived([(3, 9, [])])
+    lives = joined([calm, risen, flat, calm, risen], np.arange(5))
+    assert module.crashes(worlds_with(None, [0, 3, 3, 0, 3], lives)).tolist() == [0, 2, 0, 0, 2]
+    assert module.crashes(worlds_with([5, 6, 0, 7, 8], [5, 9, 3, 7, 11], lives)).tolist() == [
+        0, 2, 0, 0, 2,
+    ]  # fmt: skip
+    assert module.crashes(worlds_with([5, 6], [5, 6], None)).tolist() == [0, 0]
 
 
 DYING: dict[str, Any] = {

@@ -16,6 +16,7 @@ import primordia
 from primordia.comparison.gathering import gathering
 from primordia.figures import foraging as figure
 from primordia.figures import style
+from primordia.history import foraging as module
 from primordia.history.foraging import Harvest, foraging, harvests
 from primordia.law.metabolism import ONE
 from primordia.runs import loop
@@ -131,6 +132,83 @@ def test_late_food_is_that_of_the_last_quarter() -> None:
     late = food[:, -3:].sum(axis=1) / lived[:, -3:].sum(axis=1)
     np.testing.assert_allclose(found.late.value, span * late)
     assert found.late.known.all()
+
+
+def test_food_is_known_if_any_world_gathered_some() -> None:
+    """The second world gathered nothing. Where no world did, metrics are not read."""
+    tick = np.arange(0, 121, 10)
+    sums = np.concatenate([2 * tick, 0 * tick]), np.tile(5 * tick, 2)
+    columns = dict(zip(("food", "organism_ticks"), sums, strict=True))
+    metrics = pa.table({"world": np.repeat([0, 1], 13), "tick": np.tile(tick, 2), **columns})
+    ends = {"tick": [120, 120], "food": [240 * ONE, 0], "organism_ticks": [600, 600]}
+    run: Any = SimpleNamespace(
+        metrics=metrics,
+        origin=None,
+        count=lambda name: np.array(ends[name.removeprefix("world.worlds.")]),
+    )
+    found = gathering(run, 2, 0, 120, 10)
+    assert (found.late.value.tolist(), found.late.known.tolist()) == ([4, 0], [True, True])
+    np.testing.assert_allclose(found.curve, np.repeat([[4.0], [0.0]], 12, axis=1))
+    ends["food"], run.metrics = [0, 0], None
+    none = gathering(run, 2, 0, 120, 10)
+    assert (none.late.value.tolist(), none.late.known.tolist()) == ([0, 0], [False, False])
+    assert np.isnan(none.curve).all()
+    assert none.curve.shape == (2, 12)
+
+
+@pytest.mark.parametrize("begun", [0, 30])
+def test_worlds_of_unequal_length_share_their_intervals(begun: int) -> None:
+    """Two worlds of a run or a fork: their food, and their climates, which seasons changed."""
+    ends, every, gains = (begun + 40, begun + 60), 10, ((2.0, 4.0), (0.5, 1.0))
+    food, change = ((3, 1), (5, 2)), begun + 20
+    earlier = 100 if begun else 0
+    rows, totals = [], np.full((2, 2), earlier)
+    for world, end in enumerate(ends):
+        for tick in range(begun + 1, end + 1):
+            totals[world] += food[world][tick > change], 2
+            if tick % every == 0:
+                rows.append((world, tick, *totals[world], 1.5, gains[world][tick >= change]))
+    names = ("world", "tick", "food", "organism_ticks", "metabolism.drain", "metabolism.gain")
+    now = {"tick": np.array(ends), "food": totals[:, 0] * ONE, "organism_ticks": totals[:, 1]}
+    before = {"tick.lo": begun, "food.lo": earlier * ONE, "organism_ticks.lo": earlier}
+    climate = {"metabolism.drain": [1.5, 1.5], "metabolism.gain": [gains[0][0], gains[1][0]]}
+    origin = {f"world.worlds.{k}": np.full(2, v, np.uint32) for k, v in before.items()}
+    origin |= {f"world.worlds.{name[:-3]}.hi": np.zeros(2, np.uint32) for name in before}
+    origin |= {f"world.worlds.climate.{k}": np.array(v, np.float32) for k, v in climate.items()}
+    start = {"metabolism.drain": 1.5, "metabolism.gain": gains[0][0]}
+    run: Any = SimpleNamespace(
+        config=SimpleNamespace(seeds=2, seasons=["any"]),
+        description=SimpleNamespace(beginning=start),
+        metrics=pa.table(dict(zip(names, map(np.array, zip(*rows, strict=True)), strict=True))),
+        origin=origin if begun else None,
+        count=lambda name: now[name.removeprefix("world.worlds.")],
+    )
+    found = foraging(run)
+    assert found.first_tick == begun
+    np.testing.assert_allclose(found.middle, begun + np.array([5, 15, 25, 35, 45, 55]))
+    unknown = np.nan
+    expected = [[1.5, 1.5, 0.5, 0.5, unknown, unknown], [2.5, 2.5, 1, 1, 1, 1]]
+    np.testing.assert_allclose(found.food, expected)
+    first = gains[1][0] if begun else gains[0][0]
+    gained = [[2, 2, 4, 4, 4, 4], [first, gains[1][0], 1, 1, 1, 1]]
+    np.testing.assert_allclose(found.break_even, 1.5 / np.array(gained))
+
+
+def test_a_long_run_has_60_intervals(monkeypatch: pytest.MonkeyPatch) -> None:
+    ticks = np.arange(0.0, 6_001, 10)
+    monkeypatch.setattr(module, "harvests", lambda run, worlds: [Harvest(ticks, ticks, ticks)])
+    run: Any = SimpleNamespace(
+        config=SimpleNamespace(seeds=1, seasons=[]),
+        description=SimpleNamespace(beginning={"metabolism.drain": 1.0, "metabolism.gain": 1.0}),
+        origin=None,
+    )
+    np.testing.assert_allclose(foraging(run).middle, np.arange(50, 6_000, 100))
+
+
+def test_food_of_intervals_shorter_than_a_tick_is_that_of_the_tick() -> None:
+    """A comparison of a run of six ticks has intervals of half a tick."""
+    harvest = Harvest(*np.array([[0.0, 1, 2], [0, 0.25, 0.75], [0, 1, 2]]))
+    np.testing.assert_allclose(harvest.between(np.arange(5) / 2), [0.25, 0.25, 0.5, 0.5])
 
 
 def test_food_that_no_organism_can_live_on_has_no_break_even(tmp_path: Path) -> None:

@@ -1,13 +1,17 @@
 """A run in numbers, counted again from its records."""
 
 from collections import Counter
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 import primordia
+from primordia.history.info import _world
+from primordia.law.world import Cause
 from primordia.runs import loop
+from primordia.runs.arrays import NEVER
 from tests.worlds import MEADOW, config
 
 SETTINGS: dict[str, Any] = {
@@ -59,3 +63,70 @@ def test_the_numbers_of_a_world_are_those_of_its_records(run: primordia.Run, num
     assert len(born) >= 90
     assert last < 300
     assert max(row["tick"] for row in born) == last
+
+
+def stored() -> Any:
+    """Return a stand-in for a run of two worlds of three cells, with all numbers different."""
+    counts = {
+        "tick": [900, 700], "births": [60, 90], "organism_ticks": [1200, 1350],
+        "extinctions": [4, 6], "saturated": [800, NEVER], "saturated_births": [51, 0],
+        "fixed": [NEVER, 650], "fixed_births": [0, 82],
+        "deaths": [[k + 1 for k, _ in enumerate(Cause)], [10 * k + 1 for k, _ in enumerate(Cause)]],
+    }  # fmt: skip
+    climate = {
+        "replication": [0.5, 0.25], "metabolism.drain": [1.0, 3.0], "metabolism.gain": [2.0, 4.0],
+    }  # fmt: skip
+    every = {f"world.worlds.{name}": np.array(values, np.uint64) for name, values in counts.items()}
+    every["world.organisms.born"] = np.array([890, 100, 600, 690, 0, 697], np.uint64)
+    return SimpleNamespace(
+        config=SimpleNamespace(cells=3, metabolism=True, seasons=["any"]),
+        description=SimpleNamespace(tallies=("score", "kills"), rate=50.0),
+        world_seeds=np.array([7, 2**63], np.uint64),
+        count=every.__getitem__,
+        state={
+            "world.organisms.alive": np.array([1, 1, 1, 1, 0, 1], bool),
+            "bodies.tally": np.array([[1, 9], [2, 0], [9, 6], [5, 4], [99, 99], [8, 1]], np.int32),
+            **{f"world.worlds.climate.{k}": np.array(v, np.float32) for k, v in climate.items()},
+        },
+    )
+
+
+def test_each_number_is_that_of_its_own_world() -> None:
+    first, second = (_world(stored(), world, 10 + world, {"held": world}) for world in (0, 1))
+    labels = [cause.label for cause in Cause]
+    assert first == {
+        "seed": 7, "ticks": 900, "alive": 3, "births": 60,
+        "deaths": sum(range(1, len(labels) + 1)),
+        "deaths_by_cause": {label: k + 1 for k, label in enumerate(labels)},
+        "extinctions": 4, "crashes": 10, "cell_ticks": 2700, "organism_ticks": 1200,
+        "mean_age": pytest.approx((10 + 800 + 300) / 3), "oldest_age": 800,
+        "tries_per_life": 0.5 * 1200 / 60, "saturation": {"tick": 800, "births": 51},
+        "fixation": None, "threshold": {"held": 0},
+        "tallies": {"score": {"median": 2, "best": 9}, "kills": {"median": 6, "best": 9}},
+        "break_even": {"food_per_tick": 0.5, "food_per_second": 25.0},
+        "climate": {"replication": 0.5, "metabolism.drain": 1.0, "metabolism.gain": 2.0},
+    }  # fmt: skip
+    assert second == {
+        "seed": 2**63, "ticks": 700, "alive": 2, "births": 90,
+        "deaths": sum(10 * k + 1 for k in range(len(labels))),
+        "deaths_by_cause": {label: 10 * k + 1 for k, label in enumerate(labels)},
+        "extinctions": 6, "crashes": 11, "cell_ticks": 2100, "organism_ticks": 1350,
+        "mean_age": pytest.approx((10 + 3) / 2), "oldest_age": 10,
+        "tries_per_life": 0.25 * 1350 / 90, "saturation": None,
+        "fixation": {"tick": 650, "births": 82}, "threshold": {"held": 1},
+        "tallies": {"score": {"median": 6.5, "best": 8}, "kills": {"median": 2.5, "best": 4}},
+        "break_even": {"food_per_tick": 0.75, "food_per_second": 37.5},
+        "climate": {"replication": 0.25, "metabolism.drain": 3.0, "metabolism.gain": 4.0},
+    }  # fmt: skip
+
+
+def test_numbers_of_an_empty_world_are_unknown() -> None:
+    run = stored()
+    run.state["world.organisms.alive"][:3] = False
+    run.count("world.worlds.births")[0] = 0
+    run.config.metabolism, run.config.seasons = None, []
+    found = _world(run, 0, 0, {})
+    unknown = ("mean_age", "oldest_age", "tries_per_life")
+    assert [found[name] for name in unknown] == [None] * 3
+    assert found["alive"] == 0
+    assert not {"tallies", "break_even", "climate"} & found.keys()

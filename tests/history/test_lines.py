@@ -1,5 +1,7 @@
 """Lines of descent, as the live view follows them, obey their rule."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -8,6 +10,7 @@ from hypothesis import strategies as st
 from primordia.engine.engine import Engine
 from primordia.errors import Trouble
 from primordia.history.lines import DIES, NO_PARENT, Lines, Turnover, turnovers
+from primordia.law.events import BIRTHS, DEATHS, Events, Rows
 from tests import worlds
 
 Event = tuple[int, int, int]
@@ -116,6 +119,27 @@ def test_chunks_of_any_length_give_the_same_lines() -> None:
         outcomes.append((lines.line_of, lines.takeovers))
     assert outcomes[0] == outcomes[1]
     assert outcomes[0][1]
+
+
+def test_the_events_of_a_chunk_are_divided_among_its_worlds() -> None:
+    """Three worlds of four cells; the second has no event. Rows beyond the filled do not count."""
+    founder, high = -1, 2**32
+    births = np.array([(0, 5, founder, 1), (3, 6, 5, 9), (8, 5, high + 4, high + 2), (11, 6, 5, 9)])
+    deaths = np.array([(11, 6, 12), (3, 5, 12), (2, high + 7, 13)])
+    cell, number, parent, tick = births.T
+    born = BIRTHS.rows(cell=cell, id=number, parent=parent, tick=tick, cause=0 * cell)
+    cell, number, tick = deaths.T
+    rest = dict.fromkeys(("cause", "energy", "food"), 0 * cell)
+    died = DEATHS.rows(cell=cell, id=number, tick=tick, **rest)
+    noise = np.full((2, born.shape[1]), 7, np.uint32), np.full((2, died.shape[1]), 1, np.uint32)
+    rows = [np.concatenate(each) for each in zip((born, died), noise, strict=True)]
+    events: Any = Events(Rows(rows[0], np.int32(4)), Rows(rows[1], np.int32(3)), None)
+    found = [[column.tolist() for column in each] for each in turnovers(events, 4, 3)]
+    assert found == [
+        [[5, 6], [NO_PARENT, 5], [1, 9], [5, high + 7], [12, 13]],
+        [[], [], [], [], []],
+        [[5, 6], [high + 4, 5], [high + 2, 9], [6], [12]],
+    ]
 
 
 @pytest.mark.parametrize("late", [(3, 2, 0), (3, 0, DIES)])

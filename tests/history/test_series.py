@@ -3,6 +3,7 @@
 from itertools import pairwise
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -56,3 +57,44 @@ def test_bins_start_at_0_rise_and_end_with_the_last_tick(last: int) -> None:
     assert edges[-1] == max(last, 1)
     assert (np.diff(edges) > 0).all()
     assert (np.diff(series.middle(edges)) > 0).all()
+
+
+def test_bins_are_five_for_each_factor_of_ten() -> None:
+    assert series.bins(100).tolist() == [0, 1, 2, 3, 4, 6, 10, 16, 25, 40, 63, 100]
+    assert series.bins(70).tolist() == [0, 1, 2, 3, 4, 6, 10, 16, 25, 40, 63, 70]
+    assert series.bins(0).tolist() == [0, 1]
+
+
+def test_the_middle_of_a_bin_is_that_of_its_ticks_on_a_logarithmic_axis() -> None:
+    """The bin from 2 to 10 has the ticks 3 to 10."""
+    middle = series.middle(np.array([0, 1, 2, 10]))
+    np.testing.assert_allclose(middle, [1, 2, np.sqrt(3 * 10)])
+
+
+@pytest.mark.parametrize("last", [1, 999, 10**6])
+def test_curves_have_points_at_even_distances_on_a_logarithmic_axis(last: int) -> None:
+    ticks = series.moments(last)
+    assert ticks.tolist() == sorted({round(last ** (k / 999)) for k in range(1000)})
+    assert series.moments(0).tolist() == [1]
+
+
+def test_two_events_give_no_rate_and_three_do() -> None:
+    at, edges = np.array([12, 1, 2, 10, 11, 15]), np.array([0, 10, 20])
+    np.testing.assert_allclose(series.per_tick(at, np.array([30, 60]), edges), [3 / 30, 3 / 60])
+    np.testing.assert_allclose(series.per_tick(at[1:], np.array([30, 60]), edges), [3 / 30, np.nan])
+
+
+def test_a_curve_covers_the_ticks_on_record_of_each_world() -> None:
+    """One world was forked in tick 20 and ends in 50; the other is on record from 30 to 60."""
+    fork = world_of([(5, 40, True), (10, 0, False)], until=50).recorded_since(20)
+    other = world_of([(30, 20, False)], until=60)
+    ticks = np.array([19, 20, 29, 30, 46, 49, 50, 51, 60, 61])
+    drawn = series.curve_by_world(series.population, [fork, other], ticks)
+    unknown = np.nan
+    np.testing.assert_array_equal(
+        drawn,
+        [
+            [unknown, 2, 2, 2, 1, 1, 1, unknown, unknown, unknown],
+            [unknown, unknown, unknown, 1, 1, 1, 1, 1, 1, unknown],
+        ],
+    )

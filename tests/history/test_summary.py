@@ -124,3 +124,78 @@ def test_three_quarters_of_the_worlds_reach_the_third_quartile() -> None:
     worlds = [world(saturation={"tick": 9, "births": births}) for births in (1, 2, 3, 4, 5)]
     line = "5 of 7 saturated, births until then: median 4 (quartiles 2, later)"
     assert line in summarised([*worlds, world(saturation=None), world(saturation=None)])
+
+
+def unequal() -> list[dict[str, Any]]:
+    """Return five worlds, of which no two have the same numbers."""
+    causes = [{"fatal": 10**k, "hazard": 3 * k, "fault": 0} for k in range(5)]
+    return [
+        world(
+            seed=3 * k, ticks=1000 + k, births=200 + k, alive=(7, 0, 5, 9, 2)[k],
+            oldest_age=(30, None, 2400, 90, 60)[k], deaths_by_cause=causes[k],
+            extinctions=(0, 3, 0, 4, 1)[k], crashes=(0, 1, 0, 1, 0)[k],
+            fixation={"tick": 50 + k, "births": 30 * k} if k < 2 else None,
+            saturation={"tick": 500 + k, "births": 40 * k} if k < 4 else None,
+            threshold=held((1.0, 1.5, 2.5, 0.5, 0.25)[k]),
+        )
+        for k in range(5)
+    ]  # fmt: skip
+
+
+def test_numbers_of_five_unequal_worlds_are_told_together() -> None:
+    assert summarised(unequal()).splitlines() == [
+        "T: 5 worlds of 8 cells",
+        "  seeds 0, 3, 6, others up to 12: 5,010 ticks, 1,010 births, deaths: 11,111 fatal, 30 hazard",
+        "    23 alive, oldest 2,400; extinctions: 8 (2 after half of the cells were full)",
+        "    2 of 5 with one common ancestor, births until then: median later (quartiles 30, later)",
+        "    4 of 5 saturated, births until then: median 80 (quartiles 40, 120)",
+        "    good lines persist in 2 of 5 worlds; medians p 0.5, v 0.25, s 2: s (1 - p (1 - v)) is 1",
+    ]
+
+
+def test_four_worlds_are_told_one_by_one() -> None:
+    worlds = unequal()[:4]
+    lines = summarised(worlds).splitlines()
+    assert [line.split(":")[0] for line in lines if line.startswith("  seed")] == [
+        f"  seed {each['seed']}" for each in worlds
+    ]
+    lost, kept = (f"    good lines {what}: p 0.5" for what in ("are lost", "persist"))
+    assert [line[: line.index(", v")] for line in lines if "good lines" in line] == [
+        lost, kept, kept, lost,
+    ]  # fmt: skip
+
+
+def test_what_befell_a_run_is_told() -> None:
+    """Restarts, damaged checkpoints and parts that cannot be repeated."""
+    told = summarised([world()], restarts=1, damaged=["one", "other"], exact=False)
+    assert told.splitlines()[-4:] == [
+        "  not exact: parts of this run cannot be repeated bit for bit",
+        "  not the newest state, since a checkpoint is damaged: one",
+        "  not the newest state, since a checkpoint is damaged: other",
+        "  the living got new bodies once, when the run was resumed",
+    ]
+    for times, words in ((2, "2 times"), (1200, "1,200 times")):
+        assert f"new bodies {words}, when" in summarised([world()], restarts=times)
+    assert summarised([world()]).count("\n") == 3
+
+
+def test_counts_of_a_habitat_are_told_as_medians_with_the_best() -> None:
+    tallies = {"score": {"median": 1234.4, "best": 5678}, "kills": {"median": 2.0, "best": 9}}
+    line = "    tallies of the living: median score 1,234 (best 5,678), kills 2 (best 9)"
+    assert line in summarised([world(tallies=tallies)]).splitlines()
+
+
+@pytest.mark.parametrize(
+    ("count", "end"), [(4, "6"), (5, "others up to 8"), (6, "others up to 10")]
+)
+def test_up_to_four_ranges_of_seeds_are_listed(count: int, end: str) -> None:
+    assert seeds_text(range(0, 2 * count, 2)) == f"seeds 0, 2, 4, {end}"
+
+
+def test_break_even_is_that_of_all_worlds_or_is_not_told() -> None:
+    """A world without such an amount leaves its unit out."""
+    each = [
+        world(break_even={"food_per_tick": tick, "food_per_second": second})
+        for tick, second in ((0.5, None), (0.1, 9.0), (0.3, 6.0))
+    ]
+    assert summarised(each).splitlines()[1] == "  break-even: food of 0.1 to 0.5 a tick"

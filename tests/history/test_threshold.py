@@ -8,7 +8,7 @@ import pytest
 
 from primordia.history.families import families
 from primordia.history.threshold import Threshold, over_births, threshold
-from primordia.runs.lives import Lives
+from primordia.runs.lives import Lives, joined
 from tests.assays.lives import COPY, FOUNDER, MUTANT, lives
 
 
@@ -94,3 +94,64 @@ def test_stretches_of_births_are_measured_one_by_one() -> None:
     assert none == Threshold(3, None, None, None)
     whole = over_births(0, world, np.array([0, len(world)]))
     assert whole == [measured(world)]
+
+
+def test_a_parent_is_good_from_the_90th_percentile_of_late_births_on() -> None:
+    """Early organisms live long, and do not count. Of 100 late births 11 live 50 ticks or more."""
+    early: list = [(-1, FOUNDER, 50), (-1, FOUNDER, 49), *[(-1, FOUNDER, 900)] * 98]
+    late: list = [(0, COPY, 50)] * 5 + [(0, COPY, 60)] * 6 + [(0, COPY, 1)] * 9
+    late += [(0, MUTANT, 1)] * 30 + [(1, COPY, 1)] * 20 + [(1, MUTANT, 1)] * 30
+    found = threshold(SimpleNamespace(lives=lives(*early, *late)))[0]
+    long = 5 * 50 + 6 * 60
+    of_copies, of_all = (long + 9) / 20, (long + 89) / 100
+    assert (found.mutated, found.as_good) == (0.6, 0)
+    assert found.advantage == pytest.approx(of_copies / of_all)
+
+
+def test_each_world_has_its_own_threshold() -> None:
+    few: list = [(-1, FOUNDER, 5), (0, COPY, 5)]
+    good: list = [(-1, FOUNDER, 100)] + [(-1, FOUNDER, 1)] * 200
+    good += [(0, COPY, 100)] * 10 + [(0, MUTANT, 100)] * 5 + [(0, MUTANT, 1)] * 5
+    worlds = [lives(*good), lives(*few), lives(*good, *[(0, MUTANT, 100)] * 20)]
+    run: Any = SimpleNamespace(lives=joined(worlds, np.arange(3)))
+    found: list[Any] = threshold(run, 0.0)
+    assert [each.world for each in found] == [0, 1, 2]
+    assert [each.mutated for each in found] == pytest.approx([10 / 20, 0, 30 / 40])
+    assert [each.as_good for each in found] == [0.5, None, 25 / 30]
+    assert found[0].to_dict() == {
+        "world": 0, "mutated": 0.5, "as_good": 0.5, "advantage": found[0].advantage,
+        "held": pytest.approx(found[0].advantage * 0.75),
+    }  # fmt: skip
+
+
+def test_mutants_that_outlive_copies_count_as_as_good_and_no_better() -> None:
+    rows: list = [(-1, FOUNDER, 100)] + [(-1, FOUNDER, 1)] * 300
+    copies: list = [(0, COPY, 100)] * 5 + [(0, COPY, 1)] * 5
+    better: list = [(0, MUTANT, 100)] * 8 + [(0, MUTANT, 1)] * 2
+    assert measured(lives(*rows, *copies, *better)).as_good == 1
+    none: list = [(0, COPY, 1)] * 10
+    assert measured(lives(*rows, *none, *better)).as_good is None
+
+
+def test_pairs_are_complete_once_both_are_dead() -> None:
+    rows: list = [(-1, FOUNDER, 9), (-1, FOUNDER, 9, "alive")]
+    rows += [(0, COPY, 5), (0, MUTANT, 5, "alive"), (1, COPY, 5), (1, COPY, 5, "alive")]
+    found = families(lives(*rows), 0.0)
+    assert found.complete.tolist() == [True, False, False, False]
+    assert found.child.tolist() == [2, 3, 4, 5]
+    assert found.parent.tolist() == [0, 0, 1, 1]
+    assert found.mutant.tolist() == [False, True, False, False]
+
+
+def test_organisms_alive_at_a_fork_are_parents_but_no_births() -> None:
+    """Those that were alive had lived long by then; only the births since the fork are measured."""
+    rows: list = [(-1, FOUNDER, 100)] + [(0, MUTANT, 500)] * 20
+    later: list = [(0, COPY, 100)] * 10 + [(0, MUTANT, 100)] * 5 + [(0, MUTANT, 1)] * 5
+    later += [(-1, FOUNDER, 1)] * 100
+    world = lives(*rows, *later)
+    world.inherited[: len(rows)] = True
+    (found,) = over_births(0, world, np.array([0, len(world)]))
+    assert (found.mutated, found.as_good) == (0.5, 0.5)
+    of_all = (15 * 100 + 105) / 120
+    assert found.advantage == pytest.approx(100 / of_all)
+    assert over_births(0, world, np.array([0, len(rows)])) == [Threshold(0, None, None, None)]

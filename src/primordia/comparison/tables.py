@@ -61,9 +61,8 @@ def effect_text(against: Contrast, outcome: str) -> str:
     """Return delta as text, with a word for its size, and its direction."""
     smaller, larger = DIRECTIONS[outcome]
     direction = f" {larger if against.delta > 0 else smaller}" if against.delta else ""
-    known = (
-        f"; order known in {int(100 * against.decided)} % of pairs" if against.decided < 1 else ""
-    )
+    percent = math.floor(100 * against.decided + 1e-9)  # 100 * 0.29 is below 29
+    known = f"; order known in {percent} % of pairs" if against.decided < 1 else ""
     word = f" {against.word}" if against.word else ""
     return f"{against.delta:+.2f}{word}{direction}{known}"
 

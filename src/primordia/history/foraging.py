@@ -46,7 +46,7 @@ class Harvest(NamedTuple):
         The mean is NaN if no organism lived.
         """
         food, lived = (np.diff(np.interp(ticks, self.tick, each)) for each in self[1:])
-        return np.where(lived > 0, food / np.maximum(lived, 1), np.nan)
+        return np.divide(food, lived, out=np.full(len(food), np.nan), where=lived > 0)
 
 
 def harvests(run: Records, worlds: int) -> list[Harvest]:

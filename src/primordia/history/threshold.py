@@ -65,15 +65,16 @@ def threshold(run: Records, after: float = LATE) -> list[Threshold]:
 def over_births(world: int, lives: Lives, edges: np.ndarray) -> list[Threshold]:
     """Measure the error threshold of one world in successive bins of births.
 
+    Organisms that were alive at a fork do not count, since the short lives of their generation are not
+    on record.
+
     Args:
         world: number of the world.
         lives: the world's lives.
-        edges: edges of the bins, in birth order, int64 (B + 1,), ascending.
+        edges: edges of the bins, as rows in birth order, int64 (B + 1,), ascending.
     """
-    return [
-        _measured(world, families_of(lives, np.arange(low, min(high, len(lives)))))
-        for low, high in pairwise(edges.tolist())
-    ]
+    bins = (np.arange(low, min(high, len(lives))) for low, high in pairwise(edges.tolist()))
+    return [_measured(world, families_of(lives, rows[~lives.inherited[rows]])) for rows in bins]
 
 
 def _measured(world: int, found: Families) -> Threshold:

@@ -1,0 +1,179 @@
+"""A comparison as text: each number and word of the tables, and the notes that explain them."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from primordia.comparison import tables
+from primordia.comparison.comparison import ComparedArm, Comparison
+from primordia.comparison.contrast import Contrast, contrast
+from primordia.comparison.gathering import Gathering
+from primordia.comparison.measured import Measured
+from primordia.comparison.pace import WINDOWS, Pace
+from primordia.comparison.pairs import Paired
+from primordia.comparison.survival import survival
+from primordia.history.extinctions import Extinctions
+from tests.synthetic import worlds_of
+
+OUTCOMES = ("first", "births", "ticks", "lifespan", "longest", "pace", "food")
+INF = float("inf")
+
+
+def arm(
+    name: str, values: list[float], known: list[bool] | None = None, seed: int = 0, **counts: Any
+) -> ComparedArm:
+    """Return a run whose worlds have these values of `births`, and others of the other outcomes."""
+    worlds = len(values)
+    is_known = np.array(known or [True] * worlds)
+    measured = {
+        outcome: Measured(np.array(values, float) * 10**k, is_known)
+        for k, outcome in enumerate(OUTCOMES, -1)
+    }
+    lost = [np.array(counts.get(each, [0] * worlds)) for each in ("total", "crashes")]
+    lives = worlds_of(*([(0, 5, True)] for _ in range(worlds)), until=20)
+    nothing = np.zeros((worlds, WINDOWS))
+    return ComparedArm(
+        name,
+        counts.get("settings", {}),
+        np.arange(seed, seed + worlds, dtype=np.uint64),
+        measured,
+        survival(lives, worlds, 10),
+        Pace(np.linspace(0, 20, WINDOWS + 1), nothing, nothing.astype(int)),
+        Gathering(nothing, measured["food"]),
+        Extinctions(*lost),
+    )
+
+
+def side_by_side(*arms: ComparedArm, **changed: Any) -> Comparison:
+    values = {"age": 12_000, "begin": 0, "births": None, "ticks": None, "span": "second", **changed}
+    return Comparison("meadow", arms, **values)
+
+
+def cells(line: str) -> list[str]:
+    """Return the cells of a row of a table."""
+    return [cell.strip() for cell in line.strip().split("   ") if cell.strip()]
+
+
+def effect(**changed: Any) -> Contrast:
+    values: dict[str, Any] = {
+        "delta": 0.4, "decided": 1.0, "paired": None, "ratio": (2.0, 2.0), "coverage": 0.95,
+        "interval": (1.5, 3.0), "worlds": 9, **changed,
+    }  # fmt: skip
+    return Contrast(**values)
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0, "0"), (0.12345, "0.123"), (2.0, "2"), (2.345, "2.35"), (99.96, "100"), (99.4, "99.4"),
+        (100.4, "100"), (-100.6, "-101"), (-0.5, "-0.5"), (999_700, "999,700"), (1234.5, "1,234"),
+        (INF, "inf"),
+    ],
+)  # fmt: skip
+def test_numbers_have_three_digits_or_more(value: float, text: str) -> None:
+    assert tables.number_text(value) == text
+
+
+@pytest.mark.parametrize(
+    ("bounds", "text"),
+    [((2, 2), "2"), ((2, 3.5), "2..3.5"), ((1200, INF), ">= 1,200"), ((0, INF), "unknown")],
+)
+def test_bounds_are_told_as_far_as_they_are_known(bounds: tuple[float, float], text: str) -> None:
+    assert tables.bounds_text(bounds) == text
+    assert tables.ratio_text(effect(ratio=bounds, interval=None)) == text
+    assert tables.ratio_text(effect(ratio=bounds, interval=(0.5, INF))) == f"{text} (0.5 to inf)"
+
+
+def test_quartiles_of_worlds_are_told_after_the_median() -> None:
+    """Quartiles of an outcome are values of worlds; those of other numbers may lie between."""
+    worlds = [9, 1, 7, 3, 5, 8, 2]
+    assert tables.quartiles_text(arm("one", worlds), "births") == "5 (2 to 8)"
+    known = [True] * 5 + [False] * 2
+    assert (
+        tables.quartiles_text(arm("one", [4, 1, 2, 3, 5, 8, 9], known), "births") == "4 (2 to >= 8)"
+    )
+    assert tables.quartiles_text(arm("one", [4, 4, 4]), "lifespan") == "400"
+    assert tables.spread_text([9, 1, float("nan"), 3, 6]) == "4.5 (2.5 to 6.75)"
+    assert tables.spread_text([3.0, 3.0]) == "3"
+    assert tables.spread_text([float("nan")]) == tables.spread_text([]) == "-"
+
+
+@pytest.mark.parametrize(
+    ("outcome", "smaller", "larger"),
+    [
+        ("first", "earlier", "later"), ("births", "earlier", "later"), ("ticks", "earlier", "later"),
+        ("lifespan", "shorter", "longer"), ("longest", "shorter", "longer"),
+        ("pace", "fewer", "more"), ("food", "less", "more"),
+    ],
+)  # fmt: skip
+def test_the_direction_of_an_effect_is_told(outcome: str, smaller: str, larger: str) -> None:
+    assert tables.effect_text(effect(), outcome) == f"+0.40 medium {larger}"
+    assert tables.effect_text(effect(delta=-0.5), outcome) == f"-0.50 large {smaller}"
+    assert tables.effect_text(effect(delta=0.0), outcome) == "+0.00 negligible"
+    few = effect(delta=-1.0, worlds=4, decided=0.999)
+    assert tables.effect_text(few, outcome) == f"-1.00 {smaller}; order known in 99 % of pairs"
+
+
+@pytest.mark.parametrize("pairs", [25, 100, 900])
+def test_the_share_of_pairs_is_told_in_whole_percent(pairs: int) -> None:
+    """It is rounded down, so 100 % are never told of a share."""
+    for known in range(pairs):
+        words = f"; order known in {100 * known // pairs} % of pairs"
+        assert tables.effect_text(effect(decided=known / pairs), "births").endswith(words)
+
+
+def test_pairs_and_needed_worlds_are_told_if_there_are_any() -> None:
+    pairs = Paired(8, 6, 2)
+    assert tables.paired_text(effect(paired=pairs)) == "+0.50"
+    assert tables.paired_text(effect()) == ""
+    assert tables.needed_text(effect(delta=0.02)) == f"{effect(delta=0.02).needed:,} worlds an arm"
+    assert tables.needed_text(effect(delta=0.0)) == tables.needed_text(effect(worlds=4)) == ""
+
+
+def test_the_first_table_has_settings_saturations_and_extinctions() -> None:
+    one = arm("one", [1, 2, 3], [True, False, True], total=[5, 0, 4], crashes=[2, 0, 1])
+    two = arm("two", [4, 5], seed=50, total=[1, 0], settings={"seed": 50, "a.b": None})
+    one.settings.update({"seed": 0, "a.b": 0.5})
+    head, _, *rows = tables.comparison_tables(side_by_side(one, two)).splitlines()[:4]
+    assert cells(head) == ["meadow", "seed", "a.b", "worlds", "saturated", "extinctions", "crashes"]
+    assert [cells(row) for row in rows] == [
+        ["one", "0", "0.5", "3", "2", "9", "3 in 2 worlds"],
+        ["two", "50", "none", "2", "2", "1", "0"],
+    ]
+    for horizons, words in (
+        ({"births": 3000}, "saturated within 3,000 births"),
+        ({"ticks": 40}, "saturated within 40 ticks"),
+        ({"births": 3000, "ticks": 40}, "saturated within 3,000 births and 40 ticks"),
+    ):
+        text = tables.comparison_tables(side_by_side(one, two, **horizons))
+        assert words in cells(text.splitlines()[0])
+
+
+def test_each_run_is_told_beside_the_reference() -> None:
+    """Two contrasts: one has pairs, the other has other seeds and a larger median."""
+    arms = (
+        arm("ref", [1, 2, 3, 4, 5, 6]),
+        arm("low", [1, 1, 2, 3, 4, 5]),
+        arm("far", [7] * 6, seed=9),
+    )
+    compared = side_by_side(*arms)
+    lines = tables.comparison_tables(compared).splitlines()
+    place = next(k for k, line in enumerate(lines) if "births to saturation" in line)
+    title = "ratio of medians (95 % for all)"
+    assert cells(lines[place]) == [
+        "births to saturation", "median (quartiles)", "delta", "within seeds", title, "needs",
+    ]  # fmt: skip
+    low, far = (
+        contrast(each.measured["births"], arms[0].measured["births"], None, 2) for each in arms[1:]
+    )
+    paired = compared.contrast(arms[1], "births")
+    assert cells(lines[place + 2]) == ["ref", "3 (2 to 5)", "reference"]
+    assert cells(lines[place + 3]) == [
+        "low", "2 (1 to 4)", f"{low.delta:+.2f} small earlier", "-0.83",
+        tables.ratio_text(paired), f"{paired.needed} worlds an arm",
+    ]  # fmt: skip
+    assert paired.ratio == (2 / 3, 2 / 3)
+    assert cells(lines[place + 4]) == [
+        "far", "7", "+1.00 large later", tables.ratio_text(far), f"{far.needed} worlds an arm",
+    ]  # fmt: skip
