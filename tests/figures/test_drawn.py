@@ -26,6 +26,7 @@ from primordia.phylogeny.lines import lines_of_world
 from primordia.runs.lives import ALIVE, Lives
 from tests.assays.lives import COPY, FOUNDER, MUTANT
 from tests.assays.lives import lives as lives_of
+from tests.figures.reading import edges_at, lines
 from tests.synthetic import alive, worlds_of
 from tests.worlds import MEADOW, config
 
@@ -56,22 +57,6 @@ def axes_of(draw: Any, lives: Lives = LIVES) -> list[Axes]:
     with style.applied():
         figure = draw(run, 0)
     return figure.axes
-
-
-def lines(axes: Axes, colour: str | None = None) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Return the data of an axes' lines, all or those of one colour."""
-    return [
-        (np.asarray(line.get_xdata(), float), np.asarray(line.get_ydata(), float))
-        for line in axes.get_lines()
-        if colour is None or to_hex(line.get_color()) == colour
-    ]
-
-
-def edges_at(collection: Any, x: float) -> tuple[float, float]:
-    """Return the lower and upper edge of a filled band at a place."""
-    points = np.concatenate([path.vertices for path in collection.get_paths()])
-    here = points[np.isclose(points[:, 0], x)][:, 1]
-    return float(here.min()), float(here.max())
 
 
 def check_worlds(axes: Axes, expected: np.ndarray, x: np.ndarray, colour: str) -> None:
