@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
+from matplotlib.lines import AxLine
 
 from primordia.assays.ablate import Ablation
 from primordia.assays.compete import Competition
@@ -134,7 +135,7 @@ def test_the_garden_is_drawn_life_beside_life_and_as_survival_of_each_group() ->
     assert labels(pairs) == (
         "Organisms", "life as recorded (ticks)", "life when born again (ticks)"
     )  # fmt: skip
-    (diagonal,) = (each for each in pairs.get_lines() if each.get_color() == style.FAINT)
+    (diagonal,) = (each for each in pairs.get_lines() if isinstance(each, AxLine))
     assert (diagonal.get_xy1(), diagonal.get_xy2()) == ((1, 1), (10, 10))
     colours = {"oldest": style.BLUE, "late-born": style.ORANGE, "founders": style.SOFT}
     for group, colour in colours.items():
