@@ -1,4 +1,4 @@
-"""Figures of lines of descent draw what was measured: invented measurements are read back from the axes."""
+"""Figures of lines of descent draw what was measured: invented measurements are read back."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -146,17 +146,17 @@ def some_ancestors(count: int, blocks: int = 2, **others: Any) -> Any:
     rows: list = [(-1, FOUNDER, 30), *((n, COPY, 10 * n) for n in range(count - 3))]
     rows += [(0, MUTANT, 8, "alive"), (0, MUTANT, 0, "alive")]
     line = lives_of(*rows)
+    born = line.born * 2 + 3
     ticks = np.array([2, 3, 4, 11, 40])
     found = {
         "organism": 77,
         "world": 2,
-        "line": replace(line, id=line.id * 7 + 1, born=line.born * 2 + 3),
+        "line": replace(line, id=line.id * 7 + 1, born=born, ended=born + line.lifespan),
         "blocks": [f"block {k}" for k in range(blocks)],
         "changes": np.random.default_rng(2).random((count, blocks)),
         "census": SimpleNamespace(ticks=ticks),
         "shares": lambda places: np.add.outer(ticks / 100, places / 1000),
     }
-    found["line"].ended[:] = found["line"].born + line.lifespan
     return SimpleNamespace(**{**found, **others})
 
 
