@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 from unittest.mock import patch
 
@@ -16,7 +17,11 @@ from primordia.assays.subjects import Subjects, of_run
 from primordia.errors import InputError
 from primordia.law.world import BirthCause
 from primordia.runs.lives import Lives
+from tests.assays.lives import COPY, FOUNDER
+from tests.assays.lives import lives as lives_of
 from tests.commands import here
+from tests.synthetic import alive
+from tests.worlds import config
 
 
 @pytest.fixture(scope="module")
@@ -108,3 +113,91 @@ def test_the_command_takes_runs_organisms_and_files(poles: primordia.Run, tmp_pa
     table = here("assay", "compete", poles.path, file, *options[:4])
     assert "share of the living, late" in table.stdout
     assert here("assay", "compete", f"{file}:1", file).returncode == 2
+
+
+@pytest.mark.parametrize("seed", [6, 7])
+def test_the_living_are_counted_by_the_founders_from_whom_they_descend(seed: int) -> None:
+    """Founders take the genomes in turn by the sum of the seed and their birth number."""
+    rows: list = [(-1, FOUNDER, 6), (-1, FOUNDER, 9), (0, COPY, 3), (2, COPY, 1), (1, COPY, 4)]
+    rows += [(3, COPY, 1), (4, COPY, 5), *[(5, COPY, 2)] * 2, (-1, FOUNDER, 8, "alive")]
+    world, ticks = lives_of(*rows, (9, COPY, 9, "alive")), np.array([0, 1, 5, 6, 9, 10, 11, 12])
+    founder = [0, 1, 0, 0, 1, 0, 1, 0, 0, 9, 9]
+    for tick, share in zip(ticks, module._shares(world, np.uint64(seed), ticks), strict=True):
+        living = [founder[row] for row in range(11) if alive(world, row, tick)]
+        assert share == np.mean([(seed + each) % 2 == 0 for each in living])
+    dead = lives_of((-1, FOUNDER, 2), (-1, FOUNDER, 3))
+    shares = module._shares(dead, np.uint64(seed), np.array([1, 2, 3, 4, 5]))
+    first = float(seed % 2 == 0)
+    np.testing.assert_array_equal(shares, [0.5, 1 - first, 1 - first, np.nan, np.nan])
+
+
+def test_the_middle_tick_of_an_odd_number_is_late() -> None:
+    share = np.array([[0.0, 0.0, 1.0, 0.4, 0.4], [1.0, 1.0, 0.2, 0.5, 0.5]])
+    found = Competition("a", "b", np.arange(5), share)
+    np.testing.assert_allclose(found.late_share, [0.6, 0.4])
+    assert found.won == (1, 1)
+    assert found.to_dict() == {
+        "one": "a",
+        "other": "b",
+        "worlds": 2,
+        "late_share": [pytest.approx(0.6), pytest.approx(0.4)],
+        "won": [1, 1],
+        "p": 1,
+        "tick": [0, 1, 2, 3, 4],
+        "share": share.tolist(),
+    }
+
+
+def test_only_what_the_competition_needs_is_changed_in_the_settings(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The genomes stay as they are: no mutation, no second parent, no season of the mutation."""
+    scale = {"kind": "schedule", "setting": "mutation.scale", "at": 9, "value": 0.05}
+    hazard = {"kind": "schedule", "setting": "hazard", "at": 9, "value": 0.05}
+    before = config(
+        seed=40, cells=24, hazard=0.01, inheritance="founder", seasons=[scale, hazard],
+        recombination={"probability": 0.5}, stop={"ticks": 5}, seeds=3,
+    )  # fmt: skip
+    monkeypatch.setattr(module, "checked", lambda settings, source: settings)
+    after = module._settings(before, Path("both"), 7, 900)
+    assert (after.ancestors, after.genesis, after.inheritance) == (("both",), "fill", "parent")
+    assert after.mutation == {"kind": "gaussian", "probability": 0.0}
+    assert after.recombination is None
+    assert [each.setting for each in after.seasons] == ["hazard"]
+    assert (after.seed, after.seeds, after.stop.ticks) == (40, 7, 900)
+    assert (after.cells, after.hazard, after.habitat) == (24, 0.01, before.habitat)
+
+
+def test_each_world_is_counted_with_its_own_seed_and_the_first_name_is_the_first_genome(
+    sides: tuple[Subjects, Subjects], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each world's share is its own; there are 101 ticks from the first to the last."""
+    good, bad = sides
+    worlds = [lives_of((-1, FOUNDER, 5 + w), (-1, FOUNDER, 3)) for w in range(3)]
+    held = SimpleNamespace(
+        lives=SimpleNamespace(of_world=lambda w: worlds[w]),
+        world_seeds=np.array([4, 5, 6], np.uint64),
+    )
+    started: list[Any] = []
+    monkeypatch.setattr("primordia.runs.loop.start", lambda settings, _: started.append(settings))
+    monkeypatch.setattr(module, "Archive", lambda run: held)
+    written: list[np.ndarray] = []
+    monkeypatch.setattr("primordia.brains.genomes.write", lambda *words: written.append(words[2]))
+    monkeypatch.setattr(module, "checked", lambda settings, source: settings)
+    found = compete(good, bad, worlds=3, ticks=200)
+    assert found.tick.tolist() == [2 * k for k in range(101)]
+    shares = [module._shares(worlds[w], np.uint64(4 + w), found.tick) for w in range(3)]
+    np.testing.assert_array_equal(found.share, shares)
+    names = [f"poles: {each.organism[0]} of world 0" for each in sides]
+    assert [found.one, found.other] == names
+    genomes = [each.players.genomes[0] for each in sides]
+    np.testing.assert_array_equal(written[0], genomes)
+    assert (started[0].seeds, started[0].stop.ticks) == (3, 200)
+
+
+def test_genomes_of_different_brains_cannot_compete(sides: tuple[Subjects, Subjects]) -> None:
+    good, other = sides
+    law: Any = SimpleNamespace(heredity=SimpleNamespace(layout=None))
+    strange = other._replace(players=other.players._replace(law=law), source="strange")
+    with pytest.raises(InputError, match="poles and strange have different brains"):
+        compete(good, strange)

@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 import primordia
-from primordia.assays.garden import Bed, garden
+from primordia.assays import garden as module
+from primordia.assays.garden import Bed, _oldest, _spaced, garden
 from primordia.errors import InputError
+from primordia.organism.games import Players
 
 
 def test_each_world_has_a_bed_of_each_group(poles: primordia.Run) -> None:
@@ -48,3 +50,61 @@ def test_founders_live_in_the_changed_habitat_too(poles: primordia.Run) -> None:
         assert (before.reborn != after.reborn).any()
     with pytest.raises(InputError, match="no setting 'weight'"):
         garden(poles.opened(), habitat={"weight": 1})
+
+
+def test_the_oldest_come_first_and_of_equals_the_last_born() -> None:
+    rows, lifespan = np.array([2, 3, 5, 6, 8]), np.array([99, 99, 4, 7, 99, 7, 9, 99, 7])
+    assert _oldest(rows, lifespan, 3).tolist() == [6, 8, 5]
+    assert _oldest(rows, lifespan, 9).tolist() == [6, 8, 5, 3, 2]
+
+
+@pytest.mark.parametrize(("births", "count"), [(2, 5), (4, 3), (5, 4), (21, 5), (31, 7), (101, 20)])
+def test_the_late_born_are_in_the_middle_of_equal_parts_of_all_births_but_the_last(
+    births: int, count: int
+) -> None:
+    rows = np.arange(40, 40 + births)
+    parts = min(count, births - 1)
+    middles = [int((part + 0.5) * (births - 1) / parts) for part in range(parts)]
+    assert _spaced(rows, np.zeros(0), count).tolist() == [40 + middle for middle in middles]
+
+
+def test_a_single_late_birth_is_spaced_too() -> None:
+    assert _spaced(np.array([7]), np.zeros(0), 3).tolist() == [7]
+
+
+def test_a_bed_tells_what_it_keeps() -> None:
+    """What is kept is a share of means: 9 of 12 ticks, not the mean of the organisms' shares."""
+    bed = Bed("oldest", 1, np.array([4, 9]), np.array([4, 20]), np.array([8.0, 10.0]))
+    assert bed.to_dict() == {
+        "group": "oldest",
+        "world": 1,
+        "organism": [4, 9],
+        "recorded": [4, 20],
+        "reborn": [8, 10],
+        "kept": 0.75,
+    }
+    unlived = Bed("oldest", 0, np.arange(2), np.zeros(2, int), np.ones(2))
+    assert (unlived.kept, unlived.to_dict()["recorded"]) == (None, [0, 0])
+
+
+def test_births_after_the_given_share_are_late(
+    poles: primordia.Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each organism's life is the mean of its games, which are cut at the given tick."""
+    asked = []
+
+    def lived(players: Players, games: int, ticks: int) -> np.ndarray:
+        asked.append((games, ticks))
+        return np.add.outer(10 * np.arange(len(players.genomes)), np.arange(games))
+
+    monkeypatch.setattr(module, "lifespans_in_games", lived)
+    lives = poles.lives()
+    found = garden(poles.opened(), each=7, after=0.8, games=4, ticks=77)
+    assert asked == [(4, 77)] * 3
+    for bed in found[:4]:
+        births = (lives.world == bed.world).sum()
+        assert bed.organism.min() >= int(0.8 * births)
+        number = 7 * bed.world + np.arange(7)
+        np.testing.assert_array_equal(bed.reborn, 10 * number + 1.5)
+    for bed in found[4:]:
+        assert bed.organism.tolist() == list(range(7))

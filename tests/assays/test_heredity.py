@@ -1,5 +1,6 @@
 """Inheritance of lifespan: slopes that are known, and the Price equation, which is an identity."""
 
+from dataclasses import fields
 from types import SimpleNamespace
 from typing import Any
 
@@ -9,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from primordia.assays.heredity import heredity, price, slope
-from primordia.history.families import LEAST, families
+from primordia.history.families import LEAST, families, families_of
 from primordia.runs.lives import Lives
 from tests.assays.lives import COPY, FOUNDER, MUTANT, lives
 
@@ -101,3 +102,43 @@ def test_where_the_long_lived_have_more_children_selection_is_above_zero() -> No
     found = measured(lives(*rows, *((2, MUTANT, 10) for _ in range(3))))
     assert found.selection > 0.5
     assert found.transmission < 0
+
+
+def test_each_world_has_its_own_measures() -> None:
+    """Two worlds of unequal size: in the second, children live a tenth longer, or a third shorter."""
+    first = lives((-1, FOUNDER, 30), *[(0, COPY, 30)] * 12)
+    second = lives((-1, FOUNDER, 30), (0, COPY, 33), (0, MUTANT, 20), (0, MUTANT, 21))
+    columns = {
+        each.name: np.concatenate([getattr(first, each.name), getattr(second, each.name)])
+        for each in fields(Lives)
+    }
+    both = Lives(**{**columns, "world": np.repeat(np.int32([0, 1]), (13, 4))})
+    one, other = heredity(SimpleNamespace(lives=both), 0.0)
+    assert (one.world, other.world) == (0, 1)
+    assert (one.copies.pairs, one.copies.as_long) == (12, 1)
+    assert one.mutants.pairs == 0
+    found = [(each.longer, each.as_long, each.shorter) for each in (other.copies, other.mutants)]
+    assert found == [(1, 0, 0), (0, 0, 0.5)]
+    assert (other.both.pairs, other.both.longer) == (3, pytest.approx(1 / 3))
+    told = other.to_dict()
+    assert (told["world"], told["copies"]["pairs"], told["mutants"]["shorter"]) == (1, 1, 0.5)
+    assert (told["selection"], told["transmission"]) == (other.selection, other.transmission)
+
+
+def test_the_price_equation_by_hand() -> None:
+    """Of three parents one has two children, one has one and one has none; e is the log unit."""
+    rows = [(-1, FOUNDER, 1), (-1, FOUNDER, 10), (-1, FOUNDER, 100), (2, COPY, 1000)]
+    selection, transmission = price(
+        families_of(lives(*rows, (2, MUTANT, 10), (1, COPY, 10)), np.array([3, 4, 5]))
+    )
+    counted = np.log([10.0, 100, 1000, 10, 10])  # the parents 1 and 2, and the children
+    w = np.array([1, 2, 0, 0, 0])
+    assert selection == pytest.approx(np.mean((w - w.mean()) * counted) / w.mean())
+    change = [np.log(10 / 10), np.log(1000 / 100) + np.log(10 / 100)]
+    assert transmission == pytest.approx(sum(change) / 5 / w.mean())
+
+
+def test_a_life_of_no_tick_counts_as_one_tick() -> None:
+    rows = [(-1, FOUNDER, 0), (-1, FOUNDER, 10)]
+    children = [*[(0, COPY, 1)] * 5, *[(1, COPY, 10)] * 5]
+    assert measured(lives(*rows, *children)).both.slope == pytest.approx(1)

@@ -1,12 +1,21 @@
 """The genomes of a line of descent, born again."""
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 
 import primordia
-from primordia.assays.line import Line, Step, line
+from primordia.assays import line as module
+from primordia.assays.line import Line, Step, _changed, line
+from primordia.assays.subjects import of_run
 from primordia.law.world import BirthCause
+from primordia.organism.games import Players
 from primordia.organism.organism import Organism
+from primordia.random.wide import to_host
+from tests.assays.lives import COPY, FOUNDER, MUTANT
+from tests.assays.lives import lives as lives_of
 
 
 def invented(*lives: float) -> Line:
@@ -25,6 +34,7 @@ def test_the_largest_step_is_the_largest_ratio() -> None:
     assert found is not None
     assert [step.organism for step in found] == [2, 3]
     assert invented(10, 5, 5).largest is None
+    assert invented(10, 20, 40).to_dict()["largest_step"] == [0, 1], "of equals the first"
     assert invented(10, 20).to_dict()["largest_step"] == [0, 1]
 
 
@@ -60,3 +70,43 @@ def test_a_long_line_is_sampled_from_end_to_end(poles: primordia.Run, champion: 
     assert (some.steps[0], some.steps[-1]) == (whole.steps[0], whole.steps[-1])
     assert np.isin([s.organism for s in some.steps], [s.organism for s in whole.steps]).all()
     assert some.genomes == whole.genomes
+
+
+def test_each_genome_plays_the_games_of_the_last_organism(
+    poles: primordia.Run, champion: Organism, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each step has its own generation, tick of birth and life, which is the mean of its games."""
+    asked: list[tuple[Players, int, int]] = []
+
+    def lived(players: Players, games: int, ticks: int) -> np.ndarray:
+        asked.append((players, games, ticks))
+        return np.add.outer(10 * np.arange(len(players.genomes)), np.arange(games))
+
+    monkeypatch.setattr(module, "lifespans_in_games", lived)
+    found = line(poles.opened(), champion.id, 1, games=4, ticks=88)
+    ((players, games, ticks),) = asked
+    assert (games, ticks) == (4, 88)
+    own = of_run(poles.opened(), [(champion.id, 1)]).players
+    assert (to_host(players.keys) == to_host(own.keys)).all()
+    generation = {each: n for n, each in enumerate(champion.descent())}
+    assert (found.organism, found.world, found.steps[-1].reborn) == (
+        champion.id, 1, 10 * (len(found.steps) - 1) + 1.5
+    )  # fmt: skip
+    for k, (step, genome) in enumerate(zip(found.steps, players.genomes, strict=True)):
+        organism = poles.organism(step.organism, 1)
+        assert (step.generation, step.born) == (generation[step.organism], organism.born)
+        assert (step.recorded, step.birth_cause) == (organism.age, organism.birth_cause)
+        assert step.reborn == 10 * k + 1.5
+        np.testing.assert_array_equal(genome, organism.genome())
+
+
+def test_copies_of_one_parent_bring_no_new_genome() -> None:
+    """The first organism on record brings one, even if it is a copy; so do children of two parents."""
+    lives = lives_of(
+        (-1, FOUNDER, 9), (0, COPY, 9), (1, COPY, 9), (2, MUTANT, 9), (3, COPY, 9), (4, COPY, 9)
+    )
+    mates = np.array([-1, -1, 0, -1, -1, -1])
+    run: Any = SimpleNamespace(lives=lives, mates_of=lambda some: mates[some.id])
+    assert _changed(run, np.arange(6)).tolist() == [0, 2, 3]
+    assert _changed(run, np.array([1, 2, 4, 5])).tolist() == [0, 1]
+    assert _changed(run, np.array([4, 5])).tolist() == [0]

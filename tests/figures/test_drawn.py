@@ -1,5 +1,7 @@
 """Figures draw what the records say: data are read back from the axes and counted life by life."""
 
+from collections.abc import Callable
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -7,25 +9,17 @@ import numpy as np
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
-from matplotlib.figure import Figure
 from matplotlib.text import Annotation
 
-from primordia.comparison.comparison import ComparedArm, Comparison
-from primordia.comparison.gathering import Gathering
-from primordia.comparison.measured import Measured
-from primordia.comparison.pace import WINDOWS, Pace
-from primordia.comparison.survival import survival as survived
-from primordia.figures import ages, comparison, foraging, population, style, survival, threshold
-from primordia.figures import lines as descents
+from primordia.figures import ages, foraging, population, style, survival, threshold
 from primordia.history import series
-from primordia.history.extinctions import Extinctions
 from primordia.history.foraging import Foraging
 from primordia.history.threshold import over_births
 from primordia.law.world import Cause
-from primordia.phylogeny.lines import lines_of_world
 from primordia.runs.lives import ALIVE, Lives
 from tests.assays.lives import COPY, FOUNDER, MUTANT
 from tests.assays.lives import lives as lives_of
+from tests.figures.reading import edges_at, lines
 from tests.synthetic import alive, worlds_of
 from tests.worlds import MEADOW, config
 
@@ -47,44 +41,62 @@ def some_lives() -> Lives:
     return lives
 
 
+def unequal(lives: Lives) -> Lives:
+    """Return worlds of which the first has few births, and the second stopped at tick 40."""
+    few, stopped = lives.rank < 41, (lives.world == 1) & (lives.born <= 40)
+    some = lives.take(np.flatnonzero(np.where(lives.world == 0, few, stopped | (lives.world == 2))))
+    late = (some.world == 1) & (some.ended > 40)
+    some.ended[late], some.cause[late] = 40, ALIVE
+    return some
+
+
+def shifted(lives: Lives, then: int) -> Lives:
+    """Return lives with their time counted from a tick."""
+    born, seen, ended = lives.born - then, lives.seen - then, lives.ended - then
+    return replace(lives, born=born, seen=seen, ended=ended)
+
+
+FORK = 60
 LIVES = some_lives()
-WORLDS = [LIVES.of_world(world) for world in range(3)]
+KINDS = {"whole": LIVES, "fork": LIVES.recorded_since(FORK), "unequal": unequal(LIVES)}
 
 
-def axes_of(draw: Any, lives: Lives = LIVES) -> list[Axes]:
+@pytest.fixture(params=KINDS)
+def lives(request: pytest.FixtureRequest) -> Lives:
+    """Return the lives of a run; `since` counts their time from the fork."""
+    return KINDS[request.param]
+
+
+@pytest.fixture
+def since(lives: Lives) -> Lives:
+    return shifted(lives, FORK if lives is KINDS["fork"] else 0)
+
+
+def axes_of(draw: Any, lives: Lives) -> list[Axes]:
     run: Any = SimpleNamespace(lives=lives, config=config(MEADOW, cells=64, seeds=3))
     with style.applied():
         figure = draw(run, 0)
     return figure.axes
 
 
-def lines(axes: Axes, colour: str | None = None) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Return the data of an axes' lines, all or those of one colour."""
-    return [
-        (np.asarray(line.get_xdata(), float), np.asarray(line.get_ydata(), float))
-        for line in axes.get_lines()
-        if colour is None or to_hex(line.get_color()) == colour
-    ]
-
-
-def edges_at(collection: Any, x: float) -> tuple[float, float]:
-    """Return the lower and upper edge of a filled band at a place."""
-    points = np.concatenate([path.vertices for path in collection.get_paths()])
-    here = points[np.isclose(points[:, 0], x)][:, 1]
-    return float(here.min()), float(here.max())
+def worlds(lives: Lives) -> list[Lives]:
+    return [lives.take(np.flatnonzero(lives.world == world)) for world in range(3)]
 
 
 def check_worlds(axes: Axes, expected: np.ndarray, x: np.ndarray, colour: str) -> None:
-    """Check the curves of all worlds (W, X), their median and their quartiles."""
-    *worlds, (place, median) = lines(axes, colour)
-    assert len(worlds) == len(expected)
-    for (at, drawn), values in zip(worlds, expected, strict=True):
+    """Check the curves of all worlds (W, X), and their median and quartiles where half have values."""
+    *curves, (place, median) = lines(axes, colour)
+    assert len(curves) == len(expected)
+    for (at, drawn), values in zip(curves, expected, strict=True):
         np.testing.assert_array_equal(at, x)
         np.testing.assert_allclose(drawn, values, rtol=1e-12)
-    q1, q2, q3 = np.nanpercentile(expected, [25, 50, 75], axis=0)
+    enough = np.isfinite(expected).sum(axis=0) * 2 >= len(expected)
+    quartiles = np.full((3, len(x)), np.nan)
+    quartiles[:, enough] = np.nanpercentile(expected[:, enough], [25, 50, 75], axis=0)
+    q1, q2, q3 = quartiles
     np.testing.assert_array_equal(place, x)
     np.testing.assert_allclose(median, q2, rtol=1e-12)
-    for at in range(0, len(x), max(1, len(x) // 7)):
+    for at in np.flatnonzero(enough)[:: max(1, len(x) // 7)].tolist():
         np.testing.assert_allclose(edges_at(axes.collections[0], x[at]), (q1[at], q3[at]))
 
 
@@ -94,37 +106,43 @@ def counted(world: Lives, tick: int) -> list[int]:
     return [tick - int(world.born[row]) for row in rows]
 
 
-def test_population_is_drawn_as_counted() -> None:
-    living, fates, rates = axes_of(population.draw)
-    ticks = series.moments(UNTIL)
-    numbers = np.array([[len(counted(world, tick)) for tick in ticks] for world in WORLDS], float)
-    check_worlds(living, numbers, ticks, population.LIVING)
-    check_fates(fates, ticks)
-    check_rates(rates, LIVES)
+def by_tick(since: Lives, ticks: np.ndarray, value: Callable[[list[int]], float]) -> np.ndarray:
+    """Return a value of the ages of the living in each world after each tick; NaN after its end."""
+    return np.array(
+        [
+            [value(counted(world, tick)) if tick <= world.ended.max() else np.nan for tick in ticks]
+            for world in worlds(since)
+        ]
+    )
 
 
-def test_a_world_that_stopped_early_adds_no_ticks_to_later_rates() -> None:
-    then, early = 40, LIVES.world == 1
-    lives = LIVES.take(np.flatnonzero(~early | (LIVES.born <= then)))
-    late = (lives.world == 1) & (lives.ended > then)
-    lives.ended[late], lives.cause[late] = then, ALIVE
-    check_rates(axes_of(population.draw, lives)[-1], lives)
+def mean(ages: list[int]) -> float:
+    return float(np.mean(ages)) if sum(ages) else np.nan
 
 
-def check_fates(axes: Axes, ticks: np.ndarray) -> None:
+def test_population_is_drawn_as_counted(lives: Lives, since: Lives) -> None:
+    living, fates, rates = axes_of(population.draw, lives)
+    ticks = series.moments(int(since.ended.max()))
+    check_worlds(living, by_tick(since, ticks, len), ticks, population.LIVING)
+    check_fates(fates, ticks, since)
+    check_rates(rates, since)
+
+
+def check_fates(axes: Axes, ticks: np.ndarray, since: Lives) -> None:
     colours = [*(population.COLOURS[cause] for cause in CAUSES), population.LIVING]
     assert [to_hex(each.get_facecolor()[0]) for each in axes.collections] == colours
     for tick in ticks[::15].tolist():
         low, high = zip(*(edges_at(each, tick) for each in axes.collections), strict=True)
         heights = np.subtract(high, low).tolist()
-        dead = [((LIVES.cause == cause) & (LIVES.ended <= tick)).sum() for cause in CAUSES]
-        assert heights == [*dead, sum(len(counted(world, tick)) for world in WORLDS)]
+        dead = [((since.cause == cause) & (since.ended <= tick)).sum() for cause in CAUSES]
+        assert heights == [*dead, sum(len(counted(world, tick)) for world in worlds(since))]
 
 
-def check_rates(axes: Axes, lives: Lives) -> None:
-    edges = series.bins(UNTIL)
-    ends = [lives.of_world(world).ended.max() for world in range(3)]
-    events = [lives.born, *(lives.ended[lives.cause == cause] for cause in CAUSES)]
+def check_rates(axes: Axes, since: Lives) -> None:
+    """A world that stopped early adds no ticks to later rates."""
+    edges = series.bins(int(since.ended.max()))
+    ends = [world.ended.max() for world in worlds(since)]
+    events = [since.born, *(since.ended[since.cause == cause] for cause in CAUSES)]
     drawn = lines(axes)
     assert len(drawn) == len(events)
     for (x, y), at in zip(drawn, events, strict=True):
@@ -135,30 +153,28 @@ def check_rates(axes: Axes, lives: Lives) -> None:
             assert (value == expected) if count >= series.MIN_EVENTS else np.isnan(value)
 
 
-def test_ages_are_drawn_as_counted() -> None:
-    over_time, over_births, dead = axes_of(ages.draw)
-    ticks, number = series.moments(UNTIL), np.arange(1, 151)
-
-    def mean(world: Lives, tick: int) -> float:
-        now = counted(world, tick)
-        return float(np.mean(now)) if sum(now) else np.nan
-
-    by_time = np.array([[mean(world, tick) for tick in ticks] for world in WORLDS])
-    check_worlds(over_time, by_time, ticks, style.BLUE)
-    by_birth = np.array([[mean(world, tick) for tick in world.born] for world in WORLDS])
-    x, y = lines(over_births, style.BLUE)[1]
-    np.testing.assert_array_equal(x, number)
-    np.testing.assert_allclose(y, by_birth[1])
-    for colour, group in ((style.SKY, LIVES.died), (style.ORANGE, ~LIVES.died)):
+def test_ages_are_drawn_as_counted(lives: Lives, since: Lives) -> None:
+    over_time, over_births, dead = axes_of(ages.draw, lives)
+    ticks = series.moments(int(since.ended.max()))
+    check_worlds(over_time, by_tick(since, ticks, mean), ticks, style.BLUE)
+    number = np.arange(1, max(map(len, worlds(since))) + 1)
+    by_birth = np.full((3, len(number)), np.nan)
+    for ages_of_world, world in zip(by_birth, worlds(since), strict=True):
+        begun = np.maximum(world.born, 0)  # organisms alive at the fork are seen from there on
+        ages_of_world[: len(world)] = [mean(counted(world, tick)) for tick in begun]
+    check_worlds(over_births, by_birth, number, style.BLUE)
+    assert over_births.get_xlim() == (0, number[-1] + 1)
+    rank = np.concatenate([np.arange(1, len(world) + 1) for world in worlds(since)])
+    for colour, group in ((style.SKY, since.died), (style.ORANGE, ~since.died)):
         ((x, y),) = lines(dead, colour)
-        np.testing.assert_array_equal(x, np.tile(number, 3)[group])
-        np.testing.assert_array_equal(y, np.maximum(LIVES.lifespan[group], 1))
-    check_quartiles(dead)
+        np.testing.assert_array_equal(x, rank[group])
+        np.testing.assert_array_equal(y, np.maximum(since.lifespan[group], 1))
+    assert dead.get_xlim() == (0, number[-1] + 1)
+    check_quartiles(dead, rank[since.died], since.lifespan[since.died])
 
 
-def check_quartiles(axes: Axes) -> None:
+def check_quartiles(axes: Axes, rank: np.ndarray, lifespan: np.ndarray) -> None:
     ((middle, median),) = lines(axes, style.BLUE)
-    rank, lifespan = (LIVES.rank + 1)[LIVES.died], LIVES.lifespan[LIVES.died]
     order = np.argsort(rank, kind="stable")
     parts = np.array_split(order, len(order) // ages.ENOUGH)
     assert len(parts) == len(middle)
@@ -168,49 +184,68 @@ def check_quartiles(axes: Axes) -> None:
         np.testing.assert_allclose(edges_at(axes.collections[0], at), (q1, q3))
 
 
-def test_survival_is_drawn_as_counted() -> None:
-    alive_axes, by_age, over_time = axes_of(survival.draw)
-    quarter = LIVES.rank * 4 // 150
-    for number, colour in enumerate(survival.COHORTS.values()):
-        cohort = LIVES.take(quarter == number)
+def test_no_more_dots_are_drawn_than_there_is_room_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of 450 lives, every so many is drawn, from the first on, among the dead and the living."""
+    monkeypatch.setattr(ages, "DOTS", 12)
+    _, _, axes = axes_of(ages.draw, LIVES)
+    rank = np.tile(np.arange(1, 151), 3)
+    for colour, group in ((style.SKY, LIVES.died), (style.ORANGE, ~LIVES.died)):
+        ((x, _),) = lines(axes, colour)
+        each = int(group.sum()) // 12 + 1
+        assert 6 < len(x) <= 12
+        np.testing.assert_array_equal(x, [rank[row] for row in np.flatnonzero(group)[0::each]])
+
+
+def cohorts(lives: Lives) -> list[Lives]:
+    """Return the lives of each quarter of the births of a world."""
+    quarter = np.concatenate([4 * np.arange(len(w)) // len(w) for w in worlds(lives)])
+    return [lives.take(quarter == number) for number in range(4)]
+
+
+def test_survival_is_drawn_as_counted(lives: Lives, since: Lives) -> None:
+    """An organism is at risk up to the age at which its life ends. If it was alive at a fork, it is at
+    risk only after its age there."""
+    alive_axes, by_age, over_time = axes_of(survival.draw, lives)
+    assert (since.lifespan == 10).any(), "some lives end at a labelled age"
+    for cohort, (name, colour) in zip(cohorts(since), survival.COHORTS.items(), strict=True):
         ((x, y),) = lines(alive_axes, colour)
         share, steps = 1.0, dict(zip(x.tolist(), y.tolist(), strict=True))
-        for age in range(int(LIVES.lifespan.max()) + 1):
-            at_risk = (cohort.lifespan >= age).sum()
+        assert (x[0], x[-1], y[0]) == (0, since.lifespan.max(), 1)
+        entered = np.maximum(-cohort.born, 0)
+        for age in range(1, int(since.lifespan.max()) + 1):
+            at_risk = ((entered < age) & (age <= cohort.lifespan)).sum()
             died = (cohort.died & (cohort.lifespan == age)).sum()
             share *= 1 - died / max(at_risk, 1)
             assert not died or steps[age] == pytest.approx(share)
+        check_at_risk(alive_axes, name, colour, entered, cohort.lifespan)
         ((_, risk),) = lines(by_age, colour)
-        check_risk(risk, cohort.lifespan, cohort.lifespan[cohort.died], np.zeros(len(cohort)))
+        check_risk(risk, entered, cohort.lifespan, cohort.died, int(since.lifespan.max()))
     ((_, risk),) = lines(over_time)
-    check_risk(risk, LIVES.ended, LIVES.ended[LIVES.died], LIVES.born)
+    seen = np.maximum(since.born, 0)
+    check_risk(risk, seen, since.ended, since.died, int(since.ended.max()))
 
 
-@pytest.mark.parametrize("fork", [None, 60])
-def test_numbers_at_risk_are_counted_at_each_labelled_age(fork: int | None) -> None:
-    """An organism is at risk up to the age at which its life ends. If it was alive at a fork, it is at
-    risk only after its age there."""
-    lives = LIVES if fork is None else LIVES.recorded_since(fork)
-    alive_axes, _, _ = axes_of(survival.draw, lives)
-    drawn = [each for each in alive_axes.texts if isinstance(each, Annotation)]
-    quarter = lives.rank * 4 // np.bincount(lives.world)[lives.world]
-    assert (lives.lifespan == 10).any(), "some lives end at a labelled age"
-    for number, (name, colour) in enumerate(survival.COHORTS.items()):
-        cohort = lives.take(quarter == number)
-        written = {each.xy[0]: each.get_text() for each in drawn if each.get_color() == colour}
-        assert written.pop(0.3) == name
-        assert {1, 10} <= written.keys()
-        for age, text in written.items():
-            ends, begins = cohort.lifespan.tolist(), (cohort.seen - cohort.born).tolist()
-            at_risk = sum(a < age <= b for a, b in zip(begins, ends, strict=True))
-            assert text == str(at_risk)
+def check_at_risk(
+    axes: Axes, name: str, colour: str, entered: np.ndarray, lifespan: np.ndarray
+) -> None:
+    """Check the numbers below the axis, at 1, 10 and each further power of ten on the axis."""
+    notes = [each for each in axes.texts if isinstance(each, Annotation)]
+    written = {each.xy[0]: each.get_text() for each in notes if each.get_color() == colour}
+    assert written.pop(0.3) == name
+    assert [*written] == [age for age in (1, 10, 100) if age <= axes.get_xlim()[1]]
+    for age, text in written.items():
+        pairs = zip(entered.tolist(), lifespan.tolist(), strict=True)
+        assert text == str(sum(begin < age <= end for begin, end in pairs))
 
 
-def check_risk(drawn: np.ndarray, stop: np.ndarray, died: np.ndarray, start: np.ndarray) -> None:
-    edges = series.bins(int(LIVES.lifespan.max() if not start.any() else UNTIL))
+def check_risk(
+    drawn: np.ndarray, start: np.ndarray, stop: np.ndarray, died: np.ndarray, last: int
+) -> None:
+    edges = series.bins(last)
+    assert len(drawn) == len(edges) - 1
     for k, value in enumerate(drawn):
         low, high = edges[k], edges[k + 1]
-        count = ((low < died) & (died <= high)).sum()
+        count = (died & (low < stop) & (stop <= high)).sum()
         lived = (np.clip(stop, low, high) - np.clip(start, low, high)).sum()
         assert np.isnan(value) if count < series.MIN_EVENTS else value == count / lived
 
@@ -259,83 +294,9 @@ def test_the_threshold_is_drawn_stretch_by_stretch() -> None:
     assert threshold.draw(few, 0) is None
 
 
-def test_new_common_ancestors_are_marked_at_the_time_since_the_lines_were_founded() -> None:
-    """Organism 1 is the common ancestor from tick 30 on, and organism 2 from tick 60 on."""
-    rows: list = [(-1, FOUNDER, 30), (0, COPY, 59), (1, COPY, 98, "alive"), (2, COPY, 97, "alive")]
-    for founded, expected in ((10, [20, 50]), (40, [20]), (70, [])):
-        found = lines_of_world(0, lives_of(*rows), founded, 0)
-        with style.applied():
-            diversity = descents.draw(found).axes[2]
-        marks = [x.tolist() for x, _ in lines(diversity, style.ORANGE)]
-        assert marks == [[since, since] for since in expected]
-
-
-SEEDS = np.arange(3)
-NONE = Extinctions(np.zeros(3, np.int64), np.zeros(3, np.int64))
-
-
-def arm(name: str, seed: int, known: bool = True) -> ComparedArm:
-    """Return a run of three worlds with invented values, of which one may be unknown."""
-    draw = np.random.default_rng(seed)
-    is_known = np.array([True, True, known])
-
-    def measured(scale: float) -> Measured:
-        return Measured(np.sort(draw.integers(1, 90, 3) * scale), is_known)
-
-    outcomes = ("first", "births", "ticks", "lifespan", "longest", "pace", "food")
-    values = {outcome: measured(10.0**k) for k, outcome in enumerate(outcomes)}
-    edges = np.linspace(0, UNTIL, WINDOWS + 1)
-    deaths = draw.integers(1, 9, (3, WINDOWS))
-    paces = Pace(edges, draw.integers(1, 900, (3, WINDOWS)).astype(float), deaths)
-    gathered = Gathering(draw.random((3, WINDOWS)), values["food"])
-    return ComparedArm(
-        name, {}, SEEDS, values, survived(LIVES, 3, 100 + seed), paces, gathered, NONE
-    )
-
-
-def drawn(*arms: ComparedArm) -> Figure:
-    with style.applied():
-        return comparison.draw(Comparison("t", arms, 100, 0, None, None, "tick"))
-
-
-def test_a_comparison_draws_the_values_of_each_run() -> None:
-    arms = arm("one", 1), arm("two", 2, known=False)
-    alive_axes, by_births, by_time, food = drawn(*arms).axes
-    colours = [to_hex(look["color"]) for look in comparison.line_styles(2)]
-    for each, colour in zip(arms, colours, strict=True):
-        ((x, y),) = lines(alive_axes, colour)
-        np.testing.assert_array_equal(x, np.maximum(each.survival.steps, 1))
-        np.testing.assert_array_equal(y, [1, *each.survival.curve, each.survival.curve[-1]])
-        for axes, unit in ((by_births, "births"), (by_time, "ticks")):
-            check_saturated(axes, each.measured[unit], colour)
-        check_medians(food, each.gathering.curve, colour)
-    assert (by_births.get_xlabel(), by_time.get_xlabel()) == ("births", "time (ticks)")
-
-
-def check_saturated(axes: Axes, measured: Measured, colour: str) -> None:
-    (x, share), (stopped, marks) = lines(axes, colour)
-    for at, value in zip(x, share, strict=True):
-        assert value == (measured.known & (measured.value <= at)).sum() / 3
-    np.testing.assert_array_equal(stopped, measured.value[~measured.known])
-    assert marks.tolist() == [2 / 3] * len(marks)
-
-
-def check_medians(axes: Axes, curve: np.ndarray, colour: str) -> None:
-    *worlds, (x, median) = lines(axes, colour)
-    np.testing.assert_allclose(x, (np.arange(WINDOWS) + 0.5) * UNTIL / WINDOWS)
-    np.testing.assert_array_equal([y for _, y in worlds], curve)
-    np.testing.assert_array_equal(median, np.median(curve, axis=0))
-
-
-def test_where_few_worlds_saturate_a_comparison_draws_ticks_for_each_death() -> None:
-    unknown = Measured(np.ones(3), np.zeros(3, bool))
-    one = arm("one", 3)
-    one.measured.update(births=unknown, ticks=unknown)
-    _, dying, _ = drawn(one).axes
-    colour = to_hex(comparison.line_styles(1)[0]["color"])
-    check_medians(dying, one.pace.lived / one.pace.deaths, colour)
-
-
 def test_the_invented_lives_are_of_all_kinds() -> None:
     assert {*LIVES.cause.tolist()} == {ALIVE, *map(int, CAUSES)}
     assert (LIVES.ended[LIVES.died] == UNTIL).any(), "some die in the last tick"
+    assert KINDS["fork"].inherited.any()
+    few, stopped, _ = worlds(KINDS["unequal"])
+    assert (len(few), stopped.ended.max()) == (41, 40)

@@ -1,0 +1,176 @@
+"""The figure in space and time: colours, places and words are worked out organism by organism."""
+
+from collections import Counter
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+from matplotlib.text import Annotation
+
+from primordia.figures import spacetime, style
+from primordia.history.clades import Clades
+from primordia.law.world import BirthCause, Cause
+from primordia.runs.lives import ALIVE, Lives
+from tests.figures.reading import key, labels
+from tests.synthetic import alive, world_of, worlds_of
+from tests.worlds import MEADOW, config
+
+CELLS, LAST = 8, 400
+
+
+def a_history(seed: int) -> Lives:
+    """Return one world of 8 cells in which organisms copy themselves into empty cells and die.
+
+    All die at tick 200, and at the last tick all but one.
+    """
+    draw = np.random.default_rng(seed)
+    born: list[tuple[int, int, int]] = []  # tick, parent, cell
+    ended: dict[int, int] = {}
+    living: dict[int, int] = {}  # cell -> row
+    for tick in range(LAST + 1):
+        for cell in sorted(set(range(CELLS)) - set(living)):
+            if draw.random() < (0.25 if living else 0.02):
+                parent = int(draw.choice([*living.values()])) if living else -1
+                living[cell] = len(born)
+                born.append((tick, parent, cell))
+        deaths = {200: list(living), LAST: list(living)[1:]}
+        by_chance = [cell for cell in living if draw.random() < 0.08]
+        for cell in deaths.get(tick, by_chance):
+            ended[living.pop(cell)] = tick
+    ticks, parents, cells = map(np.array, zip(*born, strict=True))
+    rows = np.arange(len(born))
+    died = np.isin(rows, [*ended])
+    return Lives(
+        world=np.zeros(len(rows), np.int32),
+        id=rows,
+        parent=parents,
+        cell=cells.astype(np.int32),
+        birth_cause=np.where(parents < 0, BirthCause.FOUNDER, BirthCause.COPY).astype(np.int8),
+        born=ticks,
+        seen=ticks,
+        inherited=np.zeros(len(rows), bool),
+        ended=np.array([ended.get(row, LAST) for row in rows.tolist()]),
+        cause=np.where(died, Cause.FATAL, ALIVE).astype(np.int8),
+    )
+
+
+def occupants(lives: Lives, tick: int) -> dict[int, int]:
+    """Return cell -> row of the living after a tick."""
+    return {int(lives.cell[row]): row for row in range(len(lives)) if alive(lives, row, tick)}
+
+
+def expected_inks(
+    lives: Lives, of: Clades, sizes: Counter[tuple[int, int]]
+) -> dict[tuple[int, int], tuple[Any, bool]]:
+    """Return the colour of each line of each era, and whether the line lasted to the era's end."""
+    ends = [*of.renewals.tolist(), LAST + 1]
+    lasted = {
+        (era, int(of.lines_at(np.array(row), np.array(end - 1))))
+        for era, end in enumerate(ends)
+        for row in occupants(lives, min(end, LAST)).values()
+    }
+    hues = [np.array(to_rgb(hue)) for hue in spacetime.HUES]
+    strong = [*hues, *(0.6 * hue for hue in hues)]
+    inks: dict[tuple[int, int], tuple[Any, bool]] = {}
+    for era, begun in enumerate([-1, *ends[:-1]]):
+        mine = [which for which in sizes if which[0] == era]
+        mine.sort(key=lambda which: (which not in lasted, -sizes[which], which))
+        for turn, which in enumerate(mine):
+            young = lives.born[which[1]] > begun
+            colour = np.array([160 / 255] * 3) if young else strong[(turn + era - 1) % 14]
+            inks[which] = (colour, which in lasted)
+    return inks
+
+
+@pytest.mark.parametrize("seed", [2, 11])
+def test_the_colour_of_each_line_follows_from_its_size_its_age_and_its_end(seed: int) -> None:
+    lives, ticks = a_history(seed), np.arange(0, LAST + 1, 2)
+    of = spacetime.clades_of(lives)
+    image = spacetime.picture(lives, of, np.arange(CELLS), ticks)
+    line_at: dict[tuple[int, int], tuple[int, int]] = {}
+    for place, tick in enumerate(ticks.tolist()):
+        era = sum(renewal <= tick for renewal in of.renewals.tolist())
+        for cell, row in occupants(lives, tick).items():
+            line_at[place, cell] = (era, int(of.lines_at(np.array(row), np.array(tick))))
+    inks = expected_inks(lives, of, Counter(line_at.values()))
+    expected = np.ones_like(image)
+    for (place, cell), which in line_at.items():
+        colour, lasted = inks[which]
+        expected[place, cell] = colour if lasted else 0.7 + 0.3 * colour
+    np.testing.assert_allclose(image, expected)
+
+
+def test_the_invented_histories_have_lines_of_all_kinds() -> None:
+    found = [spacetime.clades_of(a_history(seed)) for seed in (2, 11)]
+    assert max(len(of.renewals) for of in found) > 14, "more eras than strong colours"
+    assert {int((~of.by_takeover).sum()) for of in found} == {2}, "each died out and began again"
+    assert {int(of.renewals[-1]) for of in found} == {LAST}, "one line takes over at the end"
+
+
+def drawn(lives: Lives, world: int = 0, **settings: Any) -> Axes:
+    run: Any = SimpleNamespace(lives=lives, config=config(MEADOW, **settings))
+    with style.applied():
+        return spacetime.draw(run, world).axes[0]
+
+
+def test_the_picture_goes_from_the_first_birth_to_the_last(monkeypatch: pytest.MonkeyPatch) -> None:
+    """If there are more births or cells than pixels, evenly spaced ones are drawn."""
+    monkeypatch.setattr(spacetime, "ROWS", 5)
+    monkeypatch.setattr(spacetime, "COLUMNS", 3)
+    other = [(0, 5, True), (1, 9, False)]
+    mine = [(tick * tick, 30, True) for tick in range(12)]
+    axes = drawn(worlds_of(other, mine, other, until=200), 1, cells=CELLS, seeds=3)
+    (image,) = axes.images
+    lives = world_of(mine, until=200)
+    births = lives.born[[0, 2, 5, 8, 11]]
+    cells = np.array([0, 3, 6])
+    expected = spacetime.picture(lives, spacetime.clades_of(lives), cells, births)
+    np.testing.assert_array_equal(image.get_array(), expected)
+    assert list(image.get_extent()) == [-0.5, 7.5, 12.5, 0.5]
+    assert labels(axes) == (
+        "Lines of descent, world 1 (of 3)",
+        "cell of the ring; 3 of 8 shown",
+        "organisms born so far",
+    )
+    assert key(axes) == {"strong: lines that lasted;  pale: died out;  white: empty": style.SOFT}
+    alone = drawn(world_of(mine, until=200), cells=3)
+    assert labels(alone)[:2] == ("Lines of descent", "cell of the ring")
+    two = drawn(worlds_of(mine, other, until=200), cells=3, seeds=2)
+    assert labels(two)[0] == "Lines of descent, world 0 (of 2)"
+
+
+def test_round_ticks_stand_at_the_number_of_births_by_then() -> None:
+    """Births in a round tick count. Places that are no more than a 25th of all births from the last
+    one are left out, and so is the place after the last birth."""
+    births = {0: 50, 10: 1, 20: 39, 50: 8, 51: 6, 100: 6, 150: 60, 999: 20, 1000: 9, 2000: 1}
+    born = [tick for tick, count in births.items() for _ in range(count)]
+    assert len(born) == 200
+    axes = drawn(world_of([(tick, 1, True) for tick in born], until=3000), cells=300)
+    (right,) = axes.child_axes
+    assert [*right.yaxis.get_major_locator().tick_values(0, 1)] == [51, 90, 110, 170, 199]
+    written = [right.yaxis.get_major_formatter()(place, 0) for place in (51, 90, 110, 170, 199)]
+    assert written == ["10", "20", "100", "200", "1k"]
+    assert right.get_ylabel() == "time (ticks)"
+
+
+def test_the_first_renewal_and_eight_takeovers_are_marked() -> None:
+    """A mark stands after the births of its tick. Near the top its words are below the line."""
+    lives = world_of([(tick, 2, True) for tick in range(210)], until=300)
+    takeover = [False, *[True] * 3, False, *[True] * 6, False, True]
+    renewals = np.array([3, 9, 10, *range(20, 120, 10)])
+    axes = Figure().subplots()
+    found: Any = SimpleNamespace(renewals=renewals, by_takeover=np.array(takeover))
+    spacetime._mark_renewals(axes, lives, found)
+    marked = [3, 9, 10, 20, 40, 50, 60, 70, 80]
+    assert [line.get_ydata()[0] for line in axes.get_lines()] == [tick + 1.5 for tick in marked]
+    notes = [each for each in axes.texts if isinstance(each, Annotation)]
+    assert [each.xy for each in notes] == [(1, tick + 1.5) for tick in marked]
+    first, *others = (each.get_text() for each in notes)
+    assert first == "1 alive: each begins a line"
+    assert others == ["one line has taken over"] * 8
+    below = [each.get_verticalalignment() == "top" for each in notes]
+    assert below == [True, *[False] * 8]

@@ -1,0 +1,179 @@
+"""Panels say what they show: titles, labels of axes, keys and limits, also in a fork."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+
+from primordia.figures import ages, foraging, population, style, survival, threshold
+from primordia.history.foraging import Foraging
+from primordia.law.world import Cause
+from primordia.runs.lives import Lives
+from tests.figures.reading import key, labels, lines
+from tests.synthetic import world_of, worlds_of
+from tests.worlds import MEADOW, config
+
+CELLS = 1500
+ONE = [(0, 20, True), (1, 50, True), (2, 30, True), (5, 0, False), (7, 40, True)]
+KINDS = {
+    "one": (world_of(ONE, until=700), "time (ticks)", 700),
+    "two": (worlds_of(ONE, [(0, 3, False)], until=700), "time (ticks)", 700),
+    "fork": (worlds_of(ONE, ONE, until=700).recorded_since(6), "time since the fork (ticks)", 694),
+}
+KINDS["two"][0].cause[:2] = Cause.STARVED, Cause.REPLACED
+SPREAD = {"median and quartiles of 2 worlds": style.BLUE}
+POOLED = {"2 worlds together": style.SOFT}
+
+
+@pytest.fixture(params=KINDS)
+def kind(request: pytest.FixtureRequest) -> str:
+    return str(request.param)
+
+
+def axes_of(draw: Any, lives: Lives, **settings: Any) -> list[Axes]:
+    run: Any = SimpleNamespace(lives=lives, config=config(MEADOW, cells=CELLS, seeds=2, **settings))
+    with style.applied():
+        figure = draw(run, 0)
+    return figure.axes
+
+
+def test_population_says_what_it_shows(kind: str) -> None:
+    lives, time, last = KINDS[kind]
+    living, fates, rates = axes_of(population.draw, lives)
+    several = kind != "one"
+    assert labels(living) == ("Population", time, "organisms")
+    assert labels(fates) == ("Fate of all organisms born", time, "")
+    per_tick = "per tick of a world" if several else "per tick"
+    assert labels(rates) == ("Births and deaths", time, per_tick)
+    assert {each.get_xlim() for each in (living, fates, rates)} == {(1, last)}
+    assert key(living) == (SPREAD if several else {})
+    causes = {
+        "two": [("fatal", style.VERMILION), ("starved", style.ORANGE), ("replaced", style.SKY)]
+    }.get(kind, [("fatal", style.VERMILION)])
+    (first, colour), *others = causes
+    dead = {f"dead: {first}": colour, **dict(others)}
+    assert key(fates) == {"alive": style.BLUE, **dead, **(POOLED if several else {})}
+    assert key(rates) == {"births": style.INK, f"deaths: {first}": colour, **dict(others)}
+    (limit,) = lines(living, style.FAINT)
+    assert limit[1].tolist() == [CELLS, CELLS]
+    assert "all 1,500 cells" in {each.get_text() for each in living.texts}
+    assert living.get_ylim() == (0, pytest.approx(1.12 * CELLS)), "room for the words"
+
+
+def test_ages_say_what_they_show(kind: str) -> None:
+    lives, time, last = KINDS[kind]
+    over_time, over_births, dead = axes_of(ages.draw, lives)
+    assert labels(over_time) == ("Mean age of the living over time", time, "age (ticks)")
+    title = "Mean age of the living over births"
+    assert labels(over_births) == (title, "organisms born so far", "")
+    assert labels(dead) == ("Lifespan of each organism", "organism, in order of birth", "")
+    assert over_time.get_xlim() == (1, last)
+    assert key(over_time) == key(over_births) == (SPREAD if kind != "one" else {})
+    words = {"dead": style.SKY, "median and quartiles": style.BLUE, "still alive": style.ORANGE}
+    assert key(dead) == words
+    assert dead.get_yscale() == "log"
+    assert dead.get_ylim()[0] == 1
+
+
+def test_survival_says_what_it_shows(kind: str) -> None:
+    lives, time, last = KINDS[kind]
+    alive, by_age, over_time = axes_of(survival.draw, lives)
+    risk = "deaths per tick lived"
+    assert labels(alive) == ("Alive at each age", "age (ticks)", "fraction alive")
+    assert labels(by_age) == ("Risk of death by age", "age (ticks)", risk)
+    assert labels(over_time) == ("Risk of death over time", time, risk)
+    longest = lives.lifespan.max()
+    assert alive.get_xlim() == by_age.get_xlim() == (1, longest)
+    assert over_time.get_xlim() == (1, last)
+    for axes in (alive, by_age, over_time):
+        assert key(axes) == (POOLED if kind != "one" else {})
+        assert "no deaths yet" not in {each.get_text() for each in axes.findobj(Text)}
+    assert "at risk, born in the" in {each.get_text() for each in alive.texts}
+
+
+@pytest.mark.parametrize(("last", "end"), [(3, 10), (10, 10), (11, 11)])
+def test_an_axis_of_time_holds_at_least_ten_ticks(last: int, end: int) -> None:
+    axes = Figure().subplots()
+    style.time_axis(axes, last, "time")
+    assert axes.get_xlim() == (1, end)
+
+
+def foraged(food: np.ndarray, enough: np.ndarray) -> Axes:
+    middle = np.linspace(30, 90, food.shape[1]) if food.shape[1] else np.zeros(0)
+    measured = Foraging(25, middle, food, enough)
+    run: Any = SimpleNamespace(
+        config=SimpleNamespace(metabolism=True), description=SimpleNamespace(rate=None)
+    )
+    with pytest.MonkeyPatch.context() as patch, style.applied():
+        patch.setattr(foraging, "foraging", lambda _: measured)
+        figure = foraging.draw(run, 0)
+        assert figure is not None
+    return figure.axes[0]
+
+
+def test_the_break_even_is_drawn_where_there_is_one() -> None:
+    food = np.array([[0.25, 0.5, 0.75], [0.5, -0.75, 1.0]])
+    enough = np.array([[np.inf, 0.5, 0.25], [np.inf, 0.75, 0.5]])
+    axes = foraged(food, enough)
+    *worlds, (_, median) = lines(axes, style.ORANGE)
+    shown = np.where(np.isinf(enough), np.nan, enough)
+    np.testing.assert_array_equal([y for _, y in worlds], shown)
+    np.testing.assert_array_equal(median, [np.nan, 0.625, 0.375])
+    assert labels(axes) == ("Food an organism gathers in a tick", "time (ticks)", "")
+    assert key(axes) == {**SPREAD, "break-even": style.ORANGE}
+    assert axes.get_xlim()[0] == 25
+    assert axes.get_ylim()[0] < -0.75, "food may be lost"
+    nowhere = foraged(np.abs(food[:1]), np.full((1, 3), np.inf))
+    assert (key(nowhere), lines(nowhere, style.ORANGE)) == ({}, [])
+    assert nowhere.get_ylim()[0] == 0
+
+
+def test_foraging_says_that_there_are_no_samples_yet() -> None:
+    axes = foraged(np.zeros((1, 0)), np.zeros((1, 0)))
+    assert "no samples yet" in {each.get_text() for each in axes.texts}
+    assert len(axes.get_yticks()) == 0
+    assert "no samples yet" not in {each.get_text() for each in foraged(*np.ones((2, 1, 2))).texts}
+
+
+@pytest.mark.parametrize("worlds", [1, 2])
+def test_the_threshold_says_what_it_shows(worlds: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is unknown is a gap in the curve."""
+    lives = worlds_of(*([(0, 3, True)] * count for count in (500, 380)[:worlds]), until=9)
+    measured = SimpleNamespace(mutated=0.5, as_good=None, held=2.0)
+    unknown = SimpleNamespace(mutated=None, as_good=None, held=None)
+    monkeypatch.setattr(threshold, "over_births", lambda *_: [measured, unknown])
+    axes = axes_of(threshold.draw, lives)
+    titles = "p: children that mutate", "v: mutants as good", "Does a good line persist?"
+    spread = SPREAD if worlds == 2 else {}
+    for each, title, value in zip(axes, titles, (0.5, np.nan, 2.0), strict=True):
+        last = title == titles[2]
+        assert labels(each) == (title, "organisms born so far", "s (1 - p (1 - v))" * last)
+        assert each.get_xlim() == (0, 500)
+        assert key(each) == {**spread, **({"threshold": style.VERMILION} if last else {})}
+        x, y = lines(each, style.BLUE)[0]
+        np.testing.assert_array_equal((x, y), ([125, 375], [value, np.nan]))
+        assert [y.tolist() for _, y in lines(each, style.VERMILION)] == [[1, 1]] * last
+    assert axes[2].get_yscale() == "log"
+
+
+def test_the_threshold_is_not_drawn_if_it_is_known_nowhere(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """There are at most 20 stretches, and the births of the largest world decide."""
+    edges = []
+
+    def noted(world: int, lives: Lives, of_births: np.ndarray) -> list[Any]:
+        edges.append((world, len(lives), of_births.tolist()))
+        return [SimpleNamespace(held=None)]
+
+    monkeypatch.setattr(threshold, "over_births", noted)
+    for births, count in ((200 * 25, 20), (1234, 6), (400, 2)):
+        edges.clear()
+        lives = worlds_of([(0, 3, True)] * 7, [(0, 3, True)] * births, until=9)
+        assert threshold.draw(SimpleNamespace(lives=lives), 0) is None
+        expected = [int(births * k / count) for k in range(count + 1)]
+        assert edges == [(0, 7, expected), (1, births, expected)]
