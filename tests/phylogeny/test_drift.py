@@ -93,3 +93,29 @@ def test_each_line_with_a_slope_counts_as_draws(monkeypatch: pytest.MonkeyPatch)
         counts = np.full((21, lines), 20)
         found = slopes.of_shadows(census, Turnover.of(lives), counts, seed=1)
         assert found.shape == (lines, shadows)
+
+
+def test_a_line_grows_and_shrinks_by_its_share_and_ends_with_all_or_nothing() -> None:
+    """Lines of 1, 2 and 3 of 5 are drawn in a fifth, two and three fifths of their shadows."""
+    for history, step in (([([0], [])], 1), ([([], [0])], -1)):
+        lives = walked(history, founders=5)
+        deal = Deal.of(lives, Turnover.of(lives), np.array([0, 1]), seed=4, what=1)
+        now = np.repeat([0, 1, 2, 3, 5], 50).astype(np.int32)
+        before = now.copy()
+        slopes._drift_on(now, deal, 0, 1)
+        changed = (now - before).reshape(5, 50)
+        assert not changed[0].any()
+        assert (now[-50:] == 0).all()
+        for count in (1, 2, 3):
+            assert {*changed[count].tolist()} == {0, step}
+            assert (changed[count] != 0).mean() == pytest.approx(count / 5, abs=0.16)
+
+
+def test_shadows_of_lines_pass_each_event_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    passed: list[int] = []
+    monkeypatch.setattr(slopes, "EVENTS", 7)
+    monkeypatch.setattr(slopes, "_drift_on", lambda _, deal, *part: passed.extend(range(*part)))
+    lives, ticks = moran(5, 60), np.array([3, 4, 5, 20, 60])
+    counts = np.ones((5, 2), int)
+    slopes.of_shadows(Census(lives, ticks), Turnover.of(lives), counts, seed=1)
+    assert passed == list(range(2 * (60 - 3)))

@@ -118,6 +118,13 @@ def test_a_sweep_that_is_under_way_is_the_youngest_beyond_one_half() -> None:
     assert only.living == 3
 
 
+def test_of_two_sweeps_under_way_the_younger_counts() -> None:
+    """Of seven, five descend from organism 1 of tick 1, and four from its child of tick 2."""
+    lives = lives_of([-1, 0, 1, 0, 2, 2, 2], [0, 1, 2, 3, 4, 5, 6], [9] * 7, [False] * 7)
+    (only,) = sweeps(lives)
+    assert (only.organism, only.half, only.fixed, only.living) == (2, 6, None, 7)
+
+
 def test_sweeps_of_a_fork_are_those_of_organisms_born_after_it() -> None:
     """Two sweeps are those of organisms alive at the fork, one of them born in its tick."""
     lives = lives_of(
