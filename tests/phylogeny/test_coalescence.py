@@ -129,3 +129,76 @@ def test_an_era_begins_with_the_last_founders(history: list[Event], founders: in
     era = last_era(lives)
     first = max(row for row in range(len(lives)) if lives.parent[row] < 0) - founders + 1
     assert era.id.tolist() == list(range(first, len(lives)))
+
+
+def test_the_trunk_follows_the_most_living_descendants() -> None:
+    """The larger of two trees, and in it the largest branch, which is neither the first nor the last."""
+    #                 0   1  2  3  4  5  6  7  8  9
+    lives = lives_of(
+        parent=[-1, -1, -1, 1, 1, 1, 4, 4, 2, 5],
+        born=[0, 0, 0, 1, 2, 3, 4, 5, 6, 7],
+        ended=[9] * 10,
+        died=[False, True, False, False, False, False, False, False, False, False],
+    )
+    assert Genealogy.of(lives).trunk()[:2].tolist() == [1, 4]
+
+
+def chance_to_have_met(lives: Lives, since: int) -> dict[int, float]:
+    """Return, by ticks back, the chance of a pair to meet at births after a tick, from the last on."""
+    births = [
+        (int(lives.born[row]), row)
+        for row in range(len(lives))
+        if lives.parent[row] >= 0 and lives.born[row] > since
+    ]
+    apart, found = 1.0, {}
+    for tick, row in sorted(births, reverse=True):
+        before = living_after(lives, tick - 1)
+        older = [each for at, each in births if at == tick and each <= row]
+        alive = len(before) + len(older)  # children are born before others die
+        apart *= 1 - 2 / (alive * (alive - 1))
+        found[int(lives.ended.max()) - tick] = 1 - apart
+    return found
+
+
+GROWN: list[Event] = [([0], []), ([0, 1], []), ([2], [1]), ([1, 3], []), ([], [2, 0]), ([1], [])]
+
+
+def test_drift_alone_is_told_from_the_births_and_the_population_since_the_founding() -> None:
+    """The population grows and shrinks; births before an extinction, and founders, do not count."""
+    died_out: list[Event] = [([0], []), ([], [0, 1])]
+    for lives, since in ((walked(GROWN), 0), (walked(died_out + GROWN), 2)):
+        expected = chance_to_have_met(lives, since)
+        assert len(expected) == 5
+        era = last_era(lives)
+        times = neutral(era, Turnover.of(era))
+        found = dict(zip(times.back.tolist(), times.share.tolist(), strict=True))
+        assert found == pytest.approx(expected)
+        reached = [back for back, share in expected.items() if share >= 0.5]
+        assert times.median == reached[0]
+
+
+def test_drift_alone_in_a_fork_is_told_from_births_after_it() -> None:
+    """Organisms that were alive at the fork, also those born in its tick, did not meet after it."""
+    lives = walked(GROWN + GROWN)
+    fork = lives.recorded_since(8)
+    assert (fork.born == 8).any()
+    expected = chance_to_have_met(lives, since=8)
+    times = neutral(fork, Turnover.of(fork))
+    assert dict(zip(times.back.tolist(), times.share.tolist(), strict=True)) == pytest.approx(
+        expected
+    )
+
+
+def test_the_tree_of_a_fork_begins_with_the_births_of_those_alive_at_it() -> None:
+    fork = walked(GROWN + GROWN).recorded_since(8)
+    end, parents = int(fork.ended.max()), fork.parent_row.tolist()
+    length = 0
+    for tick in range(end):
+        carriers = set()
+        for row in living_after(fork, end):
+            line = [row]
+            while parents[line[-1]] >= 0:
+                line.append(parents[line[-1]])
+            carriers |= set([each for each in line if fork.born[each] <= tick][:1])
+        length += len(carriers)
+    assert phylogenetic_diversity(fork, np.array([end])).tolist() == [length]

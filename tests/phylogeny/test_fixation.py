@@ -116,3 +116,32 @@ def test_a_sweep_that_is_under_way_is_the_youngest_beyond_one_half() -> None:
     (only,) = sweeps(lives)
     assert (only.organism, only.half, only.fixed, only.duration) == (1, 3, None, None)
     assert only.living == 3
+
+
+def test_of_two_sweeps_under_way_the_younger_counts() -> None:
+    """Of seven, five descend from organism 1 of tick 1, and four from its child of tick 2."""
+    lives = lives_of([-1, 0, 1, 0, 2, 2, 2], [0, 1, 2, 3, 4, 5, 6], [9] * 7, [False] * 7)
+    (only,) = sweeps(lives)
+    assert (only.organism, only.half, only.fixed, only.living) == (2, 6, None, 7)
+
+
+def test_sweeps_of_a_fork_are_those_of_organisms_born_after_it() -> None:
+    """Two sweeps are those of organisms alive at the fork, one of them born in its tick."""
+    lives = lives_of(
+        parent=[-1, 0, 1, 1, 2, 4],
+        born=[0, 4, 10, 10, 15, 17],
+        ended=[11, 16, 30, 20, 30, 30],
+        died=[True, True, False, True, False, False],
+    )
+    fork = lives.recorded_since(10)
+    assert fork.id.tolist() == [0, 1, 2, 3, 4, 5]
+    assert [each.organism for each in sweeps(lives)] == [1, 2, 4]
+    (under_way,) = sweeps(fork)
+    assert (under_way.organism, under_way.fixed, under_way.half) == (4, None, 20)
+
+
+def test_in_a_world_without_life_sweeps_lead_to_the_last_to_die() -> None:
+    """Organism 1 and its children outlive the founder; the last of three dies at tick 9."""
+    lives = lives_of([-1, 0, 1, 1], [0, 2, 3, 4], [5, 7, 9, 8], [True] * 4)
+    found = sweeps(lives)
+    assert [(each.organism, each.half, each.fixed) for each in found] == [(1, 3, 5), (2, 8, 8)]

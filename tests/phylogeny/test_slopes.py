@@ -10,7 +10,7 @@ from primordia.phylogeny.drift import drift
 from primordia.phylogeny.frequencies import founders, founding_tick, instants, lines_of
 from primordia.phylogeny.lines import WorldLines, lines_of_world, two_sided
 from primordia.phylogeny.living import Census, Turnover
-from primordia.phylogeny.slopes import observed, of_shadows
+from primordia.phylogeny.slopes import between, observed, of_shadows
 from tests.pedigrees import HISTORY, Event, line_to, lives_of, living_after, moran, walked
 from tests.synthetic import alive, world_of
 
@@ -26,13 +26,13 @@ def test_the_slope_of_a_logistic_rise_is_its_coefficient() -> None:
 
 def test_the_slope_is_that_of_weighted_least_squares() -> None:
     rng = np.random.default_rng(1)
-    ticks, living = np.arange(100, 400, 10), np.full(30, 80)
-    counts = rng.integers(0, 81, (30, 2))
-    share = counts / 80
+    ticks, living = np.arange(100, 400, 10), 40 + 4 * np.arange(30)[::-1]
+    counts = rng.integers(0, 41, (30, 2)) + 2 * np.arange(30)[::-1, None]
+    share = counts / living[:, None]
     for line, slope in enumerate(observed(counts, living, ticks)):
         inside = (share[:, line] >= 0.05) & (share[:, line] <= 0.95)
         x = share[inside, line]
-        weights = np.sqrt(80 * x * (1 - x))  # polyfit squares them
+        weights = np.sqrt(living[inside] * x * (1 - x))  # polyfit squares them
         expected = np.polyfit(ticks[inside], np.log(x / (1 - x)), 1, w=weights)[0]
         assert slope == pytest.approx(expected, rel=1e-6)
 
@@ -41,6 +41,13 @@ def test_a_line_needs_some_instants_between_the_bounds() -> None:
     counts = np.array([[2, 2, 2, 2, 98, 98], [40, 41, 42, 43, 50, 100], [10, 20, 30, 40, 99, 99]]).T
     found = observed(counts, np.full(6, 100), np.arange(6))
     assert np.isfinite(found).tolist() == [False, True, False]
+
+
+@pytest.mark.parametrize("living", [20, 60, 100, 1000])
+def test_shares_of_5_and_of_95_percent_are_still_measured(living: int) -> None:
+    low, high = living // 20, living - living // 20
+    counts = np.array([0, low - 1, low, low + 1, high - 1, high, high + 1, living])
+    assert between(counts, living).tolist() == [False, False, True, True, True, True, False, False]
 
 
 SIZE, BIRTHS = 40, 1600

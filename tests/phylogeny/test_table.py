@@ -14,7 +14,7 @@ from hypothesis import given
 from primordia.errors import InputError, Trouble
 from primordia.phylogeny import formats
 from primordia.phylogeny.newick import newick
-from primordia.phylogeny.phylogeny import Phylogeny
+from primordia.phylogeny.phylogeny import Phylogeny, stacked
 from primordia.phylogeny.reduce import chosen
 from primordia.phylogeny.table import table
 from tests.phylogeny.forests import (
@@ -218,3 +218,53 @@ def test_wrong_choices_are_refused(tmp_path: Path) -> None:
     whole.lives.id[1] = 10**12
     with pytest.raises(Trouble, match="10\\^12"):
         table(whole)
+
+
+def parted(mate: list[int | None]) -> Phylogeny:
+    """Return organisms 4 to 7 of a fork: the first parent of 5 is not on record, that of 6 is 4."""
+    whole = forest([(0, 0, False)] * 4 + [(1, 1, True), (3, 1, True), (2, 1, True), (1, 1, True)])
+    later = whole.take(np.arange(4, 8))
+    return Phylogeny(later.lives, {"mate": pa.array(mate, pa.int64())}, {})
+
+
+def test_only_a_child_whose_first_parent_is_on_record_has_a_mate_there() -> None:
+    """A mate that is not on record is none, and a root has no mate."""
+    rooted = parted([2, 4, 5, 1]).rooted()
+    assert rooted.lives.parent.tolist() == [-1, -1, 4, 6]
+    assert rooted.of_births["mate"].to_pylist() == [None, None, 5, None]
+    assert table(rooted)["ancestor_list"].to_pylist() == ["[NONE]", "[NONE]", "[4,5]", "[6]"]
+    line = table(chosen(rooted, 5))
+    assert line["id"].to_pylist() == [5]
+
+
+@pytest.mark.parametrize("mate", [6, 7])
+def test_a_mate_that_is_not_older_is_damage(mate: int) -> None:
+    with pytest.raises(Trouble, match="the mate of organism 6 is not older"):
+        parted([None, None, mate, 5]).rooted()
+
+
+def test_facts_of_a_run_and_its_fork_follow_one_another() -> None:
+    """A fork may count more than the run did, or less; what only one of them has is null elsewhere."""
+    one = {"food": pa.array([0.5, 2.0]), "mate": pa.array([None, 3], pa.int64())}
+    other = {"size": pa.array([7, 8, 9], pa.int32()), "food": pa.array([1, None, 4], pa.int32())}
+    found = stacked(one, other, (2, 3))
+    assert {name: (each.to_pylist(), str(each.type)) for name, each in found.items()} == {
+        "food": ([0.5, 2, 1, None, 4], "double"),
+        "mate": ([None, 3, None, None, None], "int64"),
+        "size": ([None, None, 7, 8, 9], "int32"),
+    }
+
+
+def test_a_part_may_be_one_world_and_one_line_of_it() -> None:
+    """A line is of world 0 if no world is named."""
+    small, large = [(0, 0, True), (1, 1, True)], [(0, 0, True), (1, 1, False), (2, 1, True)]
+    whole, world = forest(small, large, small), 10**12
+    for number, first in ((0, 0), (1, 2), (2, 5)):
+        part = table(chosen(whole, world=number))
+        assert part.equals(table(whole).slice(first, 3 if number == 1 else 2))
+    assert table(chosen(whole, 1))["id"].to_pylist() == [0, 1]
+    assert table(chosen(whole, 2, 1))["id"].to_pylist() == [world, world + 2]
+    assert table(chosen(whole, world=1, extant=True))["id"].to_pylist() == [world, world + 2]
+    assert table(chosen(whole, extant=True))["id"].to_pylist() == [
+        *(0, 1, world, world + 2, 2 * world, 2 * world + 1)
+    ]

@@ -1,0 +1,203 @@
+"""What is told of a line of descent, beside walks through pedigrees, one organism and tick at a time."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from primordia.errors import InputError
+from primordia.history import lineage
+from primordia.law.world import Cause
+from primordia.phylogeny import descent
+from primordia.phylogeny.descent import Ancestors, ancestors
+from primordia.runs.lives import ALIVE, Lives
+from tests.pedigrees import line_to, lives_of, living_after, moran, walked
+from tests.synthetic import world_of
+
+SPLIT: list = [([0], []), ([0, 1], [2]), ([1], [0]), ([0, 2], []), ([], [1])]
+"""A world in which lines die out and the last common ancestor is young."""
+DYING: list = [([0], []), ([0, 1], []), ([], [0, 1, 2, 3]), ([0], []), ([1, 0], [0]), ([], [1])]
+"""A world of one founder that dies out at tick 3 and is founded again."""
+PEDIGREES = {
+    "moran": moran(7, 70, name=3),
+    "apart": walked([([0, 1], []), ([1], [2]), ([0], [])], founders=2),
+    "split": walked(SPLIT * 3),
+    "founded again": walked(DYING),
+}
+
+
+def followed(lives: Lives, organism: int, monkeypatch: pytest.MonkeyPatch) -> Ancestors:
+    """Follow a line in world 5 of an arm, which is the only world of its run."""
+
+    def sizes(run: Any, number: int, world: int) -> np.ndarray:
+        """Return sizes of two blocks that depend on the organism."""
+        line = lineage.descent(run.lives, number, world)
+        found = np.stack([3.0 * line, 4.0 * line], axis=1)
+        found[0] = np.nan
+        return found
+
+    run = SimpleNamespace(
+        lives=lives,
+        config=SimpleNamespace(fork=None, begins=0),
+        layout=SimpleNamespace(names=["hidden", "output"]),
+    )
+    monkeypatch.setattr(descent, "run_of", lambda *_: (run, 0))
+    monkeypatch.setattr(descent, "changes", sizes)
+    return ancestors(run, organism, world=5)
+
+
+def first_after(lives: Lives, ancestor: int, share: float) -> int | None:
+    """Return the first tick after which an ancestor's descendants are more than a share, or all."""
+    for tick in range(int(lives.ended.max()) + 1):
+        living = living_after(lives, tick)
+        own = sum(ancestor in line_to(lives, row) for row in living)
+        if living and (own > share * len(living) or own == len(living)):
+            return tick
+    return None
+
+
+def common_of(lives: Lives) -> dict[str, int] | None:
+    """Return the youngest ancestor of all the living, and since when they all descend from it."""
+    end = int(lives.ended.max())
+    lines = [line_to(lives, row) for row in living_after(lives, end)]
+    row = next((each for each in lines[0] if all(each in line for line in lines)), None)
+    if row is None:
+        return None
+    since = end
+    while all(row in line_to(lives, each) for each in living_after(lives, since - 1)):
+        since -= 1
+    generation = len(line_to(lives, row)) - 1
+    born = int(lives.born[row])
+    return {"organism": row, "born": born, "since": max(since, born), "generation": generation}
+
+
+@pytest.mark.parametrize("name", PEDIGREES)
+def test_all_that_is_told_of_a_line_is_that_of_a_walk(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lives = PEDIGREES[name]
+    living = living_after(lives, int(lives.ended.max()))
+    for organism in (len(lives) - 1, len(lives) // 2):
+        line, steps = line_to(lives, organism)[::-1], []
+        for place, row in enumerate(line):
+            of = int(lives.parent[row])
+            changed = {"hidden": 3.0 * row, "output": 4.0 * row}
+            steps.append(
+                {
+                    "generation": place,
+                    "organism": row,
+                    "parent": None if of < 0 else of,
+                    "born": lives.born[row],
+                    "lifespan": lives.ended[row] - lives.born[row],
+                    "cause": "fatal" if lives.died[row] else None,
+                    "children": lives.parent.tolist().count(row),
+                    "birth_cause": "founder" if of < 0 else "mutant",
+                    "change": dict.fromkeys(changed, None) if of < 0 else changed,
+                    "tenth": first_after(lives, row, 0.1),
+                    "half": first_after(lives, row, 0.5),
+                    "fixed": first_after(lives, row, 1),
+                }
+            )
+        found = followed(lives, organism, monkeypatch)
+        assert found.to_dict() == {
+            "organism": organism,
+            "world": 5,
+            "blocks": ["hidden", "output"],
+            "changes_unknown": None,
+            "roots_of_the_living": len({line_to(lives, row)[-1] for row in living}),
+            "common_ancestor": common_of(lives),
+            "line": steps,
+        }
+        assert found.size is not None
+        assert found.size[1:].tolist() == [5.0 * row for row in line[1:]]
+
+
+@pytest.mark.parametrize("name", PEDIGREES)
+def test_shares_of_descendants_are_those_of_a_count(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The instants begin with the birth of the line's oldest, and end with the last tick."""
+    lives = PEDIGREES[name]
+    found = followed(lives, len(lives) - 1, monkeypatch)
+    line = found.line.id.tolist()
+    ticks = found.census.ticks.tolist()
+    assert (ticks[0], ticks[-1]) == (lives.born[line[0]], lives.ended.max())
+    for places in (np.arange(len(line)), np.arange(len(line))[1::2]):
+        for tick, shares in zip(ticks, found.shares(places), strict=True):
+            living = living_after(lives, tick)
+            counts = [sum(line[at] in line_to(lives, row) for row in living) for at in places]
+            assert shares.tolist() == [count / len(living) for count in counts]
+
+
+def test_shares_begin_at_the_fork_if_the_line_is_older(monkeypatch: pytest.MonkeyPatch) -> None:
+    fork = moran(7, 70, name=3).recorded_since(40)
+    oldest = int(fork.id[np.argmax(fork.entered)])
+    found = followed(fork, oldest, monkeypatch)
+    assert found.line.born[0] < 40
+    assert found.census.ticks[[0, -1]].tolist() == [40, 70]
+    assert found.census.living.tolist() == [7] * len(found.census.ticks)
+
+
+@pytest.mark.parametrize("count", [19, 20, 21, 30, 57, 400])
+def test_telling_places_are_the_largest_gains_and_evenly_spaced_others(count: int) -> None:
+    """Nine of 20 places have the largest ratios of lifespan to parent's; of equals, the older."""
+    spans = [(7 * place) % 23 for place in range(count)]
+    line = world_of([(place, each, True) for place, each in enumerate(spans)], until=999)
+    found: Any = SimpleNamespace(line=line)
+    places = Ancestors.telling(found, 20).tolist()
+    lived = line.lifespan.tolist()
+    ratio = {place: lived[place] / lived[place - 1] for place in range(1, count)}
+    gains = sorted(ratio, key=lambda place: (-ratio[place], place))[:9]
+    assert {0, count - 1, *gains} <= set(places)
+    assert min(count, 15) <= len(places) <= 20
+    others = [place for place in places if place not in gains]
+    assert max(np.diff(others)) <= 4 * count / 19
+
+
+def test_each_run_gives_the_changes_after_its_fork(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An organism born in the tick of a fork was born in the run that was forked."""
+    born = [0, 10, 20, 30, 31, 45]
+    line = lives_of([-1, 0, 1, 2, 3, 4], born, [50] * 6, [False] * 6)
+    begins = {"again": 45, "other": 40, "fork": 30, "run": 0}
+    runs: list[Any] = [
+        SimpleNamespace(
+            name=name,
+            config=SimpleNamespace(begins=tick),
+            layout=SimpleNamespace(names=["a"]),
+        )
+        for name, tick in begins.items()
+    ]
+    asked: dict[str, int] = {}
+    untrusted: list[str] = []
+
+    def sizes(run: Any, organism: int, world: int) -> np.ndarray:
+        """Return the number of the run, for each organism of the line that it has on record."""
+        if run.name in untrusted:
+            raise InputError(f"{run.name} is not trusted")
+        assert world == 1
+        asked[run.name] = organism
+        return np.full((organism + 1, 1), float(len(run.name)))
+
+    monkeypatch.setattr(descent, "changes", sizes)
+    found, unknown = descent._changes(runs, line, 1)
+    assert (asked, unknown) == ({"other": 5, "fork": 4, "run": 3}, None)
+    assert found is not None
+    assert found[:, 0].tolist() == [3, 3, 3, 3, 4, 5]
+    untrusted.append("run")
+    found, unknown = descent._changes(runs, line, 1)
+    assert unknown == "run is not trusted"
+    assert found is not None
+    assert found[4:, 0].tolist() == [4, 5]
+    untrusted.append("other")
+    assert descent._changes(runs, line, 1) == (None, "other is not trusted")
+
+
+def test_the_cause_of_each_death_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    causes = [*Cause, ALIVE]
+    count = len(causes)
+    lives = lives_of(list(range(-1, count - 1)), [0] * count, [9] * count, [True] * count)
+    lives.cause[:] = causes
+    told = followed(lives, count - 1, monkeypatch).to_dict()["line"]
+    named = [cause.name.lower().replace("_", "-") for cause in Cause]
+    assert [step["cause"] for step in told] == [*named, None]

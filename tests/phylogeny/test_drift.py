@@ -1,0 +1,121 @@
+"""The neutral shadow, event by event: what is drawn, how often, and what does not depend on it."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from primordia.phylogeny import drift as module
+from primordia.phylogeny import slopes
+from primordia.phylogeny.drift import Deal, drift
+from primordia.phylogeny.living import Census, Turnover
+from primordia.runs.lives import Lives
+from tests.pedigrees import lives_of, moran, walked
+
+
+def dealt(lives: Lives, ticks: list[int], lines: int) -> Any:
+    return drift(lives, Turnover.of(lives), np.array(ticks), lines, seed=2)
+
+
+def test_each_of_the_living_is_the_parent_or_dies_with_equal_probability() -> None:
+    born = dealt(walked([([0], [])], founders=5), [0, 1], 5)
+    died = dealt(walked([([], [0])], founders=5), [0, 1], 5)
+    for found, changed, others in ((born, 2 / 6, 1 / 6), (died, 0, 1 / 4)):
+        assert found.final.shape == (200, 5)
+        assert np.sort(np.abs(found.final - others))[:, :4] == pytest.approx(0)
+        mean = np.isclose(found.final, changed).mean(axis=0)
+        assert mean.sum() == pytest.approx(1)
+        assert mean == pytest.approx(np.full(5, 0.2), abs=0.1)
+        np.testing.assert_allclose(found.largest[:, 0], 1 / 5)
+        np.testing.assert_allclose(found.largest[:, 1], max(changed, others))
+        np.testing.assert_allclose(found.effective[:, 0], 5)
+    np.testing.assert_allclose(born.effective[:, 1], 36 / (4 * 1 + 4))
+    np.testing.assert_allclose(died.effective[:, 1], 4)
+
+
+def test_a_line_that_is_alone_is_all_of_the_living_however_many_they_are() -> None:
+    lives = walked([([0], []), ([0, 1], []), ([], []), ([], [0, 1, 2]), ([0], [])])
+    found = dealt(lives, [0, 1, 2, 3, 4, 5], 1)
+    assert (found.final == 1).all()
+    assert (found.largest == 1).all()
+    assert (found.effective == 1).all()
+
+
+def test_draws_depend_on_the_seed_the_first_tick_and_their_purpose() -> None:
+    lives = moran(5, 40)
+
+    def key(first: int, seed: int, what: int) -> tuple[int, int]:
+        ticks = np.array([first, 30])
+        found = Deal.of(lives, Turnover.of(lives), ticks, seed, what).key
+        return int(found.hi), int(found.lo)
+
+    given = [(4, 7, 0), (5, 7, 0), (4, 8, 0), (4, 7, 1), (4, 7, 0)]
+    keys = [key(*each) for each in given]
+    assert keys[0] == keys[-1]
+    assert len({*keys}) == 4
+
+
+def test_slopes_are_drawn_apart_from_the_course_of_all_lines(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked, make = [], Deal.of
+    monkeypatch.setattr(
+        Deal, "of", lambda *given, what: asked.append(what) or make(*given, what=what)
+    )
+    lives = walked([([0], [])], founders=5)
+    dealt(lives, [0, 1], 5)
+    census = Census(lives, np.array([0, 1]))
+    monkeypatch.setattr(slopes, "_drift_on", lambda *_: None)
+    slopes.of_shadows(census, Turnover.of(lives), np.ones((2, 1), int), seed=2)
+    assert len({*asked}) == len(asked) == 2
+
+
+@pytest.mark.parametrize(
+    ("events", "lines", "number"),
+    [(50, 2, 10), (50, 1, 20), (50, 4, 5), (50, 10, 4), (0, 3, 20), (51, 2, 9)],
+)
+def test_more_draws_leave_fewer_shadows_within_bounds(
+    events: int, lines: int, number: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module, "DRAWS", 1000)
+    none: Any = None
+    deal = Deal(none, none, none, places=np.array([0, events]), living=np.array([3, 3]))
+    assert deal.replicates(lines, fewest=4, most=20) == number
+
+
+def test_each_line_with_a_slope_counts_as_draws(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without events lines keep their numbers; here 40 births of founders are the events."""
+    lives = lives_of([-1] * 80, [0] * 40 + list(range(1, 41)), [40] * 80, [False] * 80)
+    monkeypatch.setattr(module, "DRAWS", 40 * 2 * 300)
+    monkeypatch.setattr(slopes, "_drift_on", lambda *_: None)
+    census = Census(lives, np.arange(0, 42, 2))
+    for lines, shadows in ((2, 300), (1, 600), (4, 200)):
+        counts = np.full((21, lines), 20)
+        found = slopes.of_shadows(census, Turnover.of(lives), counts, seed=1)
+        assert found.shape == (lines, shadows)
+
+
+def test_a_line_grows_and_shrinks_by_its_share_and_ends_with_all_or_nothing() -> None:
+    """Lines of 1, 2 and 3 of 5 are drawn in a fifth, two and three fifths of their shadows."""
+    for history, step in (([([0], [])], 1), ([([], [0])], -1)):
+        lives = walked(history, founders=5)
+        deal = Deal.of(lives, Turnover.of(lives), np.array([0, 1]), seed=4, what=1)
+        now = np.repeat([0, 1, 2, 3, 5], 50).astype(np.int32)
+        before = now.copy()
+        slopes._drift_on(now, deal, 0, 1)
+        changed = (now - before).reshape(5, 50)
+        assert not changed[0].any()
+        assert (now[-50:] == 0).all()
+        for count in (1, 2, 3):
+            assert {*changed[count].tolist()} == {0, step}
+            assert (changed[count] != 0).mean() == pytest.approx(count / 5, abs=0.16)
+
+
+def test_shadows_of_lines_pass_each_event_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    passed: list[int] = []
+    monkeypatch.setattr(slopes, "EVENTS", 7)
+    monkeypatch.setattr(slopes, "_drift_on", lambda _, deal, *part: passed.extend(range(*part)))
+    lives, ticks = moran(5, 60), np.array([3, 4, 5, 20, 60])
+    counts = np.ones((5, 2), int)
+    slopes.of_shadows(Census(lives, ticks), Turnover.of(lives), counts, seed=1)
+    assert passed == list(range(2 * (60 - 3)))
