@@ -99,8 +99,9 @@ def test_an_organism_is_told_by_its_own_numbers(
     perceived: list[tuple[int, int]],
 ) -> None:  # fmt: skip
     shown, of = Companion(), engine()
-    for step in [0, *[1] * steps]:
-        cell = shown.find(of, None, step)
+    cell: Any = shown.find(of, None)
+    for _ in range(steps):
+        cell = shown.find(of, None, step=1)
     rows = text(shown.rows(of, None, Room(60, 20, letters=False)))
     food = [] if eaten is None else [f"food eaten {eaten}"]
     assert rows == [

@@ -141,7 +141,12 @@ def test_steps_that_were_not_lived_are_forgotten_with_the_pause(clock: Clock) ->
     pace.pause()
     assert not pace.paused
     pace.pause()
-    pace(at(0), lambda seconds: (waits.append(seconds), pace.step()))
+
+    def react(seconds: float) -> None:
+        waits.append(seconds)
+        pace.step()
+
+    pace(at(0), react)
     assert waits == [NAP]
 
 
@@ -160,7 +165,7 @@ def test_the_time_of_a_pause_does_not_count(clock: Clock) -> None:
 
 
 def test_a_signal_ends_every_wait(clock: Clock, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(paces.interrupts, "came", lambda: True)
+    monkeypatch.setattr("primordia.interrupts.came", lambda: True)
     pace = Pace()
     pace.pause()
     pace(at(0), clock.sleep)

@@ -65,7 +65,7 @@ def test_the_numbers_are_those_of_the_world_that_is_shown_and_the_speed_is_that_
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """In 2 s the worlds lived 10, 40 and 0 organism-ticks. Takeovers are known of two worlds only."""
-    clock = SimpleNamespace(perf_counter=lambda: clock.now, now=0.0)
+    clock: Any = SimpleNamespace(perf_counter=lambda: clock.now)
     monkeypatch.setattr(views, "time", clock)
     births, deaths = [11, 22, 33], [[each] + [0] * 6 for each in (1, 2, 4)]
     first = status(births=births, deaths=deaths, organism_ticks=[100, 200, 300])
@@ -74,7 +74,7 @@ def test_the_numbers_are_those_of_the_world_that_is_shown_and_the_speed_is_that_
         world: SimpleNamespace(takeovers=[5] * (3 + world), line_of=defaultdict(int))
         for world in (0, 1)
     }
-    expected = {
+    expected: dict[str, list[str | None]] = {
         "alive": ["6 of 12", "1 of 4", "2 of 4", "3 of 4"],
         "tick": ["100", "100", "99", "98"],
         "births": ["66", "11", "22", "33"],
