@@ -9,6 +9,7 @@ import pytest
 from primordia.history.lines import NO_PARENT, Turnover
 from primordia.live import descent
 from primordia.live.descent import Descent
+from tests.live.posed import posed
 
 
 def follow(followed: Descent, births: range, wall_s: float = 0.0) -> None:
@@ -47,8 +48,78 @@ def test_with_time_there_may_be_more_births() -> None:
     assert followed.takeovers([0]) is None
 
 
+def births(*numbers: int, parent: int = NO_PARENT, tick: int = 0) -> Turnover:
+    """Return births in one tick, without deaths."""
+    born, none = np.array(numbers, np.int64), np.zeros(0, np.int64)
+    return Turnover(born, np.full(len(born), parent), np.full(len(born), tick), none, none)
+
+
+def deaths(*numbers: int, tick: int) -> Turnover:
+    """Return deaths in one tick, without births."""
+    dead, none = np.array(numbers, np.int64), np.zeros(0, np.int64)
+    return Turnover(none, none, none, dead, np.full(len(dead), tick))
+
+
+def status(happened: list[Turnover], world: Any = None, cells: int = 64) -> Any:
+    engine = SimpleNamespace(
+        law=SimpleNamespace(cells=cells), state=SimpleNamespace(world=world), events=happened
+    )
+    return SimpleNamespace(engine=engine, wall_s=0.0)
+
+
+EMPTY = posed([[0] * 64] * 3, [[0] * 64] * 3, [1] * 3)
+
+
+def test_deaths_count_as_births_do() -> None:
+    followed = Descent()
+    followed.follow(status([births(*range(6))], EMPTY), 1)
+    followed.follow(status([deaths(0, 1, 2, 3, tick=1)]), 1)
+    assert followed.takeovers([0]) is not None
+    followed.follow(status([deaths(4, tick=2)]), 1)
+    assert followed.takeovers([0]) is None
+
+
+def test_takeovers_are_those_of_the_named_worlds_and_known_only_of_worlds_that_are_shown() -> None:
+    """Each world has four cells, so lines begin with two organisms."""
+    followed = Descent()
+    followed.follow(status([births(0, 1)] * 3, EMPTY, cells=4), 3)
+    followed.follow(status([deaths(0, tick=1), births(), deaths(1, tick=1)], cells=4), 3)
+    assert [followed.takeovers(worlds) for worlds in ([0], [1], [2], [0, 1, 2])] == [1, 0, 1, 2]
+    followed.follow(status([births()] * 2, cells=4), 2)
+    assert set(followed.lines) == {0, 1}
+    assert followed.takeovers([0, 1]) == 1
+    assert followed.takeovers([0, 1, 2]) is None
+
+
+def test_the_lines_of_a_run_that_goes_on_begin_with_its_own_living() -> None:
+    """The second of two worlds has organisms 9 and 8, whose line takes over when 8 has died."""
+    world = posed(
+        [[1, 0, 0, 0], [0, 1, 1, 0]], [[0] * 4] * 2, [5, 5], number=[[7, 0, 0, 0], [9, 9, 8, 0]]
+    )
+    followed = Descent()
+    followed.follow(status([births(), births()], world, cells=4), 2)
+    assert [set(lines.line_of) for lines in followed.lines.values()] == [{7}, {8, 9}]
+    followed.follow(status([births(), deaths(8, tick=6)], cells=4), 2)
+    assert [followed.takeovers([each]) for each in (0, 1)] == [0, 1]
+
+
+def test_lines_begin_with_sixteen_organisms_or_with_half_of_the_cells() -> None:
+    for cells, crowd in ((1, 1), (4, 2), (31, 15), (32, 16), (64, 16)):
+        followed, world = Descent(), posed([[0] * cells], [[0] * cells], [1])
+        followed.follow(status([births(0)], world, cells), 1)
+        for number in range(1, crowd):
+            assert followed.lines[0].renewals == []
+            followed._followed = 0
+            followed.follow(status([births(number, parent=0, tick=number)], cells=cells), 1)
+        assert followed.lines[0].renewals == [crowd - 1]
+
+
 def test_lines_of_large_worlds_are_not_followed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Descent, "CELLS", 63)
     followed = Descent()
     follow(followed, range(3))
     assert followed.takeovers([0]) is None
+    monkeypatch.setattr(Descent, "CELLS", 64)
+    followed = Descent()
+    follow(followed, range(3))
+    assert followed.takeovers([0]) == 0

@@ -1,6 +1,7 @@
 """The view's error threshold is that of the records, as long as it has seen all births."""
 
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -8,9 +9,12 @@ import pytest
 
 import primordia
 from primordia.history.threshold import Threshold, over_births
+from primordia.law.events import BIRTHS, DEATHS, Rows
+from primordia.law.world import Cause
 from primordia.live import ground
 from primordia.live.ground import Ground, Medians, medians
 from primordia.runs import loop
+from primordia.runs.lives import ALIVE
 from primordia.runs.loop import Status
 from tests.worlds import MEADOW, config
 
@@ -66,3 +70,67 @@ def test_worlds_that_tell_nothing_have_no_medians() -> None:
     assert medians([unknown]) is None
     known = Threshold(1, 0.5, 0.2, 2.0)
     assert medians([unknown, known]) == Medians(0.5, 0.2, pytest.approx(1.2))
+
+
+def test_the_living_count_up_to_the_tick_of_their_own_world() -> None:
+    """Worlds of two cells stopped at ticks 9 and 40. Nobody is known in the world between them."""
+    seen = Ground(2, 3)
+    seen.follow(chunk([(0, 0, 3), (1, 1, 5), (4, 0, 7)], [(0, 0, 8, Cause.STARVED)]))
+    lives = seen._lives(np.array([9, 1, 40]))
+    assert lives.world.tolist() == [0, 0, 2]
+    assert lives.ended.tolist() == [8, 9, 40]
+    assert lives.cause.tolist() == [Cause.STARVED, ALIVE, ALIVE]
+    assert lives.cell.tolist() == [0, 1, 0]
+    assert [each.world for each in seen.measured(np.array([9, 1, 40]))] == [0, 1, 2]
+
+
+def test_every_death_of_a_kept_birth_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Three births are kept. The first of them dies before four organisms that were there before it."""
+    monkeypatch.setattr(ground, "KEPT", 3)
+    seen = Ground(2, 2)
+    seen.follow(chunk([(0, 0, 0), (1, 1, 0), (2, 0, 0), (3, 1, 0)], []))
+    born = [(0, 2, 5), (2, 2, 7), (3, 3, 8)]
+    died = [(0, 2, 6), (0, 0, 7), (1, 1, 7), (2, 0, 7), (3, 1, 8), (2, 2, 9), (3, 3, 9)]
+    seen.follow(chunk(born[:1], []))
+    seen.follow(chunk(born[1:], [(*each, Cause.HAZARD) for each in died]))
+    lives = seen._lives(np.array([20, 20]))
+    assert (lives.id.tolist(), lives.ended.tolist()) == ([2, 2, 3], [6, 9, 9])
+    assert lives.died.all()
+
+
+def test_the_latest_births_of_a_long_chunk_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(ground, "KEPT", 3)
+    for sizes in ([9], [1, 8], [8, 1], [2, 2, 2, 3], [3, 3, 3], [4, 0, 5]):
+        seen, first = Ground(1, 1), 0
+        for size in sizes:
+            seen.follow(chunk([(0, n, n) for n in range(first, first + size)], []))
+            first += size
+        assert seen._lives(np.array([9])).id.tolist() == [6, 7, 8]
+
+
+def test_medians_are_of_each_number_and_lie_between_the_middle_ones() -> None:
+    known = [Threshold(0, 0.1, 0.9, 1.0), Threshold(1, 0.2, 0.1, 2.0), Threshold(2, 0.9, 0.2, 9.0)]
+    held = [
+        s * (1 - p * (1 - v)) for p, v, s in ((0.1, 0.9, 1.0), (0.2, 0.1, 2.0), (0.9, 0.2, 9.0))
+    ]
+    assert medians(known) == Medians(0.2, 0.2, pytest.approx(sorted(held)[1]))
+
+
+def chunk(births: list[tuple[int, int, int]], deaths: list[tuple[int, int, int, int]]) -> Any:
+    """Return events from births (cell, number, tick) of founders and deaths (cell, number, tick, cause).
+
+    Rows behind the last one that is filled mean nothing.
+    """
+    born, dead = (
+        np.array(rows, np.int64).reshape(-1, n).T for rows, n in ((births, 3), (deaths, 4))
+    )
+    none = np.zeros(len(births), np.int64)
+    of_births = dict(zip(("cell", "id", "tick"), born, strict=True))
+    of_deaths = dict(zip(("cell", "id", "tick", "cause"), dead, strict=True))
+    zeros = np.zeros(len(deaths), np.int64)
+    rows = (
+        BIRTHS.rows(**of_births, parent=none - 1, cause=none),
+        DEATHS.rows(**of_deaths, energy=zeros, food=zeros),
+    )
+    filled = [Rows(np.vstack([each, np.ones_like(each)]), np.int32(len(each))) for each in rows]
+    return SimpleNamespace(births=filled[0], deaths=filled[1])

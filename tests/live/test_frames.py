@@ -1,0 +1,130 @@
+"""When the view draws, and when plain lines are printed in its place."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from primordia.live import view as views
+from primordia.live import watching
+from primordia.live.watching import Plain
+from tests.live.test_view import status, view
+
+
+class Frames:
+    """A view whose frames take some seconds of a clock, and note when they began."""
+
+    def __init__(self, cost: float, monkeypatch: pytest.MonkeyPatch, keyboard: Any = None) -> None:
+        self.now, self.cost, self.began = 100.0, cost, list[float]()
+        clock = SimpleNamespace(perf_counter=lambda: self.now, sleep=lambda _: None)
+        monkeypatch.setattr(views, "time", clock)
+        self.view = view(keyboard=keyboard)
+        self.view._live = SimpleNamespace(update=self._update)
+        self.view._rows = lambda _: []
+        self.view._pace = lambda *_: None
+        self.view._pace.limited = False
+        self.moments: list[tuple[float, int]] = []
+        self.view._stage.follow = lambda *values: self.moments.append((self.now, values[3]))
+
+    def _update(self, *_: Any, **__: Any) -> None:
+        self.began.append(self.now)
+        self.now += self.cost
+
+    def live(self, seconds: float, each: float, worlds: int = 1) -> None:
+        """Let chunks of `each` seconds be lived."""
+        until, of = self.now + seconds, status(worlds)
+        while self.now < until:
+            self.view(of)
+            self.now += each
+
+
+@pytest.mark.parametrize(
+    ("cost", "between"), [(0.004, 0.4), (0.015, 1.5), (0.02, 2.0), (0.05, 2.0)]
+)
+def test_a_frame_is_drawn_after_a_hundred_times_its_cost_and_at_least_every_two_seconds(
+    cost: float, between: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    frames = Frames(cost, monkeypatch)
+    frames.live(8.0, 0.05)
+    np.testing.assert_allclose(np.diff(frames.began), between + cost, atol=0.0501)
+
+
+def test_a_past_moment_of_a_world_alone_is_taken_every_tenth_of_a_second(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    frames = Frames(0.0, monkeypatch)
+    frames.live(1.0, 0.03)
+    np.testing.assert_allclose(np.diff([at for at, _ in frames.moments]), 0.12)
+    frames.moments.clear()
+    frames.live(1.0, 0.03, worlds=3)
+    assert frames.moments == [], "of several worlds side by side none is taken"
+    frames.view._alone = 2
+    frames.live(1.0, 0.03, worlds=3)
+    assert {world for _, world in frames.moments} == {2}
+    frames.moments.clear()
+    frames.view._pace.limited = True
+    frames.live(1.0, 0.03)
+    np.testing.assert_allclose(np.diff([at for at, _ in frames.moments]), 0.03)
+
+
+def test_time_of_waiting_is_used_for_a_frame_that_is_not_drawn_yet(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    frames = Frames(0.0625, monkeypatch)
+    frames.view(status(1))
+    frames.view(status(1))
+    assert len(frames.began) == 1
+    frames.view._react(0.0625)
+    assert len(frames.began) == 1, "there is no more time than a frame takes"
+    frames.view._react(0.07)
+    frames.view._react(0.07)
+    assert len(frames.began) == 2, "a state is drawn once"
+
+
+def test_a_key_and_another_size_are_drawn_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    presses = iter(["", "", "w?", ""])
+    frames = Frames(0.05, monkeypatch, SimpleNamespace(pressed=lambda _: next(presses)))
+    frames.view(status(3))
+    assert len(frames.began) == 1
+    frames.view._console.size = frames.view._console.size._replace(width=50)
+    frames.view._react(0.0)
+    assert len(frames.began) == 2
+    frames.view._react(0.0)
+    assert (len(frames.began), frames.view._alone, frames.view._page) == (3, 0, 0)
+    frames.view._react(0.0)
+    assert len(frames.began) == 3
+
+
+def test_lines_are_followed_in_as_many_worlds_as_the_screen_has_rows(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    frames, asked = Frames(0.0, monkeypatch), list[int]()
+    frames.view._descent.follow = lambda _, shown: asked.append(shown)
+    for worlds in (2, 30, 31, 60):
+        frames.view(status(worlds, births=[1] * worlds))
+    assert asked == [2, 30, 30, 30]
+
+
+def test_a_plain_line_has_the_counts_of_all_worlds_every_two_seconds(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The first chunk is not counted. A line at 12 s has the 3,000 organism-ticks of 2 s before it."""
+    clock: Any = SimpleNamespace(perf_counter=lambda: clock.now)
+    monkeypatch.setattr(watching, "time", clock)
+    paced: list[Any] = []
+    plain = Plain(lambda of: paced.append(of))
+    for now, lived, tick in (
+        (10.0, 0, 9),
+        (11.9, 900, 50),
+        (12.0, 1000, 1234),
+        (13.9, 1, 1),
+        (14.0, 1600, 1500),
+    ):
+        clock.now = now
+        plain(status(3, tick, births=[1000, 20, 3], organism_ticks=[lived, lived, lived]))
+    assert len(paced) == 5, "the pace holds whether or not a line is printed"
+    assert capsys.readouterr().out.splitlines() == [
+        "  75.0 s  tick 1,234  alive 6  births 1,023  1.5 k organism-ticks/s",
+        "  75.0 s  tick 1,500  alive 6  births 1,023  900 organism-ticks/s",
+    ]

@@ -1,0 +1,124 @@
+"""What is painted: heights, letters, lights and colours, each computed here in another way."""
+
+import colorsys
+
+import numpy as np
+import pytest
+from rich.segment import Segment
+
+from primordia.live.paint import (
+    EMPTY,
+    Cells,
+    Row,
+    colour,
+    field,
+    levels,
+    mosaic,
+    padded,
+    photograph,
+    shades,
+    skyline,
+    strip,
+)
+
+BARS = " ▁▂▃▄▅▆▇█"
+AGES = np.array([0.0, 0.2, 0.4, 0.6, 0.8, 1.0])
+
+
+def text(rows: list[Row]) -> list[str]:
+    return ["".join(segment.text for segment in row) for row in rows]
+
+
+def colours(segment: Segment) -> tuple[tuple[int, ...], tuple[int, ...] | None]:
+    """Return red, green and blue of the upper and the lower half of a character."""
+    style = segment.style
+    assert style is not None
+    lower = None if style.bgcolor is None else tuple(style.bgcolor.get_truecolor())
+    return tuple(style.color.get_truecolor()), lower
+
+
+def test_age_is_on_a_logarithmic_scale_up_to_the_full_age() -> None:
+    """log(10) is half of log(100), and log(1) is 0."""
+    cells = Cells.of(np.zeros(6, np.int64), np.array([-3, 0, 9, 99, 100, 10**12]), full=99)
+    np.testing.assert_allclose(cells.age, [0, 0, 0.5, 1, 1, 1])
+
+
+@pytest.mark.parametrize("tall", [1, 2, 3])
+def test_a_bar_grows_in_equal_steps_from_one_eighth_to_all_of_its_rows(tall: int) -> None:
+    """A single row ends one eighth below the row above."""
+    most = 7 if tall == 1 else 8 * tall
+    heights = [1 + round(age * (most - 1)) for age in AGES]
+    expected = [
+        "".join(BARS[min(max(height - 8 * below, 0), 8)] for height in heights)
+        for below in reversed(range(tall))
+    ]
+    cells = Cells(np.zeros(6, np.int64), AGES)
+    assert text(skyline(cells, wide=1, tall=tall, letters=False)) == expected
+    wide = ["".join(2 * glyph + " " for glyph in row) for row in expected]
+    assert text(skyline(cells, wide=3, tall=tall, letters=False)) == wide
+
+
+def test_from_half_of_the_scale_on_a_letter_is_a_capital() -> None:
+    line = np.array([0, 0, 25, 26, 27, EMPTY])
+    ages = np.array([np.nextafter(0.5, 0), 0.5, 0.4, 0.6, 0.0, 1.0])
+    assert text([strip(Cells(line, ages), letters=True)]) == ["aAzAb·"]
+    assert text(field(Cells(line, ages), 2, 1, letters=True)) == ["aA", "zA", "b·"]
+
+
+def test_light_grows_with_each_quarter_of_the_age() -> None:
+    ages = np.array([0, 0.249, 0.25, 0.5, 0.749, 0.75, 1.0, 1.0])
+    line = np.array([3, 3, 3, 3, 3, 3, 67, EMPTY])
+    assert shades(Cells(line, ages)).tolist() == [12, 12, 13, 14, 14, 15, 15, -1]
+
+
+def test_neighbouring_hues_are_a_golden_section_apart_and_differ_in_lightness() -> None:
+    for hue in range(64):
+        angle, light, _ = colorsys.rgb_to_hls(*(part / 255 for part in colour(hue)))
+        around = (angle - hue * (5**0.5 - 1) / 2) % 1
+        assert min(around, 1 - around) < 0.01
+        assert light == pytest.approx(0.6 if hue % 2 else 0.7, abs=0.01)
+
+
+def test_a_character_of_a_mosaic_has_two_cells_each_as_light_as_its_age() -> None:
+    """The shade is 4 x hue + light; the lights are 40, 60, 80 and 100 % of the colour."""
+    numbers = np.array([[20, 21], [22, 23], [EMPTY, 20]])
+    (first,), (second,), (third,), (fourth,) = ([each] for row in mosaic(numbers) for each in row)
+    full = np.array(colour(5))
+    for segment, lights in ((first, (0.4, 0.8)), (second, (0.6, 1.0))):
+        for found, light in zip(colours(segment), lights, strict=True):
+            np.testing.assert_allclose(found, light * full, atol=1)
+    assert colours(third) == ((45, 45, 45), None), (
+        "nothing is below the last of an odd number of rows"
+    )
+    assert colours(fourth)[1] is None
+
+
+def test_a_cell_of_two_columns_has_one_row_and_a_cell_of_four_has_two() -> None:
+    cells = Cells(np.array([1, 2, 3, 4]), np.zeros(4))
+    for scale, high in ((1, 1), (2, 2), (4, 4)):
+        rows = field(cells, columns=2, scale=scale, letters=False)
+        assert text(rows) == ["▀" * 2 * scale] * high
+    (upper, _), (lower, _) = field(cells, columns=2, scale=2, letters=False)
+    for segment, line in ((upper, 1), (lower, 3)):
+        one, other = colours(segment)
+        assert one == other, "both halves are of one cell"
+        np.testing.assert_allclose(one, 0.4 * np.array(colour(line)), atol=1)
+
+
+def test_a_picture_keeps_its_colours_to_four_bits() -> None:
+    pixels = np.array([[[255, 15, 16]], [[0, 255, 0]], [[16, 31, 255]]], np.uint8)
+    (upper,), (lower,) = photograph(pixels)
+    assert colours(upper) == ((255, 0, 17), (0, 255, 0))
+    assert colours(lower) == ((17, 17, 255), None)
+
+
+def test_levels_go_in_eight_equal_steps_from_minus_one_to_one() -> None:
+    steps = [-1 + 2 * step / 7 for step in range(8)]
+    assert levels(np.array(steps)) == "▁▂▃▄▅▆▇█"
+    assert levels(np.array([-9.0, 9.0, -np.inf, np.inf])) == "▁█▁█"
+    assert levels(np.array([np.nan])) == levels(np.array([0.0])), "what is no number is drawn as 0"
+
+
+def test_a_row_is_padded_to_a_width_and_never_cut() -> None:
+    row = [Segment("ab"), Segment("c")]
+    assert text([padded(row, 5), padded(row, 3), padded(row, 1)]) == ["abc  ", "abc", "abc"]

@@ -1,0 +1,235 @@
+"""The numbers of the view: each is the count on record, in its place, with its unit."""
+
+from itertools import pairwise
+from typing import Any
+
+import pytest
+from rich.segment import Segment
+
+from primordia.law.world import Cause
+from primordia.live.ground import Medians
+from primordia.live.panel import (
+    Outlook,
+    duration,
+    fitting,
+    heading,
+    keys,
+    numbers,
+    panel,
+    saturation,
+    with_prefix,
+)
+from tests.live.posed import counted
+from tests.live.test_paint import text
+from tests.worlds import MEADOW, config
+
+RING, PAUSED = {"seed": 7, "cells": 1024}, "at most 3 ticks/s"
+WELL_MIXED = {**RING, "placement": {"topology": "well-mixed"}}
+
+
+@pytest.mark.parametrize(
+    ("settings", "about"),
+    [
+        (RING, "  seed 7, 1,024 cells on a ring"),
+        (WELL_MIXED, "  seed 7, 1,024 cells well-mixed"),
+        ({**RING, "placement": {"topology": "torus4"}}, "  seed 7, 1,024 cells on a torus"),
+        ({**RING, "seeds": 3}, "  3 worlds, seeds 7 to 9, 1,024 cells each on a ring"),
+        ({**WELL_MIXED, "seeds": 1000},
+         "  1,000 worlds, seeds 7 to 1006, 1,024 cells each well-mixed"),
+    ],
+)  # fmt: skip
+def test_the_heading_has_the_size_of_the_run_and_its_seeds(
+    settings: dict[str, Any], about: str
+) -> None:
+    of, clock = config(MEADOW, **settings), f"{PAUSED}, 1 min 5 s"
+    needed = len("meadow") + len(about) + 2 + len(clock)
+    (row,) = text([heading(of, PAUSED, 65.0, needed)])
+    assert row == f"meadow{about}  {clock}"
+    (row,) = text([heading(of, PAUSED, 65.0, needed - 1)])
+    shorter = about.rsplit(" on a " if " on a " in about else " ", 1)[0]
+    assert row == f"meadow{shorter}{' ' * (len(about) - len(shorter) + 1)}{clock}"
+    (row,) = text([heading(of, "", 65.0, 12)])
+    assert row == "meadow 1 min 5 s", "only the task and the time are always told"
+
+
+COUNTS: dict[str, Any] = {
+    "tick": [1200, 3400],
+    "alive": [5, 20],
+    "births": [1000, 234],
+    "deaths": [[7, 0, 30, 0, 0, 0, 0], [2, 0, 0, 900, 0, 30, 0]],
+    "extinctions": [1, 2],
+    "mean_age": 1234.6,
+    "oldest": 2345,
+}
+
+
+def test_each_number_is_that_of_all_worlds_that_are_shown() -> None:
+    found = numbers(
+        counted(2, **COUNTS), 16, Outlook(4500.0, 125.0), 6, Medians(0.25, 0.125, 1.375)
+    )
+    assert list(found.items()) == [
+        ("tick", "3,400"),
+        ("alive", "25 of 32"),
+        ("mean age", "1,235"),
+        ("births", "1,234"),
+        ("deaths", "969"),
+        ("oldest", "2,345"),
+        ("organism-ticks/s", "4.5 k"),
+        ("time left", "2 min 5 s"),
+        ("takeovers", "6"),
+        ("extinctions", "3"),
+        ("children mutate", "25%"),
+        ("mutants as good", "12%"),
+        ("good lines hold", "1.38"),
+    ]
+
+
+def test_unknown_numbers_are_left_out_and_numbers_of_nothing_are_not() -> None:
+    found = numbers(counted(1), 8, Outlook(None, None), None, None)
+    assert found == {
+        "tick": "0", "alive": "0 of 8", "mean age": "0", "births": "0", "deaths": "0", "oldest": "0",
+        "organism-ticks/s": "-", "extinctions": "0",
+    }  # fmt: skip
+    assert numbers(counted(1), 8, Outlook(0.0, 0.0), 0, None) == {
+        **found, "organism-ticks/s": "0", "takeovers": "0",
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("cells", "said"),
+    [(499_999, "25 of 999,998"), (500_000, "25 of 1.0 M"), (10**7, "25 of 20.0 M")],
+)
+def test_from_a_million_cells_on_numbers_are_short(cells: int, said: str) -> None:
+    assert numbers(counted(2, **COUNTS), cells, Outlook(None, None), None, None)["alive"] == said
+
+
+def test_at_most_five_numbers_stand_side_by_side_in_columns() -> None:
+    values, census = {f"name{n}": f"{n}" for n in range(7)}, counted(1)
+    for width, across in ((25, 1), (51, 1), (52, 2), (77, 2), (78, 3), (130, 5), (400, 5)):
+        rows = text(panel(values, census, [], width, 20))[:-2]
+        assert [row.split() for row in rows] == [
+            [part for n in range(at, min(at + across, 7)) for part in (f"name{n}", f"{n}")]
+            for at in range(0, 7, across)
+        ]
+        assert max(map(len, rows)) <= width
+        if across > 1:
+            column = min(width // across, 32)
+            assert [row.index("name") for row in rows] == [0] * len(rows)
+            assert rows[0].index("name1") == column
+            assert rows[0].rindex("1", 0, 2 * column) == 2 * column - 4, "values end in one column"
+
+
+def test_the_rows_of_numbers_are_cut_before_the_causes_and_the_bar() -> None:
+    values, bar = {f"name{n}": f"{n}" for n in range(5)}, [Segment("the bar")]
+    for height, kept in ((9, 5), (7, 5), (6, 4), (3, 1)):
+        rows = text(panel(values, counted(1), bar, 26, height))
+        assert [row.split()[0] for row in rows[:-2]] == [f"name{n}" for n in range(kept)]
+        assert rows[-2:] == ["died of  nothing yet", "the bar"]
+    assert len(panel(values, counted(1), bar, 26, 2)) == 2
+    assert text(panel(values, counted(1), bar, 26, 1))[0].split() == ["name0", "0"]
+
+
+@pytest.mark.parametrize(
+    ("width", "said"),
+    [
+        (200, "900 replaced, 30 time-limit, 30 hazard, 9 fatal"),
+        (56, "900 replaced, 30 time-limit, 30 hazard, 9 fatal"),
+        (55, "900 replaced, 30 time-limit, 30 hazard, ..."),
+        (41, "900 replaced, 30 time-limit, ..."),
+        (40, "900 replaced, ..."),
+        (15, "900 re"),
+    ],
+)
+def test_causes_of_death_of_all_worlds_are_told_by_their_number(width: int, said: str) -> None:
+    (row, _) = text(panel({}, counted(2, **COUNTS), [], width, 9))
+    assert row == f"died of  {said}"
+
+
+def test_every_cause_is_told_by_its_own_name() -> None:
+    for cause in Cause:
+        deaths = [[3 * (each == cause) for each in Cause]]
+        (row, _) = text(panel({}, counted(1, deaths=deaths), [], 80, 9))
+        assert row == f"died of  3 {cause.label}"
+
+
+def bar(filled: int, length: int, said: str) -> str:
+    return f"{'━' * filled}{'╌' * (length - filled)}  {said}"
+
+
+@pytest.mark.parametrize(
+    ("saturated", "width", "said"),
+    [
+        ([1234], 80, bar(24, 24, "saturated since tick 1,234")),
+        ([1234], 36, bar(8, 8, "saturated since tick 1,234")),
+        ([1234], 35, "saturated since tick 1,234"),
+        ([1234], 25, "saturated at 1,234"),
+        ([-1, 60, -1, -1], 80, bar(6, 24, "1 of 4 worlds saturated")),
+        ([0, 60, 70, -1], 80, bar(18, 24, "3 of 4 worlds saturated")),
+        ([0, 60, 70, 80], 80, bar(24, 24, "4 of 4 worlds saturated")),
+        ([-1, 60, -1, 5], 33, bar(4, 8, "2 of 4 worlds saturated")),
+        ([-1, 60, -1, 5], 22, bar(4, 9, "2 saturated")),
+    ],
+)
+def test_the_bar_has_the_share_of_saturated_worlds(
+    saturated: list[int], width: int, said: str
+) -> None:
+    assert text([saturation(counted(len(saturated), saturated=saturated), 8, 100, width)]) == [said]
+
+
+@pytest.mark.parametrize(
+    ("width", "said"),
+    [(46, bar(4, 8, "full and calm for 500 of 1,000 ticks")),
+     (45, "full and calm for 500 of 1,000 ticks"), (35, bar(8, 16, "calm 500 of 1,000")),
+     (17, "calm 500 of 1,000"), (16, "calm 50%"), (5, "calm ")],
+)  # fmt: skip
+def test_a_narrow_bar_says_less(width: int, said: str) -> None:
+    calm = counted(1, alive=[8], calm=[500])
+    assert text([saturation(calm, 8, 1000, width)]) == [said]
+
+
+ROWS = [
+    "space pause  s step  -+ speed  w world  o organism  n next  ? words  q quit",
+    "space pause s step -+ speed w world o organism n next ? q quit",
+    "space pause s -+ speed w world o organism n next ? q quit",
+    "space pause s -+ w world o organism n ? q quit",
+    "space s -+ w o n ? q",
+]
+
+
+def test_keys_lose_their_names_where_there_is_no_room() -> None:
+    for row, shorter in pairwise(ROWS):
+        assert text([keys("s-won?q", len(row))]) == [row]
+        assert text([keys("s-won?q", len(row) - 1)]) == [shorter]
+
+
+def test_keys_without_meaning_are_not_named() -> None:
+    """The first character of `space` is an s, too."""
+    assert text([keys("s-o?q", 80)]) == [
+        "space pause  s step  -+ speed  o organism  ? words  q quit"
+    ]
+    assert text([keys("s-won?q", 3)]) == [ROWS[-1]], "the keys themselves are always named"
+
+
+@pytest.mark.parametrize(
+    ("number", "said"),
+    [(0.4, "0"), (1, "1"), (999, "999"), (1000, "1.0 k"), (99_900, "99.9 k"), (100_000, "100 k"),
+     (1e6, "1.0 M"), (12.34e6, "12.3 M"), (1e9, "1.0 G"), (2.5e12, "2500 G")],
+)  # fmt: skip
+def test_a_prefix_stands_for_each_thousand(number: float, said: str) -> None:
+    assert with_prefix(number) == said
+
+
+@pytest.mark.parametrize(
+    ("seconds", "said"),
+    [(59.4, "59 s"), (59.6, "1 min 0 s"), (60, "1 min 0 s"), (3599.4, "59 min 59 s"),
+     (3599.6, "1 h 0 min"), (3600, "1 h 0 min"), (7325, "2 h 2 min"), (3.6e6 + 61, "1,000 h 1 min")],
+)  # fmt: skip
+def test_a_duration_has_its_two_largest_units(seconds: float, said: str) -> None:
+    assert duration(seconds) == said
+
+
+def test_the_first_text_that_fits_is_taken_or_the_beginning_of_the_last() -> None:
+    texts = ["abcdef", "abc", "ab"]
+    assert [fitting(texts, width) for width in (6, 5, 3, 2, 1, 0, -1)] == [
+        "abcdef", "abc", "abc", "ab", "a", "", "",
+    ]  # fmt: skip

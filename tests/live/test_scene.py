@@ -1,0 +1,260 @@
+"""Drawings of worlds: which cell is drawn where, how large, and what is said of it."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from primordia.history.lines import Lines
+from primordia.law.world import World
+from primordia.live.forms import Ring, Room, Torus
+from primordia.live.paint import EMPTY, Cells, mosaic
+from primordia.live.scene import Grid, Stage, cell_width
+from tests.live.posed import law, posed
+from tests.live.test_paint import colours, text
+
+
+def old(count: int) -> Cells:
+    """Return old cells, each of its own line."""
+    return Cells(np.arange(count), np.ones(count))
+
+
+def colour_room(width: int, height: int) -> Room:
+    return Room(width, height, letters=False)
+
+
+def letter_room(width: int, height: int) -> Room:
+    return Room(width, height, letters=True)
+
+
+# Forms.
+
+
+@pytest.mark.parametrize(
+    ("cells", "width", "height", "scale"),
+    [
+        (10, 79, 1, 7),
+        (10, 80, 1, 8),
+        (10, 99, 1, 8),
+        (80, 80, 1, 1),
+        (81, 80, 1, 0),
+        (10, 80, 0, 0),
+    ],
+)
+def test_a_cell_of_a_ring_is_as_wide_as_fits_and_at_most_eight_columns(
+    cells: int, width: int, height: int, scale: int
+) -> None:
+    assert Ring(cells).scale(colour_room(width, height)) == scale
+    assert Ring(cells).least == (cells, 1)
+
+
+@pytest.mark.parametrize(
+    ("room", "scale"),
+    [(colour_room(12, 4), 2), (colour_room(11, 9), 1), (colour_room(99, 5), 2), (colour_room(99, 6), 3),
+     (colour_room(999, 99), 16), (colour_room(5, 9), 0), (colour_room(9, 1), 0),
+     (letter_room(6, 4), 1), (letter_room(60, 40), 1), (letter_room(5, 9), 0), (letter_room(9, 3), 0)],
+)  # fmt: skip
+def test_a_cell_of_a_torus_is_a_square_of_half_rows(room: Room, scale: int) -> None:
+    assert Torus(4, 6, room.letters).scale(room) == scale
+
+
+def test_the_least_room_of_a_torus_has_two_rows_of_cells_in_a_row_of_colours() -> None:
+    assert [Torus(rows, 6, letters).least for rows, letters in ((4, False), (5, False), (5, True))] == [
+        (6, 2), (6, 3), (6, 5),
+    ]  # fmt: skip
+
+
+def test_a_part_of_a_torus_is_its_first_rows_and_columns() -> None:
+    cells = old(24)
+    whole, nothing = Torus(4, 6, letters=True).draw(cells, [], letter_room(9, 9))
+    assert (text(whole), nothing) == (["ABCDEF", "GHIJKL", "MNOPQR", "STUVWX"], "")
+    part, said = Torus(4, 6, letters=True).draw(cells, [], letter_room(5, 3))
+    assert text(part) == ["ABCDE", "GHIJK", "MNOPQ"]
+    assert said == "shown: 3 x 5 of 4 x 6 cells"
+    pixels, said = Torus(4, 6, letters=False).draw(cells, [], colour_room(5, 1))
+    expected = mosaic(np.array([[0, 1, 2, 3, 4], [6, 7, 8, 9, 10]]) * 4 + 3)
+    assert (pixels, said) == (expected, "shown: 2 x 5 of 4 x 6 cells")
+
+
+@pytest.mark.parametrize(("height", "rows"), [(2, 2), (4, 4), (9, 4)])
+def test_bars_have_at_most_four_rows(height: int, rows: int) -> None:
+    drawn, part = Ring(3).draw(old(3), [], colour_room(3, height))
+    assert text(drawn) == ["███"] * rows + [""] * (height - rows)
+    assert part == ""
+
+
+def test_the_past_of_a_ring_is_below_it_the_latest_first() -> None:
+    """Seven rows have four of bars, and room for six moments."""
+    past = [np.array([4 * at, 4 * at + 3]) for at in range(8)]
+    drawn, _ = Ring(2).draw(old(2), past, colour_room(4, 7))
+    assert drawn[4:] == mosaic(np.stack(past[:6]).repeat(2, axis=1)), "cells are two columns wide"
+    drawn, _ = Ring(2).draw(old(2), past[:3], colour_room(4, 7))
+    assert drawn[4:] == [*mosaic(np.stack(past[:3]).repeat(2, axis=1)), []]
+    letters, _ = Ring(2).draw(old(2), past, letter_room(4, 7))
+    assert text(letters) == ["█ █ "] * 4 + ["a b "]
+
+
+@pytest.mark.parametrize(
+    ("cells", "width", "height", "rows", "part"),
+    [
+        (10, 4, 9, ["████", "████", "", "████", "████", "", "██", "██"], ""),
+        (10, 4, 5, ["▇▇▇▇", "", "▇▇▇▇", "", "▇▇"], ""),
+        (10, 4, 4, ["▇▇▇▇", "▇▇▇▇", "▇▇"], ""),
+        (10, 4, 2, ["▇▇▇▇", "▇▇▇▇"], "shown: the first 8 of 10 cells"),
+        (6, 5, 5, ["▇▇▇", "", "▇▇▇"], ""),
+        (2000, 1000, 1, ["▇" * 1000], "shown: the first 1,000 of 2,000 cells"),
+    ],
+)
+def test_many_cells_make_several_equal_skylines(
+    cells: int, width: int, height: int, rows: list[str], part: str
+) -> None:
+    drawn, said = Ring(cells).draw(old(cells), [np.zeros(cells)], colour_room(width, height))
+    assert (text(drawn), said) == (rows, part)
+
+
+def test_letters_in_one_row_are_capitals_for_the_old_and_elsewhere_below_bars() -> None:
+    cells = Cells(np.array([0, 1, EMPTY]), np.array([1.0, 0.2, 0.0]))
+    assert text(Ring(3).draw(cells, [], letter_room(3, 1))[0]) == ["Ab·"]
+    assert text(Ring(3).draw(cells, [], letter_room(3, 2))[0]) == ["▇▂ ", "ab·"]
+
+
+@pytest.mark.parametrize(
+    ("form", "room", "said"),
+    [
+        (Ring(9), colour_room(9, 1), "height: age"),
+        (Ring(9), letter_room(9, 1), "capitals: old"),
+        (Ring(9), letter_room(9, 2), "height: age"),
+        (Torus(3, 3, letters=False), colour_room(9, 1), "light: age"),
+        (Torus(3, 3, letters=True), letter_room(9, 9), "capitals: old"),
+    ],
+)
+def test_a_form_says_how_age_is_shown(form: Any, room: Room, said: str) -> None:
+    assert form.age(room) == said
+
+
+# Tiles.
+
+
+@pytest.mark.parametrize(
+    ("form", "worlds", "room", "grid"),
+    [
+        # Three, four or five torus worlds side by side have cells of 2 columns; the fewest are taken.
+        (Torus(4, 4, letters=False), 6, colour_room(60, 12), Grid(3, 6, colour_room(16, 5), 1)),
+        (Ring(20), 4, colour_room(64, 4), Grid(1, 4, colour_room(60, 1), 0)),
+        (Ring(20), 4, colour_room(64, 3), Grid(2, 4, colour_room(28, 1), 0)),
+        (Ring(20), 4, colour_room(64, 12), Grid(1, 4, colour_room(60, 2), 1)),
+        (Ring(20), 1, colour_room(64, 12), Grid(1, 1, colour_room(60, 12), 0)),
+        # Where no cell of all worlds fits, as many worlds are shown as do.
+        (Ring(200), 8, colour_room(80, 5), Grid(1, 5, colour_room(76, 1), 0)),
+        (Ring(30), 9, colour_room(70, 3), Grid(2, 6, colour_room(31, 1), 0)),
+        (Torus(64, 64, letters=False), 4, colour_room(80, 65), Grid(1, 1, colour_room(76, 65), 0)),
+        (Torus(64, 64, letters=False), 4, colour_room(80, 66), Grid(1, 2, colour_room(76, 32), 1)),
+    ],
+)  # fmt: skip
+def test_tiles_are_those_with_the_largest_cells(
+    form: Any, worlds: int, room: Room, grid: Grid
+) -> None:
+    """Beside each drawing are four columns."""
+    assert Grid.of(form, worlds, 4, room) == grid
+
+
+def three(**more: Any) -> World:
+    """Return three rings of four cells at other ticks; ages are 95 and 8, 95, and 10."""
+    return posed(
+        [[1, 0, 1, 0], [0, 0, 0, 1], [1, 1, 0, 0]],
+        [[5, 0, 92, 0], [0, 0, 0, 205], [0, 0, 9, 9]],
+        [100, 300, 10],
+        **{"seed": [9, 10, 11], "branch": [[0, 9, 1, 9], [9, 9, 9, 2], [3, 4, 9, 9]], **more},
+    )
+
+
+def test_each_world_has_its_seed_its_own_ages_and_its_own_mark() -> None:
+    """With letters; a capital is for ages from 9 on, since log(10) is half of log(100)."""
+    world, room = three(saturated=[-1, 250, -1]), letter_room(40, 3)
+    scene = Stage().scene(law(4, 3), world, {}, None, room)
+    assert text(scene.rows) == [" 9 A·b·", "10 ···C ✓", "11 DE··"]
+    assert scene.legend == "capitals: old, letter: branch of the founder, ✓: saturated"
+    assert scene.part == ""
+    unmarked = Stage().scene(law(4, 3), three(), {}, None, room)
+    assert text(unmarked.rows) == [" 9 A·b·", "10 ···C", "11 DE··"]
+    assert unmarked.legend == "capitals: old, letter: branch of the founder"
+
+
+def test_worlds_that_do_not_fit_are_neither_drawn_nor_marked() -> None:
+    world = three(saturated=[-1, -1, 0])
+    scene = Stage().scene(law(4, 3), world, {}, None, letter_room(12, 2))
+    assert text(scene.rows) == [" 9 A·b·", "10 ···C"]
+    assert scene.part == "shown: the first 2 of 3 worlds"
+    assert "✓" not in scene.legend
+
+
+def test_one_world_alone_fills_the_room() -> None:
+    drawn = [Stage().scene(law(4, 3), three(), {}, alone, letter_room(4, 1)) for alone in range(3)]
+    assert [text(scene.rows) for scene in drawn] == [["A·b·"], ["···C"], ["DE··"]]
+
+
+def test_lines_of_descent_take_the_place_of_branches_where_they_are_followed() -> None:
+    """Birth numbers need more than 32 bits."""
+    far = 2**40
+    world = three(number=[[far, 0, 1, 0], [0, 0, 0, 7], [3, 4, 0, 0]])
+    followed = {0: Lines([far, 1], 2), 1: Lines([7], 2)}
+    followed[0].line_of = {far: 5, 1: 6}
+    room = letter_room(40, 3)
+    scene = Stage().scene(law(4, 3), world, followed, None, room)
+    assert text(scene.rows) == [" 9 F·g·", "10 ···H", "11 DE··"]
+    assert scene.legend == "capitals: old, letter: line of descent"
+    for alone, said in ((1, "line of descent"), (2, "branch of the founder")):
+        assert Stage().scene(law(4, 3), world, followed, alone, room).legend.endswith(said)
+
+
+def test_the_width_of_a_cell_is_that_of_the_worlds_that_are_shown() -> None:
+    room = colour_room(64, 3)
+    assert cell_width(law(10), None, room) == 6
+    assert cell_width(law(10, 3), None, room) == 6, "60 columns for each of three rows"
+    assert cell_width(law(10, 3), 1, room) == 6
+    assert cell_width(law(10, 6), None, room) == 2, "two side by side have 28 columns"
+    assert cell_width(law(10, 6), 5, room) == 6
+    assert cell_width(law(40, 6), None, room) == 0, "not all worlds fit"
+
+
+# The past.
+
+
+def upper(scene: Any, row: int) -> list[tuple[int, ...]]:
+    return [colours(each)[0] for each in scene.rows[row]]
+
+
+def test_a_moment_is_remembered_once_and_shown_below_the_present() -> None:
+    """A ring of two cells: one organism, then the other, then both."""
+    stage, of, room = Stage(), law(2), colour_room(2, 6)
+
+    def at(tick: int, alive: list[int]) -> World:
+        return posed([alive], [[tick, tick]], [tick], branch=[[1, 2]])
+
+    first = stage.scene(of, at(1, [1, 0]), {}, None, room)
+    assert text(first.rows)[4:] == ["", ""]
+    again = stage.scene(of, at(1, [1, 0]), {}, None, room)
+    assert text(again.rows)[4:] == ["", ""], "a moment is no past of itself"
+    stage.follow(of, at(2, [0, 1]), {}, 0)
+    stage.follow(of, at(2, [0, 1]), {}, 0)
+    last = stage.scene(of, at(3, [1, 1]), {}, None, room)
+    newborn = np.array([[4, -1], [-1, 8]])
+    assert last.rows[4:] == [*mosaic(newborn[::-1]), []]
+
+
+def test_each_world_has_its_own_past() -> None:
+    stage, of, room = Stage(), law(4, 3), colour_room(4, 5)
+    stage.follow(of, three(), {}, 2)
+    later = three()
+    later = later._replace(
+        worlds=later.worlds._replace(tick=later.worlds.tick.plus(np.ones(3, int)))
+    )
+    assert text(stage.scene(of, later, {}, 1, room).rows)[4] == ""
+    assert stage.scene(of, later, {}, 2, room).rows[4:] == mosaic(np.array([[14, 18, -1, -1]]))
+
+
+def test_a_torus_has_no_past() -> None:
+    stage, of = Stage(), law(4, topology="torus4")
+    world = posed([[1, 0, 0, 1]], [[0, 0, 0, 0]], [10])
+    stage.follow(of, world, {}, 0)
+    assert stage._past == {}
