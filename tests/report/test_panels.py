@@ -1,6 +1,7 @@
 """The panels of a page against lives of two worlds of unequal length, looked at one by one."""
 
 from collections.abc import Iterator
+from itertools import pairwise
 from types import SimpleNamespace
 from typing import Any
 
@@ -182,7 +183,7 @@ def test_the_panels_of_a_fork_count_from_the_fork() -> None:
     edges = series.bins(150).tolist()
     births = [
         sum(low < born - 50 <= high for born in range(0, 180, 3)) / (high - low)
-        for low, high in zip(edges[:-1], edges[1:], strict=True)
+        for low, high in pairwise(edges)
     ]
     shown = rates["curves"][0]["values"]
     assert all(value is None or close([value], [births[i]]) for i, value in enumerate(shown))
