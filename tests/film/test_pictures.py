@@ -5,9 +5,11 @@ import pytest
 from PIL import Image
 
 from primordia.errors import InputError
+from primordia.figures import spacetime
+from primordia.film import colours as colouring
 from primordia.film import shape as shapes
 from primordia.film.beside import pictures_at
-from primordia.film.colours import FADING, GROUND, PALETTE, colours
+from primordia.film.colours import FADING, FLASH, GROUND, PALETTE, colours
 from primordia.film.frame import HEIGHT, WIDTH, Frames, fitted
 from primordia.film.moments import RATE, SECONDS, moments
 from primordia.film.shape import PAPER, SIDE, Ring, shape
@@ -57,6 +59,31 @@ def test_a_life_beside_the_world_goes_as_fast_as_it_was_lived(rate: float) -> No
     assert max(numbers) - min(numbers) <= 1
 
 
+@pytest.mark.parametrize("together", [1, 10**6])
+def test_light_is_that_of_the_age_and_of_a_birth_since_the_moment_before(
+    together: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of 40 cells half are empty for ever. A flash is weaker the more cells have a newborn, and there
+    is none if a quarter has."""
+    monkeypatch.setattr(colouring, "MOST", together)
+    lived = [(tick // 3 * 3, tick, tick % 3 > 0) for tick in range(14)] + [(20, 60, False)] * 6
+    world, cells = world_of(lived, until=90), np.arange(40)
+    clades = spacetime.clades_of(world)
+    ticks = np.array([2, 3, 6, 7, 13, 20, 30, 41, 80])
+    for number, drawn in enumerate(colours(world, cells, ticks, FULL)):
+        tick, before = ticks[number], ticks[max(number - 1, 0)]
+        living = [row for row in range(20) if alive(world, row, tick)]
+        new = [row for row in living if world.born[row] > before]
+        flash = FLASH * max(1 - 4 * len(new) / 40, 0)
+        for row in living:
+            light = min(np.log1p(tick - world.born[row]) / np.log1p(FULL), 1)
+            (code,) = spacetime.line_codes(world, clades, np.array([[row]]), np.array([tick]))[0]
+            expected = PALETTE[code % len(PALETTE)] * (1 + light) / 2
+            expected += (flash if row in new else 0) * (255 - expected)
+            np.testing.assert_allclose(drawn[row], expected, atol=1)
+        assert (drawn[20:] == GROUND).all()
+
+
 def test_a_torus_is_drawn_cell_for_cell() -> None:
     form = shape(Placement(topology="torus4", rows=3), 12)
     seen = np.arange(36, dtype=np.uint8).reshape(12, 3) + 100
@@ -87,6 +114,16 @@ def test_large_worlds_are_drawn_in_part() -> None:
     assert len(ring.cells) <= Ring.MOST
 
 
+def test_a_long_torus_is_drawn_in_part_by_its_longer_side() -> None:
+    """Of 1,000 rows of 2 cells each third row and the first column are drawn."""
+    long = shape(Placement(topology="torus4", rows=1000), 2000)
+    assert long.cells.tolist() == [6 * row for row in range(334)]
+    flat = shape(Placement(topology="torus4", rows=2), 8)
+    assert flat.cells.tolist() == list(range(8))
+    picture = flat.draw(np.full((8, 3), 200, np.uint8))
+    assert (picture == 200).all(axis=2).any(axis=1).sum() == 2 * (SIDE // 4 - 1)
+
+
 def test_a_ring_has_the_present_outside_and_its_past_within() -> None:
     ring = shape(Placement(), 4)
     first, then = np.zeros((4, 3), np.uint8), np.zeros((4, 3), np.uint8)
@@ -112,6 +149,9 @@ def test_moments_pass_by_births_or_by_ticks() -> None:
     by_ticks = moments(world, 0, "ticks", (100, 2_000))
     assert (by_ticks[0], by_ticks[-1], len(by_ticks)) == (100, 2_000, RATE * SECONDS)
     assert set(np.diff(by_ticks)) == {2, 3}
+    assert moments(world, 0, "births", (9, 16)).tolist() == [9, 16], "the birth at 9 is before"
+    assert moments(world, 0, "births", (10, 26)).tolist() == [10, 16, 25, 26]
+    assert moments(world, 100, "ticks", (None, None))[[0, -1]].tolist() == [100, 2_000]
     for ticks in ((-1, None), (None, 2_001), (50, 50)):
         with pytest.raises(InputError, match="can be shown from tick 0 to 2000"):
             moments(world, 0, "ticks", ticks)
@@ -132,3 +172,30 @@ def test_a_picture_has_the_world_the_life_and_the_share_that_has_passed() -> Non
     assert bar.sum() == pytest.approx(WIDTH / 4, abs=1)
     assert fitted(life, (90, 100)).size == (90, 30)
     assert fitted(life, (900, 20)).size == (60, 20)
+
+
+def test_words_are_where_they_belong() -> None:
+    """The title is above, the counts are on the left below, and the words on a life on the right."""
+    world, life = np.full((SIDE, SIDE, 3), 90, np.uint8), Image.new("RGB", (40, 10), "red")
+
+    def drawn(title: str, counts: str, about: str, alone: bool = False) -> np.ndarray:
+        frames = Frames(title, alone)
+        return np.asarray(frames.draw(world, counts, 0.5, None if alone else life, about))
+
+    empty = drawn("", "", "")
+    left, right, below = slice(0, WIDTH // 2), slice(WIDTH // 2, WIDTH), slice(48 + SIDE, HEIGHT)
+    above = slice(0, 48)
+    for words, (down, across) in (
+        (("a task", "", ""), (above, left)),
+        (("", "tick 1", ""), (below, left)),
+        (("", "", "organism 1"), (below, right)),
+    ):
+        changed = (drawn(*words) != empty).any(axis=2)
+        assert 0 < changed.sum() == changed[down, across].sum(), words
+    red = np.argwhere((empty == (255, 0, 0)).all(axis=2))
+    assert red[:, 0].mean() == pytest.approx(48 + SIDE / 2, abs=1), "in the middle of its height"
+    assert red[:, 1].min() == 2 * 20 + SIDE
+    grey = np.argwhere((empty == 90).all(axis=2))
+    assert grey.min(axis=0).tolist() == [48, 20]
+    alone = np.argwhere((drawn("", "", "", alone=True) == 90).all(axis=2))
+    assert alone.min(axis=0).tolist() == [48, (WIDTH - SIDE) // 2]

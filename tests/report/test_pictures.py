@@ -1,5 +1,6 @@
 """The pictures of a page hold what the records say, cell by cell and moment by moment."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,12 +11,14 @@ from hypothesis import strategies as st
 
 from primordia.figures import spacetime
 from primordia.report import film, ground
+from primordia.report import tree as phylogeny
 from primordia.report.ground import Ground
 from primordia.report.organisms import generations, nearest_among, organisms
 from primordia.report.packed import packed
 from primordia.report.tree import Node, grown, in_order, tree
 from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
+from tests.pedigrees import lives_of
 from tests.report.unpacked import all_unpacked, unpacked
 from tests.synthetic import alive
 
@@ -175,3 +178,91 @@ def test_a_ring_has_no_film(torus: Path) -> None:
     assert film.film(Ground(run.lives.of_world(0), 24), config) is None
     odd = run.config.model_copy(update={"cells": 23})
     assert film.film(Ground(run.lives.of_world(0), 24), odd) is None, "no torus has 23 cells"
+
+
+def tiny() -> Lives:
+    """Return a world in which three live: the last child of 0, 1 and 3, and 5 with its child."""
+    parents = [-1, 0, 0, 1, 3, 2, 5]
+    lives = lives_of(
+        parents, [0, 2, 2, 3, 5, 5, 7], [4, 4, 6, 6, 9, 9, 9], [True] * 4 + [False] * 3
+    )
+    cells = np.array([0, 1, 2, 0, 5, 1, 3], np.int32)
+    return replace(lives, cell=cells, seen=lives.born + 1)
+
+
+def test_the_nodes_of_a_phylogeny_tell_their_organisms_and_times() -> None:
+    """A line begins at the first birth of its tick: the child of 0 that leads to 4 is born together
+    with the one that leads to 5."""
+    shown = Ground(tiny(), 6)
+    told = tree(shown)
+    assert told is not None
+    assert (told["living"], told["shown"]) == (3, 3)
+    names = "number", "born", "parent", "start", "stop", "level", "alive", "skipped"
+    rows = [tuple(node[name] for name in names) for node in told["nodes"]]
+    assert rows == [
+        (0, 0, -1, 0, 1, 0, False, 0),
+        (5, 5, 0, 1, 7, 0, True, 1),
+        (6, 7, 1, 6, 7, 1, True, 0),
+        (4, 5, 0, 1, 7, 2, True, 2),
+    ]
+    segments = all_unpacked(shown.data()["segments"])
+    for node in told["nodes"][1:]:
+        own = np.flatnonzero(segments["organism"] == node["number"])
+        last = own[np.argmax(segments["stop"][own])]
+        assert node["ink"] == segments["ink"][last], "the ink that the line has now"
+
+
+@pytest.mark.parametrize(("most", "numbers"), [(3, [4, 5, 6]), (2, [4, 5]), (1, [5])])
+def test_of_many_that_live_some_are_shown_spread_over_the_cells(
+    most: int, numbers: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In the order of their cells the living are 5, 6 and 4."""
+    monkeypatch.setattr(phylogeny, "LEAVES", most)
+    told = tree(Ground(tiny(), 6))
+    assert told is not None
+    assert (told["living"], told["shown"]) == (3, len(numbers))
+    alive_ = [node["number"] for node in told["nodes"] if node["alive"]]
+    assert sorted(alive_) == numbers
+    assert tree(Ground(tiny().take(np.arange(4)), 6)) is None, "nothing lives"
+
+
+def test_each_byte_of_a_film_is_the_ink_of_a_line_and_the_shade_of_an_age(torus: Path) -> None:
+    """There are 8 shades: equal steps of the logarithm of 1 + age, up to the longest life."""
+    run = Archive(torus)
+    lives = run.lives.of_world(1)
+    shown, clades = Ground(lives, 24), spacetime.clades_of(lives)
+    made = film.film(shown, run.config)
+    assert made is not None
+    pictures, longest = unpacked(made["cells"]).reshape(-1, 24), int(lives.lifespan.max())
+    for tick, picture in list(zip(made["ticks"], pictures, strict=True))[::9]:
+        for cell, byte in enumerate(picture.tolist()):
+            row = occupant(lives, cell, tick)
+            if row < 0:
+                assert byte == 0
+                continue
+            age = tick - int(lives.born[row])
+            assert byte // 32 == min(int(8 * np.log1p(age) / np.log1p(longest)), 7)
+            codes = spacetime.line_codes(lives, clades, np.array([[row]]), np.array([tick]))[0]
+            assert byte % 32 - 1 == shown.inks(codes)[0]
+
+
+def test_a_film_has_as_many_pictures_as_its_part_of_a_page(
+    torus: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run = Archive(torus)
+    lives = run.lives.of_world(0)
+    births = len(lives)
+
+    def places(share: int = 1, some: Lives = lives) -> list[int]:
+        made = film.film(Ground(some, 24, share), run.config)
+        return [] if made is None else made["places"]
+
+    assert places() == [int(each) for each in np.linspace(0, births - 1, min(births, 300))]
+    monkeypatch.setattr(film, "PICTURES", 4)
+    assert places() == [int(each) for each in np.linspace(0, births - 1, 4)]
+    monkeypatch.setattr(film, "BYTES", 24 * 3 * 2)
+    assert places(3) == [0, births - 1]
+    assert places(2) == [0, (births - 1) // 2, births - 1]
+    assert places(4) == [], "a film has two pictures or more"
+    assert places(1, lives.take(np.arange(2))) == [0, 1]
+    assert places(1, lives.take(np.arange(1))) == []

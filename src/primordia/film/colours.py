@@ -43,7 +43,8 @@ def colours(lives: Lives, cells: np.ndarray, ticks: np.ndarray, full: int) -> It
         codes = line_codes(lives, clades, rows, block)
         for tick, row, code in zip(block.tolist(), rows, codes, strict=True):
             alive = row != EMPTY
-            lit = _lit(lives.born[row], code, before, tick, full)
+            born = np.where(alive, lives.born[row], before)  # no birth in an empty cell
+            lit = _lit(born, code, before, tick, full)
             embers = GROUND + (embers - GROUND) * FADING
             embers[alive] = lit[alive]
             yield embers.astype(np.uint8)

@@ -1,0 +1,139 @@
+"""The arms of an experiment beside each other: each number is that of its own arm."""
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from primordia.comparison.comparison import OUTCOMES, ComparedArm, Comparison
+from primordia.comparison.measured import Measured
+from primordia.comparison.survival import survival
+from primordia.report import arms
+from primordia.report.arms import _effects, _outcomes, _over_time, _survival
+from primordia.runs.lives import Lives, joined
+from tests.synthetic import alive, world_of
+
+COLOURS = "#111111", "#222222", "#333333"
+LIVED = [(tick, tick % 7 + tick // 5, tick % 4 > 0) for tick in range(0, 100, 2)]
+
+
+def arm(name: str, number: int, births: list[float], lives: Lives) -> ComparedArm:
+    """Return an arm whose worlds saturated after these births; a negative number is a lower bound."""
+    bounds = np.array(births)
+    unknown = Measured(np.zeros(len(bounds)), np.zeros(len(bounds), bool))
+    measured = {**dict.fromkeys(OUTCOMES, unknown), "births": Measured(abs(bounds), bounds > 0)}
+    measured["ticks"] = Measured(10 * abs(bounds), bounds > 0)
+    seeds = np.arange(3, dtype=np.uint64) + 10 * number
+    settings = {"hazard": number / 10, "metabolism.cap": None if number else 80.0}
+    others: Any = None
+    return ComparedArm(
+        name, settings, seeds, measured, survival(lives, 1, 50), others, others, others
+    )
+
+
+@pytest.fixture(scope="module")
+def compared() -> Comparison:
+    """Return three arms; of the last one, two of three worlds are saturated."""
+    made = (
+        arm("mild", 0, [10, 20, 30], world_of(LIVED, until=200)),
+        arm("harsh", 1, [40, 50, 60], world_of(LIVED[:20], until=200)),
+        arm("odd", 2, [1, 2, -30], world_of(LIVED[::3], until=200)),
+    )
+    return Comparison("meadow", made, 50, 0, None, None, "tick")
+
+
+def test_outcomes_and_effects_are_those_of_each_arm(compared: Comparison) -> None:
+    """Of nine pairs of a world of the last arm and one of the first, the last arm has fewer births
+    in six and more in two; the order of one is unknown."""
+    table = _outcomes(compared)
+    assert table["head"] == [
+        "arm", "hazard", "metabolism.cap", "worlds saturated",
+        "births to saturation", "ticks to saturation",
+    ]  # fmt: skip
+    assert table["rows"] == [
+        ["mild", "0.0", "80.0", "3 of 3", "20 (10 to 30)", "200 (100 to 300)"],
+        ["harsh", "0.1", "none", "3 of 3", "50 (40 to 60)", "500 (400 to 600)"],
+        ["odd", "0.2", "none", "2 of 3", "2 (1 to >= 30)", "20 (10 to >= 300)"],
+    ]
+    (effects,) = _effects(compared)
+    assert effects["head"] == ["against mild", "births to saturation", "ticks to saturation"]
+    assert effects["rows"][0] == ["harsh", "+1.00 later; 2.5", "+1.00 later; 2.5"]
+    assert effects["rows"][1] == [
+        "odd",
+        "-0.44 earlier; order known in 88 % of pairs; 0.1",
+        "-0.44 earlier; order known in 88 % of pairs; 0.1",
+    ]
+
+
+def test_survival_of_each_arm_has_its_name_and_colour(compared: Comparison) -> None:
+    panel = _survival(compared, COLOURS)
+    assert (panel["x"], panel["y"]) == ("age (ticks)", "fraction alive")
+    assert (panel["log_x"], panel.get("log_y")) == (True, None)
+    parts = LIVED, LIVED[:20], LIVED[::3]
+    names = "mild", "harsh", "odd"
+    for table, part, name, colour in zip(panel["tables"], parts, names, COLOURS, strict=True):
+        (curve,) = table["curves"]
+        assert (curve["name"], curve["colour"], curve["kind"]) == (name, colour, "steps")
+        lives, share, shares = world_of(part, until=200), 1.0, [1.0]
+        for age in range(1, 51):
+            at_risk = int((lives.lifespan >= age).sum())
+            share *= 1 - int(((lives.lifespan == age) & lives.died).sum()) / max(at_risk, 1)
+            shares.append(share)
+        assert (table["x"][0], table["x"][-1]) == (1, 50)
+        assert curve["values"][1:] == pytest.approx([shares[age] for age in table["x"]][1:], 1e-4)
+
+
+def test_curves_over_time_are_medians_of_the_worlds_of_each_arm() -> None:
+    """The worlds of an arm end at different ticks. Half of them with a value is enough. At tick 1
+    all ages are 0, which a logarithmic axis cannot show."""
+    ends = [(200, 130, 130, 201), (150, 160, 170)]
+    worlds = [
+        [
+            world_of([(tick + 1, *rest) for tick, *rest in LIVED[i:]], end)
+            for i, end in enumerate(arm)
+        ]
+        for arm in ends
+    ]
+    runs: Any = [
+        SimpleNamespace(path=Path(name), lives=joined(each, np.arange(len(each))))
+        for name, each in zip(("mild", "harsh"), worlds, strict=True)
+    ]
+    ages, living = _over_time(runs, COLOURS[:2])
+    assert (ages["log_x"], ages["log_y"], living["log_x"], living["log_y"]) == (
+        True,
+        True,
+        True,
+        False,
+    )
+    assert (ages["y"], living["y"]) == ("age (ticks)", "organisms")
+    assert (ages["title"], living["title"]) == ("Mean age of the living", "Organisms alive")
+
+    def value(lives: Lives, tick: int, age: bool) -> float | None:
+        if tick < lives.born[0] or tick > lives.ended.max():
+            return None
+        since = [tick - lives.born[row] for row in range(len(lives)) if alive(lives, row, tick)]
+        return (float(np.mean(since)) if since else None) if age else float(len(since))
+
+    for panel in (ages, living):
+        assert panel["x"] == "time (ticks)"
+        (table,) = panel["tables"]
+        assert table["x"][-1] == 201
+        names = [(each["name"], each["colour"], each["kind"]) for each in table["curves"]]
+        assert names == [("mild", COLOURS[0], "line"), ("harsh", COLOURS[1], "line")]
+        for curve, each in zip(table["curves"], worlds, strict=True):
+            for tick, shown in list(zip(table["x"], curve["values"], strict=True))[::9]:
+                values = [value(lives, tick, panel is ages) for lives in each]
+                known = [got for got in values if got is not None]
+                middle = float(np.median(known)) if 2 * len(known) >= len(each) else None
+                middle = None if panel is ages and not middle else middle
+                assert shown == (middle if middle is None else pytest.approx(middle, 1e-4)), tick
+
+
+def test_an_experiment_with_one_arm_has_its_curves_alone() -> None:
+    run: Any = SimpleNamespace(path=Path("only"), lives=world_of(LIVED, until=200))
+    alone = arms.arms([run])
+    assert (alone["tables"], alone["notes"]) == ([], [])
+    titles = [panel["title"] for panel in alone["panels"]]
+    assert titles == ["Mean age of the living", "Organisms alive"]

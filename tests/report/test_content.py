@@ -1,0 +1,189 @@
+"""What a page says of its run: names, numbers, films, and how the run is lived again."""
+
+import base64
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from primordia.errors import InputError
+from primordia.history.info import info
+from primordia.report import content, lives
+from primordia.report.content import of_experiment, of_run
+from primordia.report.facts import commands, facts
+from primordia.report.words import setting
+from primordia.runs.archive import Archive
+from tests.report.conftest import TORUS
+from tests.report.unpacked import all_unpacked
+from tests.synthetic import worlds_of
+from tests.worlds import config
+
+
+@pytest.mark.parametrize(
+    ("most", "left_out"),
+    [(1, "2 further worlds not shown"), (2, "1 further world not shown"), (3, "")],
+)
+def test_as_many_worlds_are_shown_as_a_page_has_room_for(
+    torus: Path, most: int, left_out: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(content, "WORLDS", most)
+    run = Archive(torus)
+    made = of_run(run, filmed=False)
+    assert made["left_out"] == left_out
+    assert [each["name"] for each in made["worlds"]] == ["seed 5", "seed 6", "seed 7"][:most]
+    for number, shown in enumerate(made["worlds"]):
+        here = run.lives.of_world(number)
+        assert all_unpacked(shown["organisms"])["lifespan"].tolist() == here.lifespan.tolist()
+        assert shown["ground"]["births"] == len(here)
+        assert shown["ground"]["cells"] == 24
+        assert shown["topology"] == "torus8"
+    assert made["subtitle"] == "torus, seeds 5 to 7"
+    assert (made["title"], made["arms"], made["films"]) == ("meadow", None, None)
+
+
+def test_the_numbers_of_a_single_world_have_its_extinctions(cart: Path) -> None:
+    run = Archive(cart)
+    made = of_run(run, filmed=False)
+    (world,) = info(run)["worlds"]
+    assert [(each["name"], each["value"]) for each in made["numbers"]] == [
+        ("times extinct", f"{world['extinctions']:,}"),
+        ("ticks", "1,500"),
+        ("organisms born", f"{len(run.lives):,}"),
+        ("died", f"{run.lives.died.sum():,}"),
+        ("alive", f"{(~run.lives.died).sum():,}"),
+        ("age of the oldest alive", f"{run.lives.lifespan[~run.lives.died].max():,}"),
+    ]
+    assert world["extinctions"] != len(run.lives)
+    assert made["worlds"][0]["rate"] == run.description.rate == 50
+
+
+def test_the_content_of_an_experiment_is_of_all_its_arms(
+    torus: Path, cart: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(content, "arms", lambda runs: [run.path.name for run in runs])
+    runs = [Archive(torus), Archive(cart)]
+    chosen: Any = SimpleNamespace(
+        opened=lambda: runs,
+        plan=SimpleNamespace(question=""),
+        path=torus.parent / "out",
+        status=lambda: SimpleNamespace(jobs={"done": 1200, "running": 0, "waiting": 1}),
+    )
+    made = of_experiment(chosen)
+    assert made["title"] == "meadow", "the task, if no question is asked"
+    assert made["subtitle"] == "out, meadow, jobs: 1,200 done, 1 waiting"
+    assert made["words"] == [
+        "The experiment has 2 arms: torus, cart. The arms differ in the settings below. All arms"
+        " together have 4 worlds.",
+        setting(runs[0].config),
+    ]
+    told = {each["name"]: each["value"] for each in made["numbers"]}
+    assert told["worlds"] == "4"
+    assert told["organisms born"] == f"{sum(len(run.lives) for run in runs):,}"
+    assert told["died"] == f"{sum(int(run.lives.died.sum()) for run in runs):,}"
+    assert [each["name"] for each in made["worlds"]] == ["torus, seed 5", "cart, seed 0"]
+    for shown, run in zip(made["worlds"], runs, strict=True):
+        assert shown["ground"]["births"] == len(run.lives.of_world(0))
+    assert made["arms"] == [each["name"] for each in made["facts"]] == ["torus", "cart"]
+    for told_, run in zip(made["facts"], runs, strict=True):
+        assert [each["digest"] for each in told_["digests"]] == [
+            world["digest"] for world in info(run)["worlds"]
+        ]
+        assert told_["settings"]["cells"] == str(run.config.cells)
+
+
+def invented(**changed: Any) -> Any:
+    """Return a run of invented lives: two worlds, of which the second has the champion."""
+    parts = {
+        "lives": worlds_of(
+            [(0, 4, True), (1, 5, True)], [(0, 9, True), (1200, 1499, False)], until=2700
+        ),
+        "habitat": SimpleNamespace(kind="jax"),
+        "path": Path("/somewhere/run"),
+        "config": config(TORUS, seeds=2, hazard=0.0, about=""),
+        "progress": SimpleNamespace(limits=config(TORUS, stop={"ticks": 2700}).stop),
+        "versions": {"primordia": "1"},
+        "description": SimpleNamespace(code={}),
+    }
+    return SimpleNamespace(**{**parts, **changed})
+
+
+def test_films_of_lives_say_whose_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A life that is exactly as long as the limit is filmed, as the first and last six seconds."""
+    asked = []
+
+    def replay(run: Any, organism: int, world: int, out: Path, part: float) -> Path:
+        asked.append((organism, world, part))
+        out.write_bytes(b"film of %d" % organism)
+        return out
+
+    monkeypatch.setattr(lives, "replay", replay)
+    monkeypatch.setattr("primordia.device.prepare", lambda: None)
+    monkeypatch.setattr(lives, "LONGEST", {"jax": 1500, "host": 1})
+    made = lives.films(invented())
+    assert made["missing"] == ""
+    assert asked == [(0, 0, 6.0), (1, 1, 6.0)]
+    first, champion = made["films"]
+    assert first["title"] == "The first organism born in this run"
+    assert champion["title"] == "The champion: the longest-lived of the later half"
+    assert first["about"] == "Organism 0 of world 0: born at tick 0, 5 ticks, dead"
+    assert champion["about"] == "Organism 1 of world 1: born at tick 1,200, 1,500 ticks, alive"
+    assert [base64.b64decode(each["data"]) for each in made["films"]] == [
+        b"film of 0",
+        b"film of 1",
+    ]
+    alone = invented(lives=invented().lives.of_world(0))
+    assert lives.films(alone)["films"][1]["about"] == "Organism 1: born at tick 1, 6 ticks, dead"
+
+
+def test_lives_that_are_not_filmed_have_a_reason_each(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(run: Any, *_: Any, **more: Any) -> Path:
+        raise InputError(f"{run.path} has no pictures")
+
+    monkeypatch.setattr("primordia.device.prepare", lambda: None)
+    monkeypatch.setattr(lives, "LONGEST", {"jax": 1500, "host": 1499})
+    monkeypatch.setattr(lives, "replay", refuse)
+    assert lives.films(invented()) == {"films": [], "missing": "this run has no pictures"}
+    on_host = lives.films(invented(habitat=SimpleNamespace(kind="host")))
+    assert on_host["missing"] == (
+        "this run has no pictures; the life of organism 1 is 1,500 ticks long, too long for a page;"
+        " `primordia replay` films this life"
+    )
+
+
+def test_settings_are_told_unless_they_are_empty() -> None:
+    """Zero and false are settings. Names of files are told without folders."""
+    numbers = {
+        "worlds": [{"seed": 5, "digest": "a"}, {"seed": 6, "digest": "b"}],
+        "exact": False,
+        "restarts": 3,
+    }
+    told = facts(invented(), numbers)
+    assert told["settings"]["hazard"] == "0.0"
+    assert told["settings"]["brain.biases"] == "false"
+    assert told["settings"]["stop.ticks"] == "2700"
+    assert not {"about", "seasons", "ancestors", "fork", "stop.births"} & set(told["settings"])
+    assert told["versions"] == {"primordia": "1"}
+    assert told["digests"] == [{"seed": "5", "digest": "a"}, {"seed": "6", "digest": "b"}]
+    assert (told["exact"], told["restarts"]) == (False, 3)
+    grown = config(TORUS, about="").model_copy(update={"ancestors": ("/home/me/best.npz",)})
+    told = facts(invented(config=grown), numbers)
+    assert told["settings"]["ancestors"] == "['best.npz']"
+    assert "/home" not in told["toml"]
+    assert told["commands"] == ["primordia verify run"]
+
+
+def test_a_run_is_repeated_by_flags_where_flags_can_tell_it() -> None:
+    """A list, a setting of the task that the run has not, and a task of the user's own need the file."""
+    file = ["primordia run config.toml --out again", "primordia info again --json"]
+    own = config("CartPole-survival", cells=12, stop={"until": None}, brain={"biases": True})
+    assert commands(own, "run", False) == [
+        "primordia run CartPole-survival --brain.biases true --cells 12 --stop.until none --out again",
+        "primordia info again --json",
+    ]
+    assert commands(own, "my run", True) == ["primordia verify 'my run'"]
+    assert commands(config(TORUS), "run", False) == file
+    season = {"kind": "schedule", "setting": "hazard", "at": 50, "value": 0.01}
+    assert commands(config(cells=8, seasons=[season]), "run", False) == file
+    linear = config("CartPole-survival", brain={"kind": "linear"})
+    assert commands(linear, "run", False) == file, "the task has hidden neurons, this run has none"
