@@ -1,5 +1,6 @@
 """Where a revived life begins, if not with the birth, and what is noted of a comparison."""
 
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -9,6 +10,7 @@ import pytest
 from primordia.errors import InputError
 from primordia.organism import revival
 from primordia.organism.revival import Respect, Revival
+from primordia.runs import checkpoint, directory
 
 KEPT = ({"ticks": [9, 1200]}, {"ticks": [9, 1100]}, {"ticks": [9, 60]})
 """States of a run of two worlds, newest first; the first world has stopped at tick 9."""
@@ -24,7 +26,7 @@ def stored(
         ended=np.array([5, 5, ended]),
     )
     run: Any = SimpleNamespace(path="RUN", lives=lives, fault_in=None, arrays_of=dict)
-    monkeypatch.setattr(revival.checkpoint, "whole_checkpoints", lambda *given: iter(KEPT))
+    monkeypatch.setattr(checkpoint, "whole_checkpoints", lambda *given: iter(KEPT))
     monkeypatch.setattr(revival, "world_ticks", lambda arrays: arrays["ticks"])
     found = revival._stored(run, 3, 1, since)
     return None if found is None else int(found["ticks"][1])
@@ -83,7 +85,7 @@ def test_each_limit_of_a_comparison_is_noted_once(
     monkeypatch: pytest.MonkeyPatch, progress: dict[str, Any], given: dict[str, Any], notes: list
 ) -> None:
     """One world has stopped earlier than the other."""
-    monkeypatch.setattr(revival.directory, "is_written", lambda path: given.get("written", False))
+    monkeypatch.setattr(directory, "is_written", lambda path: given.get("written", False))
     run: Any = SimpleNamespace(
         path="RUN",
         progress=SimpleNamespace(**{"exact": True, "restarts": 0, **progress}),
@@ -99,7 +101,7 @@ def test_each_limit_of_a_comparison_is_noted_once(
 
 def test_what_is_found_is_told_in_plain_values() -> None:
     respects = (Respect("tick", 9, 9), Respect("cause", "starved", None))
-    found = Revival(3, 1, "fork", 60, 1300, respects, ("a note",), (revival.Path("a.npz"),))
+    found = Revival(3, 1, "fork", 60, 1300, respects, ("a note",), (Path("a.npz"),))
     assert found.to_dict() == {
         "organism": 3, "world": 1, "begin": "fork", "begins": 60, "ends": 1300, "agrees": False,
         "respects": [
