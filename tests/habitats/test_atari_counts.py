@@ -1,5 +1,6 @@
 """What is counted in Atari games: points of all frames, scores and kills; and options of a console."""
 
+from collections import defaultdict
 from typing import Any
 
 import numpy as np
@@ -52,7 +53,7 @@ def test_mode_and_difficulty_are_those_of_the_settings(
         return console(*given)
 
     monkeypatch.setattr(simulator, "console", noted)
-    monkeypatch.setattr(simulator, "_SPARE", simulator.defaultdict(list))
+    monkeypatch.setattr(simulator, "_SPARE", defaultdict(list))
     simulator._start.cache_clear()
     starts = []
     for value in (None, 1):
@@ -73,6 +74,16 @@ def test_mode_and_difficulty_are_those_of_the_settings(
     place = 1 if option == "mode" else 2
     assert {given[place] for given in made} == {None, 1}
     assert (starts[0] != starts[1]).any()
+
+
+@pytest.mark.parametrize(
+    ("settings", "words"),
+    [({}, 0), ({"noops": 1}, 2), ({"sticky": 0.1}, 2), ({"noops": 1, "sticky": 0.1}, 2)],
+)
+def test_a_birth_needs_random_words_if_no_ops_or_buttons_are_random(
+    settings: dict[str, Any], words: int
+) -> None:
+    assert Atari(game="pong", **settings).words == words
 
 
 def test_what_is_scored_has_points_as_food_and_all_other_settings_of_the_task() -> None:

@@ -154,7 +154,8 @@ def test_the_cart_is_drawn_where_it_is() -> None:
 
 def coloured(picture: np.ndarray, colour: tuple[int, int, int]) -> tuple[np.ndarray, np.ndarray]:
     """Return rows and columns of the pixels of a colour."""
-    return np.nonzero(np.abs(picture.astype(int) - colour).sum(axis=2) < 20)
+    rows, columns = np.nonzero(np.abs(picture.astype(int) - colour).sum(axis=2) < 20)
+    return rows, columns
 
 
 @pytest.mark.parametrize("angle", [-60.0, 0.0, 30.0, 60.0, 100.0])

@@ -180,7 +180,7 @@ def test_a_text_of_ten_thousand_characters_is_in_the_grammar() -> None:
 
 def test_a_value_that_is_the_same_for_all_bodies_has_an_entry_for_each() -> None:
     for text, kind, dtype in (("2 * 3", "amount", np.float32), ("1 < 2", "condition", bool)):
-        every = parse(text, kind, NAMES).of_all(VALUES, 3, dtype)  # type: ignore[arg-type]
+        every = parse(text, kind, NAMES).of_all(VALUES, 3, dtype)
         assert (every.tolist(), every.dtype) == ([6.0 if dtype is np.float32 else True] * 3, dtype)
     lives = parse("lives", "amount", NAMES).of_all(VALUES, 3, np.float32)
     lives[0] = 9  # a copy

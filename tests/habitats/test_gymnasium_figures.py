@@ -17,7 +17,7 @@ from primordia.habitats.gymnasium.check import Measured
 from primordia.habitats.gymnasium.environment import line
 from primordia.habitats.gymnasium.habitat import Gymnasium
 from primordia.habitats.gymnasium.probe import LONGEST, PICTURES_S, _numbers
-from primordia.habitats.gymnasium.simulator import MESSAGE
+from primordia.habitats.gymnasium.simulator import MESSAGE, Environments, fields
 from primordia.habitats.gymnasium.spaces import Acting, Observation, described
 from tests.ponds import Pond
 
@@ -28,7 +28,7 @@ def pond(**settings: Any) -> Gymnasium:
 
 def with_arrays(game: Gymnasium, **arrays: Any) -> Gymnasium:
     """Return a habitat whose environments report these arrays."""
-    stub: Any = SimpleNamespace(arrays=arrays)
+    stub: Any = SimpleNamespace(arrays=arrays, step=lambda alive: None)
     game._pool = stub
     return game
 
@@ -69,6 +69,58 @@ def test_one_more_error_than_the_settings_allow_stops_the_run() -> None:
         with_arrays(pond(faults=0), message=text, fault=np.ones(3, bool))._count_faults(
             np.array([True, False, False])
         )
+
+
+@pytest.mark.parametrize(
+    ("limit", "expired"),
+    [(None, [True, False, False, False, False]), (4, [True, False, True, True, True])],
+)
+def test_a_life_ends_at_the_time_limit_or_when_the_environment_cuts_it(
+    limit: int | None, expired: list[bool]
+) -> None:
+    """The bodies are 1, 2, 3, 4 and 4 ticks old; the last one does not live."""
+    none, numbers = np.zeros(5, bool), np.zeros(5)
+    game = with_arrays(
+        pond(time_limit=limit), action=np.zeros((5, 1)), obs=np.zeros((5, 2)), reward=numbers,
+        food=numbers, terminated=none, truncated=np.arange(5) == 0, fault=none,
+        info=np.zeros((5, 1)),
+    )  # fmt: skip
+    game._age = np.array([1, 2, 3, 4, 4])
+    _, outcome = game.step(np.zeros((5, 1), np.float32), np.arange(5) < 4)
+    assert np.asarray(outcome.expired).tolist() == expired
+    assert game._age.tolist() == [2, 3, 4, 5, 4]
+
+
+def environments(**info: int) -> tuple[Environments, dict[str, np.ndarray]]:
+    """Return ponds in two cells of this process, and the arrays that they fill."""
+    shared = fields(Observation(Pond.observation_space), Acting(Pond.action_space), info)
+    arrays = {name: np.zeros((2, *shape), dtype) for name, (dtype, shape) in shared.items()}
+    made = Environments(arrays, "tests.ponds:Pond-v0", {}, [], "replay", False, "", info)
+    for cell in range(2):
+        made.make(cell)
+    return made, arrays
+
+
+def test_numbers_of_info_are_stored_side_by_side_and_a_missing_one_is_zero() -> None:
+    made, arrays = environments(a=1, pair=2, b=1)
+    made._tell(1, np.zeros(2), {"b": 4, "pair": np.array([2, 3]), "a": 1.5, "c": 9})
+    assert arrays["info"].tolist() == [[0, 0, 0, 0], [1.5, 2, 3, 4]]
+    made._tell(1, np.array([5.0, 6.0]), {"pair": [7, 8]})
+    assert arrays["info"].tolist() == [[0, 0, 0, 0], [0, 7, 8, 0]]
+    assert arrays["obs"].tolist() == [[0, 0], [5, 6]]
+
+
+def test_a_fault_leaves_its_message_and_no_results() -> None:
+    made, arrays = environments(a=1)
+    for name in ("reward", "food", "terminated", "truncated", "info"):
+        arrays[name][:] = 1
+    made._fail(0, "x" * (MESSAGE + 9))
+    assert arrays["message"].sum(axis=1).tolist() == [MESSAGE * ord("x"), 0]
+    made._fail(0, "short")
+    assert arrays["message"][0].tobytes().rstrip(b"\0") == b"short"
+    assert arrays["fault"].tolist() == [True, False]
+    for name in ("reward", "food", "terminated", "truncated", "info"):
+        assert arrays[name].ravel().tolist() == [0, 1]
 
 
 def test_a_caption_tells_action_and_reward() -> None:

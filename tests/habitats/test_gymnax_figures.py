@@ -11,7 +11,7 @@ import pytest
 
 from primordia.habitats.contract import Continuous, Discrete
 from primordia.habitats.framed import MARGIN
-from primordia.habitats.gymnax import task
+from primordia.habitats.gymnax import check, task
 from primordia.habitats.gymnax.check import Measured
 from primordia.habitats.gymnax.picture import BAR, GROUND, WIDTH, draw
 from primordia.habitats.gymnax.spaces import Actions, Senses
@@ -92,7 +92,7 @@ def test_a_grid_has_height_width_and_channels(shape: tuple[int, ...], grid: Any)
     assert Senses(None, pair, squash=False).grid is None
 
 
-def measured(monkeypatch: pytest.MonkeyPatch, **found: Any) -> None:
+def given_as_measured(monkeypatch: pytest.MonkeyPatch, **found: Any) -> None:
     """Let an environment of three numbers, of which the last has bounds, have been measured."""
     own = {
         "lifespan": 1234.4,
@@ -125,7 +125,7 @@ def measured(monkeypatch: pytest.MonkeyPatch, **found: Any) -> None:
 def test_the_facts_of_an_environment_have_its_figures(
     monkeypatch: pytest.MonkeyPatch, action: Any, told: str
 ) -> None:
-    measured(monkeypatch, action=action)
+    given_as_measured(monkeypatch, action=action)
     facts, faults = task.report("any:Env")
     assert facts == [
         "Observation: 3 numbers, obs[0] to obs[2] in conditions.",
@@ -137,10 +137,44 @@ def test_the_facts_of_an_environment_have_its_figures(
         "With random actions, a life has 1,234 ticks on average.",
     ]
     assert faults == ["a fault"]
-    measured(monkeypatch, ended=0, limits=["max_steps", "max_time"])
+    given_as_measured(monkeypatch, ended=0, limits=["max_steps", "max_time"])
     facts, _ = task.report("any:Env")
     assert facts[4].startswith("The environment's time limit (max_steps, max_time) is off;")
     assert facts[6].startswith("None of 32 lives ended in 500 ticks of random play:")
+
+
+class Walked:
+    """A habitat that is measured; its lives are given."""
+
+    words, action = 2, Discrete(3)
+    simulator = SimpleNamespace(changes_state=lambda: False, repeats=lambda: True)
+
+
+def test_the_lifespan_is_the_mean_of_all_lives_whether_or_not_they_have_ended(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Three lives of 1, 2 and 9 ticks, of which the second goes on; numbers count from all ticks."""
+    spans, ended = np.array([1, 2, 9]), np.array([True, False, True])
+    ticks = np.arange(1, 10)[:, None]
+    largest = np.float32([[k, 9 - k] for k in range(9)])
+    sound = np.ones(9, bool)
+    seen = check._Seen(ticks <= spans, (ticks >= spans) & ended, largest, sound, sound, sound)
+    habitat: Any = Walked()
+
+    def measured(given: check._Seen) -> Measured:
+        monkeypatch.setattr(check, "_lived", lambda *_: jax.tree.map(jnp.asarray, given))
+        return check.measure(habitat)
+
+    found = measured(seen)
+    assert (found.lifespan, found.ended, found.faults) == (4.0, 2, [])
+    assert found.largest.tolist() == [8, 9]
+    for name, says in (
+        ("finite", "an observation is not finite"),
+        ("inside", "an observation is outside the declared space"),
+        ("rewarded", "a reward is not finite"),
+    ):
+        once: Any = {name: np.arange(9) != 4}
+        assert measured(seen._replace(**once)).faults == [says]
 
 
 @pytest.mark.parametrize(
@@ -150,7 +184,7 @@ def test_the_facts_of_an_environment_have_its_figures(
 def test_senses_are_squashed_if_a_number_without_bounds_is_large(
     monkeypatch: pytest.MonkeyPatch, largest: list[float], squash: bool
 ) -> None:
-    measured(monkeypatch, largest=np.float32(largest), lifespan=50.0)
+    given_as_measured(monkeypatch, largest=np.float32(largest), lifespan=50.0)
     table = task.values("any:Env")
     own = {"name": "gymnax", "env": "any:Env", "fatal": "done"}
     assert table["habitat"] == own | ({"squash": True} if squash else {})
