@@ -44,9 +44,9 @@ def test_targets_appear_everywhere_in_the_disc_alike() -> None:
 
 
 def test_a_target_is_reached_within_its_distance_in_three_dimensions() -> None:
-    near = np.array([[0.3, 0.0, 0.39], [0.3, 0.0, 0.41], [0.0, -0.49, 0.0], [0.51, 0.0, 0.0]])
-    places = {"target": np.array([1.0, 2.0, 3.0]) + near, "fingertip": np.tile([1.0, 2, 3], (4, 1))}
-    assert Target(**TARGET).reached(places).tolist() == [True, False, True, False]
+    near = [[0.3, 0.0, 0.39], [0.3, 0.0, 0.41], [0.0, -0.49, 0.0], [0.51, 0, 0], [0, 0, 0.5]]
+    places = {"target": np.array([1.0, 2.0, 3.0]) + near, "fingertip": np.tile([1.0, 2, 3], (5, 1))}
+    assert Target(**TARGET).reached(places).tolist() == [True, False, True, False, False]
 
 
 @pytest.mark.parametrize(

@@ -32,7 +32,7 @@ def life_of(row: int, stored: Any = None, **run: Any) -> RelivedLife:
         cause=np.array([ALIVE, Cause.STARVED]),
     ).take(np.array([row]))
     none: Any = None
-    return RelivedLife(SimpleNamespace(**run), none, none, none, none, record, stored)  # type: ignore[arg-type]
+    return RelivedLife(SimpleNamespace(**run), none, none, none, none, record, stored)
 
 
 @pytest.mark.parametrize(("row", "cause", "ends"), [(0, None, 90), (1, Cause.STARVED, 72)])
@@ -89,7 +89,8 @@ def test_founders_of_a_garden_have_keys_and_genomes_of_their_worlds(
     seeds, ends = np.array([11, 22, 33], np.uint64), np.array([500, 600, 700])
     run: Any = SimpleNamespace(world_seeds=seeds, ends=ends)
     world, found = players.founders_of(run, np.array([2, 0]), np.array([3, 2]))
-    _, rows, keys, climate = tuple(found)
+    given: Any = found
+    _, rows, keys, climate = given
     assert world.tolist() == [2, 2, 2, 0, 0]
     assert np.ravel(rows).tolist() == [200, 201, 202, 0, 1]
     assert climate["world"].tolist() == [2, 2, 2, 0, 0]
