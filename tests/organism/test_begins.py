@@ -99,3 +99,12 @@ def test_founders_of_a_garden_have_keys_and_genomes_of_their_worlds(
         one = wide(np.array([seed], np.uint64)), wide(np.array([number]))
         key = stream(one[0], Purpose.CONTROL, one[1])
         assert (int(keys.hi[k]), int(keys.lo[k])) == (int(key.hi[0]), int(key.lo[0]))
+
+
+def test_games_of_organisms_have_keys_of_their_world_and_number() -> None:
+    run: Any = SimpleNamespace(world_seeds=np.array([11, 22, 33], np.uint64))
+    keys = players.evaluation_keys(run, np.array([2, 0, 2]), np.array([5, 5, 0]))
+    for k, (seed, number) in enumerate([(33, 5), (11, 5), (33, 0)]):
+        one = wide(np.array([seed], np.uint64)), wide(np.array([number]))
+        key = stream(one[0], Purpose.EVALUATION, one[1])
+        assert (int(keys.hi[k]), int(keys.lo[k])) == (int(key.hi[0]), int(key.lo[0]))

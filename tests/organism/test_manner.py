@@ -10,7 +10,8 @@ import pytest
 from primordia.errors import InputError
 from primordia.organism import evaluation
 from primordia.organism.evaluation import Evaluation, changed, judged
-from primordia.organism.games import Games, Players
+from primordia.organism.games import Games, Players, _marks
+from primordia.organism.playing.seats import Stretch
 from tests.worlds import config
 
 NUMBERS = [(9, 1), (4, 0)]
@@ -61,19 +62,26 @@ def evaluated(
     return judged(config(), own, NUMBERS, **asked)
 
 
-@pytest.mark.parametrize(("episode", "cut"), [(None, 100), (30, 30), (100, 100), (300, 100)])
+@pytest.mark.parametrize(
+    ("episode", "ticks", "cut"),
+    [(None, 100, 100), (30, 100, 30), (300, 100, 100), (None, 10**6, 10**6), (2000, 10**6, 2000)],
+)
 def test_whole_games_have_no_metabolism_and_are_cut_at_the_habitats_episode_too(
-    monkeypatch: pytest.MonkeyPatch, calls: list[dict[str, Any]], episode: int | None, cut: int
+    monkeypatch: pytest.MonkeyPatch,
+    calls: list[dict[str, Any]],
+    episode: int | None,
+    ticks: int,
+    cut: int,
 ) -> None:
-    found = evaluated(monkeypatch, SimpleNamespace(name="game", episode=episode))
+    found = evaluated(monkeypatch, SimpleNamespace(name="game", episode=episode), ticks=ticks)
     assert [call["habitat"].name for call in calls] == ["changed", "game"]
     assert [call["law"].metabolism for call in calls] == ["hunger", None]
-    assert [call["ticks"] for call in calls] == [100, cut]
+    assert [call["ticks"] for call in calls] == [ticks, cut]
     assert [call["games"] for call in calls] == [7, 7]
     assert [(each.organism, each.world) for each in found] == NUMBERS
-    for each, ticks in zip(found, ([10, 11], [20, 21]), strict=True):
+    for each, lengths in zip(found, ([10, 11], [20, 21]), strict=True):
         assert each.whole is not None
-        assert each.lived.ticks.tolist() == each.whole.ticks.tolist() == ticks
+        assert each.lived.ticks.tolist() == each.whole.ticks.tolist() == lengths
 
 
 @pytest.mark.parametrize(
@@ -156,11 +164,38 @@ def test_a_script_begins_again_when_its_game_has_ended() -> None:
     ]  # fmt: skip
 
 
+def test_games_differ_in_course_if_senses_or_food_of_a_tick_differ() -> None:
+    def marked(high: int, low: int, food: float | None) -> int:
+        marks = np.uint32([[[high, low]]])
+        given: Any = None
+        eaten = None if food is None else np.full((1, 1), food, np.float32)
+        return int(_marks(Stretch(given, given, eaten, marks, given))[0, 0])
+
+    assert marked(3, 7, None) == marked(3, 7, 0.0) == 3 * 2**32 + 7
+    places = (
+        (3, 7, 0.0),
+        (4, 7, 0.0),
+        (3, 8, 0.0),
+        (7, 3, 0.0),
+        (3, 7, 1.0),
+        (3, 7, 0.5),
+        (3, 7, -1.0),
+    )
+    assert len({marked(*place) for place in places}) == len(places)
+
+
 def test_only_the_settings_that_are_named_change() -> None:
     before = config("CartPole-survival", habitat={"track_limit": 7.0})
     after = changed(before, {"angle_limit": 30.0}).build_habitat()
     assert (after.angle_limit, after.track_limit) == (30.0, 7.0)
     assert before.build_habitat().angle_limit == 12.0
+
+
+def test_a_setting_of_none_is_unset() -> None:
+    pytest.importorskip("ale_py")
+    before = config("Pong-survival", habitat={"mode": 1, "difficulty": 2})
+    after: Any = changed(before, {"mode": "none"}).build_habitat()
+    assert (after.mode, after.difficulty) == (None, 2)
 
 
 def test_settings_that_change_the_number_of_senses_are_refused() -> None:
