@@ -1,5 +1,6 @@
 """CartPole equals Gymnasium's environment, step for step."""
 
+import math
 import os
 import subprocess
 import sys
@@ -128,9 +129,16 @@ def test_senses_come_in_the_order_of_the_settings(count: int) -> None:
         ({"angle_limit": 24.0}, [0, 0, 0.22, 0], False),
         ({}, [2.5, 0, 0, 0], True),
         ({"track_limit": 1e9}, [2.5, 0, 0, 0], False),
+        ({"track_limit": 2.0}, [2.0, 0, 0, 0], False),
+        ({"track_limit": 2.0}, [-2.0, 0, 0, 0], False),
+        ({"track_limit": 2.0}, [-2.001, 0, 0, 0], True),
+        ({"angle_limit": 45.0}, [0, 0, math.radians(45), 0], False),
+        ({"angle_limit": 45.0}, [0, 0, -math.radians(45), 0], False),
+        ({"angle_limit": 45.0}, [0, 0, -math.radians(45.01), 0], True),
     ],
 )
 def test_limits_are_settings(change: dict, state: list, fatal: bool) -> None:
+    """A body that is exactly at a limit lives."""
     _, outcome = CartPole(**change).step(jnp.array([state], jnp.float32), jnp.array([0]))
     assert bool(outcome.fatal[0]) is fatal
 
@@ -142,3 +150,37 @@ def test_the_cart_is_drawn_where_it_is() -> None:
         picture = np.asarray(draw(np.array([x, 0, 0, 0], np.float32), 1, 2.4).convert("RGB"))
         columns = np.flatnonzero((np.abs(picture.astype(int) - cart).sum(axis=2) < 20).any(axis=0))
         assert abs((columns[0] + columns[-1]) / 2 - middle) < 4
+
+
+def coloured(picture: np.ndarray, colour: tuple[int, int, int]) -> tuple[np.ndarray, np.ndarray]:
+    """Return rows and columns of the pixels of a colour."""
+    rows, columns = np.nonzero(np.abs(picture.astype(int) - colour).sum(axis=2) < 20)
+    return rows, columns
+
+
+@pytest.mark.parametrize("angle", [-60.0, 0.0, 30.0, 60.0, 100.0])
+def test_the_pole_is_drawn_at_its_angle(angle: float) -> None:
+    """It is 150 pixels long; at positive angles it leans to the right."""
+    theta = math.radians(angle)
+    picture = np.asarray(draw(np.array([0, 0, theta, 0], np.float32), 1, 2.4))
+    rows, columns = coloured(picture, (200, 85, 61))
+    far = np.argmax(np.hypot(columns - 320, rows - 240))
+    assert columns[far] - 320 == pytest.approx(155 * math.sin(theta), abs=6)
+    assert 240 - rows[far] == pytest.approx(155 * math.cos(theta), abs=6)
+
+
+@pytest.mark.parametrize(
+    ("limit", "x", "middle"),
+    [(5.0, 2.5, 450), (1.0, -1.0, 60), (99.0, 49.5, 450), (100.0, 1.2, 450), (1e9, -2.4, 60)],
+)
+def test_the_track_is_as_long_as_its_limit_and_has_ends_where_it_is_limited(
+    limit: float, x: float, middle: int
+) -> None:
+    """A track without a limit in practice is drawn as long as the usual one, and without its ends."""
+    picture = np.asarray(draw(np.array([x, 0, 0, 0], np.float32), 1, limit))
+    columns = coloured(picture, (35, 57, 91))[1]
+    assert (columns.min() + columns.max()) / 2 == pytest.approx(middle, abs=4)
+    grey = set(coloured(picture[:276], (138, 138, 138))[1].tolist())
+    for end in {60, 580} - {middle}:
+        assert (end in grey) == (limit < 100)
+    assert grey <= {*range(57, 64), *range(577, 584)}

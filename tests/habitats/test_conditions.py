@@ -87,6 +87,9 @@ def test_a_condition_is_an_amount_of_one_where_it_holds() -> None:
     ("text", "means"),
     [
         ("speed[1:]", VALUES["speed"][:, 1:]),
+        ("speed[1:2]", VALUES["speed"][:, 1:2]),
+        ("sin(speed)", np.sin(VALUES["speed"])),
+        ("sin(points) - cos(points)", np.sin(VALUES["points"]) - np.cos(VALUES["points"])),
         ("cos(speed) * 2 - 1", np.cos(VALUES["speed"]) * 2 - 1),
         ("min(max(speed, -10), points)", np.minimum(VALUES["speed"], VALUES["points"][:, None])),
         ('place["hand"] - place["target"]', VALUES["place"]["hand"] - VALUES["place"]["target"]),
@@ -167,6 +170,21 @@ def test_numbers_that_can_be_written_out_are_exact_to_the_last_one() -> None:
     assert parse(f"lives < {2**53}", "condition", NAMES)(counts).tolist() == [True, False, True]
     assert parse(f"-{2**53} < lives", "condition", NAMES)(counts).tolist() == [True, True, False]
     assert parse("points < 3.4028234e38", "condition", NAMES)(VALUES).all()
+
+
+def test_a_text_of_ten_thousand_characters_is_in_the_grammar() -> None:
+    assert parse("lives".ljust(10_000), "amount", NAMES)(VALUES).tolist() == [3, 0, 1]
+    with pytest.raises(ValueError, match="at most 10,000 characters, not 10,001"):
+        parse("lives".ljust(10_001), "amount", NAMES)
+
+
+def test_a_value_that_is_the_same_for_all_bodies_has_an_entry_for_each() -> None:
+    for text, kind, dtype in (("2 * 3", "amount", np.float32), ("1 < 2", "condition", bool)):
+        every = parse(text, kind, NAMES).of_all(VALUES, 3, dtype)
+        assert (every.tolist(), every.dtype) == ([6.0 if dtype is np.float32 else True] * 3, dtype)
+    lives = parse("lives", "amount", NAMES).of_all(VALUES, 3, np.float32)
+    lives[0] = 9  # a copy
+    assert (lives.tolist(), VALUES["lives"].tolist()) == ([9, 0, 1], [3, 0, 1])
 
 
 def test_a_sum_of_many_terms_is_in_the_grammar() -> None:

@@ -8,11 +8,15 @@ import pytest
 import primordia
 from primordia.habitats.contract import JaxHabitat
 from primordia.habitats.on_host import OnHost
+from primordia.law.genesis import body_words
+from primordia.law.metabolism import ONE
 from primordia.organism import games
 from primordia.organism.games import Games, Players, lifespans_in_games, play, stretches
 from primordia.organism.players import players_of
 from primordia.organism.playing import in_jax
-from primordia.organism.playing.seats import ODD, Frozen, Manner
+from primordia.organism.playing.seats import ODD, Frozen, Manner, Seats, begun, mark
+from primordia.random.keys import Purpose, stream
+from primordia.random.wide import wide
 from primordia.runs import loop
 from tests.worlds import MILL, config
 
@@ -20,6 +24,18 @@ from tests.worlds import MILL, config
 def test_marks_of_senses_lose_no_bit() -> None:
     """A product with an odd number can be undone; with an even one the highest bit would be lost."""
     assert (ODD % 2 == 1).all()
+
+
+def test_the_mark_of_senses_changes_with_each_bit_and_with_their_order() -> None:
+    senses = np.float32([[0.5, -1.25, 3.0]])
+    before = mark(senses)
+    for place in range(3):
+        for bit in range(32):
+            flipped = senses.view(np.uint32).copy()
+            flipped[0, place] ^= np.uint32(1 << bit)
+            assert (mark(flipped.view(np.float32)) != before).all(), (place, bit)
+    for order in ([1, 0, 2], [0, 2, 1], [2, 1, 0]):
+        assert (mark(np.ascontiguousarray(senses[:, order])) != before).all()
 
 
 BASES: dict[str, str | dict[str, Any]] = {"poles": "CartPole-survival", "mill": MILL}
@@ -71,9 +87,13 @@ def test_only_what_is_frozen_changes_a_game(
         np.testing.assert_array_equal(spans, held.ticks)
 
 
-def test_watched_games_tell_what_brains_think_from(players: Players) -> None:
-    """The same in both habitats; memory is zero at the start, and the games are the same."""
-    watched = Manner(100, watched=True)
+@pytest.mark.parametrize("freezes", [False, True])
+def test_watched_games_tell_what_brains_think_from(players: Players, freezes: bool) -> None:
+    """The same in both habitats; memory is zero at the start, and the games are the same.
+
+    Inputs that are frozen are told as they are, not as they are frozen.
+    """
+    watched = Manner(100, some_frozen(players) if freezes else None, watched=True)
     told = [list(stretches(each, 1, watched)) for each in (players, on_host(players))]
     ours, theirs = (
         [
@@ -87,6 +107,9 @@ def test_watched_games_tell_what_brains_think_from(players: Players) -> None:
     for mine, other in zip(ours[1:], theirs[1:], strict=True):
         np.testing.assert_array_equal(mine[: len(playing)][playing], other[playing])
     assert not ours[2][0].any()
+    if players.law.memory:
+        assert ours[2][1].any(axis=1).all()
+    assert (ours[1][1] != ours[1][0]).any(axis=1).all()
 
 
 @pytest.mark.parametrize("freezes", [False, True])
@@ -97,10 +120,46 @@ def test_games_are_the_same_in_both(players: Players, freezes: bool) -> None:
     same(fused, play(on_host(players), 3, 150, frozen=frozen))
     assert len(np.unique(fused.ticks)) > 3
     script = play(players, 1, 40)
+    for k, actions in enumerate(fused.actions):
+        assert len(actions) == fused.ticks[k, 0]
+        if not freezes:
+            np.testing.assert_array_equal(actions[:40], script.actions[k])
     same(
         play(players, 3, 150, script=script),
         play(on_host(players), 3, 150, script=script),
     )
+
+
+class Reusing(OnHost):
+    """A habitat that puts the senses of each tick into the same array."""
+
+    def reset(self, cells: np.ndarray, words: np.ndarray) -> np.ndarray:
+        self.senses = super().reset(cells, words)
+        return self.senses
+
+    def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Any]:
+        self.senses[:], outcome = super().step(action, alive)
+        return self.senses, outcome
+
+
+def test_a_habitat_may_overwrite_its_senses_in_the_next_tick(players: Players) -> None:
+    frozen, inner = some_frozen(players), players.habitat
+    assert isinstance(inner, JaxHabitat)
+    reusing = players._replace(habitat=Reusing(inner))
+    same(play(reusing, 1, 40, frozen=frozen), play(on_host(players), 1, 40, frozen=frozen))
+
+
+def test_each_game_begins_with_the_store_of_its_player(players: Players) -> None:
+    count = len(players.genomes)
+    store = np.arange(1, count + 1, dtype=np.float32)
+    rates, cells = players.rates._replace(store=store), np.arange(count, dtype=np.int32)
+    start = begun(players.law, 2, Seats(players.genomes, players.keys, cells, rates))
+    assert np.asarray(start.vitals.energy).tolist() == (store * ONE).tolist()
+    assert not np.asarray(start.vitals.eaten).any()
+    assert (start.memory.shape, bool(start.memory.any())) == ((count, players.law.memory), False)
+    assert np.asarray(start.mind.cell).tolist() == cells.tolist()
+    words = body_words(stream(players.keys, Purpose.BODY, wide([0])), cells, 2)
+    np.testing.assert_array_equal(start.words, words)
 
 
 @pytest.mark.parametrize("where", ["in JAX", "on the host"])

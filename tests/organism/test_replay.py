@@ -1,5 +1,6 @@
 """What a film of a life shows, and for how long."""
 
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -9,7 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
-from primordia.organism import replay
+from primordia.errors import InputError
+from primordia.law.metabolism import ONE
+from primordia.law.world import Cause
+from primordia.organism import replay, video
 
 RATE = 50.0
 
@@ -25,6 +29,64 @@ def test_a_life_is_shown_in_two_parts_once_it_is_longer_than_both(
         assert len(shown) == parts
         assert (shown[0][0], shown[-1][-1]) == (1, ticks)
         assert sum(map(len, shown)) == (ticks if parts == 1 else both)
+
+
+NONE = (None, None)
+SHOWN: list[tuple[int, tuple[int | None, int | None], float | None, list[range]]] = [
+    (70, NONE, None, [range(1, 931)]),
+    (170, NONE, 10.0, [range(101, 931)]),
+    (170, NONE, 8.0, [range(101, 501), range(531, 931)]),
+    (170, (300, 400), 1.0, [range(300, 401)]),
+    (170, (300, 300), 1.0, [range(300, 301)]),
+    (170, (50, None), 1.0, [range(101, 931)]),
+    (170, (None, 5000), 1.0, [range(101, 931)]),
+    (170, (0, 102), 1.0, [range(101, 103)]),
+]
+"""the tick after which the life begins, ages asked for, seconds of a part, parts; death at age 930"""
+
+
+@pytest.mark.parametrize(("begins", "ages", "seconds", "parts"), SHOWN)
+def test_the_ages_shown_are_those_asked_for_as_far_as_they_are_lived(
+    monkeypatch: pytest.MonkeyPatch, begins: int, ages: Any, seconds: Any, parts: list[range]
+) -> None:
+    """A life is shown in parts only if no age is asked for."""
+    life: Any = SimpleNamespace(record=SimpleNamespace(born=[70]), begins=begins, ends=1000)
+    monkeypatch.setattr(replay, "picture_rate", lambda life: RATE)
+    assert replay.parts_of(life, ages, seconds) == parts
+
+
+@pytest.mark.parametrize(
+    ("ages", "asked"),
+    [((931, None), "931 to 930"), ((None, 100), "101 to 100"), ((9, 8), "9 to 8")],
+)
+def test_if_no_age_is_left_to_show_the_error_says_which_ages_can_be_seen(
+    monkeypatch: pytest.MonkeyPatch, ages: Any, asked: str
+) -> None:
+    life: Any = SimpleNamespace(record=SimpleNamespace(id=[4], born=[70]), begins=170, ends=1000)
+    monkeypatch.setattr(replay, "picture_rate", lambda life: RATE)
+    says = f"^organism 4 can be seen from age 101 to 930, not from {asked}$"
+    with pytest.raises(InputError, match=says):
+        replay.parts_of(life, ages)
+
+
+@pytest.mark.parametrize(
+    ("name", "rate", "step"),
+    [("a.mp4", 60, 1), ("a.mp4", 61, 2), ("a.gif", 25, 1), ("a.gif", 50, 2), ("a.gif", 60, 3)],
+)
+def test_a_film_has_the_speed_of_the_life_and_no_more_pictures_than_its_kind_of_file_can_show(
+    monkeypatch: pytest.MonkeyPatch, name: str, rate: float, step: int
+) -> None:
+    made: list[Any] = []
+    monkeypatch.setattr(replay, "picture_rate", lambda life: rate)
+    monkeypatch.setattr(replay, "_pictures", lambda *given: made.append(given))
+    monkeypatch.setattr(replay, "_side_by_side", lambda films: films)
+    monkeypatch.setattr(video, "write", lambda *given: made.append(given))
+    life: Any = "a life"
+    replay.film(Path(name), (life, [range(1, 9)]))
+    assert made == [
+        (life, [range(1, 9)], step, rate / step),
+        (Path(name), [None], rate / step),
+    ]
 
 
 @given(*(st.integers(1, most) for most in (60, 40, 9, 20)), st.booleans())
@@ -79,6 +141,64 @@ def test_a_caption_counts_the_age_from_the_birth_wherever_the_film_begins(
         ("organism 4   age 1,231", "tick 1,301", "push"),
         ("organism 4   age 2,500", "tick 2,570", "push"),
     ]
+
+
+@pytest.mark.parametrize("cause", [Cause.STARVED, None])
+def test_a_caption_tells_the_energy_and_in_the_last_tick_the_cause_of_death(
+    monkeypatch: pytest.MonkeyPatch, cause: Cause | None
+) -> None:
+    written: list[tuple[str, ...]] = []
+    monkeypatch.setattr(replay, "_captioned", lambda picture, *words: written.append(words))
+    life: Any = SimpleNamespace(
+        record=SimpleNamespace(id=[4], born=[70]),
+        begins=70,
+        ends=100,
+        cause=cause,
+        habitat=SimpleNamespace(picture=lambda *given: None, caption=lambda *given: ""),
+        law=SimpleNamespace(metabolism="a metabolism"),
+    )
+    ticks = np.array([98, 99, 100])
+    energy = np.array([1234 * ONE + ONE // 2, ONE // 4, -ONE])
+    stretch: Any = SimpleNamespace(
+        tick=ticks, bodies=ticks, action=ticks, energy=energy, eaten=0 * energy
+    )
+    for i in range(len(ticks)):
+        replay.picture_of(life, stretch, i)
+    ends = "" if cause is None else "   dies (starved)"
+    assert [left for left, _, _ in written] == [
+        "organism 4   age 28   energy 1,234.5",
+        "organism 4   age 29   energy 0.2",
+        f"organism 4   age 30   energy -1.0{ends}",
+    ]
+
+
+def test_captions_are_in_the_upper_corners_and_below_the_left_one() -> None:
+    def ink(*words: str) -> tuple[int, int, int, int]:
+        picture = replay._captioned(Image.new("L", (400, 100), 255), *words)
+        box = picture.point(lambda value: 255 * (value < 160)).getbbox()
+        assert box is not None
+        return box
+
+    left, right, below = ink("H", "", ""), ink("", "H", ""), ink("", "", "H")
+    assert left[0] == below[0] == pytest.approx(14, abs=3)
+    assert right[2] == pytest.approx(400 - 14, abs=3)
+    assert left[1:4:2] == right[1:4:2]
+    assert 12 <= left[1] < left[3] < 32 <= below[1] < below[3] < 56
+
+
+def test_a_card_tells_how_many_ticks_are_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    cards: list[tuple[Any, str]] = []
+
+    def card(size: Any, words: str) -> Image.Image:
+        cards.append((size, words))
+        return Image.new("RGB", size)
+
+    monkeypatch.setattr(replay, "_card", card)
+    monkeypatch.setattr(replay, "moments", lambda *given: iter([(0, None, 0), (1, None, 0)]))
+    monkeypatch.setattr(replay, "picture_of", lambda *given: Image.new("RGB", (64, 36)))
+    life: Any = None
+    list(replay._pictures(life, [range(1, 101), range(1331, 1431)], 1, RATE))
+    assert cards == [((64, 36), "1,230 ticks later")]
 
 
 @pytest.mark.parametrize("rate", [RATE, 0.1])

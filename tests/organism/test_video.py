@@ -9,7 +9,7 @@ from PIL import Image
 
 import primordia
 from primordia.habitats.cartpole.habitat import CartPole
-from primordia.organism import replay
+from primordia.organism import replay, video
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import loop
 from primordia.runs.archive import Archive
@@ -84,6 +84,45 @@ def test_a_part_of_a_life_is_written_as_a_gif(poles: Path, tmp_path: Path) -> No
             gif.seek(number)
             total += gif.info["duration"]
     assert total == (20 + 25) * 40
+
+
+def striped(left: tuple[int, int, int], right: tuple[int, int, int]) -> Image.Image:
+    """Return a picture of odd size whose halves have these colours."""
+    picture = Image.new("RGB", (41, 31), left)
+    picture.paste(right, (20, 0, 41, 31))
+    return picture
+
+
+def test_a_film_has_all_pictures_at_its_rate_and_an_even_size(tmp_path: Path) -> None:
+    pictures = [striped((20 * k, 0, 0), (0, 0, 255)) for k in range(7)]
+    video.write(tmp_path / "new" / "a.mp4", iter(pictures), 12.5)
+    with av.open(str(tmp_path / "new" / "a.mp4")) as container:
+        stream = container.streams.video[0]
+        assert (stream.average_rate, stream.width, stream.height) == (12.5, 40, 30)
+        shown = [np.asarray(each.to_image()) for each in container.decode(video=0)]
+    reds = [float(each[10:20, 4:14, 0].mean()) for each in shown]
+    assert reds == pytest.approx([20.0 * k for k in range(7)], abs=12)
+
+
+@pytest.mark.parametrize("sampled", [True, False])
+def test_a_gif_has_the_colours_of_the_sample_or_of_its_first_picture(
+    sampled: bool, tmp_path: Path
+) -> None:
+    """Its pictures are half as large, and play again and again."""
+    red, green, white = (250, 0, 0), (0, 250, 0), (255, 255, 255)
+    pictures = [striped(white, red), striped(green, red), striped(red, white)]
+    sample = striped(green, red)
+    sample.paste(white, (0, 0, 41, 9))
+    video.write(tmp_path / "a.gif", iter(pictures), 20.0, sample if sampled else None)
+    with Image.open(tmp_path / "a.gif") as gif:
+        assert (getattr(gif, "n_frames", 1), gif.size, gif.info["loop"]) == (3, (21, 16), 0)
+        found = []
+        for number in range(3):
+            gif.seek(number)
+            assert gif.info["duration"] == 50
+            frame = gif.convert("RGB")
+            found.append([frame.getpixel(place) for place in ((4, 8), (15, 8))])
+    assert found == [[white, red], [green if sampled else red, red], [red, white]]
 
 
 def test_a_picture_shows_where_the_cart_is_and_the_push() -> None:

@@ -1,0 +1,93 @@
+"""What is counted in Atari games: points of all frames, scores and kills; and options of a console."""
+
+from collections import defaultdict
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("ale_py")
+
+from primordia.habitats.atari import simulator
+from primordia.habitats.atari.habitat import Atari
+from primordia.habitats.atari.simulator import Arcade, console
+
+
+def test_scores_are_sums_of_points_and_kills_are_ticks_with_points_of_ones_own() -> None:
+    """Points of a cell that does not live are not counted."""
+    pong = Atari(game="pong")
+    pong._tally = np.zeros((4, 3), np.int32)
+    alive = np.array([True, True, True, False])
+    for points in ([3, 0, -2, 5], [4, 0, 1, 5], [0, 0, -7, -1]):
+        pong._count(np.array(points, np.float32), alive)
+    assert pong.tally().tolist() == [[7, 2, 0], [0, 0, 0], [-8, 1, 0], [0, 0, 0]]
+    assert pong.tallies == ("score", "kills", "lives")
+
+
+@pytest.mark.parametrize(
+    ("skip", "points"), [(1, [5, -1, 4]), (2, [4, 3]), (3, [8]), (4, [7]), (5, [9])]
+)
+def test_the_points_of_a_tick_are_those_of_all_its_frames(skip: int, points: list[int]) -> None:
+    made, buttons = object.__new__(Arcade), list[int]()
+    made._skip, made._sticky = skip, 0
+    frames = iter([5, -1, 4, -1, 2])
+
+    def act(button: int) -> int:
+        buttons.append(button)
+        return next(frames)
+
+    ale: Any = type("Emulator", (), {"act": staticmethod(act)})
+    assert [made._frames(ale, 0, 3) for _ in points] == points
+    assert buttons == [3] * (skip * len(points))
+
+
+@pytest.mark.parametrize("option", ["mode", "difficulty"])
+def test_mode_and_difficulty_are_those_of_the_settings(
+    option: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Pong's mode and difficulty change what its memory holds."""
+    made: list[tuple[Any, ...]] = []
+
+    def noted(*given: Any) -> Any:
+        made.append(given)
+        return console(*given)
+
+    monkeypatch.setattr(simulator, "console", noted)
+    monkeypatch.setattr(simulator, "_SPARE", defaultdict(list))
+    simulator._start.cache_clear()
+    starts = []
+    for value in (None, 1):
+        chosen: dict[str, Any] = {option: value}
+        game = Atari(game="pong", workers=0, **chosen)
+        game.open(2)
+        game.reset(np.arange(2), np.zeros((2, game.words), np.uint32))
+        for _ in range(30):
+            game.step(np.ones(2, np.int32), np.ones(2, bool))
+        starts.append(game.seen()["ram"].copy())
+        alone = console("pong", **chosen)
+        fire = game._buttons[1]
+        for _ in range(30):
+            alone.act(fire)
+        np.testing.assert_array_equal(starts[-1], [alone.getRAM()] * 2)
+        game.close()
+    simulator._start.cache_clear()
+    place = 1 if option == "mode" else 2
+    assert {given[place] for given in made} == {None, 1}
+    assert (starts[0] != starts[1]).any()
+
+
+@pytest.mark.parametrize(
+    ("settings", "words"),
+    [({}, 0), ({"noops": 1}, 2), ({"sticky": 0.1}, 2), ({"noops": 1, "sticky": 0.1}, 2)],
+)
+def test_a_birth_needs_random_words_if_no_ops_or_buttons_are_random(
+    settings: dict[str, Any], words: int
+) -> None:
+    assert Atari(game="pong", **settings).words == words
+
+
+def test_what_is_scored_has_points_as_food_and_all_other_settings_of_the_task() -> None:
+    own: dict[str, Any] = {"senses": (49, 51), "sticky": 0.25, "noops": 30, "frame_skip": 4,
+                           "actions": "NOOP UP", "mode": 1, "workers": 0}  # fmt: skip
+    game = Atari(game="pong", fatal="points < 0", food="2", **own).original()
+    assert game == Atari(game="pong", fatal="game_over", food="points", **own)

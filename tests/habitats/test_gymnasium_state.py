@@ -1,0 +1,85 @@
+"""The state of an environment as plain data: every kind of value comes back as it was."""
+
+from collections import OrderedDict, deque
+from enum import Enum
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("gymnasium")
+
+from primordia.habitats.gymnasium import state
+
+
+class Colour(Enum):
+    RED = 1
+
+
+class Part:
+    """An object within an environment."""
+
+    def __init__(self, number: int) -> None:
+        self.number = number
+
+
+class Thing:
+    """An environment with a value of each kind."""
+
+    def __init__(self, seed: int) -> None:
+        self.plain = [True, seed, 0.1 * seed, f"é{seed}", None]
+        self.tuple, self.set = (seed, (seed + 1,)), {seed, seed + 5}
+        self.deque = deque(range(seed), maxlen=4)
+        self.dict: dict[Any, Any] = {seed: "a", "b": [seed], (1, 2): seed}
+        self.ordered = OrderedDict([("z", seed), ("a", -seed)])
+        self.number, self.small = np.float32(seed / 3), np.uint8(seed)
+        self.array = np.arange(6.0).reshape(2, 3) * seed
+        self.whole = np.full((0, 2), seed, np.int16)
+        self.generator = np.random.default_rng(seed)
+        self.old = np.random.RandomState(seed)
+        self.part = Part(seed)
+        self.parts = [self.part, Part(-seed), self.part]
+        self.itself = self
+        self.colour, self.kind = Colour.RED, Part
+
+    def values(self) -> dict[str, Any]:
+        """Return the values that can be compared."""
+        names = ("plain", "tuple", "set", "deque", "dict", "number", "small", "colour", "kind")
+        return {
+            **{name: (type(getattr(self, name)), getattr(self, name)) for name in names},
+            "longest": self.deque.maxlen,
+            "order": list(self.ordered.items()),
+            "keys": list(self.dict),
+            "array": (self.array.dtype, self.array.shape, self.array.tolist()),
+            "whole": (self.whole.dtype, self.whole.shape),
+            "parts": [part.number for part in self.parts],
+        }
+
+
+def test_every_kind_of_value_comes_back_as_it_was() -> None:
+    """Values that are one object stay one, and what came later is removed."""
+    one, other = Thing(3), Thing(7)
+    other.later = 9  # type: ignore[attr-defined]
+    own = other.part, other.generator
+    one.generator.random(5)
+    one.old.random_sample(5)
+    state.decode(other, state.encode(one))
+    assert other.values() == one.values()
+    assert other.generator.random(3).tolist() == one.generator.random(3).tolist()
+    assert other.old.random_sample(3).tolist() == one.old.random_sample(3).tolist()
+    assert (other.part, other.generator) == own
+    assert other.parts[0] is other.parts[2] is other.part
+    assert other.parts[1] is not other.part
+    assert other.itself is other
+    assert not hasattr(other, "later")
+    other.array[0] = 5  # the array can be written, and is no part of the other environment
+    assert one.array[0].tolist() == [0, 3, 6]
+
+
+def test_what_cannot_be_saved_is_named_by_its_place() -> None:
+    thing = Thing(3)
+    thing.plain.append(iter([1]))
+    with pytest.raises(
+        state.UnknownStateError, match=r"^env\.plain\[5\] is a list_iterator, which"
+    ):
+        state.encode(thing)

@@ -1,0 +1,139 @@
+"""Parts of environments in JAX: where they come from, their parameters, packed states, and powers."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from jax import lax
+
+from primordia.habitats.gymnax import libraries
+from primordia.habitats.gymnax.libraries import NEVER, package_of
+from primordia.habitats.gymnax.packed import pack
+from primordia.habitats.gymnax.rounded import rounded
+from primordia.habitats.gymnax.simulator import _as
+
+
+@pytest.mark.parametrize(
+    ("name", "package"),
+    [
+        ("CartPole-v1", "gymnax"),
+        ("Craftax-Symbolic-v1", "craftax"),
+        ("octax:pong", "octax"),
+        ("playground:CartpoleBalance", "playground"),
+        ("tests.walks:Walk", "tests.walks"),
+    ],
+)
+def test_the_package_of_an_environment_follows_from_its_name(name: str, package: str) -> None:
+    assert package_of(name) == package
+
+
+def test_the_versions_of_an_environment_of_ones_own_are_those_of_no_library() -> None:
+    assert libraries.versions("tests.walks:Walk") == {}
+
+
+@pytest.mark.parametrize("time_limit", [False, True])
+def test_the_time_limit_of_a_game_of_octax_is_set_when_it_is_made(
+    time_limit: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made: list[tuple[str, dict[str, Any]]] = []
+
+    def create(name: str, **limits: Any) -> tuple[str, None]:
+        made.append((name, limits))
+        return f"the game {name}", None
+
+    modules = {
+        "octax.environments": SimpleNamespace(__path__=["here"], create_environment=create),
+        "octax.wrappers": SimpleNamespace(OctaxGymnaxWrapper=lambda env: (env,)),
+    }
+    monkeypatch.setattr(libraries, "import_module", modules.__getitem__)
+    found = [SimpleNamespace(name=name) for name in ("pong", "space_flight")]
+    monkeypatch.setattr(libraries, "iter_modules", lambda path: found)
+    assert libraries.make("octax:space-flight10", time_limit) == ("the game space-flight10",)
+    limits = {} if time_limit else {"max_num_steps_per_episodes": NEVER}
+    assert made == [("space-flight10", limits)]
+    with pytest.raises(ValueError, match="octax has no environment 'pongg'; did you mean 'pong'"):
+        libraries.make("octax:pongg", time_limit)
+
+
+GIVEN: list[tuple[Any, Any, Any]] = [
+    (0.5, 2, 2.0),
+    (0.5, 0.25, 0.25),
+    (3, 4, 4),
+    (True, False, False),
+    ("a", "b", "b"),
+    ((1, 2), [3, 4, 5], (3, 4, 5)),
+    ([1, 2], [3], [3]),
+    (jnp.zeros(2), [3, 4], [3.0, 4.0]),
+    (jnp.int32(1), 7, 7),
+]
+"""a parameter's default, a value in settings, the parameter"""
+
+
+@pytest.mark.parametrize(("default", "given", "means"), GIVEN)
+def test_a_parameter_has_the_type_of_its_default(default: Any, given: Any, means: Any) -> None:
+    found = _as(default, given, "gusts")
+    if isinstance(default, jax.Array):
+        assert (found.dtype, found.shape, found.tolist()) == (default.dtype, default.shape, means)
+    else:
+        assert (type(found), found) == (type(default), means)
+
+
+@pytest.mark.parametrize(
+    ("default", "given"),
+    [(3, 4.5), (3, True), (True, 1), (0.5, "a"), (jnp.zeros(2), [1, 2, 3]), ((1, 2), 3), ("a", 1)],
+)
+def test_a_parameter_of_another_type_is_refused(default: Any, given: Any) -> None:
+    with pytest.raises(ValueError, match=r"^params: gusts is .*type and shape of its default"):
+        _as(default, given, "gusts")
+
+
+def test_a_packed_state_is_the_state_bit_for_bit() -> None:
+    """Single numbers are words of 32 bits in one array; arrays stay as they are."""
+    state = {
+        "a": jnp.float32(-0.1), "b": jnp.arange(3.0), "c": jnp.bool_(True), "d": jnp.int32(-7),
+        "e": {"f": jnp.uint32(2**32 - 1), "g": jnp.zeros((2, 2), bool), "h": jnp.bool_(False)},
+        "i": jnp.uint8(200), "j": jnp.float32(np.nan),
+    }  # fmt: skip
+    senses = jnp.float32([0.3, -np.inf])
+    packed = pack(senses, state)
+    assert (packed.words.shape, len(packed.arrays)) == ((2 + 6,), 3)
+    np.testing.assert_array_equal(packed.senses(2), senses)
+    back = packed.state(2, jax.eval_shape(lambda: state))
+    assert {*back} == {*state}
+    for one, other in zip(jax.tree.leaves(back), jax.tree.leaves(state), strict=True):
+        assert one.dtype == other.dtype
+        np.testing.assert_array_equal(one, other)
+
+
+def test_powers_and_scans_are_those_of_numpy() -> None:
+    """Powers are products of squares, from the smallest on, each rounded."""
+    a = np.float32([0.3, -1.7, 2.9])
+    rows = np.float32([[0.1, 0.2, 0.3], [1.1, -1.2, 1.3], [7.0, 8.0, 9.0]])
+
+    def powers(a: Any, rows: Any) -> Any:
+        def step(x: Any, row: Any) -> Any:
+            return x * row + 1, x - row
+
+        last, passed = lax.scan(step, a, rows, reverse=True)
+        grown = lax.while_loop(lambda x: x[0] < 9, lambda x: x * x + a * a, a + 1)
+        return [lax.integer_pow(a, y) for y in (0, 1, 2, 5, 6, -1, -3)], last, passed, grown
+
+    found, last, passed, grown = rounded(powers, jnp.uint32(0))(a, rows)
+    two, one = a * a, np.float32(1)
+    four = two * two
+    expected = [a * 0 + 1, a, two, a * four, two * four, one / a, one / (a * two)]
+    for power, wanted in zip(found, expected, strict=True):
+        np.testing.assert_array_equal(power, wanted)
+    x, seen = a, []
+    for row in rows[::-1]:
+        x, before = x * row + 1, x - row
+        seen.append(before)
+    np.testing.assert_array_equal(last, x)
+    np.testing.assert_array_equal(passed, seen[::-1])
+    x = a + 1
+    while x[0] < 9:
+        x = x * x + two
+    np.testing.assert_array_equal(grown, x)

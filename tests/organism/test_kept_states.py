@@ -1,0 +1,113 @@
+"""Where a revived life begins, if not with the birth, and what is noted of a comparison."""
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from primordia.errors import InputError
+from primordia.organism import revival
+from primordia.organism.revival import Respect, Revival
+from primordia.runs import checkpoint, directory
+
+KEPT = ({"ticks": [9, 1200]}, {"ticks": [9, 1100]}, {"ticks": [9, 60]})
+"""States of a run of two worlds, newest first; the first world has stopped at tick 9."""
+
+
+def stored(
+    monkeypatch: pytest.MonkeyPatch, since: int | None, born: int = 60, ended: int = 1300
+) -> int | None:
+    """Return the tick in which the life of organism 3 of world 1 is to begin; None: with its birth."""
+    lives = SimpleNamespace(
+        row=lambda organism, world: {(3, 1): 2}[organism, world],
+        born=np.array([0, 0, born]),
+        ended=np.array([5, 5, ended]),
+    )
+    run: Any = SimpleNamespace(path="RUN", lives=lives, fault_in=None, arrays_of=dict)
+    monkeypatch.setattr(checkpoint, "whole_checkpoints", lambda *given: iter(KEPT))
+    monkeypatch.setattr(revival, "world_ticks", lambda arrays: arrays["ticks"])
+    found = revival._stored(run, 3, 1, since)
+    return None if found is None else int(found["ticks"][1])
+
+
+@pytest.mark.parametrize(
+    ("since", "begins"),
+    [(None, None), (10**9, 1200), (1200, 1200), (1199, 1100), (1100, 1100), (1099, 60), (60, 60)],
+)
+def test_a_life_begins_with_the_newest_state_that_is_not_later(
+    monkeypatch: pytest.MonkeyPatch, since: int | None, begins: int | None
+) -> None:
+    assert stored(monkeypatch, since) == begins
+
+
+@pytest.mark.parametrize(
+    ("born", "ended", "begins"), [(60, 61, 60), (60, 1100, 60), (61, 1101, 1100), (61, 1200, 1100)]
+)
+def test_a_life_begins_with_a_state_after_which_it_goes_on(
+    monkeypatch: pytest.MonkeyPatch, born: int, ended: int, begins: int
+) -> None:
+    """It may be born in the tick of the state, but it does not die in this tick."""
+    assert stored(monkeypatch, 10**9, born, ended) == begins
+
+
+@pytest.mark.parametrize(
+    ("since", "born", "ended", "says"),
+    [
+        (59, 60, 1300, "from tick 60 to 1,300; RUN keeps only later .*: 1,200 and 1,100 and 60$"),
+        (1099, 61, 1300, "from tick 61 to 1,300; RUN keeps only later .*: 1,200 and 1,100$"),
+        (500, 1101, 1200, "from tick 1,101 to 1,200, and RUN keeps no checkpoint of these"),
+        (500, 61, 1100, "from tick 61 to 1,100, and RUN keeps no checkpoint of these"),
+    ],
+)
+def test_if_no_state_is_early_enough_the_error_says_which_are_kept(
+    monkeypatch: pytest.MonkeyPatch, since: int, born: int, ended: int, says: str
+) -> None:
+    with pytest.raises(InputError, match=f"^--from {since}: organism 3 lived {says}"):
+        stored(monkeypatch, since, born, ended)
+
+
+@pytest.mark.parametrize(
+    ("progress", "given", "notes"),
+    [
+        ({}, {}, []),
+        ({}, {"replaced": True}, ["a child took the cell in the last tick; neighbours were not"]),
+        ({}, {"written": True}, ["the run goes on; the records end at tick 1,500"]),
+        ({"exact": False}, {}, ["is not sure: parts of this run cannot be repeated"]),
+        ({"exact": False}, {"other": ["a 1 then", "b 2 then"]}, ["not sure: a 1 then; b 2 then"]),
+        ({"restarts": 1}, {}, ["the living got new bodies once, when the run was resumed"]),
+        ({"restarts": 1234}, {}, ["the living got new bodies 1,234 times, when the run"]),
+        ({}, {"faults": ["2 is damaged", "1 is missing"]}, ["2 is damaged; an older checkpoint"]),
+    ],
+)
+def test_each_limit_of_a_comparison_is_noted_once(
+    monkeypatch: pytest.MonkeyPatch, progress: dict[str, Any], given: dict[str, Any], notes: list
+) -> None:
+    """One world has stopped earlier than the other."""
+    monkeypatch.setattr(directory, "is_written", lambda path: given.get("written", False))
+    run: Any = SimpleNamespace(
+        path="RUN",
+        progress=SimpleNamespace(**{"exact": True, "restarts": 0, **progress}),
+        newest=("a checkpoint", given.get("faults", [])),
+        ends=np.array([1500, 900]),
+        other_versions=given.get("other", []),
+    )
+    course: Any = SimpleNamespace(replaced=given.get("replaced", False))
+    found = revival._notes(run, course)
+    assert len(found) == len(notes)
+    assert all(part in note for part, note in zip(notes, found, strict=True))
+
+
+def test_what_is_found_is_told_in_plain_values() -> None:
+    respects = (Respect("tick", 9, 9), Respect("cause", "starved", None))
+    found = Revival(3, 1, "fork", 60, 1300, respects, ("a note",), (Path("a.npz"),))
+    assert found.to_dict() == {
+        "organism": 3, "world": 1, "begin": "fork", "begins": 60, "ends": 1300, "agrees": False,
+        "respects": [
+            {"name": "tick", "recorded": 9, "relived": 9, "agrees": True},
+            {"name": "cause", "recorded": "starved", "relived": None, "agrees": False},
+        ],
+        "notes": ["a note"], "files": ["a.npz"],
+    }  # fmt: skip
+    assert Revival(3, 1, "birth", 0, 9, respects[:1], (), ()).agrees

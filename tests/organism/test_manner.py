@@ -1,0 +1,207 @@
+"""The manner in which an evaluation plays its games, and what is counted of them."""
+
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from primordia.errors import InputError
+from primordia.organism import evaluation
+from primordia.organism.evaluation import Evaluation, changed, judged
+from primordia.organism.games import Games, Players, _marks
+from primordia.organism.playing.seats import Stretch
+from tests.worlds import config
+
+NUMBERS = [(9, 1), (4, 0)]
+
+
+@dataclass(frozen=True)
+class Rules:
+    """A law, as far as an evaluation reads it."""
+
+    motor: Any
+    metabolism: str | None = "hunger"
+    senses: int = 3
+
+
+def played(ticks: list[list[int]], course: list[list[int]] | None = None) -> Games:
+    """Return games of some players, all cut, without food."""
+    length = np.array(ticks)
+    courses = np.array(course or ticks, np.uint64)
+    return Games(length, np.zeros(length.shape, bool), 0.0 * length, courses, [length[:, 0]] * 2)
+
+
+@pytest.fixture
+def calls(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
+    """Return the inputs of each call of `play`; games differ from player to player."""
+    noted: list[dict[str, Any]] = []
+
+    def play(players: Players, games: int, ticks: int, **given: Any) -> Games:
+        habitat, law = players.habitat, players.law
+        noted.append({"habitat": habitat, "law": law, "games": games, "ticks": ticks, **given})
+        return played([[10, 11], [20, 21]])
+
+    monkeypatch.setattr(evaluation, "play", play)
+    return noted
+
+
+def evaluated(
+    monkeypatch: pytest.MonkeyPatch, game: Any, words: int = 4, motor: str = "direct", **given: Any
+) -> list[Evaluation]:
+    """Evaluate two players in a changed habitat, of which the game is the original task."""
+    habitat: Any = SimpleNamespace(name="changed", words=words, original=lambda: game)
+    after = SimpleNamespace(build_habitat=lambda: habitat)
+    monkeypatch.setattr(evaluation, "changed", lambda config, changes: after)
+    habitat_before: Any = SimpleNamespace(name="as it was")
+    law: Any = Rules(SimpleNamespace(kind=motor))
+    rates: Any = None
+    own = Players(law, habitat_before, np.zeros((2, 5), np.float32), rates, rates)
+    asked: dict[str, Any] = {"games": 7, "ticks": 100, "senses": "live", "habitat": {}, **given}
+    return judged(config(), own, NUMBERS, **asked)
+
+
+@pytest.mark.parametrize(
+    ("episode", "ticks", "cut"),
+    [(None, 100, 100), (30, 100, 30), (300, 100, 100), (None, 10**6, 10**6), (2000, 10**6, 2000)],
+)
+def test_whole_games_have_no_metabolism_and_are_cut_at_the_habitats_episode_too(
+    monkeypatch: pytest.MonkeyPatch,
+    calls: list[dict[str, Any]],
+    episode: int | None,
+    ticks: int,
+    cut: int,
+) -> None:
+    found = evaluated(monkeypatch, SimpleNamespace(name="game", episode=episode), ticks=ticks)
+    assert [call["habitat"].name for call in calls] == ["changed", "game"]
+    assert [call["law"].metabolism for call in calls] == ["hunger", None]
+    assert [call["ticks"] for call in calls] == [ticks, cut]
+    assert [call["games"] for call in calls] == [7, 7]
+    assert [(each.organism, each.world) for each in found] == NUMBERS
+    for each, lengths in zip(found, ([10, 11], [20, 21]), strict=True):
+        assert each.whole is not None
+        assert each.lived.ticks.tolist() == each.whole.ticks.tolist() == lengths
+
+
+@pytest.mark.parametrize(
+    ("words", "motor", "games"),
+    [(0, "direct", 1), (4, "direct", 7), (0, "gaussian", 7), (4, "gaussian", 7)],
+)
+def test_one_game_is_enough_only_if_neither_body_nor_motor_is_random(
+    monkeypatch: pytest.MonkeyPatch,
+    calls: list[dict[str, Any]],
+    words: int,
+    motor: str,
+    games: int,
+) -> None:
+    found = evaluated(monkeypatch, None, words, motor)
+    assert [call["games"] for call in calls] == [games]
+    assert [each.deterministic for each in found] == [games == 1] * 2
+    assert [each.whole for each in found] == [None, None]
+
+
+def test_frozen_senses_are_all_senses_and_no_memory(
+    monkeypatch: pytest.MonkeyPatch, calls: list[dict[str, Any]]
+) -> None:
+    game = SimpleNamespace(name="game", episode=None)
+    evaluated(monkeypatch, game)
+    assert [(call["frozen"], call["script"]) for call in calls] == [(None, None)] * 2
+    calls.clear()
+    evaluated(monkeypatch, game, senses="frozen")
+    for call in calls:
+        assert call["frozen"].senses.tolist() == [[True] * 3] * 2
+        assert call["frozen"].memory.tolist() == [[False]] * 2
+        assert call["script"] is None
+
+
+def test_ignored_senses_repeat_one_game_in_the_habitat_of_the_task(
+    monkeypatch: pytest.MonkeyPatch, calls: list[dict[str, Any]]
+) -> None:
+    evaluated(monkeypatch, SimpleNamespace(name="game", episode=5), senses="ignored")
+    assert [call["habitat"].name for call in calls] == ["as it was", "changed", "game"]
+    assert [call["games"] for call in calls] == [1, 7, 7]
+    assert [call["ticks"] for call in calls] == [100, 100, 5]
+    assert [call.get("frozen") for call in calls] == [None] * 3
+    assert "script" not in calls[0]
+    for call in calls[1:]:
+        assert call["script"].ticks.tolist() == [[10, 11], [20, 21]]
+
+
+@pytest.mark.parametrize("wrong", [{"games": 0}, {"ticks": 0}, {"games": -1, "ticks": 5}])
+def test_an_evaluation_has_a_game_of_a_tick(
+    monkeypatch: pytest.MonkeyPatch, calls: list[dict[str, Any]], wrong: dict[str, int]
+) -> None:
+    with pytest.raises(InputError, match="at least one game of at least one tick"):
+        evaluated(monkeypatch, None, **wrong)
+    assert len(evaluated(monkeypatch, None, games=1, ticks=1)) == 2
+
+
+def test_distinct_games_are_those_of_the_whole_game_if_there_is_one() -> None:
+    lived = played([[1, 1, 1, 1]], [[5, 5, 6, 6]]).of_player(0)
+    whole = played([[1, 1, 1, 1]], [[1, 2, 3, 3]]).of_player(0)
+    assert Evaluation(0, 0, "live", lived, None, deterministic=False).distinct == 2
+    assert Evaluation(0, 0, "live", lived, whole, deterministic=False).distinct == 3
+    assert Evaluation(0, 0, "live", whole, lived, deterministic=False).distinct == 2
+
+
+@pytest.mark.parametrize(
+    ("course", "fixed", "repeats"),
+    [([3], True, True), ([3], False, False), ([3, 3], False, True), ([3, 4], False, False)],
+)
+def test_games_repeat_if_several_are_the_same_or_nothing_is_random(
+    course: list[int], fixed: bool, repeats: bool
+) -> None:
+    games = played([[9] * len(course)], [course]).of_player(0)
+    assert Evaluation(0, 0, "live", games, None, deterministic=fixed).repeats == repeats
+
+
+def test_a_script_begins_again_when_its_game_has_ended() -> None:
+    """Each player repeats the actions of its own game."""
+    games = played([[3], [2]])._replace(actions=[np.array([1, 2, 3]), np.array([8, 9])])
+    assert [games.actions_at(tick).tolist() for tick in range(1, 8)] == [
+        [1, 8], [2, 9], [3, 8], [1, 9], [2, 8], [3, 9], [1, 8],
+    ]  # fmt: skip
+
+
+def test_games_differ_in_course_if_senses_or_food_of_a_tick_differ() -> None:
+    def marked(high: int, low: int, food: float | None) -> int:
+        marks = np.uint32([[[high, low]]])
+        given: Any = None
+        eaten = None if food is None else np.full((1, 1), food, np.float32)
+        return int(_marks(Stretch(given, given, eaten, marks, given))[0, 0])
+
+    assert marked(3, 7, None) == marked(3, 7, 0.0) == 3 * 2**32 + 7
+    places = (
+        (3, 7, 0.0),
+        (4, 7, 0.0),
+        (3, 8, 0.0),
+        (7, 3, 0.0),
+        (3, 7, 1.0),
+        (3, 7, 0.5),
+        (3, 7, -1.0),
+    )
+    assert len({marked(*place) for place in places}) == len(places)
+
+
+def test_only_the_settings_that_are_named_change() -> None:
+    before = config("CartPole-survival", habitat={"track_limit": 7.0})
+    after = changed(before, {"angle_limit": 30.0}).build_habitat()
+    assert (after.angle_limit, after.track_limit) == (30.0, 7.0)
+    assert before.build_habitat().angle_limit == 12.0
+
+
+def test_a_setting_of_none_is_unset() -> None:
+    pytest.importorskip("ale_py")
+    before = config("Pong-survival", habitat={"mode": 1, "difficulty": 2})
+    after: Any = changed(before, {"mode": "none"}).build_habitat()
+    assert (after.mode, after.difficulty) == (None, 2)
+
+
+def test_settings_that_change_the_number_of_senses_are_refused() -> None:
+    says = (
+        r"\(angle_limit, senses\) give the habitat 1 senses and 2 actions; "
+        "the brain is made for 4 senses and 2 actions$"
+    )
+    with pytest.raises(InputError, match=says):
+        changed(config("CartPole-survival"), {"angle_limit": 30.0, "senses": ["x"]})
