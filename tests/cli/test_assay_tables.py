@@ -1,0 +1,176 @@
+"""Tables of assays: each cell holds the median and quartiles of its own values, written out here."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from primordia.assays.ablate import Ablation
+from primordia.assays.compete import Competition
+from primordia.assays.effects import Effect
+from primordia.assays.garden import Bed
+from primordia.assays.heredity import Inherited, Pairs
+from primordia.assays.line import Line, Step
+from primordia.cli.assays import tables
+from primordia.history.threshold import Threshold
+
+OFFSETS = (8, 0, 2)
+"""What three worlds or organisms have above the least of them; their mean is not their median."""
+
+
+def spread(least: int) -> str:
+    """Return the text of three values that lie OFFSETS above the least."""
+    return f"{least + 2} ({least + 1} to {least + 5})"
+
+
+def cells(told: tables.Told) -> dict[str, list[str]]:
+    """Return the cells of each row by the row's name."""
+    assert all(len(row) == len(told.head) for row in told.rows)
+    return {row[0]: list(row[1:]) for row in told.rows}
+
+
+def test_heredity_has_pairs_in_all_and_spreads_over_worlds() -> None:
+    def pairs(first: int, more: int) -> Pairs:
+        return Pairs(1000 * first + more, *(first + each + more for each in (0, 20, 40, 60)))
+
+    found = [
+        Inherited(
+            world, pairs(100, more), pairs(200, more), pairs(300, more), 400 + more, 500 + more
+        )
+        for world, more in enumerate(OFFSETS)
+    ]
+    told = tables.heredity("run", found)
+    assert told.title == "run: 3 worlds, medians (quartiles)"
+    assert list(told.head) == ["", "copies", "mutants", "both"]
+    assert cells(told) == {
+        "pairs": ["300,010", "600,010", "900,010"],
+        "slope": [spread(100), spread(200), spread(300)],
+        "exactly as long": [spread(120), spread(220), spread(320)],
+        "a tenth longer": [spread(140), spread(240), spread(340)],
+        "a third shorter": [spread(160), spread(260), spread(360)],
+        "selection": ["", "", spread(400)],
+        "transmission": ["", "", spread(500)],
+    }
+    assert tables.heredity("run", found[:1]).title == "run: 1 world, medians (quartiles)"
+
+
+def test_only_worlds_above_one_hold_their_line() -> None:
+    """The threshold is exactly 1 in one world, above 1 in two, below in one, and unknown in one."""
+    worlds = [(0.5, 0.5, 4.0), (0.5, 0.0, 2.0), (0.25, 1.0, 1.5), (1.0, 0.5, 1.0), (0.0, None, 3.0)]
+    found = [Threshold(number, *each) for number, each in enumerate(worlds)]
+    assert [each.held for each in found] == [3, 1, 1.5, 0.5, None]
+    told = tables.threshold("run", found)
+    assert cells(told) == {
+        "p, share of children that mutate": ["0.5 (0.25 to 0.5)"],
+        "v, share of good parents' mutants that are as good": ["0.5 (0.375 to 0.625)"],
+        "s, life of good parents' copies / life of all organisms": ["2 (1.5 to 3)"],
+        "s (1 - p (1 - v))": ["1.25 (0.875 to 1.88)"],
+        "worlds where it is above 1: a good line persists": ["2 of 4"],
+    }
+
+
+def test_effects_of_each_mutation_are_its_own() -> None:
+    """Shares are means over organisms, lives are medians; the parents live 100, 200 and 300 ticks."""
+    lived = {100: [100, 120, 60, 50], 200: [200, 200, 210, 220], 300: [300, 300, 300, 300]}
+    longer = {100: [110, 400, 500, 101], 200: [100, 100, 900, 800], 300: [330, 290, 600, 700]}
+    found = [
+        Effect(name, number, 0, parent, np.array(mutants, float))
+        for name, each in (("as set", lived), ("scale 1", longer))
+        for number, (parent, mutants) in enumerate(each.items())
+    ]
+    told = tables.effects("run", found)
+    assert told.title == "run: 3 organisms; each mutation made 4 mutants of each"
+    assert list(told.head[1:]) == [
+        "as long",
+        "longer",
+        "a tenth longer",
+        "a third shorter",
+        "median life",
+    ]
+    assert cells(told) == {
+        "as set": ["0.583", "0.250", "0.167", "0.167", "205 (142 to 252)"],
+        "scale 1": ["0.000", "0.750", "0.667", "0.167", "450 (352 to 458)"],
+    }
+    assert "The organisms lived 200 (150 to 250) ticks." in told.notes[0]
+    assert tables.effects("run", found[::3]).title.startswith("run: 1 organism; ")
+
+
+def test_ablations_are_held_against_the_intact_life() -> None:
+    intact = [100 + more for more in OFFSETS]
+    found = [
+        Ablation(without, number, 0, each, each * kept)
+        for without, kept in (("memory", 0.5), ("sense 0", 2.0))
+        for number, each in enumerate(intact)
+    ]
+    told = tables.ablate("run", found)
+    assert told.title == "run: 3 organisms, medians (quartiles)"
+    assert cells(told) == {
+        "nothing": [spread(100), "1"],
+        "memory": ["51 (50.5 to 52.5)", "0.5"],
+        "sense 0": ["204 (202 to 210)", "2"],
+    }
+
+
+def test_a_garden_has_means_of_beds_and_medians_of_worlds() -> None:
+    """Founders were in no world, and one world has a bed of another size."""
+
+    def bed(group: str, world: int, recorded: list[int] | None, reborn: list[float]) -> Bed:
+        lived = None if recorded is None else np.array(recorded)
+        return Bed(group, world, np.arange(len(reborn)), lived, np.array(reborn))
+
+    found = [
+        bed("oldest", 0, [100, 300], [50, 150]),
+        bed("founders", 0, None, [7, 8, 9]),
+        bed("oldest", 1, [400, 402, 404, 1190], [10, 20, 30, 540]),
+        bed("oldest", 2, [1000], [1000]),
+    ]
+    assert cells(tables.garden("run", found)) == {
+        "oldest": ["3", "7", "599 (400 to 800)", "150 (125 to 575)", "0.5 (0.375 to 0.75)"],
+        "founders": ["1", "3", "-", "8", "-"],
+    }
+
+
+def test_a_line_is_a_column_with_its_first_last_and_largest_step() -> None:
+    lived = [1000, 100, 300, 1900, 2000, 1850]
+    steps = [
+        Step(2 * number, 10 + number, 5000 + number, "mutant", 3, each)
+        for number, each in enumerate(lived)
+    ]
+    falling = [Step(0, 1, 0, "founder", 3, 90), Step(1, 2, 20, "mutant", 3, 80)]
+    found = [Line(15, 3, 4321, 1234, steps), Line(2, 0, 1, 2, falling)]
+    told = tables.line("run", found)
+    assert list(told.head) == ["", "organism 15 of world 3", "organism 2 of world 0"]
+    assert cells(told) == {
+        "generations": ["4,321", "1"],
+        "different genomes": ["1,234", "2"],
+        "born again": ["6", "2"],
+        "ticks that the first lives": ["1,000", "90"],
+        "ticks that the last lives": ["1,850", "80"],
+        "as good from": ["13 (generation 6, tick 5,003)", "1 (generation 0, tick 0)"],
+        "largest step": ["13: 300 to 1,900", "-"],
+    }
+
+
+def test_two_genomes_share_the_living() -> None:
+    """The second wins two of four worlds, the first one, and one is a draw."""
+    late = np.array([0.75, 0.25, 0.0, 0.5])
+    share = np.stack([np.full(4, 0.5), late], axis=1)
+    told = tables.compete("both", [Competition("a", "b", np.array([0, 5000]), share)])
+    assert told.title == "both: each genome begins in half of the cells, 5,000 ticks, no mutation"
+    assert cells(told) == {
+        "a": ["4", "1", "0.375 (0.188 to 0.562)"],
+        "b": ["4", "2", "0.625 (0.438 to 0.812)"],
+    }
+    assert told.notes[0].endswith(" Sign test over worlds: p = 1.")
+
+
+@pytest.mark.parametrize("make", [tables.heredity, tables.threshold])
+def test_what_no_world_knows_is_a_dash(make: Any) -> None:
+    unknown = Pairs(0, None, None, None, None)
+    none = {
+        tables.heredity: Inherited(0, unknown, unknown, unknown, None, None),
+        tables.threshold: Threshold(0, None, None, None),
+    }[make]
+    texts = [text for row in make("run", [none]).rows for text in row[1:]]
+    assert set(texts) <= {"-", "0", "", "0 of 0"}
+    assert "-" in texts

@@ -1,0 +1,136 @@
+"""The display of an experiment: each arm and each running job has its own counts."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from rich.console import Console
+
+from primordia.cli import campaign_view
+from primordia.cli.campaign_view import SHOWN, Clock, line, table
+from primordia.experiments.ledger import Entry, WorldCounts
+from primordia.experiments.status import ArmStatus, CampaignStatus
+
+ARMS = (
+    ArmStatus("mild", 1200, 1100, 1000, 54321.4, (1234.6, 98765.4)),
+    ArmStatus("none", 3, 0, 0, None, None),
+    ArmStatus("few", 4, 2, 1, 7.0, None),
+)
+JOBS = {"done": 5, "running": 2, "failed": 1, "waiting": 1300}
+
+
+def world(ticks: int, births: int) -> WorldCounts:
+    return WorldCounts(
+        seed=1, ticks=ticks, births=births, deaths=4, organism_ticks=9, saturated=None
+    )
+
+
+def running(job: int, left: float | None, rate: float | None, *worlds: WorldCounts) -> Entry:
+    return Entry(job=job, arm="mild", state="running", worlds=list(worlds), rate=rate, left_s=left)
+
+
+def failed(job: int) -> Entry:
+    return Entry(job=job, arm="few", state="failed", error=f"reason {job}")
+
+
+def shown(status: CampaignStatus, clock: Clock | None = None) -> list[list[str]]:
+    """Return the words of each line, parted where two or more spaces part columns."""
+    console = Console(width=300, color_system=None)
+    with console.capture() as captured:
+        console.print(table(status, clock))
+    lines = [each.strip() for each in captured.get().splitlines()]
+    return [
+        [word.strip() for word in each.split("  ") if word.strip()]
+        for each in lines
+        if each.strip("─ ")
+    ]
+
+
+def at(monkeypatch: pytest.MonkeyPatch, seconds: float) -> Any:
+    """Let the clock show a second. Return the clock, which can be set."""
+    now: Any = SimpleNamespace(perf_counter=lambda: now.seconds, strftime=lambda _: "12:00:00")
+    now.seconds = seconds
+    monkeypatch.setattr(campaign_view, "time", now)
+    return now
+
+
+def test_each_arm_and_each_running_job_is_a_row() -> None:
+    jobs = (
+        running(7, 200.0, 12_300_000.0, world(1000, 20), world(3000, 500), world(2000, 4000)),
+        running(8, None, None),
+    )
+    assert shown(CampaignStatus("Is it?", JOBS, ARMS, jobs, (failed(3),))) == [
+        ["Is it?"],
+        ["arm", "worlds begun", "saturated", "ticks lived for each death (95 %)"],
+        ["mild", "1,100 of 1,200", "1,000", "54,321 (1,235 to 98,765)"],
+        ["none", "0 of 3", "0", "-"],
+        ["few", "2 of 4", "1", "7"],
+        ["job", "arm", "worlds", "tick", "births", "organism-ticks/s", "left"],
+        ["7", "mild", "3", "3,000", "4,520", "12.3 M", "3 min 20 s"],
+        ["8", "mild", "0", "0", "-"],
+        ["job 3 (few) failed: reason 3"],
+        ["5 of 1,308 jobs done, 2 under way, 1 failed, 1,300 waiting"],
+    ]
+
+
+@pytest.mark.parametrize("count", [SHOWN - 1, SHOWN, SHOWN + 1, SHOWN + 5])
+def test_the_first_jobs_are_listed_and_the_others_are_counted(count: int) -> None:
+    jobs, failures = (
+        tuple(map(make, range(100, 100 + count)))
+        for make in (lambda job: running(job, None, None), failed)
+    )
+    rows = shown(CampaignStatus("?", JOBS, (), jobs, failures))
+    listed = [row[0] for row in rows if row[0].isdigit()]
+    assert listed == [str(job) for job in range(100, 100 + min(count, SHOWN))]
+    texts = [row[0] for row in rows if "reason" in row[0]]
+    assert texts == [f"job {job} (few) failed: reason {job}" for job in map(int, listed)]
+    more = [row[0] for row in rows if row[0].startswith("and ")]
+    assert more == ([f"and {count - SHOWN} more"] if count > SHOWN else [])
+
+
+def test_time_left_of_the_first_jobs_is_that_of_the_slowest_for_each_round(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Two processes have seven jobs to do, which are four rounds of the slower job's time."""
+    now = at(monkeypatch, 50.0)
+    jobs = {"done": 3, "running": 2, "failed": 0, "waiting": 5}
+    under_way = running(0, 30.0, 2e6), running(1, 10.0, 1e6)
+    status = CampaignStatus("?", jobs, (), under_way, ())
+    clock = Clock()
+    now.seconds += 75
+    assert clock.left(status) == 120
+    text = "3.0 M organism-ticks/s; about 2 min 0 s left"
+    jobs_text = "3 of 10 jobs done, 2 under way, 0 failed, 5 waiting"
+    assert line(status, clock) == f"12:00:00  {jobs_text}; {text}"
+    assert shown(status, clock)[-1] == [f"{jobs_text}; {text}; 1 min 15 s so far"]
+
+
+def test_a_slow_reading_is_made_seldom(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A reading of 0.1 s takes a fiftieth of the time if the next begins 5 s later."""
+    now, made = at(monkeypatch, 100.0), list[float]()
+    now.took = 0.0
+
+    def call() -> None:
+        made.append(now.seconds)
+        now.seconds += now.took
+
+    for now.took, interval in ((0.1, 5.0), (0.001, 0.5)):
+        paced = campaign_view._Paced(0.5, call)
+        made.clear()
+        for _ in range(3):
+            paced()
+            ended = now.seconds
+            now.seconds = ended + interval - 0.01
+            paced()
+            now.seconds = ended + interval + 0.01
+        assert len(made) == 3
+
+
+def test_all_running_jobs_make_the_speed() -> None:
+    entries = running(0, None, 2.0), running(1, None, 5.0), running(2, None, None)
+    status = CampaignStatus("?", JOBS, (), entries, (failed(4),))
+    assert status.rate == 7
+    told = status.to_dict()
+    assert [each["job"] for each in told["running"]] == [0, 1, 2]
+    assert [each["rate"] for each in told["running"]] == [2, 5, None]
+    assert told["failed"] == [{"job": 4, "arm": "few", "error": "reason 4"}]

@@ -1,0 +1,173 @@
+"""What the ledger says of a job: who runs it, how far its worlds are, and how it ended."""
+
+import json
+import os
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+from unittest.mock import MagicMock
+
+import pytest
+
+import primordia
+from primordia.errors import InputError, InUseError, Trouble
+from primordia.experiments import job as jobs
+from primordia.experiments.campaign import begin
+from primordia.experiments.ending import Ending
+from primordia.experiments.ledger import SILENT, Entry, Ledger, WorldCounts
+from primordia.experiments.plan import Job
+from tests.experiments.meadows import write
+
+JOB = Job(0, "a", 0, 1, "a/0")
+COUNTS = WorldCounts(seed=1, ticks=2, births=3, deaths=4, organism_ticks=5, saturated=None)
+
+
+@pytest.fixture(scope="module")
+def ended() -> int:
+    """Return the number of a process that has ended."""
+    process = subprocess.Popen([sys.executable, "-c", ""])
+    process.wait()
+    return process.pid
+
+
+def state_of(folder: Path, **values: Any) -> str:
+    """Return the state of the job whose file has these values."""
+    (folder / "jobs").mkdir(exist_ok=True)
+    (folder / "jobs" / "000000.json").write_text(json.dumps({"job": 0, "arm": "a", **values}))
+    (entry,) = Ledger(folder, [JOB]).entries()
+    return entry.state
+
+
+def test_a_job_of_this_machine_runs_while_its_process_lives(tmp_path: Path, ended: int) -> None:
+    """However long ago the file was written."""
+    here = socket.gethostname()
+    for process, state in (
+        (os.getpid(), "running"),
+        (1, "running"),
+        (ended, "waiting"),
+        (0, "waiting"),
+    ):
+        written: dict[str, Any] = {"host": here, "process": process, "updated": 1.0}
+        assert state_of(tmp_path, state="running", **written) == state
+
+
+def test_a_job_of_another_machine_runs_until_it_is_silent_for_long(
+    tmp_path: Path, ended: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its process cannot be seen from here."""
+    monkeypatch.setattr("primordia.experiments.ledger.time.time", lambda: 50_000.0)
+    for age, state in ((SILENT - 1, "running"), (SILENT, "waiting"), (SILENT + 1, "waiting")):
+        written = {"host": "elsewhere", "process": ended, "updated": 50_000 - age}
+        assert state_of(tmp_path, state="running", **written) == state
+
+
+def test_a_failed_job_stays_failed_and_a_done_job_has_a_run(tmp_path: Path, ended: int) -> None:
+    written = {"host": socket.gethostname(), "process": ended, "updated": 1.0}
+    assert state_of(tmp_path, state="failed", **written) == "failed"
+    assert state_of(tmp_path, state="done", **written) == "waiting"
+    (tmp_path / "a" / "0").mkdir(parents=True)
+    assert state_of(tmp_path, state="done", **written) == "done"
+
+
+def test_an_entry_names_its_writer_and_the_time(tmp_path: Path) -> None:
+    before = time.time()
+    ledger = Ledger(tmp_path, [JOB])
+    ledger.write(JOB, Entry(job=0, arm="a", state="running", worlds=[COUNTS]))
+    found = ledger.entry(JOB)
+    assert (found.host, found.process) == (socket.gethostname(), os.getpid())
+    assert before <= found.updated <= time.time()
+    assert (found.state, found.worlds) == ("running", [COUNTS])
+
+
+def test_a_failure_is_noted_beside_the_counts_so_far(tmp_path: Path) -> None:
+    ledger = Ledger(tmp_path, [JOB])
+    ledger.write(JOB, Entry(job=0, arm="a", state="running", worlds=[COUNTS], rate=2.0))
+    jobs.note_failure(JOB, tmp_path, "the disk is full")
+    found = ledger.entry(JOB)
+    assert (found.state, found.error) == ("failed", "the disk is full")
+    assert (found.worlds, found.rate) == ([COUNTS], 2.0)
+
+
+@pytest.mark.parametrize(
+    ("error", "ending"),
+    [
+        (None, Ending(0, "done")),
+        (KeyboardInterrupt(), Ending(0, "stopped")),
+        (InUseError("locked"), Ending(0, "elsewhere")),
+        (InputError("no"), Ending(0, "failed", "no", again=False)),
+        (Trouble("full"), Ending(0, "failed", "full", again=True)),
+        (OSError("gone"), Ending(0, "failed", "gone", again=True)),
+        (ValueError("one\ntwo"), Ending(0, "failed", "ValueError: one", again=True)),
+    ],
+    ids=lambda value: type(value).__name__,
+)
+def test_an_error_is_an_ending_and_failures_are_on_record(
+    error: BaseException | None, ending: Ending, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[Any] = []
+
+    def live(*words: Any) -> None:
+        asked.append(words)
+        if error is not None:
+            raise error
+
+    monkeypatch.setattr(jobs, "live", live)
+    plan: Any = "the plan"
+    assert jobs.ending_of(plan, JOB, tmp_path, 7.0, "gpu") == ending
+    assert asked == [(plan, JOB, tmp_path, 7.0, "gpu")]
+    found = Ledger(tmp_path, [JOB]).entry(JOB)
+    expected = ("failed", ending.error) if ending.state == "failed" else ("waiting", None)
+    assert (found.state, found.error) == expected
+
+
+def test_a_running_job_tells_the_counts_of_each_of_its_worlds(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The last counts before its end are those of the run; the time left is then 0."""
+    written: list[Entry] = []
+    write_entry = Ledger.write
+
+    def noted(self: Ledger, job: Job, entry: Entry) -> None:
+        written.append(entry.model_copy())
+        write_entry(self, job, entry)
+
+    monkeypatch.setattr(Ledger, "write", noted)
+    monkeypatch.setattr(jobs, "EVERY", 0.0)
+    chosen = begin(write(tmp_path), tmp_path / "out")
+    jobs.live(chosen.plan, chosen.jobs[1], chosen.path)
+    first, *_, last, done = written
+    assert [each.state for each in (first, last, done)] == ["running", "running", "done"]
+    assert {(each.job, each.arm) for each in written} == {(1, "harsh")}
+    assert first.worlds == []
+    worlds = primordia.load(chosen.path / chosen.jobs[1].folder).info()["worlds"]
+    names = "seed", "ticks", "births", "deaths", "organism_ticks"
+    expected = [
+        WorldCounts(
+            **{name: world[name] for name in names},
+            saturated=world["saturation"] and world["saturation"]["tick"],
+        )
+        for world in worlds
+    ]
+    assert [each.seed for each in expected] == [3, 4]
+    assert len({each.deaths for each in expected}) == 2
+    assert done.worlds == expected
+    assert last.worlds == expected
+    assert last.left_s == 0
+
+
+def test_counts_are_written_at_intervals(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first at once, the next when the interval has passed."""
+    now, written = [100.0], list[float]()
+    monkeypatch.setattr("primordia.experiments.job.time.perf_counter", lambda: now[0])
+    monkeypatch.setattr("primordia.experiments.job.Census.of", MagicMock())
+    monkeypatch.setattr(jobs, "Speed", MagicMock())
+    ledger = MagicMock()
+    ledger.write = lambda *_: written.append(now[0])
+    watch, status = jobs._Watch(ledger, JOB, MagicMock()), MagicMock()
+    for seconds in (0.0, 1.0, jobs.EVERY - 0.01, jobs.EVERY, 2.5, 2 * jobs.EVERY):
+        now[0] = 100 + seconds
+        watch(status)
+    assert written == [100, 100 + jobs.EVERY, 100 + 2 * jobs.EVERY]
