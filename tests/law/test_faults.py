@@ -49,3 +49,5 @@ def test_all_die_of_the_fault_in_the_tick_in_which_it_happens(kind: type, how: s
     assert set(deaths["cause"]) == {"fault"}
     np.testing.assert_array_equal(np.unique(deaths["tick"]), [AGE, 2 * AGE, 3 * AGE])
     assert len(deaths["tick"]) == 3 * 16
+    assert not deaths["food"].any(), "food that is not finite was not eaten"
+    assert not lived.table("metrics")["food"].any()

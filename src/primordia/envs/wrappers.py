@@ -9,7 +9,15 @@ import numpy as np
 from gymnasium.utils import RecordConstructorArgs
 from gymnasium.wrappers import TimeLimit
 
-from primordia.law.metabolism import ONE, Metabolism, Rates, add, metabolise, to_fixed_point
+from primordia.law.metabolism import (
+    ONE,
+    Metabolism,
+    Rates,
+    add,
+    food_eaten,
+    metabolise,
+    to_fixed_point,
+)
 
 Food = Callable[[Any, float, dict[str, Any]], float]
 """Food of a tick, from the observation, the environment's reward and `info`."""
@@ -80,7 +88,7 @@ class Forager(gymnasium.Wrapper, RecordConstructorArgs):
         observation, reward, fatal, truncated, info = self.env.step(action)
         food = jnp.float32(self._food(observation, float(reward), info))
         self._energy = metabolise(self._energy, food, None, self._rates)
-        self._eaten = add(self._eaten, to_fixed_point(food))
+        self._eaten = add(self._eaten, food_eaten(food))
         starved = bool(self._energy <= 0)
         cause = {"cause": "fatal" if fatal else "starved"} if fatal or starved else {}
         died = bool(fatal) or starved

@@ -14,7 +14,7 @@ from primordia.brains.contract import Genome
 from primordia.habitats.bodies import not_finite
 from primordia.habitats.contract import Bodies, Outcome
 from primordia.law.law import Law
-from primordia.law.metabolism import Rates, add, metabolise, to_fixed_point
+from primordia.law.metabolism import Rates, add, food_eaten, metabolise
 from primordia.law.motor import chosen
 from primordia.law.world import Cause
 from primordia.mutations.noise import noise_index
@@ -89,7 +89,7 @@ def judge(
     if law.metabolism is not None:
         energy = metabolise(energy, outcome.food, outcome.effort, rates)
     if outcome.food is not None:
-        eaten = add(eaten, to_fixed_point(outcome.food))
+        eaten = add(eaten, food_eaten(outcome.food))
     cause = jnp.full(faulty.shape, -1, jnp.int32)
     if outcome.expired is not None:
         cause = jnp.where(outcome.expired, Cause.TIME_LIMIT, cause)

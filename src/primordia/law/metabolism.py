@@ -41,6 +41,11 @@ def to_fixed_point(value: Array) -> Array:
     return steps.astype(jnp.int32)
 
 
+def food_eaten(food: Array) -> Array:
+    """Return food, float32, in fixed point, int32; where it is not finite, nothing was eaten."""
+    return to_fixed_point(jnp.where(jnp.isfinite(food), food, 0.0))
+
+
 def add(a: Array, b: Array) -> Array:
     """Return a + b in fixed point, clipped to +-MOST."""
     return jnp.clip(a + b, -MOST, MOST)

@@ -14,7 +14,7 @@ from primordia.habitats.contract import Bodies, Outcome
 from primordia.law import life
 from primordia.law.law import Law
 from primordia.law.life import Thought, Vitals
-from primordia.law.metabolism import Rates, to_fixed_point
+from primordia.law.metabolism import Rates, food_eaten
 from primordia.law.world import Cause, Organisms, World, Worlds
 from primordia.random.keys import Purpose, Streams, bits, chance, streams
 from primordia.random.wide import Wide, signed, total
@@ -96,7 +96,7 @@ def judge(
 
 def _food(law: Law, food: Array, active: Array) -> Wide:
     """Return the food of each world's active organisms in a tick, fixed point, (W,)."""
-    eaten = signed(jnp.where(active, to_fixed_point(food), 0))
+    eaten = signed(jnp.where(active, food_eaten(food), 0))
     return total(eaten.map(law.by_world), axis=1)
 
 
