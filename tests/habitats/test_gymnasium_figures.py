@@ -12,13 +12,14 @@ import gymnasium
 from gymnasium import spaces
 
 from primordia.errors import Trouble
-from primordia.habitats.gymnasium import environment, probe, task
+from primordia.habitats.gymnasium import check, environment, probe, task
 from primordia.habitats.gymnasium.check import Measured
 from primordia.habitats.gymnasium.environment import line
 from primordia.habitats.gymnasium.habitat import Gymnasium
 from primordia.habitats.gymnasium.probe import LONGEST, PICTURES_S, _numbers
 from primordia.habitats.gymnasium.simulator import MESSAGE, Environments, fields
 from primordia.habitats.gymnasium.spaces import Acting, Observation, described
+from primordia.settings.doors import replication
 from tests.ponds import Pond
 
 
@@ -197,6 +198,46 @@ def test_only_large_numbers_without_bounds_are_scaled(
     monkeypatch.setattr(probe, "probe", lambda *given: SimpleNamespace(observation=observation))
     monkeypatch.setattr(probe, "random_play", lambda *given: played)
     assert task._scale("any") == scale
+
+
+@pytest.mark.parametrize(
+    ("food", "function"),
+    [
+        ("tests.ponds:food", "tests.ponds:food"),
+        ("ponds:food", "ponds:food"),
+        ("reward", ""),
+        ("sum(obs[0:2])", ""),
+        ("sum(obs[:2])", ""),
+        ("tests.ponds:", ""),
+        ("1.5:food", ""),
+    ],
+)
+def test_food_is_a_function_if_it_names_a_module_and_a_function(food: str, function: str) -> None:
+    named: Any = Gymnasium.__dict__["_food_function"]
+    assert named.fget(SimpleNamespace(food=food)) == function
+
+
+@pytest.mark.parametrize("bounds", [True, False])
+@pytest.mark.parametrize("fresh", [True, False])
+def test_a_task_has_the_settings_that_were_measured(
+    bounds: bool, fresh: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Numbers that have bounds, or are small, need no scale."""
+    unbounded = np.array([False, not bounds])
+    observation = SimpleNamespace(unbounded=lambda: unbounded)
+    found = Measured(saving="replay", fresh=fresh, lifespan=100.0, faults=["a fault"])
+    monkeypatch.setattr(probe, "probe", lambda *given: SimpleNamespace(observation=observation))
+    monkeypatch.setattr(probe, "info_of", lambda *given: {"age": 0})
+    monkeypatch.setattr(check, "measure", lambda *given: found)
+    monkeypatch.setattr(task, "_scale", lambda env: [1.0, 50.0])
+    monkeypatch.setattr(task, "_facts", lambda *given: [given[0], given[2], given[3]])
+    table, facts, faults = task._measured.__wrapped__("tests.ponds:ponds/Pond-v0")
+    assert (facts, faults) == (["tests.ponds:ponds/Pond-v0", found, {"age": 0}], ["a fault"])
+    assert (table["task"], table["replication"]) == ("ponds-Pond-v0", replication(100.0))
+    assert table["about"] == "Gymnasium's tests.ponds:ponds/Pond-v0: live until it terminates"
+    own = {"name": "gymnasium", "env": "tests.ponds:ponds/Pond-v0", "fatal": "terminated"}
+    optional = ({"fresh": True} if fresh else {}) | ({} if bounds else {"scale": [1.0, 50.0]})
+    assert table["habitat"] == {**own, "saving": "replay", **optional}
 
 
 @pytest.mark.parametrize("ended", [0, 1])
