@@ -1,6 +1,7 @@
 """What is counted in Atari games: points of all frames, scores and kills; and options of a console."""
 
 from collections import defaultdict
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -39,6 +40,22 @@ def test_the_points_of_a_tick_are_those_of_all_its_frames(skip: int, points: lis
     ale: Any = type("Emulator", (), {"act": staticmethod(act)})
     assert [made._frames(ale, 0, 3) for _ in points] == points
     assert buttons == [3] * (skip * len(points))
+
+
+def test_a_life_that_is_won_is_no_life_lost() -> None:
+    """The games have 3, 4, 2 and 2 lives after the tick; the last one stays as it was before."""
+    none = np.zeros(4, bool)
+    arrays = {"action": np.zeros(4, np.int32), "ram": np.zeros((4, 128), np.uint8), "game_over": none,
+              "points": np.zeros(4, np.float32), "lives": np.array([3, 4, 2, 2])}  # fmt: skip
+    game = Atari(game="pong", food="lives_lost", fatal="lives_lost > 1")
+    stub: Any = SimpleNamespace(arrays=arrays, step=lambda alive: None)
+    game._pool, game._tally = stub, np.zeros((4, 3), np.int32)
+    game._lives = game._tally[:, 2]
+    game._lives[:] = [4, 3, 4, 2]
+    _, outcome = game.step(np.zeros(4, np.int32), np.array([True, True, True, False]))
+    assert np.asarray(outcome.food).tolist() == [1, 0, 2, 0]
+    assert np.asarray(outcome.fatal).tolist() == [False, False, True, False]
+    assert game.tally()[:, 2].tolist() == [3, 4, 2, 2]
 
 
 @pytest.mark.parametrize("option", ["mode", "difficulty"])

@@ -111,6 +111,46 @@ def test_numbers_of_info_are_stored_side_by_side_and_a_missing_one_is_zero() -> 
     assert arrays["obs"].tolist() == [[0, 0], [5, 6]]
 
 
+def noted_seeds(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """Return the seeds with which ponds are reset from now on."""
+    seeds, reset = list[int](), Pond.reset
+
+    def noting(self: Pond, *, seed: int, options: Any = None) -> Any:
+        seeds.append(seed)
+        return reset(self, seed=seed, options=options)
+
+    monkeypatch.setattr(Pond, "reset", noting)
+    return seeds
+
+
+def test_the_seed_of_a_life_has_the_31_upper_bits_of_its_word(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Many environments take no larger seed."""
+    made, arrays = environments()
+    seeds = noted_seeds(monkeypatch)
+    for cell, word in ((0, 2**32 - 1), (1, 7), (0, 1), (1, 2**31)):
+        arrays["seed"][cell] = word
+        made.reset(cell)
+    assert seeds == [2**31 - 1, 3, 0, 2**30]
+
+
+def test_each_life_of_random_play_has_another_seed(monkeypatch: pytest.MonkeyPatch) -> None:
+    seeds = noted_seeds(monkeypatch)
+    seen = probe.random_play("tests.ponds:Pond-v0", {"edge": 1.5}, ())
+    assert len(seen) == probe.TICKS + len(seeds)
+    begins = [k for k, (_, info) in enumerate(seen) if info["age"] == 0]
+    assert seeds == [k - number for number, k in enumerate(begins)]
+    assert len(seeds) > 5
+
+
+def test_there_are_at_most_as_many_workers_as_cells() -> None:
+    crowd = Gymnasium(env="tests.ponds:Pond-v0", workers=3)
+    crowd.check(3)
+    with pytest.raises(ValueError, match="3 workers are more than the 2 cells; use at most 2"):
+        crowd.check(2)
+
+
 def test_a_fault_leaves_its_message_and_no_results() -> None:
     made, arrays = environments(a=1)
     for name in ("reward", "food", "terminated", "truncated", "info"):
