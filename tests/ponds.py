@@ -208,7 +208,7 @@ class Sealed(Pond):
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict]:
         counted = self.count()
-        if self.age == 9:
+        if self.age == 6:
             self.place[1] += 1e-9 * counted
         return super().step(action)
 

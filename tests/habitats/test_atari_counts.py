@@ -58,6 +58,15 @@ def test_a_life_that_is_won_is_no_life_lost() -> None:
     assert game.tally()[:, 2].tolist() == [3, 4, 2, 2]
 
 
+@pytest.mark.parametrize(
+    ("name", "near"),
+    [("Ms-Pacman", "ms_pacman, pacman"), ("tenis", "tennis, atlantis"), ("space", "space_war")],
+)
+def test_an_unknown_game_suggests_those_with_a_similar_name(name: str, near: str) -> None:
+    with pytest.raises(ValueError, match=rf"there is no game '{name}'; did you mean {near}\?"):
+        Atari(game=name)
+
+
 @pytest.mark.parametrize("option", ["mode", "difficulty"])
 def test_mode_and_difficulty_are_those_of_the_settings(
     option: str, monkeypatch: pytest.MonkeyPatch

@@ -192,6 +192,12 @@ def test_a_bound_of_a_million_is_no_bound(low: float, high: float, senses: list[
     np.testing.assert_allclose(rows, [[-0.5 if free else low / 2, most]])
 
 
+def test_a_number_with_a_single_value_is_divided_by_its_scale() -> None:
+    observation = Observation(spaces.Box(8.0, 8.0, (2,), np.float64))
+    senses = observation.senses(np.array([4.0, 2.0]), squash=False)
+    assert senses(np.array([[8.0, 8.0]])).tolist() == [[2.0, 4.0]]
+
+
 def test_a_box_is_described_by_its_least_and_largest_number() -> None:
     low, high = np.float32([-1, -5]), np.float32([2, 3])
     assert described(spaces.Box(low, high)) == "Box (2,) of float32, from -5 to 3"
