@@ -12,6 +12,7 @@ pytest.importorskip("ale_py")
 from primordia.habitats.atari import simulator
 from primordia.habitats.atari.habitat import Atari
 from primordia.habitats.atari.simulator import Arcade, console
+from primordia.random import dice
 
 
 def test_scores_are_sums_of_points_and_kills_are_ticks_with_points_of_ones_own() -> None:
@@ -40,6 +41,27 @@ def test_the_points_of_a_tick_are_those_of_all_its_frames(skip: int, points: lis
     ale: Any = type("Emulator", (), {"act": staticmethod(act)})
     assert [made._frames(ale, 0, 3) for _ in points] == points
     assert buttons == [3] * (skip * len(points))
+
+
+def test_the_last_button_stays_down_if_the_word_is_below_its_share(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    made, words = object.__new__(Arcade), iter([2**30, 2**30 - 1, 2**30 - 1, 2**32 - 1, 0])
+    made._sticky, made._held, made._dice = 2**30, {0: 0, 1: 5}, {0: 7, 1: 7}
+    monkeypatch.setattr(dice, "roll", lambda state: (state + 1, next(words)))
+    assert [made._button(0, button) for button in (1, 2, 3, 4, 5)] == [1, 1, 1, 4, 4]
+    assert (made._held, made._dice) == ({0: 4, 1: 5}, {0: 12, 1: 7})
+
+
+def test_a_limited_number_of_emulators_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    kept: defaultdict[Any, list[Any]] = defaultdict(list)
+    monkeypatch.setattr(simulator, "_SPARE", kept)
+    monkeypatch.setattr(simulator, "SPARES", 3)
+    pong, boxing = ("pong", None, None), ("boxing", None, None)
+    for game, names in ((pong, "ab"), (boxing, "c"), (pong, "de"), (boxing, "fghi")):
+        consoles: Any = {cell: (name, None) for cell, name in enumerate(names)}
+        simulator._spare(game, consoles)
+    assert kept == {pong: ["a", "b", "d"], boxing: ["c", "f", "g"]}
 
 
 def test_a_life_that_is_won_is_no_life_lost() -> None:
