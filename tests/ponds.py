@@ -198,13 +198,28 @@ class Closed(Pond):
         return super().step(action)
 
 
+class Sealed(Pond):
+    """Counts its steps in a function, which no state holds; the count matters at one age."""
+
+    def reset(self, *, seed: int | None = None, options: Any = None) -> tuple[Any, dict]:
+        steps = iter(range(10**6))
+        self.count = lambda: next(steps)
+        return super().reset(seed=seed)
+
+    def step(self, action: Any) -> tuple[Any, float, bool, bool, dict]:
+        counted = self.count()
+        if self.age == 6:
+            self.place[1] += 1e-9 * counted
+        return super().step(action)
+
+
 def food(observation: Any, reward: Any, terminated: Any, truncated: Any, info: Any) -> float:
     return 2.0 * info["age"]
 
 
 KINDS = (
     Pond, Odd, Unseeded, Hidden, Moody, Worn, Grasping, Outside, Broken, Crashing, Spoiled, Unborn,
-    Talking, Still, Closed,
+    Talking, Still, Closed, Sealed,
 )  # fmt: skip
 for kind in KINDS:
     gymnasium.register(

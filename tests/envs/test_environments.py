@@ -125,6 +125,25 @@ def test_environments_side_by_side_are_those_alone(task: str, mode: AutoresetMod
     many.close()
 
 
+def test_bodies_that_have_died_stay_as_they_are_until_a_reset() -> None:
+    """The first body dies long before the others, which are pushed to and fro."""
+    many = LifeVectorEnv("CartPole-survival", 3, reward=1.0, autoreset_mode="Disabled")
+    before, _ = many.reset(seed=2)
+    over, deaths, ticks = np.zeros(3, bool), list[int](), 0
+    while not over.all():
+        seen, rewards, ended, cut, info = many.step(np.array([0, ticks % 2, 1 - ticks % 2]))
+        died, ticks = ended & ~over, ticks + 1
+        deaths += [ticks] * int(died.sum())
+        np.testing.assert_array_equal(seen[over], before[over])
+        assert (seen[~over] != before[~over]).any(axis=1).all()
+        assert ended[over].all()
+        assert rewards.tolist() == np.where(ended, 0.0, 1.0).tolist()
+        assert info.get("_cause", np.zeros(3, bool)).tolist() == died.tolist()
+        assert not cut.any()
+        before, over = seen, ended
+    assert deaths[0] + 9 < deaths[1]
+
+
 def test_a_seed_gives_the_same_lives_and_another_gives_others() -> None:
     env, actions = LifeEnv("CartPole-survival"), np.zeros(60, int)
     one, other = played(env, 3, actions), played(env, 3, actions)

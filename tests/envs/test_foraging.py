@@ -12,9 +12,11 @@ import gymnasium
 from gymnasium import spaces
 from gymnasium.wrappers import TimeLimit
 
-from primordia.envs import Forager, Survival
-from primordia.envs.bodies import action_space, observation_space
+from primordia.envs import Forager, LifeVectorEnv, Survival, vector
+from primordia.envs.bodies import Births, Bodies, action_space, observation_space
 from primordia.habitats.contract import Compound, Continuous, Discrete
+from primordia.law.world import Cause
+from tests.worlds import MEADOW, config
 
 
 class Script(gymnasium.Env):
@@ -101,6 +103,46 @@ def test_only_a_time_limit_that_wraps_the_environment_is_removed(rules: Any) -> 
     script = Script()
     assert rules(TimeLimit(script, 2)).env is script
     assert rules(script).env is script
+
+
+def test_each_life_of_a_body_begins_with_a_full_store_and_without_food() -> None:
+    """Bodies of a meadow gain 0.5 x 2 - 3 of energy in a tick. The dead neither eat nor starve."""
+    habitat, hunger = {**MEADOW["habitat"], "food": 0.5}, {"store": 9.0, "drain": 3.0, "gain": 2.0}
+    bodies = Bodies(config({**MEADOW, "habitat": habitat}, metabolism=hunger), 4)
+
+    def begin(*cells: int) -> None:
+        numbers = np.array(cells, int)
+        bodies.begin(numbers, Births(0 * numbers, 0 * numbers, numbers))
+
+    def told() -> list[list[float]]:
+        assert bodies.energy is not None
+        return [bodies.energy.tolist(), bodies.food.tolist()]
+
+    begin(0, 1, 2, 3)
+    assert told() == [[9] * 4, [0] * 4]
+    for alive in ([True] * 4, [True, False, True, True], [True, False, True, True]):
+        bodies.step(np.zeros(4, np.int32), np.array(alive))
+    assert told() == [[3, 7, 3, 3], [1.5, 0.5, 1.5, 1.5]]
+    begin()
+    begin(1, 2, 3)
+    assert told() == [[3, 9, 9, 9], [1.5, 0, 0, 0]]
+    causes = [bodies.step(np.zeros(4, np.int32), np.ones(4, bool)).tolist() for _ in range(2)]
+    assert causes == [[-1] * 4, [Cause.STARVED, -1, -1, -1]]
+    assert told() == [[-1, 5, 5, 5], [2.5, 1, 1, 1]]
+    bodies.close()
+
+
+def test_a_vector_has_at_most_2_to_the_24_bodies(monkeypatch: pytest.MonkeyPatch) -> None:
+    """So many are not made here."""
+
+    def make(config: Any, count: int) -> None:
+        raise MemoryError(count)
+
+    monkeypatch.setattr(vector, "Bodies", make)
+    with pytest.raises(MemoryError, match=str(2**24)):
+        LifeVectorEnv("CartPole-survival", 2**24)
+    with pytest.raises(ValueError, match="num_envs"):
+        LifeVectorEnv("CartPole-survival", 2**24 + 1)
 
 
 SPACES: list[tuple[Any, spaces.Space]] = [

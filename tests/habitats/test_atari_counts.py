@@ -1,6 +1,7 @@
 """What is counted in Atari games: points of all frames, scores and kills; and options of a console."""
 
 from collections import defaultdict
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ pytest.importorskip("ale_py")
 from primordia.habitats.atari import simulator
 from primordia.habitats.atari.habitat import Atari
 from primordia.habitats.atari.simulator import Arcade, console
+from primordia.random import dice
 
 
 def test_scores_are_sums_of_points_and_kills_are_ticks_with_points_of_ones_own() -> None:
@@ -39,6 +41,52 @@ def test_the_points_of_a_tick_are_those_of_all_its_frames(skip: int, points: lis
     ale: Any = type("Emulator", (), {"act": staticmethod(act)})
     assert [made._frames(ale, 0, 3) for _ in points] == points
     assert buttons == [3] * (skip * len(points))
+
+
+def test_the_last_button_stays_down_if_the_word_is_below_its_share(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    made, words = object.__new__(Arcade), iter([2**30, 2**30 - 1, 2**30 - 1, 2**32 - 1, 0])
+    made._sticky, made._held, made._dice = 2**30, {0: 0, 1: 5}, {0: 7, 1: 7}
+    monkeypatch.setattr(dice, "roll", lambda state: (state + 1, next(words)))
+    assert [made._button(0, button) for button in (1, 2, 3, 4, 5)] == [1, 1, 1, 4, 4]
+    assert (made._held, made._dice) == ({0: 4, 1: 5}, {0: 12, 1: 7})
+
+
+def test_a_limited_number_of_emulators_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    kept: defaultdict[Any, list[Any]] = defaultdict(list)
+    monkeypatch.setattr(simulator, "_SPARE", kept)
+    monkeypatch.setattr(simulator, "SPARES", 3)
+    pong, boxing = ("pong", None, None), ("boxing", None, None)
+    for game, names in ((pong, "ab"), (boxing, "c"), (pong, "de"), (boxing, "fghi")):
+        consoles: Any = {cell: (name, None) for cell, name in enumerate(names)}
+        simulator._spare(game, consoles)
+    assert kept == {pong: ["a", "b", "d"], boxing: ["c", "f", "g"]}
+
+
+def test_a_life_that_is_won_is_no_life_lost() -> None:
+    """The games have 3, 4, 2 and 2 lives after the tick; the last one stays as it was before."""
+    none = np.zeros(4, bool)
+    arrays = {"action": np.zeros(4, np.int32), "ram": np.zeros((4, 128), np.uint8), "game_over": none,
+              "points": np.zeros(4, np.float32), "lives": np.array([3, 4, 2, 2])}  # fmt: skip
+    game = Atari(game="pong", food="lives_lost", fatal="lives_lost > 1")
+    stub: Any = SimpleNamespace(arrays=arrays, step=lambda alive: None)
+    game._pool, game._tally = stub, np.zeros((4, 3), np.int32)
+    game._lives = game._tally[:, 2]
+    game._lives[:] = [4, 3, 4, 2]
+    _, outcome = game.step(np.zeros(4, np.int32), np.array([True, True, True, False]))
+    assert np.asarray(outcome.food).tolist() == [1, 0, 2, 0]
+    assert np.asarray(outcome.fatal).tolist() == [False, False, True, False]
+    assert game.tally()[:, 2].tolist() == [3, 4, 2, 2]
+
+
+@pytest.mark.parametrize(
+    ("name", "near"),
+    [("Ms-Pacman", "ms_pacman, pacman"), ("tenis", "tennis, atlantis"), ("space", "space_war")],
+)
+def test_an_unknown_game_suggests_those_with_a_similar_name(name: str, near: str) -> None:
+    with pytest.raises(ValueError, match=rf"there is no game '{name}'; did you mean {near}\?"):
+        Atari(game=name)
 
 
 @pytest.mark.parametrize("option", ["mode", "difficulty"])

@@ -10,6 +10,8 @@ pytest.importorskip("gymnasium")
 from primordia.habitats.gymnasium import state
 from primordia.habitats.gymnasium.check import LIVES, measure
 from primordia.habitats.gymnasium.environment import make
+from primordia.habitats.gymnasium.probe import check_food
+from tests import ponds
 from tests.ponds import Pond
 
 FAULTS = {
@@ -34,11 +36,19 @@ def test_each_fault_is_found(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "saving"), [("Pond", "snapshot"), ("Odd", "snapshot"), ("Closed", "replay")]
+    ("name", "saving", "why"),
+    [
+        ("Pond", "snapshot", ""),
+        ("Odd", "snapshot", ""),
+        ("Closed", "replay", "draws is a range_iterator, which cannot be saved"),
+        ("Sealed", "replay", "a life does not go on exactly from a saved state"),
+    ],
 )
-def test_sound_environments_have_no_fault(name: str, saving: str) -> None:
+def test_sound_environments_have_no_fault(name: str, saving: str, why: str) -> None:
     found = measure(f"tests.ponds:{name}-v0", {}, ())
     assert (found.saving, found.fresh, found.faults) == (saving, False, [])
+    assert found.why.endswith(why)
+    assert bool(found.why) == bool(why)
     assert found.ended
 
 
@@ -67,6 +77,48 @@ def test_the_lifespan_is_the_mean_of_the_first_lives_as_far_as_they_were_lived(
     assert found.ended == sum(left[:LIVES])
     assert abs(np.mean(spans[:LIVES]) - np.median(spans[:LIVES])) > 1
     assert 0 < found.ended < LIVES
+
+
+def test_an_environment_is_made_without_its_time_limit() -> None:
+    """The pond is registered with a limit of 50 steps."""
+    env = make("tests.ponds:Pond-v0", {"edge": 1e9}, ())
+    env.reset(seed=1)
+    assert [env.step(np.zeros(1, np.float32))[2:4] for _ in range(60)] == [(False, False)] * 60
+
+
+FOODS: list[tuple[Any, str | None]] = [
+    (2, None),
+    (2.5, None),
+    (np.float32(2.5), None),
+    (np.int64(2), None),
+    ("2", "food: tests.ponds:food gives '2', which is not a number"),
+    (np.zeros(1), "food: tests.ponds:food gives .*, which is not a number"),
+    (None, "food: tests.ponds:food gives None"),
+    (ValueError("no\nworms"), "food: tests.ponds:food fails: ValueError: no worms$"),
+]
+
+
+@pytest.mark.parametrize(("amount", "says"), FOODS)
+def test_a_function_of_food_returns_a_number(
+    amount: Any, says: str | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is given what a step returns."""
+    given: list[tuple[Any, ...]] = []
+
+    def food(*step: Any) -> Any:
+        given.append(step)
+        if isinstance(amount, Exception):
+            raise amount
+        return amount
+
+    monkeypatch.setattr(ponds, "food", food)
+    if says is None:
+        check_food("tests.ponds:Pond-v0", {}, (), "tests.ponds:food")
+    else:
+        with pytest.raises(ValueError, match=says):
+            check_food("tests.ponds:Pond-v0", {}, (), "tests.ponds:food")
+    ((observation, reward, terminated, truncated, info),) = given
+    assert (reward, terminated, truncated, info["age"]) == (observation[1], False, False, 1)
 
 
 @pytest.mark.parametrize("name", ["CartPole-v1", "Acrobot-v1", "Blackjack-v1", "FrozenLake-v1"])

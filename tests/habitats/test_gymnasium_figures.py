@@ -12,13 +12,14 @@ import gymnasium
 from gymnasium import spaces
 
 from primordia.errors import Trouble
-from primordia.habitats.gymnasium import environment, probe, task
+from primordia.habitats.gymnasium import check, environment, probe, task
 from primordia.habitats.gymnasium.check import Measured
 from primordia.habitats.gymnasium.environment import line
 from primordia.habitats.gymnasium.habitat import Gymnasium
 from primordia.habitats.gymnasium.probe import LONGEST, PICTURES_S, _numbers
 from primordia.habitats.gymnasium.simulator import MESSAGE, Environments, fields
 from primordia.habitats.gymnasium.spaces import Acting, Observation, described
+from primordia.settings.doors import replication
 from tests.ponds import Pond
 
 
@@ -110,6 +111,46 @@ def test_numbers_of_info_are_stored_side_by_side_and_a_missing_one_is_zero() -> 
     assert arrays["obs"].tolist() == [[0, 0], [5, 6]]
 
 
+def noted_seeds(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """Return the seeds with which ponds are reset from now on."""
+    seeds, reset = list[int](), Pond.reset
+
+    def noting(self: Pond, *, seed: int, options: Any = None) -> Any:
+        seeds.append(seed)
+        return reset(self, seed=seed, options=options)
+
+    monkeypatch.setattr(Pond, "reset", noting)
+    return seeds
+
+
+def test_the_seed_of_a_life_has_the_31_upper_bits_of_its_word(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Many environments take no larger seed."""
+    made, arrays = environments()
+    seeds = noted_seeds(monkeypatch)
+    for cell, word in ((0, 2**32 - 1), (1, 7), (0, 1), (1, 2**31)):
+        arrays["seed"][cell] = word
+        made.reset(cell)
+    assert seeds == [2**31 - 1, 3, 0, 2**30]
+
+
+def test_each_life_of_random_play_has_another_seed(monkeypatch: pytest.MonkeyPatch) -> None:
+    seeds = noted_seeds(monkeypatch)
+    seen = probe.random_play("tests.ponds:Pond-v0", {"edge": 1.5}, ())
+    assert len(seen) == probe.TICKS + len(seeds)
+    begins = [k for k, (_, info) in enumerate(seen) if info["age"] == 0]
+    assert seeds == [k - number for number, k in enumerate(begins)]
+    assert len(seeds) > 5
+
+
+def test_there_are_at_most_as_many_workers_as_cells() -> None:
+    crowd = Gymnasium(env="tests.ponds:Pond-v0", workers=3)
+    crowd.check(3)
+    with pytest.raises(ValueError, match="3 workers are more than the 2 cells; use at most 2"):
+        crowd.check(2)
+
+
 def test_a_fault_leaves_its_message_and_no_results() -> None:
     made, arrays = environments(a=1)
     for name in ("reward", "food", "terminated", "truncated", "info"):
@@ -149,6 +190,12 @@ def test_a_bound_of_a_million_is_no_bound(low: float, high: float, senses: list[
     rows = acting.rows(np.array([[-0.5, 20.0]], np.float32))
     most = min(high, 20.0) if free else high
     np.testing.assert_allclose(rows, [[-0.5 if free else low / 2, most]])
+
+
+def test_a_number_with_a_single_value_is_divided_by_its_scale() -> None:
+    observation = Observation(spaces.Box(8.0, 8.0, (2,), np.float64))
+    senses = observation.senses(np.array([4.0, 2.0]), squash=False)
+    assert senses(np.array([[8.0, 8.0]])).tolist() == [[2.0, 4.0]]
 
 
 def test_a_box_is_described_by_its_least_and_largest_number() -> None:
@@ -197,6 +244,46 @@ def test_only_large_numbers_without_bounds_are_scaled(
     monkeypatch.setattr(probe, "probe", lambda *given: SimpleNamespace(observation=observation))
     monkeypatch.setattr(probe, "random_play", lambda *given: played)
     assert task._scale("any") == scale
+
+
+@pytest.mark.parametrize(
+    ("food", "function"),
+    [
+        ("tests.ponds:food", "tests.ponds:food"),
+        ("ponds:food", "ponds:food"),
+        ("reward", ""),
+        ("sum(obs[0:2])", ""),
+        ("sum(obs[:2])", ""),
+        ("tests.ponds:", ""),
+        ("1.5:food", ""),
+    ],
+)
+def test_food_is_a_function_if_it_names_a_module_and_a_function(food: str, function: str) -> None:
+    named: Any = Gymnasium.__dict__["_food_function"]
+    assert named.fget(SimpleNamespace(food=food)) == function
+
+
+@pytest.mark.parametrize("bounds", [True, False])
+@pytest.mark.parametrize("fresh", [True, False])
+def test_a_task_has_the_settings_that_were_measured(
+    bounds: bool, fresh: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Numbers that have bounds, or are small, need no scale."""
+    unbounded = np.array([False, not bounds])
+    observation = SimpleNamespace(unbounded=lambda: unbounded)
+    found = Measured(saving="replay", fresh=fresh, lifespan=100.0, faults=["a fault"])
+    monkeypatch.setattr(probe, "probe", lambda *given: SimpleNamespace(observation=observation))
+    monkeypatch.setattr(probe, "info_of", lambda *given: {"age": 0})
+    monkeypatch.setattr(check, "measure", lambda *given: found)
+    monkeypatch.setattr(task, "_scale", lambda env: [1.0, 50.0])
+    monkeypatch.setattr(task, "_facts", lambda *given: [given[0], given[2], given[3]])
+    table, facts, faults = task._measured.__wrapped__("tests.ponds:ponds/Pond-v0")
+    assert (facts, faults) == (["tests.ponds:ponds/Pond-v0", found, {"age": 0}], ["a fault"])
+    assert (table["task"], table["replication"]) == ("ponds-Pond-v0", replication(100.0))
+    assert table["about"] == "Gymnasium's tests.ponds:ponds/Pond-v0: live until it terminates"
+    own = {"name": "gymnasium", "env": "tests.ponds:ponds/Pond-v0", "fatal": "terminated"}
+    optional = ({"fresh": True} if fresh else {}) | ({} if bounds else {"scale": [1.0, 50.0]})
+    assert table["habitat"] == {**own, "saving": "replay", **optional}
 
 
 @pytest.mark.parametrize("ended", [0, 1])

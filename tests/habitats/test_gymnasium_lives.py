@@ -188,6 +188,12 @@ def test_a_life_that_does_not_repeat_is_noticed_when_it_is_needed() -> None:
         ({"food": 'info["wage"]'}, "info has the parts age"),
         ({"food": "tests.ponds:drink"}, "food: tests.ponds:drink cannot be loaded"),
         ({"scale": [1.0, 2.0, 3.0]}, "scale: give 1 number or 2"),
+        ({"scale": [0.0]}, "scale: give 1 number or 2 numbers, all above 0"),
+        ({"scale": [1.0, -1.0]}, "scale: give 1 number or 2 numbers, all above 0"),
+        ({"time_limit": 0}, "habitat.time_limit"),
+        ({"faults": -1}, "habitat.faults"),
+        ({"workers": -1}, "habitat.workers"),
+        ({"workers": 7}, "7 workers are more than the 6 cells"),
         ({"options": {"depth": 3}}, "unexpected keyword argument 'depth'"),
     ],
 )

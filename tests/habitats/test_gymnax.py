@@ -63,6 +63,7 @@ def test_the_environments_time_limit_ends_a_life_only_if_it_is_kept() -> None:
     assert ends(time_limit=True) == [False] * 4 + [True] * 5
     assert ends(params={"max_steps_in_episode": 7}).index(True) == 6
     assert ends(params={"energy": 4}).index(True) == 3
+    assert ends(params={"energy": 3}, time_limit=True).index(True) == 2
 
 
 def test_death_and_food_can_speak_of_all_that_the_environment_says() -> None:
@@ -170,6 +171,7 @@ WRONG: list[tuple[dict[str, Any], str]] = [
         {"env": "tests.walks:Walk", "params": {"gusts": "strong"}},
         "type and shape of its default, 0.5",
     ),
+    ({"env": "tests.walks:Walk", "rate": 0.0}, "habitat.rate"),
     ({"env": "tests.walks:Walk", "fatal": "state"}, "'state' has parts"),
     ({"env": "tests.walks:Walk", "fatal": "obs[3] > 0"}, "obs goes from obs[0] to obs[2]"),
     ({"env": "tests.walks:Walk", "food": "lives"}, "known: done, info, obs, reward, state"),
@@ -233,3 +235,4 @@ def test_it_is_known_whether_a_function_uses_its_first_argument() -> None:
 
 def test_ages_are_counted_only_where_a_tick_draws() -> None:
     assert (np.asarray(lived(walk(), 3)[0].age.lo) == 3).all()
+    assert not np.asarray(lived(Gymnax(env="tests.walks:Played"), 3)[0].age.lo).any()

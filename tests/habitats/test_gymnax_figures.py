@@ -177,6 +177,19 @@ def test_the_lifespan_is_the_mean_of_all_lives_whether_or_not_they_have_ended(
         assert measured(seen._replace(**once)).faults == [says]
 
 
+def test_what_a_body_perceives_after_its_end_is_no_fault() -> None:
+    nan = np.nan
+    senses = SimpleNamespace(declared=lambda obs: (jnp.abs(obs) <= 9).all(axis=1))
+    habitat: Any = SimpleNamespace(senses=senses)
+    values = {"done": jnp.array([False, True, True]), "reward": jnp.float32([1, 2, nan]),
+              "obs": jnp.float32([[3, -4], [5, 0], [nan, 70]])}  # fmt: skip
+    seen = check._seen(habitat, values, jnp.array([True, True, False]))
+    assert [bool(each) for each in (seen.inside, seen.finite, seen.rewarded)] == [True] * 3
+    assert seen.largest.tolist() == [5, 4]
+    seen = check._seen(habitat, values, jnp.array([False, True, True]))
+    assert [bool(each) for each in (seen.inside, seen.finite, seen.rewarded)] == [False] * 3
+
+
 @pytest.mark.parametrize(
     ("largest", "squash"),
     [([5, 5, 900], False), ([5.1, 0, 0], True), ([0, 5.1, 0], True), ([0, 0, 900], False)],

@@ -13,7 +13,7 @@ from primordia.habitats.gymnax import libraries
 from primordia.habitats.gymnax.libraries import NEVER, package_of
 from primordia.habitats.gymnax.packed import pack
 from primordia.habitats.gymnax.rounded import rounded
-from primordia.habitats.gymnax.simulator import _as
+from primordia.habitats.gymnax.simulator import Simulator, _as
 
 
 @pytest.mark.parametrize(
@@ -56,6 +56,36 @@ def test_the_time_limit_of_a_game_of_octax_is_set_when_it_is_made(
     assert made == [("space-flight10", limits)]
     with pytest.raises(ValueError, match="octax has no environment 'pongg'; did you mean 'pong'"):
         libraries.make("octax:pongg", time_limit)
+
+
+class Cut:
+    """An environment that is done at the age of 3 alone, and is cut from the age of 5 on."""
+
+    def reset_env(self, key: Any, params: Any) -> tuple[Any, Any]:
+        return jnp.float32(0), jnp.int32(0)
+
+    def step_env(self, key: Any, state: Any, action: Any, params: Any) -> tuple[Any, ...]:
+        return jnp.float32(state), state + 1, 1, state + 1 == 3, {}
+
+    def is_truncated(self, state: Any, params: Any) -> Any:
+        return state >= params
+
+    def action_space(self, params: Any) -> Any:
+        return SimpleNamespace(n=2, shape=(), dtype=jnp.int32)
+
+
+@pytest.mark.parametrize("time_limit", [False, True])
+def test_an_environment_that_tells_when_it_is_cut_ends_then_if_its_limit_is_kept(
+    time_limit: bool,
+) -> None:
+    env, key = Simulator(Cut(), 5, time_limit), jnp.zeros(2, jnp.uint32)
+    state, done = env.reset(key)[1], []
+    for _ in range(6):
+        stepped = env.step(key, state, jnp.int32(0))
+        state = stepped.state
+        done.append(bool(stepped.done))
+        assert (stepped.reward.dtype, float(stepped.reward)) == (jnp.float32, 1.0)
+    assert done == [False, False, True, False, time_limit, time_limit]
 
 
 GIVEN: list[tuple[Any, Any, Any]] = [

@@ -15,6 +15,7 @@ from primordia.habitats import opengl
 from primordia.habitats.mujoco.habitat import MuJoCo
 from primordia.habitats.mujoco.target import Target
 from primordia.random import dice
+from tests.robots import of_task
 
 TARGET: dict[str, Any] = {
     "body": "target",
@@ -47,6 +48,26 @@ def test_a_target_is_reached_within_its_distance_in_three_dimensions() -> None:
     near = [[0.3, 0.0, 0.39], [0.3, 0.0, 0.41], [0.0, -0.49, 0.0], [0.51, 0, 0], [0, 0, 0.5]]
     places = {"target": np.array([1.0, 2.0, 3.0]) + near, "fingertip": np.tile([1.0, 2, 3], (5, 1))}
     assert Target(**TARGET).reached(places).tolist() == [True, False, True, False, False]
+
+
+def test_a_target_is_placed_by_the_last_two_words_alone() -> None:
+    """So its place follows from nothing else, and nothing else from its place."""
+    habitat = of_task("Reacher-forager", 1)
+    words = np.arange(1, habitat.words + 1, dtype=np.uint32)[None] * np.uint32(0x9E3779B1)
+
+    def born(word: int | None = None) -> tuple[list[float], list[float]]:
+        changed = words.copy()
+        if word is not None:
+            changed[0, word] ^= np.uint32(0x5A5A5A5A)
+        habitat.reset(np.array([0]), changed)
+        place = habitat._bodies.views["qpos"][0].tolist()
+        return place[:2], place[2:]
+
+    arm, target = born()
+    for word in range(habitat.words):
+        one, other = born(word)
+        assert (other != target) == (word >= habitat.words - 2)
+        assert (one != arm) == (word < 2)
 
 
 @pytest.mark.parametrize(

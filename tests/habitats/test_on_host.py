@@ -9,6 +9,7 @@ import pytest
 from primordia.compiled import shared
 from primordia.habitats.bodies import fresh
 from primordia.habitats.cartpole.habitat import CartPole
+from primordia.habitats.contract import Outcome
 from primordia.habitats.on_host import OnHost
 from tests.toys import Echo, Meadow, Mill
 
@@ -76,6 +77,22 @@ def test_a_body_that_is_not_finite_has_failed() -> None:
         senses, outcome = habitat.step(np.zeros(8, np.int32), ALL < 5)
         assert np.isfinite(senses).all()
         np.testing.assert_array_equal(np.asarray(outcome.fault)[:5], expected)
+
+
+class Reporting(Meadow):
+    """A meadow that reports a fault itself in its first tick."""
+
+    def step(self, bodies: Any, action: Any) -> tuple[Any, Outcome]:
+        after, outcome = super().step(bodies, action)
+        return after, outcome._replace(fault=bodies[:, 0] == 0)
+
+
+def test_a_body_has_failed_if_it_is_not_finite_or_if_its_habitat_says_so() -> None:
+    habitat = opened(Reporting(broken_at=3))
+    habitat.reset(ALL, WORDS[:, :1])
+    for failed in (True, False, True):
+        _, outcome = habitat.step(np.zeros(8, np.int32), np.ones(8, bool))
+        assert np.asarray(outcome.fault).tolist() == [failed] * 8
 
 
 def test_bodies_without_floating_point_numbers_never_fail() -> None:

@@ -101,6 +101,43 @@ def test_founders_of_a_garden_have_keys_and_genomes_of_their_worlds(
         assert (int(keys.hi[k]), int(keys.lo[k])) == (int(key.hi[0]), int(key.lo[0]))
 
 
+def test_organisms_play_under_the_climate_at_the_end_of_their_own_world(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Players come in the order in which they are asked for."""
+    asked: dict[str, Any] = {}
+
+    class Past:
+        def __init__(self, run: Any) -> None: ...
+
+        def of_lives(self, lives: Any, ticks: np.ndarray) -> dict[str, Any]:
+            return {"lives": lives.tolist(), "ticks": ticks.tolist()}
+
+    class Table(np.ndarray):
+        world = np.array([2, 0, 2])
+        id = np.array([6, 7, 5])
+
+    def taken(rows: np.ndarray) -> Any:
+        return rows.view(Table)
+
+    def rebuild_all(run: Any, organisms: Any) -> list[Any]:
+        asked["genomes"] = list(organisms)
+        return asked["genomes"]
+
+    monkeypatch.setattr(players, "rebuild_all", rebuild_all)
+    monkeypatch.setattr(players, "PastClimate", Past)
+    monkeypatch.setattr(players, "_players", lambda *given: given[1:])
+    monkeypatch.setattr(players, "evaluation_keys", lambda run, *given: [x.tolist() for x in given])
+    wanted = [(6, 2), (7, 0), (5, 2)]
+    rows = {(6, 2): 30, (7, 0): 4, (5, 2): 29}
+    lives = SimpleNamespace(row=lambda *each: rows[each], take=taken)
+    run: Any = SimpleNamespace(lives=lives, ends=np.array([500, 600, 700]))
+    genomes, keys, climate = tuple[Any, ...](players.players_of(run, wanted))
+    assert genomes == wanted
+    assert keys == [[2, 0, 2], [6, 7, 5]]
+    assert climate == {"lives": [30, 4, 29], "ticks": [700, 500, 700]}
+
+
 def test_games_of_organisms_have_keys_of_their_world_and_number() -> None:
     run: Any = SimpleNamespace(world_seeds=np.array([11, 22, 33], np.uint64))
     keys = players.evaluation_keys(run, np.array([2, 0, 2]), np.array([5, 5, 0]))

@@ -58,20 +58,21 @@ FORGERIES: list[tuple[Callable[[Row], None], set[str]]] = [
     (hungrier, {"food"}),
 ]
 """Changes of the row of a death, and what then differs at least."""
+ENDS = (Cause.STARVED, Cause.HAZARD, Cause.REPLACED)
 
 
 @pytest.mark.parametrize(("change", "respects"), FORGERIES)
 def test_a_forged_death_is_noticed(
     chain: list[Path], tmp_path: Path, change: Callable[[Row], None], respects: set[str]
 ) -> None:
-    """The forger has changed one number of a closed segment, and computed all checksums again."""
+    """The forger has changed one number of a closed segment, and computed all checksums again.
+
+    A life that dies by itself ends then, whatever its record says; any other goes on to the recorded end.
+    """
     run = Path(shutil.copytree(chain[0], tmp_path / "run"))
     lives = Archive(run).lives.of_world(0)
     likely = (lives.lifespan > 3) & (lives.ended < 149)
-    chosen = [
-        int(lives.id[likely & (lives.cause == cause)][0])
-        for cause in (Cause.STARVED, Cause.HAZARD, Cause.REPLACED)
-    ]
+    chosen = [int(lives.id[likely & (lives.cause == cause)][0]) for cause in ENDS]
     for path in run.glob("deaths/*.parquet"):
         before = pq.read_table(path)
         rows = before.to_pylist()
@@ -80,11 +81,15 @@ def test_a_forged_death_is_noticed(
                 change(row)
         pq.write_table(pa.Table.from_pylist(rows, schema=before.schema), path)
     reseal(newest(run))
-    for number in chosen:
+    for number, cause in zip(chosen, ENDS, strict=True):
         done = here("revive", run, number, "--json")
         complains(done, 1, f"organism {number} of world 0, lived again, differs from its record")
         found = json.loads(done.stdout)
         assert not found["agrees"]
+        told = found["respects"][0]["recorded"]
+        assert told == lives.ended[lives.id == number] + (change is later) - (change is earlier)
+        own_end = change is later and cause is not Cause.REPLACED
+        assert found["ends"] == told - own_end
         assert {row["name"] for row in found["respects"] if not row["agrees"]} >= respects
     shown = here("revive", run, chosen[0])
     assert shown.returncode == 1

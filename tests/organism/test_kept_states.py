@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from primordia.errors import InputError
-from primordia.organism import revival
+from primordia.organism import diary, revival
 from primordia.organism.revival import Respect, Revival
 from primordia.runs import checkpoint, directory
 
@@ -97,6 +97,22 @@ def test_each_limit_of_a_comparison_is_noted_once(
     found = revival._notes(run, course)
     assert len(found) == len(notes)
     assert all(part in note for part, note in zip(notes, found, strict=True))
+
+
+def test_a_life_of_one_tick_can_be_saved_and_one_of_none_cannot(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    written: list[Any] = []
+    monkeypatch.setattr(diary, "write", lambda path, stretches, counts: written.append(counts))
+
+    def lived(ends: int) -> Any:
+        run = SimpleNamespace(schema=SimpleNamespace(tallies=("score",)))
+        return SimpleNamespace(begins=5, ends=ends, record=SimpleNamespace(id=[3]), run=run)
+
+    revival._lived(lived(6), Path("a.npz"))
+    assert written == [("score",)]
+    with pytest.raises(InputError, match="organism 3 has not lived a tick yet"):
+        revival._lived(lived(5), Path("a.npz"))
 
 
 def test_what_is_found_is_told_in_plain_values() -> None:
