@@ -277,7 +277,9 @@ def test_a_fork_and_a_run_that_ended_have_no_ticks_in_common(end: int, common: b
     early = run("early", whole.recorded_until(end))
     other = run("other", whole)
     if common:
-        assert compare([other, late, early]).begin == 50
+        compared = compare([other, late, early])
+        assert compared.begin == 50
+        assert [arm.pace.edges[[0, -1]].tolist() for arm in compared.arms] == [[50, 51]] * 3
         return
     words = "runs/late was forked at tick 50, runs/early ends at 50: they have no ticks in common"
     with pytest.raises(InputError, match=words):
