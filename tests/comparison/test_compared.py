@@ -85,6 +85,41 @@ def test_lives_count_up_to_the_smallest_age_of_all_runs() -> None:
     assert [arm.worlds for arm in compared.arms] == [3, 4]
 
 
+def test_a_life_of_exactly_the_smallest_age_is_long() -> None:
+    """Lives of the first world have 4, 15 and 31 ticks, of the second 14 and 20; others are alive."""
+    living = (50, 0, False)
+    one, two = [(0, 3, True), (1, 14, True), (2, 30, True)], [(0, 13, True), (1, 19, True)]
+    lives = worlds_of([*one, living], [*two, living], until=UNTIL)
+    for ages, first in (
+        ((15, 20), [2, 2]),
+        ((20, 16), [3, 2]),
+        ((20, 20), [3, 2]),
+        ((30, 21), [3, 3]),
+    ):
+        runs = [
+            run(name, lives, saturation_ticks=age) for name, age in zip("ab", ages, strict=True)
+        ]
+        arms = compare(runs).arms
+        for arm in arms:
+            assert arm.measured["first"].value.tolist() == first
+            assert arm.measured["first"].known.all()
+
+
+def test_a_crash_depends_on_the_cells_of_its_own_run() -> None:
+    """Four children are alive before the world dies out: half of 8 cells, and not of 16."""
+    lives = worlds_of([(0, 9, True), *[(1, 8, True)] * 4, (10, 5, False)], until=60)
+    lives.parent[1:5] = 0
+    for cells, crashes in (((8, 16), [1, 0]), ((16, 8), [0, 1])):
+        runs = [run(name, lives, cells=size) for name, size in zip("ab", cells, strict=True)]
+        compared = compare(runs)
+        assert [arm.extinctions.total.tolist() for arm in compared.arms] == [[1], [1]]
+        assert [arm.extinctions.crashes.tolist() for arm in compared.arms] == [
+            [each] for each in crashes
+        ]
+        assert [told["crashes"] for told in compared.to_dict()["runs"]] == crashes
+        assert [told["extinctions"] for told in compared.to_dict()["runs"]] == [1, 1]
+
+
 def test_all_worlds_are_compared_up_to_the_first_end() -> None:
     """One world of the second run ends first."""
     one, two = lived(2, 1), lived(3, 2)
@@ -242,7 +277,9 @@ def test_a_fork_and_a_run_that_ended_have_no_ticks_in_common(end: int, common: b
     early = run("early", whole.recorded_until(end))
     other = run("other", whole)
     if common:
-        assert compare([other, late, early]).begin == 50
+        compared = compare([other, late, early])
+        assert compared.begin == 50
+        assert [arm.pace.edges[[0, -1]].tolist() for arm in compared.arms] == [[50, 51]] * 3
         return
     words = "runs/late was forked at tick 50, runs/early ends at 50: they have no ticks in common"
     with pytest.raises(InputError, match=words):

@@ -94,6 +94,9 @@ def test_quartiles_of_worlds_are_told_after_the_median() -> None:
         tables.quartiles_text(arm("one", [4, 1, 2, 3, 5, 8, 9], known), "births") == "4 (2 to >= 8)"
     )
     assert tables.quartiles_text(arm("one", [4, 4, 4]), "lifespan") == "400"
+    for worlds, text in (([4, 4, 4, 9, 9], "4 (4 to 9)"), ([1, 1, 4, 4, 4], "4 (1 to 4)")):
+        assert tables.quartiles_text(arm("one", worlds), "births") == text
+        assert tables.spread_text(worlds) == text
     assert tables.spread_text([9, 1, float("nan"), 3, 6]) == "4.5 (2.5 to 6.75)"
     assert tables.spread_text([3.0, 3.0]) == "3"
     assert tables.spread_text([float("nan")]) == tables.spread_text([]) == "-"
@@ -177,3 +180,19 @@ def test_each_run_is_told_beside_the_reference() -> None:
     assert cells(lines[place + 4]) == [
         "far", "7", "+1.00 large later", tables.ratio_text(far), f"{far.needed} worlds an arm",
     ]  # fmt: skip
+
+
+def test_each_table_has_the_effects_of_its_own_outcome() -> None:
+    """In each later outcome, one more of the second run's worlds has the larger value."""
+    ref, other = arm("ref", [10] * 5), arm("other", [10] * 5, seed=9)
+    shares = {"first": 0, "births": 1, "ticks": 2, "lifespan": 3, "food": 4}
+    for outcome, larger in shares.items():
+        values = np.where(np.arange(5) < larger, 1e9, 0.001)
+        other.measured[outcome] = Measured(values, np.ones(5, bool))
+    compared = side_by_side(ref, other)
+    assert list(compared.outcomes) == list(shares)
+    lines = tables.comparison_tables(compared).splitlines()
+    heads = [k for k, line in enumerate(lines) if "median (quartiles)" in line]
+    assert [cells(lines[k])[0] for k in heads] == list(compared.outcomes.values())
+    deltas = [cells(lines[k + 3])[2].split()[0] for k in heads]
+    assert deltas == [f"{(2 * larger - 5) / 5:+.2f}" for larger in shares.values()]
