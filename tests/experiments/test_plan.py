@@ -44,8 +44,48 @@ def test_each_world_of_an_arm_is_in_one_job(tmp_path: Path, seeds: int, worlds: 
     assert len(set(folders)) == len(folders)
 
 
-def test_jobs_of_a_habitat_in_jax_have_ten_worlds(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("seeds", "names"),
+    [(9, ["0-4", "5-8"]), (10, ["0-4", "5-9"]), (11, ["00-04", "05-09", "10"]), (5, ["0-4"])],
+)
+def test_folders_of_jobs_have_as_many_digits_as_the_last_world(
+    tmp_path: Path, seeds: int, names: list[str]
+) -> None:
+    got = jobs(write(tmp_path, seeds=seeds, jobs={"worlds": 5}, arms=ARMS[:1]))
+    assert [job.folder for job in got] == [f"mild/{name}" for name in names]
+
+
+def test_arms_may_have_different_numbers_of_worlds(tmp_path: Path) -> None:
+    """The jobs take turns while there are any of an arm."""
+    arms = [{"name": "few", "seeds": 1}, {"name": "many", "seeds": 5}, {"name": "some"}]
+    assert [(job.arm, job.first, job.worlds) for job in jobs(write(tmp_path, arms=arms))] == [
+        ("few", 0, 1),
+        ("many", 0, 2),
+        ("some", 0, 2),
+        ("many", 2, 2),
+        ("some", 2, 1),
+        ("many", 4, 1),
+    ]
+
+
+def test_a_job_has_ten_worlds_in_jax_and_one_on_the_host(tmp_path: Path) -> None:
     assert read(write(tmp_path, jobs=None), tmp_path / "out").worlds == 10
+    arms = [{"name": "a", "habitat": {"name": "tests.toys:HostCartPole"}}]
+    assert read(write(tmp_path, jobs=None, arms=arms), tmp_path / "out").worlds == 1
+
+
+
+def test_the_largest_number_of_jobs_is_allowed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two arms of 3 worlds are 4 jobs of up to 2 worlds."""
+    monkeypatch.setattr(plans, "LARGEST", 4)
+    begin(write(tmp_path), tmp_path / "out")
+    monkeypatch.setattr(plans, "LARGEST", 3)
+    with pytest.raises(InputError, match="it has more than 3 jobs"):
+        plans.recorded(tmp_path / "out")
+    with pytest.raises(InputError, match=r"4 jobs are more than 3; raise jobs\.worlds"):
+        read(write(tmp_path), tmp_path / "new")
 
 
 def test_a_plan_is_read_as_it_was_written(tmp_path: Path) -> None:
@@ -58,6 +98,7 @@ def test_words_of_a_question_may_change_and_settings_may_not(tmp_path: Path) -> 
     out = tmp_path / "out"
     begin(write(tmp_path), out)
     begin(write(tmp_path, question="Another one?", jobs=None), out)
+    begin(write(tmp_path, about="a meadow, in other words"), out)
     other: list[dict[str, Any]] = [{"name": "mild"}, {"name": "harsh", "hazard": 0.5}]
     for changes, words in [
         ({"arms": other}, "arms.harsh.hazard is 0.05 there, and 0.5 here"),
@@ -138,7 +179,12 @@ def test_runs_whose_seeds_have_a_gap_are_no_arm_to_fork(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no world of seed 4, but one of 5; an arm has successive"):
         read(write(tmp_path, **own), tmp_path / "out")
     shutil.rmtree(tmp_path / "h5")
-    assert len(read(write(tmp_path, **own), tmp_path / "out").jobs()) == 2
+    plan = read(write(tmp_path, **own), tmp_path / "out")
+    assert [(job.first, job.worlds, job.folder, job.source) for job in plan.jobs()] == [
+        (0, 2, "same/0-1", "../h0"),
+        (2, 2, "same/2-3", "../h2"),
+    ]
+    assert (plan.arms[0].config.seed, plan.arms[0].config.seeds) == (0, 4)
 
 
 def test_a_fork_has_the_jobs_and_settings_of_its_source(tmp_path: Path) -> None:
@@ -154,8 +200,12 @@ def test_a_fork_has_the_jobs_and_settings_of_its_source(tmp_path: Path) -> None:
         ("same/0-1", "../one/harsh/0-1"),
         ("same/2", "../one/harsh/2"),
     ]
-    with pytest.raises(InputError, match="a fork takes task, seeds and cells from one/harsh"):
-        read(write(tmp_path, "two", fork=fork, **other), tmp_path / "runs" / "two")
+    for name, value in {"task": "meadow.toml", "seeds": 3, "cells": 16}.items():
+        arm = {"arms": [{"name": "same"}, {"name": "safe", name: value}]}
+        for place in ({**other, name: value}, arm):
+            file = write(tmp_path, "two", fork=fork, **{**dict.fromkeys(names), **place})
+            with pytest.raises(InputError, match="takes task, seeds and cells from one/harsh"):
+                read(file, tmp_path / "runs" / "two")
 
 
 @pytest.mark.parametrize("names", [["one"], ["one", "two"], ["one", "two", "three"]])

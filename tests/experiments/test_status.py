@@ -12,8 +12,8 @@ import tomli_w
 from primordia.cli.campaign_view import Clock, line
 from primordia.errors import InputError
 from primordia.experiments.ledger import Entry, Ledger, WorldCounts
-from primordia.experiments.plan import Job, recorded
-from primordia.experiments.status import CampaignStatus, _interval
+from primordia.experiments.plan import ArmPlan, Job, Plan, recorded
+from primordia.experiments.status import ArmStatus, CampaignStatus, _interval, status
 
 
 @pytest.mark.parametrize("worlds", [5, 6, 9, 20, 100])
@@ -30,15 +30,60 @@ def test_few_worlds_have_no_interval() -> None:
     assert _interval(np.arange(5.0)) == (0.0, 4.0)
 
 
+def test_the_bounds_of_the_interval_are_equally_far_from_both_ends() -> None:
+    """Of 20, 50 and 100 worlds, n / 2 - 0.98 sqrt(n) = 5.6, 18.1 and 40.2 lie outside."""
+    for worlds, outside in ((20, 5), (50, 18), (100, 40)):
+        lives = np.random.default_rng(worlds).permutation(worlds).astype(float)
+        assert _interval(lives) == (outside, worlds - 1 - outside)
+
+
+def test_each_arm_has_the_worlds_of_its_own_jobs() -> None:
+    """Also those of a job that failed; the arms have different numbers of worlds."""
+
+    def counts(deaths: int, lived: int, saturated: int | None) -> WorldCounts:
+        return WorldCounts(
+            seed=1, ticks=9, births=9, deaths=deaths, organism_ticks=lived, saturated=saturated
+        )
+
+    arms = tuple(
+        ArmPlan(name=name, settings={"seeds": seeds})
+        for name, seeds in (("one", 4), ("two", 7), ("none", 2))
+    )
+    failed = [counts(0, 70, None)]
+    entries = [
+        Entry(job=0, arm="one", state="done", worlds=[counts(2, 20, 5), counts(4, 400, None)]),
+        Entry(job=1, arm="two", state="running", worlds=[counts(10, 30, 8)]),
+        Entry(job=2, arm="none"),
+        Entry(job=3, arm="one", state="failed", worlds=failed, error="full"),
+        Entry(job=4, arm="two", state="done", worlds=[counts(1, number, 1) for number in range(5)]),
+    ]
+    told = status(Plan(question="?", worlds=2, arms=arms), entries)
+    assert told.jobs == {"done": 2, "running": 1, "failed": 1, "waiting": 1}
+    assert told.arms == (
+        ArmStatus("one", 4, 3, 1, 70.0, None),
+        ArmStatus("two", 7, 6, 6, 2.5, (0.0, 4.0)),
+        ArmStatus("none", 2, 0, 0, None, None),
+    )
+    assert [entry.job for entry in told.running] == [1]
+    assert [(entry.job, entry.error) for entry in told.failed] == [(3, "full")]
+
+
 ARM = {"name": "a", "settings": {"seeds": 2}}
 DAMAGED: dict[str, list[dict[str, Any]]] = {
     "two arms have one name": [ARM, ARM],
     "a name that no arm can have": [{**ARM, "name": "jobs"}],
     "seeds of arm a must be a whole number": [{**ARM, "settings": {}}],
-    "from 1 to 65536": [{**ARM, "settings": {"seeds": 2**62}}],
+    "from 1 to 65536": [{**ARM, "settings": {"seeds": 2**16 + 1}}],
+    "must be a whole number from 1 to": [{**ARM, "settings": {"seeds": 0}}],
     "a whole number from 1": [{**ARM, "settings": {"seeds": "two"}}],
     "more than 100,000 jobs": [{"name": name, "settings": {"seeds": 2**16}} for name in ("a", "b")],
 }
+
+
+def test_an_arm_may_have_65536_worlds(tmp_path: Path) -> None:
+    plan = {"question": "?", "worlds": 1, "arms": [{**ARM, "settings": {"seeds": 2**16}}]}
+    (tmp_path / "experiment.toml").write_text(tomli_w.dumps(plan))
+    assert recorded(tmp_path).arms[0].settings["seeds"] == 2**16
 
 
 @pytest.mark.parametrize("fault", DAMAGED)
