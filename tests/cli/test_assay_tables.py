@@ -34,7 +34,9 @@ def test_heredity_has_pairs_in_all_and_spreads_over_worlds() -> None:
         return Pairs(1000 * first + more, *(first + each + more for each in (0, 20, 40, 60)))
 
     found = [
-        Inherited(world, *(pairs(kind, more) for kind in (100, 200, 300)), 400 + more, 500 + more)
+        Inherited(
+            world, pairs(100, more), pairs(200, more), pairs(300, more), 400 + more, 500 + more
+        )
         for world, more in enumerate(OFFSETS)
     ]
     told = tables.heredity("run", found)

@@ -48,7 +48,7 @@ def shown(status: CampaignStatus, clock: Clock | None = None) -> list[list[str]]
 
 def at(monkeypatch: pytest.MonkeyPatch, seconds: float) -> Any:
     """Let the clock show a second. Return the clock, which can be set."""
-    now = SimpleNamespace(perf_counter=lambda: now.seconds, strftime=lambda _: "12:00:00")
+    now: Any = SimpleNamespace(perf_counter=lambda: now.seconds, strftime=lambda _: "12:00:00")
     now.seconds = seconds
     monkeypatch.setattr(campaign_view, "time", now)
     return now
@@ -108,12 +108,13 @@ def test_time_left_of_the_first_jobs_is_that_of_the_slowest_for_each_round(
 def test_a_slow_reading_is_made_seldom(monkeypatch: pytest.MonkeyPatch) -> None:
     """A reading of 0.1 s takes a fiftieth of the time if the next begins 5 s later."""
     now, made = at(monkeypatch, 100.0), list[float]()
+    now.took = 0.0
 
     def call() -> None:
         made.append(now.seconds)
-        now.seconds += took
+        now.seconds += now.took
 
-    for took, interval in ((0.1, 5.0), (0.001, 0.5)):
+    for now.took, interval in ((0.1, 5.0), (0.001, 0.5)):
         paced = campaign_view._Paced(0.5, call)
         made.clear()
         for _ in range(3):

@@ -15,7 +15,6 @@ import pytest
 import primordia
 from primordia.errors import InputError, InUseError, Trouble
 from primordia.experiments import job as jobs
-from primordia.experiments import ledger as ledgers
 from primordia.experiments.campaign import begin
 from primordia.experiments.ending import Ending
 from primordia.experiments.ledger import SILENT, Entry, Ledger, WorldCounts
@@ -59,7 +58,7 @@ def test_a_job_of_another_machine_runs_until_it_is_silent_for_long(
     tmp_path: Path, ended: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Its process cannot be seen from here."""
-    monkeypatch.setattr(ledgers.time, "time", lambda: 50_000.0)
+    monkeypatch.setattr("primordia.experiments.ledger.time.time", lambda: 50_000.0)
     for age, state in ((SILENT - 1, "running"), (SILENT, "waiting"), (SILENT + 1, "waiting")):
         written = {"host": "elsewhere", "process": ended, "updated": 50_000 - age}
         assert state_of(tmp_path, state="running", **written) == state
@@ -162,8 +161,8 @@ def test_a_running_job_tells_the_counts_of_each_of_its_worlds(
 def test_counts_are_written_at_intervals(monkeypatch: pytest.MonkeyPatch) -> None:
     """The first at once, the next when the interval has passed."""
     now, written = [100.0], list[float]()
-    monkeypatch.setattr(jobs.time, "perf_counter", lambda: now[0])
-    monkeypatch.setattr(jobs.Census, "of", MagicMock())
+    monkeypatch.setattr("primordia.experiments.job.time.perf_counter", lambda: now[0])
+    monkeypatch.setattr("primordia.experiments.job.Census.of", MagicMock())
     monkeypatch.setattr(jobs, "Speed", MagicMock())
     ledger = MagicMock()
     ledger.write = lambda *_: written.append(now[0])

@@ -74,7 +74,6 @@ def test_a_job_has_ten_worlds_in_jax_and_one_on_the_host(tmp_path: Path) -> None
     assert read(write(tmp_path, jobs=None, arms=arms), tmp_path / "out").worlds == 1
 
 
-
 def test_the_largest_number_of_jobs_is_allowed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

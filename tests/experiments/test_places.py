@@ -1,0 +1,209 @@
+"""Where jobs run: which place is chosen, what it is told, and what is said of its jobs at the end."""
+
+from concurrent.futures import Future
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+from unittest.mock import MagicMock
+
+import pytest
+
+import primordia
+from primordia import api
+from primordia.cli import experiment as command
+from primordia.errors import InputError, Trouble
+from primordia.experiments import job as jobs
+from primordia.experiments import on_ray, places
+from primordia.experiments import plan as plans
+from primordia.experiments.campaign import Campaign, begin
+from primordia.experiments.dispatch import live_all
+from primordia.experiments.ending import Ending
+from primordia.experiments.here import Here
+from primordia.experiments.plan import Job
+from tests.commands import here
+from tests.experiments.meadows import write
+
+JOB = Job(3, "a", 0, 1, "a/0")
+
+
+class Place:
+    """A place in which job K ends in state K of a list."""
+
+    def __init__(self, *states: Any) -> None:
+        self._states = states
+
+    def submit(self, job: Job) -> Future[Ending]:
+        future: Future[Ending] = Future()
+        state = self._states[job.number]
+        future.set_result(Ending(job.number, state, error=f"reason {job.number}", again=False))
+        return future
+
+    def stop(self) -> None: ...
+
+
+@pytest.mark.parametrize(
+    ("asked", "device", "left", "at_once"),
+    [
+        (None, "cpu", 9, 3),
+        (None, "cpu", 2, 2),
+        (None, "gpu", 9, 1),
+        (5, "cpu", 9, 5),
+        (5, "gpu", 9, 5),
+        (5, "cpu", 4, 4),
+    ],
+)
+def test_jobs_run_at_once_on_each_core_unless_a_number_is_given(
+    asked: int | None, device: str, left: int, at_once: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PRIMORDIA_CORES", "3")
+    made = MagicMock()
+    monkeypatch.setattr(places, "Here", made)
+    places.place_for(Path("out"), left, asked, None, 7.0, device)
+    made.assert_called_once_with(Path("out"), at_once, 7.0, device)
+
+
+@pytest.mark.parametrize(("address", "told"), [("", None), ("host:1", "host:1")])
+def test_a_cluster_has_an_address_or_is_that_of_this_machine(
+    address: str, told: str | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made = MagicMock()
+    monkeypatch.setattr(places, "OnRay", made)
+    places.place_for(Path("out"), 4, None, address, 7.0, "gpu")
+    made.assert_called_once_with(Path("out"), 7.0, "gpu", told)
+
+
+def test_a_process_is_told_the_interval_of_checkpoints_and_the_device(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each process has one core. What the processes print is kept, also from the last time."""
+    opened = MagicMock()
+    monkeypatch.setattr("primordia.experiments.here.subprocess.Popen", opened)
+    (tmp_path / "workers.log").write_text("before\n")
+    Here(tmp_path, 1, 7.5, "gpu")._started()
+    (words,), options = opened.call_args
+    assert words[-3:] == [str(tmp_path), "7.5", "gpu"]
+    assert options["env"]["PRIMORDIA_CORES"] == "1"
+    assert (tmp_path / "workers.log").read_text() == "before\n"
+
+
+@pytest.mark.parametrize(("device", "gpus"), [("cpu", 0), ("gpu", 1)])
+def test_a_task_of_a_cluster_has_one_core_and_a_gpu_if_asked(
+    device: str, gpus: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ray = MagicMock()
+    monkeypatch.setattr(on_ray, "_connected", lambda address: ray)
+    monkeypatch.setattr(on_ray, "_check_folder", lambda *_: None)
+    place = on_ray.OnRay(tmp_path, 7.0, device)
+    options = ray.remote.return_value.options
+    assert (options.call_args[1]["num_cpus"], options.call_args[1]["num_gpus"]) == (1, gpus)
+    place.submit(JOB)
+    options.return_value.remote.assert_called_once_with(3, str(tmp_path), 7.0, device)
+
+
+@pytest.mark.parametrize(
+    ("held", "state", "seconds"), [(2, "done", 2), (200, "elsewhere", on_ray.RELEASE + 1)]
+)
+def test_a_task_waits_for_the_lock_of_a_dead_node_for_a_while(
+    held: int, state: str, seconds: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    now, tries = [0.0], list[Any]()
+
+    def ending_of(plan: Any, job: Job, *words: Any) -> Ending:
+        tries.append(words)
+        return Ending(job.number, "elsewhere" if len(tries) <= held else "done")
+
+    def sleep(length: float) -> None:
+        now[0] += length
+
+    monkeypatch.setattr(on_ray, "time", SimpleNamespace(monotonic=lambda: now[0], sleep=sleep))
+    monkeypatch.setattr(jobs, "ending_of", ending_of)
+    monkeypatch.setattr(
+        plans, "recorded", lambda out: SimpleNamespace(jobs=lambda: [None, None, None, JOB])
+    )
+    assert on_ray._live(3, str(tmp_path), 7.0, "gpu") == Ending(3, state)
+    assert now == [seconds]
+    assert set(tries) == {(tmp_path, 7.0, "gpu")}
+
+
+def test_what_a_cluster_gives_up_is_a_failure_of_its_own_job() -> None:
+    done: Future[Any] = Future()
+    done.set_result((3, "failed", "full", False))
+    assert on_ray._ending(JOB, done) == Ending(3, "failed", "full", again=False)
+    lost: Future[Any] = Future()
+    lost.set_exception(RuntimeError("the node died\nand more"))
+    assert on_ray._ending(JOB, lost) == Ending(3, "failed", "RuntimeError: the node died")
+
+
+def test_jobs_of_other_processes_are_neither_done_nor_failed(tmp_path: Path) -> None:
+    chosen, looks = begin(write(tmp_path), tmp_path / "out"), list[int]()
+    place = Place("elsewhere", "done", "elsewhere", "failed")
+    result = live_all(chosen.jobs, place, lambda: looks.append(1), lambda *_: None)
+    assert (result.done, result.elsewhere, result.stopped) == (1, 2, False)
+    assert [ending.job for ending in result.failed] == [3]
+    assert len(looks) == 2, "also after the last job has ended"
+
+
+@pytest.mark.parametrize(
+    ("states", "status", "says"),
+    [
+        (["done", "failed", "failed", "elsewhere"], 1, "2 jobs failed; give the same command"),
+        (["elsewhere", "done", "elsewhere", "elsewhere"], 0, "3 jobs under way in other processes"),
+        (["elsewhere", "done", "done", "done"], 0, "1 job under way in other processes"),
+    ],
+)
+def test_the_command_ends_with_the_number_of_jobs_that_are_not_done(
+    states: list[str], status: int, says: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(places, "place_for", lambda *_, **__: Place(*states))
+    done = here("experiment", write(tmp_path), "--out", tmp_path / "out", "--quiet")
+    assert done.returncode == status
+    lines = done.stderr.splitlines()
+    assert lines[-1].startswith(f"primordia: {says}")
+    failures = [
+        f"primordia: job {number} ({('mild', 'harsh')[number % 2]}) failed: reason {number}"
+        for number, state in enumerate(states)
+        if state == "failed"
+    ]
+    assert lines[:-1] == failures
+
+
+def test_python_raises_the_first_failure(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    place = Place("done", "failed", "elsewhere", "failed")
+    monkeypatch.setattr(api, "place_for", lambda *_: place)
+    with pytest.raises(Trouble, match="failed jobs: 2; job 1: reason 1"):
+        primordia.experiment(write(tmp_path), tmp_path / "out")
+
+
+def test_python_passes_on_what_it_is_given(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only jobs of the named arm run, and results are written only if no job is left."""
+    asked, looks = MagicMock(return_value=Place(*["done"] * 4)), list[dict[str, int]]()
+    gathered = MagicMock()
+    monkeypatch.setattr(api, "place_for", asked)
+    monkeypatch.setattr(Campaign, "gather", gathered)
+    out = tmp_path / "out"
+    primordia.experiment(
+        write(tmp_path), out, jobs=5, only=["harsh"], ray="r", checkpoint_every=7.0, device="gpu",
+        look=lambda status: looks.append(status.jobs),
+    )  # fmt: skip
+    asked.assert_called_once_with(out, 2, 5, "r", 7.0, "gpu")
+    assert looks[-1] == {"done": 0, "running": 0, "failed": 0, "waiting": 4}
+    gathered.assert_not_called()
+
+
+def test_one_job_has_the_interval_and_the_device_of_the_command(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked = MagicMock(return_value=Ending(2, "failed", "full"))
+    monkeypatch.setattr(jobs, "ending_of", asked)
+    out = tmp_path / "out"
+    options = ("--checkpoint-every", 7, "--device", "gpu", "--quiet")
+    done = here("experiment", write(tmp_path), "--out", out, "--job", 2, *options)
+    assert (done.returncode, done.stderr) == (1, "primordia: job 2 (mild) failed: full\n")
+    chosen = begin(out)
+    asked.assert_called_once_with(chosen.plan, chosen.jobs[2], out, 7.0, "gpu")
+    assert command._jobs(1234) == "1,234 jobs"
+
+
+def test_a_cluster_has_no_number_of_jobs() -> None:
+    with pytest.raises(InputError, match="--jobs is for jobs on this machine"):
+        places.place_for(Path("out"), 4, 1, "")

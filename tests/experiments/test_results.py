@@ -1,0 +1,157 @@
+"""The files of results: each arm and each world has its own numbers, in the column that names them."""
+
+import csv
+import datetime
+import os
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from primordia.comparison.comparison import ComparedArm, Comparison
+from primordia.comparison.measured import Measured
+from primordia.experiments import results
+from primordia.runs.arrays import NEVER
+from primordia.settings.limits import Stop
+
+WHAT: dict[str, Any] = {"survival": None, "pace": None, "gathering": None, "extinctions": None}
+
+
+def arm(name: str, births: list[float], unsaturated: int, **other: list[float]) -> ComparedArm:
+    """Return an arm whose last worlds are not saturated; outcomes not named are unknown."""
+    worlds, known = len(births), np.arange(len(births)) < len(births) - unsaturated
+    none = Measured(np.ones(worlds), np.zeros(worlds, bool))
+    measured = dict.fromkeys(
+        ("first", "births", "ticks", "lifespan", "longest", "pace", "food"), none
+    )
+    measured |= {name: Measured(np.array(births), known) for name in ("births", "ticks")}
+    measured |= {key: Measured(np.array(each), np.isfinite(each)) for key, each in other.items()}
+    seeds = np.arange(worlds, dtype=np.uint64) + np.uint64(len(name))
+    return ComparedArm(name, {"hazard": len(name) / 10}, seeds, measured, **WHAT)
+
+
+def compared(*arms: ComparedArm) -> Comparison:
+    return Comparison("meadow", arms, 20, 0, None, None, "tick")
+
+
+ONE = arm("one", [10, 20, 30, 40, 50], 1, lifespan=[4, 5, 6, 7, 8])
+THREE = arm("three", [100, 200, 300, 400, 500, 600], 0, lifespan=[2, 3, 4, 5, 6, 6])
+FOUR = arm("four", [1, 2, 3], 0, lifespan=[9, 9, 9])
+
+
+def rows_of(text: str) -> list[list[str]]:
+    """Return the cells of a table in Markdown."""
+    lines = [line.strip("|").split("|") for line in text.splitlines()]
+    assert set(map(str.strip, lines[1])) == {"---"}
+    assert len({len(line) for line in lines}) == 1
+    return [[cell.strip() for cell in line] for line in (lines[0], *lines[2:])]
+
+
+def test_the_counts_of_a_world_are_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two worlds of three cells."""
+    names = "tick", "births", "extinctions", "saturated_births", "saturated"
+    state = {
+        f"world.worlds.{name}": np.array([10 * place, 10 * place + 1], np.uint64)
+        for place, name in enumerate(names, 1)
+    }
+    records: Any = SimpleNamespace(
+        world_seeds=np.array([7, 8]),
+        count=state.__getitem__,
+        state={"world.organisms.alive": np.array([1, 1, 0, 0, 1, 0], bool)},
+    )
+    monkeypatch.setattr(
+        results, "crashes", lambda arm: np.array([5, 6]) if arm is records else None
+    )
+    told = {name: column.tolist() for name, column in results.counts(records).items()}
+    assert told == {
+        "seed": [7, 8], "ticks": [10, 11], "births": [20, 21], "extinctions": [30, 31],
+        "crashes": [5, 6], "alive": [2, 1], "saturated_births": [40, 41], "saturated_tick": [50, 51],
+    }  # fmt: skip
+
+
+def test_the_summary_has_a_row_for_each_arm() -> None:
+    """Of 1, 2, 3, 4 and 90 extinctions, the median is 3."""
+    counted = [
+        {"extinctions": np.array([90, 1, 3, 2, 4]), "crashes": np.array([0, 2, 0, 1, 0])},
+        {"extinctions": np.array([0, 0, 5, 5, 0, 9]), "crashes": np.array([0, 0, 0, 0, 0, 7])},
+        {"extinctions": np.array([0, 0, 0]), "crashes": np.array([0, 0, 0])},
+    ]
+    head, *rows = rows_of(results.summary(compared(ONE, THREE, FOUR), counted))
+    assert head[:6] == ["", "hazard", "worlds", "saturated", "extinctions (median)", "crashes"]
+    assert head[6:] == ["births to saturation", "ticks to saturation", "mean lifespan"]
+    assert [row[:6] for row in rows] == [
+        ["one", "0.3", "5", "4", "3", "3 in 2 worlds"],
+        ["three", "0.5", "6", "6", "2.5", "7 in 1 world"],
+        ["four", "0.4", "3", "3", "0", "0"],
+    ]
+    assert [row[6:] for row in rows] == [
+        ["30 (20 to 40)", "30 (20 to 40)", "6 (5 to 7)"],
+        ["300 (200 to 500)", "300 (200 to 500)", "4 (3 to 6)"],
+        ["2 (1 to 3)", "2 (1 to 3)", "9"],
+    ]
+
+
+def test_each_arm_is_held_against_the_first() -> None:
+    """Of the 30 pairs with arm `three`, its lives are longer in 5, equal in 4 and shorter in 21."""
+    whole = compared(ONE, THREE, FOUR)
+    head, *rows = rows_of(results.effects(whole))
+    assert head == ["against one", *whole.outcomes.values()]
+    assert [row[0] for row in rows] == ["three", "four"]
+    pairs = [(one, three) for one in (4, 5, 6, 7, 8) for three in (2, 3, 4, 5, 6, 6)]
+    more, fewer = sum(b > a for a, b in pairs), sum(b < a for a, b in pairs)
+    needs = "0.667; needs 23 worlds an arm"
+    assert rows[0][3] == f"{(more - fewer) / 30:+.2f} large shorter; {needs}"
+    assert rows[1][3] == "+1.00 longer; 1.5"
+    assert rows[1][1] == "-1.00 earlier; 0.0667"
+
+
+def test_effects_within_seeds_are_told_if_arms_have_the_same_seeds() -> None:
+    other = arm("two", [20, 30, 40, 50, 60], 0, lifespan=[5, 6, 7, 8, 9])
+    (row,) = rows_of(results.effects(compared(ONE, other)))[1:]
+    delta = sum(np.sign(b - a) for a in (4, 5, 6, 7, 8) for b in (5, 6, 7, 8, 9)) / 25
+    assert row[3].startswith(f"{delta:+.2f} medium longer; within seeds +1.00; 1.17 (")
+
+
+def test_the_last_deaths_are_spread_over_the_worlds_of_each_arm() -> None:
+    ends = [
+        [{"late_deaths": count, "late_lifespan": 10.0 * count} for count in counts]
+        for counts in ((8, 0, 2), (5,))
+    ]
+    head, *rows = rows_of(results.dying(compared(ONE, THREE), ends))
+    assert head == ["", "deaths in the last quarter", "their median lifespan"]
+    assert rows == [["one", "2 (1 to 5)", "20 (10 to 50)"], ["three", "5", "50"]]
+
+
+def test_the_csv_has_a_row_for_each_world_and_no_number_for_the_unknown() -> None:
+    """The arms have different numbers of worlds; values have two decimals."""
+    nan = float("nan")
+    one = arm("one", [10, 20], 1, lifespan=[4.006, nan], food=[70, 80])
+    two = arm("two", [30], 0, lifespan=[1 / 3], food=[12345678])
+    counted = [
+        {"seed": np.array([3, 4]), "saturated_tick": np.array([NEVER, 9], np.uint64)},
+        {"seed": np.array([5]), "saturated_tick": np.array([0], np.uint64)},
+    ]
+    text = results.world_rows(compared(one, two), counted, [])
+    assert list(csv.reader(text.splitlines())) == [
+        ["arm", "seed", "saturated_tick", "mean_lifespan", "late_food"],
+        ["one", "3", "", "4.01", "70"],
+        ["one", "4", "9", "", "80"],
+        ["two", "5", "0", "0.33", "12345678"],
+    ]
+
+
+def test_the_date_is_that_of_the_beginning_and_limits_are_those_at_the_end(tmp_path: Path) -> None:
+    (tmp_path / "versions.json").touch()
+    noon = datetime.datetime(2021, 3, 4, 12).timestamp()
+    os.utime(tmp_path / "versions.json", (noon, noon))
+    record: Any = SimpleNamespace(
+        paths=(tmp_path, tmp_path / "later"),
+        versions={"primordia": "0.1", "jax": "0.2"},
+        progress=SimpleNamespace(limits=Stop(ticks=300, births=None, until="saturation")),
+    )
+    assert results.made(record) == (
+        "Run on 2021-03-04 with primordia 0.1, jax 0.2. Each world stopped at: ticks 300 or until"
+        " saturation."
+    )
