@@ -1,0 +1,216 @@
+"""Each argument and option of a command reaches the Python function behind it."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+from unittest.mock import ANY, MagicMock, call, create_autospec, patch
+
+import numpy as np
+import pytest
+
+import primordia
+from primordia.cli.streams import report
+from tests.commands import here
+
+RUN, OUT = Path("RUN"), Path("OUT")
+LIMITS: tuple[Any, ...] = ("--ticks", 90, "--births", "none", "--until", "saturation")
+ENDS: dict[str, Any] = {"ticks": 90, "births": "none", "until": "saturation"}
+WAYS = ("--checkpoint-every", 7, "--device", "gpu", "--quiet")
+WORLDS: dict[str, Any] = {"checkpoint_every": 7.0, "device": "gpu", "listen": None}
+
+
+@pytest.fixture
+def run() -> Iterator[MagicMock]:
+    """Let `load` return a run that notes what it is asked for."""
+    noted = create_autospec(primordia.Run(RUN), instance=True)
+    for name in ("ancestors", "organism"):
+        getattr(noted, name).return_value = MagicMock()
+    noted.ancestors.return_value.to_dict.return_value = {}
+    noted.organism.return_value.evaluate.return_value.to_dict.return_value = {}
+    for name in ("standings", "lines", "heredity", "threshold", "resume"):
+        getattr(noted, name).return_value = []
+    noted.shadow.return_value.to_dict.return_value = {}
+    with patch("primordia.api.load", return_value=noted) as noted.loaded:
+        yield noted
+
+
+def does(*words: object) -> None:
+    done = here(*words)
+    assert done.returncode == 0, done.stderr
+
+
+CALLS: dict[tuple[Any, ...], Any] = {
+    ("film", RUN, "--world", 2, "--by", "ticks", "--from", 3, "--to", 9, "--organism", 5, "--out", OUT):
+        call.film(ticks=(3, 9), world=2, by="ticks", organism=5, out=OUT),
+    ("film", RUN): call.film(ticks=(None, None), world=0, by="births", organism=None, out=None),
+    ("evaluate", RUN, "--world", 2, "--games", 3, "--founders", 7, "--ticks", 9, "--sticky", 0.5,
+     "--open-loop", "--json"):
+        call.standings(7, 2, games=3, ticks=9, senses="ignored", habitat={"sticky": 0.5}),
+    ("evaluate", RUN, "--json"):
+        call.standings(500, None, games=30, ticks=100_000, senses="live", habitat={}),
+    ("shadow", RUN, "--organisms", 3, "--ticks", 9, "--json"): call.shadow(3, 9),
+    ("shadow", RUN, "--json"): call.shadow(500, None),
+    ("assay", "heredity", RUN, "--after", 0.25, "--json"): call.heredity(0.25),
+    ("assay", "threshold", RUN, "--json"): call.threshold(0.5),
+    ("track", RUN, "--tensorboard", OUT, "--wandb", "W", "--follow", "--every", 5):
+        call.track(OUT, Path("W"), seen=ANY, follow=True, every=5.0),
+    ("track", RUN): call.track(None, None, seen=ANY, follow=False, every=30.0),
+    ("report", RUN, "--out", OUT): call.report(OUT),
+    ("watch", RUN, "--port", 0): call.watch(0, ANY),
+    ("lineage", RUN, 5, "--out", OUT, "--world", 2, "--extant"):
+        call.lineage(5, out=OUT, say=report, world=2, extant=True, collapse=False),
+    ("lineage", RUN, "--out", OUT, "--collapse"):
+        call.lineage(None, out=OUT, say=report, world=None, extant=False, collapse=True),
+    ("ancestors", RUN, 5, "--world", 2, "--json"): call.ancestors(5, 2, report),
+    ("ancestors", RUN, "--json"): call.ancestors(None, None, report),
+    ("lines", RUN, "--world", 2, "--at", 9, "--json"): call.lines(2, 9),
+    ("lines", RUN, "--json"): call.lines(0, None),
+    ("lines", RUN, "--world", "all", "--json"): call.lines(None, None),
+    ("resume", RUN, "--inexact", *LIMITS, *WAYS): call.resume(inexact=True, **ENDS, **WORLDS),
+    ("resume", RUN, "--quiet"):
+        call.resume(inexact=False, checkpoint_every=60.0, device="cpu", listen=None),
+    ("fork", RUN, "--at", 9, "--out", OUT, "--seed", 3, "--mutation.scale", 0.5, *LIMITS, *WAYS):
+        call.fork(9, OUT, {"seed": 3, "mutation": {"scale": 0.5}, "stop": ENDS}, **WORLDS),
+    ("fork", RUN, "--at", 9, "--quiet"):
+        call.fork(9, Path("runs/RUN-at9"), {}, checkpoint_every=60.0, device="cpu", listen=None),
+}  # fmt: skip
+"""Words of a command -> the call that it makes."""
+
+
+@pytest.mark.parametrize("words", CALLS, ids=lambda words: " ".join(map(str, words)))
+def test_a_command_passes_on_what_it_is_given(
+    words: tuple[Any, ...], run: MagicMock, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    does(*words)
+    assert CALLS[words] in run.mock_calls
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("film", RUN), ("evaluate", RUN, "--json"), ("shadow", RUN, "--json"), ("report", RUN),
+        ("ancestors", RUN, "--json"), ("resume", RUN, "--quiet"), ("fork", RUN, "--at", 9, "--quiet"),
+    ],
+    ids=lambda words: words[0],
+)  # fmt: skip
+def test_code_is_trusted_if_asked_and_not_otherwise(
+    words: tuple[Any, ...], run: MagicMock, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for asked in (False, True):
+        does(*words, *(["--trust"] if asked else []))
+        place = (RUN,) if words[0] in ("shadow", "report") else RUN
+        assert run.loaded.call_args == call(place, asked)
+
+
+def test_a_run_is_begun_with_the_settings_of_its_flags(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    task, flags = "CartPole-survival", ("--cells", 8, "--ancestor", "a", "--ancestor", "b")
+    given = {"cells": 8, "ancestors": ["a", "b"], "stop": ENDS}
+    with patch("primordia.api.run") as asked:
+        does("run", task, "--out", OUT, "--resume", *flags, *LIMITS, *WAYS)
+        asked.assert_called_once_with(task, OUT, given, resume=True, **WORLDS)
+        does("run", task, "--seed", 3, "--quiet")
+        own = {"checkpoint_every": 60.0, "device": "cpu", "listen": None}
+        place = Path("runs", f"{task}-seed3")
+        assert asked.call_args == call(task, place, {"seed": 3}, resume=False, **own)
+
+
+def test_a_life_is_lived_again_as_asked(run: MagicMock) -> None:
+    with patch("primordia.organism.revival.revive") as asked:
+        asked.return_value.to_dict.return_value = {}
+        files = ("--save", OUT, "--video", "V")
+        does("revive", RUN, 5, "--world", 2, "--from", 3, *files, "--trust", "--json")
+        opened = run.opened.return_value
+        asked.assert_called_once_with(opened, 5, 2, since=3, save=OUT, film=Path("V"))
+        does("revive", RUN, 5, "--json")
+        assert asked.call_args == call(opened, 5, 0, since=None, save=None, film=None)
+
+
+def test_one_organism_is_evaluated_in_its_world(run: MagicMock) -> None:
+    for world, number in (((), 0), (("--world", 2), 2)):
+        does("evaluate", RUN, "--organism", 5, *world, "--freeze-senses", "--games", 3, "--json")
+        run.organism.assert_called_with(5, number)
+        options = {"games": 3, "ticks": 100_000, "senses": "frozen", "habitat": {}}
+        run.organism.return_value.evaluate.assert_called_with(**options)
+
+
+SHORT = ("--games", 2, "--ticks", 9, "--sticky", 0.5, "--json")
+
+
+def test_assays_of_a_run_pass_on_what_they_are_given(run: MagicMock) -> None:
+    own: dict[str, Any] = {"habitat": {"sticky": 0.5}, "games": 2, "ticks": 9}
+    opened = run.opened.return_value
+    with patch("primordia.assays.garden.garden", return_value=[]) as garden:
+        does("assay", "garden", RUN, "--each", 3, "--after", 0.25, *SHORT)
+        garden.assert_called_once_with(opened, each=3, after=0.25, **own)
+    with patch("primordia.assays.line.line") as line:
+        line.return_value.to_dict.return_value = {}
+        does("assay", "line", RUN, 5, 6, "--world", 2, "--most", 7, *SHORT)
+        assert line.call_args_list == [call(opened, each, 2, most=7, **own) for each in (5, 6)]
+        does("assay", "line", RUN, 5, "--json")
+        plain = {"most": 200, "habitat": {}, "games": 5, "ticks": 20_000}
+        assert line.call_args == call(opened, 5, 0, **plain)
+
+
+@pytest.mark.parametrize(
+    ("words", "numbers"),
+    [
+        ((), []),
+        ((5, 6), [(5, 0), (6, 0)]),
+        ((5, 6, "--world", 2), [(5, 2), (6, 2)]),
+        (("--world", 2), [(12, 2)]),
+    ],
+    ids=str,
+)
+def test_assays_are_of_the_organisms_that_are_named(
+    words: tuple[Any, ...], numbers: list[tuple[int, int]], run: MagicMock
+) -> None:
+    """The longest-lived of world w is in row w and has the number 10 + w."""
+    lives = run.opened.return_value.lives
+    lives.oldest = lambda world: world
+    lives.id = np.arange(10, 20)
+    with (
+        patch("primordia.assays.subjects.of_run") as of_run,
+        patch("primordia.assays.ablate.ablate", return_value=[]) as ablate,
+        patch("primordia.assays.effects.effects", return_value=[]) as effects,
+    ):
+        subjects = of_run.return_value
+        subjects.source = "RUN"
+        does("assay", "ablate", RUN, *words, "--each-sense", *SHORT)
+        of_run.assert_called_with(run.opened.return_value, numbers, {"sticky": 0.5})
+        ablate.assert_called_once_with(subjects, True, 2, 9)
+        more = ("--mutants", 3, "--scale", 0.5, "--scale", 0.25, "--differs", 0.125)
+        does("assay", "effects", RUN, *words, *more, *SHORT)
+        effects.assert_called_once_with(subjects, (0.5, 0.25), (0.125,), 3, 2, 9)
+
+
+@pytest.mark.parametrize(
+    ("words", "side"),
+    [
+        ("runs/a", ("runs/a", (30,), 3, None)),
+        ("runs/a:17", ("runs/a", (17,), None, None)),
+        ("runs/a:17@2", ("runs/a", (17,), 2, None)),
+        ("b.safetensors", ("b.safetensors", (0,), None, "T")),
+        ("b.safetensors:4", ("b.safetensors", (4,), None, "T")),
+        ("Pong-survival:5", ("Pong-survival", (5,), None, None)),
+    ],
+)
+def test_a_side_of_a_competition_is_the_organism_that_is_named(
+    words: str, side: tuple[Any, ...], run: MagicMock
+) -> None:
+    run.oldest.return_value.id, run.oldest.return_value.world = 30, 3
+    place, organisms, world, task = side
+    with (
+        patch("primordia.cli.assays.of_pairs.subjects_of") as subjects_of,
+        patch("primordia.assays.compete.compete") as compete,
+    ):
+        compete.return_value.to_dict.return_value = {}
+        asked = ("--task", "T", "--worlds", 3, "--ticks", 9, "--sticky", 0.5, "--json", "--trust")
+        does("assay", "compete", words, "other.safetensors", *asked)
+        expected = call({"sticky": 0.5}, Path(place), organisms, world, task, True)
+        assert subjects_of.call_args_list[0] == expected
+        compete.assert_called_once_with(subjects_of(), subjects_of(), 3, 9)
