@@ -4,6 +4,8 @@ from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 import primordia
 from primordia.api import notebook
 from primordia.experiments.status import ArmStatus, CampaignStatus
@@ -63,6 +65,25 @@ def test_a_run_that_cannot_be_read_shows_the_error(tmp_path: Path) -> None:
     ]
 
 
+def test_each_column_has_the_number_that_its_title_names() -> None:
+    numbers = "seed", "ticks", "births", "alive", "mean_age", "oldest_age"
+    world: dict[str, Any] = {name: 1000.25 * number for number, name in enumerate(numbers, 1)}
+    world |= {"seed": 1000, "deaths_by_cause": {"fatal": 2345, "hazard": 0, "starved": 1}}
+    world |= {"saturation": {"tick": 7000, "births": 8000}}
+    parts = Parts(notebook.of_run({"task": "x", "cells": 1024, "worlds": [world]}))
+    head = ["seed", "ticks", "births", "alive", "mean age", "oldest", "deaths", "saturated at tick"]
+    row = ["1000", "2,000", "3,001", "4,001", "5,001", "6,002", "2,345 fatal, 1 starved", "7,000"]
+    assert parts.texts == ["x: 1 world of 1,024 cells", *head, *row]
+
+
+@pytest.mark.parametrize("count", [notebook.MOST, notebook.MOST + 1, notebook.MOST + 1200])
+def test_the_rows_that_are_not_listed_are_counted(count: int) -> None:
+    parts = Parts(notebook.table("x", ["y"], [[str(number)] for number in range(count)]))
+    listed = list(map(str, range(notebook.MOST)))
+    more = [f"and {count - notebook.MOST:,} more"] if count > notebook.MOST else []
+    assert parts.texts == ["x", "y", *listed, *more]
+
+
 def test_many_worlds_are_not_all_listed() -> None:
     numbers = "seed", "ticks", "births", "alive", "mean_age", "oldest_age"
     world: dict[str, Any] = dict.fromkeys(numbers, 1)
@@ -80,4 +101,5 @@ def test_an_experiment_is_a_table_of_its_arms() -> None:
     parts = Parts(notebook.of_experiment(CampaignStatus(f"Why? {SCRIPT}", jobs, arms, (), ())))
     assert set(parts.elements) <= TABLE
     assert parts.texts[0] == f"Why? {SCRIPT} Jobs: 9 done, 1 running"
-    assert parts.texts[6:11] == [SCRIPT, "5", "4", "3", "1,234"]
+    assert parts.texts[1:6] == ["arm", "worlds", "begun", "saturated", "ticks lived for each death"]
+    assert parts.texts[6:] == [SCRIPT, "5", "4", "3", "1,234", "none", "5", "0", "0", ""]

@@ -1,0 +1,188 @@
+"""Tables of lines of descent: each column has its own numbers, and the notes those of the last tick."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+from unittest.mock import patch
+
+import numpy as np
+import pytest
+
+from primordia.cli import descent
+from primordia.phylogeny.coalescence import Times
+from primordia.phylogeny.descent import CommonAncestor
+from primordia.phylogeny.sweeps import Sweep
+
+RUN = Path("RUN")
+Shown = dict[str, Any]
+
+
+@pytest.fixture
+def shown() -> Iterator[Shown]:
+    """Keep the parts of the table that is shown."""
+    parts: Shown = {}
+
+    def show(title: str, head: Any, rows: Any, notes: Any) -> None:
+        parts.update(title=title, head=list(head), rows=[list(row) for row in rows], notes=notes)
+
+    with patch.object(descent, "show_table", show):
+        yield parts
+
+
+def step(place: int, birth: str, **other: Any) -> dict[str, Any]:
+    """Return an ancestor; each number is another one."""
+    names = "organism", "generation", "born", "lifespan", "children", "tenth", "half", "fixed"
+    numbers = {name: 1000 * number + place for number, name in enumerate(names, 1)}
+    return {**numbers, "birth_cause": birth, "cause": "starved", **other}
+
+
+def ancestors(steps: list[dict[str, Any]], **other: Any) -> Any:
+    places = np.arange(len(steps))
+    values: dict[str, Any] = {
+        "organism": 1234, "world": 2, "line": steps, "size": np.array([0.5, 0.25, 123.456, 0, np.nan]),
+        "changes": np.zeros(0), "unknown": None, "common": None, "roots": 3, "step": steps.__getitem__,
+        "telling": lambda most: places[:most],
+    }  # fmt: skip
+    return SimpleNamespace(**{**values, **other})
+
+
+def test_a_row_of_an_ancestor_has_its_life_its_mutation_and_its_spread(shown: Shown) -> None:
+    steps = [
+        step(0, "founder"),
+        step(1, "mutant", cause=None, fixed=None, half=None, tenth=None),
+        step(2, "mutant", fixed=0),
+        step(3, "copy"),
+        step(4, "mutant"),
+    ]
+    descent._show_ancestors(RUN, ancestors(steps))
+    assert shown["title"] == "RUN: the line of organism 1,234 of world 2"
+    assert shown["head"][:7] == ["organism", "line", "born", "lived", "death", "children", "change"]
+    assert shown["head"][7:] == ["10 %", "50 %", "all"]
+    assert shown["rows"] == [
+        [
+            "1,000",
+            "2,000",
+            "3,000",
+            "4,000",
+            "starved",
+            "5,000",
+            "founder",
+            "6,000",
+            "7,000",
+            "8,000",
+        ],
+        ["1,001", "2,001", "3,001", "4,001", "alive", "5,001", "0.25", "-", "-", "-"],
+        ["1,002", "2,002", "3,002", "4,002", "starved", "5,002", "123", "6,002", "7,002", "0"],
+        ["1,003", "2,003", "3,003", "4,003", "starved", "5,003", "copy", "6,003", "7,003", "8,003"],
+        ["1,004", "2,004", "3,004", "4,004", "starved", "5,004", "-", "6,004", "7,004", "8,004"],
+    ]
+    assert not any("left out" in note or "unknown" in note for note in shown["notes"])
+
+
+@pytest.mark.parametrize("count", [20, 21, 1300])
+def test_ancestors_that_are_left_out_are_counted(count: int, shown: Shown) -> None:
+    steps = [step(place, "copy") for place in range(count)]
+    descent._show_ancestors(RUN, ancestors(steps, size=np.zeros(count)))
+    assert len(shown["rows"]) == 20
+    told = [note for note in shown["notes"] if "left out" in note]
+    assert len(told) == (count > 20)
+    assert all(note.startswith(f"{count - 20:,} ancestors are left out.") for note in told)
+
+
+def test_changes_that_are_unknown_are_dashes(shown: Shown) -> None:
+    found = ancestors([step(0, "mutant")], size=None, changes=None, unknown="no trust")
+    descent._show_ancestors(RUN, found)
+    assert shown["rows"][0][6] == "-"
+    assert "The changes are unknown: no trust." in shown["notes"]
+
+
+def test_the_common_ancestor_is_told_with_its_birth_and_its_time() -> None:
+    common = CommonAncestor(organism=1111, born=2222, since=3333, generation=4444)
+    assert descent._common_text(ancestors([], common=common)) == (
+        "The common ancestor of the living is organism 1,111, born at tick 2,222 in generation 4,444."
+        " Since tick 3,333 all of the living descend from this organism."
+    )
+    assert "descend from 1,200 organisms" in descent._common_text(ancestors([], roots=1200))
+    assert descent._common_text(ancestors([], roots=0)).startswith("Nothing is alive")
+
+
+def line(place: int, **other: Any) -> dict[str, Any]:
+    names = "largest_share", "final_share", "slope", "slope_per_lifespan", "p_of_slope"
+    shares = {name: (number + place / 10) / 10 for number, name in enumerate(names, 1)}
+    return {"organism": 1000 + place, **shares, "p_of_final_share": 0.75, **other}
+
+
+def world(count: int, **other: Any) -> Any:
+    """Return a world of lines of which the last instants have numbers of their own."""
+    told = {
+        "lines": [line(place) for place in range(count)],
+        "founded": 1500,
+        "shadows": 2000,
+        "p_of_effective_lines": 0.0123,
+        "bands": {"effective_lines": [[1.0, 2.5], [3.0, 7.25]], "largest_share": [[0, 0], [1, 1]]},
+    }
+    values: dict[str, Any] = {
+        "world": 3, "founders": np.arange(count), "ticks": np.array([1500, 1600, 9000]),
+        "effective": np.array([[9.0, 8, 7], [6, 5, 4], [3, 2, 1.5]]), "sweeps": [],
+        "diversity": np.array([11111, 22222, 33333]), "to_dict": lambda: told,
+        "pairs": Times(np.array([1000, 3000]), np.array([0.25, 0.5])),
+        "neutral_pairs": Times(np.array([5000]), np.array([0.8])),
+    }  # fmt: skip
+    return SimpleNamespace(**{**values, **other})
+
+
+def test_a_row_of_a_line_has_its_shares_slopes_and_p_values(shown: Shown) -> None:
+    found = world(2)
+    found.to_dict()["lines"][1] |= {"slope": None, "slope_per_lifespan": None, "p_of_slope": None}
+    descent._show_lines(RUN, found)
+    assert shown["title"] == "RUN: world 3, 2 lines founded at tick 1,500, up to tick 9,000"
+    head = ["line of", "largest", "last share", "s per tick", "s per life", "p of s", "p of last"]
+    assert shown["head"] == head
+    assert shown["rows"] == [
+        ["1,000", "0.100", "0.200", "0.3", "0.4", "0.5", "0.75"],
+        ["1,001", "0.110", "0.210", "-", "-", "-", "0.75"],
+    ]
+
+
+def test_notes_are_of_the_end(shown: Shown) -> None:
+    """The mean time of pairs on record is 1,000 and 3,000 ticks, equally often."""
+    descent._show_lines(RUN, world(2))
+    notes = " ".join(shown["notes"])
+    assert (
+        "Effective number of lines at the end: 1.50; in 95 % of 2,000 shadows 2.50 to 7.25. For its"
+        " mean over time: p = 0.012."
+    ) in notes
+    assert "Phylogenetic diversity of the living: 33,333 ticks." in notes
+    assert (
+        "50% of the pairs of the living have a common ancestor on record, 2,000 ticks ago on average."
+        " With drift alone, 80% would have one, 5,000 ticks ago."
+    ) in notes
+    none = Times(np.array([], int), np.array([]))
+    for name in ("pairs", "neutral_pairs"):
+        descent._show_lines(RUN, world(2, **{name: none}))
+        assert "of the pairs" not in " ".join(shown["notes"])
+
+
+@pytest.mark.parametrize("count", [9, 10, 11, 2010])
+def test_the_ten_largest_lines_are_shown_and_the_others_counted(count: int, shown: Shown) -> None:
+    descent._show_lines(RUN, world(count))
+    assert [row[0] for row in shown["rows"]] == [f"{1000 + n:,}" for n in range(min(count, 10))]
+    told = [note for note in shown["notes"] if "left out" in note]
+    expected = f"{count - 10:,} smaller lines are left out; --json shows all."
+    assert told == ([expected] if count > 10 else [])
+
+
+def test_only_a_sweep_past_half_of_the_living_is_under_way() -> None:
+    done = Sweep(5, "copy", 100, 300, 1400, 3)
+    begun = Sweep(1234, "copy", 700, 4321, None, 3)
+    early = Sweep(8, "copy", 700, None, None, 3)
+    whole = "Sweeps to all of the living: 1; median duration: 1,300 ticks"
+    assert descent._sweeps_text([done, begun]) == (
+        f"{whole}. Under way: the sweep of organism 1,234, whose descendants have been more than half"
+        " of the living since tick 4,321."
+    )
+    assert descent._sweeps_text([done, early]) == f"{whole}."
+    assert descent._sweeps_text([done]) == f"{whole}."
+    assert descent._sweeps_text([]) == "Sweeps to all of the living: 0."
+    assert descent._sweeps_text([begun]).startswith("Sweeps to all of the living: 0. Under way: ")
