@@ -100,8 +100,8 @@ def test_a_shadow_is_told_with_the_figures_of_either_line() -> None:
     original = [[1000, 3000], [4000], [500, 500], [100]]
     shadow = [[1000, 1000], [2000], [4000, 100], [100]]
     world = np.repeat(np.arange(4), [2, 1, 2, 1]).astype(np.int32)
-    lives = [np.concatenate(each).astype(np.int64) for each in (original, shadow)]
-    assert shadow_text(Shadow("run", 4321, world, *lives, cut=3000)).splitlines() == [
+    one, other = (np.concatenate(each).astype(np.int64) for each in (original, shadow))
+    assert shadow_text(Shadow("run", 4321, world, one, other, cut=3000)).splitlines() == [
         "run: 6 organisms, each born again alone, from 4,321 births in 4 worlds; 12 lives,"
         " 17,300 ticks",
         "                 mean life       reach 3,000 ticks",
