@@ -85,3 +85,16 @@ def test_processors_of_other_features_have_other_folders(tmp_path: Path) -> None
     assert named(CPU.format(mhz=3000)) == one
     assert named(CPU.format(mhz=2000).replace("avx2", "avx2 avx512f")) != one
     assert cache.processor(tmp_path / "missing") != one
+
+
+@pytest.mark.parametrize("line", cache.FEATURES)
+def test_every_feature_of_the_first_core_counts_and_nothing_else(line: str, tmp_path: Path) -> None:
+    """Processors of Arm name theirs otherwise than those of Intel."""
+
+    def named(value: str, clock: int = 2000, other: str = "x") -> str:
+        core = f"processor : 0\n{line} : {value}\nBogoMIPS : {clock}\n"
+        (tmp_path / "cpuinfo").write_text(f"{core}\nprocessor : 1\n{line} : {other}\n")
+        return cache.processor(tmp_path / "cpuinfo")
+
+    assert named("x") != named("y")
+    assert named("x") == named("x", clock=3000) == named("x", other="y")

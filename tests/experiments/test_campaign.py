@@ -1,0 +1,144 @@
+"""An experiment in its directory: what belongs to which arm, and which jobs are left."""
+
+from pathlib import Path
+from typing import Any
+from unittest.mock import patch
+
+import pytest
+
+import primordia
+from primordia.experiments import campaign
+from primordia.experiments.campaign import Campaign, begin
+from primordia.experiments.file import read
+from primordia.experiments.ledger import Entry, Ledger
+from tests.experiments.meadows import write
+
+
+@pytest.fixture
+def chosen(tmp_path: Path) -> Campaign:
+    """Return an experiment of the jobs mild/0-1, harsh/0-1, mild/2 and harsh/2."""
+    return begin(write(tmp_path), tmp_path / "out")
+
+
+def end(chosen: Campaign, *numbers: int, state: Any = "done") -> None:
+    """Let some jobs have ended, each with a run that has a checkpoint."""
+    for number in numbers:
+        job = chosen.jobs[number]
+        run = chosen.path / job.folder
+        (run / "checkpoints" / "000001").mkdir(parents=True)
+        (run / "checkpoints" / "000001" / "manifest.json").touch()
+        Ledger(chosen.path, [job]).write(job, Entry(job=number, arm=job.arm, state=state))
+
+
+def test_runs_are_those_of_each_arm_that_have_a_checkpoint(chosen: Campaign) -> None:
+    """The arms are in the order of the file, not of the alphabet."""
+    (chosen.path / "mild" / "0-1").mkdir(parents=True)
+    end(chosen, 2, 1)
+    out = chosen.path
+    runs = {"mild": [out / "mild" / "2"], "harsh": [out / "harsh" / "0-1"]}
+    assert chosen.runs() == runs
+    assert list(chosen.runs()) == ["mild", "harsh"]
+    assert primordia.load(out).directories() == (out / "mild" / "2", out / "harsh" / "0-1")
+    end(chosen, 3)
+    assert chosen.runs()["harsh"] == [out / "harsh" / "0-1", out / "harsh" / "2"]
+
+
+def test_jobs_that_are_left_are_those_not_done(chosen: Campaign) -> None:
+    end(chosen, 0, 3)
+    end(chosen, 2, state="failed")
+    assert [job.number for job in chosen.left()] == [1, 2]
+    assert [job.number for job in chosen.left(["mild"])] == [2]
+    assert [job.number for job in chosen.left(["harsh", "mild"])] == [1, 2]
+    assert [chosen.job(number).number for number in range(4)] == [0, 1, 2, 3]
+
+
+def test_info_has_for_each_arm_its_own_settings_and_worlds(chosen: Campaign) -> None:
+    """Settings that all arms share are not told; an arm that has not begun has no worlds."""
+    end(chosen, 1)
+    worlds = {chosen.path / "harsh": [{"seed": 3}, {"seed": 4}]}
+
+    def opened(places: list[Path]) -> Path:
+        if places[0] not in worlds:
+            raise campaign.InputError("not a run")
+        return places[0]
+
+    with (
+        patch.object(campaign, "opened", opened),
+        patch.object(campaign, "info", lambda folder: {"worlds": worlds[folder]}),
+    ):
+        told = chosen.info()
+    assert told == {
+        "question": "Is it mild?",
+        "jobs": {"done": 1, "running": 0, "failed": 0, "waiting": 3},
+        "arms": [
+            {"name": "mild", "settings": {"hazard": 0.01}, "worlds": []},
+            {
+                "name": "harsh",
+                "settings": {"hazard": 0.05},
+                "worlds": worlds[chosen.path / "harsh"],
+            },
+        ],
+    }
+
+
+def test_results_are_those_of_all_arms_in_their_order(chosen: Campaign) -> None:
+    for name in chosen.arms:
+        (chosen.path / name).mkdir()
+    with (
+        patch.object(campaign, "opened", lambda places: places),
+        patch("primordia.experiments.results.write") as asked,
+    ):
+        assert chosen.gather() is asked.return_value
+    out = chosen.path
+    asked.assert_called_once_with(out / "results", "Is it mild?", [[out / "mild"], [out / "harsh"]])
+
+
+def test_one_arm_has_no_results(tmp_path: Path) -> None:
+    one = begin(write(tmp_path, arms=[{"name": "mild"}]), tmp_path / "out")
+    with patch("primordia.experiments.results.write") as asked:
+        assert one.gather() == []
+    asked.assert_not_called()
+
+
+@pytest.mark.parametrize(
+    ("done", "failed", "goes_on"),
+    [((0, 1, 2), (), True), ((0, 1), (2, 3), False), ((0,), (2,), True)],
+)
+def test_dashboards_follow_an_experiment_while_jobs_are_left(
+    done: tuple[int, ...], failed: tuple[int, ...], goes_on: bool, chosen: Campaign
+) -> None:
+    end(chosen, *done)
+    end(chosen, *failed, state="failed")
+    sources = primordia.load(chosen.path).sources()
+    assert sources.go_on == goes_on
+    assert sources.runs == chosen.runs()
+
+
+def test_the_worlds_of_a_single_arm_need_no_name(tmp_path: Path) -> None:
+    one = begin(write(tmp_path, arms=[{"name": "mild"}]), tmp_path / "out")
+    end(one, 0)
+    assert primordia.load(one.path).sources().runs == {"": [one.path / "mild" / "0-1"]}
+
+
+def test_a_directory_has_the_name_of_the_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    file = write(Path("files"), "meadow.v2")
+    assert campaign.planned(file).path == Path("runs", "meadow.v2")
+    begun = begin(file)
+    assert begin(begun.path, Path("other")).path == begun.path
+    assert not Path("other").exists()
+
+
+def test_genomes_of_ancestors_are_found_from_any_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A job may run elsewhere than the command that began the experiment."""
+    monkeypatch.chdir(tmp_path)
+    file = write(Path("files"), ancestors=["a.safetensors"])
+    (tmp_path / "files" / "a.safetensors").touch()
+    with patch("primordia.config.genomes.read", return_value=None):
+        arms = read(file, Path("out")).arms
+    expected = (str(tmp_path / "files" / "a.safetensors"),)
+    assert [arm.config.ancestors for arm in arms] == [expected] * 2
