@@ -1,6 +1,10 @@
 """Tables of assays: each cell holds the median and quartiles of its own values, written out here."""
 
+import json
+from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
+from unittest.mock import call, patch
 
 import numpy as np
 import pytest
@@ -11,7 +15,7 @@ from primordia.assays.effects import Effect
 from primordia.assays.garden import Bed
 from primordia.assays.heredity import Inherited, Pairs
 from primordia.assays.line import Line, Step
-from primordia.cli.assays import tables
+from primordia.cli.assays import options, tables
 from primordia.history.threshold import Threshold
 
 OFFSETS = (8, 0, 2)
@@ -162,6 +166,46 @@ def test_two_genomes_share_the_living() -> None:
         "b": ["4", "2", "0.625 (0.438 to 0.812)"],
     }
     assert told.notes[0].endswith(" Sign test over worlds: p = 1.")
+
+
+@dataclass(frozen=True)
+class Number:
+    """A result of an assay."""
+
+    number: int
+
+    def to_dict(self) -> dict[str, int]:
+        return {"number": self.number}
+
+
+@pytest.mark.parametrize("arms", [("a",), ("a", "b")])
+@pytest.mark.parametrize("as_json", [False, True])
+def test_each_of_several_arms_has_a_table_and_a_folder_of_figures(
+    arms: tuple[str, ...], as_json: bool, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With --json, only the JSON is printed on standard output."""
+    found = {f"runs/{name}": [Number(place)] for place, name in enumerate(arms)}
+    pictures = [Path("x.png"), Path("x.svg")]
+    with (
+        patch.object(options, "_drawn", return_value=pictures) as drawn,
+        patch.object(options, "show_table") as table,
+    ):
+        options.tell(
+            "effects", found, as_json, Path("OUT"), lambda arm, of: tables.Told(arm, "h", of)
+        )
+    folders = [Path("OUT", name) if len(arms) > 1 else Path("OUT") for name in arms]
+    assert drawn.call_args_list == [
+        call("effects", of, folder) for of, folder in zip(found.values(), folders, strict=True)
+    ]
+    shown = [call(arm, "h", of, ()) for arm, of in found.items()]
+    assert table.call_args_list == ([] if as_json else shown)
+    out, err = capsys.readouterr()
+    figures = "Figure: x.png and x.svg\n" * len(arms)
+    if as_json:
+        told = {arm: [{"number": place}] for place, arm in enumerate(found)}
+        assert (json.loads(out), err) == (told, figures)
+    else:
+        assert (out, err) == (figures, "")
 
 
 @pytest.mark.parametrize("make", [tables.heredity, tables.threshold])

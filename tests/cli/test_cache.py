@@ -87,7 +87,7 @@ def test_processors_of_other_features_have_other_folders(tmp_path: Path) -> None
     assert cache.processor(tmp_path / "missing") != one
 
 
-@pytest.mark.parametrize("line", cache.FEATURES)
+@pytest.mark.parametrize("line", ["model name", "flags", "CPU implementer", "CPU part", "Features"])
 def test_every_feature_of_the_first_core_counts_and_nothing_else(line: str, tmp_path: Path) -> None:
     """Processors of Arm name theirs otherwise than those of Intel."""
 

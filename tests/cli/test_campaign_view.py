@@ -134,3 +134,26 @@ def test_all_running_jobs_make_the_speed() -> None:
     assert [each["job"] for each in told["running"]] == [0, 1, 2]
     assert [each["rate"] for each in told["running"]] == [2, 5, None]
     assert told["failed"] == [{"job": 4, "arm": "few", "error": "reason 4"}]
+
+
+@pytest.mark.parametrize(("quiet", "moments"), [(True, []), (False, [0.0, 60.5, 121.0])])
+def test_what_is_no_terminal_gets_a_line_each_minute(
+    quiet: bool,
+    moments: list[float],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """The first at once; with --quiet, none, and nothing is read."""
+    now, moments_read = at(monkeypatch, 100.0), list[float]()
+
+    def read() -> CampaignStatus:
+        moments_read.append(now.seconds - 100)
+        return CampaignStatus("?", JOBS, (), (), ())
+
+    with campaign_view.watching(quiet, read) as look:
+        for seconds in (0.0, 0.5, 59.5, 60.5, 61.0, 120.0, 121.0):
+            now.seconds = 100.0 + seconds
+            look()
+    assert moments_read == moments
+    text = "12:00:00  5 of 1,308 jobs done, 2 under way, 1 failed, 1,300 waiting"
+    assert capsys.readouterr().out == f"{text}\n" * len(moments)

@@ -154,6 +154,12 @@ def test_assays_of_a_run_pass_on_what_they_are_given(run: MagicMock) -> None:
         does("assay", "line", RUN, 5, "--json")
         plain = {"most": 200, "habitat": {}, "games": 5, "ticks": 20_000}
         assert line.call_args == call(opened, 5, 0, **plain)
+        lives = opened.lives
+        lives.oldest = lambda world: 3 if world is None else world
+        lives.id, lives.world = np.arange(10, 20), np.arange(10)
+        for words, number in (((), 3), (("--world", 2), 2)):
+            does("assay", "line", RUN, *words, "--json")
+            assert line.call_args == call(opened, 10 + number, number, **plain)
 
 
 @pytest.mark.parametrize(

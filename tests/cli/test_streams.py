@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from primordia.cli.streams import Printable, report
+from primordia.cli.streams import Printable, _stream, report
 
 
 class Full(io.RawIOBase):
@@ -50,3 +50,10 @@ def test_a_stream_that_cannot_be_written_is_named(file: Full, text: str, error: 
 def test_a_message_has_an_end(capsys: pytest.CaptureFixture[str]) -> None:
     report("x" * 10**6)
     assert len(capsys.readouterr().err) < 3000
+
+
+@pytest.mark.parametrize(("number", "title"), [(1, "standard output"), (2, "standard error")])
+def test_a_stream_has_its_own_name_and_errors_are_shown_at_once(number: int, title: str) -> None:
+    stream = _stream(number)
+    assert (stream.fileno(), stream.title) == (number, title)
+    assert stream.line_buffering == (number == 2 or os.isatty(number))

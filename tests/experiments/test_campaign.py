@@ -7,6 +7,7 @@ from unittest.mock import patch
 import pytest
 
 import primordia
+from primordia.errors import InputError
 from primordia.experiments import campaign
 from primordia.experiments.campaign import Campaign, begin
 from primordia.experiments.file import read
@@ -59,7 +60,7 @@ def test_info_has_for_each_arm_its_own_settings_and_worlds(chosen: Campaign) -> 
 
     def opened(places: list[Path]) -> Path:
         if places[0] not in worlds:
-            raise campaign.InputError("not a run")
+            raise InputError("not a run")
         return places[0]
 
     with (

@@ -1,10 +1,11 @@
 """Where jobs run: which place is chosen, what it is told, and what is said of its jobs at the end."""
 
+import socket
 from concurrent.futures import Future
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
-from unittest.mock import MagicMock
+from unittest.mock import MagicMock, call
 
 import pytest
 
@@ -98,6 +99,36 @@ def test_a_task_of_a_cluster_has_one_core_and_a_gpu_if_asked(
     assert (options.call_args[1]["num_cpus"], options.call_args[1]["num_gpus"]) == (1, gpus)
     place.submit(JOB)
     options.return_value.remote.assert_called_once_with(3, str(tmp_path), 7.0, device)
+
+
+def test_only_tasks_that_have_not_ended_are_stopped(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ray, ended = MagicMock(), Future[Any]()
+    ended.set_result((3, "done"))
+    refs = [MagicMock() for _ in range(3)]
+    for ref, future in zip(refs, (Future(), ended, Future()), strict=True):
+        ref.future.return_value = future
+    monkeypatch.setattr(on_ray, "_connected", lambda address: ray)
+    monkeypatch.setattr(on_ray, "_check_folder", lambda *_: None)
+    monkeypatch.setattr(on_ray, "PATIENCE", 0.0)
+    place = on_ray.OnRay(tmp_path, 7.0)
+    ray.remote.return_value.options.return_value.remote.side_effect = refs
+    assert [place.submit(JOB).done() for _ in refs] == [False, True, False]
+    place.stop()
+    assert ray.cancel.call_args_list == [call(refs[0]), call(refs[2])]
+    ray.shutdown.assert_called_once_with()
+
+
+def test_an_address_with_a_port_is_tried_before_ray_tries_it() -> None:
+    """`auto` and no address are left to Ray."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        there = f"127.0.0.1:{server.getsockname()[1]}"
+        for address in (there, f"ray://{there}", "auto", "", None):
+            on_ray._check_address(address)
+    for address in (there, f"ray://{there}", "host:", "host:99999999999"):
+        with pytest.raises(InputError, match=f"no cluster answers at {address}: "):
+            on_ray._check_address(address)
 
 
 @pytest.mark.parametrize(

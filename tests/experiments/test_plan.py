@@ -2,6 +2,7 @@
 
 import shutil
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -9,7 +10,7 @@ import pytest
 from primordia.errors import InputError
 from primordia.experiments import plan as plans
 from primordia.experiments.campaign import begin
-from primordia.experiments.file import read
+from primordia.experiments.file import _of_runs, read
 from primordia.experiments.job import configuration
 from primordia.experiments.plan import Job
 from primordia.runs import loop
@@ -184,6 +185,25 @@ def test_runs_whose_seeds_have_a_gap_are_no_arm_to_fork(tmp_path: Path) -> None:
         (2, 2, "same/2-3", "../h2"),
     ]
     assert (plan.arms[0].config.seed, plan.arms[0].config.seeds) == (0, 4)
+
+
+def test_a_fork_of_runs_has_all_their_worlds_and_their_own_ancestors(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A run keeps its ancestors in its directory; the runs have different numbers of worlds."""
+    worlds = {tmp_path / "a": (5, 2), tmp_path / "b": (7, 3)}
+    ancestors = {"ancestors": ("ancestors.safetensors",)}
+    configs = {
+        path: config(MEADOW, seed=seed, seeds=seeds).model_copy(update=ancestors)
+        for path, (seed, seeds) in worlds.items()
+    }
+    arm = SimpleNamespace(paths=tuple(worlds))
+    monkeypatch.setattr("primordia.experiments.file.opening.opened", lambda places: arm)
+    monkeypatch.setattr("primordia.experiments.file.read_config", configs.get)
+    settings, runs = _of_runs(tmp_path)
+    assert (settings["seed"], settings["seeds"]) == (5, 5)
+    assert settings["ancestors"] == [str(tmp_path / "a" / "ancestors.safetensors")]
+    assert runs == [(tmp_path / "a", 2), (tmp_path / "b", 3)]
 
 
 def test_a_fork_has_the_jobs_and_settings_of_its_source(tmp_path: Path) -> None:

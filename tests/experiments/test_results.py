@@ -1,8 +1,12 @@
 """The files of results: each arm and each world has its own numbers, in the column that names them."""
 
 import csv
+import datetime
+import os
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
+from unittest.mock import ANY, MagicMock
 
 import numpy as np
 import pytest
@@ -11,6 +15,7 @@ from primordia.comparison.comparison import ComparedArm, Comparison
 from primordia.comparison.measured import Measured
 from primordia.experiments import results
 from primordia.runs.arrays import NEVER
+from primordia.settings.limits import Stop
 
 WHAT: dict[str, Any] = {"survival": None, "pace": None, "gathering": None, "extinctions": None}
 
@@ -55,7 +60,7 @@ def test_the_counts_of_a_world_are_its_own(monkeypatch: pytest.MonkeyPatch) -> N
     records: Any = SimpleNamespace(
         world_seeds=np.array([7, 8]),
         count=state.__getitem__,
-        state={"world.organisms.alive": np.array([1, 1, 0, 0, 1, 0], bool)},
+        state={"world.organisms.alive": np.array([1, 1, 1, 0, 0, 1], bool)},
     )
     monkeypatch.setattr(
         results, "crashes", lambda arm: np.array([5, 6]) if arm is records else None
@@ -63,7 +68,7 @@ def test_the_counts_of_a_world_are_its_own(monkeypatch: pytest.MonkeyPatch) -> N
     told = {name: column.tolist() for name, column in results.counts(records).items()}
     assert told == {
         "seed": [7, 8], "ticks": [10, 11], "births": [20, 21], "extinctions": [30, 31],
-        "crashes": [5, 6], "alive": [2, 1], "saturated_births": [40, 41], "saturated_tick": [50, 51],
+        "crashes": [5, 6], "alive": [3, 1], "saturated_births": [40, 41], "saturated_tick": [50, 51],
     }  # fmt: skip
 
 
@@ -136,3 +141,60 @@ def test_the_csv_has_a_row_for_each_world_and_no_number_for_the_unknown() -> Non
         ["one", "4", "9", "", "80"],
         ["two", "5", "0", "0.33", "12345678"],
     ]
+
+
+def test_the_date_is_that_of_the_beginning_and_limits_are_those_at_the_end(tmp_path: Path) -> None:
+    (tmp_path / "versions.json").touch()
+    noon = datetime.datetime(2021, 3, 4, 12).timestamp()
+    os.utime(tmp_path / "versions.json", (noon, noon))
+    record: Any = SimpleNamespace(
+        paths=(tmp_path, tmp_path / "later"),
+        versions={"primordia": "0.1", "jax": "0.2"},
+        progress=SimpleNamespace(limits=Stop(ticks=300, births=None, until="saturation")),
+    )
+    assert results.made(record) == (
+        "Run on 2021-03-04 with primordia 0.1, jax 0.2. Each world stopped at: ticks 300 or until"
+        " saturation."
+    )
+
+
+@pytest.mark.parametrize("saturate", [True, False])
+def test_the_parts_of_the_page_are_in_order_and_those_of_each_arm(
+    saturate: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Last deaths are told only if worlds do not saturate. The first arm tells when it was made."""
+    births, missing = [10.0, 20, 30], 0 if saturate else 3
+    arms = [
+        arm(name, births, missing, lifespan=births, pace=[float(place)] * 3)
+        for place, name in enumerate(("one", "three"), 1)
+    ]
+    whole = compared(*arms)
+    none = np.zeros(3, int)
+    counted = {
+        name: {"extinctions": none + place, "crashes": none} for place, name in enumerate("ab", 1)
+    }
+    ends = {name: [{"late_deaths": place}] * 3 for place, name in enumerate("ab", 1)}
+    figure = MagicMock()
+    figure.savefig.side_effect = lambda file, **_: Path(file).touch()
+    for name, value in {
+        "compare": lambda records: whole,
+        "counts": counted.__getitem__,
+        "made": lambda record: f"made {record}",
+        "draw": lambda found: figure if found is whole else None,
+        "late.last_deaths": lambda record, found: ends[record],
+    }.items():
+        monkeypatch.setattr(f"primordia.experiments.results.{name}", value)
+    records: Any = ["a", "b"]
+    paths = results.write(tmp_path / "results", "Is it?", records)
+    assert paths == [tmp_path / f"results.{suffix}" for suffix in ("md", "csv", "png")]
+    title, summary, *others, effects, note, made = paths[0].read_text().split("\n\n")
+    assert (title, made) == ("# Is it?", "made a\n")
+    assert note.startswith(results.NOTE)
+    assert [row[4] for row in rows_of(summary)[1:]] == ["1", "2"]
+    assert [rows_of(other)[1:] for other in others] == (
+        [] if saturate else [[["one", "1"], ["three", "2"]]]
+    )
+    assert rows_of(effects)[0][0] == "against one"
+    last = [line.rpartition(",")[2] for line in paths[1].read_text().splitlines()]
+    assert saturate or last == ["late_deaths", *"111222"]
+    figure.savefig.assert_called_once_with(ANY, dpi=200, format="png")
