@@ -71,6 +71,7 @@ def test_a_speed_is_that_since_the_latest_census_of_at_least_two_seconds_ago() -
         ([500, 150], [7, 7], 14.0),  # the first is at its limit, the second needs 350 more, 25 a second
         ([700, 150], [7, 7], 14.0),  # the first is beyond its limit, as after a limit was lowered
         ([500, 500], [7, 7], 0.0),
+        ([700, 600], [7, 7], 0.0),
         ([500, 100], [7, 7], None),  # the second will never come to a limit
         ([500, 100], [7, 9], 1.0),  # but it has births: 1 a second, and another one to go
         ([500, 100], [7, 12], 0.0),
