@@ -189,6 +189,12 @@ def test_worlds_that_do_not_fit_are_neither_drawn_nor_marked() -> None:
     assert "✓" not in scene.legend
 
 
+def test_an_empty_row_is_below_each_tile_of_several_rows() -> None:
+    rows = text(Stage().scene(law(4, 3), three(), {}, None, colour_room(40, 12)).rows)
+    assert [number for number, row in enumerate(rows) if not row] == [3, 7, 11]
+    assert [row[:3] for row in rows[:3]] == [" 9 ", "   ", "   "]
+
+
 def test_one_world_alone_fills_the_room() -> None:
     drawn = [Stage().scene(law(4, 3), three(), {}, alone, letter_room(4, 1)) for alone in range(3)]
     assert [text(scene.rows) for scene in drawn] == [["A·b·"], ["···C"], ["DE··"]]
@@ -252,7 +258,8 @@ def test_the_latest_511_moments_before_the_present_are_kept() -> None:
 
 def test_each_world_has_its_own_past() -> None:
     stage, of, room = Stage(), law(4, 3), colour_room(4, 5)
-    stage.follow(of, three(), {}, 2)
+    for _ in range(2):
+        stage.follow(of, three(), {}, 2)
     later = three()
     later = later._replace(
         worlds=later.worlds._replace(tick=later.worlds.tick.plus(np.ones(3, int)))

@@ -136,6 +136,14 @@ def test_the_pages_of_words_are_shown_one_after_another(size: tuple[int, int]) -
         assert "died of" in "\n".join(text(shown._rows(of))), "the world again"
 
 
+def test_the_heading_has_the_pace_and_the_time_of_the_run() -> None:
+    shown, of = view(), status()
+    shown._pace.limit = 30.0
+    (heading, *_) = text(shown._rows(of))
+    assert heading.startswith("meadow  3 worlds, seeds 0 to 2, 4 cells each")
+    assert heading.endswith(" at most 30 ticks/s, 1 min 15 s")
+
+
 def test_keys_are_named_where_they_mean_something() -> None:
     shown = view(keyboard=Keyboard())
     one, many = status(1), status(3)
