@@ -144,6 +144,13 @@ def test_the_heading_has_the_pace_and_the_time_of_the_run() -> None:
     assert heading.endswith(" at most 30 ticks/s, 1 min 15 s")
 
 
+def test_the_bar_counts_up_to_the_ticks_that_the_law_demands() -> None:
+    world = status(1, calm=[7])
+    organisms = world.engine.state.world.organisms
+    organisms.alive[:] = True
+    assert "full and calm for 7 of 99 ticks" in "\n".join(text(view()._rows(world)))
+
+
 def test_keys_are_named_where_they_mean_something() -> None:
     shown = view(keyboard=Keyboard())
     one, many = status(1), status(3)
