@@ -114,7 +114,10 @@ def test_n_moves_among_the_organisms_of_the_world_that_is_shown() -> None:
     shown._obey("n", of)
     assert shown._companion is None, "nothing is shown that could be left"
     shown._obey("o", of)
-    find = lambda engine, alone, step: asked.append((alone, step))  # noqa: E731
+
+    def find(engine: Any, alone: int | None, step: int) -> None:
+        asked.append((alone, step))
+
     shown._companion = SimpleNamespace(find=find)
     for key in "nwn":
         shown._obey(key, of)
