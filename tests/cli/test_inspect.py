@@ -5,12 +5,16 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
+from safetensors import safe_open
+from safetensors.numpy import save_file
 
 from primordia import api
 from primordia.comparison import tables
 from primordia.figures import comparison as pictures
 from tests.commands import complains, here
+from tests.worlds import MEADOW, config
 
 PICTURES = [Path("out/compare.png"), Path("out/compare.svg")]
 
@@ -150,3 +154,19 @@ def test_a_run_that_differs_is_told_by_its_first_difference() -> None:
 @pytest.mark.parametrize("unit", ["births", "ticks"])
 def test_a_horizon_is_at_least_one(unit: str) -> None:
     complains(here("compare", "one", "two", f"--{unit}", 0), 2, f"--{unit}", "0")
+
+
+def test_imported_weights_name_their_task_and_the_run_that_takes_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The task is the one that the file of settings names, and the file is what `run` takes."""
+    monkeypatch.chdir(tmp_path)
+    chosen = config(MEADOW, brain={"kind": "feed-forward", "hidden": 2})
+    Path("mine.toml").write_text(chosen.to_toml(), encoding="utf-8")
+    layout = chosen.build_layout(chosen.build_habitat())
+    save_file({name: np.ones(shape, np.float32) for name, shape in layout.blocks}, "state")
+    done = here("import", "state", "genome", "--task", "mine.toml")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout == "genome: primordia run mine.toml --ancestor genome\n"
+    with safe_open("genome", "numpy") as genome:
+        assert genome.metadata() == {"task": "meadow"}

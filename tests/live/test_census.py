@@ -26,15 +26,15 @@ COUNTS: dict[str, list[Any]] = {
 third one. The oldest cells are empty, and more than 32 bits are needed."""
 WORLD = posed(
     [[1, 1, 0, 1], [0, 0, 0, 0], [0, 0, 1, 0]],
-    [[95, 95, 0, 40], [1, 2, 3, 4], [0, 1, 5, 0]],
+    [[95, 95, 0, 40], [1, 2, 3, 4], [0, 1, 2**33 + 2, 0]],
     COUNTS["tick"],
     **{name: value for name, value in COUNTS.items() if name != "tick"},
 )
 AGES: dict[int | None, list[int]] = {
-    None: [5, 5, 60, LONG - 5],
+    None: [5, 5, 60, 5],
     0: [5, 5, 60],
     1: [],
-    2: [LONG - 5],
+    2: [5],
 }
 
 
@@ -71,6 +71,7 @@ def test_a_speed_is_that_since_the_latest_census_of_at_least_two_seconds_ago() -
         ([500, 150], [7, 7], 14.0),  # the first is at its limit, the second needs 350 more, 25 a second
         ([700, 150], [7, 7], 14.0),  # the first is beyond its limit, as after a limit was lowered
         ([500, 500], [7, 7], 0.0),
+        ([700, 600], [7, 7], 0.0),
         ([500, 100], [7, 7], None),  # the second will never come to a limit
         ([500, 100], [7, 9], 1.0),  # but it has births: 1 a second, and another one to go
         ([500, 100], [7, 12], 0.0),
@@ -85,6 +86,15 @@ def test_worlds_at_a_limit_or_at_a_standstill_have_no_time_left_or_an_unknown_on
     speed.add(10.0, counted(2, tick=ticks, births=births))
     limits = Limits(wide([500] * 2), wide([10] * 2), jnp.bool_(False))
     assert speed.seconds_left(limits) == left
+
+
+def test_a_world_that_has_stopped_has_no_time_left() -> None:
+    """The first world was at its limit before; the second needs 350 ticks more, 25 a second."""
+    speed = Speed()
+    speed.add(8.0, counted(2, tick=[500, 100]))
+    speed.add(10.0, counted(2, tick=[500, 150]))
+    never = np.full(2, 2**64 - 1, np.uint64)
+    assert speed.seconds_left(Limits(wide([500] * 2), wide(never), jnp.bool_(False))) == 14.0
 
 
 def test_an_unknown_number_of_ticks_is_not_a_limit() -> None:

@@ -79,6 +79,17 @@ def test_deaths_count_as_births_do() -> None:
     assert followed.takeovers([0]) is None
 
 
+def test_takeovers_that_were_missed_stay_unknown_when_lines_are_followed_again() -> None:
+    followed = Descent()
+    followed.follow(status([births(*range(11))], EMPTY), 1)
+    assert followed.lines == {}
+    later = status([births(11, tick=5)], posed([[1] * 64], [[0] * 64], [5]))
+    later.wall_s = 9.0
+    followed.follow(later, 1)
+    assert set(followed.lines[0].line_of) == set(range(64))
+    assert followed.takeovers([0]) is None
+
+
 def test_takeovers_are_those_of_the_named_worlds_and_known_only_of_worlds_that_are_shown() -> None:
     """Each world has four cells, so lines begin with two organisms."""
     followed = Descent()

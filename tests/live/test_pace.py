@@ -99,6 +99,16 @@ def test_a_run_that_was_late_does_not_catch_up(clock: Clock) -> None:
     assert pace.limit == 30, "it is no longer late"
 
 
+def test_a_delay_of_less_than_a_tenth_of_a_second_is_made_up(clock: Clock) -> None:
+    """The first tick takes 0.15 s in place of 0.1, and the second ends in time."""
+    pace = Pace(10)
+    pace(at(0), clock.sleep)
+    clock.now += 0.15
+    pace(at(1), clock.sleep)
+    pace(at(2), clock.sleep)
+    assert clock.now == pytest.approx(0.2)
+
+
 def test_a_wait_is_cut_into_naps(clock: Clock) -> None:
     pace = Pace(1)
     pace(at(0), clock.sleep)

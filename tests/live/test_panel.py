@@ -33,6 +33,7 @@ WELL_MIXED = {**RING, "placement": {"topology": "well-mixed"}}
         (RING, "  seed 7, 1,024 cells on a ring"),
         (WELL_MIXED, "  seed 7, 1,024 cells well-mixed"),
         ({**RING, "placement": {"topology": "torus4"}}, "  seed 7, 1,024 cells on a torus"),
+        ({**RING, "placement": {"topology": "torus8"}}, "  seed 7, 1,024 cells on a torus"),
         ({**RING, "seeds": 3}, "  3 worlds, seeds 7 to 9, 1,024 cells each on a ring"),
         ({**WELL_MIXED, "seeds": 1000},
          "  1,000 worlds, seeds 7 to 1006, 1,024 cells each well-mixed"),

@@ -146,6 +146,7 @@ def test_a_form_says_how_age_is_shown(form: Any, room: Room, said: str) -> None:
         (Ring(20), 1, colour_room(64, 12), Grid(1, 1, colour_room(60, 12), 0)),
         # Where no cell of all worlds fits, as many worlds are shown as do.
         (Ring(200), 8, colour_room(80, 5), Grid(1, 5, colour_room(76, 1), 0)),
+        (Ring(200), 3, colour_room(80, 5), Grid(1, 3, colour_room(76, 1), 0)),
         (Ring(30), 9, colour_room(70, 3), Grid(2, 6, colour_room(31, 1), 0)),
         (Torus(64, 64, letters=False), 4, colour_room(80, 65), Grid(1, 1, colour_room(76, 65), 0)),
         (Torus(64, 64, letters=False), 4, colour_room(80, 66), Grid(1, 2, colour_room(76, 32), 1)),
@@ -186,6 +187,12 @@ def test_worlds_that_do_not_fit_are_neither_drawn_nor_marked() -> None:
     assert text(scene.rows) == [" 9 A·b·", "10 ···C"]
     assert scene.part == "shown: the first 2 of 3 worlds"
     assert "✓" not in scene.legend
+
+
+def test_an_empty_row_is_below_each_tile_of_several_rows() -> None:
+    rows = text(Stage().scene(law(4, 3), three(), {}, None, colour_room(40, 12)).rows)
+    assert [number for number, row in enumerate(rows) if not row] == [3, 7, 11]
+    assert [row[:3] for row in rows[:3]] == [" 9 ", "   ", "   "]
 
 
 def test_one_world_alone_fills_the_room() -> None:
@@ -242,9 +249,17 @@ def test_a_moment_is_remembered_once_and_shown_below_the_present() -> None:
     assert last.rows[4:] == [*mosaic(newborn[::-1]), []]
 
 
+def test_the_latest_511_moments_before_the_present_are_kept() -> None:
+    stage = Stage()
+    for tick in range(600):
+        past = stage._remember(0, tick, Cells(np.array([tick % 64]), np.zeros(1)))
+    assert [int(moment[0]) // 4 for moment in past] == [n % 64 for n in range(598, 598 - 511, -1)]
+
+
 def test_each_world_has_its_own_past() -> None:
     stage, of, room = Stage(), law(4, 3), colour_room(4, 5)
-    stage.follow(of, three(), {}, 2)
+    for _ in range(2):
+        stage.follow(of, three(), {}, 2)
     later = three()
     later = later._replace(
         worlds=later.worlds._replace(tick=later.worlds.tick.plus(np.ones(3, int)))

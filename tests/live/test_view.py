@@ -114,7 +114,10 @@ def test_n_moves_among_the_organisms_of_the_world_that_is_shown() -> None:
     shown._obey("n", of)
     assert shown._companion is None, "nothing is shown that could be left"
     shown._obey("o", of)
-    find = lambda engine, alone, step: asked.append((alone, step))  # noqa: E731
+
+    def find(engine: Any, alone: int | None, step: int) -> None:
+        asked.append((alone, step))
+
     shown._companion = SimpleNamespace(find=find)
     for key in "nwn":
         shown._obey(key, of)
@@ -134,6 +137,21 @@ def test_the_pages_of_words_are_shown_one_after_another(size: tuple[int, int]) -
             assert text(shown._rows(of))[1 : 1 + len(page)] == text(page)
         shown._obey("?", of)
         assert "died of" in "\n".join(text(shown._rows(of))), "the world again"
+
+
+def test_the_heading_has_the_pace_and_the_time_of_the_run() -> None:
+    shown, of = view(), status()
+    shown._pace.limit = 30.0
+    (heading, *_) = text(shown._rows(of))
+    assert heading.startswith("meadow  3 worlds, seeds 0 to 2, 4 cells each")
+    assert heading.endswith(" at most 30 ticks/s, 1 min 15 s")
+
+
+def test_the_bar_counts_up_to_the_ticks_that_the_law_demands() -> None:
+    world = status(1, calm=[7])
+    organisms = world.engine.state.world.organisms
+    organisms.alive[:] = True
+    assert "full and calm for 7 of 99 ticks" in "\n".join(text(view()._rows(world)))
 
 
 def test_keys_are_named_where_they_mean_something() -> None:

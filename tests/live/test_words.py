@@ -15,6 +15,7 @@ def test_pages_have_each_word_once_in_order_and_no_page_has_room_for_the_next(
 ) -> None:
     width, height = size
     found = [text(page) for page in pages(width, height)]
+    assert all(found), "no page is empty"
     names = [row[:18].strip() for page in found for row in page]
     assert [name for name in names if name] == [*KEYS, *WORDS]
     (whole,) = (text(page) for page in pages(width, 10**6))
