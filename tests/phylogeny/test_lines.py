@@ -215,7 +215,7 @@ def test_a_world_is_measured_since_its_last_extinction(monkeypatch: pytest.Monke
         asked.update(ticks=ticks, number=number, seed=seed)
 
     monkeypatch.setattr(module, "drift", drift)
-    monkeypatch.setattr(module.slopes, "of_shadows", shadows)
+    monkeypatch.setattr("primordia.phylogeny.slopes.of_shadows", shadows)
     found = lines_of_world(4, lives, None, seed=11)
     assert (found.world, found.lives is lives) == (4, True)
     assert found.ticks[0] == asked["ticks"][0] == 12  # founded again at 10, and 4 are alive
