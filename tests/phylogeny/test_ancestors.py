@@ -24,6 +24,7 @@ PEDIGREES = {
     "apart": walked([([0, 1], []), ([1], [2]), ([0], [])], founders=2),
     "split": walked(SPLIT * 3),
     "founded again": walked(DYING),
+    "old founder": walked([([0], []), ([1], []), ([1, 2], []), ([], [2, 4]), ([], [0]), ([0], [])]),
 }
 
 
