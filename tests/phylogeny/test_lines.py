@@ -250,6 +250,9 @@ def test_lines_are_founded_by_a_crowd_since_the_last_extinction_or_the_fork() ->
     assert founding_tick(grown.recorded_since(2)) == 3
     for fork in (3, 4, 9):
         assert founding_tick(grown.recorded_since(fork)) == fork
+    quiet = walked([*GROWTH, ([], []), ([], []), *TURNOVER[:3]])
+    for fork in (4, 5, 6, 7):
+        assert founding_tick(quiet.recorded_since(fork)) == fork
 
 
 def test_lines_cannot_be_founded_before_the_fork() -> None:
