@@ -109,6 +109,9 @@ def test_each_world_of_each_arm_has_its_rows_once(
 def test_a_run_of_wandb_has_ticks_as_its_axis_and_nothing_of_the_machine(tmp_path: Path) -> None:
     board = WeightsAndBiases(tmp_path)
     board.add(World("seed-1", "2" * 16, "g", {"seed": 1}), [{"tick": 10, "living": 3}])
+    (opened,) = board._open.values()
+    for about in ("machine_info", "meta", "stats"):
+        assert getattr(opened.settings, f"x_disable_{about}"), "samples of it come after seconds"
     board.close()
     (records,) = offline_records(tmp_path)
     axes = {
