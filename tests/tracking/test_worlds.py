@@ -112,6 +112,8 @@ def test_a_run_of_wandb_has_ticks_as_its_axis_and_nothing_of_the_machine(tmp_pat
     (opened,) = board._open.values()
     for about in ("machine_info", "meta", "stats"):
         assert getattr(opened.settings, f"x_disable_{about}"), "samples of it come after seconds"
+    assert opened.settings.disable_git
+    assert opened.settings.disable_code
     board.close()
     (records,) = offline_records(tmp_path)
     axes = {
