@@ -15,36 +15,46 @@ Row = dict[str, Any]
 
 
 def event_rows(folder: Path) -> list[Row]:
-    """Return tick and values of each event in the one event file of a folder, in their order.
+    """Return tick and values of each event in the one event file of a folder, in their order."""
+    return [
+        {"tick": event.step, **{each.tag: each.simple_value for each in event.summary.value}}
+        for event in events(folder)
+    ]
+
+
+def events(folder: Path) -> list[Any]:
+    """Return the events with values in the one event file of a folder, in their order.
 
     A file is a sequence of records: length (8 bytes), checksum (4), content, checksum (4).
     """
     from tensorboardX.proto.event_pb2 import Event
 
     (file,) = folder.glob("*tfevents*")
-    content, place, rows = file.read_bytes(), 0, []
+    content, place, found = file.read_bytes(), 0, []
     while place < len(content):
         (length,) = struct.unpack_from("<Q", content, place)
-        event = Event.FromString(content[place + 12 : place + 12 + length])
+        found.append(Event.FromString(content[place + 12 : place + 12 + length]))
         place += 12 + length + 4
-        if event.summary.value:
-            values = {each.tag: each.simple_value for each in event.summary.value}
-            rows.append({"tick": event.step, **values})
-    return rows
+    return [event for event in found if event.summary.value]
 
 
 def offline_runs(folder: Path) -> dict[str, tuple[Any, list[Row]]]:
     """Return the offline runs below a folder by name: what W&B knows of each, and its rows."""
-    from wandb.proto.wandb_internal_pb2 import Record  # type: ignore[attr-defined]
-
     runs = {}
-    for file in sorted(folder.glob("wandb/offline-run-*/*.wandb")):
-        records = [Record.FromString(each) for each in _records(file.read_bytes())]
+    for records in offline_records(folder):
         (about,) = (each.run for each in records if each.HasField("run"))
         assert about.display_name not in runs
         rows = [_row(each.history) for each in records if each.HasField("history")]
         runs[about.display_name] = (about, rows)
     return runs
+
+
+def offline_records(folder: Path) -> Iterator[list[Any]]:
+    """Yield all records of each offline run below a folder."""
+    from wandb.proto.wandb_internal_pb2 import Record  # type: ignore[attr-defined]
+
+    for file in sorted(folder.glob("wandb/offline-run-*/*.wandb")):
+        yield [Record.FromString(each) for each in _records(file.read_bytes())]
 
 
 def _row(history: Any) -> Row:

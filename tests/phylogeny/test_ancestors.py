@@ -24,6 +24,7 @@ PEDIGREES = {
     "apart": walked([([0, 1], []), ([1], [2]), ([0], [])], founders=2),
     "split": walked(SPLIT * 3),
     "founded again": walked(DYING),
+    "old founder": walked([([0], []), ([1], []), ([1, 2], []), ([], [2, 4]), ([], [0]), ([0], [])]),
 }
 
 
@@ -184,6 +185,10 @@ def test_each_run_gives_the_changes_after_its_fork(monkeypatch: pytest.MonkeyPat
     assert (asked, unknown) == ({"other": 5, "fork": 4, "run": 3}, None)
     assert found is not None
     assert found[:, 0].tolist() == [3, 3, 3, 3, 4, 5]
+    asked.clear()
+    young = lives_of([-1, 0], [41, 46], [50] * 2, [False] * 2)  # founded after both forks
+    descent._changes(runs, young, 1)
+    assert asked == {"again": 1, "other": 0}
     untrusted.append("run")
     found, unknown = descent._changes(runs, line, 1)
     assert unknown == "run is not trusted"

@@ -58,14 +58,18 @@ def test_draws_depend_on_the_seed_the_first_tick_and_their_purpose() -> None:
 def test_slopes_are_drawn_apart_from_the_course_of_all_lines(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    asked, make = [], Deal.of
-    monkeypatch.setattr(
-        Deal, "of", lambda *given, what: asked.append(what) or make(*given, what=what)
-    )
+    asked: list[int] = []
+    make: Any = Deal.of
+
+    def of(lives: Lives, turnover: Turnover, ticks: np.ndarray, seed: int, what: int) -> Deal:
+        asked.append(what)
+        return make(lives, turnover, ticks, seed, what=what)
+
+    monkeypatch.setattr(Deal, "of", of)
+    monkeypatch.setattr(slopes, "_drift_on", lambda *_: None)
     lives = walked([([0], [])], founders=5)
     dealt(lives, [0, 1], 5)
     census = Census(lives, np.array([0, 1]))
-    monkeypatch.setattr(slopes, "_drift_on", lambda *_: None)
     slopes.of_shadows(census, Turnover.of(lives), np.ones((2, 1), int), seed=2)
     assert len({*asked}) == len(asked) == 2
 

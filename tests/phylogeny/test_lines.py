@@ -215,7 +215,7 @@ def test_a_world_is_measured_since_its_last_extinction(monkeypatch: pytest.Monke
         asked.update(ticks=ticks, number=number, seed=seed)
 
     monkeypatch.setattr(module, "drift", drift)
-    monkeypatch.setattr(module.slopes, "of_shadows", shadows)
+    monkeypatch.setattr("primordia.phylogeny.slopes.of_shadows", shadows)
     found = lines_of_world(4, lives, None, seed=11)
     assert (found.world, found.lives is lives) == (4, True)
     assert found.ticks[0] == asked["ticks"][0] == 12  # founded again at 10, and 4 are alive
@@ -250,6 +250,9 @@ def test_lines_are_founded_by_a_crowd_since_the_last_extinction_or_the_fork() ->
     assert founding_tick(grown.recorded_since(2)) == 3
     for fork in (3, 4, 9):
         assert founding_tick(grown.recorded_since(fork)) == fork
+    quiet = walked([*GROWTH, ([], []), ([], []), *TURNOVER[:3]])
+    for fork in (4, 5, 6, 7):
+        assert founding_tick(quiet.recorded_since(fork)) == fork
 
 
 def test_lines_cannot_be_founded_before_the_fork() -> None:

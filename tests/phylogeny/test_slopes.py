@@ -164,7 +164,8 @@ def test_a_tick_that_is_not_on_record_is_refused() -> None:
 
 def test_p_values_count_the_value_itself_and_both_sides() -> None:
     null = np.arange(1.0, 10.0)
-    assert two_sided(np.array([0.0, 5.0, 9.0, 10.0]), null) == pytest.approx([0.2, 1, 0.4, 0.2])
+    values = np.array([0.0, 1.0, 2.0, 2.5, 5.0, 8.0, 9.0, 10.0])
+    assert two_sided(values, null) == pytest.approx([0.2, 0.4, 0.6, 0.6, 1, 0.6, 0.4, 0.2])
 
 
 def test_a_lifespan_counts_only_ticks_and_deaths_since_the_lines_were_founded() -> None:
