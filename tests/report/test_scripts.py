@@ -136,9 +136,54 @@ COLOURS = [
     ("curveColour('#d4d4d4') === variable('--soft')", True),
     ("curveColour('#0072b2')", "rgb(0 114 178)"),
 ]
+NODES = (
+    "[{ number: 5, born: 1200, alive: false, skipped: 0, parent: -1 },"
+    " { number: 1700, born: 3000, alive: true, skipped: 0, parent: 0 },"
+    " { number: 9, born: 7, alive: true, skipped: 2, parent: 1 }]"
+)
+FACTS = (
+    "{ name: 'mild', settings: { cells: '8' }, toml: 'cells = 8', versions: { jax: '1' },"
+    " digests: [{ seed: '3', digest: 'abc' }], exact: true, restarts: 0, commands: ['primordia run a'] }"
+)
+TEXTS = [
+    (f"[0, 1, 2].map((at) => nodeText({NODES}, at))",
+     ["organism 5, born at tick 1,200, an ancestor, no parent on record",
+      "organism 1,700, born at tick 3,000, alive, 1 generation from organism 5",
+      "organism 9, born at tick 7, alive, 3 generations from organism 1,700"]),
+    ("groundText({ topology: 'ring', cells: 8, shown: 8, whole: true })",
+     "Cells lie across, in the order of the ring; births run downwards. Each colour is a line of"
+     " descent: strong if the line lasted, pale if the line died out; gaps are empty cells."),
+    ("groundText({ topology: 'torus4', cells: 1200, shown: 400, whole: false }).split('. ')",
+     ["Cells lie across, row after row of the torus; births run downwards",
+      "Each colour is a line of descent: strong if the line lasted, pale if the line died out; gaps"
+      " are empty cells",
+      "400 of 1,200 cells are shown",
+      "The picture shows the cells after some of the births only; shorter lives may be missing."]),
+    (f"factsOf({FACTS}).map((each) => each.textContent)",
+     ["mild", "primordia run aCopy", "All settings as config.tomlcells = 8Copy", "Settingscells8",
+      "Versionsjax1", "Digest of the worldseed 3abc"]),
+    (f"factsOf({{ ...{FACTS}, exact: false, restarts: 1200,"
+     " commands: ['primordia run config.toml', 'b'] }).slice(1, 5).map((each) => each.textContent)",
+     ["This run is not exact: parts of the run cannot be repeated bit for bit.",
+      "The living got new bodies 1,200 times, when the run was resumed.",
+      "primordia run config.toml\nbCopy", "config.toml, which the command takescells = 8Copy"]),
+    ("livesSection({ films: [], missing: 'no' }).textContent", "LivesNot filmed: no."),
+    ("[...wideTable({ title: 't', head: ['a', 'b'], rows: [['x', '1'], ['y', '2']] })"
+     ".querySelectorAll('caption, th, td')].map((each) => each.textContent)",
+     ["t", "a", "b", "x", "1", "y", "2"]),
+    ("[unknown({ whole: true }, '7'), unknown({ whole: false }, '7'), unknown({}, '')]"
+     ".map((each) => each[1].textContent)",
+     ["Organism 7 was not born in this world.", "Organism 7 is not in this picture.",
+      "Give a birth number."]),
+]  # fmt: skip
 CASES = {
-    "numbers": NUMBERS, "places": PLACES, "views": VIEWS, "charts": CHARTS, "colours": COLOURS,
-}  # fmt: skip
+    "texts": TEXTS,
+    "numbers": NUMBERS,
+    "places": PLACES,
+    "views": VIEWS,
+    "charts": CHARTS,
+    "colours": COLOURS,
+}
 
 HELPERS = """
 const world = arguments[0];
