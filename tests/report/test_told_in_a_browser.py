@@ -78,6 +78,10 @@ def test_a_film_tells_and_paints_each_of_its_pictures(world: dict[str, Any], pag
     strong = np.array(world["palette"][: len(world["palette"]) // 2])
     ground = page.script("return rgbOf(variable('--empty'))")
     inks = [*strong, *(ink + 0.66 * (ground - ink) for ink in strong)]
+    last = (
+        f"birth {film['places'][-1] + 1:,}, tick {film['ticks'][-1]:,}, {film['alive'][-1]} alive"
+    )
+    assert page.text(".film .readout") == last, "the present is shown first"
     for at in (0, len(cells) // 2, len(cells) - 1):
         page.script(
             "const slider = document.querySelector('.film input'); slider.value = arguments[0];"
