@@ -149,7 +149,17 @@ FACTS = (
     "{ name: 'mild', settings: { cells: '8' }, toml: 'cells = 8', versions: { jax: '1' },"
     " digests: [{ seed: '3', digest: 'abc' }], exact: true, restarts: 0, commands: ['primordia run a'] }"
 )
+PAIR = (
+    "{ rate: 50, facts: { number: [0, 7], first: 1000, born: [0, 5], lifespan: [300, 5000],"
+    " cell: [0, 3], origin: [0, 2], origins: ['founder', 'copy', 'mutant'], cause: [0, 3],"
+    " causes: ['fatal', 'starved', 'hazard'], parent: [0, 1], generation: [0, 1], children: [1, 0] } }"
+)
+MANY = "{ facts: { children: [12], number: [...Array(13).keys()], parent: [0, ...Array(12).fill(1)] } }"
 TEXTS = [
+    (f"card({PAIR}, 1).map((each) => each.textContent)",
+     ["Organism 7", "Borntick 1,005, with mutationsCell3Lived5,000 ticks (1 min 40 s)"
+      "Diedtick 6,005, hazardParent0Generation1Children0"]),
+    (f"childrenOf({MANY}, 0).textContent", "12: 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, … "),
     (f"[0, 1, 2].map((at) => nodeText({NODES}, at))",
      ["organism 5, born at tick 1,200, an ancestor, no parent on record",
       "organism 1,700, born at tick 3,000, alive, 1 generation from organism 5",
