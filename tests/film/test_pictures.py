@@ -151,6 +151,9 @@ def test_moments_pass_by_births_or_by_ticks() -> None:
     assert set(np.diff(by_ticks)) == {2, 3}
     assert moments(world, 0, "births", (9, 16)).tolist() == [9, 16], "the birth at 9 is before"
     assert moments(world, 0, "births", (10, 26)).tolist() == [10, 16, 25, 26]
+    assert moments(world, 0, "births", (15, 16)).tolist() == [15, 16], "the birth at 16 is the last"
+    with pytest.raises(InputError, match="nothing was born from tick 1521 to 1600"):
+        moments(world, 0, "births", (39**2, 1_600))
     assert moments(world, 100, "ticks", (None, None))[[0, -1]].tolist() == [100, 2_000]
     for ticks in ((-1, None), (None, 2_001), (50, 50)):
         with pytest.raises(InputError, match="can be shown from tick 0 to 2000"):

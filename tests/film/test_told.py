@@ -14,6 +14,8 @@ from primordia.film import beside
 from primordia.film import film as films
 from primordia.film.beside import Beside
 from primordia.film.frame import STRIPS, with_colours
+from primordia.organism import replay
+from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs.lives import Lives, joined
 from tests.synthetic import alive, world_of
 from tests.worlds import MEADOW, config
@@ -149,10 +151,10 @@ def test_a_life_is_shown_from_its_birth_to_its_end_at_thirty_pictures_a_second(
         assert by == step
         return ((0, None, age) for age in whole[0][::by])
 
-    monkeypatch.setattr(beside.RelivedLife, "of", lambda *_: life)
-    monkeypatch.setattr(beside.replay, "picture_rate", lambda _: rate)
-    monkeypatch.setattr(beside.replay, "moments", moments)
-    monkeypatch.setattr(beside.replay, "picture_of", lambda life, stretch, i: i)
+    monkeypatch.setattr(RelivedLife, "of", lambda *_: life)
+    monkeypatch.setattr(replay, "picture_rate", lambda _: rate)
+    monkeypatch.setattr(replay, "moments", moments)
+    monkeypatch.setattr(replay, "picture_of", lambda life, stretch, i: i)
     ages = [age for age in range(4, 11)[::step] for _ in range(each)]
     pictures: list[Any] = list(islice(beside.pictures_of(a_run(world_of(LIVED)), 0, 0), 30))
     assert pictures == ages + [ages[-1]] * (30 - len(ages))

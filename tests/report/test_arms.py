@@ -91,7 +91,7 @@ def test_curves_over_time_are_medians_of_the_worlds_of_each_arm() -> None:
     ends = [(200, 130, 130, 201), (150, 160, 170)]
     worlds = [
         [
-            world_of([(tick + 1, *rest) for tick, *rest in LIVED[i:]], end)
+            world_of([(tick + 1, age, died) for tick, age, died in LIVED[i:]], end)
             for i, end in enumerate(arm)
         ]
         for arm in ends
@@ -129,6 +129,21 @@ def test_curves_over_time_are_medians_of_the_worlds_of_each_arm() -> None:
                 middle = float(np.median(known)) if 2 * len(known) >= len(each) else None
                 middle = None if panel is ages and not middle else middle
                 assert shown == (middle if middle is None else pytest.approx(middle, 1e-4)), tick
+
+
+def test_the_arms_of_forks_are_followed_from_the_fork() -> None:
+    lives = world_of(LIVED, until=200)
+    run: Any = SimpleNamespace(path=Path("fork"), lives=lives.recorded_since(50))
+    for panel in _over_time([run, run], COLOURS[:2]):
+        assert panel["x"] == "time since the fork (ticks)"
+        (table,) = panel["tables"]
+        assert table["x"][-1] == 150
+        for tick, shown in zip(table["x"], table["curves"][1]["values"], strict=True):
+            since = [
+                tick + 50 - lives.born[row] for row in range(50) if alive(lives, row, tick + 50)
+            ]
+            expected = len(since) if panel["y"] == "organisms" else np.mean(since)
+            assert shown == pytest.approx(expected, 1e-4)
 
 
 def test_an_experiment_with_one_arm_has_its_curves_alone() -> None:

@@ -22,7 +22,7 @@ from tests.worlds import config
 
 @pytest.mark.parametrize(
     ("most", "left_out"),
-    [(1, "2 further worlds not shown"), (2, "1 further world not shown"), (3, "")],
+    [(1, "2 further worlds not shown"), (2, "1 further world not shown"), (3, ""), (6, "")],
 )
 def test_as_many_worlds_are_shown_as_a_page_has_room_for(
     torus: Path, most: int, left_out: str, monkeypatch: pytest.MonkeyPatch

@@ -96,6 +96,11 @@ def test_thinned_curves_keep_their_ends() -> None:
     assert len(places) <= curves.POINTS + 1
     assert (places[0], places[-1]) == (1, 99_999)
     assert (places == values).all()
+    steps, alive = curves.thinned(
+        np.array([1, 99_000, 99_010, 100_000]), np.array([1, 0.5, 0.4, 0.3])
+    )
+    assert steps.tolist() == [1, 99_010, 100_000], "of points in one place the last is kept"
+    assert alive.tolist() == [1, 0.4, 0.3]
 
 
 def test_words_tell_the_numbers_of_the_run(torus: Path) -> None:

@@ -96,10 +96,10 @@ def test_a_world_is_whole_up_to_its_part_of_the_page(
 ) -> None:
     """Of a larger world 5 moments are read, and at most 40 of the living are given besides."""
     lives = takeovers()
+    monkeypatch.setattr(ground, "SEEN", share * CELLS * 5)
     monkeypatch.setattr(ground, "WHOLE", share * 308)
     assert Ground(lives, CELLS, share).data()["whole"] is True
     monkeypatch.setattr(ground, "WHOLE", share * 307)
-    monkeypatch.setattr(ground, "SEEN", share * CELLS * 5)
     part = Ground(lives, CELLS, share)
     data = part.data()
     assert data["whole"] is False

@@ -21,7 +21,7 @@ from tests.report.conftest import TORUS
 from tests.synthetic import alive, world_of
 from tests.worlds import config
 
-LONG = [(tick, tick % 13 + tick // 4, tick % 5 > 0) for tick in range(0, 150, 2)]
+LONG = [(tick, tick % 13 + tick // 4, tick % 5 > 0) for tick in range(1, 150, 2)]
 SHORT = [(tick, 2 * tick % 9, tick % 3 > 0) for tick in range(0, 80, 2)]
 ENDS = 200, 90
 

@@ -102,6 +102,11 @@ def test_the_story_of_several_worlds_counts_all_of_them() -> None:
 def test_each_cause_of_death_has_its_words(cause: Cause) -> None:
     (sentence, *_) = told(world(deaths={cause.label: 1300}))[1].split(". ")
     assert sentence.endswith(f"and 1,300 died, {KILLED[cause.label]}")
+    other = next(each for each in Cause if each != cause)
+    (sentence, *_) = told(world(deaths={cause.label: 1300, other.label: 2}))[1].split(". ")
+    assert "and 1,302 died: " in sentence
+    assert f"1,300 {KILLED[cause.label]}" in sentence
+    assert f"2 {KILLED[other.label]}" in sentence
 
 
 def test_a_world_that_died_out_began_again_as_its_settings_say() -> None:
