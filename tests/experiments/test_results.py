@@ -1,8 +1,6 @@
 """The files of results: each arm and each world has its own numbers, in the column that names them."""
 
 import csv
-import datetime
-import os
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -15,7 +13,6 @@ from primordia.comparison.comparison import ComparedArm, Comparison
 from primordia.comparison.measured import Measured
 from primordia.experiments import results
 from primordia.runs.arrays import NEVER
-from primordia.settings.limits import Stop
 
 WHAT: dict[str, Any] = {"survival": None, "pace": None, "gathering": None, "extinctions": None}
 
@@ -143,26 +140,11 @@ def test_the_csv_has_a_row_for_each_world_and_no_number_for_the_unknown() -> Non
     ]
 
 
-def test_the_date_is_that_of_the_beginning_and_limits_are_those_at_the_end(tmp_path: Path) -> None:
-    (tmp_path / "versions.json").touch()
-    noon = datetime.datetime(2021, 3, 4, 12).timestamp()
-    os.utime(tmp_path / "versions.json", (noon, noon))
-    record: Any = SimpleNamespace(
-        paths=(tmp_path, tmp_path / "later"),
-        versions={"primordia": "0.1", "jax": "0.2"},
-        progress=SimpleNamespace(limits=Stop(ticks=300, births=None, until="saturation")),
-    )
-    assert results.made(record) == (
-        "Run on 2021-03-04 with primordia 0.1, jax 0.2. Each world stopped at: ticks 300 or until"
-        " saturation."
-    )
-
-
 @pytest.mark.parametrize("saturate", [True, False])
 def test_the_parts_of_the_page_are_in_order_and_those_of_each_arm(
     saturate: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Last deaths are told only if worlds do not saturate. The first arm tells when it was made."""
+    """Last deaths are told only if worlds do not saturate."""
     births, missing = [10.0, 20, 30], 0 if saturate else 3
     arms = [
         arm(name, births, missing, lifespan=births, pace=[float(place)] * 3)
@@ -179,7 +161,7 @@ def test_the_parts_of_the_page_are_in_order_and_those_of_each_arm(
     for name, value in {
         "compare": lambda records: whole,
         "counts": counted.__getitem__,
-        "made": lambda record: f"made {record}",
+        "made": lambda names, records: f"made {names} {records}",
         "draw": lambda found: figure if found is whole else None,
         "late.last_deaths": lambda record, found: ends[record],
     }.items():
@@ -188,7 +170,7 @@ def test_the_parts_of_the_page_are_in_order_and_those_of_each_arm(
     paths = results.write(tmp_path / "results", "Is it?", records)
     assert paths == [tmp_path / f"results.{suffix}" for suffix in ("md", "csv", "png")]
     title, summary, *others, effects, note, made = paths[0].read_text().split("\n\n")
-    assert (title, made) == ("# Is it?", "made a\n")
+    assert (title, made) == ("# Is it?", "made ['one', 'three'] ['a', 'b']\n")
     assert note.startswith(results.NOTE)
     assert [row[4] for row in rows_of(summary)[1:]] == ["1", "2"]
     assert [rows_of(other)[1:] for other in others] == (

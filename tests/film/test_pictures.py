@@ -8,7 +8,6 @@ from primordia.errors import InputError
 from primordia.figures import spacetime
 from primordia.film import colours as colouring
 from primordia.film import shape as shapes
-from primordia.film.beside import pictures_at
 from primordia.film.colours import FADING, FLASH, GROUND, PALETTE, colours
 from primordia.film.frame import HEIGHT, WIDTH, Frames, fitted
 from primordia.film.moments import RATE, SECONDS, moments
@@ -50,13 +49,6 @@ def test_a_newborn_flashes_once() -> None:
     drawn = np.array(list(colours(world, world.cell.astype(np.int64), np.arange(5, 10), FULL)), int)
     assert drawn[2, 9].min() > drawn[3, 9].max() * 0.9
     assert drawn[2, 9].sum() > drawn[4, 9].sum()
-
-
-@pytest.mark.parametrize("rate", [12.5, 15, 20, 30, 50, 60, 125])
-def test_a_life_beside_the_world_goes_as_fast_as_it_was_lived(rate: float) -> None:
-    numbers = [pictures_at(tick, rate) for tick in range(int(10 * rate))]
-    assert sum(numbers) == 10 * RATE
-    assert max(numbers) - min(numbers) <= 1
 
 
 @pytest.mark.parametrize("together", [1, 10**6])

@@ -14,8 +14,6 @@ from primordia.film import beside
 from primordia.film import film as films
 from primordia.film.beside import Beside
 from primordia.film.frame import STRIPS, with_colours
-from primordia.organism import replay
-from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs.lives import Lives, joined
 from tests.synthetic import alive, world_of
 from tests.worlds import MEADOW, config
@@ -137,27 +135,26 @@ def test_the_oldest_so_far_begins_its_life_when_it_is_first_shown(
     ]
 
 
-@pytest.mark.parametrize(
-    ("rate", "each", "step"), [(50.0, 1, 2), (15.0, 2, 1), (30.0, 1, 1), (12.0, 2, 1), (90.0, 1, 3)]
-)
+@pytest.mark.parametrize("rate", [50.0, 15.0, 30.0, 12.0, 20.0, 90.0])
 def test_a_life_is_shown_from_its_birth_to_its_end_at_thirty_pictures_a_second(
-    rate: float, each: int, step: int, monkeypatch: pytest.MonkeyPatch
+    rate: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Born at tick 100 and on record from tick 103 to 110; the last picture stays."""
+    """Born at tick 100 and on record from tick 103 to 110. Picture k shows the tick in which second
+    k / 30 lies; the last tick is shown at all rates, and the last picture stays."""
     record = SimpleNamespace(born=np.array([100]))
-    life = SimpleNamespace(record=record, begins=103, ends=110)
+    life, stretch = SimpleNamespace(record=record, begins=103, ends=110), np.arange(100, 120)
 
-    def moments(_: Any, whole: list[range], by: int) -> Iterator[tuple[int, None, int]]:
-        assert by == step
-        return ((0, None, age) for age in whole[0][::by])
+    def moments(_: Any, whole: list[range], step: int) -> Iterator[tuple[int, Any, int]]:
+        return ((0, SimpleNamespace(tick=stretch), age) for age in whole[0][::step])
 
-    monkeypatch.setattr(RelivedLife, "of", lambda *_: life)
-    monkeypatch.setattr(replay, "picture_rate", lambda _: rate)
-    monkeypatch.setattr(replay, "moments", moments)
-    monkeypatch.setattr(replay, "picture_of", lambda life, stretch, i: i)
-    ages = [age for age in range(4, 11)[::step] for _ in range(each)]
+    monkeypatch.setattr("primordia.film.beside.RelivedLife.of", lambda *_: life)
+    monkeypatch.setattr("primordia.organism.replay.picture_rate", lambda _: rate)
+    monkeypatch.setattr("primordia.organism.replay.moments", moments)
+    monkeypatch.setattr("primordia.organism.replay.picture_of", lambda life, stretch, i: i)
+    ages = [4 + int(picture * rate / 30) for picture in range(30)]
+    ages = [age for age in ages if age <= 10]
     pictures: list[Any] = list(islice(beside.pictures_of(a_run(world_of(LIVED)), 0, 0), 30))
-    assert pictures == ages + [ages[-1]] * (30 - len(ages))
+    assert pictures == ages + [10] * (30 - len(ages))
 
 
 def test_the_colours_of_a_gif_have_each_hue_dark_middle_and_light() -> None:
