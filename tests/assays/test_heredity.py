@@ -39,10 +39,12 @@ def test_pairs_with_a_living_organism_have_no_slope_yet() -> None:
         (0, COPY, 50, "alive"),
         (-1, FOUNDER, 100, "alive"),
         (2, COPY, 9),
+        (0, MUTANT, 50, "alive"),
+        (2, MUTANT, 9),
     ]
     found = measured(lives(*rows))
-    assert found.both.pairs == 0
-    assert found.both.slope is None
+    for pairs in (found.copies, found.mutants, found.both):
+        assert (pairs.pairs, pairs.slope) == (0, None)
     assert found.selection is None
 
 
