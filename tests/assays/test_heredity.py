@@ -141,6 +141,6 @@ def test_the_price_equation_by_hand() -> None:
 
 
 def test_a_life_of_no_tick_counts_as_one_tick() -> None:
-    rows = [(-1, FOUNDER, 0), (-1, FOUNDER, 10)]
-    children = [*[(0, COPY, 1)] * 5, *[(1, COPY, 10)] * 5]
-    assert measured(lives(*rows, *children)).both.slope == pytest.approx(1)
+    rows = [(-1, FOUNDER, 0), (-1, FOUNDER, 4)]
+    children = [*[(0, COPY, 1)] * 5, *[(1, COPY, 16)] * 5]
+    assert measured(lives(*rows, *children)).both.slope == pytest.approx(2)
