@@ -129,14 +129,14 @@ def test_each_world_has_its_own_measures() -> None:
 
 def test_the_price_equation_by_hand() -> None:
     """Of three parents one has two children, one has one and one has none; e is the log unit."""
-    rows = [(-1, FOUNDER, 1), (-1, FOUNDER, 10), (-1, FOUNDER, 100), (2, COPY, 1000)]
+    rows = [(-1, FOUNDER, 1), (-1, FOUNDER, 10), (-1, FOUNDER, 100), (2, COPY, 5000)]
     selection, transmission = price(
         families_of(lives(*rows, (2, MUTANT, 10), (1, COPY, 10)), np.array([3, 4, 5]))
     )
-    counted = np.log([10.0, 100, 1000, 10, 10])  # the parents 1 and 2, and the children
+    counted = np.log([10.0, 100, 5000, 10, 10])  # the parents 1 and 2, and the children
     w = np.array([1, 2, 0, 0, 0])
     assert selection == pytest.approx(np.mean((w - w.mean()) * counted) / w.mean())
-    change = [np.log(10 / 10), np.log(1000 / 100) + np.log(10 / 100)]
+    change = [np.log(10 / 10), np.log(5000 / 100) + np.log(10 / 100)]
     assert transmission == pytest.approx(sum(change) / 5 / w.mean())
 
 
