@@ -39,10 +39,12 @@ def test_pairs_with_a_living_organism_have_no_slope_yet() -> None:
         (0, COPY, 50, "alive"),
         (-1, FOUNDER, 100, "alive"),
         (2, COPY, 9),
+        (0, MUTANT, 50, "alive"),
+        (2, MUTANT, 9),
     ]
     found = measured(lives(*rows))
-    assert found.both.pairs == 0
-    assert found.both.slope is None
+    for pairs in (found.copies, found.mutants, found.both):
+        assert (pairs.pairs, pairs.slope) == (0, None)
     assert found.selection is None
 
 
@@ -127,18 +129,18 @@ def test_each_world_has_its_own_measures() -> None:
 
 def test_the_price_equation_by_hand() -> None:
     """Of three parents one has two children, one has one and one has none; e is the log unit."""
-    rows = [(-1, FOUNDER, 1), (-1, FOUNDER, 10), (-1, FOUNDER, 100), (2, COPY, 1000)]
+    rows = [(-1, FOUNDER, 1), (-1, FOUNDER, 10), (-1, FOUNDER, 100), (2, COPY, 5000)]
     selection, transmission = price(
         families_of(lives(*rows, (2, MUTANT, 10), (1, COPY, 10)), np.array([3, 4, 5]))
     )
-    counted = np.log([10.0, 100, 1000, 10, 10])  # the parents 1 and 2, and the children
+    counted = np.log([10.0, 100, 5000, 10, 10])  # the parents 1 and 2, and the children
     w = np.array([1, 2, 0, 0, 0])
     assert selection == pytest.approx(np.mean((w - w.mean()) * counted) / w.mean())
-    change = [np.log(10 / 10), np.log(1000 / 100) + np.log(10 / 100)]
+    change = [np.log(10 / 10), np.log(5000 / 100) + np.log(10 / 100)]
     assert transmission == pytest.approx(sum(change) / 5 / w.mean())
 
 
 def test_a_life_of_no_tick_counts_as_one_tick() -> None:
-    rows = [(-1, FOUNDER, 0), (-1, FOUNDER, 10)]
-    children = [*[(0, COPY, 1)] * 5, *[(1, COPY, 10)] * 5]
-    assert measured(lives(*rows, *children)).both.slope == pytest.approx(1)
+    rows = [(-1, FOUNDER, 0), (-1, FOUNDER, 4)]
+    children = [*[(0, COPY, 1)] * 5, *[(1, COPY, 16)] * 5]
+    assert measured(lives(*rows, *children)).both.slope == pytest.approx(2)

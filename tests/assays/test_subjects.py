@@ -1,6 +1,8 @@
 """Organisms that live again: from a run, or from a genome file."""
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,8 +13,10 @@ from primordia.assays.subjects import BEST, FOUNDERS, founders, of_file, of_run,
 from primordia.brains import genomes
 from primordia.config import load
 from primordia.errors import InputError
+from primordia.history.climate import Climates, PastClimate
 from primordia.organism.games import Players, lifespans
 from primordia.random.wide import to_host
+from primordia.runs.lives import Lives
 
 CHOSEN = [9, 58, 107, 248, 315, 424, 436, 153, 408, 323, 53, 346, 133, 276, 246, 105]
 """The longest-lived founders of CartPole-survival, by which tables of experiments name them."""
@@ -115,3 +119,77 @@ def test_founders_of_a_task_are_those_that_they_always_were() -> None:
     first = [[0.00957343, -0.0262672, -0.00436687], [-0.01828807, -0.01208586, -0.01472166]]
     made = founders(load("CartPole-survival"), 5)
     np.testing.assert_allclose(made[:2, :3], first, rtol=1e-6)
+
+
+def test_organisms_of_a_run_keep_their_order_worlds_and_present_climate(
+    poles: primordia.Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Settings that seasons change are those at the end of each organism's own world."""
+    run, asked = poles.opened(), []
+
+    def noted(past: PastClimate, lives: Lives, ticks: np.ndarray) -> Climates:
+        asked.append((lives.id.tolist(), lives.world.tolist(), ticks.tolist()))
+        return past.of_worlds(lives.world, ticks)
+
+    monkeypatch.setattr(PastClimate, "of_lives", noted)
+    assert len(run.lives)
+    monkeypatch.setitem(vars(run), "ends", np.array([300, 600]))
+    chosen = [(4, 1), (9, 0), (0, 1)]
+    found = of_run(run, chosen, {"angle_limit": 5.0})
+    assert found.names == ["4 of world 1", "9 of world 0", "0 of world 1"]
+    assert asked[-1] == ([4, 9, 0], [1, 0, 1], [600, 300, 600])
+    for genome, each in zip(found.players.genomes, chosen, strict=True):
+        np.testing.assert_array_equal(genome, poles.organism(*each).genome())
+    assert found.config.habitat["angle_limit"] == 5
+    assert found.players.habitat == found.config.build_habitat()
+    assert found.source == str(run.path)
+    with pytest.raises(InputError, match="an organism is given twice"):
+        of_run(run, [(4, 1), (9, 0), (4, 1)])
+
+
+def test_a_run_in_which_nothing_was_born_since_the_fork_has_no_champion(
+    poles: primordia.Run,
+) -> None:
+    run = poles.opened()
+    old = run.lives.recorded_until(300).recorded_since(300)
+    assert old.inherited.all()
+    forked: Any = SimpleNamespace(lives=old, path="forked")
+    with pytest.raises(InputError, match="forked: nothing has been born since the fork"):
+        of_run(forked)
+
+
+def test_genomes_of_a_file_play_games_of_their_own_numbers(
+    poles: primordia.Run, tmp_path: Path
+) -> None:
+    """So a genome's games do not depend on which others are chosen; a changed habitat is theirs."""
+    file = tmp_path / "some.safetensors"
+    poles.export(file, 0, 5, 9)
+    whole, some = of_file(file), of_file(file, (2, 0), habitat={"angle_limit": 5.0})
+    keys = to_host(whole.players.keys)
+    np.testing.assert_array_equal(to_host(some.players.keys), keys[[2, 0]])
+    assert len(np.unique(keys)) == 3
+    assert whole.organism.tolist() == [0, 1, 2]
+    assert (some.world.tolist(), whole.source) == ([0, 0], str(file))
+    assert some.players.habitat == some.config.build_habitat() != whole.players.habitat
+    assert some.config.habitat["angle_limit"] == 5
+    for number in (-1, 3):
+        with pytest.raises(InputError, match=f"has no genome {number}; the genomes are 0 to 2"):
+            of_file(file, (0, number))
+
+
+def test_a_named_founder_plays_the_games_of_its_own_number() -> None:
+    some = of_task("CartPole-survival", (7, 3), {"angle_limit": 5.0})
+    everyone = founders(load("CartPole-survival"), FOUNDERS)
+    np.testing.assert_array_equal(some.players.genomes, everyone[[7, 3]])
+    alone = of_task("CartPole-survival", (3,))
+    assert to_host(some.players.keys)[1] == to_host(alone.players.keys)[0]
+    assert (some.organism.tolist(), some.source) == ([7, 3], "CartPole-survival")
+    assert some.players.habitat == some.config.build_habitat() != alone.players.habitat
+
+
+@pytest.mark.parametrize(("same", "games"), [(True, 1), (False, 6)])
+def test_a_game_that_is_always_the_same_is_played_once(same: bool, games: int) -> None:
+    players: Any = SimpleNamespace(deterministic=same)
+    empty: Any = None
+    found = subjects.Subjects("", empty, players, empty, empty, empty, empty)
+    assert found.games(6) == games

@@ -84,6 +84,13 @@ def test_quartiles_are_of_stretches_with_equally_many_dead() -> None:
     assert (half < three).all()
 
 
+@pytest.mark.parametrize(
+    ("dead", "bins"), [(1, 1), (29, 1), (59, 1), (60, 2), (1199, 39), (1800, 40)]
+)
+def test_each_of_at_most_forty_bins_has_thirty_dead(dead: int, bins: int) -> None:
+    assert ages.quartiles(np.arange(dead), np.ones(dead)).shape == (4, bins)
+
+
 def test_space_time_shows_the_occupant_of_each_cell_and_tick(run: Path) -> None:
     world = Archive(run).lives.of_world(1)
     cells, ticks = np.arange(24), np.array([0, 1, 50, 333, 900])

@@ -120,20 +120,20 @@ def drawn(lives: Lives, world: int = 0, **settings: Any) -> Axes:
 def test_the_picture_goes_from_the_first_birth_to_the_last(monkeypatch: pytest.MonkeyPatch) -> None:
     """If there are more births or cells than pixels, evenly spaced ones are drawn."""
     monkeypatch.setattr(spacetime, "ROWS", 5)
-    monkeypatch.setattr(spacetime, "COLUMNS", 3)
+    monkeypatch.setattr(spacetime, "COLUMNS", 4)
     other = [(0, 5, True), (1, 9, False)]
     mine = [(tick * tick, 30, True) for tick in range(12)]
     axes = drawn(worlds_of(other, mine, other, until=200), 1, cells=CELLS, seeds=3)
     (image,) = axes.images
     lives = world_of(mine, until=200)
     births = lives.born[[0, 2, 5, 8, 11]]
-    cells = np.array([0, 3, 6])
+    cells = np.array([0, 2, 4, 6])
     expected = spacetime.picture(lives, spacetime.clades_of(lives), cells, births)
     np.testing.assert_array_equal(image.get_array(), expected)
     assert list(image.get_extent()) == [-0.5, 7.5, 12.5, 0.5]
     assert labels(axes) == (
         "Lines of descent, world 1 (of 3)",
-        "cell of the ring; 3 of 8 shown",
+        "cell of the ring; 4 of 8 shown",
         "organisms born so far",
     )
     assert key(axes) == {"strong: lines that lasted;  pale: died out;  white: empty": style.SOFT}
@@ -146,14 +146,28 @@ def test_the_picture_goes_from_the_first_birth_to_the_last(monkeypatch: pytest.M
 def test_round_ticks_stand_at_the_number_of_births_by_then() -> None:
     """Births in a round tick count. Places that are no more than a 25th of all births from the last
     one are left out, and so is the place after the last birth."""
-    births = {0: 50, 10: 1, 20: 39, 50: 8, 51: 6, 100: 6, 150: 60, 999: 20, 1000: 9, 2000: 1}
+    births = {
+        0: 50,
+        10: 1,
+        20: 39,
+        50: 8,
+        51: 6,
+        100: 6,
+        150: 60,
+        500: 10,
+        999: 10,
+        1000: 9,
+        2000: 1,
+    }
     born = [tick for tick, count in births.items() for _ in range(count)]
     assert len(born) == 200
     axes = drawn(world_of([(tick, 1, True) for tick in born], until=3000), cells=300)
     (right,) = axes.child_axes
-    assert [*right.yaxis.get_major_locator().tick_values(0, 1)] == [51, 90, 110, 170, 199]
-    written = [right.yaxis.get_major_formatter()(place, 0) for place in (51, 90, 110, 170, 199)]
-    assert written == ["10", "20", "100", "200", "1k"]
+    assert [*right.yaxis.get_major_locator().tick_values(0, 1)] == [51, 90, 110, 170, 180, 199]
+    written = [
+        right.yaxis.get_major_formatter()(place, 0) for place in (51, 90, 110, 170, 180, 199)
+    ]
+    assert written == ["10", "20", "100", "200", "500", "1k"]
     assert right.get_ylabel() == "time (ticks)"
 
 
