@@ -122,11 +122,12 @@ def test_crashes_are_those_of_their_own_worlds() -> None:
     risen, flat = (lived([(1, 9, [(1, 5)] * n), (1, 9, [])] * 2)[0] for n in (4, 3))
     calm, _ = lived([(3, 9, [])])
     lives = joined([calm, risen, flat, calm, risen], np.arange(5))
-    assert module.crashes(worlds_with(None, [0, 3, 3, 0, 3], lives)).tolist() == [0, 2, 0, 0, 2]
-    assert module.crashes(worlds_with([5, 6, 0, 7, 8], [5, 9, 3, 7, 11], lives)).tolist() == [
-        0, 2, 0, 0, 2,
-    ]  # fmt: skip
-    assert module.crashes(worlds_with([5, 6], [5, 6], None)).tolist() == [0, 0]
+    new = module.extinctions_of(worlds_with(None, [0, 3, 3, 0, 3], lives))
+    fork = module.extinctions_of(worlds_with([5, 6, 0, 7, 8], [5, 9, 3, 7, 11], lives))
+    for found in (new, fork):
+        assert found.total.tolist() == [0, 3, 3, 0, 3]
+        assert found.crashes.tolist() == [0, 2, 0, 0, 2]
+    assert module.extinctions_of(worlds_with([5, 6], [5, 6], None)).crashes.tolist() == [0, 0]
 
 
 DYING: dict[str, Any] = {
@@ -203,4 +204,4 @@ def test_lives_are_not_read_where_nothing_died_out(
     loop.start(config({**CLOCKWORK, "stop": {"ticks": 20}}), tmp_path / "run")
     unread = property(lambda _: pytest.fail("lives are read"))
     monkeypatch.setattr(Archive, "lives", unread)
-    assert module.crashes(Archive(tmp_path / "run")).tolist() == [0, 0]
+    assert module.extinctions_of(Archive(tmp_path / "run")).crashes.tolist() == [0, 0]

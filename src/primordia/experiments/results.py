@@ -27,7 +27,7 @@ from primordia.comparison.tables import (
 )
 from primordia.figures import style
 from primordia.figures.comparison import draw
-from primordia.history.extinctions import Extinctions, crashes
+from primordia.history.extinctions import Extinctions, extinctions_of
 from primordia.runs.arrays import NEVER
 from primordia.runs.directory import VERSIONS
 from primordia.runs.records import Records
@@ -72,7 +72,11 @@ def write(stem: Path, question: str, arms: Sequence[Records]) -> list[Path]:
 
 
 def counts(arm: Records) -> dict[str, np.ndarray]:
-    """Return seeds and counts of an arm's worlds, each (W,); NEVER for saturation not yet reached."""
+    """Return seeds and counts of an arm's worlds, each (W,); NEVER for saturation not yet reached.
+
+    In a fork, extinctions and crashes are those since the fork.
+    """
+    lost = extinctions_of(arm)
 
     def counted(name: str) -> np.ndarray:
         return arm.count(f"world.worlds.{name}")
@@ -81,8 +85,8 @@ def counts(arm: Records) -> dict[str, np.ndarray]:
         "seed": arm.world_seeds,
         "ticks": counted("tick"),
         "births": counted("births"),
-        "extinctions": counted("extinctions"),
-        "crashes": crashes(arm),
+        "extinctions": lost.total,
+        "crashes": lost.crashes,
         "alive": arm.state["world.organisms.alive"].reshape(len(arm.world_seeds), -1).sum(axis=1),
         "saturated_births": counted("saturated_births"),
         "saturated_tick": counted("saturated"),

@@ -46,19 +46,19 @@ def extinctions(worlds: list[Lives], cells: int) -> Extinctions:
     return Extinctions(np.array(total, np.int64), np.array(crashes, np.int64))
 
 
-def crashes(run: Records) -> np.ndarray:
-    """Return the crashes of each world of a run, int64 (W,); in a fork, only those since the fork.
+def extinctions_of(run: Records) -> Extinctions:
+    """Return the extinctions of each world of a run; in a fork, only those since the fork.
 
     Lives are read only if there were extinctions.
     """
-    died_out = run.count(NAME).astype(np.int64)
+    total = run.count(NAME).astype(np.int64)
     if run.origin is not None:
-        died_out = died_out - read_count(run.origin, NAME).astype(np.int64)
-    crashed = np.zeros(len(died_out), np.int64)
-    if len(some := np.flatnonzero(died_out)):
+        total = total - read_count(run.origin, NAME).astype(np.int64)
+    crashes = np.zeros(len(total), np.int64)
+    if len(some := np.flatnonzero(total)):
         worlds = [run.lives.of_world(world) for world in some.tolist()]
-        crashed[some] = extinctions(worlds, run.config.cells).crashes
-    return crashed
+        crashes[some] = extinctions(worlds, run.config.cells).crashes
+    return Extinctions(total, crashes)
 
 
 def _starts(lives: Lives) -> np.ndarray:

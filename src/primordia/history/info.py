@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from primordia.history.extinctions import crashes
+from primordia.history.extinctions import extinctions_of
 from primordia.history.threshold import Threshold, threshold
 from primordia.law.metabolism import break_even
 from primordia.law.world import Cause
@@ -56,7 +56,7 @@ def info(run: Records) -> dict[str, Any]:
 
 
 def _worlds(run: Records) -> list[dict[str, Any]]:
-    each = zip(crashes(run).tolist(), _thresholds(run), strict=True)
+    each = zip(extinctions_of(run).crashes.tolist(), _thresholds(run), strict=True)
     return [_world(run, world, *of_records) for world, of_records in enumerate(each)]
 
 
