@@ -230,6 +230,13 @@ def test_bodies_without_a_seed_get_random_ones() -> None:
     assert len(np.unique([*first, *second], axis=0)) == 5
 
 
+def test_the_first_life_without_a_seed_is_that_of_the_seed_drawn_for_it() -> None:
+    env = LifeEnv("CartPole-survival")
+    lives = [env.reset()[0], env.reset()[0]]
+    again = [env.reset(seed=env.np_random_seed)[0], env.reset()[0]]
+    np.testing.assert_array_equal(again, lives)
+
+
 @pytest.mark.parametrize("action", [2, -1, 0.5, [0], None, "left"])
 def test_an_action_that_does_not_exist_is_an_error(action: Any) -> None:
     env = LifeEnv("CartPole-survival")

@@ -12,6 +12,7 @@ import pytest
 from primordia.comparison.comparison import ComparedArm, Comparison
 from primordia.comparison.measured import Measured
 from primordia.experiments import results
+from primordia.history.extinctions import Extinctions
 from primordia.runs.arrays import NEVER
 
 WHAT: dict[str, Any] = {"survival": None, "pace": None, "gathering": None, "extinctions": None}
@@ -49,7 +50,7 @@ def rows_of(text: str) -> list[list[str]]:
 
 def test_the_counts_of_a_world_are_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two worlds of three cells."""
-    names = "tick", "births", "extinctions", "saturated_births", "saturated"
+    names = "tick", "births", "saturated_births", "saturated"
     state = {
         f"world.worlds.{name}": np.array([10 * place, 10 * place + 1], np.uint64)
         for place, name in enumerate(names, 1)
@@ -59,13 +60,12 @@ def test_the_counts_of_a_world_are_its_own(monkeypatch: pytest.MonkeyPatch) -> N
         count=state.__getitem__,
         state={"world.organisms.alive": np.array([1, 1, 1, 0, 0, 1], bool)},
     )
-    monkeypatch.setattr(
-        results, "crashes", lambda arm: np.array([5, 6]) if arm is records else None
-    )
+    lost = Extinctions(np.array([30, 31]), np.array([5, 6]))
+    monkeypatch.setattr(results, "extinctions_of", lambda arm: lost if arm is records else None)
     told = {name: column.tolist() for name, column in results.counts(records).items()}
     assert told == {
         "seed": [7, 8], "ticks": [10, 11], "births": [20, 21], "extinctions": [30, 31],
-        "crashes": [5, 6], "alive": [3, 1], "saturated_births": [40, 41], "saturated_tick": [50, 51],
+        "crashes": [5, 6], "alive": [3, 1], "saturated_births": [30, 31], "saturated_tick": [40, 41],
     }  # fmt: skip
 
 

@@ -48,7 +48,7 @@ class LifeEnv(gymnasium.Env):
         if render_mode not in (None, *self.metadata["render_modes"]):
             raise ValueError(f"render_mode: {render_mode!r}; use 'rgb_array' or None")
         self.render_mode = render_mode
-        self._reward, self._episode = reward, 0
+        self._reward, self._episode = reward, -1
         self._bodies = Bodies(config.load(task, settings), 1, watched=render_mode is not None)
         if (rate := self._bodies.habitat.rate) is not None:
             self.metadata = {**self.metadata, "render_fps": rate}
