@@ -215,13 +215,15 @@ def test_lines_of_descent_take_the_place_of_branches_where_they_are_followed() -
 
 
 def test_the_width_of_a_cell_is_that_of_the_worlds_that_are_shown() -> None:
-    room = colour_room(64, 3)
-    assert cell_width(law(10), None, room) == 6
-    assert cell_width(law(10, 3), None, room) == 6, "60 columns for each of three rows"
-    assert cell_width(law(10, 3), 1, room) == 6
-    assert cell_width(law(10, 6), None, room) == 2, "two side by side have 28 columns"
-    assert cell_width(law(10, 6), 5, room) == 6
-    assert cell_width(law(40, 6), None, room) == 0, "not all worlds fit"
+    room, seeds = colour_room(64, 3), list(range(6))
+    assert cell_width(law(10), seeds, None, room) == 6
+    assert cell_width(law(10, 3), seeds, None, room) == 6, "60 columns for each of three rows"
+    assert cell_width(law(10, 3), seeds, 1, room) == 6
+    assert cell_width(law(10, 6), seeds, None, room) == 2, "two side by side have 28 columns"
+    assert cell_width(law(10, 6), seeds, 5, room) == 6
+    assert cell_width(law(40, 6), seeds, None, room) == 0, "not all worlds fit"
+    assert cell_width(law(10, 6), [999, *range(1000, 1005)], None, room) == 2
+    assert cell_width(law(10, 6), [10**11, *seeds[1:]], None, room) == 1, "labels have 15 columns"
 
 
 # The past.

@@ -192,10 +192,11 @@ def with_prefix(value: float | None) -> str:
     """Write a number with an SI prefix, such as 12.3 M; a dash if it is unknown."""
     if value is None:
         return "-"
-    power = int(np.clip(np.log10(max(value, 1)) // 3, 0, 3))
-    number = value / 1000**power
-    digits = 1 if power and number < 100 else 0
-    return f"{number:.{digits}f} {['', 'k', 'M', 'G'][power]}".strip()
+    power = 0
+    while round(value) >= 1000 and power < 3:
+        value, power = value / 1000, power + 1
+    digits = 1 if power and value < 99.95 else 0
+    return f"{value:.{digits}f} {['', 'k', 'M', 'G'][power]}".strip()
 
 
 def duration(seconds: float) -> str:

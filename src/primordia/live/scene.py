@@ -17,6 +17,8 @@ from primordia.random.wide import Wide, to_host
 
 KEPT = 512
 """number of past moments of a ring that are kept"""
+BESIDE = 3
+"""columns beside the drawing of a world for a space and its mark, without the digits of its seed"""
 
 
 class Scene(NamedTuple):
@@ -67,12 +69,12 @@ class Grid(NamedTuple):
         return cls(across, shown, each, gap)
 
 
-def cell_width(law: Law, alone: int | None, room: Room) -> int:
+def cell_width(law: Law, seeds: list[int], alone: int | None, room: Room) -> int:
     """Return the width of a cell in a room, in columns; 0 if not all cells of the shown worlds fit."""
     form = form_of(law, room.letters)
     if law.worlds == 1 or alone is not None:
         return form.scale(room)
-    grid = Grid.of(form, law.worlds, len(f"{law.worlds}") + 3, room)
+    grid = Grid.of(form, law.worlds, _digits(seeds) + BESIDE, room)
     return form.scale(grid.each) if grid.shown == law.worlds else 0
 
 
@@ -126,6 +128,11 @@ class Stage:
         return list(past)[1:]
 
 
+def _digits(seeds: list[int]) -> int:
+    """Return the number of digits of the longest seed."""
+    return max(len(str(seed)) for seed in seeds)
+
+
 def _tiles(
     world: World,
     form: Form,
@@ -136,8 +143,8 @@ def _tiles(
     """Draw worlds side by side and below each other, each with its seed and a mark if saturated."""
     seeds = to_host(world.worlds.seed).tolist()
     saturated = to_host(world.worlds.saturated).astype(np.int64) >= 0
-    digits = len(str(seeds[-1]))
-    grid = Grid.of(form, len(seeds), digits + 3, room)
+    digits = _digits(seeds)
+    grid = Grid.of(form, len(seeds), digits + BESIDE, room)
     tiles, parts = [], dict[str, None]()
     for number in range(grid.shown):
         drawn, part = draw(number, grid.each)

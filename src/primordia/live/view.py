@@ -184,7 +184,7 @@ class View:
             return self._companion.rows(engine, alone, room) if self._companion else []
 
         def measure(room: Room) -> int:
-            return cell_width(law, alone, room)
+            return cell_width(law, to_host(world.worlds.seed).tolist(), alone, room)
 
         return composed(measure, draw, counts, organism if self._companion else None, room)
 
