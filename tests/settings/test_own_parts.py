@@ -197,11 +197,13 @@ def test_a_part_that_works_is_lived_with(kind: str, pond: Path) -> None:
 
 @pytest.mark.parametrize("function", ["open", "reset", "step", "save"])
 def test_an_error_in_own_code_is_one_line_with_its_place(function: str, pond: Path) -> None:
+    """The place is where the error arose, not the call that led there."""
     lines = HOST.splitlines()
     number = next(n for n, line in enumerate(lines) if f"def {function}(" in line) + 1
-    lines.insert(number, "        raise OSError(5, 'deep')")
+    lines.insert(number, "        sink()")
+    lines += ["", "", "def sink():", "    raise OSError(5, 'deep')"]
     pond.write_text("\n".join(lines))
-    complains(begun("on the host"), 2, f"{pond}, line {number + 1}: OSError: [Errno 5] deep")
+    complains(begun("on the host"), 2, f"{pond}, line {len(lines)}: OSError: [Errno 5] deep")
 
 
 def test_a_habitat_that_ends_the_process_is_reported(pond: Path) -> None:
