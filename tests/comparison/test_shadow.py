@@ -17,7 +17,9 @@ from primordia.comparison import shadow as module
 from primordia.comparison.resample import resamples
 from primordia.comparison.shadow import Shadow, _lifespans, _sample, shadow
 from primordia.errors import InputError
+from primordia.history.climate import Climates, PastClimate
 from primordia.runs import loop
+from primordia.runs.lives import Lives
 from tests.commands import complains, here
 from tests.synthetic import worlds_of
 from tests.worlds import MEADOW, config
@@ -73,6 +75,22 @@ def test_a_life_is_the_same_beside_any_others(poles: dict[str, primordia.Run]) -
         assert len(np.unique(together)) > 10
         alone = _lifespans(run, rows[1::2], redrawn, 100)
         np.testing.assert_array_equal(alone, together[1::2])
+
+
+def test_a_life_has_the_climate_of_its_birth(
+    poles: dict[str, primordia.Run], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run, asked = poles["parent"].opened(), []
+    found = PastClimate.of_lives
+
+    def of_lives(self: PastClimate, lives: Lives, ticks: np.ndarray) -> Climates:
+        asked.append((lives.id.tolist(), ticks.tolist()))
+        return found(self, lives, ticks)
+
+    monkeypatch.setattr(PastClimate, "of_lives", of_lives)
+    rows = np.flatnonzero(run.lives.rank < 60)[::6]
+    _lifespans(run, rows, True, 100)
+    assert asked[0] == (run.lives.id[rows].tolist(), run.lives.born[rows].tolist())
 
 
 @given(st.lists(st.tuples(st.integers(1, 9), st.integers(1, 9)), min_size=1, max_size=30))

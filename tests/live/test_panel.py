@@ -214,7 +214,8 @@ def test_keys_without_meaning_are_not_named() -> None:
 @pytest.mark.parametrize(
     ("number", "said"),
     [(0.4, "0"), (1, "1"), (999, "999"), (1000, "1.0 k"), (99_900, "99.9 k"), (100_000, "100 k"),
-     (999.7, "1.0 k"), (99_960, "100 k"), (999_700, "1.0 M"), (1e6, "1.0 M"), (12.34e6, "12.3 M"), (1e9, "1.0 G"), (2.5e12, "2500 G")],
+     (999.7, "1.0 k"), (99_960, "100 k"), (999_700, "1.0 M"), (1e6, "1.0 M"),
+     (12.34e6, "12.3 M"), (1e9, "1.0 G"), (2.5e12, "2500 G")],
 )  # fmt: skip
 def test_a_prefix_stands_for_each_thousand(number: float, said: str) -> None:
     assert with_prefix(number) == said

@@ -173,6 +173,14 @@ class Fixed(Wagon):
         self.place[:], self.speed[:] = arrays["place"][0], arrays["speed"][0]
 
 
+class Whole(Wagon):
+    """It restores all bodies together, and not one of them alone."""
+
+    def load(self, arrays: dict[str, np.ndarray]) -> None:
+        if len(arrays["place"]) > 1:
+            super().load(arrays)
+
+
 class Heir(Wagon):
     def reset(self, born: np.ndarray, words: np.ndarray) -> np.ndarray:
         self.place[born] = words % 7
@@ -228,6 +236,7 @@ HOST_FAULTS: list[tuple[Any, str]] = [
         "at age 7 after `save` and `load`; save everything on which a body's future depends",
     ),
     (Fixed(), "after `save` and `load`"),
+    (Whole(), "after `save` and `load`"),
     (Heir(), "if another lived in its cell before; let `reset` make complete bodies"),
     (Intruder(), "when others are born beside it"),
     (Gambler(), "at age 0 when it begins again, .*; draw only from `words`"),
