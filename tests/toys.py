@@ -132,6 +132,15 @@ class Mirror(OnHost):
         super().load({"body0": arrays["mirror"]})
 
 
+class Blank(Mirror):
+    """A habitat that tells nothing of the bodies that it does not step."""
+
+    def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
+        senses, outcome = super().step(action, alive)
+        senses[~alive] = 9.0
+        return senses, outcome
+
+
 class Clocked(Mirror):
     """A habitat that tallies the ticks lived, up and down."""
 

@@ -46,10 +46,17 @@ def test_a_world_is_the_same_alone_and_among_a_hundred() -> None:
     assert len(set(among.digests())) == 100
 
 
-@pytest.mark.parametrize("habitat", [{}, {"name": "tests.toys:Mirror", "inner": "mill"}])
+@pytest.mark.parametrize(
+    "habitat",
+    [
+        MILL["habitat"],
+        {"name": "tests.toys:Mirror", "inner": "mill"},
+        {"name": "tests.toys:Blank", "inner": "mill"},
+    ],
+)
 def test_worlds_that_stop_early_do_not_change_the_others(habitat: dict[str, str]) -> None:
     """A world that has stopped stays as it is: bodies, memories, energy."""
-    settings = config({**MILL, "habitat": habitat or MILL["habitat"]}, seeds=2)
+    settings = config({**MILL, "habitat": habitat}, seeds=2)
     together = Lived(settings, 600, births=25)
     ticks = together.engine.arrays()["world.worlds.tick.lo"].tolist()
     assert len(set(ticks)) > 1

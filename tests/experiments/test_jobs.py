@@ -220,7 +220,9 @@ def test_some_arms_are_run_alone(tmp_path: Path) -> None:
     done = here("experiment", file, "--out", out, "--only", "harsh", "--jobs", 1)
     assert done.returncode == 0
     assert "2 jobs of other arms left to do" in done.stderr
-    assert begin(out).status().jobs["done"] == 2
+    assert begin(out).status().jobs == {"done": 2, "running": 0, "failed": 0, "waiting": 2}
+    assert begin(out).status(["harsh"]).jobs["waiting"] == 0
+    assert [arm.name for arm in begin(out).status(["harsh"]).arms] == ["harsh"]
     assert not (out / "mild").exists()
     complains(here("compare", out), 2, f"arm mild of {out} has not begun yet")
     complains(here("replay", out), 2, f"{out} is an experiment; name one of its arms")

@@ -57,13 +57,15 @@ def test_each_arm_has_the_worlds_of_its_own_jobs() -> None:
         Entry(job=3, arm="one", state="failed", worlds=failed, error="full"),
         Entry(job=4, arm="two", state="done", worlds=[counts(1, number, 1) for number in range(5)]),
     ]
-    told = status(Plan(question="?", worlds=2, arms=arms), entries)
+    plan = Plan(question="?", worlds=2, arms=arms)
+    told = status(plan, entries, ("one", "two", "none"))
     assert told.jobs == {"done": 2, "running": 1, "failed": 1, "waiting": 1}
     assert told.arms == (
         ArmStatus("one", 4, 3, 1, 70.0, None),
         ArmStatus("two", 7, 6, 6, 2.5, (0.0, 4.0)),
         ArmStatus("none", 2, 0, 0, None, None),
     )
+    assert status(plan, entries[1:2], ["two"]).arms == (ArmStatus("two", 7, 1, 1, 3.0, None),)
     assert [entry.job for entry in told.running] == [1]
     assert [(entry.job, entry.error) for entry in told.failed] == [(3, "full")]
 

@@ -100,6 +100,11 @@ def test_takeovers_are_those_of_the_named_worlds_and_known_only_of_worlds_that_a
     assert set(followed.lines) == {0, 1}
     assert followed.takeovers([0, 1]) == 1
     assert followed.takeovers([0, 1, 2]) is None
+    world = posed([[1] * 4] * 3, [[0] * 4] * 3, [5] * 3)
+    followed.follow(status([births()] * 3, world, cells=4), 3)
+    assert set(followed.lines) == {0, 1, 2}
+    assert followed.takeovers([0, 1]) == 1
+    assert followed.takeovers([0, 1, 2]) is None, "world 2 was not followed for a chunk"
 
 
 def test_the_lines_of_a_run_that_goes_on_begin_with_its_own_living() -> None:

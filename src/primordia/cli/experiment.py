@@ -1,6 +1,7 @@
 """The command `primordia experiment`: arms of many worlds, as jobs on all cores or on a cluster."""
 
 import json
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -134,7 +135,7 @@ def _live_all(
     left = chosen.left(only)
     if left:
         place = place_for(chosen.path, len(left), jobs, ray, **options)
-        with watching(quiet, chosen.status) as look:
+        with watching(quiet, partial(chosen.status, only)) as look:
             result = live_all(left, place, look, _report_failure)
         _end_unless_done(chosen, result)
     if chosen.left():

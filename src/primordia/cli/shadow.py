@@ -53,7 +53,7 @@ def shadow_text(found: "Shadow") -> str:
     longer, shorter = found.longer
     head = (
         f"{found.name}: {told['organisms']:,} organisms, each born again alone, from"
-        f" {found.births:,} births in {told['worlds']} worlds;"
+        f" {found.births:,} births in {told['worlds']} world{'s' if told['worlds'] > 1 else ''};"
         f" {2 * told['organisms']:,} lives, {told['ticks']:,} ticks"
     )
     lines = [f"{'':12}{'mean life':>12}{f'reach {found.cut:,} ticks':>24}"]

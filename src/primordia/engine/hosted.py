@@ -60,9 +60,12 @@ class HostedChunks:
         thought = self._calls.think(bulk.genome, held, senses)
         while done < ticks and decision.go_on:
             most = min(int(decision.due), ticks - done)
+            rests = np.flatnonzero(np.asarray(decision.alive) & ~np.asarray(decision.active))
+            before = senses[rests]  # a copy: the habitat may return the same array each time
             unsettled, thought, senses = self._quiet(
                 bulk.genome, held, thought, senses, decision.active, most
             )
+            senses[rests] = before
             done += int(unsettled.ticks)
             bulk, events, held, decision = self._calls.settle(bulk, events, held, unsettled, limits)
             self._tallies.note_deaths(np.asarray(decision.died))

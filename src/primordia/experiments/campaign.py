@@ -56,14 +56,26 @@ class Campaign:
         Raises:
             InputError: there is no such arm.
         """
-        names = {self.plan.arm(name).name for name in arms or self.arms}
+        names = self._names(arms)
         return [
             job for job in self.jobs if job.arm in names and self._ledger.entry(job).state != "done"
         ]
 
-    def status(self) -> CampaignStatus:
-        """Return the number of jobs in each state, and the counts of each arm so far."""
-        return status(self.plan, self._ledger.entries())
+    def status(self, arms: Sequence[str] = ()) -> CampaignStatus:
+        """Return the number of jobs in each state, and the counts of each arm so far.
+
+        Without `arms`, these are the jobs and counts of all arms.
+
+        Raises:
+            InputError: there is no such arm.
+        """
+        names = self._names(arms)
+        entries = [entry for entry in self._ledger.entries() if entry.arm in names]
+        return status(self.plan, entries, names)
+
+    def _names(self, arms: Sequence[str]) -> set[str]:
+        """Return the names of some arms; without `arms`, those of all arms."""
+        return {self.plan.arm(name).name for name in arms or self.arms}
 
     def opened(self) -> list[Records]:
         """Open the runs of each arm for reading.

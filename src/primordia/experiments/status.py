@@ -1,6 +1,7 @@
 """The status of an experiment: states of jobs and counts of arms, read without opening a run."""
 
 from collections import Counter
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Any
 
@@ -57,18 +58,17 @@ class CampaignStatus:
         }
 
 
-def status(plan: Plan, entries: list[Entry]) -> CampaignStatus:
-    """Return the status of an experiment from the entries of its jobs."""
+def status(plan: Plan, entries: list[Entry], names: Collection[str]) -> CampaignStatus:
+    """Return the status of the arms with these names, from the entries of their jobs."""
     states = Counter(entry.state for entry in entries)
-    worlds: dict[str, list[WorldCounts]] = {arm.name: [] for arm in plan.arms}
+    arms = [arm for arm in plan.arms if arm.name in names]
+    worlds: dict[str, list[WorldCounts]] = {arm.name: [] for arm in arms}
     for entry in entries:
         worlds[entry.arm] += entry.worlds
     return CampaignStatus(
         question=plan.question,
         jobs={state: states[state] for state in STATES},  # type: ignore[index]
-        arms=tuple(
-            _arm(arm.name, int(arm.settings["seeds"]), worlds[arm.name]) for arm in plan.arms
-        ),
+        arms=tuple(_arm(arm.name, int(arm.settings["seeds"]), worlds[arm.name]) for arm in arms),
         running=tuple(entry for entry in entries if entry.state == "running"),
         failed=tuple(entry for entry in entries if entry.state == "failed"),
     )

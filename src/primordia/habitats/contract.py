@@ -262,7 +262,7 @@ class HostHabitat(Habitat):
     def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
         """Step only the bodies of living cells; return senses, float32 (N, S), and outcome.
 
-        `alive` is bool (N,).
+        `alive` is bool (N,). The results of the other cells are not used.
         """
 
     def close(self) -> None:

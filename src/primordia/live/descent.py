@@ -18,7 +18,9 @@ class Descent:
     def __init__(self) -> None:
         self.lines: dict[int, Lines] = {}
         """world's number -> its lines of descent, for the worlds that are followed"""
-        self._followed, self._missed = 0, False
+        self._followed = 0
+        self._throughout: set[int] | None = None
+        """worlds that were followed in every chunk; None before the first chunk"""
 
     def follow(self, status: Status, shown: int) -> None:
         """Take the births and deaths of a chunk in the first worlds; `shown` is their number."""
@@ -30,6 +32,8 @@ class Descent:
         if self._followed + count > self.EVENTS * (1 + status.wall_s):
             return self._give_up()
         self._followed += count
+        now = set(range(shown))
+        self._throughout = now if self._throughout is None else self._throughout & now
         for world, turnover in enumerate(happened):
             if world in self.lines:
                 self.lines[world].follow(turnover)
@@ -40,12 +44,13 @@ class Descent:
 
     def takeovers(self, worlds: Iterable[int]) -> int | None:
         """Return the takeovers in some worlds; None if a world was not followed throughout."""
-        if self._missed or not all(world in self.lines for world in worlds):
+        worlds = set(worlds)
+        if not worlds <= (self._throughout or set()):
             return None
         return sum(len(self.lines[world].takeovers) for world in worlds)
 
     def _give_up(self) -> None:
-        self.lines, self._missed = {}, True
+        self.lines, self._throughout = {}, set()
 
 
 def _first_lines(status: Status, world: int, turnover: Turnover) -> Lines:
