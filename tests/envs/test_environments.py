@@ -144,9 +144,22 @@ def test_bodies_that_have_died_stay_as_they_are_until_a_reset() -> None:
     assert deaths[0] + 9 < deaths[1]
 
 
+def test_the_last_senses_of_a_body_are_its_own_also_while_another_begins() -> None:
+    """Poles that are always pushed the same way fall after nine or ten ticks; newborn poles stand."""
+    many, over, together = LifeVectorEnv("CartPole-survival", 8), np.zeros(8, bool), 0
+    many.reset(seed=2)
+    for _ in range(90):
+        senses, _, ended, _, _ = many.step(np.zeros(8, int))
+        assert (np.abs(senses[ended]).max(axis=1) > 0.2).all()
+        assert (np.abs(senses[over]) < 0.2).all()
+        together += bool(ended.any() and over.any())
+        over = ended
+    assert together > 3
+
+
 def test_a_seed_gives_the_same_lives_and_another_gives_others() -> None:
     env, actions = LifeEnv("CartPole-survival"), np.zeros(60, int)
-    one, other = played(env, 3, actions), played(env, 3, actions)
+    one, other = played(env, 0, actions), played(env, 0, actions)
     for a, b in zip(one, other, strict=True):
         np.testing.assert_array_equal(a[0], b[0])
     assert (played(env, 4, actions)[0][0] != one[0][0]).all()

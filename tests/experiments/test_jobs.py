@@ -224,6 +224,8 @@ def test_some_arms_are_run_alone(tmp_path: Path) -> None:
     assert begin(out).status(["harsh"]).jobs["waiting"] == 0
     assert [arm.name for arm in begin(out).status(["harsh"]).arms] == ["harsh"]
     assert not (out / "mild").exists()
+    primordia.experiment(file, out, jobs=1, only=["harsh"])
+    assert not (out / "results.md").exists()
     complains(here("compare", out), 2, f"arm mild of {out} has not begun yet")
     complains(here("replay", out), 2, f"{out} is an experiment; name one of its arms")
 

@@ -286,6 +286,16 @@ def test_a_task_has_the_settings_that_were_measured(
     assert table["habitat"] == {**own, "saving": "replay", **optional}
 
 
+@pytest.mark.parametrize(
+    ("lifespan", "expected"),
+    [(0, 0.5), (1.0, 0.5), (2.0, 0.5), (3.0, 0.3333), (100, 0.01), (1000, 0.001), (1e6, 0.001)],
+)
+def test_an_organism_replicates_about_once_in_a_random_life(
+    lifespan: float, expected: float
+) -> None:
+    assert replication(lifespan) == expected
+
+
 @pytest.mark.parametrize("ended", [0, 1])
 @pytest.mark.parametrize("limit", [None, 50])
 @pytest.mark.parametrize("why", ["", "it is closed"])

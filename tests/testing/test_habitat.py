@@ -220,6 +220,28 @@ class Scored(Wagon):
         return self.place.astype(np.int32)
 
 
+class Miscounted(Scored):
+    """It counts the ticks of all lives in a cell."""
+
+    def open(self, cells: int, watched: bool = False) -> None:
+        super().open(cells, watched)
+        self.ticks = np.zeros((cells, 1), np.int32)
+
+    def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
+        self.ticks[alive] += 1
+        return super().step(action, alive)
+
+    def tally(self) -> np.ndarray:
+        return self.ticks
+
+    def save(self) -> dict[str, np.ndarray]:
+        return {**super().save(), "tally": self.ticks}
+
+    def load(self, arrays: dict[str, np.ndarray]) -> None:
+        super().load(arrays)
+        self.ticks = arrays["tally"].copy()
+
+
 class Eaten(Scored):
     tallies = ("food",)
 
@@ -244,6 +266,7 @@ HOST_FAULTS: list[tuple[Any, str]] = [
     (Doubled(), r"gives senses from step as float64 \(32, 1\); the contract says float32"),
     (Stored(), "defines save without load; define both, or neither"),
     (Scored(), "does not save its counts; save them as 'tally'"),
+    (Miscounted(), "if another lived in its cell before; let `reset` make complete bodies"),
     (Eaten(), r"has tallies \['food'\], which are columns of deaths already"),
     (Partial(), r"saves 'clock' as \(2,\); save NumPy arrays with cells as first axis"),
 ]

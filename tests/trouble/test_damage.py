@@ -73,6 +73,18 @@ def test_damage_to_a_file_that_all_checkpoints_need_is_an_error(
     assert contents(run) == before
 
 
+@pytest.mark.parametrize("damage", [flip, Path.unlink])
+def test_damage_to_an_earlier_part_of_a_table_is_noticed(
+    run: Path, damage: Callable[[Path], None]
+) -> None:
+    assert here("resume", run, "--ticks", TICKS, "--quiet").returncode == 0
+    early, late = (run / "deaths" / f"{number:06}.parquet" for number in range(2))
+    assert late.exists()
+    damage(early)
+    for command in (("info", run), ("resume", run, "--ticks", TICKS + 100, "--quiet")):
+        complains(here(*command), 1, str(early))
+
+
 def test_damage_to_the_only_checkpoint_is_noticed(run: Path, through: str, tmp_path: Path) -> None:
     shutil.rmtree(checkpoint.numbered(run)[0])
     flip(newest(run) / "state.npz")
