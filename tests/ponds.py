@@ -141,7 +141,7 @@ class Crashing(Pond):
     """An environment that prints, and raises an error at an age where the fish is on the right."""
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict]:
-        print("splash")
+        print("splash", flush=True)
         found = super().step(action)
         if self.age == CRASH and self.place[0] > 0:
             raise ZeroDivisionError("the pond\nis empty")

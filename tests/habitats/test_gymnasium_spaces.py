@@ -93,6 +93,15 @@ def test_outputs_from_minus_one_to_one_cover_the_bounds() -> None:
         assert (built <= high).all()
 
 
+def test_whole_numbers_are_the_nearest_to_the_outputs() -> None:
+    acting = Acting(spaces.Box(-2, 6, (5,), np.int8))
+    (row,) = acting.rows(np.array([[-0.95, -0.55, 0.2, 0.65, 0.9]], np.float32))
+    np.testing.assert_allclose(row, [-1.8, -0.2, 2.8, 4.6, 5.6], rtol=1e-6)
+    built = acting.build(row)
+    assert built.dtype == np.int8
+    assert built.tolist() == [-2, 0, 3, 5, 6]
+
+
 def test_a_single_choice_counts_from_its_start() -> None:
     acting = Acting(spaces.Discrete(3, start=5))
     assert acting.kind == Discrete(3)

@@ -1,5 +1,6 @@
 """Calibrated mutation: as much change of behaviour as is allowed, in whole steps of length."""
 
+from collections.abc import Callable
 from typing import Any
 
 import jax.numpy as jnp
@@ -36,15 +37,27 @@ def distance(parents: Array) -> Change:
     return lambda children: jnp.abs(children - parents).max(axis=1)
 
 
+def share_of_moments(parents: Array) -> Change:
+    """Return a change that is a whole number of 64 moments, as that of choices is."""
+    return lambda children: jnp.floor(64 * distance(parents)(children)) / 64
+
+
 def noted(mutation: Calibrated, of: Family, change: Change) -> np.ndarray:
     return np.asarray(mutation.note(LAYOUT, of, change))[:, 0]
 
 
-@pytest.mark.parametrize("differs", [0.003, 0.1, 0.5])
-def test_a_length_is_the_largest_that_changes_no_more_than_allowed(differs: float) -> None:
+@pytest.mark.parametrize(
+    ("differs", "kind"),
+    [(0.003, distance), (0.1, distance), (0.5, distance)]
+    + [(share, share_of_moments) for share in (0.0, 1 / 64, 0.25)],
+)
+def test_a_length_is_the_largest_that_changes_no_more_than_allowed(
+    differs: float, kind: Callable[[Array], Change]
+) -> None:
     mutation = Calibrated(probability=1.0, founder_scale=0.3)
     of = family(mutation, differs=differs)
-    quarters, change = noted(mutation, of, distance(of.parents)), distance(of.parents)
+    change = kind(of.parents)
+    quarters = noted(mutation, of, change)
 
     def changed(notes: np.ndarray) -> np.ndarray:
         children, mutants = mutation.inherit(LAYOUT, of._replace(notes=jnp.asarray(notes)[:, None]))
