@@ -1,5 +1,6 @@
 """Gymnasium environments for tests: one of odd spaces, and one for each thing that can be wrong."""
 
+import os
 from itertools import count
 from typing import Any
 
@@ -141,11 +142,19 @@ class Crashing(Pond):
     """An environment that prints, and raises an error at an age where the fish is on the right."""
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict]:
-        print("splash", flush=True)
+        print("splash")
         found = super().step(action)
         if self.age == CRASH and self.place[0] > 0:
             raise ZeroDivisionError("the pond\nis empty")
         return found
+
+
+class Splashing(Pond):
+    """An environment that writes to standard output, as C libraries do."""
+
+    def step(self, action: Any) -> tuple[Any, float, bool, bool, dict]:
+        os.write(1, b"splash\n")
+        return super().step(action)
 
 
 class Spoiled(Crashing):
@@ -218,7 +227,8 @@ def food(observation: Any, reward: Any, terminated: Any, truncated: Any, info: A
 
 
 KINDS = (
-    Pond, Odd, Unseeded, Hidden, Moody, Worn, Grasping, Outside, Broken, Crashing, Spoiled, Unborn,
+    Pond, Odd, Unseeded, Hidden, Moody, Worn, Grasping, Outside, Broken, Crashing, Spoiled, Splashing,
+    Unborn,
     Talking, Still, Closed, Sealed,
 )  # fmt: skip
 for kind in KINDS:

@@ -96,6 +96,16 @@ def test_what_is_scored_has_the_reward_and_none_of_the_rules_of_lives() -> None:
     game.close()
 
 
+def test_what_a_simulator_writes_to_standard_output_is_no_answer(capfd: Any) -> None:
+    quiet, loud = (
+        Lived(config(pond(name, saving="replay", workers=2)), 20) for name in ("Pond", "Splashing")
+    )
+    assert loud.digests() == quiet.digests()
+    out, err = capfd.readouterr()
+    assert "splash" in err
+    assert "splash" not in out
+
+
 def test_an_error_kills_its_organism_and_leaves_its_last_line(tmp_path: Path, capfd: Any) -> None:
     settings = {"cells": 6, "habitat": {"workers": 2}, "stop": {"ticks": 150}}
     run = primordia.run("gym:tests.ponds:Crashing-v0", tmp_path / "run", settings)
