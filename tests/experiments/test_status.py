@@ -82,6 +82,23 @@ DAMAGED: dict[str, list[dict[str, Any]]] = {
 }
 
 
+def forked(seeds: int, *worlds: int) -> dict[str, Any]:
+    """Return a plan of two arms that fork runs with these numbers of worlds."""
+    sources = [{"run": f"run{number}", "worlds": each} for number, each in enumerate(worlds)]
+    arms = [{"name": name, "settings": {"seeds": seeds}} for name in "ab"]
+    return {"question": "?", "worlds": 1, "fork": {"at": 9, "sources": sources}, "arms": arms}
+
+
+def test_a_fork_has_a_job_for_each_run_and_all_their_worlds(tmp_path: Path) -> None:
+    """Two arms of 60,000 worlds have 12 jobs, though jobs of one world would be too many."""
+    file = tmp_path / "experiment.toml"
+    file.write_text(tomli_w.dumps(forked(60_000, *[10_000] * 6)))
+    assert len(recorded(tmp_path).jobs()) == 12
+    file.write_text(tomli_w.dumps(forked(7, 3, 5)))
+    with pytest.raises(InputError, match="arm a has 7 worlds, and the runs that it forks have 8"):
+        recorded(tmp_path)
+
+
 def test_an_arm_may_have_65536_worlds(tmp_path: Path) -> None:
     plan = {"question": "?", "worlds": 1, "arms": [{**ARM, "settings": {"seeds": 2**16}}]}
     (tmp_path / "experiment.toml").write_text(tomli_w.dumps(plan))

@@ -90,7 +90,7 @@ def test_the_numbers_are_those_of_the_world_that_is_shown_and_the_speed_is_that_
             clock.now = 10.0
             shown._rows(first)
             clock.now = 12.0
-            shown._descent.lines = lines
+            shown._descent.lines, shown._descent._throughout = lines, set(lines)
             assert told(shown, later, name) == value, (name, presses)
 
 

@@ -137,12 +137,15 @@ def _fault(plan: Plan) -> str:
     names = [arm.name.casefold() for arm in plan.arms]  # some file systems ignore case
     if len(set(names)) < len(names) or RESERVED & set(names):
         return "two arms have one name, or an arm has a name that no arm can have"
-    jobs = 0
+    sources, jobs = plan.fork.sources if plan.fork else (), 0
+    worlds = sum(source.worlds for source in sources)
     for arm in plan.arms:
         seeds = arm.settings.get("seeds")
         if type(seeds) is not int or not 1 <= seeds <= 2**16:
             return f"seeds of arm {arm.name} must be a whole number from 1 to 65536"
-        jobs += -(-seeds // plan.worlds)
+        if sources and seeds != worlds:
+            return f"arm {arm.name} has {seeds} worlds, and the runs that it forks have {worlds}"
+        jobs += len(sources) or -(-seeds // plan.worlds)
     return f"it has more than {LARGEST:,} jobs" if jobs > LARGEST else ""
 
 
