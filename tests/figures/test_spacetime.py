@@ -172,7 +172,8 @@ def test_round_ticks_stand_at_the_number_of_births_by_then() -> None:
 
 
 def test_the_first_renewal_and_eight_takeovers_are_marked() -> None:
-    """A mark stands after the births of its tick. Near the top its words are below the line."""
+    """A mark stands before the births of its tick, which have the colours of the new lines. Near the
+    top its words are below the line."""
     lives = world_of([(tick, 2, True) for tick in range(210)], until=300)
     takeover = [False, *[True] * 3, False, *[True] * 6, False, True]
     renewals = np.array([3, 9, 10, *range(20, 120, 10)])
@@ -180,11 +181,11 @@ def test_the_first_renewal_and_eight_takeovers_are_marked() -> None:
     found: Any = SimpleNamespace(renewals=renewals, by_takeover=np.array(takeover))
     spacetime._mark_renewals(axes, lives, found)
     marked = [3, 9, 10, 20, 40, 50, 60, 70, 80]
-    assert [line.get_ydata()[0] for line in axes.get_lines()] == [tick + 1.5 for tick in marked]
+    assert [line.get_ydata()[0] for line in axes.get_lines()] == [tick + 0.5 for tick in marked]
     notes = [each for each in axes.texts if isinstance(each, Annotation)]
-    assert [each.xy for each in notes] == [(1, tick + 1.5) for tick in marked]
+    assert [each.xy for each in notes] == [(1, tick + 0.5) for tick in marked]
     first, *others = (each.get_text() for each in notes)
     assert first == "1 alive: each begins a line"
     assert others == ["one line has taken over"] * 8
     below = [each.get_verticalalignment() == "top" for each in notes]
-    assert below == [True, *[False] * 8]
+    assert below == [True, True, *[False] * 7]

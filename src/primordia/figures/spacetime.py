@@ -152,7 +152,8 @@ def _mark_renewals(axes: Axes, lives: Lives, clades: Clades) -> None:
     for number, (tick, takeover) in enumerate(zip(clades.renewals, takeovers, strict=True)):
         if number and (not takeover or takeovers[:number].sum() >= MAX_TAKEOVERS):
             continue
-        place = int(np.searchsorted(lives.born, tick, side="right")) + 0.5
+        # Births of this tick have the colours of the new lines already.
+        place = int(np.searchsorted(lives.born, tick)) + 0.5
         at_top = place < len(lives) / 20
         axes.axhline(place, color=style.INK, linewidth=0.6)
         axes.annotate(
