@@ -168,6 +168,9 @@ def test_a_seed_gives_the_same_lives_and_another_gives_others() -> None:
 
 
 def test_a_life_can_be_seen() -> None:
+    env = LifeEnv("CartPole-survival", render_mode="rgb_array")
+    with pytest.raises(ResetNeeded, match="there is no body to see"):
+        env.render()
     env = gymnasium.make("primordia/CartPole-survival-v0", render_mode="rgb_array")
     env.reset(seed=0)
     picture = env.render()
@@ -229,7 +232,7 @@ def test_bodies_keep_the_seeds_that_they_were_given() -> None:
     np.testing.assert_array_equal(many.reset()[0], [each[1] for each in lives.values()])
     many.reset(seed=np.int64(5))
     masked = LifeVectorEnv("CartPole-survival", 3)
-    masked.reset(seed=[5, 3, 9], options={"reset_mask": [True, False, False]})
+    masked.reset(seed=list(np.array([5, 3, 9])), options={"reset_mask": [True, False, False]})
     np.testing.assert_array_equal(masked.reset()[0], [lives[5][1], lives[3][0], lives[9][0]])
     masked.reset(seed=[9, 9, 3], options={"reset_mask": [True, False, False]})
     np.testing.assert_array_equal(masked.reset()[0], [lives[9][1], lives[3][1], lives[9][1]])

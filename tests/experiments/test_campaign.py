@@ -141,5 +141,8 @@ def test_genomes_of_ancestors_are_found_from_any_folder(
     (tmp_path / "files" / "a.safetensors").touch()
     with patch("primordia.config.genomes.read", return_value=None):
         arms = read(file, Path("out")).arms
-    expected = (str(tmp_path / "files" / "a.safetensors"),)
-    assert [arm.config.ancestors for arm in arms] == [expected] * 2
+        expected = (str(tmp_path / "files" / "a.safetensors"),)
+        assert [arm.config.ancestors for arm in arms] == [expected] * 2
+        own = [{"name": "a"}, {"name": "b", "ancestors": ["a.safetensors"]}]
+        arms = read(write(Path("files"), arms=own), Path("out")).arms
+        assert [arm.config.ancestors for arm in arms] == [(), expected]

@@ -8,6 +8,7 @@ import pytest
 from PIL import Image
 
 import primordia
+from primordia.errors import InputError
 from primordia.habitats.cartpole.habitat import CartPole
 from primordia.organism import replay, video
 from primordia.organism.reliving.relived import RelivedLife
@@ -102,6 +103,28 @@ def test_a_film_has_all_pictures_at_its_rate_and_an_even_size(tmp_path: Path) ->
         shown = [np.asarray(each.to_image()) for each in container.decode(video=0)]
     reds = [float(each[10:20, 4:14, 0].mean()) for each in shown]
     assert reds == pytest.approx([20.0 * k for k in range(7)], abs=12)
+
+
+@pytest.mark.parametrize("rate", [1 / 3600, 1 / 1500, 12.5, 125 / 3])
+def test_a_film_takes_the_time_that_it_shows(rate: float, tmp_path: Path) -> None:
+    path = tmp_path / "film.mp4"
+    video.write(path, (Image.new("RGB", (16, 16), (9 * i, 0, 0)) for i in range(5)), rate)
+    with av.open(str(path)) as container:
+        times = [frame.time for frame in container.decode(video=0)]
+    np.testing.assert_allclose(times, np.arange(5) / rate, rtol=1e-3)
+
+
+def test_a_gif_that_would_be_too_fast_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "film.gif"
+    sample = Image.effect_noise((16, 16), 90).convert("RGB")
+    pictures = [Image.new("RGB", (16, 16), (light,) * 3) for light in (0, 255, 255)]
+    for rate in (1 / 656, 1 / 400):  # equal pictures are one
+        with pytest.raises(InputError, match=r"film.gif: a GIF shows a picture for 655 s at most"):
+            video.write(path, iter(pictures), rate, sample)
+        assert not list(tmp_path.iterdir())
+    video.write(path, iter(pictures[:2]), 1 / 655, sample)
+    with Image.open(path) as film:
+        assert film.info["duration"] == 655_000
 
 
 @pytest.mark.parametrize("sampled", [True, False])

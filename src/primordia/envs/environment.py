@@ -55,6 +55,7 @@ class LifeEnv(gymnasium.Env):
         self.observation_space = observation_space(self._bodies)
         self.action_space = action_space(self._bodies)
         self._alive = np.zeros(1, bool)
+        self._action: np.ndarray | None = None
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -107,7 +108,13 @@ class LifeEnv(gymnasium.Env):
         return info | ({"cause": label(cause)} if cause >= 0 else {})
 
     def render(self) -> np.ndarray | None:
-        """Return a picture of the body, uint8 (height, width, 3); None if none can be drawn."""
+        """Return a picture of the body, uint8 (height, width, 3); None if none can be drawn.
+
+        Raises:
+            ResetNeeded: no life has begun.
+        """
+        if self._action is None:
+            raise ResetNeeded("there is no body to see: call reset first")
         habitat = self._bodies.habitat
         if self.render_mode is None or not habitat.can(Ability.PICTURE):
             return None

@@ -81,7 +81,7 @@ class LifeVectorEnv(VectorEnv):
             )
         for cell, own in enumerate(first):
             if own is not None and (chosen[cell] or not self._begun):
-                self._seeds[cell], self._lives[cell] = own % 2**64, -1
+                self._seeds[cell], self._lives[cell] = int(own) % 2**64, -1
         self._begun = True
         self._lives[chosen] += 1
         self._begin(chosen)

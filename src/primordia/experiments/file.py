@@ -39,6 +39,7 @@ from primordia.settings.tables import (
     did_you_mean,
     from_toml,
     merged,
+    relative_to,
     replaced,
     values_of,
 )
@@ -138,7 +139,7 @@ def _arm(shared: dict[str, Any], own: dict[str, Any], file: Path, complete: bool
         file: the experiment's file.
         complete: see `shared`.
     """
-    own = dict(own)
+    own = relative_to(file.parent, own)
     name = own.pop("name", None)
     if name is None:
         raise InputError(f"{file}: an [[arms]] table has no `name`")

@@ -76,6 +76,7 @@ def film(path: Path, *shown: tuple[RelivedLife, list[range]]) -> None:
     """Make a video, .mp4 or .gif, of parts of lives of one run, side by side; see `parts_of`.
 
     Raises:
+        InputError: a GIF cannot show a picture as long as the ticks of the habitat ask.
         Trouble: the video cannot be written, or a life does not repeat as recorded.
     """
     rate = picture_rate(shown[0][0])

@@ -39,18 +39,26 @@ def write(
             first picture.
 
     Raises:
+        InputError: a GIF cannot show a picture as long as this rate asks.
         Trouble: the file cannot be written.
     """
     files.make_folder(path.parent)
     encode = partial(_gif, sample=sample) if path.suffix == ".gif" else _mp4
-    files.write(path, lambda temporary: encode(temporary, pictures, rate))
+    try:
+        files.write(path, lambda temporary: encode(temporary, pictures, rate))
+    except (
+        OverflowError
+    ):  # a GIF has 16 bits for hundredths of a second, also of equal pictures together
+        raise InputError(
+            f"{path}: a GIF shows a picture for 655 s at most; write an .mp4"
+        ) from None
 
 
 def _mp4(path: Path, pictures: Iterator[Image.Image], rate: float) -> None:
     """Write H.264 in yuv420p, which browsers and slides play."""
     first = next(pictures)
     with av.open(str(path), "w") as container:
-        stream = container.add_stream("libx264", rate=Fraction(rate).limit_denominator(1000))
+        stream = container.add_stream("libx264", rate=Fraction(rate).limit_denominator(1_000_000))
         stream.width, stream.height = (size - size % 2 for size in first.size)
         stream.pix_fmt = "yuv420p"
         stream.options = {"crf": "23", "preset": "veryfast"}

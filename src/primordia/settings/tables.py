@@ -79,9 +79,7 @@ def from_toml(path: Path) -> dict[str, Any]:
         check_values(values)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
-    if isinstance(genomes := values.get("ancestors"), list):
-        values["ancestors"] = [str(path.parent / str(genome)) for genome in genomes]
-    return with_full_paths(path.parent, values)
+    return relative_to(path.parent, values)
 
 
 def parsed_toml(text: str) -> dict[str, Any]:
@@ -120,6 +118,13 @@ def code_of(table: dict[str, Any], key: str) -> list[str]:
 def modules_of(table: dict[str, Any], key: str) -> list[str]:
     """Return the modules of the code that a part's table names; see `code_of`."""
     return [each.partition(":")[0] for each in code_of(table, key)]
+
+
+def relative_to(folder: Path, values: dict[str, Any]) -> dict[str, Any]:
+    """Return values from a file in a folder; paths of genomes and of a habitat's files begin there."""
+    if isinstance(genomes := values.get("ancestors"), list):
+        values = {**values, "ancestors": [str(folder / str(genome)) for genome in genomes]}
+    return with_full_paths(folder, values)
 
 
 def with_full_paths(folder: Path, values: dict[str, Any]) -> dict[str, Any]:
