@@ -31,6 +31,14 @@ def test_only_regular_files_up_to_a_size_are_read(
         assert raised.value.errno == code
 
 
+def test_a_text_takes_the_place_of_a_link_and_leaves_its_target(tmp_path: Path) -> None:
+    target, file = tmp_path / "target", tmp_path / "text"
+    target.write_text("mine")
+    file.symlink_to(target)
+    files.replace_text(file, "one")
+    assert (file.read_text(), file.is_symlink(), target.read_text()) == ("one", False, "mine")
+
+
 def test_a_text_is_written_whether_or_not_its_file_exists(tmp_path: Path) -> None:
     file = tmp_path / "text"
     for text in ("one", "two"):

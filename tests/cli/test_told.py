@@ -125,6 +125,7 @@ def test_a_life_is_told_beside_its_record(begin: str, where: str) -> None:
         Respect("tick of death", 4321, 4321),
         Respect("cause of death", "fatal", "starved"),
         Respect("energy left", 1234.5, None),
+        Respect("food", 1234567, 1234568.5),
     )
     notes, files = ("one thing", "another"), (Path("a.npz"), Path("b.gif"))
     found = Revival(5, 2, begin, 1000, 4321, respects, notes, files)
@@ -137,6 +138,7 @@ def test_a_life_is_told_beside_its_record(begin: str, where: str) -> None:
         ("tick of death", "4,321", "4,321", "yes"),
         ("cause of death", "fatal", "starved", "NO"),
         ("energy left", "1,234.5", "-", "NO"),
+        ("food", "1,234,567", "1,234,568.5", "NO"),
     ]
     assert below == ["Note: one thing.", "Note: another.", "a.npz", "b.gif"]
 

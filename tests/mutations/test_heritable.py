@@ -4,6 +4,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
+from primordia.law.heredity import Birth
 from primordia.mutations.contract import PURPOSES, Draws, Family
 from primordia.mutations.gaussian import Gaussian
 from primordia.mutations.heritable import Heritable
@@ -12,6 +13,7 @@ from primordia.random.keys import streams
 from primordia.random.wide import wide
 from primordia.testing import check_mutation
 from tests.mutations.test_gaussian import LAYOUT
+from tests.worlds import MEADOW, config
 
 K = 4_000
 
@@ -56,3 +58,26 @@ def test_noise_is_that_of_the_gaussian_times_its_length() -> None:
 @pytest.mark.parametrize("belongs", ["line", "cell"])
 def test_it_keeps_the_contract(belongs: str) -> None:
     check_mutation(Heritable(belongs=belongs))
+
+
+def test_founders_begin_with_their_own_exponent_and_not_with_that_of_the_dead() -> None:
+    settings = config(MEADOW, mutation={"kind": "heritable", "probability": 1.0})
+    heredity = settings.build_law(settings.build_habitat()).heredity
+    count, mutation = 40, heredity.mutation
+    birth = Birth(
+        seed=wide(np.zeros(count)),
+        number=wide(np.arange(count)),
+        draws=Draws(
+            streams(wide(np.arange(count)), wide(np.zeros(count)), *PURPOSES), jnp.arange(count)
+        ),
+        founder=jnp.arange(count) % 2 == 0,
+        rates={
+            name: jnp.full(count, each) for name, each in mutation.rates(heredity.layout).items()
+        },
+    )
+    parents = jnp.zeros((count, heredity.layout.length))
+    newborn = heredity.make_newborn(birth, parents, jnp.full((count, 1), 9, jnp.int32), None)
+    quarters = np.asarray(newborn.notes)[:, 0]
+    assert (quarters[::2] == 0).all()
+    assert (abs(quarters[1::2] - 9) <= 4).all()
+    assert len(set(quarters[1::2].tolist())) > 3

@@ -2,6 +2,7 @@
 
 from dataclasses import fields
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -15,9 +16,11 @@ from primordia.history.foraging import foraging
 from primordia.history.lineage import rebuild_all
 from primordia.runs import loop
 from primordia.runs.arm import Arm
+from primordia.runs.manifest import Progress
 from primordia.runs.opening import opened, split_name
 from primordia.runs.records import Records
 from primordia.runs.schema import TABLES
+from primordia.settings.limits import Stop
 from tests.commands import complains, here
 from tests.worlds import MILL, config
 
@@ -117,6 +120,21 @@ def test_runs_are_compared_as_arms(runs: Path) -> None:
     for one, other in zip(compared.arms, again.arms, strict=True):
         for outcome, measured in one.measured.items():
             np.testing.assert_array_equal(other.measured[outcome].value, measured.value)
+
+
+@pytest.mark.parametrize(("one", "other"), [(True, True), (True, False), (False, False)])
+def test_an_arm_can_be_repeated_if_all_its_runs_can(one: bool, other: bool) -> None:
+    limits = Stop(ticks=9, births=None, until=None), Stop(ticks=9, births=5, until=None)
+    each = [
+        Progress(limits=limit, wall_s=seconds, exact=exact, restarts=restarts)
+        for limit, seconds, exact, restarts in zip(
+            limits, (2, 3), (one, other), (1, 4), strict=True
+        )
+    ]
+    arm: Any = SimpleNamespace(runs=[SimpleNamespace(progress=progress) for progress in each])
+    told = Arm.progress.func(arm)
+    assert (told.exact, told.wall_s, told.restarts) == (one and other, 5, 5)
+    assert told.limits == Stop(ticks=9, births=None, until=None)
 
 
 def test_a_name_is_told_from_a_path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -149,6 +149,16 @@ def test_bundles_are_runs_of_an_arm(run: Path, file: Path, tmp_path: Path) -> No
     complains(here("plot", file, tmp_path / "other.zip"), 2, "is a bundle and cannot be changed")
 
 
+def test_a_bundle_that_is_written_again_is_read_again(
+    run: Path, fork: Path, tmp_path: Path
+) -> None:
+    sent = tmp_path / "sent.zip"
+    for each in (run, fork):
+        primordia.load(each).bundle(sent)
+        assert primordia.load(sent).info()["digest"] == primordia.load(each).info()["digest"]
+        sent.unlink()
+
+
 def test_one_process_unpacks_a_bundle_into_a_folder(file: Path, tmp_path: Path) -> None:
     unfinished = tmp_path / ".writing-run"
     unfinished.mkdir()
