@@ -40,6 +40,19 @@ def test_sources_are_a_module_and_those_beside_it_that_it_imports(tmp_path: Path
         assert own_code.found(installed) == {}
 
 
+@pytest.mark.parametrize("there", [b"x = 1", b"x = 2", None])
+def test_code_is_imported_if_each_of_its_files_is(
+    there: bytes | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The second of two files is imported as it is, with another text, or not at all."""
+    code = {name: own_code.Source(Path(name), b"x = 1") for name in ("one.py", "box/two.py")}
+    imported = {"one": code["one.py"]}
+    if there is not None:
+        imported["box.two"] = own_code.Source(Path("two.py"), there)
+    monkeypatch.setattr(own_code, "_loaded", imported.get)
+    assert own_code.is_loaded(code) == (there == b"x = 1")
+
+
 def test_parts_of_installed_packages_are_recorded_by_version(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -132,7 +132,7 @@ def test_an_arm_can_be_repeated_if_all_its_runs_can(one: bool, other: bool) -> N
         )
     ]
     arm: Any = SimpleNamespace(runs=[SimpleNamespace(progress=progress) for progress in each])
-    told = Arm.progress.func(arm)
+    told = Arm.progress.func(arm)  # type: ignore[attr-defined]
     assert (told.exact, told.wall_s, told.restarts) == (one and other, 5, 5)
     assert told.limits == Stop(ticks=9, births=None, until=None)
 
