@@ -173,6 +173,12 @@ def test_a_number_alone_means_that_all_games_have_it() -> None:
     assert _quartiles(Spread.of(every)._asdict()) == "100"
 
 
+def test_scores_below_one_are_not_rounded_to_nothing() -> None:
+    metres = Spread.of(np.array([0.125, 0.25, 0.375, 1234.5, -0.5]))._asdict()
+    text = "median 0.25 (quartiles 0.125, 0.375), minimum -0.5, maximum 1,234"
+    assert _quartiles(metres) == text
+
+
 def test_any_setting_of_the_habitat_is_a_flag(poles: Path) -> None:
     """This holds also for a setting with the name of an argument of `evaluate` in Python."""
     organism = "--organism", str(primordia.load(poles).oldest().id)

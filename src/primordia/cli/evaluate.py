@@ -171,11 +171,13 @@ def _games(count: int, kind: str = "") -> str:
 
 
 def _quartiles(spread: dict[str, float]) -> str:
+    from primordia.comparison.tables import number_text
+
+    told = {name: number_text(value) for name, value in spread.items()}
     if spread["minimum"] == spread["maximum"]:
-        return f"{spread['median']:,.0f}"
-    quartiles = f"quartiles {spread['q1']:,.0f}, {spread['q3']:,.0f}"
-    extremes = f"minimum {spread['minimum']:,.0f}, maximum {spread['maximum']:,.0f}"
-    return f"median {spread['median']:,.0f} ({quartiles}), {extremes}"
+        return told["median"]
+    quartiles = f"quartiles {told['q1']}, {told['q3']}"
+    return f"median {told['median']} ({quartiles}), minimum {told['minimum']}, maximum {told['maximum']}"
 
 
 def _cut(count: int, state: str) -> str:
