@@ -144,16 +144,28 @@ def test_a_run_in_this_process_loads_its_own_copy_of_a_users_simulator(admitted:
     assert pool.arrays["mark"].tolist() == [6, 6]
 
 
-MANY_LINES = "class Own:\n    def __init__(self, arrays):\n        raise RuntimeError('first\\n\\n  second\\tthird')\n"  # noqa: E501
-
-
-def test_a_message_of_several_lines_is_told_in_one(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(
+    ("lines", "told"),
+    [
+        ("raise RuntimeError('first\\n\\n  second\\tthird')", "RuntimeError: first second third; "),
+        ("raise RuntimeError()", "RuntimeError; "),
+        (
+            "e = RuntimeError('why'); e.add_note('a note of a library'); raise e",
+            "RuntimeError: why; ",
+        ),
+    ],
+)
+def test_any_failure_is_told_in_one_line_with_its_message(
+    lines: str, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    (tmp_path / "wordy_simulator.py").write_text(MANY_LINES)
+    """A message may have several lines or none, and libraries such as JAX add notes to errors."""
+    name = f"simulator_{len(lines)}"
+    (tmp_path / f"{name}.py").write_text(
+        f"class Own:\n    def __init__(self, arrays):\n        {lines}\n"
+    )
     monkeypatch.syspath_prepend(tmp_path)
-    with pytest.raises(Trouble, match=r"\(RuntimeError: first second third; .*, line 3\)"):
-        open_pool("wordy_simulator:Own", {}, {"mark": ("int64", ())}, 2, 0)
+    with pytest.raises(Trouble, match=rf"failed \({told}.*, line 3\)"):
+        open_pool(f"{name}:Own", {}, {"mark": ("int64", ())}, 2, 0)
 
 
 ODD: dict[str, board.Field] = {
