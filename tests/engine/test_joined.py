@@ -3,6 +3,7 @@
 from types import SimpleNamespace
 from typing import Any
 
+import jax
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
@@ -72,3 +73,21 @@ def test_cells_of_births_and_deaths_and_worlds_of_samples_are_those_of_the_whole
     assert (worlds.tolist(), ticks.tolist()) == ([0, 1, 3, 2], [10, 10, 10, 20])
     assert [int(each.filled) for each in joined] == [5, 2, 4]
     assert all((np.asarray(each.rows)[:, -1] == 9).all() for each in joined)
+
+
+def test_a_chunk_has_advanced_by_the_ticks_of_the_device_that_advanced_most() -> None:
+    """The events are those of this chunk, and each device gets the state, the lists and the limits."""
+    chunks: Any = object.__new__(ShardedChunks)
+    chunks._share, chunks._split = SimpleNamespace(worlds=3, cells=7), jax.devices()[0]
+    columns = BIRTHS, DEATHS, sample_columns(())
+    chunks._lists = lists = Events(*(of_two_devices(each, [], []) for each in columns))
+    after = lists._replace(deaths=of_two_devices(DEATHS, [], [8]))
+
+    def advance(state: Any, given: Any, limits: str, ticks: np.int32) -> tuple:
+        assert (given is lists, limits, int(ticks)) == (True, "limits", 9)
+        return state, after, np.array([3, 7, 5])
+
+    chunks._advance = advance
+    state, done = chunks.advance({"a": np.ones(2)}, "limits", 9)
+    assert (state["a"].tolist(), done, chunks._lists is after) == ([1, 1], 7, True)
+    assert np.asarray(chunks.events.deaths.rows)[:, 0].tolist() == [21]
