@@ -47,10 +47,14 @@ class Told:
         return "thought"
 
     def quiet(self, *given: Any) -> tuple:
-        *_, active, most = given
+        *_, senses, active, most = given
         ticks = min(most, self.turns[0][0])
         self.log.append(("live", np.flatnonzero(active).tolist(), most))
-        return Unsettled("later", "fates", np.int32(ticks)), "next", np.full((4, 2), 90, np.float32)
+        return (
+            Unsettled("later", "fates", np.int32(ticks)),
+            "next",
+            np.full_like(senses, 90) if most else senses,
+        )
 
     def settle(self, bulk: Any, events: Any, held: Any, unsettled: Any, limits: Any) -> tuple:
         self.log.append(("settle", int(unsettled.ticks)))
@@ -106,6 +110,14 @@ def test_the_dead_are_noted_before_a_reset_and_the_living_after_it() -> None:
     ]  # fmt: skip
     assert (senses, done) == ([90, 90, 90, 6], 10)
     assert SENSES[:, 0].tolist() == [0, 2, 4, 6], "the state that was given stays as it is"
+
+
+def test_genesis_takes_no_tick_and_leaves_the_state_that_was_given() -> None:
+    born = decided(5, newborn=mask(1, 2, 3))
+    _, senses, done = advanced(told := Told(decided(0), (0, born), (5, decided(9))), 5)
+    assert [each[1:] for each in told.log if each[0] == "live"] == [([1, 2], 0), ([1, 2], 5)]
+    assert (senses, done) == ([90, 90, 90, 70], 5)
+    assert SENSES[:, 0].tolist() == [0, 2, 4, 6]
 
 
 @pytest.mark.parametrize(("ticks", "most", "done"), [(5, [3, 2], 5), (3, [3], 3), (20, [3, 8], 11)])
