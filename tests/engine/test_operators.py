@@ -24,7 +24,13 @@ BASE: dict[str, Any] = {
     "hazard": 0.1,
     "seasons": [],
 }
-SOME = {"kind": "calibrated", "probability": 0.7, "founder_scale": 0.5, "remembered": 5, "every": 3}
+SOME: dict[str, Any] = {
+    "kind": "calibrated",
+    "probability": 0.7,
+    "founder_scale": 0.5,
+    "remembered": 5,
+    "every": 3,
+}
 RECOMBINED = "heritable by cell, recombined by blocks"
 OPERATORS: dict[str, dict[str, Any]] = {
     "calibrated, recombined by rows, replacing": {
