@@ -1,5 +1,6 @@
 """Memory of a run: known to the byte before it is needed, and refused if the machine has less."""
 
+from types import SimpleNamespace
 from typing import Any
 
 import jax
@@ -50,3 +51,43 @@ def test_the_memory_of_a_container_is_a_limit(
     if text == "0":
         with pytest.raises(InputError, match="of memory or more, 0"):
             Engine(config())
+
+
+def device_with(limit: int, in_use: int) -> Any:
+    return SimpleNamespace(memory_stats=lambda: {"bytes_limit": limit, "bytes_in_use": in_use})
+
+
+def test_devices_offer_equal_shares_as_large_as_the_fullest_of_them_has_left() -> None:
+    """The largest device, the emptiest one and one that tells nothing are not what counts."""
+    devices = [device_with(900, 100), device_with(1000, 700), device_with(400, 50)]
+    assert memory.bytes_available(devices) == 3 * 300
+    silent: Any = SimpleNamespace(memory_stats=lambda: None)
+    assert memory.bytes_available([silent, *devices[:2]]) == 2 * 300
+
+
+@pytest.mark.parametrize(
+    ("limit", "kibibytes", "least"), [(5_000_000, 3_000, 3_072_000), (2_000_000, 3_000, 2_000_000)]
+)
+def test_the_least_of_a_limit_and_the_available_memory_counts(
+    limit: int, kibibytes: int, least: int, tmp_path: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "max").write_text(f"{limit}\n")
+    lines = f"MemTotal: 9999 kB\nMemFree: 1000 kB\nMemAvailable: {kibibytes} kB\nCached: 7 kB\n"
+    (tmp_path / "info").write_text(lines)
+    monkeypatch.setattr(memory, "CGROUP", tmp_path / "max")
+    monkeypatch.setattr(memory, "MEMINFO", tmp_path / "info")
+    assert memory.bytes_available([device.default()]) == least
+
+
+def test_a_run_may_take_all_memory_and_the_message_tells_both_amounts(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    law, habitat = SimpleNamespace(worlds=3, cells=500), SimpleNamespace()
+    monkeypatch.setattr(memory, "bytes_needed", lambda *given: 700_000_000 * given[2])
+    monkeypatch.setattr(memory, "bytes_available", lambda devices: 1_400_000_000)
+    two: Any = [None, None]
+    memory.check(law, habitat, two)
+    with pytest.raises(
+        InputError, match=r"^cells x seeds: 1,500 cells need 2\.1 GB .* 1\.4 GB are"
+    ):
+        memory.check(law, habitat, [*two, None])

@@ -24,7 +24,13 @@ BASE: dict[str, Any] = {
     "hazard": 0.1,
     "seasons": [],
 }
-SOME = {"kind": "calibrated", "probability": 0.7, "founder_scale": 0.5, "remembered": 5, "every": 3}
+SOME: dict[str, Any] = {
+    "kind": "calibrated",
+    "probability": 0.7,
+    "founder_scale": 0.5,
+    "remembered": 5,
+    "every": 3,
+}
 RECOMBINED = "heritable by cell, recombined by blocks"
 OPERATORS: dict[str, dict[str, Any]] = {
     "calibrated, recombined by rows, replacing": {
@@ -52,10 +58,11 @@ def whole(settings: dict[str, Any]) -> Lived:
 
 @pytest.fixture(scope="module")
 def run(settings: dict[str, Any], tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Live the same in parts, on disk."""
+    """Live the same in parts, on disk. A moment is due at the first stop, and a sample at the second."""
     path = tmp_path_factory.mktemp("operators") / "run"
-    loop.start(config(settings, stop={"ticks": 100}), path)
-    for ticks in (101, TICKS):
+    assert (99 % SOME["every"], 100 % BASE["sample_every"]) == (0, 0)
+    loop.start(config(settings, stop={"ticks": 99}), path)
+    for ticks in (100, TICKS):
         loop.resume(path, {"ticks": ticks})
     return path
 
@@ -121,7 +128,10 @@ def test_a_shadow_has_the_recorded_notes_and_other_weights(run: Path) -> None:
 
 def test_the_host_lives_the_same(settings: dict[str, Any], whole: Lived) -> None:
     habitat = {"name": "tests.toys:Mirror", "inner": "mill"}
-    on_host = Lived(config(settings, habitat=habitat), 60)
+    on_host = Lived(
+        config(settings, habitat=habitat), 30
+    )  # a moment is due in the tick of the stop
+    on_host.advance_to(60)
     here = Lived(config(settings), 60)
     for name in ("births", "deaths"):
         one, other = (np.concatenate(each.rows[name]) for each in (on_host, here))

@@ -38,7 +38,9 @@ BOUNDS: list[tuple[dict[str, Any], str, Any, Any]] = [
             ("stride", 1, 0),
             ("stride", 16, 17),
             ("finest", 0, 1),
+            ("finest", -96, -97),
             ("coarsest", 0, -1),
+            ("coarsest", 32, 33),
         ]
     ),
     *(

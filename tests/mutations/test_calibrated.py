@@ -11,7 +11,7 @@ from jax import Array
 from primordia.brains.layout import Layout
 from primordia.mutations.blocks import FounderBlock
 from primordia.mutations.calibrated import Calibrated
-from primordia.mutations.contract import PURPOSES, Change, Draws, Family
+from primordia.mutations.contract import PURPOSES, Change, Draws, Family, Moments
 from primordia.mutations.lengths import LENGTHS, LONGEST, SHORTEST
 from primordia.random.keys import Purpose, streams
 from primordia.random.wide import wide
@@ -114,3 +114,28 @@ def test_it_keeps_the_contract() -> None:
     own: Any = {"hidden": FounderBlock(founder_scale=0.1)}
     with pytest.raises(ContractError, match="no block 'hidden'; it has input"):
         check_mutation(Calibrated(blocks=own))
+
+
+def test_moments_are_those_of_the_settings() -> None:
+    assert Calibrated(remembered=5, every=9).moments == Moments(kept=5, every=9)
+    assert Calibrated(remembered=256, every=256).moments == Moments(kept=256, every=256)
+
+
+def test_rates_of_seasons_are_the_settings_and_a_length_follows_the_present_ones() -> None:
+    """Children of one tick may be born in worlds with other climates."""
+    mutation = Calibrated(probability=0.0, differs=0.25, founder_scale=0.3)
+    assert mutation.rates(LAYOUT) == {"probability": 0.0, "differs": 0.25}
+    assert mutation.governed("differs", LAYOUT) == ["differs"]
+    assert mutation.governed("founder_scale", LAYOUT) == []
+    of = family(mutation)
+    odd = np.arange(K) % 2
+    small, large = (family(mutation, probability=1.0, differs=each) for each in (0.01, 0.16))
+    here = {
+        "probability": jnp.ones(K),
+        "differs": jnp.asarray(np.where(odd, 0.16, 0.01), jnp.float32),
+    }
+    quarters = noted(mutation, of._replace(rates=here), distance(of.parents))
+    each = [noted(mutation, some, distance(of.parents)) for some in (small, large)]
+    np.testing.assert_array_equal(quarters, np.where(odd, each[1], each[0]))
+    assert set((each[1] - each[0]).tolist()) <= {15, 16, 17}
+    assert not noted(mutation, of, distance(of.parents)).any()

@@ -6,12 +6,13 @@ import pytest
 
 from primordia.law.heredity import Birth
 from primordia.mutations.contract import PURPOSES, Draws, Family
-from primordia.mutations.gaussian import Gaussian
+from primordia.mutations.gaussian import Block, Gaussian
 from primordia.mutations.heritable import Heritable
 from primordia.mutations.lengths import length
 from primordia.random.keys import streams
 from primordia.random.wide import wide
 from primordia.testing import check_mutation
+from tests.chance import binomial
 from tests.mutations.test_gaussian import LAYOUT
 from tests.worlds import MEADOW, config
 
@@ -81,3 +82,33 @@ def test_founders_begin_with_their_own_exponent_and_not_with_that_of_the_dead() 
     assert (quarters[::2] == 0).all()
     assert (abs(quarters[1::2] - 9) <= 4).all()
     assert len(set(quarters[1::2].tolist())) > 3
+
+
+def test_the_exponent_takes_a_step_if_any_block_mutates_and_no_step_else() -> None:
+    blocks = {"input": Block(probability=0.0), "recurrent": Block(probability=0.6)}
+    mutation = Heritable(probability=0.2, blocks=blocks, stride=16)
+    notes = np.asarray(mutation.note(LAYOUT, family(mutation), None))[:, 0]
+    children, mutants = (np.asarray(each) for each in mutation.inherit(LAYOUT, family(mutation)))
+    assert binomial(int(mutants.sum()), K, 0.6)
+    np.testing.assert_array_equal(mutants, (children != 0).any(axis=1))
+    assert not notes[~mutants].any()
+    assert binomial(int((notes[mutants] == 0).sum()), int(mutants.sum()), 1 / 33)
+
+
+def test_own_bounds_limit_the_exponent_on_both_sides() -> None:
+    mutation = Heritable(probability=1.0, stride=16, finest=-3, coarsest=5)
+    notes = np.asarray(mutation.note(LAYOUT, family(mutation, 1), None))
+    assert np.unique(notes).tolist() == list(range(-3, 6))
+    assert binomial(int((notes == -3).sum()), K, 13 / 33)
+    assert binomial(int((notes == 5).sum()), K, 13 / 33)
+
+
+def test_each_child_has_the_noise_of_its_own_exponent_and_of_its_blocks_scale() -> None:
+    blocks = {"output": Block(scale=0.125)}
+    fixed = Gaussian(probability=1.0, scale=0.5, blocks=blocks)
+    mutation = Heritable(probability=1.0, scale=0.5, blocks=blocks)
+    quarters = np.arange(K) % 5 * 4 - 8
+    of = family(mutation)._replace(notes=jnp.asarray(quarters[:, None], jnp.int32))
+    base = np.asarray(fixed.inherit(LAYOUT, family(fixed))[0])
+    noise = np.asarray(mutation.inherit(LAYOUT, of)[0])
+    np.testing.assert_array_equal(noise, base * 2.0 ** (quarters[:, None] / 4))

@@ -10,6 +10,7 @@ import pytest
 
 from primordia import own_code
 from primordia.errors import Trouble
+from primordia.pool import board
 from primordia.pool.contract import Pool
 from primordia.pool.in_process import InProcess
 from primordia.pool.opening import open_pool
@@ -141,3 +142,52 @@ def admitted(tmp_path: Path) -> Iterator[str]:
 def test_a_run_in_this_process_loads_its_own_copy_of_a_users_simulator(admitted: str) -> None:
     pool = open_pool(f"{admitted}:Own", {}, {"mark": ("int64", ())}, 2, 0)
     assert pool.arrays["mark"].tolist() == [6, 6]
+
+
+@pytest.mark.parametrize(
+    ("lines", "told"),
+    [
+        ("raise RuntimeError('first\\n\\n  second\\tthird')", "RuntimeError: first second third; "),
+        ("raise RuntimeError()", "RuntimeError; "),
+        (
+            "e = RuntimeError('why'); e.add_note('a note of a library'); raise e",
+            "RuntimeError: why; ",
+        ),
+    ],
+)
+def test_any_failure_is_told_in_one_line_with_its_message(
+    lines: str, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A message may have several lines or none, and libraries such as JAX add notes to errors."""
+    name = f"simulator_{len(lines)}"
+    (tmp_path / f"{name}.py").write_text(
+        f"class Own:\n    def __init__(self, arrays):\n        {lines}\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    with pytest.raises(Trouble, match=rf"failed \({told}.*, line 3\)"):
+        open_pool(f"{name}:Own", {}, {"mark": ("int64", ())}, 2, 0)
+
+
+ODD: dict[str, board.Field] = {
+    "flag": ("bool", ()), "wide": ("float64", (3, 2)), "none": ("int32", (0,)), "byte": ("uint8", (5,)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("cells", [1, 7, 13, 64])
+def test_fields_of_a_board_have_their_own_memory_in_lines_of_a_cache(cells: int) -> None:
+    """Whatever is written into one field changes no other, and the last byte still fits."""
+    lines = [-(-cells * each // 64) for each in (1, 48, 0, 5)]
+    size = board.size(ODD, cells)
+    assert size == 64 * sum(lines)
+    file, memory = board.shared_memory(size)
+    with file:
+        views = board.arrays(memory, ODD, cells)
+        assert {name: each.shape for name, each in views.items()} == {
+            "flag": (cells,), "wide": (cells, 3, 2), "none": (cells, 0), "byte": (cells, 5),
+        }  # fmt: skip
+        assert [each.dtype for each in views.values()] == ["bool", "float64", "int32", "uint8"]
+        again = board.arrays(memory, ODD, cells)
+        for number, each in enumerate(views.values(), 1):
+            each[:] = number
+        for number, each in enumerate(again.values(), 1):
+            assert (each == (number == 1 or number)).all()

@@ -168,3 +168,61 @@ def test_a_signal_that_ends_the_run_kills_its_workers() -> None:
         kill()
         assert [worker.wait(30) for worker in pool._workers] == [-signal.SIGKILL] * 3
     assert interrupts._undo == before
+
+
+def test_a_worker_that_hangs_is_killed_when_its_pool_is_closed() -> None:
+    with counters(cells=2, workers=2) as pool:
+        pool.reset(np.ones(2, bool))
+        pool.arrays["add"][:] = [-3, 1]
+        pool.arrays["todo"][:] = True
+        pool._command(STEP)
+    assert [worker.returncode for worker in pool._workers] == [-signal.SIGKILL, 0]
+
+
+def test_ctrl_c_ends_no_worker() -> None:
+    """The run ends its workers. A terminal sends the signal to the run's process group only."""
+    with counters() as pool:
+        groups = {os.getpgid(worker.pid) for worker in pool._workers}
+        assert groups == {worker.pid for worker in pool._workers}
+        for worker in pool._workers:
+            worker.send_signal(signal.SIGINT)
+        pool.reset(ALL)
+        assert pool.arrays["total"].tolist() == [100] * 7
+
+
+def test_a_worker_has_some_seconds_for_each_answer_and_the_message_tells_them(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    waited = []
+
+    def never(read: list, write: list, errors: list, timeout: float) -> tuple:
+        waited.append(timeout)
+        return [], [], []
+
+    with counters(cells=1, workers=1) as pool:
+        (worker,) = pool._workers
+        monkeypatch.setattr(pools, "PATIENCE", 7.4)
+        monkeypatch.setattr("primordia.pool.workers.select.select", never)
+        says = rf"worker process {worker.pid} has not answered for 7 s; resume the run"
+        with pytest.raises(Trouble, match=says):
+            pool.step(np.ones(1, bool))
+    assert waited == [7.4]
+
+
+SHOUTING = "class Own:\n    def __init__(self, arrays, mark):\n        arrays['mark'][:] = mark\n    def make(self, cell):\n        pass\n    def step(self, cells):\n        print('..')\n"  # noqa: E501
+
+
+def test_a_simulator_of_the_runs_path_is_found_gets_its_settings_and_may_print(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "shouting_simulator.py").write_text(SHOUTING)
+    monkeypatch.syspath_prepend(tmp_path)
+    fields = {"mark": ("int64", ())}
+    pool = Workers("shouting_simulator:Own", {"mark": 6}, fields, 3, 2)
+    for _ in range(3):
+        pool.step(np.ones(3, bool))
+    assert pool.arrays["mark"].tolist() == [6] * 3
+    pool.close()
+    out, err = capfd.readouterr()
+    # Workers print at once, so their lines may be mixed.
+    assert (out, sorted(err)) == ("", sorted("..\n" * 6))

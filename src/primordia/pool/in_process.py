@@ -66,7 +66,7 @@ def _trouble() -> Iterator[None]:
         yield
     except Exception as error:
         place = traceback.extract_tb(error.__traceback__)[-1]
-        what = " ".join(traceback.format_exception_only(error)[-1].split())
+        what = " ".join(f"{type(error).__name__}: {error}".split()).removesuffix(":")
         raise Trouble(
             f"a simulator failed ({what}; {place.filename}, line {place.lineno});"
             " resume the run from its last checkpoint"

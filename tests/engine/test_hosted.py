@@ -1,0 +1,128 @@
+"""Bodies on the host: what is stored and restored, and who is begun again where nothing is stored."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from primordia.engine.held import Packing
+from primordia.engine.hosted import HostedChunks
+from primordia.engine.state import State
+from primordia.errors import InputError, Trouble
+from primordia.habitats.contract import Ability
+from primordia.law.genesis import body_words
+from primordia.random.keys import Purpose, stream
+from primordia.random.wide import wide
+
+CELLS, WORDS = 3, 2
+"""Cells of each of two worlds, and random words of a body."""
+SENSES = np.arange(12, dtype=np.float32).reshape(6, 2)
+
+
+class Notebook:
+    """A habitat that notes what it is asked."""
+
+    words = WORDS
+
+    def __init__(self, saves: bool = True) -> None:
+        self.saves, self.bodies = saves, {"body": np.arange(6)}
+        self.begun: list[tuple] = []
+        self.loaded: dict[str, np.ndarray] = {}
+
+    def can(self, ability: Ability) -> bool:
+        return self.saves or ability is not Ability.SAVE
+
+    def save(self) -> dict[str, Any]:
+        return self.bodies
+
+    def load(self, arrays: dict[str, np.ndarray]) -> None:
+        self.loaded = arrays
+        if "body" not in arrays:
+            raise KeyError("body")
+
+    def reset(self, cells: np.ndarray, words: np.ndarray) -> np.ndarray:
+        self.begun.append((cells.tolist(), words.tolist()))
+        return np.full((len(cells), 2), 50, np.float32) + cells[:, None]
+
+
+def chunks(habitat: Notebook) -> Any:
+    made: Any = object.__new__(HostedChunks)
+    made._habitat = habitat
+    made._law = SimpleNamespace(
+        per_cell=lambda each: np.repeat(each, CELLS), cell_numbers=np.tile(np.arange(CELLS), 2)
+    )
+    return made
+
+
+def state(*alive: int) -> Any:
+    """Return a state of two worlds with organisms in some cells."""
+    organisms = SimpleNamespace(alive=np.isin(np.arange(6), alive), born=wide(np.arange(6) * 2**31))
+    return SimpleNamespace(organisms=organisms, worlds=SimpleNamespace(seed=wide([11, 12])))
+
+
+def test_a_stored_state_has_the_worlds_arrays_the_bodies_and_the_senses() -> None:
+    habitat = Notebook()
+    saved = chunks(habitat).save(State({"a": np.ones(2)}, SENSES))
+    assert saved.keys() == {"world.a", "bodies.body", "bodies.senses"}
+    np.testing.assert_array_equal(saved["bodies.senses"], SENSES)
+    np.testing.assert_array_equal(saved["bodies.body"], np.arange(6))
+
+
+@pytest.mark.parametrize("array", [np.zeros((5, 6)), np.zeros(7), 3.0, []])
+def test_bodies_without_a_row_for_each_cell_are_refused(array: Any) -> None:
+    habitat = Notebook()
+    habitat.bodies = {"body": np.zeros((6, 9)), "odd": array}
+    says = r"^habitat: save gives odd of shape \(.*\); the first axis must be the 6 cells$"
+    with pytest.raises(InputError, match=says):
+        chunks(habitat).save(State({"a": np.ones(2)}, SENSES))
+
+
+def test_a_habitat_is_restored_from_what_it_stored_and_from_nothing_else() -> None:
+    habitat, template = Notebook(), State({"a": np.zeros(2, np.float32)}, np.zeros_like(SENSES))
+    arrays = {"world.a": np.ones(2, np.float32), "bodies.senses": SENSES, "bodies.body": np.ones(6)}
+    loaded: Any = chunks(habitat).load(template, arrays)
+    assert habitat.loaded.keys() == {"body"}
+    assert loaded.world["a"].tolist() == [1, 1]
+    np.testing.assert_array_equal(loaded.bodies, SENSES)
+    loaded.bodies[0] = 9  # the senses of a run change, those that were read do not
+    assert SENSES[0].tolist() == [0, 1]
+    del arrays["bodies.body"]
+    with pytest.raises(Trouble, match="does not fit this run: its bodies cannot be loaded: 'body'"):
+        chunks(habitat).load(template, arrays)
+
+
+def test_the_living_begin_again_with_the_random_words_of_their_own_births() -> None:
+    habitat = Notebook(saves=False)
+    senses = chunks(habitat)._reset_to_birth(state(1, 3, 5), SENSES)
+    ((cells, words),) = habitat.begun
+    assert cells == [1, 3, 5]
+    for cell, each in zip(cells, words, strict=True):
+        key = stream(wide([11 + cell // CELLS]), Purpose.BODY, wide([cell * 2**31]))
+        assert each == np.asarray(body_words(key, np.array([cell % CELLS]), WORDS))[0].tolist()
+    assert senses[[1, 3, 5], 0].tolist() == [51, 53, 55]
+    np.testing.assert_array_equal(senses[[0, 2, 4]], SENSES[[0, 2, 4]])
+    assert SENSES[1].tolist() == [2, 3], "the stored senses stay"
+
+
+def test_where_nobody_lives_nothing_begins_again() -> None:
+    habitat = Notebook(saves=False)
+    np.testing.assert_array_equal(chunks(habitat)._reset_to_birth(state(), SENSES), SENSES)
+    assert habitat.begun == []
+
+
+def test_packed_arrays_of_any_kind_and_rank_come_back_bit_for_bit() -> None:
+    tree = {
+        "a": np.array([[True, False], [False, True]]),
+        "b": np.array([[[1.5], [-0.0]], [[np.nan], [np.inf]]], np.float32),
+        "c": (np.array([-1, 2**31 - 1], np.int32), np.array([2**32 - 1, 0], np.uint32)),
+    }
+    packing = Packing.of(tree)
+    words = np.asarray(packing.pack(tree))
+    assert (words.shape, words.dtype) == ((2, 6), np.uint32)
+    again = packing.unpack(words)
+    for name, one, other in zip("abcd", (*tree.values(),), again.values(), strict=False):
+        pairs = zip(one, other, strict=True) if isinstance(one, tuple) else [(one, other)]
+        for before, after in pairs:
+            assert (after.shape, after.dtype) == (before.shape, before.dtype), name
+            assert np.asarray(after).tobytes() == before.tobytes(), name
