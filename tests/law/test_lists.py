@@ -70,8 +70,8 @@ def test_large_worlds_write_more_events_at_once(cells: int, most: int) -> None:
 
 @pytest.mark.parametrize("share", [0.0, 0.02, 1.0])
 def test_each_true_cell_is_visited_once_in_order(share: float) -> None:
-    """1,300 cells are visited five at a time; the rest of the last batch is not valid."""
-    mask = np.random.default_rng(3).random(1300) < share
+    """1,301 cells are visited five at a time; the rest of the last batch is not valid."""
+    mask = np.random.default_rng(3).random(1301) < share
     mask[-1] = share > 0
     where = np.flatnonzero(mask)
 
@@ -79,7 +79,7 @@ def test_each_true_cell_is_visited_once_in_order(share: float) -> None:
         block = jnp.stack([cells, cells + 1], axis=1).astype(jnp.uint32)
         return log.append(carry[0], block, valid), carry[1] + 1
 
-    begun = Rows(jnp.full((1310, 2), 9, jnp.uint32), jnp.int32(3))
+    begun = Rows(jnp.full((1311, 2), 9, jnp.uint32), jnp.int32(3))
     listed, calls = log.for_each(jnp.asarray(mask), (begun, jnp.int32(0)), act)
     filled = int(listed.filled)
     assert filled == 3 + len(where)
