@@ -11,6 +11,7 @@ from primordia.random.wide import (
     Wide,
     happened,
     largest,
+    modulo,
     never,
     select,
     signed,
@@ -126,6 +127,16 @@ def test_products_keep_every_bit(a: list[int], b: list[int]) -> None:
     expected = [x * y for x, y in zip(a, b, strict=True)]
     assert ints(times(uint32(a), uint32(b))) == expected
     assert ints(TIMES(uint32(a), uint32(b))) == expected
+
+
+@FEW
+@given(counts)
+def test_remainders_are_those_of_integers(a: list[int]) -> None:
+    """The divisors that the law uses are at most 2^16."""
+    for n in (1, 2, 3, 1000, 2**16 - 1, 2**16):
+        answer = modulo(whole(a), n)
+        assert answer.dtype == jnp.int32
+        assert answer.tolist() == [x % n for x in a]
 
 
 @FEW

@@ -1,0 +1,143 @@
+"""Heredity of invented births: founders, children, mates, and which heredities are equal."""
+
+from dataclasses import replace
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from primordia.brains.layout import Layout
+from primordia.law.heredity import Birth, Heredity
+from primordia.law.recombination import Recombination
+from primordia.mutations.contract import PURPOSES, Draws, Family
+from primordia.mutations.gaussian import Gaussian
+from primordia.random.keys import Purpose, streams
+from primordia.random.wide import wide
+
+LAYOUT = Layout((("input", (3, 2)), ("output", (2, 3))))
+ANCESTORS = np.arange(5 * 12, dtype=np.float32).reshape(5, 12)
+K = 8
+SEEDS = [0, 1, 4, 7, 2**32, 2**64 - 1, 2**64 - 1, 3]
+NUMBERS = [0, 0, 1, 3, 2**32 + 1, 1, 2**40, 9]
+SOME = np.array([1, 0, 0, 1, 1, 0, 1, 0], bool)
+PARENTS = np.random.default_rng(4).normal(size=(K, 12)).astype(np.float32)
+
+
+def heredity_of(**values: Any) -> Heredity:
+    plain = Heredity(LAYOUT, Gaussian(probability=0.5, scale=0.1), None, "parent", None, worlds=1)
+    return replace(plain, **values)
+
+
+def births(heredity: Heredity, founder: np.ndarray) -> Birth:
+    drawn = streams(wide(SEEDS), wide([6] * K), *PURPOSES, Purpose.CROSS)
+    rates = heredity.mutation.rates(LAYOUT)
+    return Birth(
+        seed=wide(SEEDS),
+        number=wide(NUMBERS),
+        draws=Draws(drawn, jnp.arange(K)),
+        founder=jnp.asarray(founder),
+        rates={name: jnp.full(K, rate, jnp.float32) for name, rate in rates.items()},
+    )
+
+
+def made(heredity: Heredity, founder: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return genomes and mutants among newborn."""
+    none = jnp.zeros((K, 0), jnp.int32)
+    birth = births(heredity, founder)
+    newborn = heredity.make_newborn(birth, jnp.asarray(PARENTS), none, None)
+    rebuilt = heredity.rebuild_genomes(birth, jnp.asarray(PARENTS), none)
+    np.testing.assert_array_equal(newborn.genome, rebuilt)
+    return np.asarray(newborn.genome), np.asarray(newborn.mutated)
+
+
+@pytest.mark.parametrize("worlds", [1, 2])
+@pytest.mark.parametrize("founder", [SOME, ~SOME, SOME | True, SOME & False])
+def test_founders_take_the_ancestors_in_turn_and_children_their_parents_weights(
+    worlds: int, founder: np.ndarray
+) -> None:
+    """The turn begins at the seed, in steps of the birth number; no founder is a mutant."""
+    heredity = heredity_of(ancestors=ANCESTORS, worlds=worlds)
+    genome, mutated = made(heredity, founder)
+    birth = births(heredity, founder)
+    family = Family(jnp.asarray(PARENTS), jnp.zeros((K, 0)), birth.rates, birth.draws)
+    children, mutants = map(np.asarray, heredity.mutation.inherit(LAYOUT, family))
+    assert 0 < mutants.sum() < K
+    for row in range(K):
+        turn = (SEEDS[row] + NUMBERS[row]) % 2**64 % 5
+        expected = ANCESTORS[turn] if founder[row] else children[row]
+        np.testing.assert_array_equal(genome[row], expected)
+        assert mutated[row] == (mutants[row] and not founder[row])
+
+
+@pytest.mark.parametrize("worlds", [1, 2])
+def test_founders_draw_their_own_noise_and_children_theirs(worlds: int) -> None:
+    heredity = heredity_of(mutation=Gaussian(probability=1.0, founder_scale=0.5), worlds=worlds)
+    genome, _ = made(heredity, SOME)
+    birth = births(heredity, SOME)
+    family = Family(jnp.asarray(PARENTS), jnp.zeros((K, 0)), birth.rates, birth.draws)
+    founders = np.asarray(heredity.mutation.founders(LAYOUT, birth.draws))
+    children = np.asarray(heredity.mutation.inherit(LAYOUT, family)[0])
+    np.testing.assert_array_equal(genome, np.where(SOME[:, None], founders, children))
+
+
+def test_without_inheritance_all_newborn_are_founders() -> None:
+    """The births say which; the genome of none depends on a parent, and none is a mutant."""
+    heredity = heredity_of(inheritance="founder", ancestors=ANCESTORS)
+    for founder in (SOME, SOME | True):
+        genome, mutated = made(heredity, founder)
+        turns = [(seed + number) % 2**64 % 5 for seed, number in zip(SEEDS, NUMBERS, strict=True)]
+        np.testing.assert_array_equal(genome, ANCESTORS[turns])
+        assert not mutated.any()
+
+
+def test_only_those_with_a_mate_inherit_from_it() -> None:
+    mates = PARENTS + 100
+    both = heredity_of(recombination=Recombination())
+    birth = births(both, SOME & False)
+    found = np.asarray(both.recombined(birth, PARENTS, mates, jnp.asarray(SOME)))
+    from_mate = found == mates
+    assert ((found == PARENTS) | from_mate).all()
+    assert not from_mate[~SOME].any()
+    assert 0 < from_mate[SOME].sum() < from_mate[SOME].size
+    alone = np.asarray(heredity_of().recombined(birth, PARENTS, mates, jnp.asarray(SOME)))
+    np.testing.assert_array_equal(alone, PARENTS)
+
+
+def test_births_draw_for_the_exchange_of_weights_only_if_there_are_mates() -> None:
+    assert heredity_of().purposes == PURPOSES
+    assert heredity_of(recombination=Recombination()).purposes == (*PURPOSES, Purpose.CROSS)
+
+
+def test_rates_are_those_of_the_mutation_in_the_climate() -> None:
+    heredity = heredity_of()
+    names = list(heredity.mutation.rates(LAYOUT))
+    climate = {f"mutation.{name}": i for i, name in enumerate(names)}
+    climate |= {"hazard": -1} | {f"metabolism.{name}": -2 for name in names}
+    assert heredity.rates(climate) == {name: i for i, name in enumerate(names)}
+    assert len(names) > 1
+
+
+OTHERS: list[dict[str, Any]] = [
+    {"layout": Layout((("input", (2, 3)), ("output", (2, 3))))},
+    {"mutation": Gaussian(probability=0.5, scale=0.2)},
+    {"recombination": None},
+    {"recombination": Recombination(unit="block")},
+    {"inheritance": "founder"},
+    {"ancestors": None},
+    {"ancestors": ANCESTORS + np.eye(5, 12, dtype=np.float32)},
+    {"ancestors": ANCESTORS.reshape(10, 6)},
+    {"ancestors": ANCESTORS.view(np.int32)},
+    {"worlds": 2},
+]
+
+
+def test_heredities_are_equal_if_all_their_values_are() -> None:
+    """Equal heredities share compiled code; a wrongly equal one would make another's genomes."""
+    given = {"recombination": Recombination(), "ancestors": ANCESTORS}
+    one, same = heredity_of(**given), heredity_of(**given | {"ancestors": ANCESTORS.copy()})
+    assert one == same
+    assert hash(one) == hash(same)
+    for other in OTHERS:
+        assert one != heredity_of(**given | other), other
+    assert one != "heredity"

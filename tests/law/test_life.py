@@ -1,0 +1,222 @@
+"""One tick of organisms and of cells, in invented outcomes: who dies of what, eats, and replicates."""
+
+from dataclasses import replace
+from functools import cache
+from itertools import product
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from primordia.habitats import Continuous, Outcome
+from primordia.law import life, tick
+from primordia.law.genesis import begin
+from primordia.law.law import Law
+from primordia.law.life import Thought, Vitals
+from primordia.law.metabolism import ONE, Rates
+from primordia.law.motor import Motor
+from primordia.law.world import Cause, Organisms, World
+from primordia.mutations.noise import noise_index
+from primordia.random.gaussian import quantiles
+from primordia.random.keys import Purpose, bits, stream
+from primordia.random.wide import to_host, wide
+from tests.worlds import MEADOW, config
+
+RATES = Rates(*(np.float32(value) for value in (10, 1, 1, 1, 1e6)))
+
+
+@cache
+def law_of(hungry: bool = True) -> Law:
+    """Return the law of two worlds of six cells, with a metabolism or without."""
+    metabolism = {"metabolism": {"store": 10.0}} if hungry else {}
+    made = config(MEADOW, cells=6, seeds=2, hazard=0.5, replication=0.5, **metabolism)
+    return made.build_law(made.build_habitat())
+
+
+REASONS = ("expired", "hungry", "fatal", "thought", "body", "food", "effort", "reported")
+CASES = np.array(list(product([False, True], repeat=len(REASONS))))
+
+
+def judged(hungry: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Judge a tick with every set of reasons to die; return energy, food and causes."""
+    of = dict(zip(REASONS, CASES.T, strict=True))
+    energy = np.where(of["hungry"], ONE, ONE + 1).astype(np.int32)
+    outcome = Outcome(
+        fatal=of["fatal"],
+        food=np.where(of["food"], np.inf, 0.0).astype(np.float32),
+        effort=np.where(of["effort"], np.nan, 0.0).astype(np.float32),
+        expired=of["expired"],
+        fault=of["reported"],
+    )
+    bodies = np.where(of["body"], np.nan, 0.0).astype(np.float32)[:, None]
+    vitals, cause = life.judge(
+        law_of(hungry), Vitals(energy, 0 * energy), of["thought"], bodies, outcome, RATES
+    )
+    return np.asarray(vitals.energy), np.asarray(vitals.eaten), np.asarray(cause)
+
+
+@pytest.mark.parametrize("hungry", [True, False])
+def test_of_all_reasons_to_die_the_gravest_is_the_cause(hungry: bool) -> None:
+    """The drain of 1 leaves a hungry organism 0, of which it dies, and any other one step, on which it
+    lives."""
+    _, _, cause = judged(hungry)
+    expected = []
+    for row in CASES:
+        has = dict(zip(REASONS, row, strict=True))
+        if any(has[why] for why in ("thought", "body", "food", "effort", "reported")):
+            expected.append(Cause.FAULT)
+        elif has["fatal"]:
+            expected.append(Cause.FATAL)
+        elif hungry and has["hungry"]:
+            expected.append(Cause.STARVED)
+        else:
+            expected.append(Cause.TIME_LIMIT if has["expired"] else -1)
+    assert cause.tolist() == expected
+
+
+def test_what_a_habitat_does_not_report_kills_nobody_and_feeds_nobody() -> None:
+    vitals, none = Vitals(np.full(3, 5 * ONE, np.int32), np.array([0, 7, 9], np.int32)), np.zeros(3)
+    outcome = Outcome(np.array([False, True, False]))
+    for hungry, left in ((True, 4 * ONE), (False, 5 * ONE)):
+        after, cause = life.judge(law_of(hungry), vitals, none > 0, none, outcome, RATES)
+        assert cause.tolist() == [-1, Cause.FATAL, -1]
+        assert after.energy.tolist() == [left] * 3
+        assert after.eaten.tolist() == [0, 7, 9]
+
+
+def test_food_is_counted_with_a_metabolism_and_without() -> None:
+    """Food of a whole life is in the habitat's unit: gain plays no part. It may be negative."""
+    vitals = Vitals(np.full(3, 5 * ONE, np.int32), np.array([0, 7, 2**30 - 65], np.int32))
+    outcome = Outcome(np.zeros(3, bool), np.array([0.5, -0.25, 3.0], np.float32))
+    rates = RATES._replace(gain=np.float32(2))
+    for hungry, energies in ((True, [5.0, 3.5, 10.0]), (False, [5.0, 5.0, 5.0])):
+        after, _ = life.judge(
+            law_of(hungry), vitals, np.zeros(3, bool), np.zeros(3), outcome, rates
+        )
+        assert after.eaten.tolist() == [ONE // 2, 7 - ONE // 4, 2**30 - 64]
+        assert after.energy.tolist() == [energy * ONE for energy in energies]
+
+
+def thought(motor: Motor, outputs: np.ndarray) -> Thought:
+    """Return the thoughts of brains that give these outputs and remember their senses."""
+
+    def brain(genome: Any, memory: Any, senses: Any) -> tuple[Any, Any]:
+        return memory + senses, jnp.asarray(outputs)
+
+    law = replace(law_of(), brain=brain, motor=motor, action=Continuous(3))
+    key = stream(wide(np.arange(len(outputs))), Purpose.MOTOR, wide(np.full(len(outputs), 4)))
+    memory, senses = np.ones((2, len(outputs), 3), np.float32)
+    return life.think(law, {}, memory, senses, key, np.arange(len(outputs)))
+
+
+def test_an_output_that_is_not_finite_is_a_fault_wherever_it_is() -> None:
+    outputs = np.zeros((7, 3), np.float32)
+    for row, value in enumerate((np.nan, np.inf, -np.inf)):
+        outputs[row, row], outputs[3 + row, :] = value, value
+    found = thought(Motor(), outputs)
+    assert found.faulty.tolist() == [True] * 6 + [False]
+    assert (np.asarray(found.memory) == 2).all()
+    np.testing.assert_array_equal(found.action, outputs)
+
+
+def test_the_gaussian_motor_adds_its_own_share_of_noise_to_each_output() -> None:
+    outputs = np.arange(15, dtype=np.float32).reshape(5, 3)
+    key = stream(wide(np.arange(5)), Purpose.MOTOR, wide(np.full(5, 4)))
+    noise = quantiles()[np.asarray(noise_index(key, np.arange(5), 3))]
+    for sd in (0.0, 0.25, 2.0):
+        action = thought(Motor(kind="gaussian", sd=sd), outputs).action
+        np.testing.assert_allclose(action, outputs + sd * noise, rtol=1e-6)
+
+
+def a_world(alive: np.ndarray, hazard: list[float], replication: list[float]) -> World:
+    world = begin(law_of(), np.array([5, 2**40], np.uint64), tick=9)
+    climate = world.worlds.climate | {
+        "hazard": jnp.array(hazard, jnp.float32),
+        "replication": jnp.array(replication, jnp.float32),
+    }
+    energy = jnp.full(12, 100 * ONE, jnp.int32)
+    organisms = world.organisms._replace(alive=jnp.asarray(alive), energy=energy)
+    return World(organisms, world.worlds._replace(climate=climate))
+
+
+def fates(world: World, active: np.ndarray, **outcome: Any) -> tuple[World, tick.Fates]:
+    """Judge the tick 12 of a world of tick 9."""
+    keys = tick.keys_of(world.worlds, jnp.int32(3))
+    quiet = Thought(world.organisms.memory, np.zeros(12, np.int32), np.zeros(12, bool))
+    of = Outcome(**{"fatal": np.zeros(12, bool), **outcome})
+    return tick.judge(law_of(), world, quiet, np.zeros(12), of, keys, active)
+
+
+def drawn(purpose: Purpose, chances: list[float]) -> np.ndarray:
+    """Return in which cells an event of tick 12 happens, from the words of the cells."""
+    key = stream(wide([5, 2**40]), purpose, wide([12, 12]))
+    words = np.asarray(bits(key.map(lambda word: word[:, None]), np.arange(6)).hi).astype(float)
+    return (words < np.array(chances)[:, None] * 2.0**32).ravel()
+
+
+def test_accidents_and_births_are_drawn_for_each_cell_with_the_chances_of_its_world() -> None:
+    """An accident kills those that die of nothing else; only active survivors want children."""
+    alive = np.array([1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 0, 1], bool)
+    active = alive & (np.arange(12) != 5)
+    hazard, replication = [0.25, 0.75], [0.75, 0.5]
+    fatal = np.arange(12) % 5 == 1
+    _, found = fates(a_world(alive, hazard, replication), active, fatal=fatal)
+    struck = drawn(Purpose.HAZARD, hazard)
+    expected = [
+        -1 if not active[c] else Cause.FATAL if fatal[c] else Cause.HAZARD if struck[c] else -1
+        for c in range(12)
+    ]
+    assert found.cause.tolist() == expected
+    assert set(expected) == {-1, Cause.FATAL, Cause.HAZARD}
+    wants = drawn(Purpose.REPLICATE, replication) & active & (np.array(expected) < 0)
+    assert found.wants.tolist() == wants.tolist()
+    assert 0 < wants.sum() < (np.array(expected) < 0).sum()
+
+
+@pytest.mark.parametrize("dies", [False, True])
+@pytest.mark.parametrize("empty", [[], [3], [3, 10]])
+def test_a_tick_is_eventful_if_an_organism_dies_or_may_be_born(
+    dies: bool, empty: list[int]
+) -> None:
+    """All want children, which need an empty cell beside them, also in the second world only."""
+    for cells in (empty, empty[1:]):
+        alive = ~np.isin(np.arange(12), cells)
+        fatal = np.zeros(12, bool)
+        fatal[0] = dies
+        _, found = fates(a_world(alive, [0, 0], [1, 1]), alive, fatal=fatal)
+        assert bool(found.eventful) == (dies or bool(cells))
+        assert int(found.wants.sum()) == alive.sum() - dies
+
+
+def test_without_a_wish_for_children_room_makes_no_event() -> None:
+    alive = np.arange(12) % 2 == 0
+    _, found = fates(a_world(alive, [0, 0], [0, 0]), alive)
+    assert not found.eventful
+    assert not tick.no_fates(law_of()).eventful
+    assert (tick.no_fates(law_of()).cause == -1).all()
+
+
+def test_food_of_a_world_is_that_of_its_active_organisms_rounded_one_by_one() -> None:
+    """Food that is negative counts as such, and infinite food as none; other cells eat nothing."""
+    active = np.array([1, 1, 1, 0, 1, 0, 1, 1, 0, 0, 0, 0], bool)
+    food = np.array([0.1, 0.1, np.inf, 8, -3, np.nan, -0.5, -1, 9, 9, 9, 9], np.float32)
+    world, _ = fates(a_world(np.ones(12, bool), [0, 0], [0, 0]), active, food=food)
+    assert to_host(world.worlds.food).tolist() == [
+        (102 + 102 - 3 * ONE) % 2**64,
+        (-ONE // 2 - ONE) % 2**64,
+    ]
+
+
+def test_only_the_active_change_between_ticks() -> None:
+    def filled(number: int, which: Organisms) -> Organisms:
+        arrays = {name: jnp.full_like(getattr(which, name), number)
+                  for name in ("memory", "energy", "eaten")}  # fmt: skip
+        return which._replace(**arrays)
+
+    organisms = a_world(np.ones(12, bool), [0, 0], [0, 0]).organisms
+    active = np.arange(12) % 3 == 0
+    rested = tick.rest(filled(1, organisms), filled(2, organisms), jnp.asarray(active))
+    for name in ("memory", "energy", "eaten"):
+        values = np.asarray(getattr(rested, name)).reshape(12, -1)
+        assert (values == np.where(active, 2, 1)[:, None]).all(), name

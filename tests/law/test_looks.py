@@ -1,0 +1,165 @@
+"""Looks of ratchets at invented worlds, and the settings that the law says seasons may change."""
+
+from dataclasses import replace
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from primordia.habitats import Compound, Continuous, Discrete
+from primordia.law.genesis import begin
+from primordia.law.law import Law
+from primordia.law.metabolism import ONE, Rates
+from primordia.law.moments import change_in
+from primordia.law.seasons import apply_seasons, ratchets
+from primordia.law.world import Remembered, World, Worlds
+from primordia.random.wide import to_host, wide
+from tests.worlds import MEADOW, config
+
+W, N, TICK = 3, 8, 40
+
+
+def ratchet(when: str, above: float, setting: str = "replication") -> dict[str, Any]:
+    return {
+        "kind": "ratchet", "setting": setting, "when": when, "above": above, "factor": 0.5, "every": 20,
+    }  # fmt: skip
+
+
+def law_of(*seasons: dict[str, Any], **values: Any) -> Law:
+    made = config(MEADOW, cells=N, seeds=W, seasons=seasons, metabolism={"store": 10.0}, **values)
+    return made.build_law(made.build_habitat())
+
+
+def posed(law: Law, wait: list[list[int]], **looks: Any) -> World:
+    """Return worlds of 4, 5 and 6 organisms of age 10, with other values for their looks."""
+    world = begin(law, np.arange(W, dtype=np.uint64), tick=TICK)
+    alive = np.arange(N) < np.array([4, 5, 6])[:, None]
+    organisms = world.organisms._replace(
+        alive=jnp.asarray(alive.ravel()), born=wide(np.full(W * N, TICK - 10))
+    )
+    worlds = world.worlds._replace(
+        food=wide([100 * ONE, 50 * ONE, -ONE]),
+        organism_ticks=wide([400, 300, 200]),
+        looks=world.worlds.looks._replace(wait=jnp.asarray(wait, jnp.int32), **looks),
+    )
+    return World(organisms, worlds)
+
+
+def applied(law: Law, world: World, running: tuple[bool, ...] = (True,) * W) -> tuple[Worlds, list]:
+    worlds, changed = apply_seasons(law.seasons, law.governed, world, jnp.array(running))
+    return worlds, changed.tolist()
+
+
+@pytest.mark.parametrize(
+    ("when", "quantities"),
+    [
+        ("saturation", [4 / 8, 5 / 8, 6 / 8]),
+        ("mean_age", [10.0] * 3),
+        ("food", [0.25, 1 / 6, -1 / 200]),
+    ],
+)
+def test_a_ratchet_turns_above_its_threshold_and_not_at_it(
+    when: str, quantities: list[float]
+) -> None:
+    first = quantities[0]
+    for above in (first, first - 1 / 1024):
+        law = law_of(ratchet(when, above))
+        worlds, changed = applied(law, posed(law, [[0]] * W))
+        assert changed == [quantity > above for quantity in quantities]
+        expected = [0.025 if turned else 0.05 for turned in changed]
+        np.testing.assert_array_equal(worlds.climate["replication"], np.float32(expected))
+        assert worlds.looks.wait.tolist() == [[20]] * W
+
+
+def test_each_ratchet_looks_when_it_is_due_at_the_food_since_its_own_last_look() -> None:
+    """Looks that are not due, and looks of stopped worlds, keep what they saw."""
+    law = law_of(ratchet("food", 0.25), ratchet("food", 0.4, "metabolism.gain"))
+    assert [each.setting for each in ratchets(law.seasons)] == ["replication", "metabolism.gain"]
+    food, lived = [[90, 60], [10, 45], [-5, 1]], [[370, 350], [100, 290], [10, 20]]
+    was = {"food": wide(np.array(food) * ONE), "organism_ticks": wide(lived)}
+    world = posed(law, [[0, 0], [7, 0], [0, 0]], **was)
+    worlds, changed = applied(law, world, (True, True, False))
+    # (100 - 90) / (400 - 370) = 0.33 and (100 - 60) / (400 - 350) = 0.8; (50 - 45) / (300 - 290) = 0.5
+    assert changed == [True, True, False]
+    np.testing.assert_array_equal(worlds.climate["replication"], np.float32([0.025, 0.05, 0.05]))
+    assert worlds.climate["metabolism.gain"].tolist() == [0.5, 0.5, 1.0]
+    assert worlds.looks.wait.tolist() == [[20, 20], [7, 20], [0, 0]]
+    seen = [[100, 100], [10, 50], [-5, 1]]
+    expected = [[steps * ONE % 2**64 for steps in row] for row in seen]
+    assert to_host(worlds.looks.food).tolist() == expected
+    assert to_host(worlds.looks.organism_ticks).tolist() == [[400, 400], [100, 300], [10, 20]]
+
+
+def test_schedules_are_due_in_their_own_tick_only() -> None:
+    for at in (TICK - 1, TICK, TICK + 1):
+        season = {"kind": "schedule", "setting": "hazard", "at": at, "value": 0.25}
+        law = law_of(season)
+        worlds, changed = applied(law, posed(law, [[]] * W))
+        assert changed == [at == TICK] * W
+        assert worlds.climate["hazard"].tolist() == [0.25 if at == TICK else 0.0] * W
+
+
+def test_accidents_may_happen_if_they_do_now_or_in_a_season() -> None:
+    other = {"kind": "schedule", "setting": "replication", "at": 5, "value": 0.5}
+    accidents = {**other, "setting": "hazard"}
+    assert law_of(hazard=0.001).has_hazard
+    assert not law_of(hazard=0.0).has_hazard
+    assert not law_of(other).has_hazard
+    assert law_of(other, accidents).has_hazard
+
+
+def test_a_law_knows_which_settings_a_season_changes() -> None:
+    law = law_of()
+    assert law.governed("hazard") == ["hazard"]
+    assert law.governed("metabolism.cap") == ["metabolism.cap"]
+    assert law.governed("mutation.blocks.output.scale") == ["mutation.blocks.output.scale"]
+    scales = law.governed("mutation.scale")
+    assert scales == [f"mutation.blocks.{name}.scale" for name in law.heredity.layout.names]
+    for unknown in ("cells", "metabolism.speed", "mutation.founder_scale", "mutation"):
+        assert law.governed(unknown) == []
+
+
+def test_cells_have_the_settings_of_their_world() -> None:
+    law = law_of()
+    climate = {"hazard": jnp.array([0.1, 0.2, 0.3]), "replication": jnp.array([1.0, 2.0, 3.0])}
+    everywhere = law.in_cells(climate)
+    some = law.in_cells(climate, jnp.array([0, 7, 8, 23, 15]))
+    for name, values in climate.items():
+        np.testing.assert_array_equal(everywhere[name], np.repeat(np.asarray(values), N))
+        np.testing.assert_array_equal(some[name], np.asarray(values)[[0, 0, 1, 2, 1]])
+    assert law.cell_numbers.tolist() == [*range(N)] * W
+    assert law.per_cell(jnp.arange(W)).tolist() == [0] * N + [1] * N + [2] * N
+    assert law.by_world(jnp.arange(2 * W * N).reshape(-1, 2)).shape == (W, N, 2)
+
+
+def test_the_metabolism_takes_its_own_settings_from_the_climate() -> None:
+    names = "store", "drain", "gain", "effort_cost", "cap"
+    climate = {f"metabolism.{name}": name for name in reversed(names)} | {"gain": "another's"}
+    assert Rates.of(climate)._asdict() == {name: name for name in names}
+
+
+def test_of_several_choices_any_that_differs_makes_a_moment_another() -> None:
+    """Two choices and two vectors: the larger of the share of other choices and of the vectors' move.
+
+    The vectors' mean square is over all their numbers, of which none counts more than 1.
+    """
+    action = Compound((Discrete(2), Continuous(1), Discrete(2), Continuous(2)))
+    before = np.array([1, 0, 0, 1, 0, 0, 0], np.float32)
+    first, second = [0, 1, 0, 1, 0, 0, 0], [1, 0, 0, 0, 1, 0, 0]
+    both, same = [0, 1, 0, 0, 1, 0, 0], before
+    moved, far = [1, 0, 0.5, 1, 0, 0, -0.25], [1, 0, 9, 1, 0, 0, np.nan]
+    rows = np.array([[first, second, both, same], [moved] * 4, [far] * 4, [first] * 4, [far] * 4])
+    known = np.array([[1, 1, 1, 1], [1, 1, 1, 1], [1, 0, 1, 0], [0, 0, 0, 1], [0] * 4], bool)
+
+    def brain(genome: Any, memory: Any, senses: Any) -> tuple[Any, Any]:
+        """Return what is sensed if the genome is a child's, or else the parents' outputs."""
+        child = next(iter(genome.values())).reshape(len(senses), -1)[:, :1] > 0
+        return memory, jnp.where(child, senses, jnp.asarray(before))
+
+    law = replace(law_of(), brain=brain, action=action)
+    moments = Remembered(jnp.asarray(rows, jnp.float32), jnp.zeros((5, 4, 1)), jnp.asarray(known))
+    parents = jnp.zeros((5, law.heredity.layout.length))
+    change = np.asarray(change_in(law, moments, parents)(parents + 1))
+    expected = [3 / 4, np.sqrt((0.5**2 + 0.25**2) / 3), np.sqrt(2 / 3), 1.0, np.inf]
+    np.testing.assert_allclose(change, expected, rtol=1e-5)

@@ -1,0 +1,171 @@
+"""One tick of deaths and births in six invented worlds, each with its own kind of change."""
+
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from primordia.law import events as log
+from primordia.law.genesis import begin
+from primordia.law.law import Law
+from primordia.law.metabolism import ONE
+from primordia.law.turnover import birth_keys, turnover
+from primordia.law.world import BirthCause, Cause, World
+from primordia.random.keys import Purpose, bits, stream
+from primordia.random.wide import to_host, wide
+from tests.worlds import MEADOW, config
+
+DYING, FIRST, STOPPED, LOSING, QUIET, BEARING = range(6)
+W, N, TICK = 6, 4, 50
+NEVER = 2**64 - 1
+ALIVE = np.zeros((W, N), bool)
+ALIVE[DYING], ALIVE[LOSING], ALIVE[QUIET], ALIVE[BEARING, 2] = True, True, True, True
+NUMBER = np.arange(W * N) + 100
+CAUSES = np.full((W, N), -1)
+CAUSES[DYING] = Cause.STARVED, Cause.FATAL, Cause.STARVED, Cause.HAZARD
+CAUSES[LOSING, 1] = Cause.HAZARD
+BRANCH = np.zeros((W, N), int)
+BRANCH[DYING], BRANCH[LOSING], BRANCH[QUIET] = 3, [9, 4, 9, 9], 7
+BEGUN = {
+    "births": [1000 + world for world in range(W)],
+    "extinctions": [2] * W,
+    "organism_ticks": [0 if world == FIRST else 77 for world in range(W)],
+    "fixed": [20, NEVER, NEVER, NEVER, 30, NEVER],
+    "fixed_births": [900, NEVER, NEVER, NEVER, 901, NEVER],
+}
+STORES = [float(10 + world) for world in range(W)]
+
+
+def posed() -> tuple[Law, World]:
+    made = config(
+        MEADOW, cells=N, seeds=W, metabolism={"store": 10.0}, placement={"rule": "empty-only"},
+        mutation={"probability": 0.0},
+    )  # fmt: skip
+    law = made.build_law(made.build_habitat())
+    world = begin(law, np.arange(W, dtype=np.uint64), tick=TICK)
+    store = jnp.array(STORES, jnp.float32)
+    worlds = world.worlds._replace(
+        **{name: wide(values) for name, values in BEGUN.items()},
+        calm=jnp.full(W, 8, jnp.int32),
+        deaths=wide(np.full((W, len(Cause)), 5)),
+        climate=world.worlds.climate | {"metabolism.store": store},
+    )
+    organisms = world.organisms._replace(
+        alive=jnp.asarray(ALIVE.ravel()),
+        number=wide(NUMBER),
+        branch=wide(BRANCH.ravel()),
+        born=wide(np.full(W * N, 40)),
+        energy=jnp.arange(W * N, dtype=jnp.int32) * ONE,
+        eaten=jnp.arange(W * N, dtype=jnp.int32) + 500,
+        memory=jnp.ones_like(world.organisms.memory),
+    )
+    return law, World(organisms, worlds)
+
+
+@pytest.fixture(scope="module")
+def after() -> dict[str, Any]:
+    """Return the worlds after the tick, and the lists; one organism copies itself."""
+    law, world = posed()
+    wants = np.zeros((W, N), bool)
+    wants[BEARING, 2] = True
+    running = np.arange(W) != STOPPED
+    (organisms, worlds), lists, newborn = turnover(
+        law,
+        world,
+        log.empty(law),
+        jnp.asarray(running),
+        jnp.asarray(wants.ravel()),
+        jnp.asarray(CAUSES.ravel(), jnp.int32),
+        birth_keys(law, world.worlds),
+    )
+    births, deaths = (
+        columns.unpacked(np.asarray(list_.rows)[: int(list_.filled)])
+        for columns, list_ in (
+            (log.births_of(law.heredity), lists.births),
+            (log.DEATHS, lists.deaths),
+        )
+    )
+    cells = {"alive": organisms.alive, "energy": organisms.energy, "eaten": organisms.eaten,
+             "newborn": newborn, "memory": organisms.memory.sum(axis=1)}  # fmt: skip
+    wides = {name: to_host(getattr(organisms, name)) for name in ("number", "branch", "born")}
+    by_world = {name: np.asarray(v).reshape(W, N) for name, v in (cells | wides).items()}
+    return {**by_world, "worlds": worlds, "births": births, "deaths": deaths}
+
+
+def founded_cell(world: int) -> int:
+    """Return the cell of the founder: that of the first word of the seed, the tick and genesis."""
+    key = stream(wide(world), Purpose.GENESIS, wide(TICK))
+    return int(bits(key, jnp.uint32(0)).hi) * N >> 32
+
+
+def child_cell(after: dict[str, Any]) -> int:
+    (cell,) = np.flatnonzero(after["newborn"][BEARING])
+    return int(cell)
+
+
+def test_the_dead_are_listed_with_all_that_they_had(after: dict[str, Any]) -> None:
+    cells = [0, 1, 2, 3, LOSING * N + 1]
+    assert after["deaths"]["cell"].tolist() == cells
+    assert after["deaths"]["id"].tolist() == [100 + cell for cell in cells]
+    assert after["deaths"]["tick"].tolist() == [TICK] * 5
+    assert after["deaths"]["cause"].tolist() == CAUSES.ravel()[cells].tolist()
+    assert after["deaths"]["energy"].tolist() == [cell * ONE for cell in cells]
+    assert after["deaths"]["food"].tolist() == [cell + 500 for cell in cells]
+
+
+def test_founders_and_children_are_listed_in_the_order_of_cells(after: dict[str, Any]) -> None:
+    born, none = after["births"], -1  # 2^64 - 1 as int64
+    child = child_cell(after)
+    assert child in (1, 3)
+    cells = [founded_cell(DYING), N + founded_cell(FIRST), BEARING * N + child]
+    assert born["cell"].tolist() == cells
+    assert born["id"].tolist() == [1000 + DYING, 1000 + FIRST, 1000 + BEARING]
+    assert born["parent"].tolist() == [none, none, 100 + BEARING * N + 2]
+    assert born["tick"].tolist() == [TICK] * 3
+    assert born["cause"].tolist() == [BirthCause.FOUNDER, BirthCause.FOUNDER, BirthCause.COPY]
+
+
+def test_the_living_are_survivors_and_newborn(after: dict[str, Any]) -> None:
+    """A world that has stopped stays empty."""
+    alive = ALIVE & (CAUSES < 0)
+    newborn = np.zeros((W, N), bool)
+    for world, cell in enumerate((founded_cell(DYING), founded_cell(FIRST))):
+        newborn[world, cell] = True
+    newborn[BEARING, child_cell(after)] = True
+    np.testing.assert_array_equal(after["newborn"], newborn)
+    np.testing.assert_array_equal(after["alive"], alive | newborn)
+    of = np.nonzero(newborn)
+    assert after["energy"][of].tolist() == [STORES[world] * ONE for world in of[0]]
+    assert after["number"][of].tolist() == [1000 + world for world in of[0]]
+    assert after["born"][of].tolist() == [TICK] * 3
+    assert after["branch"][of].tolist() == [0, 0, 1001 + BEARING]
+    assert not after["eaten"][of].any()
+    assert not after["memory"][of].any()
+    numbers = NUMBER.reshape(W, N)
+    assert after["number"][alive].tolist() == numbers[alive].tolist()
+    assert after["branch"][alive].tolist() == BRANCH[alive].tolist()
+    assert after["energy"][alive].tolist() == ((numbers[alive] - 100) * ONE).tolist()
+    assert after["eaten"][alive].tolist() == (numbers[alive] + 400).tolist()
+    assert set(after["born"][alive]) == {40}
+    assert after["memory"][alive].all()
+
+
+def test_births_deaths_and_extinctions_are_counted_in_their_worlds(after: dict[str, Any]) -> None:
+    """Genesis is no extinction, since nobody had lived. A death alone ends the calm; so does a birth."""
+    worlds = after["worlds"]
+    assert to_host(worlds.births).tolist() == [1001, 1002, 1002, 1003, 1004, 1006]
+    assert to_host(worlds.extinctions).tolist() == [3, 2, 2, 2, 2, 2]
+    deaths = np.full((W, len(Cause)), 5)
+    for world in range(W):
+        for cause in CAUSES[world][CAUSES[world] >= 0]:
+            deaths[world, cause] += 1
+    assert to_host(worlds.deaths).tolist() == deaths.tolist()
+    assert worlds.calm.tolist() == [0, 0, 8, 0, 8, 0]
+
+
+def test_fixation_is_noted_once_and_forgotten_in_an_extinction(after: dict[str, Any]) -> None:
+    """The death of the last of branch 4 leaves one branch; a founder with one child is no fixation."""
+    worlds = after["worlds"]
+    assert to_host(worlds.fixed).tolist() == [NEVER, NEVER, NEVER, TICK, 30, NEVER]
+    assert to_host(worlds.fixed_births).tolist() == [NEVER, NEVER, NEVER, 1003, 901, NEVER]
