@@ -1,5 +1,6 @@
 """Devices that share a run's worlds, and what a run records of its device."""
 
+import os
 import platform
 from importlib.metadata import version
 from pathlib import Path
@@ -10,6 +11,7 @@ import jax
 import pytest
 
 from primordia import device
+from primordia.errors import InputError
 
 
 def devices(*kinds: str) -> list[Any]:
@@ -102,7 +104,7 @@ def test_the_limit_of_instructions_is_added_to_the_flags_unless_one_is_there(
     monkeypatch.setattr(jax, "devices", lambda: started.append(_at_once()))
     before = _at_once()
     device.prepare()
-    assert device.os.environ["XLA_FLAGS"].strip() == after
+    assert os.environ["XLA_FLAGS"].strip() == after
     assert started == [False], "small calls are computed at once"
     assert _at_once() == before
 
@@ -120,12 +122,12 @@ def test_faults_of_variables_are_told_and_the_option_is_restored(
     before = _at_once()
     monkeypatch.setattr(device, "backends_are_initialized", lambda: False)
     monkeypatch.setenv("XLA_FLAGS", "flags.txt")
-    with pytest.raises(device.InputError, match=r"^XLA_FLAGS: flags.txt names a file"):
+    with pytest.raises(InputError, match=r"^XLA_FLAGS: flags.txt names a file"):
         device.prepare()
     monkeypatch.setenv("XLA_FLAGS", "")
     monkeypatch.setattr(jax, "devices", fail)
     monkeypatch.setenv("JAX_PLATFORMS", "tpu")
-    with pytest.raises(device.InputError, match=r"that the variable JAX_PLATFORMS=tpu allows"):
+    with pytest.raises(InputError, match=r"that the variable JAX_PLATFORMS=tpu allows"):
         device.prepare()
     monkeypatch.delenv("JAX_PLATFORMS")
     with pytest.raises(RuntimeError, match=r"^none$"):
@@ -137,7 +139,7 @@ def test_jax_that_has_started_is_left_alone(monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.setattr(device, "backends_are_initialized", lambda: True)
     monkeypatch.setenv("XLA_FLAGS", "flags.txt")
     device.prepare()
-    assert device.os.environ["XLA_FLAGS"] == "flags.txt"
+    assert os.environ["XLA_FLAGS"] == "flags.txt"
 
 
 def test_the_selected_platform_is_the_default_in_a_block_only(
@@ -151,8 +153,9 @@ def test_the_selected_platform_is_the_default_in_a_block_only(
         return real(backend=backend)
 
     monkeypatch.setattr(jax, "local_devices", local)
-    before = jax.config.jax_default_device
+    config: Any = jax.config
+    before = config.jax_default_device
     with device.selected("cpu"):
-        assert jax.config.jax_default_device == real(backend="cpu")[0]
-    assert jax.config.jax_default_device is before
+        assert config.jax_default_device == real(backend="cpu")[0]
+    assert config.jax_default_device is before
     assert asked == ["cpu"]
