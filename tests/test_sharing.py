@@ -101,15 +101,19 @@ def test_the_limit_of_instructions_is_added_to_the_flags_unless_one_is_there(
     started: list[bool] = []
     monkeypatch.setenv("XLA_FLAGS", flags)
     monkeypatch.setattr(device, "backends_are_initialized", lambda: False)
-    monkeypatch.setattr(jax, "devices", lambda: started.append(_at_once()))
-    before = _at_once()
-    device.prepare()
+    monkeypatch.setattr(jax, "devices", lambda: started.append(_is_asynchronous()))
+    before = _is_asynchronous()
+    try:
+        jax.config.update("jax_cpu_enable_async_dispatch", True)
+        device.prepare()
+        assert _is_asynchronous(), "the option is restored"
+    finally:
+        jax.config.update("jax_cpu_enable_async_dispatch", before)
     assert os.environ["XLA_FLAGS"].strip() == after
     assert started == [False], "small calls are computed at once"
-    assert _at_once() == before
 
 
-def _at_once() -> bool:
+def _is_asynchronous() -> bool:
     return bool(jax.config.read("jax_cpu_enable_async_dispatch"))
 
 
@@ -119,7 +123,7 @@ def test_faults_of_variables_are_told_and_the_option_is_restored(
     def fail() -> None:
         raise RuntimeError("none")
 
-    before = _at_once()
+    before = _is_asynchronous()
     monkeypatch.setattr(device, "backends_are_initialized", lambda: False)
     monkeypatch.setenv("XLA_FLAGS", "flags.txt")
     with pytest.raises(InputError, match=r"^XLA_FLAGS: flags.txt names a file"):
@@ -132,7 +136,7 @@ def test_faults_of_variables_are_told_and_the_option_is_restored(
     monkeypatch.delenv("JAX_PLATFORMS")
     with pytest.raises(RuntimeError, match=r"^none$"):
         device.prepare()
-    assert _at_once() == before
+    assert _is_asynchronous() == before
 
 
 def test_jax_that_has_started_is_left_alone(monkeypatch: pytest.MonkeyPatch) -> None:
