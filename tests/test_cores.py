@@ -1,7 +1,9 @@
 """The number of cores that a process uses."""
 
+import os
 import subprocess
 import sys
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -60,3 +62,30 @@ def test_xla_starts_as_many_threads_as_there_are_cores(number: int) -> None:
         check=True,
     )
     assert int(done.stdout) == number
+
+
+@pytest.mark.parametrize("given", [None, "3"])
+@pytest.mark.parametrize("fails", [False, True])
+def test_one_core_is_used_in_a_block_unless_a_number_is_given(
+    given: str | None, fails: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("PRIMORDIA_CORES", raising=False)
+    if given:
+        monkeypatch.setenv("PRIMORDIA_CORES", given)
+    with suppress(OSError), cores.one_unless_given():
+        assert cores.count() == int(given or 1)
+        if fails:
+            raise OSError
+    assert os.environ.get("PRIMORDIA_CORES") == given
+
+
+@pytest.mark.parametrize(("given", "threads"), [(None, "9"), ("4", "4"), ("007", "7")])
+def test_the_threads_of_xla_are_limited_only_if_a_number_is_given(
+    given: str | None, threads: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("NPROC", "9")
+    monkeypatch.delenv("PRIMORDIA_CORES", raising=False)
+    if given:
+        monkeypatch.setenv("PRIMORDIA_CORES", given)
+    cores.limit_threads()
+    assert os.environ["NPROC"] == threads

@@ -288,6 +288,7 @@ def _imports(text: bytes, name: str) -> set[str]:
             imported |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
             around = package[: len(package) - node.level + 1] if node.level else []
-            base = ".".join([*around, *([node.module] if node.module else [])])
-            imported |= {base, *(f"{base}.{alias.name}" for alias in node.names)}
+            base = [*around, *([node.module] if node.module else [])]
+            names = (".".join([*base, alias.name]) for alias in node.names)
+            imported |= {".".join(base), *names}
     return imported - {""}

@@ -1,6 +1,6 @@
 """Compiled code is shared by equal computations and by no others."""
 
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -92,6 +92,35 @@ def test_equal_ancestors_share_code_and_others_do_not() -> None:
     assert code(genomes) is code(genomes.copy())
     others = [code(each) for each in (2 * genomes, genomes[:1], None)]
     assert len({code(genomes), *others}) == 4
+
+
+def test_the_code_that_was_used_last_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    """One more computation than is kept drops only the one that was not used for longest."""
+    most = compiled._kept.cache_parameters()["maxsize"]
+    assert most == compiled.KEPT
+    monkeypatch.setattr(compiled, "_kept", lru_cache(most)(compiled._jitted))
+    things = [Meadow(lifespan=number) for number in range(1, compiled.KEPT + 2)]
+    codes = [shared(_grown, each) for each in things[:-1]]
+    assert shared(_grown, things[0]) is codes[0]
+    shared(_grown, things[-1])
+    assert shared(_grown, things[0]) is codes[0]
+    assert shared(_grown, things[2]) is codes[2]
+    assert shared(_grown, things[1]) is not codes[1]
+
+
+@pytest.mark.parametrize("fixed", [(2,), ({"by": 2},)], ids=["shared", "alone"])
+def test_only_the_memory_of_named_arguments_is_reused(fixed: tuple[Any, ...]) -> None:
+    """The number of an argument is that after the fixed ones."""
+    code: Any = shared(_added, *fixed, donate=(1,))
+    plain: Any = shared(_added, *fixed)
+    x, y = np.zeros(3, np.float32), np.ones(3, np.float32)
+    donated = [each.donated for each in code.lower(x, y).args_info[0]]
+    assert donated == [False, True]
+    assert not any(each.donated for each in plain.lower(x, y).args_info[0])
+
+
+def _added(_: Any, x: jax.Array, y: jax.Array) -> jax.Array:
+    return x + y
 
 
 def _grown(thing: Any, x: jax.Array) -> jax.Array:

@@ -74,6 +74,29 @@ class Greedy(Plain):
         return memory, matvec(genome.pop("w"), senses)
 
 
+class Replacing(Plain):
+    def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:
+        genome["w"] = genome["w"] * 1
+        return memory, matvec(genome["w"], senses)
+
+
+class Adding(Plain):
+    def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:
+        genome["v"] = genome["w"]
+        return memory, matvec(genome["w"], senses)
+
+
+class Remembering(Plain):
+    """Its outputs are those of each organism, and its memories are not."""
+
+    def memory(self, senses: int, outputs: int) -> int:
+        return outputs
+
+    def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:
+        output = matvec(genome["w"], senses)
+        return memory + output[:1], output
+
+
 class Misnamed(Plain):
     def blocks(self, senses: int, outputs: int) -> dict[str, Shape]:
         return {"my weights": (outputs, senses)}
@@ -105,6 +128,9 @@ class Listed(Plain):
         (Forgetful(), r"gives its memory as float32 \(32, 2\); the contract says float32 \(32, 3\)"),
         (Alone(), "does not return a pair; return memory and output"),
         (Greedy(), "changes its genome argument"),
+        (Replacing(), "changes its genome argument"),
+        (Adding(), "changes its genome argument"),
+        (Remembering(), "Remembering gives different bits for organism 1 when organism 0 has another"),
         (Misnamed(), "'my weights' cannot name a block .*; use letters"),
         (Growing(), "has different blocks of weights at each call"),
         (Half(), "has a memory of length 0.5; return a whole number"),

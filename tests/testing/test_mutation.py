@@ -111,6 +111,41 @@ class Timed(Counted):
     notes: ClassVar = ("tick",)
 
 
+class Spaced(Counted):
+    notes: ClassVar = ("two words",)
+
+
+class Worldly(Counted):
+    notes: ClassVar = ("steps", "world")
+
+
+class Counts(Steady):
+    def rates(self, layout: Layout) -> Any:
+        return {"scale": 1}
+
+
+class Endless(Steady):
+    def rates(self, layout: Layout) -> dict[str, float]:
+        return {"scale": float("inf")}
+
+
+class Rateless(Steady):
+    def rates(self, layout: Layout) -> dict[str, float]:
+        return {}
+
+    def governed(self, setting: str, layout: Layout) -> list[str]:
+        return []
+
+    def size(self, rates: Mapping[str, Array]) -> Array:
+        return jnp.ones(1)
+
+
+class Clustered(Steady):
+    def founders(self, layout: Layout, draws: Draws) -> Array:
+        founders = super().founders(layout, draws)
+        return founders - founders.mean(axis=0)
+
+
 class Real(Counted):
     def note(self, *given: Any) -> Array:
         return super().note(*given) * 0.5
@@ -146,7 +181,7 @@ class Few(Steady):
         return super().founders(layout, draws)[:, 1:]
 
 
-@pytest.mark.parametrize("mutation", [Steady(), Counted()])
+@pytest.mark.parametrize("mutation", [Steady(), Counted(), Rateless()])
 def test_the_mutations_without_these_faults(mutation: Mutation) -> None:
     check_mutation(mutation)
 
@@ -168,6 +203,11 @@ def test_the_mutations_without_these_faults(mutation: Mutation) -> None:
         ),
         (Cleaner(), "although it is marked as a copy"),
         (Timed(), "has the note 'tick', which cannot be a column of births; use a name other than"),
+        (Spaced(), "has the note 'two words', which cannot be a column of births"),
+        (Worldly(), "has the note 'world', which cannot be a column of births"),
+        (Counts(), "gives the rate scale as 1; rates are finite floats"),
+        (Endless(), "gives the rate scale as inf; rates are finite floats"),
+        (Clustered(), "organism 31 when 1 instead of 32 are born together"),
         (Real(), r"gives notes as float32 \(32, 1\); the contract says int32 \(32, 1\)"),
         (Ranked(), "gives founders different notes"),
         (Neighbourly(), "instead of 32 are born together"),

@@ -1,11 +1,17 @@
 """What the checks of parts have in common: a comparison of bits, since digests are of bits."""
 
+import re
+import warnings
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from primordia.testing.report import ContractError, same
+from primordia.brains.linear import Linear
+from primordia.errors import InputError
+from primordia.testing.report import ContractError, advise, kept, need, same, typed
+from primordia.testing.trial import last
 
 ALIKE = [0, 0x80000000, 0x7FC00000, 0x7FC00001, 0xFFC00000]
 """Words of 0, -0, and three NaNs: different bits that are equal as numbers."""
@@ -24,3 +30,68 @@ def test_arrays_are_the_same_only_if_all_bits_are(words: list[int], place: int, 
         return
     with pytest.raises(ContractError, match=f"different bits for organism {7 + place // 2} twice"):
         same("part", floats(words), floats(changed), "twice", 7)
+
+
+def test_the_first_organism_that_differs_in_any_array_is_named() -> None:
+    one = {"a": np.zeros((4, 2)), "b": (np.arange(4), np.ones((4, 1)))}
+    other = {"a": np.array(one["a"]), "b": (np.array([0, 1, 2, 9]), np.ones((4, 1)))}
+    with pytest.raises(ContractError, match=r"^int gives different bits for organism 3 at all$"):
+        same(5, one, other, "at all")
+    other["b"][1][1] = 7
+    with pytest.raises(ContractError, match=r"^int gives different bits for organism 11 at all$"):
+        same(5, one, other, "at all", 10)
+    with pytest.raises(ValueError, match="shorter"):
+        same(5, np.zeros(3), np.zeros(2), "at all")
+
+
+@pytest.mark.parametrize(("count", "rows"), [(1, [3]), (2, [2, 3]), (4, [0, 1, 2, 3]), (0, [])])
+def test_the_last_rows_of_a_tree(count: int, rows: list[int]) -> None:
+    a, b = last((np.arange(4), [np.arange(4) * 10]), count)
+    assert (a.tolist(), b[0].tolist()) == (rows, [row * 10 for row in rows])
+
+
+def test_what_fails_is_told_as_the_fault_of_a_part() -> None:
+    with pytest.raises(ContractError, match=re.escape("a: b: c")), kept():
+        raise InputError("habitat: a: b: c")
+    with pytest.raises(ContractError, match=r"^Linear is wrong$"):
+        need([], Linear(), "is wrong")
+    need([0], Linear(), "is wrong")
+    typed(Linear(), "x", np.zeros(2, np.int32), (2,), np.int32)
+    with pytest.raises(ContractError, match=r"^Linear gives x as int32 \(2,\); the contract says"):
+        typed(Linear(), "x", np.zeros(2, np.int32), (3,), np.int32)
+
+
+class ByIdentity:
+    """Equal parts of this class are different things."""
+
+
+class ByValue(ByIdentity):
+    """Equal parts have the same hash."""
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, ByValue)
+
+    def __hash__(self) -> int:
+        return 1
+
+
+class Unhashed(ByIdentity):
+    """Parts that are compared and not hashed."""
+
+    def __eq__(self, other: object) -> bool:
+        return True
+
+    __hash__ = None
+
+
+@pytest.mark.parametrize("part", [ByIdentity(), Unhashed()])
+def test_parts_that_share_no_code_are_warned_of(part: object) -> None:
+    with pytest.warns(UserWarning, match=f"^{type(part).__name__} is not hashed by its values"):
+        advise(part)
+
+
+def test_parts_that_share_code_are_not_warned_of() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        advise(ByValue())
+        advise(Linear())

@@ -172,6 +172,7 @@ STOPPING = "Stopping after the present step; press Ctrl-C once more to stop at o
     [
         (["SIGINT@0"], (0, "finished\n", STOPPING)),
         (["SIGINT@0", "SIGTERM@9"], (interrupts.STATUS, "", f"{STOPPING}Stopped\n")),
+        (["SIGINT@0", "SIGTERM@2"], (interrupts.STATUS, "", "Stopped\n")),
         (["SIGTERM@0", "SIGTERM@1.5"], (0, "finished\n", STOPPING)),
         (["SIGINT@0", "SIGINT@1.5", "SIGINT@3"], (interrupts.STATUS, "", "Stopped\n")),
     ],

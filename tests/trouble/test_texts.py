@@ -39,6 +39,22 @@ def test_printable_texts_have_no_control_characters(text: str) -> None:
     assert (shown == text) == all(each.isprintable() or each in "\n\t" for each in text)
 
 
+@pytest.mark.parametrize(
+    ("text", "kept", "shown"),
+    [
+        ("plain é 水 😀", "\n\t", "plain é 水 😀"),
+        ("a\x1b[2Jb\x9b\r", "\n\t", r"a\x1b[2Jb\x9b\r"),
+        ("a\n\tb\0", "\n\t", "a\n\tb\\x00"),
+        ("a\n\tb", "", r"a\n\tb"),
+        ("\u202e\ud800 '\"", "", "\\u202e\\ud800 '\""),
+    ],
+)
+def test_only_what_cannot_be_shown_is_escaped(text: str, kept: str, shown: str) -> None:
+    assert printable(text, kept) == shown
+    if kept == "\n\t":
+        assert printable(text) == shown
+
+
 def answers(done: subprocess.CompletedProcess[str]) -> None:
     """Assert that a command succeeded, or failed with one line."""
     if done.returncode:

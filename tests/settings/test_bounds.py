@@ -1,0 +1,124 @@
+"""The first and the last value that each setting of a run takes, and the values beside them."""
+
+from typing import Any
+
+import pytest
+
+from primordia.brains.contract import KNOWN as BRAINS
+from primordia.config import _check, limits, load, parsed
+from primordia.errors import InputError
+from primordia.habitats.contract import Compound, Continuous, Discrete
+from primordia.settings.limits import Stop
+from tests.toys import Meadow, Organ
+from tests.worlds import MEADOW, MILL, config
+
+MOST = 2**53
+BOUNDS: list[tuple[str, list[float], list[float]]] = [
+    ("cells", [2, 2**24], [1, 2**24 + 1]),
+    ("replication", [0.0, 1.0], [-5e-324, 1.0000000000000002]),
+    ("hazard", [0.0, 1.0], [-5e-324, 1.0000000000000002]),
+    ("saturation_ticks", [1, 2**31 - 1], [0, 2**31]),
+    ("sample_every", [1, 2**31 - 1], [0, 2**31]),
+    ("seed", [0, 2**64 - 1], [-1, 2**64]),
+    ("seeds", [1, 2**16], [0, 2**16 + 1]),
+    ("stop.ticks", [1, MOST - 1], [0, MOST]),
+    ("stop.births", [1, MOST - 1], [0, MOST]),
+    ("fork.tick", [1, MOST - 1], [0, MOST]),
+]
+
+
+def with_value(path: str, value: float) -> dict[str, Any]:
+    """Return settings in which one, given by its dotted path, has a value."""
+    group, _, name = path.rpartition(".")
+    if not group:
+        return {**MEADOW, name: value}
+    return {**MEADOW, group: {name: value, **({"run": "a"} if group == "fork" else {})}}
+
+
+@pytest.mark.parametrize(("path", "taken", "refused"), BOUNDS, ids=[path for path, *_ in BOUNDS])
+def test_the_last_values_are_taken_and_the_next_are_refused(
+    path: str, taken: list[float], refused: list[float]
+) -> None:
+    for value in taken:
+        found: Any = parsed(with_value(path, value), source="test")
+        for name in path.split("."):
+            found = getattr(found, name)
+        assert found == value
+    for value in refused:
+        with pytest.raises(InputError, match=f"^test: {path}: .*{value}"):
+            parsed(with_value(path, value), source="test")
+
+
+def test_the_last_world_may_have_the_largest_seed() -> None:
+    values = {**MEADOW, "seed": 2**64 - 3, "seeds": 3}
+    seeds = parsed(values, source="test").world_seeds
+    assert [int(seed) for seed in seeds] == [2**64 - 3, 2**64 - 2, 2**64 - 1]
+    with pytest.raises(InputError, match=r"^test: seeds must be below 2\^64"):
+        parsed({**values, "seeds": 4}, source="test")
+
+
+def test_the_cells_of_all_worlds_are_limited_and_known_to_the_habitat(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked: list[int] = []
+    monkeypatch.setattr(Meadow, "check", lambda _, cells: asked.append(cells))
+    most = parsed({**MEADOW, "cells": 2**24, "seeds": 4, "seasons": []}, source="test")
+    _check(most)
+    assert asked == [2**26]
+    more = most.model_copy(update={"cells": 2**24 - 1, "seeds": 5})
+    with pytest.raises(InputError, match=rf"^cells x seeds: {5 * (2**24 - 1)} cells are more"):
+        _check(more)
+
+
+def test_records_begin_after_the_tick_of_a_fork() -> None:
+    assert parsed(MEADOW, source="test").begins == 0
+    assert parsed(with_value("fork.tick", 7), source="test").begins == 7
+
+
+def test_limits_are_checked_and_none_is_no_limit() -> None:
+    given = {"ticks": "none", "births": 5, "until": "saturation"}
+    assert limits(given) == {"ticks": None, "births": 5, "until": "saturation"}
+    assert Stop() == Stop(ticks=None, births=None, until=None)
+    with pytest.raises(InputError, match=r"^births: .* not 0$"):
+        limits({"births": 0})
+    with pytest.raises(InputError, match=r"^there is no setting 'tick'; did you mean 'ticks'\?$"):
+        limits({"tick": 1})
+
+
+def test_one_continuous_part_of_an_action_is_enough_for_a_gaussian_motor() -> None:
+    assert {type(part) for part in Organ().action.parts} == {Continuous, Discrete}
+    assert isinstance(Organ().action, Compound)
+    values = {"habitat": {"name": "tests.toys:Organ"}, "motor": {"kind": "gaussian"}}
+    assert config(MILL, **values).motor.kind == "gaussian"
+    with pytest.raises(InputError, match=r"motor\.kind: this habitat's actions are discrete"):
+        config(MEADOW, motor={"kind": "gaussian"})
+
+
+def rates_of_a_law(**changes: Any) -> dict[str, float]:
+    made = config(MILL, seasons=[], **changes)
+    return dict(made.build_law(made.build_habitat()).beginning)
+
+
+def test_a_law_begins_with_the_rates_of_its_settings() -> None:
+    """Also without a metabolism, whose rates have their defaults then."""
+    own = {"store": 7.0, "drain": 0.5, "gain": 3.0}
+    rates = rates_of_a_law(hazard=0.25, replication=0.125, metabolism=own)
+    assert (rates["hazard"], rates["replication"]) == (0.25, 0.125)
+    assert {name: rates[f"metabolism.{name}"] for name in ("drain", "gain")} == {
+        "drain": 0.5,
+        "gain": 3.0,
+    }
+    assert rates_of_a_law(metabolism=None)["metabolism.drain"] == 1.0
+
+
+def test_a_season_of_metabolism_needs_one() -> None:
+    season = {"kind": "schedule", "setting": "metabolism.gain", "at": 2, "value": 0.5}
+    with pytest.raises(InputError, match=r"seasons: metabolism.gain needs a metabolism; remove"):
+        config(MILL, metabolism=None, seasons=[season])
+
+
+@pytest.mark.parametrize("kind", BRAINS)
+def test_the_defaults_of_a_part_are_added_and_its_own_settings_kept(kind: str) -> None:
+    made = load("CartPole-survival", {"brain": {"kind": kind, "biases": True}})
+    assert (made.brain["kind"], made.brain["biases"]) == (kind, True)
+    assert made.mutation["kind"] == "gaussian"

@@ -1,0 +1,67 @@
+"""Doors: names of environments with and without one, and the text of a task file."""
+
+import tomllib
+
+import pytest
+
+from primordia.settings import doors, parts
+
+
+@pytest.mark.parametrize(
+    ("name", "full", "behind"),
+    [
+        ("gym:CartPole-v1", "gym:CartPole-v1", True),
+        ("gymnax:Catch-bsuite", "gymnax:Catch-bsuite", True),
+        ("CartPole-v1", "gym:CartPole-v1", False),
+        ("my.ponds:Pond-v0", "gym:my.ponds:Pond-v0", False),
+        ("gym", "gym:gym", False),
+        ("gym:", "gym:", True),
+    ],
+)
+def test_a_name_without_a_door_gets_that_of_gymnasium(name: str, full: str, behind: bool) -> None:
+    assert doors.is_door(name) == behind
+    assert doors.full(name) == full
+
+
+@pytest.mark.parametrize(
+    ("env", "asked"),
+    [
+        ("gymnax:Catch", ("primordia.habitats.gymnax.task", "Catch")),
+        ("Pond-v0", ("primordia.habitats.gymnasium.task", "Pond-v0")),
+        ("my.ponds:Pond-v0", ("primordia.habitats.gymnasium.task", "my.ponds:Pond-v0")),
+    ],
+)
+def test_a_task_file_has_the_facts_then_the_faults_then_the_settings(
+    env: str, asked: tuple[str, str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    table = {"task": "pond", "habitat": {"name": "gymnasium", "fatal": "obs[0] > 7"}}
+    facts = ["Seven senses.", " ".join(["word"] * 60)]
+    answers = {"values": table, "report": (facts, ["it sinks", "it leaks"])}
+    calls = []
+
+    def load(what: str, path: str, known: dict[str, str]) -> object:
+        module, _, function = path.partition(":")
+
+        def answer(name: str) -> object:
+            calls.append((what, module, name))
+            return answers[function]
+
+        return answer
+
+    monkeypatch.setattr(parts, "load", load)
+    text = doors.text(env)
+    assert calls == [("door", *asked)] * 2
+    assert tomllib.loads(text) == table
+    comments, _, _ = text.partition("\n\n")
+    lines = comments.splitlines()
+    assert max(map(len, lines)) <= doors.WIDTH == 100
+    unwrapped = comments.replace("\n#   ", " ").splitlines()
+    assert unwrapped[:5] == [
+        f"# A task in {env}: `primordia run FILE` runs it. Change any setting.",
+        "# Seven senses.",
+        f"# {facts[1]}",
+        "# Found: it sinks.",
+        "# Found: it leaks.",
+    ]
+    assert "such as: obs[0] > 7 or obs[0] < -1." in unwrapped[5]
+    assert len(lines) > len(unwrapped) == 7

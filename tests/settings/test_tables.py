@@ -1,0 +1,137 @@
+"""Nested tables that are not yet validated: names, paths and values in them."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from primordia.config import load, parsed
+from primordia.errors import InputError
+from primordia.settings.tables import (
+    code_of,
+    flat,
+    from_toml,
+    merged,
+    modules_of,
+    relative_to,
+    replaced,
+    tasks,
+    values_of,
+)
+from tests.worlds import MEADOW
+
+
+def test_only_a_value_of_the_same_type_is_replaced() -> None:
+    values = {"a": ["none", None, {"b": "none"}], "c": ("none", "nones"), "none": 0}
+    assert replaced(values, "none", None) == {
+        "a": [None, None, {"b": None}],
+        "c": [None, "nones"],
+        "none": 0,
+    }
+    found = replaced([1, 1.0, True, "1"], 1, 7)
+    assert [(type(each), each) for each in found] == [
+        (int, 7),
+        (float, 1.0),
+        (bool, True),
+        (str, "1"),
+    ]
+
+
+def test_a_flat_table_has_dotted_names_at_any_depth() -> None:
+    values = {"a": {"b": {"c": 1, "d": [{"e": 2}]}, "f": None}, "g": 3, "h": {}}
+    assert flat(values) == {"a.b.c": 1, "a.b.d": [{"e": 2}], "a.f": None, "g": 3}
+
+
+def test_a_table_takes_the_place_of_a_value_and_a_value_that_of_a_table() -> None:
+    assert merged({"a": {"b": 1}, "c": 2}, {"a": None, "c": {"d": 3}}) == {"a": None, "c": {"d": 3}}
+    assert merged({"a": {"b": {"c": 1, "d": 2}}}, {"a": {"b": {"d": 4}}}) == {
+        "a": {"b": {"c": 1, "d": 4}}
+    }
+
+
+def test_the_code_of_a_part_is_all_that_it_names() -> None:
+    table: dict[str, Any] = {
+        "name": "pond.deep:Pond",
+        "env": "lake:Lake-v0",
+        "food": "reward",
+        "imports": ["hills", "a.b", "not-a-name", 5],
+        "file": "mud:File",
+        "kind": "weeds:Kind",
+    }
+    assert code_of(table, "name") == ["pond.deep:Pond", "lake:Lake-v0", "hills", "a.b"]
+    assert modules_of(table, "name") == ["pond.deep", "lake", "hills", "a.b"]
+    assert code_of({"kind": "weeds:", "food": "soup:eat"}, "kind") == ["weeds:", "soup:eat"]
+    assert code_of({"name": "no-name:Pond", "imports": "hills"}, "name") == []
+    assert code_of({"name": "cartpole"}, "name") == []
+
+
+def test_a_run_names_the_modules_of_all_its_parts() -> None:
+    made = parsed(
+        {
+            **MEADOW,
+            "habitat": {"name": "pond:Pond", "imports": ["hills"]},
+            "brain": {"kind": "recurrent"},
+            "mutation": {"kind": "pond.deep:Change"},
+        },
+        source="test",
+    )
+    assert made.own_modules == ["pond", "hills", "pond.deep"]
+
+
+def test_paths_in_a_file_begin_at_its_folder(tmp_path: Path) -> None:
+    folder = tmp_path / "deep"
+    folder.mkdir()
+    (folder / "course.png").write_bytes(b"")
+    values = {
+        "ancestors": ["a.safetensors", "/b.safetensors"],
+        "habitat": {"file": "course.png", "other": "course.png", "inner": {"file": "course.png"},
+                    "env": {"file": "missing.png"}},
+        "brain": {"file": "course.png"},
+    }  # fmt: skip
+    found = relative_to(folder, values)
+    full = str(folder / "course.png")
+    assert found["ancestors"] == [str(folder / "a.safetensors"), "/b.safetensors"]
+    assert found["habitat"] == {
+        "file": full,
+        "other": "course.png",
+        "inner": {"file": full},
+        "env": {"file": "missing.png"},
+    }
+    assert found["brain"] == values["brain"]
+    for odd in ({"habitat": 5}, {"ancestors": "a"}):
+        assert relative_to(folder, odd) == odd
+
+
+def test_paths_in_changed_settings_begin_at_the_current_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "course.png").write_bytes(b"")
+    given: list[Any] = []
+    monkeypatch.setattr(
+        "primordia.config.validated", lambda values, source: given.extend([values, source])
+    )
+    load("CartPole-survival", {"habitat": {"file": "course.png"}})
+    assert given[0]["habitat"]["file"] == str(tmp_path / "course.png")
+    assert given[1] == "CartPole-survival"
+
+
+def test_a_file_of_any_name_is_a_task_and_the_tasks_are_in_order(tmp_path: Path) -> None:
+    (file := tmp_path / "task").write_text("task = 'own'\nhabitat = {name = 'cartpole'}\n")
+    assert values_of(str(file)) == {"task": "own", "habitat": {"name": "cartpole"}}
+    names = [*tasks()]
+    assert names == sorted(names)
+    for near, says in (
+        ("Pong-survivl", "; did you mean 'Pong-survival'"),
+        ("qqqq", "; give a name"),
+    ):
+        with pytest.raises(InputError, match=f"^there is no task '{near}'{says}"):
+            values_of(near)
+
+
+def test_a_fault_in_a_file_names_the_file_and_the_setting(tmp_path: Path) -> None:
+    (file := tmp_path / "mine.toml").write_text("[a]\nb = [0, 1e39]\n")
+    with pytest.raises(InputError, match=rf"^{file}: a.b.1: 1e\+39 does not fit into float32$"):
+        from_toml(file)
+    with pytest.raises(InputError, match=rf"^{tmp_path}/no.toml cannot be read: No such file"):
+        from_toml(tmp_path / "no.toml")
