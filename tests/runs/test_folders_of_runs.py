@@ -115,13 +115,18 @@ def test_a_script_that_begins_or_resumes_passes_on_all_that_is_given(
 
     def listen(_: loop.Status) -> None: ...
 
+    def resumed(*given: Any, **named: Any) -> list[str]:
+        calls.append((*given, named))
+        return ["a note"]
+
     monkeypatch.setattr(loop, "start", lambda *given, **named: calls.append((*given, named)))
-    monkeypatch.setattr(loop, "resume", lambda *given, **named: [calls.append((*given, named))])
+    monkeypatch.setattr(loop, "resume", resumed)
     monkeypatch.setattr(directory, "check_same_settings", lambda *given: calls.append(given))
     passed = {"checkpoint_every": 3.0, "listen": listen}
     for there in (True, False):
         monkeypatch.setattr(directory, "clear_unbegun", lambda _, there=there: there)
-        loop.begin_or_resume(settings, tmp_path, **passed)
+        notes = loop.begin_or_resume(settings, tmp_path, **passed)
+        assert notes == ([] if there else ["a note"])
     limits = {"ticks": 7, "births": 5, "until": "saturation"}
     assert calls == [
         (settings, tmp_path, passed), (settings, tmp_path), (tmp_path, limits, passed)
