@@ -263,3 +263,17 @@ def test_a_column_that_occurs_twice_is_damage(tmp_path: Path) -> None:
     pq.write_table(pa.Table.from_arrays(arrays, names=["world", "id", "mate", "mate"]), path)
     with pytest.raises(Trouble, match="its columns are not those of this table"):
         segment.read(path, 2, DEATHS, None)
+
+
+@pytest.mark.parametrize("table", TABLES)
+def test_only_a_parent_and_a_mate_may_be_missing(table: str, tmp_path: Path) -> None:
+    path = tmp_path / "a.parquet"
+    whole = SCHEMA.arrow(table, np.ones((2, SCHEMA.columns(table).width), np.uint32))
+    for number, field in enumerate(whole.schema):
+        missing = pa.array([None, whole[field.name][1].as_py()], field.type)
+        pq.write_table(whole.set_column(number, field, missing), path)
+        if field.name in ("parent", "mate"):
+            assert segment.read(path, 2, whole.schema, None)[field.name].null_count == 1
+        else:
+            with pytest.raises(Trouble, match="values are missing"):
+                segment.read(path, 2, whole.schema, None)
