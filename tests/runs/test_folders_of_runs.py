@@ -1,5 +1,6 @@
 """The folder of a run: who may begin in it, which settings it has, and its notes on failures."""
 
+import fcntl
 import json
 from pathlib import Path
 from typing import Any
@@ -32,8 +33,10 @@ def test_a_lock_is_seen_while_it_is_held(tmp_path: Path) -> None:
     assert not directory.is_written(tmp_path)
     with directory.locked(tmp_path):
         assert directory.is_written(tmp_path)
-        assert directory.is_written(tmp_path)
     assert not directory.is_written(tmp_path)
+    with (tmp_path / "lock").open("rb") as other_reader:
+        fcntl.flock(other_reader, fcntl.LOCK_SH)
+        assert not directory.is_written(tmp_path), "another reader is no writer"
 
 
 STARTED = (
