@@ -97,3 +97,30 @@ def test_each_fault_of_a_sealed_file_is_named(tmp_path: Path) -> None:
     assert "2 bytes instead of 3" in str(files.fault_in(file, sealed["bytes"], sealed["sha256"]))
     file.unlink()
     assert "is missing" in str(files.fault_in(file, sealed["bytes"], sealed["sha256"]))
+
+
+def test_a_mark_is_made_once(tmp_path: Path) -> None:
+    files.mark(tmp_path / "mark")
+    assert (tmp_path / "mark").read_bytes() == b""
+    with pytest.raises(Trouble, match=r"mark cannot be written: File exists$"):
+        files.mark(tmp_path / "mark")
+
+
+def test_a_name_in_the_middle_of_a_path_may_be_too_long_too(tmp_path: Path) -> None:
+    longest = "é" * (files.LONGEST_NAME // 2)
+    files.check_name(tmp_path / longest / "file")
+    with pytest.raises(InputError, match=f"^the file name {longest[:40]}... is too long"):
+        files.check_name(tmp_path / (longest + "e") / "file")
+
+
+def test_only_a_free_path_or_a_folder_is_a_folder_of_a_run(tmp_path: Path) -> None:
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "link").symlink_to("folder")
+    for name in ("folder", "new"):
+        files.check_own_folder(tmp_path / name)
+        files.own_folder(tmp_path / name)
+        assert (tmp_path / name).is_dir()
+    with pytest.raises(
+        InputError, match="link is a symbolic link, not a folder; a run writes only"
+    ):
+        files.check_own_folder(tmp_path / "link")

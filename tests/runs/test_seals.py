@@ -4,6 +4,7 @@ import json
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ import primordia
 from primordia.errors import InputError, Trouble
 from primordia.history.info import info
 from primordia.runs import checkpoint, loop
+from primordia.runs import verify as verification
 from primordia.runs.archive import Archive
 from primordia.runs.digest import digests
 from primordia.runs.verify import verify
@@ -154,3 +156,38 @@ def test_verify_compares_the_state_of_every_world(made: Path, tmp_path: Path, na
     reseal(path.parent)
     (fault,) = verify(Archive(run))
     assert fault.startswith("world 1 (seed 1) differs")
+
+
+@pytest.mark.parametrize("versions", [[], ["jax 1 then, 2 now", "numpy 3 then, 4 now"]])
+def test_verify_names_each_world_that_differs_with_its_own_seed(
+    monkeypatch: pytest.MonkeyPatch, versions: list[str]
+) -> None:
+    """A run of three invented worlds, of which the second repeats as recorded, in two chunks."""
+    ends, heard = {"recorded": ["a" * 64, "b" * 64, "c" * 64]}, list[Any]()
+    ends["now"] = ["d" * 64, "b" * 64, "e" * 64]
+    running = iter([True, True, False])
+    engine = SimpleNamespace(
+        limits=lambda _, ticks: ticks, any_running=lambda _: next(running),
+        advance=lambda limits: limits, arrays=lambda: "now",
+    )  # fmt: skip
+    recorder = SimpleNamespace(append=heard.append, digests=dict)
+    for name, value in (
+        ("Engine", lambda _: engine), ("recorder_for", lambda *_: recorder),
+        ("world_ticks", lambda _: "ticks"), ("digests", lambda _, which, __: ends[which]),
+    ):  # fmt: skip
+        monkeypatch.setattr(verification, name, value)
+    monkeypatch.setattr(checkpoint, "origin", lambda *_: None)
+    last = SimpleNamespace(
+        digests={}, manifest=SimpleNamespace(progress=SimpleNamespace(exact=True))
+    )
+    run: Any = SimpleNamespace(
+        config=SimpleNamespace(seed=40, seeds=3), newest=(last, []), state="recorded", path=Path("run"),
+        fault_in=None, admit=lambda: None, other_versions=versions,
+    )  # fmt: skip
+    reasons = "".join(f"; {each}" for each in versions)
+    assert verify(run, heard.append) == [
+        f"world 0 (seed 40) differs: {'a' * 16}... recorded, {'d' * 16}... now{reasons}",
+        f"world 2 (seed 42) differs: {'c' * 16}... recorded, {'e' * 16}... now{reasons}",
+    ]
+    assert heard[::2] == ["ticks", "ticks"]
+    assert [status.engine for status in heard[1::2]] == [engine, engine]

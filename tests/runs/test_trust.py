@@ -5,6 +5,7 @@ import shutil
 import sys
 import tomllib
 from pathlib import Path
+from typing import Any
 
 import pytest
 import tomli_w
@@ -203,3 +204,26 @@ def test_an_installed_part_with_which_the_user_began_is_trusted(
     complains(here(*words(LIVING[0], run)), 2, "gaussian:Gaussian", "--trust")
     assert here(*words(LIVING[0], run), "--trust").returncode == 0
     assert here(*words(LIVING[1], run)).returncode == 0, "once is enough"
+
+
+def test_changed_and_new_files_are_named_and_files_that_only_the_run_holds_are_not(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    texts = {"same.py": b"1", "new.py": b"2", "edited.py": b"3"}
+    sources = {name: own_code.Source(Path("at", name), text) for name, text in texts.items()}
+    monkeypatch.setattr(code, "found", lambda _: code.Code(sources))
+    recorded = {"same.py": sources["same.py"].sha256, "edited.py": "0" * 64, "gone.py": "1" * 64}
+    settings: Any = None
+    assert code.changes(settings, recorded) == ["at/edited.py has changed", "at/new.py is new"]
+
+
+def test_trust_is_stored_once_beside_what_was_trusted_before(folder: Path) -> None:
+    first = code.Code({"a.py": own_code.Source(Path("a.py"), b"1")}, frozenset(["x:y"]))
+    both = code.Code({**first.files, "b.py": own_code.Source(Path("b.py"), b"2")})
+    assert len(first.marks) == len(both.marks) == 2
+    for each, lines in ((first, 2), (first, 2), (both, 3), (both, 3)):
+        code.trust(each)
+        stored = code._store().read_text(encoding="utf-8").splitlines()
+        assert len(stored) == len({*stored}) == lines
+    assert {*stored} == first.marks | both.marks
+    assert code._store() == folder.parent / "state" / "primordia" / "trusted"

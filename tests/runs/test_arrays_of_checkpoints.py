@@ -1,0 +1,191 @@
+"""Arrays of checkpoints: each has the type and shape that settings give it, and is read as it was."""
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pytest
+
+from primordia.errors import Trouble
+from primordia.runs import arrays
+from primordia.runs.arrays import Arrays, read_count, world_ticks
+from primordia.runs.description import Description
+from primordia.runs.records import Records
+from primordia.runs.schema import Schema
+from primordia.runs.shapes import Expected
+from tests.synthetic import worlds_of
+from tests.worlds import config
+
+SETTINGS = config("CartPole-survival", seeds=2, cells=3, brain={"hidden": 4})
+ABOUT = Description(
+    rate=50.0, tallies=("score",), notes=("step", "way"), mates=True, moments=2,
+    beginning={"hazard": 0.5}, blocks={"input": (4, 5), "output": (2,)},
+)  # fmt: skip
+
+
+def fitting() -> dict[str, np.ndarray]:
+    """Return the arrays of two worlds with three cells each, written out by hand."""
+    state: dict[str, np.ndarray] = {}
+
+    def counts(name: str, *shape: int) -> None:
+        for half in ("hi", "lo"):
+            state[f"{name}.{half}"] = np.zeros(shape, np.uint32)
+
+    for name in ("seed", "tick", "births", "extinctions", "organism_ticks", "food", "saturated",
+                 "saturated_births", "fixed", "fixed_births"):  # fmt: skip
+        counts(f"world.worlds.{name}", 2)
+    counts("world.worlds.deaths", 2, 7)
+    for name in ("food", "organism_ticks"):
+        counts(f"world.worlds.looks.{name}", 2, 0)
+    state["world.worlds.looks.wait"] = np.ones((2, 0), np.int32)
+    state["world.worlds.calm"] = np.zeros(2, np.int32)
+    state["world.worlds.sample_wait"] = np.ones(2, np.int32)
+    state["world.worlds.climate.hazard"] = np.zeros(2, np.float32)
+    state["world.organisms.alive"] = np.zeros(6, bool)
+    state["world.organisms.genome.input"] = np.zeros((6, 4, 5), np.float32)
+    state["world.organisms.genome.output"] = np.zeros((6, 2), np.float32)
+    state["world.organisms.notes"] = np.zeros((6, 2), np.int32)
+    state["world.organisms.memory"] = np.zeros((6, 7), np.float32)
+    for name in ("energy", "eaten"):
+        state[f"world.organisms.{name}"] = np.zeros(6, np.int32)
+    for name in ("born", "number", "branch"):
+        counts(f"world.organisms.{name}", 6)
+    for name in ("senses", "memory"):
+        state[f"world.organisms.moments.{name}"] = np.zeros((6, 2, 8), np.float32)
+    state["world.organisms.moments.known"] = np.zeros((6, 2), bool)
+    schema = Schema.described(3, ABOUT)
+    for table in ("births", "deaths", "metrics"):
+        state[f"tail.{table}"] = np.zeros((1, schema.columns(table).width), np.uint32)
+    state["bodies.tally"] = np.zeros((6, 1), np.int32)
+    state["bodies.other"] = np.zeros((6, 9), np.float64)
+    return state
+
+
+NAMES = [*fitting()]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_each_array_has_one_type_and_one_row_for_each_world_or_cell(name: str) -> None:
+    expected, array = Expected(SETTINGS, ABOUT), fitting()[name]
+    assert expected.fault_of(name, array) is None
+    odd = [np.concatenate([array, array]), array[:0]] if not name.startswith("tail.") else []
+    if name != "bodies.other":
+        odd += [array.astype(np.float64), array[..., None], array.astype(np.int8)]
+    if array.ndim > 1 and name not in ("bodies.other", "world.organisms.memory") and array.size:
+        odd += [] if name.endswith(("moments.senses", "moments.memory")) else [array[..., :-1]]
+    if ".moments." in name:
+        odd.append(array[:, :-1])
+    for each in odd:
+        told = expected.fault_of(name, each)
+        assert told == f"{name} is {each.dtype} {each.shape}, which does not fit the settings"
+
+
+@pytest.mark.parametrize(
+    ("name", "least"),
+    [("world.worlds.sample_wait", 1), ("world.worlds.calm", 0), ("world.worlds.looks.wait", 1)],
+)
+def test_no_wait_of_any_world_is_below_the_least(name: str, least: int) -> None:
+    expected = Expected(SETTINGS, ABOUT)
+    if name.endswith("looks.wait"):
+        season = {"kind": "ratchet", "setting": "hazard", "when": "mean_age", "above": 1.0,
+                  "factor": 2.0, "every": 10}  # fmt: skip
+        values = SETTINGS.model_dump() | {"seasons": [season]}
+        expected = Expected(type(SETTINGS).model_validate(values), ABOUT)
+    for array, wrong in (([least, least], False), ([9, least - 1], True)):
+        shape = (2, 1) if name.endswith("looks.wait") else (2,)
+        told = expected.fault_of(name, np.array(array, np.int32).reshape(shape))
+        assert told == (f"{name} is below {least}" if wrong else None)
+
+
+class Held(dict):
+    """Arrays in memory, with the sizes that they take in a file."""
+
+    def size(self, name: str) -> int:
+        return self[name].nbytes
+
+
+def test_a_state_has_all_arrays_large_enough_and_possible_counts() -> None:
+    expected, good = Expected(SETTINGS, ABOUT), fitting()
+    assert expected.fault(Held(good)) is None
+    for name in NAMES:
+        if not name.startswith("bodies"):
+            lacking = Held({each: array for each, array in good.items() if each != name})
+            assert expected.fault(lacking) == f"there is no array {name}"
+    assert expected.fault(Held(good, other=np.zeros(1))) == "there is an unknown array other"
+    small = Held(good, **{"world.organisms.genome.output": np.zeros((5, 2), np.float32)})
+    assert "genome.output is too small for 6 blocks" in str(expected.fault(small))
+    for name, most in (("tick", 2**53), ("fixed", 2**53), ("organism_ticks", 2**63)):
+        for count, wrong in ((most - 1, False), (most, True), (2**64 - 1, False), (0, False)):
+            words = {
+                f"world.worlds.{name}.hi": np.array([0, count >> 32], np.uint32),
+                f"world.worlds.{name}.lo": np.array([0, count & 0xFFFFFFFF], np.uint32),
+            }
+            told = expected.fault(Held(good, **words))
+            assert told == (f"world.worlds.{name} is too large" if wrong else None)
+
+
+@pytest.mark.parametrize("small", [0, 2**20])
+def test_arrays_are_read_as_they_were_even_after_their_file_is_gone(
+    small: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whether a file is read at opening or stays open; by rows or by columns, and without elements."""
+    monkeypatch.setattr(arrays, "SMALL", small)
+    stored = {
+        "rows": np.arange(6, dtype=np.int32).reshape(2, 3),
+        "columns": np.asfortranarray(np.arange(6.0).reshape(2, 3)),
+        "nothing": np.zeros((0, 4), np.uint32),
+        "bad": np.array([True, False]),
+    }
+    np.savez(tmp_path / "state.npz", **stored)
+    seen: list[str] = []
+
+    def fault_of(name: str, array: np.ndarray) -> str | None:
+        seen.append(name)
+        return "it is bad" if name == "bad" else None
+
+    opened = Arrays(tmp_path / "state.npz", fault_of)
+    (tmp_path / "state.npz").unlink()
+    assert list(opened) == list(stored)
+    assert len(opened) == 4
+    for name in ("rows", "columns", "nothing"):
+        for _ in range(2):
+            assert opened[name].dtype == stored[name].dtype
+            np.testing.assert_array_equal(opened[name], stored[name])
+        assert opened.size(name) >= stored[name].nbytes + 10
+    assert seen == ["rows", "columns", "nothing"], "each array is read and checked once"
+    with pytest.raises(Trouble, match=f"^{tmp_path} is not a checkpoint of this run: it is bad$"):
+        opened["bad"]
+    with pytest.raises(KeyError):
+        opened["none"]
+    assert "none" not in opened
+
+
+def test_counts_have_a_high_and_a_low_word() -> None:
+    words = {"world.worlds.tick.hi": np.array([0, 1, 2**32 - 1], np.uint32),
+             "world.worlds.tick.lo": np.array([5, 2**32 - 1, 2**32 - 1], np.uint32)}  # fmt: skip
+    assert world_ticks(words).tolist() == [5, 2**33 - 1, 2**64 - 1]
+    assert read_count(words, "world.worlds.tick").dtype == np.uint64
+
+
+def test_notes_and_mates_are_those_of_each_lifes_own_birth() -> None:
+    """Births of several worlds are on record in the order of events, and lives may be left out."""
+    lives = worlds_of(
+        [(0, 9, True), (5, 9, True), (6, 9, False)], [(0, 9, True), (3, 1, True)], until=40
+    )
+    births = pa.table({
+        "world": pa.array([1, 0, 1, 0, 0], pa.int32()), "id": [0, 0, 1, 1, 2],
+        "mate": pa.array([None, None, 0, None, 1]), "step": pa.array([10, 0, 11, 1, 2], pa.int32()),
+        "way": pa.array([-10, -1, -11, -2, -3], pa.int32()),
+    })  # fmt: skip
+    run: Any = SimpleNamespace(
+        schema=Schema.described(3, ABOUT), table=lambda _, columns: births.select(columns)
+    )
+    run._of_births = lambda *given: Records._of_births(run, *given)
+    some = lives.take(np.array([0, 2, 3, 4]))
+    assert Records.mates_of(run, some).tolist() == [-1, 1, -1, 0]
+    assert Records.notes_of(run, some).tolist() == [[0, -1], [2, -3], [10, -10], [11, -11]]
+    run.schema = Schema(3, mates=False, notes=(), rates=(), tallies=())
+    assert Records.mates_of(run, some).tolist() == [-1] * 4
+    assert Records.notes_of(run, some).shape == (4, 0)

@@ -1,0 +1,174 @@
+"""Checkpoints by number: which are kept, which is the newest, and what a manifest may name."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from primordia.errors import Trouble
+from primordia.runs import checkpoint, manifest
+from primordia.runs.manifest import Manifest, Progress, Seal, Segment
+from primordia.runs.record import Recorder
+from primordia.runs.schema import TABLES, Schema
+from primordia.settings.limits import Stop
+
+SCHEMA = Schema(4, mates=False, notes=(), rates=(), tallies=())
+PROGRESS = Progress(limits=Stop(ticks=9), wall_s=1.5, exact=True)
+
+
+@pytest.fixture
+def run(tmp_path: Path) -> Path:
+    """The folders of a run, with its settings and a file of the user's own code."""
+    for name in (*TABLES, checkpoint.FOLDER, "code/mine"):
+        (tmp_path / name).mkdir(parents=True)
+    for name in ("config.toml", "description.json", "code/mine/pond.py", "code/mine/notes.txt"):
+        (tmp_path / name).write_text(name)
+    return tmp_path
+
+
+def save(run: Path, number: int) -> None:
+    checkpoint.save(run, {"number": np.array([number])}, Recorder(run, 1, SCHEMA), PROGRESS)
+
+
+def names(run: Path) -> list[str]:
+    return [path.name for path in checkpoint.numbered(run)]
+
+
+def number_in(stored: checkpoint.Checkpoint | None) -> int:
+    assert stored is not None
+    return int(stored.arrays(lambda *_: None)["number"][0])
+
+
+def test_the_newest_two_are_kept_and_numbers_begin_at_0(run: Path) -> None:
+    assert not checkpoint.exists(run)
+    for number, kept in enumerate([[0], [0, 1], [1, 2], [2, 3]]):
+        save(run, number)
+        assert names(run) == [f"{each:06d}" for each in kept]
+        assert number_in(checkpoint.newest(run)[0]) == number
+    assert checkpoint.exists(run)
+    assert [number_in(each) for each in checkpoint.whole_checkpoints(run)] == [3, 2]
+
+
+def test_numbers_of_more_than_six_digits_are_in_order_of_size(run: Path) -> None:
+    save(run, 0)
+    (run / "checkpoints" / "000000").rename(run / "checkpoints" / "999999")
+    for name in ("12345", "1234567890", "00000x", ".writing-000001"):
+        (run / "checkpoints" / name).mkdir()
+    for number in (1, 2):
+        save(run, number)
+    assert names(run) == ["1000000", "1000001"]
+    assert number_in(checkpoint.newest(run)[0]) == 2
+
+
+def test_a_manifest_names_the_settings_and_the_code(run: Path) -> None:
+    save(run, 0)
+    stored, faults = checkpoint.newest(run)
+    assert faults == []
+    assert list(stored.manifest.inputs) == ["config.toml", "description.json", "code/mine/pond.py"]
+    assert stored.manifest.progress == PROGRESS
+    assert stored.manifest.segments == {name: [] for name in TABLES}
+    assert {name: sums.shape for name, sums in stored.digests.items()} == dict.fromkeys(
+        TABLES, (1, 2)
+    )
+
+
+@pytest.mark.parametrize("origin", [False, True])
+def test_the_faults_of_newer_checkpoints_come_newest_first(run: Path, origin: bool) -> None:
+    """The origin of a fork is the last resort, and it decides what a user can do without any."""
+    if origin:
+        checkpoint.save_origin(run, {"number": np.array([7])}, Recorder(run, 1, SCHEMA), PROGRESS)
+        assert checkpoint.exists(run)
+        assert number_in(checkpoint.origin(run)) == 7
+    for number in range(2):
+        save(run, number)
+    states = [run / "checkpoints" / f"{number:06d}" / "state.npz" for number in (1, 0)]
+    for damaged, state in enumerate(states):
+        state.unlink()
+        last, faults = checkpoint.newest(run)
+        assert faults == [f"{each} is missing" for each in states[: damaged + 1]]
+        if damaged == 0:
+            assert number_in(last) == 0
+    assert (last is None) == (not origin)
+    error = checkpoint.no_whole_checkpoint(run, faults)
+    again = f"`primordia run {run / 'config.toml'}` repeats the run from its beginning"
+    assert str(error) == (
+        f"no checkpoint of {run} is whole: {states[0]} is missing;"
+        f" {'fork it again' if origin else again}"
+    )
+    if origin:
+        assert number_in(last) == 7
+        (run / "origin" / "state.npz").write_bytes(b"")
+        with pytest.raises(Trouble, match=r"state\.npz has 0 bytes instead of"):
+            checkpoint.origin(run)
+    else:
+        assert checkpoint.origin(run) is None
+
+
+@pytest.mark.parametrize("which", ["newest", "earlier", "origin", "none"])
+def test_what_is_later_than_a_checkpoint_is_removed(run: Path, which: str) -> None:
+    """Earlier checkpoints, and the segments that the checkpoint names, stay."""
+    recorder = Recorder(run, 1, SCHEMA)
+    seal = {"bytes": 0, "sha256": "0" * 64}
+    checkpoint.save_origin(run, {"a": np.zeros(1)}, recorder, PROGRESS)
+    for number in range(2):
+        recorder.tables[1].segments.append(Segment(name=f"{number:06d}.parquet", rows=0, **seal))
+        save(run, number)
+    for number in range(3):
+        (run / "deaths" / f"{number:06d}.parquet").write_bytes(b"")
+    (run / "births" / ".writing-000000.parquet").write_bytes(b"")
+    (run / "checkpoints" / ".writing-000002").mkdir()
+    folder = {"newest": "checkpoints/000001", "earlier": "checkpoints/000000", "origin": "origin"}
+    count = {"newest": 2, "earlier": 1}.get(which, 0)
+    last: Any = None
+    if which != "none":
+        content = Manifest(
+            progress=PROGRESS, inputs={}, state=Seal(**seal),
+            segments={name: recorder.tables[1].segments[:count] if name == "deaths" else []
+                      for name in TABLES},
+            digests={name: [(0, 0)] for name in TABLES},
+        )  # fmt: skip
+        last = checkpoint.Checkpoint(run / folder[which], content)
+    checkpoint.remove_leftovers(run, last)
+    assert names(run) == [f"{number:06d}" for number in range(count)]
+    assert [path.name for path in sorted((run / "checkpoints").iterdir())] == names(run)
+    assert sorted(path.name for path in (run / "deaths").iterdir()) == [
+        f"{number:06d}.parquet" for number in range(count)
+    ]
+    assert not any((run / "births").iterdir())
+    assert (run / "origin").is_dir()
+
+
+NAMES = {
+    "config.toml": True,
+    "founders.safetensors": True,
+    "versions.json": False,
+    "code": False,
+    "code/a.py": True,
+    "code/../a.py": False,
+    "other/a.py": False,
+    "code/" + "d/" * 15 + "a.py": True,
+    "code/" + "d/" * 16 + "a.py": False,
+}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_manifest_names_only_files_of_a_run(name: str) -> None:
+    content: dict[str, Any] = {
+        "progress": PROGRESS, "inputs": {name: Seal(0, "0" * 64)}, "state": Seal(0, "0" * 64),
+        "segments": {table: [] for table in TABLES}, "digests": {table: [] for table in TABLES},
+    }  # fmt: skip
+    if not NAMES[name]:
+        with pytest.raises(ValueError, match="is not a file of a run"):
+            Manifest(**content)
+        return
+    sealed = Manifest(**content)
+    assert manifest.parsed(sealed.text().encode()) == sealed
+    with pytest.raises(ValueError, match="was changed"):
+        manifest.parsed(sealed.text().replace('"wall_s": 1.5', '"wall_s": 2.5').encode())
+
+
+def test_only_a_resume_with_new_bodies_counts_as_a_restart() -> None:
+    progress = Progress(limits=Stop(ticks=9), wall_s=3.0, exact=False, restarts=2)
+    assert progress.gone_on(exact=True) == progress
+    assert progress.gone_on(exact=False) == progress.model_copy(update={"restarts": 3})

@@ -1,0 +1,136 @@
+"""Records that begin later or stop earlier, compared with loops over the lives of unequal worlds."""
+
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+
+from primordia.errors import InputError
+from primordia.law.world import Cause
+from primordia.runs.lives import ALIVE, Lives, alive_at_fork, joined
+from tests.synthetic import world_of, worlds_of
+
+FIRST = [(0, 9, True), (0, 19, True), (5, 14, True), (10, 0, True), (20, 50, False), (21, 3, True)]
+SECOND = [(0, 19, True), (20, 9, True), (30, 0, False)]
+UNTIL = 40
+
+
+@pytest.fixture
+def lives() -> Lives:
+    """Lives of three worlds, of which the middle one has no record of a life."""
+    both = worlds_of(FIRST, SECOND, until=UNTIL)
+    return replace(both, world=both.world * 2)
+
+
+def rows(lives: Lives) -> list[tuple[int, ...]]:
+    columns = (getattr(lives, each.name).tolist() for each in fields(lives))
+    return list(zip(*columns, strict=True))
+
+
+def as_dicts(lives: Lives) -> list[dict[str, int]]:
+    names = [each.name for each in fields(lives)]
+    return [dict(zip(names, row, strict=True)) for row in rows(lives)]
+
+
+@pytest.mark.parametrize("tick", [0, 4, 5, 9, 10, 19, 20, 21, 30, 40])
+def test_a_fork_records_who_lives_at_its_tick_and_who_comes_later(lives: Lives, tick: int) -> None:
+    expected = []
+    for life in as_dicts(lives):
+        if life["cause"] == ALIVE or life["ended"] > tick:
+            at_fork = tick > 0 and life["born"] <= tick
+            expected.append({**life, "seen": max(life["born"], tick), "inherited": at_fork})
+    assert as_dicts(lives.recorded_since(tick)) == expected
+    assert alive_at_fork(lives.born, tick).tolist() == [
+        0 < tick >= born for born in lives.born.tolist()
+    ]
+
+
+def test_a_fork_of_a_fork_keeps_who_was_inherited(lives: Lives) -> None:
+    later = lives.recorded_since(10).recorded_since(0)
+    assert rows(later) == rows(lives.recorded_since(10))
+    assert later.inherited.any()
+    assert not later.inherited.all()
+
+
+@pytest.mark.parametrize("tick", [0, 5, 10, 19, 20, 24, 25, 30, 40, 41])
+def test_a_stopped_record_holds_no_later_birth_and_no_later_death(lives: Lives, tick: int) -> None:
+    """A death in the last tick is on record; after it, an organism counts as living until then."""
+    expected = []
+    for life in as_dicts(lives):
+        if life["born"] > tick:
+            continue
+        after = life["ended"] > tick
+        now = {"ended": tick, "cause": ALIVE} if after else {}
+        expected.append({**life, **now})
+    assert as_dicts(lives.recorded_until(tick)) == expected
+    assert lives.recorded_until(tick).cause.dtype == lives.cause.dtype
+
+
+@pytest.mark.parametrize("tick", [0, 20])
+def test_time_since_the_fork_is_counted_from_its_tick(lives: Lives, tick: int) -> None:
+    fork = lives.recorded_since(tick)
+    since = fork.since_fork()
+    assert since.born.tolist() == [born - tick for born in fork.born.tolist()]
+    assert since.seen.tolist() == [max(born - tick, 0) for born in fork.born.tolist()]
+    assert since.ended.tolist() == [ended - tick for ended in fork.ended.tolist()]
+    for name in ("world", "id", "parent", "cell", "cause", "inherited"):
+        assert getattr(since, name).tolist() == getattr(fork, name).tolist()
+    assert (since.lifespan == fork.lifespan).all()
+    assert (since.entered == fork.entered).all()
+
+
+def test_the_lives_of_one_world_are_taken_alone(lives: Lives) -> None:
+    assert lives.worlds == 3
+    assert rows(lives.of_world(0)) == [row for row in rows(lives) if row[0] == 0]
+    assert rows(lives.of_world(2)) == [row for row in rows(lives) if row[0] == 2]
+    assert len(lives.of_world(1)) == len(lives.of_world(3)) == 0
+    assert lives.of_world(3).worlds == 0
+    alone = lives.of_world(0)
+    assert alone.of_world(0) is alone
+    assert alone.worlds == 1
+    assert lives.rank.tolist() == [*range(6), *range(3)]
+
+
+def test_the_oldest_and_the_champions_leave_out_worlds_without_a_birth(lives: Lives) -> None:
+    """Late in the first world are rows 3, 4 and 5, in the last one rows 7 and 8."""
+    assert np.flatnonzero(lives.late()).tolist() == [3, 4, 5, 7, 8]
+    assert lives.lifespan[[3, 4, 5, 7, 8]].tolist() == [1, 20, 4, 10, 10]
+    assert (lives.oldest(), lives.oldest(0), lives.oldest(2)) == (4, 4, 8)
+    assert lives.champions().tolist() == [4, 8]
+    assert (lives.oldest(0, after=0.0), lives.oldest(after=0.0)) == (4, 6), (
+        "the last-born of equals"
+    )
+    assert lives.oldest(2, after=0.0) == 6
+    with pytest.raises(InputError, match=r"^there is no world 1; the worlds are 0 to 2$"):
+        lives.oldest(1)
+    with pytest.raises(InputError, match=r"^there is no world 3; the worlds are 0 to 2$"):
+        lives.oldest(3)
+
+
+def test_those_alive_at_a_fork_are_no_champions(lives: Lives) -> None:
+    """After the fork at 20 only two are born, both at 21 or later; the others were alive at 20."""
+    fork = lives.recorded_since(20)
+    expected = [row for row, born in enumerate(fork.born.tolist()) if born > 20]
+    assert fork.champions().tolist() == expected
+    assert np.flatnonzero(fork.late(0.0)).tolist() == expected
+    assert len(expected) == 2
+    assert len(lives.recorded_since(30).champions()) == 0
+
+
+def test_an_organism_is_found_in_its_own_world(lives: Lives) -> None:
+    assert [lives.row(2, world) for world in (0, 2)] == [2, 8]
+    for number, world in ((3, 2), (6, 0), (-1, 0), (0, 1), (0, 3)):
+        with pytest.raises(InputError, match=f"^no organism {number} was born in world {world}$"):
+            lives.row(number, world)
+    wanted = np.array([2, 0, 2, 1, 0, 5]), np.array([2, 5, 3, 0, -1, 0])
+    assert lives.rows_of(*wanted).tolist() == [8, 5, -1, -1, -1, -1]
+
+
+def test_lives_of_runs_are_joined_with_worlds_of_other_numbers(lives: Lives) -> None:
+    one = world_of(FIRST, UNTIL)
+    both = joined([lives, one], np.array([0, 3]))
+    assert both.world.tolist() == [*lives.world.tolist(), *[3] * 6]
+    assert both.world.dtype == np.int32
+    assert both.born.tolist() == [*lives.born.tolist(), *one.born.tolist()]
+    assert both.worlds == 4
+    assert Cause.FATAL in both.cause

@@ -1,0 +1,172 @@
+"""The folder of a run: who may begin in it, which settings it has, and its notes on failures."""
+
+import fcntl
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from primordia.errors import InputError, Trouble
+from primordia.runs import directory, faults, loop
+from primordia.runs.manifest import Progress
+from primordia.settings.limits import Stop
+from tests.worlds import MEADOW, config
+
+
+def test_a_run_begins_in_a_folder_with_at_most_a_lock(tmp_path: Path) -> None:
+    directory.refuse_if_taken(tmp_path / "new")
+    directory.refuse_if_taken(tmp_path)
+    (tmp_path / "lock").touch()
+    directory.refuse_if_taken(tmp_path)
+    (tmp_path / "mine").touch()
+    with pytest.raises(InputError, match=f"^{tmp_path} exists already and is not a run; "):
+        directory.refuse_if_taken(tmp_path)
+    with pytest.raises(InputError, match="exists already and is not a run"):
+        directory.refuse_if_taken(tmp_path / "mine")
+    (tmp_path / "versions.json").touch()
+    with pytest.raises(InputError, match=f"continue the run with `primordia resume {tmp_path}`$"):
+        directory.refuse_if_taken(tmp_path)
+
+
+def test_a_lock_is_seen_while_it_is_held(tmp_path: Path) -> None:
+    assert not directory.is_written(tmp_path)
+    with directory.locked(tmp_path):
+        assert directory.is_written(tmp_path)
+    assert not directory.is_written(tmp_path)
+    with (tmp_path / "lock").open("rb") as other_reader:
+        fcntl.flock(other_reader, fcntl.LOCK_SH)
+        assert not directory.is_written(tmp_path), "another reader is no writer"
+
+
+STARTED = (
+    "versions.json",
+    "births/a",
+    ".writing-config.toml",
+    "code/a.py",
+    "origin/a",
+    "config.toml",
+)
+
+
+def test_a_start_that_was_killed_is_cleared_but_for_files_of_others(tmp_path: Path) -> None:
+    run = tmp_path / "run"
+    assert directory.clear_unbegun(run), "there is nothing"
+    for name in (*STARTED[1:], "mine.txt", ".writing-mine", "lock"):
+        (run / name).parent.mkdir(parents=True, exist_ok=True)
+        (run / name).touch()
+    before = sorted(run.rglob("*"))
+    assert directory.clear_unbegun(run), "no start is marked, so nothing is removed"
+    assert sorted(run.rglob("*")) == before
+    (run / directory.UNBEGUN).touch()
+    with directory.locked(run), pytest.raises(InputError, match="is being written by another"):
+        directory.clear_unbegun(run)
+    assert directory.clear_unbegun(run)
+    assert sorted(path.name for path in run.iterdir()) == [".writing-mine", "lock", "mine.txt"]
+    for name in ("versions.json", directory.UNBEGUN, "config.toml"):
+        (run / name).touch()
+    assert not directory.clear_unbegun(run), "a folder with versions is a run"
+    assert (run / "config.toml").exists()
+
+
+@pytest.mark.parametrize("format", [0, 1, 2, 3])
+def test_runs_of_another_format_are_refused(format: int, tmp_path: Path) -> None:
+    (tmp_path / "versions.json").write_text(json.dumps({"format": format}))
+    says = {
+        2: f"{tmp_path / 'config.toml'} is missing; put it back",
+        3: f"{tmp_path} was made by a newer primordia (format 3, this one reads 2); upgrade",
+    }.get(
+        format,
+        f"{tmp_path} has format {format}, and this primordia reads format 2 only; `primordia run"
+        f" {tmp_path / 'config.toml'}` repeats the run from its beginning",
+    )
+    with pytest.raises(InputError) as raised:
+        directory.read_config(tmp_path)
+    assert str(raised.value) == says
+
+
+@pytest.mark.parametrize(
+    ("changes", "differs"),
+    [
+        ({"about": "another"}, None),
+        ({"stop": {"ticks": 3}}, None),
+        ({"ancestors": ["a"]}, None),
+        ({"seed": 1}, "seed is 0 there, and 1 here"),
+        ({"metabolism": {"store": 9.0}}, "metabolism"),
+        ({"saturation_ticks": 9}, r"saturation_ticks is \d+ there, and 9 here"),
+    ],
+)
+def test_a_run_goes_on_with_the_settings_that_it_was_begun_with(
+    changes: dict[str, Any], differs: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The limits, the text about it and the place of its ancestors may differ."""
+    there = config(MEADOW)
+    here = there.model_copy(update=changes) if "ancestors" in changes else config(MEADOW, **changes)
+    monkeypatch.setattr(directory, "read_config", lambda _: there)
+    if differs is None:
+        directory.check_same_settings(here, tmp_path)
+        return
+    with pytest.raises(InputError, match=f"was begun with other settings: {differs}"):
+        directory.check_same_settings(here, tmp_path)
+
+
+def test_a_script_that_begins_or_resumes_passes_on_all_that_is_given(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    calls = list[tuple[Any, ...]]()
+    settings = config(MEADOW, stop={"ticks": 7, "births": 5, "until": "saturation"})
+
+    def listen(_: loop.Status) -> None: ...
+
+    def resumed(*given: Any, **named: Any) -> list[str]:
+        calls.append((*given, named))
+        return ["a note"]
+
+    monkeypatch.setattr(loop, "start", lambda *given, **named: calls.append((*given, named)))
+    monkeypatch.setattr(loop, "resume", resumed)
+    monkeypatch.setattr(directory, "check_same_settings", lambda *given: calls.append(given))
+    passed = {"checkpoint_every": 3.0, "listen": listen}
+    for there in (True, False):
+        monkeypatch.setattr(directory, "clear_unbegun", lambda _, there=there: there)
+        notes = loop.begin_or_resume(settings, tmp_path, **passed)
+        assert notes == ([] if there else ["a note"])
+    limits = {"ticks": 7, "births": 5, "until": "saturation"}
+    assert calls == [
+        (settings, tmp_path, passed), (settings, tmp_path), (tmp_path, limits, passed)
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("seconds", [-0.1, float("nan"), float("-inf")])
+def test_seconds_between_checkpoints_are_0_or_more(seconds: float, tmp_path: Path) -> None:
+    loop._check_interval(0)
+    loop._check_interval(float("inf"))
+    for begin in (
+        lambda: loop.start(config(MEADOW), tmp_path / "run", checkpoint_every=seconds),
+        lambda: loop.resume(tmp_path / "run", checkpoint_every=seconds),
+    ):
+        with pytest.raises(InputError, match=f"0 or more, not {seconds}$"):
+            begin()
+    assert not (tmp_path / "run").exists()
+
+
+def test_a_run_with_nothing_to_do_names_the_limits_that_it_has(tmp_path: Path) -> None:
+    limits = Stop(ticks=9, births=None, until="saturation")
+    says = loop._nothing_to_do(tmp_path, Progress(limits=limits, wall_s=0.0, exact=True))
+    assert says.startswith(f"nothing to do: every world of {tmp_path} has reached a limit"
+                           " (ticks 9, until saturation); ")  # fmt: skip
+
+
+def test_failures_are_noted_a_line_each_after_those_before(tmp_path: Path) -> None:
+    faults.note(tmp_path, [])
+    assert not (tmp_path / "faults.txt").exists()
+    faults.note(tmp_path, ["first", "second\x1b"])
+    faults.note(tmp_path, ["third"])
+    lines = (tmp_path / "faults.txt").read_text().splitlines()
+    assert (len(lines), lines[0], lines[2]) == (3, "first", "third")
+    assert "\x1b" not in lines[1]
+    (tmp_path / "target").touch()
+    (tmp_path / "link").mkdir()
+    (tmp_path / "link" / "faults.txt").symlink_to(tmp_path / "target")
+    with pytest.raises(Trouble, match=f"{tmp_path / 'link' / 'faults.txt'} cannot be written: "):
+        faults.note(tmp_path / "link", ["first"])
+    assert (tmp_path / "target").read_text() == ""

@@ -1,0 +1,139 @@
+"""Forks of invented worlds: which ticks can be forked, who lives then, and what changes."""
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from primordia.errors import InputError, Trouble
+from primordia.law.world import Worlds
+from primordia.random.wide import to_host, wide
+from primordia.runs import fork
+from primordia.runs.arrays import NEVER
+from tests.synthetic import worlds_of
+from tests.worlds import MEADOW, config
+
+FIRST = [(0, 9, True), (0, 19, True), (5, 14, True), (10, 30, False)]
+SECOND = [(0, 9, True), (10, 0, False), (11, 0, False)]
+CELLS = 5
+
+
+@pytest.mark.parametrize("begins", [0, 7])
+def test_a_run_is_forked_where_all_its_worlds_have_lived(begins: int) -> None:
+    """From the first tick, or from the tick of its own fork, to the end of the world that ends first."""
+    of = SimpleNamespace(run="before", tick=begins) if begins else None
+    settings = SimpleNamespace(begins=begins, fork=of)
+    source: Any = SimpleNamespace(config=settings, ends=np.array([30, 20, 25]), path=Path("run"))
+    first = max(begins, 1)
+    for at in (first, first + 1, 20):
+        fork._check_tick(source, at)
+    says = f"run can be forked at any tick from {first} to 20"
+    earlier = "; for an earlier tick, fork before" if begins else ""
+    for at, more in ((first - 1, earlier), (21, ""), (30, "")):
+        with pytest.raises(InputError) as raised:
+            fork._check_tick(source, at)
+        assert str(raised.value) == f"--at {at}: {says}{more}"
+
+
+@pytest.mark.parametrize("at", [1, 9, 10, 11, 20])
+def test_the_living_at_a_tick_are_on_record_and_in_the_world(at: int) -> None:
+    """An organism that is born in the tick lives at its end, one that dies in the tick does not."""
+    lives = worlds_of(FIRST, SECOND, until=40)
+    expected = [
+        row
+        for row in range(len(lives))
+        if lives.born[row] <= at and (not lives.died[row] or lives.ended[row] > at)
+    ]
+    alive, number = np.zeros(2 * CELLS, bool), np.zeros(2 * CELLS, np.uint32)
+    for row in expected:
+        cell = lives.world[row] * CELLS + lives.cell[row]
+        alive[cell], number[cell] = True, lives.id[row]
+
+    def living(alive: np.ndarray, number: np.ndarray) -> list[int]:
+        organisms = SimpleNamespace(alive=alive, number=SimpleNamespace(lo=number))
+        state = SimpleNamespace(world=SimpleNamespace(organisms=organisms))
+        settings: Any = SimpleNamespace(cells=CELLS)
+        found = fork._living(lives, SimpleNamespace(state=state), settings, at)
+        return list(zip(found.world.tolist(), found.id.tolist(), strict=True))
+
+    who = [(int(lives.world[row]), int(lives.id[row])) for row in expected]
+    assert living(alive, number) == who
+    for change in (
+        alive ^ (np.arange(2 * CELLS) == np.flatnonzero(alive)[-1]),
+        np.ones_like(alive),
+    ):
+        with pytest.raises(Trouble, match=f"tick {at} did not repeat as recorded"):
+            living(change, number)
+    with pytest.raises(Trouble, match="did not repeat"):
+        living(alive, number + np.arange(2 * CELLS, dtype=np.uint32) // CELLS)
+
+
+def adapted(at: int, changes: dict[str, Any], climate: dict[str, float] | None = None) -> Worlds:
+    """Return the worlds of a fork of a meadow with two worlds at a tick, with some changed settings."""
+    old = config(MEADOW, seeds=2, sample_every=10, seed=3)
+    new = config(MEADOW, **{"seeds": 2, "sample_every": 10, "seed": 3, **changes})
+    count = wide(np.array([100, 200]))
+    worlds: Any = Worlds(*[count] * len(Worlds._fields))
+    worlds = worlds._replace(
+        calm=jnp.array([7, 8]), sample_wait=jnp.array([1, 1]), looks="looks", climate={}
+    )
+    nothing: Any = SimpleNamespace(law=SimpleNamespace(beginning=()))
+    organisms: Any = "organisms"
+    world = fork._adapt((organisms, worlds), nothing, nothing, old, new, at)
+    assert world.organisms == organisms
+    return world.worlds
+
+
+@pytest.mark.parametrize(
+    ("at", "every", "wait"),
+    [(3, 10, 7), (10, 10, 10), (19, 10, 1), (19, 4, 1), (20, 4, 4), (3, 9, 6)],
+)
+def test_a_fork_is_sampled_at_multiples_of_its_own_interval(at: int, every: int, wait: int) -> None:
+    assert adapted(at, {"sample_every": every}).sample_wait.tolist() == [wait, wait]
+
+
+@pytest.mark.parametrize(
+    ("changes", "again"),
+    [
+        ({}, False),
+        ({"sample_every": 4}, False),
+        ({"stop": {"ticks": 500}}, False),
+        ({"about": "another"}, False),
+        ({"seed": 4}, True),
+        ({"hazard": 0.5}, True),
+        ({"saturation_ticks": 77}, True),
+    ],
+)
+def test_only_another_course_must_saturate_again(changes: dict[str, Any], again: bool) -> None:
+    worlds, seed = adapted(20, changes), changes.get("seed", 3)
+    assert worlds.calm.tolist() == ([0, 0] if again else [7, 8])
+    for moment in (worlds.saturated, worlds.saturated_births):
+        assert to_host(moment).tolist() == ([NEVER, NEVER] if again else [100, 200])
+    for count in (worlds.fixed, worlds.fixed_births, worlds.births, worlds.tick):
+        assert to_host(count).tolist() == [100, 200]
+    assert to_host(worlds.seed).tolist() == [seed, seed + 1]
+    assert worlds.looks == "looks"
+
+
+def test_changed_settings_take_the_place_of_what_seasons_left() -> None:
+    before: Any = SimpleNamespace(law=SimpleNamespace(beginning=(("hazard", 0.5), ("gain", 2.0))))
+    after: Any = SimpleNamespace(
+        law=SimpleNamespace(beginning=(("hazard", 0.5), ("gain", 3.0), ("store", 9.0)))
+    )
+    now = {"hazard": jnp.array([0.25, 0.75]), "gain": jnp.array([1.0, 7.0]), "store": jnp.zeros(2)}
+    climate = fork._climate(now, before, after)
+    assert {name: values.tolist() for name, values in climate.items()} == {
+        "hazard": [0.25, 0.75],
+        "gain": [3.0, 3.0],
+        "store": [9.0, 9.0],
+    }
+
+
+def test_the_form_of_an_array_leaves_out_the_length_of_saved_states() -> None:
+    arrays = {"bodies.states": np.zeros((4, 9)), "bodies.other": np.zeros((4, 9))}
+    assert fork._form("bodies.states", arrays) == (4,)
+    assert fork._form("bodies.other", arrays) == (4, 9)
+    assert fork._form("bodies.none", arrays) == ()
