@@ -46,12 +46,9 @@ def write(
     encode = partial(_gif, sample=sample) if path.suffix == ".gif" else _mp4
     try:
         files.write(path, lambda temporary: encode(temporary, pictures, rate))
-    except (
-        OverflowError
-    ):  # a GIF has 16 bits for hundredths of a second, also of equal pictures together
-        raise InputError(
-            f"{path}: a GIF shows a picture for 655 s at most; write an .mp4"
-        ) from None
+    except OverflowError:  # a GIF has 16 bits for the time of equal pictures in a row
+        longest = f"{path}: a GIF shows a picture for 655 s at most"
+        raise InputError(f"{longest}; write an .mp4") from None
 
 
 def _mp4(path: Path, pictures: Iterator[Image.Image], rate: float) -> None:
