@@ -69,6 +69,20 @@ def test_a_start_that_was_killed_is_cleared_but_for_files_of_others(tmp_path: Pa
     assert (run / "config.toml").exists()
 
 
+@pytest.mark.parametrize("error", [Trouble("full"), KeyboardInterrupt(), MemoryError()])
+def test_a_run_that_ends_before_its_first_checkpoint_leaves_nothing(
+    error: BaseException, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: Any) -> None:
+        assert (tmp_path / "run" / "versions.json").exists()
+        raise error
+
+    monkeypatch.setattr(loop, "drive", fail)
+    with pytest.raises(type(error)):
+        loop.start(config(MEADOW), tmp_path / "run")
+    assert not (tmp_path / "run").exists()
+
+
 @pytest.mark.parametrize("format", [0, 1, 2, 3])
 def test_runs_of_another_format_are_refused(format: int, tmp_path: Path) -> None:
     (tmp_path / "versions.json").write_text(json.dumps({"format": format}))
