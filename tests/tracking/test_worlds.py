@@ -124,6 +124,7 @@ def test_a_run_of_wandb_has_ticks_as_its_axis_and_nothing_of_the_machine(tmp_pat
     assert axes == {"tick": "", "*": "tick"}
     (about,) = (record.run for record in records if record.HasField("run"))
     assert (about.run_id, about.HasField("git")) == ("2" * 16, False)
+    assert about.host == "unnamed"
     assert {record.WhichOneof("record_type") for record in records} == {
         *("header", "run", "metric", "history", "summary", "telemetry", "exit")
     }

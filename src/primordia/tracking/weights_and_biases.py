@@ -18,6 +18,7 @@ NOTHING_ELSE: dict[str, Any] = {
     "console": "off",
     "disable_code": True,
     "disable_git": True,
+    "host": "unnamed",
     "silent": True,
     "symlink": False,
     "x_disable_machine_info": True,
@@ -25,7 +26,7 @@ NOTHING_ELSE: dict[str, Any] = {
     "x_disable_stats": True,
     "x_save_requirements": False,
 }
-"""Settings with which wandb records nothing about this process or machine, and prints nothing."""
+"""Settings with which wandb prints nothing, and records of the machine only the kind of its system."""
 
 SERVICE = "WANDB_SERVICE"
 """The environment variable with which wandb finds its service process."""
