@@ -198,6 +198,15 @@ def test_a_forager_starves_as_the_law_says() -> None:
     assert (info["cause"], info["food"]) == ("starved", 10.0)
 
 
+@pytest.mark.parametrize("food", [np.inf, -np.inf, np.nan])
+def test_food_that_is_not_finite_is_not_eaten(food: float) -> None:
+    meals = iter([2.0, food])
+    env = Forager(gymnasium.make("tests.ponds:Pond-v0", edge=1e9), lambda *_: next(meals))
+    env.reset(seed=0)
+    eaten = [env.step(env.action_space.sample())[-1]["food"] for _ in range(2)]
+    assert eaten == [2, 2]
+
+
 @pytest.mark.parametrize(
     ("edge", "store", "cause"), [(1e9, 1.0, "starved"), (-1.0, 1.0, "fatal"), (-1.0, 9.0, "fatal")]
 )

@@ -219,6 +219,7 @@ def test_some_arms_are_run_alone(tmp_path: Path) -> None:
     file, out = write(tmp_path), tmp_path / "out"
     done = here("experiment", file, "--out", out, "--only", "harsh", "--jobs", 1)
     assert done.returncode == 0
+    assert " 0 of 2 jobs done" in done.stdout
     assert "2 jobs of other arms left to do" in done.stderr
     assert begin(out).status().jobs == {"done": 2, "running": 0, "failed": 0, "waiting": 2}
     assert begin(out).status(["harsh"]).jobs["waiting"] == 0
