@@ -1,4 +1,4 @@
-"""One tick of organisms and of cells, in invented outcomes: who dies of what, eats, and replicates."""
+"""One tick with invented outcomes: causes of death, food, energy, and which organisms replicate."""
 
 from dataclasses import replace
 from functools import cache
@@ -58,8 +58,7 @@ def judged(hungry: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 @pytest.mark.parametrize("hungry", [True, False])
 def test_of_all_reasons_to_die_the_gravest_is_the_cause(hungry: bool) -> None:
-    """The drain of 1 leaves a hungry organism 0, of which it dies, and any other one step, on which it
-    lives."""
+    """The drain of 1 leaves a hungry organism no energy, and any other organism one step."""
     _, _, cause = judged(hungry)
     expected = []
     for row in CASES:
@@ -75,7 +74,7 @@ def test_of_all_reasons_to_die_the_gravest_is_the_cause(hungry: bool) -> None:
     assert cause.tolist() == expected
 
 
-def test_what_a_habitat_does_not_report_kills_nobody_and_feeds_nobody() -> None:
+def test_outcomes_without_food_and_effort_change_no_energy() -> None:
     vitals, none = Vitals(np.full(3, 5 * ONE, np.int32), np.array([0, 7, 9], np.int32)), np.zeros(3)
     outcome = Outcome(np.array([False, True, False]))
     for hungry, left in ((True, 4 * ONE), (False, 5 * ONE)):
@@ -86,7 +85,7 @@ def test_what_a_habitat_does_not_report_kills_nobody_and_feeds_nobody() -> None:
 
 
 def test_food_is_counted_with_a_metabolism_and_without() -> None:
-    """Food of a whole life is in the habitat's unit: gain plays no part. It may be negative."""
+    """The food of a life is in the habitat's unit, without the gain. It may be negative."""
     vitals = Vitals(np.full(3, 5 * ONE, np.int32), np.array([0, 7, 2**30 - 65], np.int32))
     outcome = Outcome(np.zeros(3, bool), np.array([0.5, -0.25, 3.0], np.float32))
     rates = RATES._replace(gain=np.float32(2))
@@ -120,7 +119,7 @@ def test_an_output_that_is_not_finite_is_a_fault_wherever_it_is() -> None:
     np.testing.assert_array_equal(found.action, outputs)
 
 
-def test_the_gaussian_motor_adds_its_own_share_of_noise_to_each_output() -> None:
+def test_the_gaussian_motor_adds_noise_of_its_own_scale_to_each_output() -> None:
     outputs = np.arange(15, dtype=np.float32).reshape(5, 3)
     key = stream(wide(np.arange(5)), Purpose.MOTOR, wide(np.full(5, 4)))
     noise = quantiles()[np.asarray(noise_index(key, np.arange(5), 3))]
@@ -156,7 +155,7 @@ def drawn(purpose: Purpose, chances: list[float]) -> np.ndarray:
 
 
 def test_accidents_and_births_are_drawn_for_each_cell_with_the_chances_of_its_world() -> None:
-    """An accident kills those that die of nothing else; only active survivors want children."""
+    """An accident kills an organism that has no other cause of death. Only active survivors replicate."""
     alive = np.array([1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 0, 1], bool)
     active = alive & (np.arange(12) != 5)
     hazard, replication = [0.25, 0.75], [0.75, 0.5]
@@ -179,7 +178,7 @@ def test_accidents_and_births_are_drawn_for_each_cell_with_the_chances_of_its_wo
 def test_a_tick_is_eventful_if_an_organism_dies_or_may_be_born(
     dies: bool, empty: list[int]
 ) -> None:
-    """All want children, which need an empty cell beside them, also in the second world only."""
+    """All organisms replicate if an empty cell is beside them, also if only the second world has one."""
     for cells in (empty, empty[1:]):
         alive = ~np.isin(np.arange(12), cells)
         fatal = np.zeros(12, bool)
@@ -189,7 +188,7 @@ def test_a_tick_is_eventful_if_an_organism_dies_or_may_be_born(
         assert int(found.wants.sum()) == alive.sum() - dies
 
 
-def test_without_a_wish_for_children_room_makes_no_event() -> None:
+def test_a_tick_without_replication_is_quiet_although_cells_are_empty() -> None:
     alive = np.arange(12) % 2 == 0
     _, found = fates(a_world(alive, [0, 0], [0, 0]), alive)
     assert not found.eventful
@@ -198,7 +197,7 @@ def test_without_a_wish_for_children_room_makes_no_event() -> None:
 
 
 def test_food_of_a_world_is_that_of_its_active_organisms_rounded_one_by_one() -> None:
-    """Food that is negative counts as such, and infinite food as none; other cells eat nothing."""
+    """Negative food is subtracted. Infinite food, and food in cells that are not active, is left out."""
     active = np.array([1, 1, 1, 0, 1, 0, 1, 1, 0, 0, 0, 0], bool)
     food = np.array([0.1, 0.1, np.inf, 8, -3, np.nan, -0.5, -1, 9, 9, 9, 9], np.float32)
     world, _ = fates(a_world(np.ones(12, bool), [0, 0], [0, 0]), active, food=food)

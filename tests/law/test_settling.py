@@ -1,4 +1,4 @@
-"""Worlds of invented states, settled once: what falls due, what is counted, and what is sampled."""
+"""Worlds of invented states, settled once: when they are settled, counts of ticks, and samples."""
 
 from functools import cache
 from typing import Any
@@ -46,7 +46,7 @@ def law_of(**values: Any) -> Law:
 
 
 def posed(law: Law, tick: int = 500, **worlds: Any) -> World:
-    """Return full worlds at a tick, long since saturated, with other values for some of their arrays."""
+    """Return full worlds at a tick, saturated at tick 7, with other values for some of their arrays."""
     world = begin(law, np.arange(W, dtype=np.uint64), tick=tick)
     known = {"calm": [100] * W, "saturated": wide([7] * W), "saturated_births": wide([3] * W)}
     arrays = {
@@ -80,7 +80,7 @@ def due(law: Law, world: World, running: list[bool] = ALL) -> int:
     return int(quiet_ticks(law, world, jnp.array(running)))
 
 
-def test_the_next_settling_is_at_the_first_thing_that_falls_due() -> None:
+def test_the_next_settling_is_at_the_first_sample_look_or_schedule_that_is_due() -> None:
     """Samples fall due at 600, looks at 700 and 900, a schedule at 1000."""
     law = law_of(seasons=True)
     assert due(law, posed(law)) == 100
@@ -140,7 +140,7 @@ def test_quiet_ticks_are_counted_in_the_worlds_that_run() -> None:
     np.testing.assert_array_equal(organisms.alive, alive)
 
 
-def test_a_world_is_saturated_once_when_it_is_full_runs_and_was_calm_for_long_enough() -> None:
+def test_a_full_running_world_is_saturated_once_after_enough_calm_ticks() -> None:
     """The tick and the births of the first time stay on record."""
     law, ticks = law_of(), 5
     fresh = {"saturated": wide([NEVER] * W), "saturated_births": wide([NEVER] * W)}
@@ -186,7 +186,7 @@ def test_a_change_of_climate_is_sampled_between_the_periodic_samples() -> None:
     assert worlds.sample_wait.tolist() == [45, 45, 50]
 
 
-def test_a_sample_tells_each_count_of_its_own_world() -> None:
+def test_a_sample_has_each_count_of_its_own_world() -> None:
     """Empty cells add neither energy nor age; debts of energy and negative food are kept."""
     law = law_of()
     cells = W * N

@@ -9,6 +9,7 @@ from primordia.config import load, parsed
 from primordia.errors import InputError
 from primordia.settings.tables import (
     code_of,
+    did_you_mean,
     flat,
     from_toml,
     merged,
@@ -135,3 +136,19 @@ def test_a_fault_in_a_file_names_the_file_and_the_setting(tmp_path: Path) -> Non
         from_toml(file)
     with pytest.raises(InputError, match=rf"^{tmp_path}/no.toml cannot be read: No such file"):
         from_toml(tmp_path / "no.toml")
+
+
+@pytest.mark.parametrize(
+    ("name", "known", "nearest"),
+    [
+        ("a.dept", ["a.depth", "b.breadth"], "a.depth"),
+        (f"{'x' * 30}.deepth", ["pond.depth", "lake.depth"], "pond.depth"),
+        (f"{'x' * 30}.deepth", ["lake.depth", "pond.depth"], "lake.depth"),
+        ("cells", ["hazard", "seed"], ""),
+        ("cells", [], ""),
+    ],
+)
+def test_the_first_of_equally_near_names_is_suggested(
+    name: str, known: list[str], nearest: str
+) -> None:
+    assert did_you_mean(name, known) == (f"; did you mean {nearest!r}?" if nearest else "")
