@@ -1,4 +1,4 @@
-"""A product that is rounded before it is added to something."""
+"""Products that are rounded before a sum."""
 
 import jax
 import numpy as np
@@ -6,8 +6,8 @@ import numpy as np
 from primordia.rounding import rounded_product
 
 
-def test_a_product_is_rounded_before_a_sum_also_in_compiled_code() -> None:
-    """Each bit is that of two IEEE operations of NumPy, for both signs, zero, infinity and NaN."""
+def test_compiled_code_rounds_a_product_before_a_sum() -> None:
+    """The bits are those of NumPy, for both signs, zero and infinity. NaN gives NaN."""
     rng = np.random.default_rng(1)
     a, b, c = rng.normal(size=(3, 64)).astype(np.float32)
     b = np.abs(b)

@@ -58,7 +58,7 @@ def whole(settings: dict[str, Any]) -> Lived:
 
 @pytest.fixture(scope="module")
 def run(settings: dict[str, Any], tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Live the same in parts, on disk. A moment is due at the first stop, and a sample at the second."""
+    """Live the run in parts, on disk. A moment is due at the first stop, and a sample at the second."""
     path = tmp_path_factory.mktemp("operators") / "run"
     assert (99 % SOME["every"], 100 % BASE["sample_every"]) == (0, 0)
     loop.start(config(settings, stop={"ticks": 99}), path)

@@ -24,7 +24,7 @@ VALUES = {
 """A mate of -1 is 2^64 - 1, which stands for no mate."""
 
 
-def test_values_come_back_from_rows_by_name() -> None:
+def test_values_are_unpacked_from_rows_by_name() -> None:
     assert COLUMNS.names == ("cell", "id", "energy", "mate", "note")
     assert COLUMNS.width == 7
     rows = COLUMNS.rows(**VALUES)

@@ -74,7 +74,7 @@ def test_of_all_reasons_to_die_the_gravest_is_the_cause(hungry: bool) -> None:
     assert cause.tolist() == expected
 
 
-def test_outcomes_without_food_and_effort_change_no_energy() -> None:
+def test_without_food_and_effort_only_the_drain_changes_energy() -> None:
     vitals, none = Vitals(np.full(3, 5 * ONE, np.int32), np.array([0, 7, 9], np.int32)), np.zeros(3)
     outcome = Outcome(np.array([False, True, False]))
     for hungry, left in ((True, 4 * ONE), (False, 5 * ONE)):

@@ -142,7 +142,7 @@ def test_a_moment_has_changed_if_any_of_its_choices_has() -> None:
     known = np.array([[1, 1, 1, 1], [1, 1, 1, 1], [1, 0, 1, 0], [0, 0, 0, 1], [0] * 4], bool)
 
     def brain(genome: Any, memory: Any, senses: Any) -> tuple[Any, Any]:
-        """Return what is sensed if the genome is a child's, or else the parents' outputs."""
+        """Return the senses as outputs of a child, and the outputs of before for a parent."""
         child = next(iter(genome.values())).reshape(len(senses), -1)[:, :1] > 0
         return memory, jnp.where(child, senses, jnp.asarray(before))
 

@@ -61,7 +61,7 @@ def test_it_keeps_the_contract(belongs: str) -> None:
     check_mutation(Heritable(belongs=belongs))
 
 
-def test_founders_begin_with_their_own_exponent_and_not_with_that_of_the_dead() -> None:
+def test_founders_begin_with_exponent_0_whatever_the_cell_held_before() -> None:
     settings = config(MEADOW, mutation={"kind": "heritable", "probability": 1.0})
     heredity = settings.build_law(settings.build_habitat()).heredity
     count, mutation = 40, heredity.mutation
@@ -84,7 +84,7 @@ def test_founders_begin_with_their_own_exponent_and_not_with_that_of_the_dead() 
     assert len(set(quarters[1::2].tolist())) > 3
 
 
-def test_the_exponent_takes_a_step_if_any_block_mutates_and_no_step_else() -> None:
+def test_the_exponent_takes_a_step_only_if_a_block_mutates() -> None:
     blocks = {"input": Block(probability=0.0), "recurrent": Block(probability=0.6)}
     mutation = Heritable(probability=0.2, blocks=blocks, stride=16)
     notes = np.asarray(mutation.note(LAYOUT, family(mutation), None))[:, 0]

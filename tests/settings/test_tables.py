@@ -1,4 +1,4 @@
-"""Nested tables that are not yet validated: names, paths and values in them."""
+"""Nested tables before validation: their names, paths and values."""
 
 from pathlib import Path
 from typing import Any
@@ -50,7 +50,7 @@ def test_a_table_takes_the_place_of_a_value_and_a_value_that_of_a_table() -> Non
     }
 
 
-def test_the_code_of_a_part_is_all_that_it_names() -> None:
+def test_the_code_of_a_part_is_in_its_name_kind_env_food_and_imports() -> None:
     table: dict[str, Any] = {
         "name": "pond.deep:Pond",
         "env": "lake:Lake-v0",
