@@ -12,7 +12,7 @@ from primordia.law.metabolism import ONE, Rates
 from primordia.law.seasons import apply_seasons, ratchets
 from primordia.law.world import World, Worlds
 from primordia.random.wide import to_host, wide
-from tests.worlds import MEADOW, config
+from tests.worlds import MEADOW, law_of
 
 W, N, TICK = 3, 8, 40
 
@@ -23,9 +23,8 @@ def ratchet(when: str, above: float, setting: str = "replication") -> dict[str, 
     }  # fmt: skip
 
 
-def law_of(*seasons: dict[str, Any], **values: Any) -> Law:
-    made = config(MEADOW, cells=N, seeds=W, seasons=seasons, metabolism={"store": 10.0}, **values)
-    return made.build_law(made.build_habitat())
+def meadow_law(*seasons: dict[str, Any], **values: Any) -> Law:
+    return law_of(MEADOW, cells=N, seeds=W, seasons=seasons, metabolism={"store": 10.0}, **values)
 
 
 def posed(law: Law, wait: list[list[int]], **looks: Any) -> World:
@@ -61,7 +60,7 @@ def test_a_ratchet_turns_above_its_threshold_and_not_at_it(
 ) -> None:
     first = quantities[0]
     for above in (first, first - 1 / 1024):
-        law = law_of(ratchet(when, above))
+        law = meadow_law(ratchet(when, above))
         worlds, changed = applied(law, posed(law, [[0]] * W))
         assert changed == [quantity > above for quantity in quantities]
         expected = [0.025 if turned else 0.05 for turned in changed]
@@ -71,7 +70,7 @@ def test_a_ratchet_turns_above_its_threshold_and_not_at_it(
 
 def test_a_ratchet_that_is_due_looks_at_the_food_since_its_own_last_look() -> None:
     """A look that is not due, or is of a stopped world, keeps the food and ticks of the look before."""
-    law = law_of(ratchet("food", 0.25), ratchet("food", 0.4, "metabolism.gain"))
+    law = meadow_law(ratchet("food", 0.25), ratchet("food", 0.4, "metabolism.gain"))
     assert [each.setting for each in ratchets(law.seasons)] == ["replication", "metabolism.gain"]
     food, lived = [[90, 60], [10, 45], [-5, 1]], [[370, 350], [100, 290], [10, 20]]
     was = {"food": wide(np.array(food) * ONE), "organism_ticks": wide(lived)}
@@ -91,7 +90,7 @@ def test_a_ratchet_that_is_due_looks_at_the_food_since_its_own_last_look() -> No
 def test_schedules_are_due_in_their_own_tick_only() -> None:
     for at in (TICK - 1, TICK, TICK + 1):
         season = {"kind": "schedule", "setting": "hazard", "at": at, "value": 0.25}
-        law = law_of(season)
+        law = meadow_law(season)
         worlds, changed = applied(law, posed(law, [[]] * W))
         assert changed == [at == TICK] * W
         assert worlds.climate["hazard"].tolist() == [0.25 if at == TICK else 0.0] * W
@@ -100,14 +99,14 @@ def test_schedules_are_due_in_their_own_tick_only() -> None:
 def test_a_law_has_a_hazard_at_its_beginning_or_in_a_season() -> None:
     other = {"kind": "schedule", "setting": "replication", "at": 5, "value": 0.5}
     accidents = {**other, "setting": "hazard"}
-    assert law_of(hazard=0.001).has_hazard
-    assert not law_of(hazard=0.0).has_hazard
-    assert not law_of(other).has_hazard
-    assert law_of(other, accidents).has_hazard
+    assert meadow_law(hazard=0.001).has_hazard
+    assert not meadow_law(hazard=0.0).has_hazard
+    assert not meadow_law(other).has_hazard
+    assert meadow_law(other, accidents).has_hazard
 
 
 def test_a_law_knows_which_settings_a_season_changes() -> None:
-    law = law_of()
+    law = meadow_law()
     assert law.governed("hazard") == ["hazard"]
     assert law.governed("metabolism.cap") == ["metabolism.cap"]
     assert law.governed("mutation.blocks.output.scale") == ["mutation.blocks.output.scale"]
@@ -118,7 +117,7 @@ def test_a_law_knows_which_settings_a_season_changes() -> None:
 
 
 def test_cells_have_the_settings_of_their_world() -> None:
-    law = law_of()
+    law = meadow_law()
     climate = {"hazard": jnp.array([0.1, 0.2, 0.3]), "replication": jnp.array([1.0, 2.0, 3.0])}
     everywhere = law.in_cells(climate)
     some = law.in_cells(climate, jnp.array([0, 7, 8, 23, 15]))

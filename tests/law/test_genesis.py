@@ -8,7 +8,7 @@ from primordia.law.genesis import begin, birth_words, body_words
 from primordia.law.world import ages, ages_total
 from primordia.random.keys import Purpose, bits, stream
 from primordia.random.wide import to_host, wide
-from tests.worlds import MEADOW, config
+from tests.worlds import MEADOW, law_of
 
 RATCHETS = [
     {"kind": "ratchet", "setting": "replication", "when": "food", "above": 0.1, "factor": 0.5,
@@ -23,8 +23,7 @@ def test_worlds_begin_at_their_tick_and_wait_until_the_next_multiples(
 ) -> None:
     at = {"kind": "schedule", "setting": "hazard", "at": 50, "value": 0.5}
     seasons = [RATCHETS[0], at, *RATCHETS[1:]]
-    made = config(MEADOW, cells=4, seeds=2, sample_every=15, seasons=seasons, hazard=0.125)
-    law = made.build_law(made.build_habitat())
+    law = law_of(MEADOW, cells=4, seeds=2, sample_every=15, seasons=seasons, hazard=0.125)
     organisms, worlds = begin(law, np.array([8, 2**63], np.uint64), tick, births)
     assert to_host(worlds.seed).tolist() == [8, 2**63]
     assert to_host(worlds.tick).tolist() == [tick] * 2
@@ -43,8 +42,7 @@ def test_worlds_begin_at_their_tick_and_wait_until_the_next_multiples(
 @pytest.mark.parametrize("words", [0, 1, 2, 3, 6])
 def test_bodies_get_the_words_of_their_world_tick_and_cell(words: int) -> None:
     """The high words of all draws are first, then the low words. The last low word is left out if odd."""
-    made = config(MEADOW, cells=3, seeds=2)
-    law = made.build_law(made.build_habitat())
+    law = law_of(MEADOW, cells=3, seeds=2)
     worlds = begin(law, np.array([8, 2**63], np.uint64), tick=9).worlds
     found = np.asarray(birth_words(law, worlds, jnp.bool_(True), words))
     assert found.shape == (6, words)
@@ -62,8 +60,7 @@ def test_bodies_get_the_words_of_their_world_tick_and_cell(words: int) -> None:
 
 
 def test_ages_are_those_of_the_living_and_add_up_by_world() -> None:
-    made = config(MEADOW, cells=3, seeds=2)
-    law = made.build_law(made.build_habitat())
+    law = law_of(MEADOW, cells=3, seeds=2)
     world = begin(law, np.array([1, 2], np.uint64), tick=2**32 + 10)
     alive = jnp.array([True, False, True, True, True, False])
     born = wide([0, 0, 2**32 + 10, 2**32 + 9, 2**32 - 5, 3])

@@ -21,17 +21,16 @@ from primordia.mutations.noise import noise_index
 from primordia.random.gaussian import quantiles
 from primordia.random.keys import Purpose, bits, stream
 from primordia.random.wide import to_host, wide
-from tests.worlds import MEADOW, config
+from tests.worlds import MEADOW, law_of
 
 RATES = Rates(*(np.float32(value) for value in (10, 1, 1, 1, 1e6)))
 
 
 @cache
-def law_of(hungry: bool = True) -> Law:
+def meadow_law(hungry: bool = True) -> Law:
     """Return the law of two worlds of six cells, with a metabolism or without."""
     metabolism = {"metabolism": {"store": 10.0}} if hungry else {}
-    made = config(MEADOW, cells=6, seeds=2, hazard=0.5, replication=0.5, **metabolism)
-    return made.build_law(made.build_habitat())
+    return law_of(MEADOW, cells=6, seeds=2, hazard=0.5, replication=0.5, **metabolism)
 
 
 REASONS = ("expired", "hungry", "fatal", "thought", "body", "food", "effort", "reported")
@@ -51,7 +50,7 @@ def judged(hungry: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     )
     bodies = np.where(of["body"], np.nan, 0.0).astype(np.float32)[:, None]
     vitals, cause = life.judge(
-        law_of(hungry), Vitals(energy, 0 * energy), of["thought"], bodies, outcome, RATES
+        meadow_law(hungry), Vitals(energy, 0 * energy), of["thought"], bodies, outcome, RATES
     )
     return np.asarray(vitals.energy), np.asarray(vitals.eaten), np.asarray(cause)
 
@@ -78,7 +77,7 @@ def test_without_food_and_effort_only_the_drain_changes_energy() -> None:
     vitals, none = Vitals(np.full(3, 5 * ONE, np.int32), np.array([0, 7, 9], np.int32)), np.zeros(3)
     outcome = Outcome(np.array([False, True, False]))
     for hungry, left in ((True, 4 * ONE), (False, 5 * ONE)):
-        after, cause = life.judge(law_of(hungry), vitals, none > 0, none, outcome, RATES)
+        after, cause = life.judge(meadow_law(hungry), vitals, none > 0, none, outcome, RATES)
         assert cause.tolist() == [-1, Cause.FATAL, -1]
         assert after.energy.tolist() == [left] * 3
         assert after.eaten.tolist() == [0, 7, 9]
@@ -91,7 +90,7 @@ def test_food_is_counted_with_a_metabolism_and_without() -> None:
     rates = RATES._replace(gain=np.float32(2))
     for hungry, energies in ((True, [5.0, 3.5, 10.0]), (False, [5.0, 5.0, 5.0])):
         after, _ = life.judge(
-            law_of(hungry), vitals, np.zeros(3, bool), np.zeros(3), outcome, rates
+            meadow_law(hungry), vitals, np.zeros(3, bool), np.zeros(3), outcome, rates
         )
         assert after.eaten.tolist() == [ONE // 2, 7 - ONE // 4, 2**30 - 64]
         assert after.energy.tolist() == [energy * ONE for energy in energies]
@@ -103,7 +102,7 @@ def thought(motor: Motor, outputs: np.ndarray) -> Thought:
     def brain(genome: Any, memory: Any, senses: Any) -> tuple[Any, Any]:
         return memory + senses, jnp.asarray(outputs)
 
-    law = replace(law_of(), brain=brain, motor=motor, action=Continuous(3))
+    law = replace(meadow_law(), brain=brain, motor=motor, action=Continuous(3))
     key = stream(wide(np.arange(len(outputs))), Purpose.MOTOR, wide(np.full(len(outputs), 4)))
     memory, senses = np.ones((2, len(outputs), 3), np.float32)
     return life.think(law, {}, memory, senses, key, np.arange(len(outputs)))
@@ -129,7 +128,7 @@ def test_the_gaussian_motor_adds_noise_of_its_own_scale_to_each_output() -> None
 
 
 def a_world(alive: np.ndarray, hazard: list[float], replication: list[float]) -> World:
-    world = begin(law_of(), np.array([5, 2**40], np.uint64), tick=9)
+    world = begin(meadow_law(), np.array([5, 2**40], np.uint64), tick=9)
     climate = world.worlds.climate | {
         "hazard": jnp.array(hazard, jnp.float32),
         "replication": jnp.array(replication, jnp.float32),
@@ -144,7 +143,7 @@ def fates(world: World, active: np.ndarray, **outcome: Any) -> tuple[World, tick
     keys = tick.keys_of(world.worlds, jnp.int32(3))
     quiet = Thought(world.organisms.memory, np.zeros(12, np.int32), np.zeros(12, bool))
     of = Outcome(**{"fatal": np.zeros(12, bool), **outcome})
-    return tick.judge(law_of(), world, quiet, np.zeros(12), of, keys, active)
+    return tick.judge(meadow_law(), world, quiet, np.zeros(12), of, keys, active)
 
 
 def drawn(purpose: Purpose, chances: list[float]) -> np.ndarray:
@@ -192,8 +191,8 @@ def test_a_tick_without_replication_is_quiet_although_cells_are_empty() -> None:
     alive = np.arange(12) % 2 == 0
     _, found = fates(a_world(alive, [0, 0], [0, 0]), alive)
     assert not found.eventful
-    assert not tick.no_fates(law_of()).eventful
-    assert (tick.no_fates(law_of()).cause == -1).all()
+    assert not tick.no_fates(meadow_law()).eventful
+    assert (tick.no_fates(meadow_law()).cause == -1).all()
 
 
 def test_food_of_a_world_is_that_of_its_active_organisms_rounded_one_by_one() -> None:

@@ -11,7 +11,7 @@ from primordia.law.genesis import begin
 from primordia.law.turnover import birth_keys, turnover
 from primordia.law.world import BirthCause, Cause
 from primordia.random.wide import wide
-from tests.worlds import MEADOW, config
+from tests.worlds import MEADOW, law_of
 
 W, N = 5, 5
 EMPTY = [2, 4, 2, -1, 0]
@@ -42,8 +42,7 @@ def test_a_mate_is_of_the_childs_world_and_lives_on(
         "mutation": {**mutation, "probability": 0.0},
         "recombination": {"probability": probability},
     }
-    made = config(MEADOW, cells=N, seeds=W, **values)
-    law = made.build_law(made.build_habitat())
+    law = law_of(MEADOW, cells=N, seeds=W, **values)
     world = begin(law, np.arange(W, dtype=np.uint64), tick=9)
     alive, wants, cause = np.ones((W, N), bool), np.zeros((W, N), bool), np.full((W, N), -1)
     alive[3] = False

@@ -12,7 +12,7 @@ from primordia.habitats import Compound, Continuous, Discrete
 from primordia.law.moments import change_in
 from primordia.law.world import Remembered
 from tests.toys import Mill
-from tests.worlds import MEADOW, MILL, Lived, config
+from tests.worlds import MEADOW, MILL, Lived, config, law_of
 
 KEPT, EVERY = 4, 3
 MUTATION = {"kind": "calibrated", "remembered": KEPT, "every": EVERY, "founder_scale": 0.5}
@@ -146,8 +146,7 @@ def test_a_moment_has_changed_if_any_of_its_choices_has() -> None:
         child = next(iter(genome.values())).reshape(len(senses), -1)[:, :1] > 0
         return memory, jnp.where(child, senses, jnp.asarray(before))
 
-    made = config(MEADOW)
-    law = replace(made.build_law(made.build_habitat()), brain=brain, action=action)
+    law = replace(law_of(MEADOW), brain=brain, action=action)
     moments = Remembered(jnp.asarray(rows, jnp.float32), jnp.zeros((5, 4, 1)), jnp.asarray(known))
     parents = jnp.zeros((5, law.heredity.layout.length))
     change = np.asarray(change_in(law, moments, parents)(parents + 1))

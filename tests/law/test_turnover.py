@@ -14,7 +14,7 @@ from primordia.law.turnover import birth_keys, turnover
 from primordia.law.world import BirthCause, Cause, World
 from primordia.random.keys import Purpose, bits, stream
 from primordia.random.wide import to_host, wide
-from tests.worlds import MEADOW, config
+from tests.worlds import MEADOW, law_of
 
 DYING, FIRST, STOPPED, LOSING, QUIET, BEARING = range(6)
 W, N, TICK = 6, 4, 50
@@ -38,11 +38,10 @@ STORES = [float(10 + world) for world in range(W)]
 
 
 def posed() -> tuple[Law, World]:
-    made = config(
+    law = law_of(
         MEADOW, cells=N, seeds=W, metabolism={"store": 10.0}, placement={"rule": "empty-only"},
         mutation={"probability": 0.0},
     )  # fmt: skip
-    law = made.build_law(made.build_habitat())
     world = begin(law, np.arange(W, dtype=np.uint64), tick=TICK)
     store = jnp.array(STORES, jnp.float32)
     worlds = world.worlds._replace(

@@ -14,7 +14,7 @@ from primordia.random.wide import wide
 from primordia.testing import check_mutation
 from tests.chance import binomial
 from tests.mutations.test_gaussian import LAYOUT
-from tests.worlds import MEADOW, config
+from tests.worlds import MEADOW, law_of
 
 K = 4_000
 
@@ -62,8 +62,7 @@ def test_it_keeps_the_contract(belongs: str) -> None:
 
 
 def test_founders_begin_with_exponent_0_whatever_the_cell_held_before() -> None:
-    settings = config(MEADOW, mutation={"kind": "heritable", "probability": 1.0})
-    heredity = settings.build_law(settings.build_habitat()).heredity
+    heredity = law_of(MEADOW, mutation={"kind": "heritable", "probability": 1.0}).heredity
     count, mutation = 40, heredity.mutation
     birth = Birth(
         seed=wide(np.zeros(count)),

@@ -10,7 +10,7 @@ from primordia.errors import InputError
 from primordia.habitats.contract import Compound, Continuous, Discrete
 from primordia.settings.limits import Stop
 from tests.toys import Meadow, Organ
-from tests.worlds import MEADOW, MILL, config
+from tests.worlds import MEADOW, MILL, config, law_of
 
 MOST = 2**53
 BOUNDS: list[tuple[str, list[float], list[float]]] = [
@@ -95,8 +95,7 @@ def test_one_continuous_part_of_an_action_is_enough_for_a_gaussian_motor() -> No
 
 
 def rates_of_a_law(**changes: Any) -> dict[str, float]:
-    made = config(MILL, seasons=[], **changes)
-    return dict(made.build_law(made.build_habitat()).beginning)
+    return dict(law_of(MILL, seasons=[], **changes).beginning)
 
 
 def test_a_law_begins_with_the_rates_of_its_settings() -> None:
