@@ -146,7 +146,7 @@ def test_the_code_for_another_process_is_all_that_the_modules_import(written: Pa
     ],
 )
 @pytest.mark.filterwarnings("error")
-def test_the_modules_that_a_file_may_import(text: str, name: str, imports: set[str]) -> None:
+def test_the_possible_imports_of_a_file_are_found(text: str, name: str, imports: set[str]) -> None:
     assert own_code._imports(text.encode(), name) == imports
 
 

@@ -134,7 +134,7 @@ def test_a_block_that_a_signal_ends_is_undone(ends: list[object]) -> None:
 
 
 @pytest.mark.parametrize("fails", [False, True])
-def test_a_block_that_gives_way_waits_while_the_process_is_being_ended(
+def test_a_block_that_gives_way_waits_for_the_end_of_the_process(
     fails: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pauses: list[int] = []

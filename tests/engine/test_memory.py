@@ -57,7 +57,7 @@ def device_with(limit: int, in_use: int) -> Any:
     return SimpleNamespace(memory_stats=lambda: {"bytes_limit": limit, "bytes_in_use": in_use})
 
 
-def test_each_device_counts_with_the_memory_that_the_fullest_has_left() -> None:
+def test_the_fullest_device_limits_the_share_of_each() -> None:
     """The device with the least free memory counts. A device that reports no memory does not count."""
     devices = [device_with(900, 100), device_with(1000, 700), device_with(400, 50)]
     assert memory.bytes_available(devices) == 3 * 300

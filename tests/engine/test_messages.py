@@ -34,7 +34,7 @@ def died(*cells: int) -> np.ndarray:
     return np.isin(np.arange(3 * CELLS), cells)
 
 
-def test_a_line_names_world_organism_and_tick_of_the_death_that_it_is_about() -> None:
+def test_a_message_names_world_organism_and_tick_of_a_death() -> None:
     """Some deaths of a tick have no message, and organisms in the same cells die in a later tick."""
     habitat: Any = Speaking()
     messages = Messages(habitat, CELLS)

@@ -93,7 +93,7 @@ def advanced(scripted: Scripted, ticks: int) -> tuple[Any, list[float], int]:
     return chunks, state.bodies[:, 0].tolist(), done
 
 
-def test_the_dead_are_noted_before_a_reset_and_the_living_after_it() -> None:
+def test_deaths_are_noted_before_a_reset_and_samples_after_it() -> None:
     """Cell 2 has a death and a birth in one tick. Cell 3, which rests, keeps its senses."""
     reborn = decided(
         50, died=mask(1, 2), newborn=mask(0, 2), alive=mask(0, 2, 3), active=mask(0, 2)

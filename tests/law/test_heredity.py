@@ -81,7 +81,7 @@ def test_founders_draw_their_own_noise_and_children_theirs(worlds: int) -> None:
     np.testing.assert_array_equal(genome, np.where(SOME[:, None], founders, children))
 
 
-def test_without_inheritance_all_newborn_are_founders() -> None:
+def test_without_inheritance_all_newborn_have_genomes_of_ancestors() -> None:
     """Seed and birth number give the ancestor. No genome depends on a parent, and none is a mutant."""
     heredity = heredity_of(inheritance="founder", ancestors=ANCESTORS)
     for founder in (SOME, SOME | True):

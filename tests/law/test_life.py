@@ -206,7 +206,7 @@ def test_food_of_a_world_is_that_of_its_active_organisms_rounded_one_by_one() ->
     ]
 
 
-def test_only_the_active_change_between_ticks() -> None:
+def test_only_active_organisms_change_between_ticks() -> None:
     def filled(number: int, which: Organisms) -> Organisms:
         arrays = {name: jnp.full_like(getattr(which, name), number)
                   for name in ("memory", "energy", "eaten")}  # fmt: skip

@@ -30,7 +30,7 @@ NONE = -1
         (1.0, {"kind": "heritable", "belongs": "cell"}),
     ],
 )
-def test_a_mate_is_of_the_childs_world_and_lives_on(
+def test_a_mate_is_a_neighbour_in_the_childs_world_that_survives_the_tick(
     probability: float, mutation: dict[str, Any]
 ) -> None:
     """All weights of an organism are its number, so a child's weights show which parent each is from.

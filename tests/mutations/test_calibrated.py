@@ -116,7 +116,7 @@ def test_it_keeps_the_contract() -> None:
         check_mutation(Calibrated(blocks=own))
 
 
-def test_moments_are_those_of_the_settings() -> None:
+def test_settings_give_the_number_and_interval_of_moments() -> None:
     assert Calibrated(remembered=5, every=9).moments == Moments(kept=5, every=9)
     assert Calibrated(remembered=256, every=256).moments == Moments(kept=256, every=256)
 

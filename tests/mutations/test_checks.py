@@ -140,7 +140,7 @@ def test_a_mutation_has_defaults_for_notes_moments_and_rates() -> None:
     assert [mutation.governed(each, LAYOUT) for each in ("b", "c")] == [["b"], []]
 
 
-def test_some_families_are_those_of_their_rows_in_their_order() -> None:
+def test_families_are_taken_by_row_in_the_given_order() -> None:
     of, rows = family(6, 1), np.array([4, 1, 1, 0, 5, 2])
     some = of.take(rows)
     assert some.parents[:, 0].tolist() == [40, 10, 10, 0, 50, 20]

@@ -94,7 +94,7 @@ def test_the_exponent_takes_a_step_only_if_a_block_mutates() -> None:
     assert binomial(int((notes[mutants] == 0).sum()), int(mutants.sum()), 1 / 33)
 
 
-def test_own_bounds_limit_the_exponent_on_both_sides() -> None:
+def test_the_settings_bound_the_exponent_on_both_sides() -> None:
     mutation = Heritable(probability=1.0, stride=16, finest=-3, coarsest=5)
     notes = np.asarray(mutation.note(LAYOUT, family(mutation, 1), None))
     assert np.unique(notes).tolist() == list(range(-3, 6))

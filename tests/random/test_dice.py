@@ -33,7 +33,7 @@ def test_dice_begin_with_the_first_word_on_top() -> None:
     assert dice.begin(2**32 - 1, 2**32 - 1) == 2**64 - 1
 
 
-def test_quantiles_are_those_of_the_middles_of_equal_shares() -> None:
+def test_each_quantile_is_that_of_the_middle_of_its_share() -> None:
     """The i-th of 65,536 equal shares has its middle at i + 1/2."""
     table = gaussian.quantiles()
     assert table.shape == (65_536,)

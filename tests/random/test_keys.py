@@ -160,7 +160,7 @@ TICKS = np.array([0, 5, 2**33], np.uint64)
 THREE = Purpose.PLACE, Purpose.BODY, Purpose.MATE
 
 
-def test_streams_of_several_purposes_are_the_streams_of_each() -> None:
+def test_streams_drawn_together_equal_those_drawn_one_by_one() -> None:
     keys = streams(wide(SEEDS), wide(TICKS), *THREE)
     for purpose in THREE:
         alone = stream(wide(SEEDS), purpose, wide(TICKS))

@@ -140,7 +140,7 @@ def test_rows_of_a_later_run_have_later_worlds() -> None:
     assert _shifted(part.select(["id"]), 3).to_pydict() == {"id": [4, 5]}
 
 
-def test_a_world_belongs_once_to_an_arm(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_two_runs_of_an_arm_hold_the_same_world(monkeypatch: pytest.MonkeyPatch) -> None:
     _refuse_twice(RUNS, np.array([5, 3, 4, 9, 8, 7], np.uint64))
     with pytest.raises(InputError, match=r"^b and c both hold the world of seed 9$"):
         _refuse_twice(RUNS, np.array([5, 3, 4, 9, 8, 9], np.uint64))

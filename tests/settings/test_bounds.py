@@ -36,7 +36,7 @@ def with_value(path: str, value: float) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize(("path", "taken", "refused"), BOUNDS, ids=[path for path, *_ in BOUNDS])
-def test_the_last_values_are_taken_and_the_next_are_refused(
+def test_values_at_the_bounds_are_accepted_and_the_next_are_refused(
     path: str, taken: list[float], refused: list[float]
 ) -> None:
     for value in taken:

@@ -97,7 +97,7 @@ def test_all_settings_but_those_of_a_fork_are_suggested() -> None:
     assert message == "there is no setting 'paddels'; did you mean 'habitat.paddles'?"
 
 
-def test_settings_have_dotted_names_and_only_some_are_rates() -> None:
+def test_fields_have_dotted_names_and_some_are_rates() -> None:
     assert list(setting_fields(Pool, "a.")) == [
         "a.size",
         "a.shape",
@@ -122,5 +122,5 @@ def test_settings_have_dotted_names_and_only_some_are_rates() -> None:
         (float, ()),
     ],
 )
-def test_the_possible_values_of_a_choice(annotation: Any, values: tuple[Any, ...]) -> None:
+def test_a_choice_has_its_possible_values(annotation: Any, values: tuple[Any, ...]) -> None:
     assert choices(annotation) == values
