@@ -228,8 +228,7 @@ def food(observation: Any, reward: Any, terminated: Any, truncated: Any, info: A
 
 KINDS = (
     Pond, Odd, Unseeded, Hidden, Moody, Worn, Grasping, Outside, Broken, Crashing, Spoiled, Splashing,
-    Unborn,
-    Talking, Still, Closed, Sealed,
+    Unborn, Talking, Still, Closed, Sealed,
 )  # fmt: skip
 for kind in KINDS:
     gymnasium.register(
