@@ -52,9 +52,9 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 def pytest_runtest_setup(item: pytest.Item) -> None:
     """Compile a file's tests with or without optimisation, and those of processes that they start."""
     without = item.path not in OPTIMISED
-    told = str(without).lower()
-    if os.environ.get("JAX_DISABLE_MOST_OPTIMIZATIONS") != told:
-        os.environ["JAX_DISABLE_MOST_OPTIMIZATIONS"] = told
+    value = str(without).lower()
+    if os.environ.get("JAX_DISABLE_MOST_OPTIMIZATIONS") != value:
+        os.environ["JAX_DISABLE_MOST_OPTIMIZATIONS"] = value
         jax.config.update("jax_disable_most_optimizations", without)
         jax.clear_caches()
 

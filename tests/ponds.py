@@ -158,7 +158,7 @@ class Splashing(Pond):
 
 
 class Spoiled(Crashing):
-    """A crashing environment that works no more after an error."""
+    """A crashing environment that fails at each reset after an error."""
 
     spoiled = False
 
@@ -208,7 +208,7 @@ class Closed(Pond):
 
 
 class Sealed(Pond):
-    """Counts its steps in a function, which no state holds; the count matters at one age."""
+    """A pond that counts its steps in a closure, outside its state. The count matters at one age."""
 
     def reset(self, *, seed: int | None = None, options: Any = None) -> tuple[Any, dict]:
         steps = iter(range(10**6))
@@ -228,8 +228,7 @@ def food(observation: Any, reward: Any, terminated: Any, truncated: Any, info: A
 
 KINDS = (
     Pond, Odd, Unseeded, Hidden, Moody, Worn, Grasping, Outside, Broken, Crashing, Spoiled, Splashing,
-    Unborn,
-    Talking, Still, Closed, Sealed,
+    Unborn, Talking, Still, Closed, Sealed,
 )  # fmt: skip
 for kind in KINDS:
     gymnasium.register(

@@ -1,4 +1,4 @@
-"""Code that is admitted: where it is looked for, what is imported of it, and what is refused."""
+"""Admitted code: the folders in which it is found, its import, and refusal of other modules."""
 
 import sys
 from collections.abc import Iterator
@@ -119,7 +119,7 @@ def test_another_module_of_the_same_name_is_refused_before_any_is_admitted(writt
     assert "pair" not in own_code._admitted.sources
 
 
-def test_what_another_process_admits_is_all_that_the_modules_import(written: Path) -> None:
+def test_the_code_for_another_process_is_all_that_the_modules_import(written: Path) -> None:
     own_code.admit(own_code.below(written, "pair"))
     assert set(own_code.admitted(["pair"])) == {*BOX}
     assert set(own_code.admitted(["abox.lid"])) == {"abox/__init__.py", "abox/lid.py"}
@@ -146,7 +146,7 @@ def test_what_another_process_admits_is_all_that_the_modules_import(written: Pat
     ],
 )
 @pytest.mark.filterwarnings("error")
-def test_the_modules_that_a_file_may_import(text: str, name: str, imports: set[str]) -> None:
+def test_the_possible_imports_of_a_file_are_found(text: str, name: str, imports: set[str]) -> None:
     assert own_code._imports(text.encode(), name) == imports
 
 

@@ -66,7 +66,7 @@ def test_xla_starts_as_many_threads_as_there_are_cores(number: int) -> None:
 
 @pytest.mark.parametrize("given", [None, "3"])
 @pytest.mark.parametrize("fails", [False, True])
-def test_one_core_is_used_in_a_block_unless_a_number_is_given(
+def test_a_block_uses_one_core_unless_a_number_is_given(
     given: str | None, fails: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delenv("PRIMORDIA_CORES", raising=False)

@@ -106,7 +106,7 @@ def test_a_mark_is_made_once(tmp_path: Path) -> None:
         files.mark(tmp_path / "mark")
 
 
-def test_a_name_in_the_middle_of_a_path_may_be_too_long_too(tmp_path: Path) -> None:
+def test_the_name_of_a_folder_in_a_path_is_checked_too(tmp_path: Path) -> None:
     longest = "é" * (files.LONGEST_NAME // 2)
     files.check_name(tmp_path / longest / "file")
     with pytest.raises(InputError, match=f"^the file name {longest[:40]}... is too long"):

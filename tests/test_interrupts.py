@@ -1,4 +1,4 @@
-"""Signals that are noted in a process, and the order of what is done before a signal ends it."""
+"""Signals that a process notes, and the calls before a signal ends it."""
 
 import os
 import signal
@@ -12,7 +12,7 @@ from primordia import interrupts
 
 @pytest.fixture
 def ends(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[object]]:
-    """Yield a list of what is done, said and undone, in which the end of the process is only noted."""
+    """Yield a log of calls and written lines. The end of the process adds its status and ends nothing."""
     done: list[object] = []
 
     def write(stream: int, line: bytes) -> None:
@@ -42,7 +42,7 @@ def test_a_signal_is_noted_in_a_block_and_forgotten_after_it(how: signal.Signals
             signal.signal(each, handler)
 
 
-def test_blocks_of_noting_in_one_another_share_their_list() -> None:
+def test_nested_blocks_of_noting_share_their_list() -> None:
     before = [signal.getsignal(each) for each in interrupts.SIGNALS]
     with interrupts.noting() as outer:
         handlers = [signal.getsignal(each) for each in interrupts.SIGNALS]
@@ -68,7 +68,7 @@ def test_a_thread_notes_no_signals_and_changes_no_handler() -> None:
     assert found == [([], before)]
 
 
-def test_before_the_end_the_innermost_is_undone_first_and_faults_stop_nothing(
+def test_before_the_end_inner_blocks_are_undone_first_and_faults_stop_nothing(
     ends: list[object],
 ) -> None:
     def undo(name: str, fault: bool = False) -> Callable[[], None]:
@@ -109,7 +109,7 @@ def test_the_last_words_are_those_of_the_innermost_block(ends: list[object]) -> 
 
 
 @pytest.mark.parametrize("error", [None, ValueError, KeyboardInterrupt])
-def test_what_fails_is_undone_once_and_what_does_not_is_kept(
+def test_a_block_is_undone_once_if_it_fails(
     error: type[BaseException] | None, ends: list[object]
 ) -> None:
     def block() -> None:
@@ -127,14 +127,14 @@ def test_what_fails_is_undone_once_and_what_does_not_is_kept(
     assert ends.count("undone") == (error is not None), "the block has ended"
 
 
-def test_what_a_signal_ends_in_the_block_is_undone(ends: list[object]) -> None:
+def test_a_block_that_a_signal_ends_is_undone(ends: list[object]) -> None:
     with interrupts.undone_by(lambda: ends.append("undone")):
         interrupts._end()
     assert ends == ["undone"] * 3 + [(2, b"Stopped\n"), 130]
 
 
 @pytest.mark.parametrize("fails", [False, True])
-def test_a_block_that_gives_way_waits_while_the_process_is_being_ended(
+def test_a_block_that_gives_way_waits_for_the_end_of_the_process(
     fails: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pauses: list[int] = []

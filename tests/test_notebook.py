@@ -84,17 +84,6 @@ def test_the_rows_that_are_not_listed_are_counted(count: int) -> None:
     assert parts.texts == ["x", "y", *listed, *more]
 
 
-def test_many_worlds_are_not_all_listed() -> None:
-    numbers = "seed", "ticks", "births", "alive", "mean_age", "oldest_age"
-    world: dict[str, Any] = dict.fromkeys(numbers, 1)
-    world |= {"deaths_by_cause": {"fatal": 2, "hazard": 0}, "saturation": None}
-    worlds = [world] * (notebook.MOST + 7)
-    parts = Parts(notebook.of_run({"task": "x", "cells": 1, "worlds": worlds}))
-    assert parts.elements.count("tr") == 1 + notebook.MOST
-    assert parts.texts[-1] == "and 7 more"
-    assert "2 fatal" in parts.texts
-
-
 def test_an_experiment_is_a_table_of_its_arms() -> None:
     arms = (ArmStatus(SCRIPT, 5, 4, 3, 1234.5, None), ArmStatus("none", 5, 0, 0, None, None))
     jobs = {"done": 9, "running": 1, "failed": 0, "waiting": 0}

@@ -41,10 +41,10 @@ def test_sources_are_a_module_and_those_beside_it_that_it_imports(tmp_path: Path
 
 
 @pytest.mark.parametrize("there", [b"x = 1", b"x = 2", None])
-def test_code_is_imported_if_each_of_its_files_is(
+def test_code_is_loaded_if_each_of_its_files_is(
     there: bytes | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The second of two files is imported as it is, with another text, or not at all."""
+    """The second of two files is loaded with its text, with another text, or not at all."""
     code = {name: own_code.Source(Path(name), b"x = 1") for name in ("one.py", "box/two.py")}
     imported = {"one": code["one.py"]}
     if there is not None:

@@ -133,7 +133,7 @@ class Mirror(OnHost):
 
 
 class Blank(Mirror):
-    """A habitat that tells nothing of the bodies that it does not step."""
+    """A habitat whose senses are 9 for the bodies that it does not step."""
 
     def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
         senses, outcome = super().step(action, alive)

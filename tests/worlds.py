@@ -6,6 +6,7 @@ import numpy as np
 
 from primordia.config import Config, load, validated
 from primordia.engine.engine import Engine
+from primordia.law.law import Law
 from primordia.runs.digest import digests
 from primordia.runs.loop import recorder_for
 from primordia.settings.tables import merged
@@ -46,6 +47,12 @@ def config(base: str | dict[str, Any] = "CartPole-survival", **settings: Any) ->
     if isinstance(base, str):
         return load(base, settings)
     return validated(merged(base, settings), source=base["task"])
+
+
+def law_of(base: str | dict[str, Any] = "CartPole-survival", **settings: Any) -> Law:
+    """Return the law of a task with some settings changed."""
+    made = config(base, **settings)
+    return made.build_law(made.build_habitat())
 
 
 class Lived:

@@ -14,7 +14,7 @@ SENSES, OUTPUTS = 3, 2
 
 
 class Plain(Brain):
-    """A brain of zeros; what its methods return is replaced by a test."""
+    """A brain of zeros, whose methods return the replacements of a test."""
 
     replaced: ClassVar[dict[str, Any]] = {}
 
@@ -30,7 +30,7 @@ class Plain(Brain):
 
 
 def plain(**replaced: Any) -> Brain:
-    """Return a brain whose methods return something else."""
+    """Return a brain whose methods return these values instead."""
     return type("Plain", (Plain,), {"replaced": replaced, "__annotations__": {}})()
 
 
@@ -67,6 +67,6 @@ def test_a_memory_of_any_length_up_to_the_largest_passes(replaced: dict[str, Any
         ),
     ],
 )
-def test_what_breaks_the_contract_is_named(replaced: dict[str, Any], says: str) -> None:
+def test_a_fault_of_a_brain_is_named(replaced: dict[str, Any], says: str) -> None:
     with pytest.raises(InputError, match=f"^brain: Plain {says}"):
         check_brain(plain(**replaced), SENSES, OUTPUTS)

@@ -1,4 +1,4 @@
-"""Genome files: their types, their metadata, and the largest number of ancestors."""
+"""Genome files: types of numbers, metadata, and the largest number of ancestors."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -27,7 +27,7 @@ def written(folder: Path, *counts: int) -> list[str]:
     return [str(path) for path in paths]
 
 
-def test_as_many_ancestors_as_allowed_are_read_from_all_files_together(
+def test_the_number_of_ancestors_is_limited_over_all_files_together(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(genomes, "MOST_ANCESTORS", 5)
@@ -77,7 +77,7 @@ def test_a_weight_that_float32_cannot_hold_is_refused(
             read()
 
 
-def test_a_file_tells_what_was_written_about_it(tmp_path: Path) -> None:
+def test_metadata_are_read_as_written(tmp_path: Path) -> None:
     about = {"task": "meadow", "organisms": "3, 5", "more": ""}
     genomes.write(tmp_path / "x", LAYOUT, numbered(2), about)
     assert genomes.about(tmp_path / "x") == about
@@ -87,7 +87,7 @@ def test_a_file_tells_what_was_written_about_it(tmp_path: Path) -> None:
         genomes.about(tmp_path)
 
 
-def test_blocks_of_another_order_and_more_blocks_are_noticed(tmp_path: Path) -> None:
+def test_blocks_may_be_in_another_order_but_further_blocks_are_refused(tmp_path: Path) -> None:
     other = Layout(LAYOUT.blocks[::-1])
     genomes.write(tmp_path / "x", other, other.join(LAYOUT.split(numbered(2))), {})
     np.testing.assert_array_equal(genomes.read([str(tmp_path / "x")], LAYOUT), numbered(2))

@@ -39,7 +39,7 @@ def test_an_empty_set_of_genomes_is_made_flat_too() -> None:
     assert LAYOUT.join(LAYOUT.split(empty)).shape == (0, 22)
 
 
-def test_flat_genomes_are_those_of_the_cells_asked_for_in_their_order() -> None:
+def test_flat_genomes_are_those_of_the_given_cells_in_their_order() -> None:
     blocks = {
         name: jnp.arange(5 * prod(shape), dtype=jnp.float32).reshape(5, *shape) + 1000 * number
         for number, (name, shape) in enumerate(LAYOUT.blocks)

@@ -94,8 +94,8 @@ def test_equal_ancestors_share_code_and_others_do_not() -> None:
     assert len({code(genomes), *others}) == 4
 
 
-def test_the_code_that_was_used_last_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
-    """One more computation than is kept drops only the one that was not used for longest."""
+def test_only_the_code_used_least_recently_is_dropped(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With one computation more than are kept, the one that was used least recently is dropped."""
     most = compiled._kept.cache_parameters()["maxsize"]
     assert most == compiled.KEPT
     monkeypatch.setattr(compiled, "_kept", lru_cache(most)(compiled._jitted))
@@ -110,7 +110,7 @@ def test_the_code_that_was_used_last_is_kept(monkeypatch: pytest.MonkeyPatch) ->
 
 @pytest.mark.parametrize("fixed", [(2,), ({"by": 2},)], ids=["shared", "alone"])
 def test_only_the_memory_of_named_arguments_is_reused(fixed: tuple[Any, ...]) -> None:
-    """The number of an argument is that after the fixed ones."""
+    """Arguments are counted from the first one after the fixed ones."""
     code: Any = shared(_added, *fixed, donate=(1,))
     plain: Any = shared(_added, *fixed)
     x, y = np.zeros(3, np.float32), np.ones(3, np.float32)

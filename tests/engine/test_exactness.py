@@ -55,7 +55,7 @@ def test_a_world_is_the_same_alone_and_among_a_hundred() -> None:
     ],
 )
 def test_worlds_that_stop_early_do_not_change_the_others(habitat: dict[str, str]) -> None:
-    """A world that has stopped stays as it is: bodies, memories, energy."""
+    """The bodies, memories and energy of a stopped world are unchanged."""
     settings = config({**MILL, "habitat": habitat}, seeds=2)
     together = Lived(settings, 600, births=25)
     ticks = together.engine.arrays()["world.worlds.tick.lo"].tolist()

@@ -42,7 +42,7 @@ def test_events_of_a_tick_keep_their_order_and_devices_follow_each_other(
 
 
 def of_two_devices(columns: Columns, *ticks: list[int]) -> Any:
-    """Return lists with a row for each tick, whose first number is the row's; one row is left over."""
+    """Return lists with a row for each tick, numbered in its first column, and with unused rows."""
     rows = np.zeros((2, 4, columns.width + 1), np.uint32)
     for part, each in zip(rows, ticks, strict=True):
         values = {name: np.zeros(len(each), np.int64) for name in columns.names}
@@ -55,7 +55,7 @@ def of_two_devices(columns: Columns, *ticks: list[int]) -> Any:
 
 
 def test_cells_of_births_and_deaths_and_worlds_of_samples_are_those_of_the_whole_run() -> None:
-    """Each device has 3 worlds of 7 cells; a further column, such as a note, stays in its row."""
+    """Each device has 3 worlds of 7 cells. A further column, such as a note, stays in its row."""
     chunks: Any = object.__new__(ShardedChunks)
     chunks._share = SimpleNamespace(worlds=3, cells=7)
     samples = sample_columns(())
@@ -76,7 +76,7 @@ def test_cells_of_births_and_deaths_and_worlds_of_samples_are_those_of_the_whole
 
 
 def test_a_chunk_has_advanced_by_the_ticks_of_the_device_that_advanced_most() -> None:
-    """The events are those of this chunk, and each device gets the state, the lists and the limits."""
+    """Each device gets the state, the lists and the limits. The events are those of this chunk."""
     chunks: Any = object.__new__(ShardedChunks)
     chunks._share, chunks._split = SimpleNamespace(worlds=3, cells=7), jax.devices()[0]
     columns = BIRTHS, DEATHS, sample_columns(())

@@ -57,8 +57,8 @@ def device_with(limit: int, in_use: int) -> Any:
     return SimpleNamespace(memory_stats=lambda: {"bytes_limit": limit, "bytes_in_use": in_use})
 
 
-def test_devices_offer_equal_shares_as_large_as_the_fullest_of_them_has_left() -> None:
-    """The largest device, the emptiest one and one that tells nothing are not what counts."""
+def test_the_fullest_device_limits_the_share_of_each() -> None:
+    """The device with the least free memory counts. A device that reports no memory does not count."""
     devices = [device_with(900, 100), device_with(1000, 700), device_with(400, 50)]
     assert memory.bytes_available(devices) == 3 * 300
     silent: Any = SimpleNamespace(memory_stats=lambda: None)
@@ -68,7 +68,7 @@ def test_devices_offer_equal_shares_as_large_as_the_fullest_of_them_has_left() -
 @pytest.mark.parametrize(
     ("limit", "kibibytes", "least"), [(5_000_000, 3_000, 3_072_000), (2_000_000, 3_000, 2_000_000)]
 )
-def test_the_least_of_a_limit_and_the_available_memory_counts(
+def test_the_smaller_of_limit_and_available_memory_counts(
     limit: int, kibibytes: int, least: int, tmp_path: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "max").write_text(f"{limit}\n")
@@ -79,7 +79,7 @@ def test_the_least_of_a_limit_and_the_available_memory_counts(
     assert memory.bytes_available([device.default()]) == least
 
 
-def test_a_run_may_take_all_memory_and_the_message_tells_both_amounts(
+def test_a_run_may_need_all_memory_and_the_message_has_both_amounts(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     law, habitat = SimpleNamespace(worlds=3, cells=500), SimpleNamespace()

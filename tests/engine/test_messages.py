@@ -21,7 +21,7 @@ class Speaking:
 
 
 def deaths(*rows: tuple[int, int, int]) -> Rows:
-    """Return a list of deaths from cell, number and tick; it has room and a further column."""
+    """Return a list of deaths from cell, number and tick, with unused rows and a further column."""
     cell, number, tick = np.array(rows, np.int64).reshape(-1, 3).T
     other = np.full(len(rows), 77)
     made = DEATHS.rows(cell=cell, id=number, tick=tick, cause=other, energy=other, food=other)
@@ -34,8 +34,8 @@ def died(*cells: int) -> np.ndarray:
     return np.isin(np.arange(3 * CELLS), cells)
 
 
-def test_a_line_names_world_organism_and_tick_of_the_death_that_it_is_about() -> None:
-    """Some deaths of a tick have no message, and those of a later tick have the same cells."""
+def test_a_message_names_world_organism_and_tick_of_a_death() -> None:
+    """Some deaths of a tick have no message, and organisms in the same cells die in a later tick."""
     habitat: Any = Speaking()
     messages = Messages(habitat, CELLS)
     habitat.says = {4: "stuck", 5: "split", 14: "gone"}
@@ -64,5 +64,5 @@ def test_a_chunk_begins_without_messages() -> None:
     assert messages.of(deaths((0, 1, 2), (7, 2, 2))) == []
     habitat.says = {9: "new"}
     messages.note_deaths(died(9))
-    told = messages.of(deaths((0, 1, 2), (7, 2, 2), (9, 3, 5)))
-    assert told == ["world 1, organism 3, tick 5: new"]
+    lines = messages.of(deaths((0, 1, 2), (7, 2, 2), (9, 3, 5)))
+    assert lines == ["world 1, organism 3, tick 5: new"]

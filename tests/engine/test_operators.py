@@ -58,7 +58,7 @@ def whole(settings: dict[str, Any]) -> Lived:
 
 @pytest.fixture(scope="module")
 def run(settings: dict[str, Any], tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Live the same in parts, on disk. A moment is due at the first stop, and a sample at the second."""
+    """Live the run in parts, on disk. A moment is due at the first stop, and a sample at the second."""
     path = tmp_path_factory.mktemp("operators") / "run"
     assert (99 % SOME["every"], 100 % BASE["sample_every"]) == (0, 0)
     loop.start(config(settings, stop={"ticks": 99}), path)
@@ -128,9 +128,8 @@ def test_a_shadow_has_the_recorded_notes_and_other_weights(run: Path) -> None:
 
 def test_the_host_lives_the_same(settings: dict[str, Any], whole: Lived) -> None:
     habitat = {"name": "tests.toys:Mirror", "inner": "mill"}
-    on_host = Lived(
-        config(settings, habitat=habitat), 30
-    )  # a moment is due in the tick of the stop
+    # Lives stop at tick 30, in which a moment is due, and go on.
+    on_host = Lived(config(settings, habitat=habitat), 30)
     on_host.advance_to(60)
     here = Lived(config(settings), 60)
     for name in ("births", "deaths"):

@@ -16,7 +16,7 @@ from primordia.law.events import Events, Rows
 from primordia.law.genesis import begin
 from primordia.law.law import Law
 from primordia.law.sample import note_samples
-from tests.worlds import MEADOW, Lived, config
+from tests.worlds import MEADOW, Lived, config, law_of
 
 BUSY = {
     "brain": {"kind": "feed-forward", "hidden": 1},
@@ -71,8 +71,7 @@ def test_lists_with_the_least_room_lose_nothing(habitat: str, which: str) -> Non
 @pytest.mark.parametrize("cells", [8, 701])
 def test_the_fullest_tick_fits_whenever_lists_have_room(which: str, cells: int) -> None:
     """Cells are written one at a time in small worlds, and in batches, the last padded, in large ones."""
-    made = config(MEADOW, cells=cells, seeds=3)
-    law = made.build_law(made.build_habitat())
+    law = law_of(MEADOW, cells=cells, seeds=3)
     lists = log.empty(law)
     list_, most = getattr(lists, which), 3 if which == "samples" else 3 * cells
     length, room = len(list_.rows), shared(log.have_room, law)
@@ -106,8 +105,7 @@ def noted(law: Law, full: Rows, which: str, most: int) -> Rows:
 @pytest.mark.parametrize(("cells", "seeds"), [(2, 1), (7, 3), (300, 2), (2, 3000), (2**17, 1)])
 def test_empty_lists_have_room_for_the_fullest_tick(cells: int, seeds: int) -> None:
     """A chunk that could not live one tick would never end."""
-    made = config(MEADOW, cells=cells, seeds=seeds)
-    law = made.build_law(made.build_habitat())
+    law = law_of(MEADOW, cells=cells, seeds=seeds)
     shapes = jax.eval_shape(lambda: log.empty(law))
     lists = jax.tree.map(lambda each: np.broadcast_to(np.uint32(0), each.shape), shapes)
     assert log.have_room(law, Events(*(each._replace(filled=0) for each in lists)))

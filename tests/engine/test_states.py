@@ -42,7 +42,7 @@ def test_a_world_stops_exactly_at_any_of_its_limits() -> None:
         ({"ticks": 3, "births": 4}, 3, 4, False),
     ],
 )
-def test_a_missing_limit_is_none(
+def test_a_limit_that_is_not_given_is_never_reached(
     stop: dict[str, Any], ticks: int, births: int, saturation: bool
 ) -> None:
     limits = Engine.limits(of_seeds(3), stop)
@@ -51,7 +51,7 @@ def test_a_missing_limit_is_none(
     assert bool(limits.saturation) == saturation
 
 
-def test_ticks_of_each_world_replace_those_of_the_stop_and_nothing_else() -> None:
+def test_ticks_of_each_world_replace_only_the_ticks_of_the_stop() -> None:
     own = np.array([5, 2**33, 7], np.uint64)
     limits = Engine.limits(of_seeds(3), {"ticks": 70, "births": 9, "until": "saturation"}, own)
     assert to_host(limits.ticks).tolist() == own.tolist()
@@ -90,7 +90,7 @@ def test_an_array_that_is_missing_or_different_is_trouble_that_names_it(wrong: A
 
 
 class Chunks:
-    """Chunks that take a given time for each tick, and advance by no more than some ticks."""
+    """Chunks with a given time for each tick, and with a largest number of ticks."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.cost, self.most, self.asked, self.now = 2.0**-10, 10**9, [0], 0.0
@@ -124,7 +124,7 @@ def test_chunks_grow_fourfold_to_their_time_and_shrink_at_once(
     chunks.cost = 4.0
     assert asked(3)[1:] == [1, 1]
     chunks.cost, chunks.most = 2.0**-10, 0
-    assert asked(2) == [1, 1], "a chunk without ticks tells nothing of the time of a tick"
+    assert asked(2) == [1, 1], "after a chunk without ticks, the time of a tick is unknown"
     chunks.most = 10**9
     assert asked(3) == [1, 4, 16]
     engine.longest = 5

@@ -94,7 +94,7 @@ class Scores:
 
 
 def filled_list(*first: int) -> Any:
-    """Return a list whose rows begin with these numbers, and which has room for more."""
+    """Return a list whose rows begin with these numbers, with unused rows."""
     rows: Any = np.full((len(first) + 3, 2), 50, np.uint32)
     rows[: len(first), 0] = first
     return Rows(rows, np.int32(len(first)))
@@ -122,7 +122,7 @@ def mask(*cells: int) -> Any:
 
 
 def test_tallies_follow_the_rows_of_deaths_and_of_the_worlds_sampled() -> None:
-    """Worlds have unequal numbers of the living; a sample may be of one world, or of an empty one."""
+    """Worlds have unequal numbers of organisms. A sample may be of one world, or of an empty one."""
     habitat: Any = Scores()
     tallies = Tallies(habitat, 2)
     habitat.now[:] = [[5, 1], [-7, 2], [8, 3], [100, 4], [-3, 5], [-9, 6], [90, 7], [91, 8]]

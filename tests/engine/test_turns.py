@@ -1,4 +1,4 @@
-"""The turns of a chunk on the host: how long each is, and what is noted before and after a reset."""
+"""The turns of a chunk on the host: their lengths, and the order of calls before and after a reset."""
 
 from types import SimpleNamespace
 from typing import Any
@@ -29,11 +29,11 @@ def decided(due: int, **changes: Any) -> Decision:
     return Decision(**{**quiet, **changes})
 
 
-class Told:
-    """The calls, the habitat, the tallies and the messages of a chunk: all note what they are asked."""
+class Scripted:
+    """Calls, habitat, tallies and messages of a chunk, with given decisions and a log of all calls."""
 
     def __init__(self, first: Decision, *turns: tuple[int, Decision]) -> None:
-        """`turns`: the ticks after which something happens, and what is decided then."""
+        """Take the first decision, and for each turn its ticks and the decision after it."""
         self.first, self.turns, self.log = first, list(turns), list[tuple]()
 
     def hold(self, world: Any) -> str:
@@ -81,11 +81,11 @@ class Told:
         return "with tallies"
 
 
-def advanced(told: Told, ticks: int) -> tuple[Any, list[float], int]:
+def advanced(scripted: Scripted, ticks: int) -> tuple[Any, list[float], int]:
     """Advance a chunk; return it, the first sense in each cell at its end, and the ticks done."""
     chunks: Any = object.__new__(HostedChunks)
-    chunks._calls = chunks._habitat = chunks._tallies = chunks._messages = told
-    chunks._quiet, chunks._release = told.quiet, lambda bulk, held: "world"
+    chunks._calls = chunks._habitat = chunks._tallies = chunks._messages = scripted
+    chunks._quiet, chunks._release = scripted.quiet, lambda bulk, held: "world"
     chunks._lists = Events(*(Rows(np.zeros((2, 2)), np.int32(1)) for _ in range(3)))
     world: Any = SimpleNamespace(organisms=SimpleNamespace(genome={}, moments=None))
     state, done = chunks.advance(State(world, SENSES), "limits", ticks)
@@ -93,15 +93,15 @@ def advanced(told: Told, ticks: int) -> tuple[Any, list[float], int]:
     return chunks, state.bodies[:, 0].tolist(), done
 
 
-def test_the_dead_are_noted_before_a_reset_and_the_living_after_it() -> None:
-    """Cell 2 has a newborn organism in the tick of a death; the cell that rests keeps its senses."""
+def test_deaths_are_noted_before_a_reset_and_samples_after_it() -> None:
+    """Cell 2 has a death and a birth in one tick. Cell 3, which rests, keeps its senses."""
     reborn = decided(
         50, died=mask(1, 2), newborn=mask(0, 2), alive=mask(0, 2, 3), active=mask(0, 2)
     )
-    told = Told(decided(4), (3, reborn), (9, decided(1, remembered=np.bool_(True))))
-    _, senses, done = advanced(told, 10)
+    scripted = Scripted(decided(4), (3, reborn), (9, decided(1, remembered=np.bool_(True))))
+    _, senses, done = advanced(scripted, 10)
     noted = [("deaths", [1, 2])] * 2  # of tallies and of messages
-    assert told.log == [
+    assert scripted.log == [
         ("begin",), ("begin",), ("think", [0, 2, 4, 6]),
         ("live", [1, 2], 4), ("settle", 3), *noted, ("reset", [0, 2], [[0, 1], [4, 5]]),
         ("think", [70, 90, 70, 6]), ("samples", [0, 2, 3]),
@@ -109,26 +109,26 @@ def test_the_dead_are_noted_before_a_reset_and_the_living_after_it() -> None:
         ("remember", [90, 90, 90, 6]), ("samples", [1, 2, 3]),
     ]  # fmt: skip
     assert (senses, done) == ([90, 90, 90, 6], 10)
-    assert SENSES[:, 0].tolist() == [0, 2, 4, 6], "the state that was given stays as it is"
+    assert SENSES[:, 0].tolist() == [0, 2, 4, 6], "the given state is unchanged"
 
 
-def test_genesis_takes_no_tick_and_leaves_the_state_that_was_given() -> None:
+def test_genesis_takes_no_tick_and_leaves_the_given_state_unchanged() -> None:
     born = decided(5, newborn=mask(1, 2, 3))
-    _, senses, done = advanced(told := Told(decided(0), (0, born), (5, decided(9))), 5)
-    assert [each[1:] for each in told.log if each[0] == "live"] == [([1, 2], 0), ([1, 2], 5)]
+    _, senses, done = advanced(scripted := Scripted(decided(0), (0, born), (5, decided(9))), 5)
+    assert [each[1:] for each in scripted.log if each[0] == "live"] == [([1, 2], 0), ([1, 2], 5)]
     assert (senses, done) == ([90, 90, 90, 70], 5)
     assert SENSES[:, 0].tolist() == [0, 2, 4, 6]
 
 
 @pytest.mark.parametrize(("ticks", "most", "done"), [(5, [3, 2], 5), (3, [3], 3), (20, [3, 8], 11)])
-def test_a_chunk_lives_until_a_change_is_due_its_ticks_are_over_or_nothing_goes_on(
+def test_a_turn_ends_when_a_change_is_due_the_ticks_are_over_or_all_worlds_stop(
     ticks: int, most: list[int], done: int
 ) -> None:
     over = decided(99, go_on=np.bool_(False))
-    told = Told(decided(3), (9, decided(8)), (9, over))
-    assert advanced(told, ticks)[2] == done
-    assert [each[2] for each in told.log if each[0] == "live"] == most
-    nothing = Told(over)
+    scripted = Scripted(decided(3), (9, decided(8)), (9, over))
+    assert advanced(scripted, ticks)[2] == done
+    assert [each[2] for each in scripted.log if each[0] == "live"] == most
+    nothing = Scripted(over)
     assert advanced(nothing, ticks)[1:] == ([0, 2, 4, 6], 0)
 
 

@@ -1,4 +1,4 @@
-"""Heredity of invented births: founders, children, mates, and which heredities are equal."""
+"""Heredity of invented births: genomes of founders, of children, and of children with a mate."""
 
 from dataclasses import replace
 from typing import Any
@@ -42,7 +42,7 @@ def births(heredity: Heredity, founder: np.ndarray) -> Birth:
 
 
 def made(heredity: Heredity, founder: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return genomes and mutants among newborn."""
+    """Return the genomes of newborn, and which of them are mutants."""
     none = jnp.zeros((K, 0), jnp.int32)
     birth = births(heredity, founder)
     newborn = heredity.make_newborn(birth, jnp.asarray(PARENTS), none, None)
@@ -56,7 +56,7 @@ def made(heredity: Heredity, founder: np.ndarray) -> tuple[np.ndarray, np.ndarra
 def test_founders_take_the_ancestors_in_turn_and_children_their_parents_weights(
     worlds: int, founder: np.ndarray
 ) -> None:
-    """The turn begins at the seed, in steps of the birth number; no founder is a mutant."""
+    """Founder `number` of `seed` has ancestor (seed + number) mod 5. No founder is a mutant."""
     heredity = heredity_of(ancestors=ANCESTORS, worlds=worlds)
     genome, mutated = made(heredity, founder)
     birth = births(heredity, founder)
@@ -81,8 +81,8 @@ def test_founders_draw_their_own_noise_and_children_theirs(worlds: int) -> None:
     np.testing.assert_array_equal(genome, np.where(SOME[:, None], founders, children))
 
 
-def test_without_inheritance_all_newborn_are_founders() -> None:
-    """The births say which; the genome of none depends on a parent, and none is a mutant."""
+def test_without_inheritance_all_newborn_have_genomes_of_ancestors() -> None:
+    """Seed and birth number give the ancestor. No genome depends on a parent, and none is a mutant."""
     heredity = heredity_of(inheritance="founder", ancestors=ANCESTORS)
     for founder in (SOME, SOME | True):
         genome, mutated = made(heredity, founder)
@@ -91,7 +91,7 @@ def test_without_inheritance_all_newborn_are_founders() -> None:
         assert not mutated.any()
 
 
-def test_only_those_with_a_mate_inherit_from_it() -> None:
+def test_only_a_child_with_a_mate_has_weights_of_the_mate() -> None:
     mates = PARENTS + 100
     both = heredity_of(recombination=Recombination())
     birth = births(both, SOME & False)
@@ -133,7 +133,7 @@ OTHERS: list[dict[str, Any]] = [
 
 
 def test_heredities_are_equal_if_all_their_values_are() -> None:
-    """Equal heredities share compiled code; a wrongly equal one would make another's genomes."""
+    """Equal heredities share compiled code, so two that differ in any value must not be equal."""
     given = {"recombination": Recombination(), "ancestors": ANCESTORS}
     one, same = heredity_of(**given), heredity_of(**given | {"ancestors": ANCESTORS.copy()})
     assert one == same

@@ -1,4 +1,4 @@
-"""One tick of organisms and of cells, in invented outcomes: who dies of what, eats, and replicates."""
+"""One tick with invented outcomes: causes of death, food, energy, and which organisms replicate."""
 
 from dataclasses import replace
 from functools import cache
@@ -21,17 +21,16 @@ from primordia.mutations.noise import noise_index
 from primordia.random.gaussian import quantiles
 from primordia.random.keys import Purpose, bits, stream
 from primordia.random.wide import to_host, wide
-from tests.worlds import MEADOW, config
+from tests.worlds import MEADOW, law_of
 
 RATES = Rates(*(np.float32(value) for value in (10, 1, 1, 1, 1e6)))
 
 
 @cache
-def law_of(hungry: bool = True) -> Law:
+def meadow_law(hungry: bool = True) -> Law:
     """Return the law of two worlds of six cells, with a metabolism or without."""
     metabolism = {"metabolism": {"store": 10.0}} if hungry else {}
-    made = config(MEADOW, cells=6, seeds=2, hazard=0.5, replication=0.5, **metabolism)
-    return made.build_law(made.build_habitat())
+    return law_of(MEADOW, cells=6, seeds=2, hazard=0.5, replication=0.5, **metabolism)
 
 
 REASONS = ("expired", "hungry", "fatal", "thought", "body", "food", "effort", "reported")
@@ -51,15 +50,14 @@ def judged(hungry: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     )
     bodies = np.where(of["body"], np.nan, 0.0).astype(np.float32)[:, None]
     vitals, cause = life.judge(
-        law_of(hungry), Vitals(energy, 0 * energy), of["thought"], bodies, outcome, RATES
+        meadow_law(hungry), Vitals(energy, 0 * energy), of["thought"], bodies, outcome, RATES
     )
     return np.asarray(vitals.energy), np.asarray(vitals.eaten), np.asarray(cause)
 
 
 @pytest.mark.parametrize("hungry", [True, False])
 def test_of_all_reasons_to_die_the_gravest_is_the_cause(hungry: bool) -> None:
-    """The drain of 1 leaves a hungry organism 0, of which it dies, and any other one step, on which it
-    lives."""
+    """The drain of 1 leaves a hungry organism no energy, and any other organism one step."""
     _, _, cause = judged(hungry)
     expected = []
     for row in CASES:
@@ -75,24 +73,24 @@ def test_of_all_reasons_to_die_the_gravest_is_the_cause(hungry: bool) -> None:
     assert cause.tolist() == expected
 
 
-def test_what_a_habitat_does_not_report_kills_nobody_and_feeds_nobody() -> None:
+def test_without_food_and_effort_only_the_drain_changes_energy() -> None:
     vitals, none = Vitals(np.full(3, 5 * ONE, np.int32), np.array([0, 7, 9], np.int32)), np.zeros(3)
     outcome = Outcome(np.array([False, True, False]))
     for hungry, left in ((True, 4 * ONE), (False, 5 * ONE)):
-        after, cause = life.judge(law_of(hungry), vitals, none > 0, none, outcome, RATES)
+        after, cause = life.judge(meadow_law(hungry), vitals, none > 0, none, outcome, RATES)
         assert cause.tolist() == [-1, Cause.FATAL, -1]
         assert after.energy.tolist() == [left] * 3
         assert after.eaten.tolist() == [0, 7, 9]
 
 
 def test_food_is_counted_with_a_metabolism_and_without() -> None:
-    """Food of a whole life is in the habitat's unit: gain plays no part. It may be negative."""
+    """The food of a life is in the habitat's unit, without the gain. It may be negative."""
     vitals = Vitals(np.full(3, 5 * ONE, np.int32), np.array([0, 7, 2**30 - 65], np.int32))
     outcome = Outcome(np.zeros(3, bool), np.array([0.5, -0.25, 3.0], np.float32))
     rates = RATES._replace(gain=np.float32(2))
     for hungry, energies in ((True, [5.0, 3.5, 10.0]), (False, [5.0, 5.0, 5.0])):
         after, _ = life.judge(
-            law_of(hungry), vitals, np.zeros(3, bool), np.zeros(3), outcome, rates
+            meadow_law(hungry), vitals, np.zeros(3, bool), np.zeros(3), outcome, rates
         )
         assert after.eaten.tolist() == [ONE // 2, 7 - ONE // 4, 2**30 - 64]
         assert after.energy.tolist() == [energy * ONE for energy in energies]
@@ -104,7 +102,7 @@ def thought(motor: Motor, outputs: np.ndarray) -> Thought:
     def brain(genome: Any, memory: Any, senses: Any) -> tuple[Any, Any]:
         return memory + senses, jnp.asarray(outputs)
 
-    law = replace(law_of(), brain=brain, motor=motor, action=Continuous(3))
+    law = replace(meadow_law(), brain=brain, motor=motor, action=Continuous(3))
     key = stream(wide(np.arange(len(outputs))), Purpose.MOTOR, wide(np.full(len(outputs), 4)))
     memory, senses = np.ones((2, len(outputs), 3), np.float32)
     return life.think(law, {}, memory, senses, key, np.arange(len(outputs)))
@@ -120,7 +118,7 @@ def test_an_output_that_is_not_finite_is_a_fault_wherever_it_is() -> None:
     np.testing.assert_array_equal(found.action, outputs)
 
 
-def test_the_gaussian_motor_adds_its_own_share_of_noise_to_each_output() -> None:
+def test_the_gaussian_motor_adds_noise_of_its_own_scale_to_each_output() -> None:
     outputs = np.arange(15, dtype=np.float32).reshape(5, 3)
     key = stream(wide(np.arange(5)), Purpose.MOTOR, wide(np.full(5, 4)))
     noise = quantiles()[np.asarray(noise_index(key, np.arange(5), 3))]
@@ -130,7 +128,7 @@ def test_the_gaussian_motor_adds_its_own_share_of_noise_to_each_output() -> None
 
 
 def a_world(alive: np.ndarray, hazard: list[float], replication: list[float]) -> World:
-    world = begin(law_of(), np.array([5, 2**40], np.uint64), tick=9)
+    world = begin(meadow_law(), np.array([5, 2**40], np.uint64), tick=9)
     climate = world.worlds.climate | {
         "hazard": jnp.array(hazard, jnp.float32),
         "replication": jnp.array(replication, jnp.float32),
@@ -145,7 +143,7 @@ def fates(world: World, active: np.ndarray, **outcome: Any) -> tuple[World, tick
     keys = tick.keys_of(world.worlds, jnp.int32(3))
     quiet = Thought(world.organisms.memory, np.zeros(12, np.int32), np.zeros(12, bool))
     of = Outcome(**{"fatal": np.zeros(12, bool), **outcome})
-    return tick.judge(law_of(), world, quiet, np.zeros(12), of, keys, active)
+    return tick.judge(meadow_law(), world, quiet, np.zeros(12), of, keys, active)
 
 
 def drawn(purpose: Purpose, chances: list[float]) -> np.ndarray:
@@ -156,7 +154,7 @@ def drawn(purpose: Purpose, chances: list[float]) -> np.ndarray:
 
 
 def test_accidents_and_births_are_drawn_for_each_cell_with_the_chances_of_its_world() -> None:
-    """An accident kills those that die of nothing else; only active survivors want children."""
+    """An accident kills an organism that has no other cause of death. Only active survivors replicate."""
     alive = np.array([1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 0, 1], bool)
     active = alive & (np.arange(12) != 5)
     hazard, replication = [0.25, 0.75], [0.75, 0.5]
@@ -179,7 +177,7 @@ def test_accidents_and_births_are_drawn_for_each_cell_with_the_chances_of_its_wo
 def test_a_tick_is_eventful_if_an_organism_dies_or_may_be_born(
     dies: bool, empty: list[int]
 ) -> None:
-    """All want children, which need an empty cell beside them, also in the second world only."""
+    """All organisms replicate if an empty cell is beside them, also if only the second world has one."""
     for cells in (empty, empty[1:]):
         alive = ~np.isin(np.arange(12), cells)
         fatal = np.zeros(12, bool)
@@ -189,16 +187,16 @@ def test_a_tick_is_eventful_if_an_organism_dies_or_may_be_born(
         assert int(found.wants.sum()) == alive.sum() - dies
 
 
-def test_without_a_wish_for_children_room_makes_no_event() -> None:
+def test_a_tick_without_replication_is_quiet_although_cells_are_empty() -> None:
     alive = np.arange(12) % 2 == 0
     _, found = fates(a_world(alive, [0, 0], [0, 0]), alive)
     assert not found.eventful
-    assert not tick.no_fates(law_of()).eventful
-    assert (tick.no_fates(law_of()).cause == -1).all()
+    assert not tick.no_fates(meadow_law()).eventful
+    assert (tick.no_fates(meadow_law()).cause == -1).all()
 
 
 def test_food_of_a_world_is_that_of_its_active_organisms_rounded_one_by_one() -> None:
-    """Food that is negative counts as such, and infinite food as none; other cells eat nothing."""
+    """Negative food is subtracted. Infinite food, and food in cells that are not active, is left out."""
     active = np.array([1, 1, 1, 0, 1, 0, 1, 1, 0, 0, 0, 0], bool)
     food = np.array([0.1, 0.1, np.inf, 8, -3, np.nan, -0.5, -1, 9, 9, 9, 9], np.float32)
     world, _ = fates(a_world(np.ones(12, bool), [0, 0], [0, 0]), active, food=food)
@@ -208,7 +206,7 @@ def test_food_of_a_world_is_that_of_its_active_organisms_rounded_one_by_one() ->
     ]
 
 
-def test_only_the_active_change_between_ticks() -> None:
+def test_only_active_organisms_change_between_ticks() -> None:
     def filled(number: int, which: Organisms) -> Organisms:
         arrays = {name: jnp.full_like(getattr(which, name), number)
                   for name in ("memory", "energy", "eaten")}  # fmt: skip

@@ -1,4 +1,4 @@
-"""Mates in several worlds at once: each child has the living neighbour that is not its parent."""
+"""Mates in several worlds: the mate is the living neighbour of a child that is not its parent."""
 
 from typing import Any
 
@@ -11,14 +11,14 @@ from primordia.law.genesis import begin
 from primordia.law.turnover import birth_keys, turnover
 from primordia.law.world import BirthCause, Cause
 from primordia.random.wide import wide
-from tests.worlds import MEADOW, config
+from tests.worlds import MEADOW, law_of
 
 W, N = 5, 5
 EMPTY = [2, 4, 2, -1, 0]
 """The empty cell of each ring; the fourth world has no organism at all."""
 PARENT = [1, 0, 1, -1, 1]
 OTHER = [3, 3, 3, -1, 4]
-"""The neighbour of the empty cell on its other side. That of the third world dies in the tick."""
+"""The other neighbour of the empty cell. In the third world it dies in the tick."""
 NONE = -1
 
 
@@ -30,20 +30,19 @@ NONE = -1
         (1.0, {"kind": "heritable", "belongs": "cell"}),
     ],
 )
-def test_a_mate_is_of_the_childs_world_and_lives_on(
+def test_a_mate_is_a_neighbour_in_the_childs_world_that_survives_the_tick(
     probability: float, mutation: dict[str, Any]
 ) -> None:
-    """All weights and notes of an organism are its number, by which a child shows where each is from.
+    """All weights of an organism are its number, so a child's weights show which parent each is from.
 
-    Notes that belong to cells are those of the last organism in the child's cell.
+    A note is minus this number. A note that belongs to a cell is that of the cell's last organism.
     """
     values: dict[str, Any] = {
         "placement": {"rule": "empty-only"},
         "mutation": {**mutation, "probability": 0.0},
         "recombination": {"probability": probability},
     }
-    made = config(MEADOW, cells=N, seeds=W, **values)
-    law = made.build_law(made.build_habitat())
+    law = law_of(MEADOW, cells=N, seeds=W, **values)
     world = begin(law, np.arange(W, dtype=np.uint64), tick=9)
     alive, wants, cause = np.ones((W, N), bool), np.zeros((W, N), bool), np.full((W, N), -1)
     alive[3] = False

@@ -1,5 +1,6 @@
 """Moments: organisms remember what they sensed, children what their parents did, founders nothing."""
 
+from dataclasses import replace
 from typing import Any
 
 import jax
@@ -7,10 +8,11 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
+from primordia.habitats import Compound, Continuous, Discrete
 from primordia.law.moments import change_in
 from primordia.law.world import Remembered
 from tests.toys import Mill
-from tests.worlds import MEADOW, MILL, Lived, config
+from tests.worlds import MEADOW, MILL, Lived, config, law_of
 
 KEPT, EVERY = 4, 3
 MUTATION = {"kind": "calibrated", "remembered": KEPT, "every": EVERY, "founder_scale": 0.5}
@@ -123,3 +125,30 @@ def output(law: Any, genome: np.ndarray, moments: Remembered, row: int, place: i
     blocks = law.heredity.layout.split(jnp.asarray(genome)[None])
     memory, senses = moments.memory[row, place], moments.senses[row, place]
     return np.asarray(law.brain(blocks, memory[None], senses[None])[1][0])
+
+
+def test_a_moment_has_changed_if_any_of_its_choices_has() -> None:
+    """The change is the larger of two numbers, here of two choices and two vectors.
+
+    One is the share of moments with another choice. The other is the root mean square difference of
+    the vectors' numbers, each at most 1.
+    """
+    action = Compound((Discrete(2), Continuous(1), Discrete(2), Continuous(2)))
+    before = np.array([1, 0, 0, 1, 0, 0, 0], np.float32)
+    first, second = [0, 1, 0, 1, 0, 0, 0], [1, 0, 0, 0, 1, 0, 0]
+    both, same = [0, 1, 0, 0, 1, 0, 0], before
+    moved, far = [1, 0, 0.5, 1, 0, 0, -0.25], [1, 0, 9, 1, 0, 0, np.nan]
+    rows = np.array([[first, second, both, same], [moved] * 4, [far] * 4, [first] * 4, [far] * 4])
+    known = np.array([[1, 1, 1, 1], [1, 1, 1, 1], [1, 0, 1, 0], [0, 0, 0, 1], [0] * 4], bool)
+
+    def brain(genome: Any, memory: Any, senses: Any) -> tuple[Any, Any]:
+        """Return the senses as outputs of a child, and the outputs of before for a parent."""
+        child = next(iter(genome.values())).reshape(len(senses), -1)[:, :1] > 0
+        return memory, jnp.where(child, senses, jnp.asarray(before))
+
+    law = replace(law_of(MEADOW), brain=brain, action=action)
+    moments = Remembered(jnp.asarray(rows, jnp.float32), jnp.zeros((5, 4, 1)), jnp.asarray(known))
+    parents = jnp.zeros((5, law.heredity.layout.length))
+    change = np.asarray(change_in(law, moments, parents)(parents + 1))
+    expected = [3 / 4, np.sqrt((0.5**2 + 0.25**2) / 3), np.sqrt(2 / 3), 1.0, np.inf]
+    np.testing.assert_allclose(change, expected, rtol=1e-5)

@@ -1,4 +1,4 @@
-"""Worlds of invented states, settled once: what falls due, what is counted, and what is sampled."""
+"""Worlds of invented states, settled once: when they are settled, counts of ticks, and samples."""
 
 from functools import cache
 from typing import Any
@@ -19,7 +19,7 @@ from primordia.law.tick import no_fates
 from primordia.law.world import World
 from primordia.mutations.contract import Moments
 from primordia.random.wide import to_host, wide
-from tests.worlds import MEADOW, config
+from tests.worlds import MEADOW, law_of
 
 W, N = 3, 4
 FAR = 2**31 - 1
@@ -34,19 +34,18 @@ SEASONS: list[dict[str, Any]] = [
 
 
 @cache
-def law_of(**values: Any) -> Law:
+def meadow_law(**values: Any) -> Law:
     more = {"seasons": SEASONS} if values.pop("seasons", False) else {}
     moments = values.pop("moments", False)
     more |= {"mutation": {"kind": "calibrated", "remembered": 4, "every": 16}} if moments else {}
-    made = config(
+    return law_of(
         MEADOW, cells=N, seeds=W, saturation_ticks=40, sample_every=600, metabolism={"store": 10.0},
         **more, **values,
     )  # fmt: skip
-    return made.build_law(made.build_habitat())
 
 
 def posed(law: Law, tick: int = 500, **worlds: Any) -> World:
-    """Return full worlds at a tick, long since saturated, with other values for some of their arrays."""
+    """Return full worlds at a tick, saturated at tick 7, with other values for some of their arrays."""
     world = begin(law, np.arange(W, dtype=np.uint64), tick=tick)
     known = {"calm": [100] * W, "saturated": wide([7] * W), "saturated_births": wide([3] * W)}
     arrays = {
@@ -80,9 +79,9 @@ def due(law: Law, world: World, running: list[bool] = ALL) -> int:
     return int(quiet_ticks(law, world, jnp.array(running)))
 
 
-def test_the_next_settling_is_at_the_first_thing_that_falls_due() -> None:
+def test_the_next_settling_is_at_the_first_sample_look_or_schedule_that_is_due() -> None:
     """Samples fall due at 600, looks at 700 and 900, a schedule at 1000."""
-    law = law_of(seasons=True)
+    law = meadow_law(seasons=True)
     assert due(law, posed(law)) == 100
     assert due(law, posed(law, sample_wait=[900, 250, 800])) == 200
     late = posed(law, tick=650, sample_wait=[900] * W)
@@ -95,38 +94,37 @@ def test_the_next_settling_is_at_the_first_thing_that_falls_due() -> None:
     assert due(law, late._replace(worlds=past)) == 480
 
 
-def test_a_calm_world_is_settled_in_the_tick_of_its_saturation() -> None:
-    law = law_of()
+def test_a_calm_world_is_settled_in_the_tick_in_which_it_saturates() -> None:
+    law = meadow_law()
     for calm, ticks in ((0, 40), (39, 1), (40, 100), (2**31 - 1, 100)):
         assert due(law, posed(law, calm=[200, calm, 200])) == ticks
 
 
 def test_stopped_worlds_settle_nothing_and_worlds_without_life_at_once() -> None:
-    law = law_of()
+    law = meadow_law()
     world = posed(law, sample_wait=[10, 20, 30])
     assert due(law, world) == 10
     assert due(law, world, [False, True, True]) == 20
     assert due(law, world, [False] * 3) == FAR
     alive = world.organisms.alive.at[N : 2 * N].set(False)
     empty = world._replace(organisms=world.organisms._replace(alive=alive))
-    assert lifeless(law, empty, jnp.array(ALL)).tolist() == [False, True, False]
     assert due(law, empty) == 0
     assert due(law, empty, [True, False, True]) == 10
 
 
 def test_moments_fall_due_at_multiples_in_worlds_that_run() -> None:
-    law = law_of(moments=True)
+    law = meadow_law(moments=True)
     assert due(law, posed(law, tick=500)) == 12
     assert due(law, posed(law, tick=512)) == 16
     worlds = posed(law, tick=512).worlds._replace(tick=wide([512, 2**32 + 16, 513]))
     assert until_due(Moments(4, 16), worlds).tolist() == [16, 16, 15]
     assert moment_due(law, worlds, jnp.array(ALL)).tolist() == [True, True, False]
     assert moment_due(law, worlds, jnp.array([True, False, True])).tolist() == [True, False, False]
-    assert not moment_due(law_of(), worlds, jnp.array(ALL)).any()
+    assert not moment_due(meadow_law(), worlds, jnp.array(ALL)).any()
 
 
 def test_quiet_ticks_are_counted_in_the_worlds_that_run() -> None:
-    law = law_of(seasons=True)
+    law = meadow_law(seasons=True)
     world = posed(law, tick=500, calm=[1, 2, 3], sample_wait=[90, 80, 70])
     alive = np.array([1, 1, 1, 1, 1, 0, 0, 0, 1, 1, 0, 0], bool)
     world = world._replace(organisms=world.organisms._replace(alive=jnp.asarray(alive)))
@@ -140,9 +138,9 @@ def test_quiet_ticks_are_counted_in_the_worlds_that_run() -> None:
     np.testing.assert_array_equal(organisms.alive, alive)
 
 
-def test_a_world_is_saturated_once_when_it_is_full_runs_and_was_calm_for_long_enough() -> None:
+def test_a_full_running_world_is_saturated_once_after_enough_calm_ticks() -> None:
     """The tick and the births of the first time stay on record."""
-    law, ticks = law_of(), 5
+    law, ticks = meadow_law(), 5
     fresh = {"saturated": wide([NEVER] * W), "saturated_births": wide([NEVER] * W)}
     births = wide([11, 12, 13])
     just = posed(law, calm=[35, 34, 36], births=births, **fresh)
@@ -161,7 +159,7 @@ def test_a_world_is_saturated_once_when_it_is_full_runs_and_was_calm_for_long_en
 
 
 def test_samples_are_taken_where_they_are_due_and_wait_again() -> None:
-    law = law_of()
+    law = meadow_law()
     world = posed(law, sample_wait=[9, 10, 10])
     (_, worlds), samples = settled(law, world, 10 - 1, [True, True, False])
     assert [row["world"] for row in samples] == [0]
@@ -175,7 +173,7 @@ def test_samples_are_taken_where_they_are_due_and_wait_again() -> None:
 
 def test_a_change_of_climate_is_sampled_between_the_periodic_samples() -> None:
     """A world that has stopped at the tick of the schedule changes nothing and is not sampled."""
-    law = law_of(seasons=True)
+    law = meadow_law(seasons=True)
     looks = posed(law).worlds.looks._replace(wait=jnp.full((W, 2), 99, jnp.int32))
     world = posed(law, tick=995, sample_wait=[50] * W, looks=looks)
     later = world.worlds._replace(tick=wide([995, 990, 1000]))
@@ -186,9 +184,9 @@ def test_a_change_of_climate_is_sampled_between_the_periodic_samples() -> None:
     assert worlds.sample_wait.tolist() == [45, 45, 50]
 
 
-def test_a_sample_tells_each_count_of_its_own_world() -> None:
+def test_a_sample_has_each_count_of_its_own_world() -> None:
     """Empty cells add neither energy nor age; debts of energy and negative food are kept."""
-    law = law_of()
+    law = meadow_law()
     cells = W * N
     world = posed(
         law,
@@ -230,7 +228,7 @@ def test_a_sample_tells_each_count_of_its_own_world() -> None:
 
 @pytest.mark.parametrize("population", [0, 1, 4])
 def test_worlds_without_life_are_those_that_run_without_an_organism(population: int) -> None:
-    law = law_of()
+    law = meadow_law()
     world = posed(law)
     alive = world.organisms.alive.at[:N].set(jnp.arange(N) < population)
     world = world._replace(organisms=world.organisms._replace(alive=alive))

@@ -1,4 +1,4 @@
-"""One tick of deaths and births in six invented worlds, each with its own kind of change."""
+"""One tick of deaths and births in six invented worlds, with another kind of change in each."""
 
 from typing import Any
 
@@ -14,7 +14,7 @@ from primordia.law.turnover import birth_keys, turnover
 from primordia.law.world import BirthCause, Cause, World
 from primordia.random.keys import Purpose, bits, stream
 from primordia.random.wide import to_host, wide
-from tests.worlds import MEADOW, config
+from tests.worlds import MEADOW, law_of
 
 DYING, FIRST, STOPPED, LOSING, QUIET, BEARING = range(6)
 W, N, TICK = 6, 4, 50
@@ -38,11 +38,10 @@ STORES = [float(10 + world) for world in range(W)]
 
 
 def posed() -> tuple[Law, World]:
-    made = config(
+    law = law_of(
         MEADOW, cells=N, seeds=W, metabolism={"store": 10.0}, placement={"rule": "empty-only"},
         mutation={"probability": 0.0},
     )  # fmt: skip
-    law = made.build_law(made.build_habitat())
     world = begin(law, np.arange(W, dtype=np.uint64), tick=TICK)
     store = jnp.array(STORES, jnp.float32)
     worlds = world.worlds._replace(
@@ -94,7 +93,7 @@ def after() -> dict[str, Any]:
 
 
 def founded_cell(world: int) -> int:
-    """Return the cell of the founder: that of the first word of the seed, the tick and genesis."""
+    """Return the cell of the founder, which the first word for seed, tick and genesis gives."""
     key = stream(wide(world), Purpose.GENESIS, wide(TICK))
     return int(bits(key, jnp.uint32(0)).hi) * N >> 32
 
@@ -104,7 +103,7 @@ def child_cell(after: dict[str, Any]) -> int:
     return int(cell)
 
 
-def test_the_dead_are_listed_with_all_that_they_had(after: dict[str, Any]) -> None:
+def test_the_dead_are_listed_with_their_energy_and_food(after: dict[str, Any]) -> None:
     cells = [0, 1, 2, 3, LOSING * N + 1]
     assert after["deaths"]["cell"].tolist() == cells
     assert after["deaths"]["id"].tolist() == [100 + cell for cell in cells]
@@ -152,7 +151,7 @@ def test_the_living_are_survivors_and_newborn(after: dict[str, Any]) -> None:
 
 
 def test_births_deaths_and_extinctions_are_counted_in_their_worlds(after: dict[str, Any]) -> None:
-    """Genesis is no extinction, since nobody had lived. A death alone ends the calm; so does a birth."""
+    """A world's first founder follows no extinction. Each death or birth sets the calm ticks to 0."""
     worlds = after["worlds"]
     assert to_host(worlds.births).tolist() == [1001, 1002, 1002, 1003, 1004, 1006]
     assert to_host(worlds.extinctions).tolist() == [3, 2, 2, 2, 2, 2]

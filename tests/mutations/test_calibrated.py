@@ -116,13 +116,13 @@ def test_it_keeps_the_contract() -> None:
         check_mutation(Calibrated(blocks=own))
 
 
-def test_moments_are_those_of_the_settings() -> None:
+def test_settings_give_the_number_and_interval_of_moments() -> None:
     assert Calibrated(remembered=5, every=9).moments == Moments(kept=5, every=9)
     assert Calibrated(remembered=256, every=256).moments == Moments(kept=256, every=256)
 
 
-def test_rates_of_seasons_are_the_settings_and_a_length_follows_the_present_ones() -> None:
-    """Children of one tick may be born in worlds with other climates."""
+def test_seasons_change_two_rates_and_a_length_follows_the_present_rates() -> None:
+    """Children of one tick may be born in worlds of different climates."""
     mutation = Calibrated(probability=0.0, differs=0.25, founder_scale=0.3)
     assert mutation.rates(LAYOUT) == {"probability": 0.0, "differs": 0.25}
     assert mutation.governed("differs", LAYOUT) == ["differs"]

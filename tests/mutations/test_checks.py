@@ -18,7 +18,7 @@ LAYOUT = Layout((("input", (2, 3)), ("output", (4,))))
 
 
 class Plain(Mutation):
-    """Copies and zeros; its attributes are replaced by those of a test."""
+    """Children are copies and founders zeros. A test replaces attributes."""
 
     replaced: ClassVar[dict[str, Any]] = {}
 
@@ -60,7 +60,7 @@ def plain(**replaced: Any) -> Mutation:
         {"notes": ("one", "two")},
     ],
 )
-def test_what_keeps_the_contract_passes_up_to_its_bounds(replaced: dict[str, Any]) -> None:
+def test_a_mutation_within_the_bounds_passes(replaced: dict[str, Any]) -> None:
     check_mutation(plain(**replaced), LAYOUT)
 
 
@@ -100,7 +100,7 @@ def test_what_keeps_the_contract_passes_up_to_its_bounds(replaced: dict[str, Any
         ({"type": jnp.float16}, r"gives genomes of founders as float16 \(32, 10\)"),
     ],
 )
-def test_what_breaks_the_contract_is_named(replaced: dict[str, Any], says: str) -> None:
+def test_a_fault_of_a_mutation_is_named(replaced: dict[str, Any], says: str) -> None:
     with pytest.raises(InputError, match=f"^mutation: Plain {says}"):
         check_mutation(plain(**replaced), LAYOUT)
 
@@ -131,7 +131,7 @@ def family(count: int, size: int) -> Family:
     return Family(jnp.arange(count * 10.0).reshape(count, 10), notes, rates, draws)
 
 
-def test_a_mutation_that_says_nothing_of_notes_and_seasons_has_the_simplest_ones() -> None:
+def test_a_mutation_has_defaults_for_notes_moments_and_rates() -> None:
     mutation, of = plain(notes=("one", "two")), family(5, 2)
     assert mutation.note(LAYOUT, of, None).tolist() == of.notes.tolist()
     none = mutation.founders_notes(3)
@@ -140,7 +140,7 @@ def test_a_mutation_that_says_nothing_of_notes_and_seasons_has_the_simplest_ones
     assert [mutation.governed(each, LAYOUT) for each in ("b", "c")] == [["b"], []]
 
 
-def test_some_families_are_those_of_their_rows_in_their_order() -> None:
+def test_families_are_taken_by_row_in_the_given_order() -> None:
     of, rows = family(6, 1), np.array([4, 1, 1, 0, 5, 2])
     some = of.take(rows)
     assert some.parents[:, 0].tolist() == [40, 10, 10, 0, 50, 20]

@@ -14,7 +14,7 @@ from primordia.random.wide import wide
 from primordia.testing import check_mutation
 from tests.chance import binomial
 from tests.mutations.test_gaussian import LAYOUT
-from tests.worlds import MEADOW, config
+from tests.worlds import MEADOW, law_of
 
 K = 4_000
 
@@ -61,9 +61,8 @@ def test_it_keeps_the_contract(belongs: str) -> None:
     check_mutation(Heritable(belongs=belongs))
 
 
-def test_founders_begin_with_their_own_exponent_and_not_with_that_of_the_dead() -> None:
-    settings = config(MEADOW, mutation={"kind": "heritable", "probability": 1.0})
-    heredity = settings.build_law(settings.build_habitat()).heredity
+def test_founders_begin_with_exponent_0_whatever_the_cell_held_before() -> None:
+    heredity = law_of(MEADOW, mutation={"kind": "heritable", "probability": 1.0}).heredity
     count, mutation = 40, heredity.mutation
     birth = Birth(
         seed=wide(np.zeros(count)),
@@ -84,7 +83,7 @@ def test_founders_begin_with_their_own_exponent_and_not_with_that_of_the_dead() 
     assert len(set(quarters[1::2].tolist())) > 3
 
 
-def test_the_exponent_takes_a_step_if_any_block_mutates_and_no_step_else() -> None:
+def test_the_exponent_takes_a_step_only_if_a_block_mutates() -> None:
     blocks = {"input": Block(probability=0.0), "recurrent": Block(probability=0.6)}
     mutation = Heritable(probability=0.2, blocks=blocks, stride=16)
     notes = np.asarray(mutation.note(LAYOUT, family(mutation), None))[:, 0]
@@ -95,7 +94,7 @@ def test_the_exponent_takes_a_step_if_any_block_mutates_and_no_step_else() -> No
     assert binomial(int((notes[mutants] == 0).sum()), int(mutants.sum()), 1 / 33)
 
 
-def test_own_bounds_limit_the_exponent_on_both_sides() -> None:
+def test_the_settings_bound_the_exponent_on_both_sides() -> None:
     mutation = Heritable(probability=1.0, stride=16, finest=-3, coarsest=5)
     notes = np.asarray(mutation.note(LAYOUT, family(mutation, 1), None))
     assert np.unique(notes).tolist() == list(range(-3, 6))

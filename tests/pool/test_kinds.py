@@ -145,7 +145,7 @@ def test_a_run_in_this_process_loads_its_own_copy_of_a_users_simulator(admitted:
 
 
 @pytest.mark.parametrize(
-    ("lines", "told"),
+    ("lines", "message"),
     [
         ("raise RuntimeError('first\\n\\n  second\\tthird')", "RuntimeError: first second third; "),
         ("raise RuntimeError()", "RuntimeError; "),
@@ -155,8 +155,8 @@ def test_a_run_in_this_process_loads_its_own_copy_of_a_users_simulator(admitted:
         ),
     ],
 )
-def test_any_failure_is_told_in_one_line_with_its_message(
-    lines: str, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_any_failure_is_one_line_with_its_message(
+    lines: str, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A message may have several lines or none, and libraries such as JAX add notes to errors."""
     name = f"simulator_{len(lines)}"
@@ -164,7 +164,7 @@ def test_any_failure_is_told_in_one_line_with_its_message(
         f"class Own:\n    def __init__(self, arrays):\n        {lines}\n"
     )
     monkeypatch.syspath_prepend(tmp_path)
-    with pytest.raises(Trouble, match=rf"failed \({told}.*, line 3\)"):
+    with pytest.raises(Trouble, match=rf"failed \({message}.*, line 3\)"):
         open_pool(f"{name}:Own", {}, {"mark": ("int64", ())}, 2, 0)
 
 
@@ -174,8 +174,8 @@ ODD: dict[str, board.Field] = {
 
 
 @pytest.mark.parametrize("cells", [1, 7, 13, 64])
-def test_fields_of_a_board_have_their_own_memory_in_lines_of_a_cache(cells: int) -> None:
-    """Whatever is written into one field changes no other, and the last byte still fits."""
+def test_each_field_of_a_board_begins_with_a_cache_line_of_its_own(cells: int) -> None:
+    """Writing into one field changes no other field. All fields fit into the memory of the board."""
     lines = [-(-cells * each // 64) for each in (1, 48, 0, 5)]
     size = board.size(ODD, cells)
     assert size == 64 * sum(lines)
@@ -190,4 +190,4 @@ def test_fields_of_a_board_have_their_own_memory_in_lines_of_a_cache(cells: int)
         for number, each in enumerate(views.values(), 1):
             each[:] = number
         for number, each in enumerate(again.values(), 1):
-            assert (each == (number == 1 or number)).all()
+            assert (each == each.dtype.type(number)).all()

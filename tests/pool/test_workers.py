@@ -190,7 +190,7 @@ def test_ctrl_c_ends_no_worker() -> None:
         assert pool.arrays["total"].tolist() == [100] * 7
 
 
-def test_a_worker_has_some_seconds_for_each_answer_and_the_message_tells_them(
+def test_a_worker_that_does_not_answer_in_time_is_an_error_with_the_seconds(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     waited = []
@@ -209,16 +209,26 @@ def test_a_worker_has_some_seconds_for_each_answer_and_the_message_tells_them(
     assert waited == [7.4]
 
 
-SHOUTING = "class Own:\n    def __init__(self, arrays, mark):\n        arrays['mark'][:] = mark\n    def make(self, cell):\n        pass\n    def step(self, cells):\n        print('..')\n"  # noqa: E501
+PRINTING = """
+class Own:
+    def __init__(self, arrays, mark):
+        arrays["mark"][:] = mark
+
+    def make(self, cell):
+        pass
+
+    def step(self, cells):
+        print("..")
+"""
 
 
-def test_a_simulator_of_the_runs_path_is_found_gets_its_settings_and_may_print(
+def test_a_simulator_on_the_path_gets_its_settings_and_may_print(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    (tmp_path / "shouting_simulator.py").write_text(SHOUTING)
+    (tmp_path / "printing_simulator.py").write_text(PRINTING)
     monkeypatch.syspath_prepend(tmp_path)
     fields = {"mark": ("int64", ())}
-    pool = Workers("shouting_simulator:Own", {"mark": 6}, fields, 3, 2)
+    pool = Workers("printing_simulator:Own", {"mark": 6}, fields, 3, 2)
     for _ in range(3):
         pool.step(np.ones(3, bool))
     assert pool.arrays["mark"].tolist() == [6] * 3

@@ -1,4 +1,4 @@
-"""Dice, the table of quantiles, and random numbers of trials: known answers and plain formulas."""
+"""Dice, the table of quantiles, and random numbers of trials, compared with published numbers."""
 
 from statistics import NormalDist
 
@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from primordia.random import dice, gaussian, trials
-from primordia.random.keys import Purpose, stream, streams, threefry
-from primordia.random.wide import Wide, to_host, wide
+from primordia.random.keys import threefry
+from primordia.random.wide import to_host, wide
 
 SPLITMIX = [
     6457827717110365317,
@@ -16,7 +16,7 @@ SPLITMIX = [
     4593380528125082431,
     16408922859458223821,
 ]
-"""The first numbers of SplitMix64 from 1234567, as its authors' C code gives them."""
+"""The first numbers that the C code of SplitMix64's authors gives from 1234567."""
 
 
 def test_dice_roll_the_high_halves_of_the_published_numbers() -> None:
@@ -33,7 +33,7 @@ def test_dice_begin_with_the_first_word_on_top() -> None:
     assert dice.begin(2**32 - 1, 2**32 - 1) == 2**64 - 1
 
 
-def test_quantiles_are_those_of_the_middles_of_equal_shares() -> None:
+def test_each_quantile_is_that_of_the_middle_of_its_share() -> None:
     """The i-th of 65,536 equal shares has its middle at i + 1/2."""
     table = gaussian.quantiles()
     assert table.shape == (65_536,)
@@ -61,26 +61,3 @@ def test_random_numbers_of_trials_depend_on_their_name_and_place() -> None:
     normal = trials.normal(7, 3, 4)
     assert normal.dtype == np.float32
     np.testing.assert_array_equal(normal, gaussian.quantiles()[words // 65_536])
-
-
-SEEDS = np.array([3, 2**40, 2**64 - 1], np.uint64)
-TICKS = np.array([0, 5, 2**33], np.uint64)
-THREE = Purpose.PLACE, Purpose.BODY, Purpose.MATE
-
-
-def test_streams_of_several_purposes_are_the_streams_of_each() -> None:
-    keys = streams(wide(SEEDS), wide(TICKS), *THREE)
-    for purpose in THREE:
-        alone = stream(wide(SEEDS), purpose, wide(TICKS))
-        assert to_host(keys[purpose]).tolist() == to_host(alone).tolist()
-        some = keys.take(np.array([2, 0]))[purpose]
-        assert to_host(some).tolist() == to_host(alone)[[2, 0]].tolist()
-
-
-def test_keys_are_replaced_for_the_purposes_named_and_for_no_other() -> None:
-    keys = streams(wide(SEEDS), wide(TICKS), *THREE)
-    other = Wide(*(word + np.uint32(1) for word in keys[Purpose.BODY]))
-    replaced = keys.replaced(other, Purpose.PLACE, Purpose.MATE)
-    assert replaced.purposes == THREE
-    for purpose, expected in zip(THREE, (other, keys[Purpose.BODY], other), strict=True):
-        assert to_host(replaced[purpose]).tolist() == to_host(expected).tolist()

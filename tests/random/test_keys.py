@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from jax.extend.random import threefry_2x32
 
-from primordia.random.keys import Purpose, below, bits, bits_if, chance, stream, threefry
+from primordia.random.keys import Purpose, below, bits, bits_if, chance, stream, streams, threefry
 from primordia.random.wide import Wide, to_host, wide
 from tests.chance import binomial, even
 
@@ -153,3 +153,26 @@ def test_draws_of_neighbouring_names_are_unrelated() -> None:
     }
     for name, other in others.items():
         assert abs((base * other).mean()) < 5 / np.sqrt(base.size), name
+
+
+SEEDS = np.array([3, 2**40, 2**64 - 1], np.uint64)
+TICKS = np.array([0, 5, 2**33], np.uint64)
+THREE = Purpose.PLACE, Purpose.BODY, Purpose.MATE
+
+
+def test_streams_drawn_together_equal_those_drawn_one_by_one() -> None:
+    keys = streams(wide(SEEDS), wide(TICKS), *THREE)
+    for purpose in THREE:
+        alone = stream(wide(SEEDS), purpose, wide(TICKS))
+        assert to_host(keys[purpose]).tolist() == to_host(alone).tolist()
+        some = keys.take(np.array([2, 0]))[purpose]
+        assert to_host(some).tolist() == to_host(alone)[[2, 0]].tolist()
+
+
+def test_keys_are_replaced_for_the_purposes_named_and_for_no_other() -> None:
+    keys = streams(wide(SEEDS), wide(TICKS), *THREE)
+    other = Wide(*(word + np.uint32(1) for word in keys[Purpose.BODY]))
+    replaced = keys.replaced(other, Purpose.PLACE, Purpose.MATE)
+    assert replaced.purposes == THREE
+    for purpose, expected in zip(THREE, (other, keys[Purpose.BODY], other), strict=True):
+        assert to_host(replaced[purpose]).tolist() == to_host(expected).tolist()

@@ -123,7 +123,7 @@ def test_runs_are_compared_as_arms(runs: Path) -> None:
 
 
 @pytest.mark.parametrize(("one", "other"), [(True, True), (True, False), (False, False)])
-def test_an_arm_can_be_repeated_if_all_its_runs_can(one: bool, other: bool) -> None:
+def test_an_arm_is_exact_if_all_its_runs_are(one: bool, other: bool) -> None:
     limits = Stop(ticks=9, births=None, until=None), Stop(ticks=9, births=5, until=None)
     each = [
         Progress(limits=limit, wall_s=seconds, exact=exact, restarts=restarts)
@@ -132,9 +132,9 @@ def test_an_arm_can_be_repeated_if_all_its_runs_can(one: bool, other: bool) -> N
         )
     ]
     arm: Any = SimpleNamespace(runs=[SimpleNamespace(progress=progress) for progress in each])
-    told = Arm.progress.func(arm)  # type: ignore[attr-defined]
-    assert (told.exact, told.wall_s, told.restarts) == (one and other, 5, 5)
-    assert told.limits == Stop(ticks=9, births=None, until=None)
+    joined = Arm.progress.func(arm)  # type: ignore[attr-defined]
+    assert (joined.exact, joined.wall_s, joined.restarts) == (one and other, 5, 5)
+    assert joined.limits == Stop(ticks=9, births=None, until=None)
 
 
 def test_a_name_is_told_from_a_path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,4 +1,4 @@
-"""Arrays of checkpoints: each has the type and shape that settings give it, and is read as it was."""
+"""Arrays of checkpoints: settings give the type and shape of each, and all bits are read back."""
 
 from pathlib import Path
 from types import SimpleNamespace
@@ -78,15 +78,15 @@ def test_each_array_has_one_type_and_one_row_for_each_world_or_cell(name: str) -
     if ".moments." in name:
         odd.append(array[:, :-1])
     for each in odd:
-        told = expected.fault_of(name, each)
-        assert told == f"{name} is {each.dtype} {each.shape}, which does not fit the settings"
+        fault = expected.fault_of(name, each)
+        assert fault == f"{name} is {each.dtype} {each.shape}, which does not fit the settings"
 
 
 @pytest.mark.parametrize(
     ("name", "least"),
     [("world.worlds.sample_wait", 1), ("world.worlds.calm", 0), ("world.worlds.looks.wait", 1)],
 )
-def test_no_wait_of_any_world_is_below_the_least(name: str, least: int) -> None:
+def test_a_wait_below_the_least_is_a_fault(name: str, least: int) -> None:
     expected = Expected(SETTINGS, ABOUT)
     if name.endswith("looks.wait"):
         season = {"kind": "ratchet", "setting": "hazard", "when": "mean_age", "above": 1.0,
@@ -95,8 +95,8 @@ def test_no_wait_of_any_world_is_below_the_least(name: str, least: int) -> None:
         expected = Expected(type(SETTINGS).model_validate(values), ABOUT)
     for array, wrong in (([least, least], False), ([9, least - 1], True)):
         shape = (2, 1) if name.endswith("looks.wait") else (2,)
-        told = expected.fault_of(name, np.array(array, np.int32).reshape(shape))
-        assert told == (f"{name} is below {least}" if wrong else None)
+        fault = expected.fault_of(name, np.array(array, np.int32).reshape(shape))
+        assert fault == (f"{name} is below {least}" if wrong else None)
 
 
 class Held(dict):
@@ -106,7 +106,7 @@ class Held(dict):
         return self[name].nbytes
 
 
-def test_a_state_has_all_arrays_large_enough_and_possible_counts() -> None:
+def test_a_state_has_all_arrays_and_no_count_that_is_too_large() -> None:
     expected, good = Expected(SETTINGS, ABOUT), fitting()
     assert expected.fault(Held(good)) is None
     for name in NAMES:
@@ -122,15 +122,15 @@ def test_a_state_has_all_arrays_large_enough_and_possible_counts() -> None:
                 f"world.worlds.{name}.hi": np.array([0, count >> 32], np.uint32),
                 f"world.worlds.{name}.lo": np.array([0, count & 0xFFFFFFFF], np.uint32),
             }
-            told = expected.fault(Held(good, **words))
-            assert told == (f"world.worlds.{name} is too large" if wrong else None)
+            fault = expected.fault(Held(good, **words))
+            assert fault == (f"world.worlds.{name} is too large" if wrong else None)
 
 
 @pytest.mark.parametrize("small", [0, 2**20])
-def test_arrays_are_read_as_they_were_even_after_their_file_is_gone(
+def test_arrays_of_an_open_file_can_be_read_after_its_removal(
     small: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Whether a file is read at opening or stays open; by rows or by columns, and without elements."""
+    """A small file is read at once. A large one stays open."""
     monkeypatch.setattr(arrays, "SMALL", small)
     stored = {
         "rows": np.arange(6, dtype=np.int32).reshape(2, 3),
@@ -169,8 +169,8 @@ def test_counts_have_a_high_and_a_low_word() -> None:
     assert read_count(words, "world.worlds.tick").dtype == np.uint64
 
 
-def test_notes_and_mates_are_those_of_each_lifes_own_birth() -> None:
-    """Births of several worlds are on record in the order of events, and lives may be left out."""
+def test_notes_and_mates_of_a_life_are_those_of_its_birth() -> None:
+    """Births of two worlds are recorded in order of events. One life is left out."""
     lives = worlds_of(
         [(0, 9, True), (5, 9, True), (6, 9, False)], [(0, 9, True), (3, 1, True)], until=40
     )

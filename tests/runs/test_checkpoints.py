@@ -1,4 +1,4 @@
-"""Checkpoints by number: which are kept, which is the newest, and what a manifest may name."""
+"""Checkpoints: their numbers, the newest one, leftovers, and the files that a manifest names."""
 
 from pathlib import Path
 from typing import Any
@@ -74,8 +74,8 @@ def test_a_manifest_names_the_settings_and_the_code(run: Path) -> None:
 
 
 @pytest.mark.parametrize("origin", [False, True])
-def test_the_faults_of_newer_checkpoints_come_newest_first(run: Path, origin: bool) -> None:
-    """The origin of a fork is the last resort, and it decides what a user can do without any."""
+def test_faults_of_checkpoints_are_in_order_newest_first(run: Path, origin: bool) -> None:
+    """A fork without a whole checkpoint begins with its origin; another run must be repeated."""
     if origin:
         checkpoint.save_origin(run, {"number": np.array([7])}, Recorder(run, 1, SCHEMA), PROGRESS)
         assert checkpoint.exists(run)
@@ -106,8 +106,8 @@ def test_the_faults_of_newer_checkpoints_come_newest_first(run: Path, origin: bo
 
 
 @pytest.mark.parametrize("which", ["newest", "earlier", "origin", "none"])
-def test_what_is_later_than_a_checkpoint_is_removed(run: Path, which: str) -> None:
-    """Earlier checkpoints, and the segments that the checkpoint names, stay."""
+def test_files_later_than_a_checkpoint_are_removed(run: Path, which: str) -> None:
+    """Earlier checkpoints stay, and so do the segments that the checkpoint names."""
     recorder = Recorder(run, 1, SCHEMA)
     seal = {"bytes": 0, "sha256": "0" * 64}
     checkpoint.save_origin(run, {"a": np.zeros(1)}, recorder, PROGRESS)

@@ -1,4 +1,4 @@
-"""Births and deaths that contradict each other: each fault is named, and a near miss is none."""
+"""Births and deaths that contradict each other: each fault is named, and the last good value passes."""
 
 from typing import Any
 
@@ -100,7 +100,7 @@ def test_an_impossible_death_is_named(row: int, values: dict[str, Any], fault: s
 
 
 def test_the_first_and_the_last_tick_and_cell_are_possible() -> None:
-    """Births in the last tick of worlds that end apart, and deaths in the tick of birth and the last."""
+    """Births and deaths may be in the last tick of a world. A death may be in the tick of birth."""
     births = changed(changed(BIRTHS, 3, tick=30), 4, tick=50, cell=CELLS - 1)
     deaths = changed(changed(DEATHS, 0, tick=50), 1, tick=0)
     lives = lives_of(births, deaths)
@@ -117,7 +117,7 @@ def test_the_first_and_the_last_tick_and_cell_are_possible() -> None:
 
 @pytest.mark.parametrize("begins", [0, 10, 11])
 def test_lives_are_on_record_from_birth_or_from_the_fork(begins: int) -> None:
-    """An organism that was born in the tick of the fork lived at the fork."""
+    """An organism that is born in the tick of the fork is alive at the fork."""
     lives = lives_of(BIRTHS, DEATHS, begins)
     for row, born in enumerate([0, 10, 40, 0, 20]):
         assert lives.seen[row] == max(born, begins)
@@ -125,7 +125,7 @@ def test_lives_are_on_record_from_birth_or_from_the_fork(begins: int) -> None:
         assert lives.inherited[row] == (begins > 0 and born <= begins)
 
 
-def test_deaths_of_no_segment_leave_all_alive() -> None:
+def test_without_deaths_all_are_alive() -> None:
     lives = join([segment(BIRTHS, BirthCause)], [], ENDS.copy(), 0, CELLS)
     assert not lives.died.any()
     assert lives.ended.tolist() == [50, 50, 50, 30, 30]

@@ -17,7 +17,7 @@ UNTIL = 40
 
 @pytest.fixture
 def lives() -> Lives:
-    """Lives of three worlds, of which the middle one has no record of a life."""
+    """Lives of three worlds, of which the middle one has none."""
     both = worlds_of(FIRST, SECOND, until=UNTIL)
     return replace(both, world=both.world * 2)
 
@@ -33,7 +33,9 @@ def as_dicts(lives: Lives) -> list[dict[str, int]]:
 
 
 @pytest.mark.parametrize("tick", [0, 4, 5, 9, 10, 19, 20, 21, 30, 40])
-def test_a_fork_records_who_lives_at_its_tick_and_who_comes_later(lives: Lives, tick: int) -> None:
+def test_a_fork_records_organisms_alive_at_its_tick_and_later_births(
+    lives: Lives, tick: int
+) -> None:
     expected = []
     for life in as_dicts(lives):
         if life["cause"] == ALIVE or life["ended"] > tick:
@@ -45,7 +47,7 @@ def test_a_fork_records_who_lives_at_its_tick_and_who_comes_later(lives: Lives, 
     ]
 
 
-def test_a_fork_of_a_fork_keeps_who_was_inherited(lives: Lives) -> None:
+def test_a_fork_of_a_fork_keeps_inherited_organisms(lives: Lives) -> None:
     later = lives.recorded_since(10).recorded_since(0)
     assert rows(later) == rows(lives.recorded_since(10))
     assert later.inherited.any()
@@ -54,7 +56,7 @@ def test_a_fork_of_a_fork_keeps_who_was_inherited(lives: Lives) -> None:
 
 @pytest.mark.parametrize("tick", [0, 5, 10, 19, 20, 24, 25, 30, 40, 41])
 def test_a_stopped_record_holds_no_later_birth_and_no_later_death(lives: Lives, tick: int) -> None:
-    """A death in the last tick is on record; after it, an organism counts as living until then."""
+    """A death in the last tick is on record. An organism that dies later is alive at the end."""
     expected = []
     for life in as_dicts(lives):
         if life["born"] > tick:
@@ -107,8 +109,8 @@ def test_the_oldest_and_the_champions_leave_out_worlds_without_a_birth(lives: Li
         lives.oldest(3)
 
 
-def test_those_alive_at_a_fork_are_no_champions(lives: Lives) -> None:
-    """After the fork at 20 only two are born, both at 21 or later; the others were alive at 20."""
+def test_organisms_alive_at_a_fork_are_no_champions(lives: Lives) -> None:
+    """Two organisms are born after the fork at 20. The others were alive at 20."""
     fork = lives.recorded_since(20)
     expected = [row for row, born in enumerate(fork.born.tolist()) if born > 20]
     assert fork.champions().tolist() == expected
@@ -126,7 +128,7 @@ def test_an_organism_is_found_in_its_own_world(lives: Lives) -> None:
     assert lives.rows_of(*wanted).tolist() == [8, 5, -1, -1, -1, -1]
 
 
-def test_lives_of_runs_are_joined_with_worlds_of_other_numbers(lives: Lives) -> None:
+def test_lives_of_two_runs_are_joined_and_worlds_of_the_second_renumbered(lives: Lives) -> None:
     one = world_of(FIRST, UNTIL)
     both = joined([lives, one], np.array([0, 3]))
     assert both.world.tolist() == [*lives.world.tolist(), *[3] * 6]

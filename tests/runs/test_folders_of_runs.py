@@ -1,4 +1,4 @@
-"""The folder of a run: who may begin in it, which settings it has, and its notes on failures."""
+"""The folder of a run: which runs may begin in it, its settings, and its notes on failures."""
 
 import fcntl
 import json
@@ -49,9 +49,9 @@ STARTED = (
 )
 
 
-def test_a_start_that_was_killed_is_cleared_but_for_files_of_others(tmp_path: Path) -> None:
+def test_files_of_a_start_that_was_killed_are_removed_and_others_stay(tmp_path: Path) -> None:
     run = tmp_path / "run"
-    assert directory.clear_unbegun(run), "there is nothing"
+    assert directory.clear_unbegun(run), "there is no folder"
     for name in (*STARTED[1:], "mine.txt", ".writing-mine", "lock"):
         (run / name).parent.mkdir(parents=True, exist_ok=True)
         (run / name).touch()
@@ -110,10 +110,10 @@ def test_runs_of_another_format_are_refused(format: int, tmp_path: Path) -> None
         ({"saturation_ticks": 9}, r"saturation_ticks is \d+ there, and 9 here"),
     ],
 )
-def test_a_run_goes_on_with_the_settings_that_it_was_begun_with(
+def test_a_run_goes_on_only_with_the_settings_of_its_beginning(
     changes: dict[str, Any], differs: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The limits, the text about it and the place of its ancestors may differ."""
+    """Limits, description and the paths of ancestors may differ."""
     there = config(MEADOW)
     here = there.model_copy(update=changes) if "ancestors" in changes else config(MEADOW, **changes)
     monkeypatch.setattr(directory, "read_config", lambda _: there)
@@ -124,7 +124,7 @@ def test_a_run_goes_on_with_the_settings_that_it_was_begun_with(
         directory.check_same_settings(here, tmp_path)
 
 
-def test_a_script_that_begins_or_resumes_passes_on_all_that_is_given(
+def test_begin_or_resume_passes_on_all_its_arguments(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     calls = list[tuple[Any, ...]]()
@@ -163,14 +163,14 @@ def test_seconds_between_checkpoints_are_0_or_more(seconds: float, tmp_path: Pat
     assert not (tmp_path / "run").exists()
 
 
-def test_a_run_with_nothing_to_do_names_the_limits_that_it_has(tmp_path: Path) -> None:
+def test_the_message_of_a_finished_run_has_its_limits(tmp_path: Path) -> None:
     limits = Stop(ticks=9, births=None, until="saturation")
     says = loop._nothing_to_do(tmp_path, Progress(limits=limits, wall_s=0.0, exact=True))
     assert says.startswith(f"nothing to do: every world of {tmp_path} has reached a limit"
                            " (ticks 9, until saturation); ")  # fmt: skip
 
 
-def test_failures_are_noted_a_line_each_after_those_before(tmp_path: Path) -> None:
+def test_each_failure_is_a_line_at_the_end_of_a_file(tmp_path: Path) -> None:
     faults.note(tmp_path, [])
     assert not (tmp_path / "faults.txt").exists()
     faults.note(tmp_path, ["first", "second\x1b"])

@@ -1,4 +1,4 @@
-"""Forks of invented worlds: which ticks can be forked, who lives then, and what changes."""
+"""Forks of invented worlds: possible ticks, organisms alive at the tick, and changes of the state."""
 
 from pathlib import Path
 from types import SimpleNamespace
@@ -22,8 +22,8 @@ CELLS = 5
 
 
 @pytest.mark.parametrize("begins", [0, 7])
-def test_a_run_is_forked_where_all_its_worlds_have_lived(begins: int) -> None:
-    """From the first tick, or from the tick of its own fork, to the end of the world that ends first."""
+def test_a_run_is_forked_at_ticks_that_all_its_worlds_have(begins: int) -> None:
+    """The first tick is 1, or that of the run's own fork. The last is the end of the shortest world."""
     of = SimpleNamespace(run="before", tick=begins) if begins else None
     settings = SimpleNamespace(begins=begins, fork=of)
     source: Any = SimpleNamespace(config=settings, ends=np.array([30, 20, 25]), path=Path("run"))
@@ -40,7 +40,7 @@ def test_a_run_is_forked_where_all_its_worlds_have_lived(begins: int) -> None:
 
 @pytest.mark.parametrize("at", [1, 9, 10, 11, 20])
 def test_the_living_at_a_tick_are_on_record_and_in_the_world(at: int) -> None:
-    """An organism that is born in the tick lives at its end, one that dies in the tick does not."""
+    """An organism that is born in the tick is alive at its end. One that dies in the tick is not."""
     lives = worlds_of(FIRST, SECOND, until=40)
     expected = [
         row
@@ -107,7 +107,9 @@ def test_a_fork_is_sampled_at_multiples_of_its_own_interval(at: int, every: int,
         ({"saturation_ticks": 77}, True),
     ],
 )
-def test_only_another_course_must_saturate_again(changes: dict[str, Any], again: bool) -> None:
+def test_a_fork_must_saturate_again_only_if_its_lives_can_differ(
+    changes: dict[str, Any], again: bool
+) -> None:
     worlds, seed = adapted(20, changes), changes.get("seed", 3)
     assert worlds.calm.tolist() == ([0, 0] if again else [7, 8])
     for moment in (worlds.saturated, worlds.saturated_births):
@@ -118,7 +120,7 @@ def test_only_another_course_must_saturate_again(changes: dict[str, Any], again:
     assert worlds.looks == "looks"
 
 
-def test_changed_settings_take_the_place_of_what_seasons_left() -> None:
+def test_a_changed_setting_replaces_the_value_that_seasons_left() -> None:
     before: Any = SimpleNamespace(law=SimpleNamespace(beginning=(("hazard", 0.5), ("gain", 2.0))))
     after: Any = SimpleNamespace(
         law=SimpleNamespace(beginning=(("hazard", 0.5), ("gain", 3.0), ("store", 9.0)))
@@ -132,7 +134,7 @@ def test_changed_settings_take_the_place_of_what_seasons_left() -> None:
     }
 
 
-def test_the_form_of_an_array_leaves_out_the_length_of_saved_states() -> None:
+def test_the_length_of_saved_states_is_no_part_of_the_form_of_an_array() -> None:
     arrays = {"bodies.states": np.zeros((4, 9)), "bodies.other": np.zeros((4, 9))}
     assert fork._form("bodies.states", arrays) == (4,)
     assert fork._form("bodies.other", arrays) == (4, 9)

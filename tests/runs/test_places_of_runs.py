@@ -1,4 +1,4 @@
-"""Places that a user names: which runs are there, in which order, and why there is none."""
+"""Paths that a user names: which runs are there, in which order, and messages if none is there."""
 
 from pathlib import Path
 from types import SimpleNamespace
@@ -15,7 +15,7 @@ from primordia.runs.opening import arm_paths, only, run_paths
 
 
 def begun(path: Path, *, checkpoint: str | None = "checkpoints/000000") -> Path:
-    """Make the folder of a run, as far as a place is concerned."""
+    """Make a folder that is found as a run."""
     path.mkdir(parents=True)
     (path / "versions.json").write_text("{}")
     if checkpoint is not None:
@@ -24,7 +24,7 @@ def begun(path: Path, *, checkpoint: str | None = "checkpoints/000000") -> Path:
 
 
 def test_a_folder_of_runs_gives_those_with_a_checkpoint_in_order_of_names(tmp_path: Path) -> None:
-    """A fork has one, its origin. A run itself, or a place without any run, stands for itself."""
+    """The origin of a fork counts as a checkpoint. The path of a run, or of nothing, gives itself."""
     b, c = begun(tmp_path / "arm" / "b"), begun(tmp_path / "arm" / "c", checkpoint="origin")
     a = begun(tmp_path / "arm" / "a")
     begun(tmp_path / "arm" / "d", checkpoint=None)
@@ -44,7 +44,7 @@ def test_a_folder_of_runs_gives_those_with_a_checkpoint_in_order_of_names(tmp_pa
         only([tmp_path / "arm"])
 
 
-def test_a_folder_of_runs_without_a_checkpoint_says_so(tmp_path: Path) -> None:
+def test_a_folder_of_runs_without_a_checkpoint_is_an_error(tmp_path: Path) -> None:
     begun(tmp_path / "arm" / "a", checkpoint=None)
     with pytest.raises(InputError, match="arm has no checkpoint of any of its runs yet"):
         run_paths(tmp_path / "arm")
@@ -83,7 +83,7 @@ def test_runs_of_an_arm_are_in_order_of_seeds_and_the_arm_has_a_name(
 
 
 def invented(path: str, worlds: int, start: int) -> Any:
-    """Return a run of some worlds with two cells each, as far as its arrays are concerned."""
+    """Return a run of some worlds with two cells each, with arrays and no records."""
     state: dict[str, np.ndarray] = {
         "world.worlds.calm": np.arange(start, start + worlds, dtype=np.int32),
         "world.organisms.energy": np.arange(2 * start, 2 * (start + worlds)),
@@ -105,7 +105,7 @@ FIRSTS = np.array([0, 2, 5])
 @pytest.mark.parametrize("which", ["state", "origin"])
 @pytest.mark.parametrize("kept", [[], [2], [1, 1, 0]])
 def test_arrays_of_unequal_runs_are_joined_world_by_world(which: Any, kept: list[int]) -> None:
-    """It makes no difference which runs were read before, and in which order."""
+    """The runs that were read before, and their order, make no difference."""
     joined, sign = _Joined(RUNS, FIRSTS, which), 1 if which == "state" else -1
     for number in kept:
         joined.keep(number)
@@ -119,7 +119,7 @@ def test_arrays_of_unequal_runs_are_joined_world_by_world(which: Any, kept: list
             joined[name]
 
 
-def test_an_arm_tells_the_versions_and_the_damage_of_all_its_runs() -> None:
+def test_an_arm_has_the_versions_and_the_damage_of_all_its_runs() -> None:
     arm: Any = Arm.__new__(Arm)
     arm.path, arm.runs, arm.firsts = Path("arm"), (*RUNS,), FIRSTS
     assert arm.versions == {"jax": "1", "a": "2, none", "b": "none, 2", "c": "none, 2"}
@@ -140,7 +140,7 @@ def test_rows_of_a_later_run_have_later_worlds() -> None:
     assert _shifted(part.select(["id"]), 3).to_pydict() == {"id": [4, 5]}
 
 
-def test_a_world_belongs_once_to_an_arm(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_two_runs_of_an_arm_hold_the_same_world(monkeypatch: pytest.MonkeyPatch) -> None:
     _refuse_twice(RUNS, np.array([5, 3, 4, 9, 8, 7], np.uint64))
     with pytest.raises(InputError, match=r"^b and c both hold the world of seed 9$"):
         _refuse_twice(RUNS, np.array([5, 3, 4, 9, 8, 9], np.uint64))

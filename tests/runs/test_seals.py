@@ -162,7 +162,7 @@ def test_verify_compares_the_state_of_every_world(made: Path, tmp_path: Path, na
 def test_verify_names_each_world_that_differs_with_its_own_seed(
     monkeypatch: pytest.MonkeyPatch, versions: list[str]
 ) -> None:
-    """A run of three invented worlds, of which the second repeats as recorded, in two chunks."""
+    """Three invented worlds are lived again in two chunks. The second repeats as recorded."""
     ends, heard = {"recorded": ["a" * 64, "b" * 64, "c" * 64]}, list[Any]()
     ends["now"] = ["d" * 64, "b" * 64, "e" * 64]
     running = iter([True, True, False])

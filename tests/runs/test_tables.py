@@ -1,4 +1,4 @@
-"""Tables of invented events: each number in its unit, and segments cut at exact numbers of rows."""
+"""Tables of invented events: units of numbers, segments of full length, and digests."""
 
 from pathlib import Path
 from typing import Any
@@ -36,7 +36,7 @@ def births_of(worlds: list[int]) -> np.ndarray:
     )
 
 
-def test_births_have_world_cell_cause_and_no_mate_or_parent_for_minus_one() -> None:
+def test_births_have_world_cell_and_cause_and_minus_one_is_no_mate_or_parent() -> None:
     rows = births_of([0, 2, 1])
     rows[0] = SCHEMA.columns("births").rows(
         cell=np.array([9]), id=np.array([0]), parent=np.array([-1]), tick=np.array([0]),
@@ -84,7 +84,7 @@ def samples_of(**values: list[int]) -> np.ndarray:
 
 
 def test_samples_are_totals_and_means_of_the_living() -> None:
-    """The second world is extinct, so that its means are 0 and not divided by 0."""
+    """The second world is extinct: its means are 0."""
     bits = np.array([0.25, 1.5], np.float32).view(np.int32).tolist()
     mean = np.array([-2.5, 0.75], np.float32).view(np.int32).tolist()
     rows = samples_of(
@@ -147,7 +147,7 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.mark.parametrize("parts", [[4], [5], [6], [3, 2], [4, 2], [10], [11], [2, 14, 1], [5, 5]])
 def test_a_segment_is_closed_once_it_is_full(run: Path, parts: list[int]) -> None:
-    """Rows come in parts of any size; a part may fill several segments, or one exactly."""
+    """Parts of rows have any size. A part may fill several segments, or one exactly."""
     recorder, rows = Recorder(run, 3, SCHEMA), births_of([n % 3 for n in range(sum(parts))])
     for end, count in zip(np.cumsum(parts), parts, strict=True):
         recorder.add("births", rows[end - count : end])
@@ -191,7 +191,7 @@ def test_a_resumed_recorder_goes_on_with_the_tail_and_the_next_number(run: Path)
 
 
 def test_the_digest_of_a_table_sums_its_rows_of_each_world() -> None:
-    """Worlds are numbered 0 in it, so that a world has the same digest in every run."""
+    """Each row counts as of world 0, so a world has the same digest in every run."""
     worlds = [2, 0, 2, 2]
     rows, recorder = births_of(worlds), Recorder(None, 3, SCHEMA)
     filled = np.concatenate([rows, births_of([1, 1])])

@@ -206,7 +206,7 @@ def test_an_installed_part_with_which_the_user_began_is_trusted(
     assert here(*words(LIVING[1], run)).returncode == 0, "once is enough"
 
 
-def test_changed_and_new_files_are_named_and_files_that_only_the_run_holds_are_not(
+def test_only_changed_and_new_files_are_named(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     texts = {"same.py": b"1", "new.py": b"2", "edited.py": b"3"}
@@ -217,7 +217,7 @@ def test_changed_and_new_files_are_named_and_files_that_only_the_run_holds_are_n
     assert code.changes(settings, recorded) == ["at/edited.py has changed", "at/new.py is new"]
 
 
-def test_trust_is_stored_once_beside_what_was_trusted_before(folder: Path) -> None:
+def test_trust_is_stored_once_and_keeps_earlier_trust(folder: Path) -> None:
     first = code.Code({"a.py": own_code.Source(Path("a.py"), b"1")}, frozenset(["x:y"]))
     both = code.Code({**first.files, "b.py": own_code.Source(Path("b.py"), b"2")})
     assert len(first.marks) == len(both.marks) == 2

@@ -1,4 +1,4 @@
-"""The first and the last value that each setting of a run takes, and the values beside them."""
+"""The smallest and the largest value of each setting of a run, and the next values beyond."""
 
 from typing import Any
 
@@ -10,7 +10,7 @@ from primordia.errors import InputError
 from primordia.habitats.contract import Compound, Continuous, Discrete
 from primordia.settings.limits import Stop
 from tests.toys import Meadow, Organ
-from tests.worlds import MEADOW, MILL, config
+from tests.worlds import MEADOW, MILL, config, law_of
 
 MOST = 2**53
 BOUNDS: list[tuple[str, list[float], list[float]]] = [
@@ -28,7 +28,7 @@ BOUNDS: list[tuple[str, list[float], list[float]]] = [
 
 
 def with_value(path: str, value: float) -> dict[str, Any]:
-    """Return settings in which one, given by its dotted path, has a value."""
+    """Return settings with a value at a dotted path."""
     group, _, name = path.rpartition(".")
     if not group:
         return {**MEADOW, name: value}
@@ -36,7 +36,7 @@ def with_value(path: str, value: float) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize(("path", "taken", "refused"), BOUNDS, ids=[path for path, *_ in BOUNDS])
-def test_the_last_values_are_taken_and_the_next_are_refused(
+def test_values_at_the_bounds_are_accepted_and_the_next_are_refused(
     path: str, taken: list[float], refused: list[float]
 ) -> None:
     for value in taken:
@@ -57,7 +57,7 @@ def test_the_last_world_may_have_the_largest_seed() -> None:
         parsed({**values, "seeds": 4}, source="test")
 
 
-def test_the_cells_of_all_worlds_are_limited_and_known_to_the_habitat(
+def test_the_cells_of_all_worlds_are_limited_and_passed_to_the_habitat(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     asked: list[int] = []
@@ -95,12 +95,11 @@ def test_one_continuous_part_of_an_action_is_enough_for_a_gaussian_motor() -> No
 
 
 def rates_of_a_law(**changes: Any) -> dict[str, float]:
-    made = config(MILL, seasons=[], **changes)
-    return dict(made.build_law(made.build_habitat()).beginning)
+    return dict(law_of(MILL, seasons=[], **changes).beginning)
 
 
 def test_a_law_begins_with_the_rates_of_its_settings() -> None:
-    """Also without a metabolism, whose rates have their defaults then."""
+    """Without a metabolism, its rates have their defaults."""
     own = {"store": 7.0, "drain": 0.5, "gain": 3.0}
     rates = rates_of_a_law(hazard=0.25, replication=0.125, metabolism=own)
     assert (rates["hazard"], rates["replication"]) == (0.25, 0.125)
@@ -111,7 +110,7 @@ def test_a_law_begins_with_the_rates_of_its_settings() -> None:
     assert rates_of_a_law(metabolism=None)["metabolism.drain"] == 1.0
 
 
-def test_a_season_of_metabolism_needs_one() -> None:
+def test_a_season_of_metabolism_needs_a_metabolism() -> None:
     season = {"kind": "schedule", "setting": "metabolism.gain", "at": 2, "value": 0.5}
     with pytest.raises(InputError, match=r"seasons: metabolism.gain needs a metabolism; remove"):
         config(MILL, metabolism=None, seasons=[season])

@@ -1,4 +1,4 @@
-"""Doors: names of environments with and without one, and the text of a task file."""
+"""Doors (`gym:`, `gymnax:`) before names of environments, and the text of a task file."""
 
 import tomllib
 

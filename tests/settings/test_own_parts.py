@@ -197,7 +197,7 @@ def test_a_part_that_works_is_lived_with(kind: str, pond: Path) -> None:
 
 @pytest.mark.parametrize("function", ["open", "reset", "step", "save"])
 def test_an_error_in_own_code_is_one_line_with_its_place(function: str, pond: Path) -> None:
-    """The place is where the error arose, not the call that led there."""
+    """The place is the line that raises the error, not the line that calls it."""
     lines = HOST.splitlines()
     number = next(n for n, line in enumerate(lines) if f"def {function}(" in line) + 1
     lines.insert(number, "        sink()")

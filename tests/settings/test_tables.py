@@ -1,4 +1,4 @@
-"""Nested tables that are not yet validated: names, paths and values in them."""
+"""Nested tables before validation: their names, paths and values."""
 
 from pathlib import Path
 from typing import Any
@@ -9,6 +9,7 @@ from primordia.config import load, parsed
 from primordia.errors import InputError
 from primordia.settings.tables import (
     code_of,
+    did_you_mean,
     flat,
     from_toml,
     merged,
@@ -49,7 +50,7 @@ def test_a_table_takes_the_place_of_a_value_and_a_value_that_of_a_table() -> Non
     }
 
 
-def test_the_code_of_a_part_is_all_that_it_names() -> None:
+def test_the_code_of_a_part_is_in_its_name_kind_env_food_and_imports() -> None:
     table: dict[str, Any] = {
         "name": "pond.deep:Pond",
         "env": "lake:Lake-v0",
@@ -135,3 +136,19 @@ def test_a_fault_in_a_file_names_the_file_and_the_setting(tmp_path: Path) -> Non
         from_toml(file)
     with pytest.raises(InputError, match=rf"^{tmp_path}/no.toml cannot be read: No such file"):
         from_toml(tmp_path / "no.toml")
+
+
+@pytest.mark.parametrize(
+    ("name", "known", "nearest"),
+    [
+        ("a.dept", ["a.depth", "b.breadth"], "a.depth"),
+        (f"{'x' * 30}.deepth", ["pond.depth", "lake.depth"], "pond.depth"),
+        (f"{'x' * 30}.deepth", ["lake.depth", "pond.depth"], "lake.depth"),
+        ("cells", ["hazard", "seed"], ""),
+        ("cells", [], ""),
+    ],
+)
+def test_the_first_of_equally_near_names_is_suggested(
+    name: str, known: list[str], nearest: str
+) -> None:
+    assert did_you_mean(name, known) == (f"; did you mean {nearest!r}?" if nearest else "")

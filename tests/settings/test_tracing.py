@@ -1,4 +1,4 @@
-"""The functions of a part before a run: what is said of one that fails, and where."""
+"""Calls of a part's functions before a run: messages about a failure, and its place in the file."""
 
 from pathlib import Path
 from typing import Any
@@ -31,7 +31,7 @@ def pond(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
 
 
 def test_the_line_of_a_fault_is_the_last_one_in_the_file_of_the_part(pond: Any) -> None:
-    """The error went through lines 4 and 9 of the file, or through lines 4 and 8 into Python."""
+    """The first error arises in line 9. The second arises in Python, which line 8 calls."""
     tracing = Tracing("habitat", pond)
     with pytest.raises(InputError) as error:
         tracing.called("reset", pond.outer, "")
@@ -43,7 +43,7 @@ def test_the_line_of_a_fault_is_the_last_one_in_the_file_of_the_part(pond: Any) 
     assert str(error.value).endswith("base 10: 'x' (shallow_pond.py, line 8)")
     with pytest.raises(InputError) as error:
         tracing.called("step", int, "x")
-    assert str(error.value).endswith("base 10: 'x'"), "no line of the part"
+    assert str(error.value).endswith("base 10: 'x'"), "no line of the part is involved"
 
 
 def test_an_error_for_the_user_is_passed_on_and_results_are_returned(pond: Any) -> None:

@@ -49,7 +49,7 @@ def test_printable_texts_have_no_control_characters(text: str) -> None:
         ("\u202e\ud800 '\"", "", "\\u202e\\ud800 '\""),
     ],
 )
-def test_only_what_cannot_be_shown_is_escaped(text: str, kept: str, shown: str) -> None:
+def test_only_unprintable_characters_are_escaped(text: str, kept: str, shown: str) -> None:
     assert printable(text, kept) == shown
     if kept == "\n\t":
         assert printable(text) == shown

@@ -1,21 +1,18 @@
-"""Looks of ratchets at invented worlds, and the settings that the law says seasons may change."""
+"""The climate of invented worlds: how ratchets and schedules change it, and which settings it has."""
 
-from dataclasses import replace
 from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from primordia.habitats import Compound, Continuous, Discrete
 from primordia.law.genesis import begin
 from primordia.law.law import Law
 from primordia.law.metabolism import ONE, Rates
-from primordia.law.moments import change_in
 from primordia.law.seasons import apply_seasons, ratchets
-from primordia.law.world import Remembered, World, Worlds
+from primordia.law.world import World, Worlds
 from primordia.random.wide import to_host, wide
-from tests.worlds import MEADOW, config
+from tests.worlds import MEADOW, law_of
 
 W, N, TICK = 3, 8, 40
 
@@ -26,9 +23,8 @@ def ratchet(when: str, above: float, setting: str = "replication") -> dict[str, 
     }  # fmt: skip
 
 
-def law_of(*seasons: dict[str, Any], **values: Any) -> Law:
-    made = config(MEADOW, cells=N, seeds=W, seasons=seasons, metabolism={"store": 10.0}, **values)
-    return made.build_law(made.build_habitat())
+def meadow_law(*seasons: dict[str, Any], **values: Any) -> Law:
+    return law_of(MEADOW, cells=N, seeds=W, seasons=seasons, metabolism={"store": 10.0}, **values)
 
 
 def posed(law: Law, wait: list[list[int]], **looks: Any) -> World:
@@ -64,7 +60,7 @@ def test_a_ratchet_turns_above_its_threshold_and_not_at_it(
 ) -> None:
     first = quantities[0]
     for above in (first, first - 1 / 1024):
-        law = law_of(ratchet(when, above))
+        law = meadow_law(ratchet(when, above))
         worlds, changed = applied(law, posed(law, [[0]] * W))
         assert changed == [quantity > above for quantity in quantities]
         expected = [0.025 if turned else 0.05 for turned in changed]
@@ -72,9 +68,9 @@ def test_a_ratchet_turns_above_its_threshold_and_not_at_it(
         assert worlds.looks.wait.tolist() == [[20]] * W
 
 
-def test_each_ratchet_looks_when_it_is_due_at_the_food_since_its_own_last_look() -> None:
-    """Looks that are not due, and looks of stopped worlds, keep what they saw."""
-    law = law_of(ratchet("food", 0.25), ratchet("food", 0.4, "metabolism.gain"))
+def test_a_ratchet_that_is_due_looks_at_the_food_since_its_own_last_look() -> None:
+    """A look that is not due, or is of a stopped world, keeps the food and ticks of the look before."""
+    law = meadow_law(ratchet("food", 0.25), ratchet("food", 0.4, "metabolism.gain"))
     assert [each.setting for each in ratchets(law.seasons)] == ["replication", "metabolism.gain"]
     food, lived = [[90, 60], [10, 45], [-5, 1]], [[370, 350], [100, 290], [10, 20]]
     was = {"food": wide(np.array(food) * ONE), "organism_ticks": wide(lived)}
@@ -94,23 +90,23 @@ def test_each_ratchet_looks_when_it_is_due_at_the_food_since_its_own_last_look()
 def test_schedules_are_due_in_their_own_tick_only() -> None:
     for at in (TICK - 1, TICK, TICK + 1):
         season = {"kind": "schedule", "setting": "hazard", "at": at, "value": 0.25}
-        law = law_of(season)
+        law = meadow_law(season)
         worlds, changed = applied(law, posed(law, [[]] * W))
         assert changed == [at == TICK] * W
         assert worlds.climate["hazard"].tolist() == [0.25 if at == TICK else 0.0] * W
 
 
-def test_accidents_may_happen_if_they_do_now_or_in_a_season() -> None:
+def test_a_law_has_a_hazard_at_its_beginning_or_in_a_season() -> None:
     other = {"kind": "schedule", "setting": "replication", "at": 5, "value": 0.5}
     accidents = {**other, "setting": "hazard"}
-    assert law_of(hazard=0.001).has_hazard
-    assert not law_of(hazard=0.0).has_hazard
-    assert not law_of(other).has_hazard
-    assert law_of(other, accidents).has_hazard
+    assert meadow_law(hazard=0.001).has_hazard
+    assert not meadow_law(hazard=0.0).has_hazard
+    assert not meadow_law(other).has_hazard
+    assert meadow_law(other, accidents).has_hazard
 
 
 def test_a_law_knows_which_settings_a_season_changes() -> None:
-    law = law_of()
+    law = meadow_law()
     assert law.governed("hazard") == ["hazard"]
     assert law.governed("metabolism.cap") == ["metabolism.cap"]
     assert law.governed("mutation.blocks.output.scale") == ["mutation.blocks.output.scale"]
@@ -121,7 +117,7 @@ def test_a_law_knows_which_settings_a_season_changes() -> None:
 
 
 def test_cells_have_the_settings_of_their_world() -> None:
-    law = law_of()
+    law = meadow_law()
     climate = {"hazard": jnp.array([0.1, 0.2, 0.3]), "replication": jnp.array([1.0, 2.0, 3.0])}
     everywhere = law.in_cells(climate)
     some = law.in_cells(climate, jnp.array([0, 7, 8, 23, 15]))
@@ -135,31 +131,5 @@ def test_cells_have_the_settings_of_their_world() -> None:
 
 def test_the_metabolism_takes_its_own_settings_from_the_climate() -> None:
     names = "store", "drain", "gain", "effort_cost", "cap"
-    climate = {f"metabolism.{name}": name for name in reversed(names)} | {"gain": "another's"}
+    climate = {f"metabolism.{name}": name for name in reversed(names)} | {"gain": "other"}
     assert Rates.of(climate)._asdict() == {name: name for name in names}
-
-
-def test_of_several_choices_any_that_differs_makes_a_moment_another() -> None:
-    """Two choices and two vectors: the larger of the share of other choices and of the vectors' move.
-
-    The vectors' mean square is over all their numbers, of which none counts more than 1.
-    """
-    action = Compound((Discrete(2), Continuous(1), Discrete(2), Continuous(2)))
-    before = np.array([1, 0, 0, 1, 0, 0, 0], np.float32)
-    first, second = [0, 1, 0, 1, 0, 0, 0], [1, 0, 0, 0, 1, 0, 0]
-    both, same = [0, 1, 0, 0, 1, 0, 0], before
-    moved, far = [1, 0, 0.5, 1, 0, 0, -0.25], [1, 0, 9, 1, 0, 0, np.nan]
-    rows = np.array([[first, second, both, same], [moved] * 4, [far] * 4, [first] * 4, [far] * 4])
-    known = np.array([[1, 1, 1, 1], [1, 1, 1, 1], [1, 0, 1, 0], [0, 0, 0, 1], [0] * 4], bool)
-
-    def brain(genome: Any, memory: Any, senses: Any) -> tuple[Any, Any]:
-        """Return what is sensed if the genome is a child's, or else the parents' outputs."""
-        child = next(iter(genome.values())).reshape(len(senses), -1)[:, :1] > 0
-        return memory, jnp.where(child, senses, jnp.asarray(before))
-
-    law = replace(law_of(), brain=brain, action=action)
-    moments = Remembered(jnp.asarray(rows, jnp.float32), jnp.zeros((5, 4, 1)), jnp.asarray(known))
-    parents = jnp.zeros((5, law.heredity.layout.length))
-    change = np.asarray(change_in(law, moments, parents)(parents + 1))
-    expected = [3 / 4, np.sqrt((0.5**2 + 0.25**2) / 3), np.sqrt(2 / 3), 1.0, np.inf]
-    np.testing.assert_allclose(change, expected, rtol=1e-5)

@@ -1,4 +1,4 @@
-"""What is said of faulty settings: which fault, of how many, and which name may have been meant."""
+"""Fields of settings: their names and choices, and messages about faults in their values."""
 
 from typing import Any, Literal
 
@@ -8,8 +8,6 @@ from pydantic import Field, ValidationError, field_validator
 from primordia.config import Config
 from primordia.settings.base import Rate, Settings
 from primordia.settings.fields import choices, first_fault, rates_of, setting_fields
-from primordia.settings.tables import did_you_mean
-from primordia.settings.values import SHOWN, shown
 
 
 class Inner(Settings):
@@ -35,7 +33,9 @@ class Pool(Settings):
         return slope
 
 
-def said(values: dict[str, Any], group: str = "", model: type[Settings] = Pool, **more: Any) -> str:
+def message_of(
+    values: dict[str, Any], group: str = "", model: type[Settings] = Pool, **more: Any
+) -> str:
     with pytest.raises(ValidationError) as error:
         model.model_validate(values)
     return first_fault(error.value, model, group, **more)
@@ -63,10 +63,10 @@ def said(values: dict[str, Any], group: str = "", model: type[Settings] = Pool, 
     ],
     ids=range(10),
 )
-def test_the_first_fault_is_told_with_the_number_of_the_others(
+def test_a_message_has_the_first_fault_and_the_number_of_the_others(
     values: dict[str, Any], says: str
 ) -> None:
-    assert said(values) == says
+    assert message_of(values) == says
 
 
 @pytest.mark.parametrize(
@@ -79,39 +79,25 @@ def test_the_first_fault_is_told_with_the_number_of_the_others(
     ],
     ids=["missing", "ours", "too small", "unknown"],
 )
-def test_a_fault_in_a_table_is_told_with_the_name_of_the_table(
+def test_a_message_about_a_table_has_the_name_of_the_table(
     values: dict[str, Any], says: str
 ) -> None:
-    assert said(values, "pond") == says
+    assert message_of(values, "pond") == says
 
 
-def test_no_setting_of_a_fork_is_suggested_but_other_settings_are() -> None:
+def test_all_settings_but_those_of_a_fork_are_suggested() -> None:
     values = {"task": "x", "habitat": {}, "tikc": 1}
-    assert said(values, model=Config) == "there is no setting 'tikc'; did you mean 'stop.ticks'?"
+    assert (
+        message_of(values, model=Config) == "there is no setting 'tikc'; did you mean 'stop.ticks'?"
+    )
     values = {"task": "x", "habitat": {}, "fork.tikc": 1}
-    assert "'fork.tick'" not in said(values, model=Config)
+    assert "'fork.tick'" not in message_of(values, model=Config)
     values = {"task": "x", "habitat": {}, "paddels": 1}
-    told = said(values, model=Config, others=["habitat.paddles"])
-    assert told == "there is no setting 'paddels'; did you mean 'habitat.paddles'?"
+    message = message_of(values, model=Config, others=["habitat.paddles"])
+    assert message == "there is no setting 'paddels'; did you mean 'habitat.paddles'?"
 
 
-@pytest.mark.parametrize(
-    ("name", "known", "nearest"),
-    [
-        ("a.dept", ["a.depth", "b.breadth"], "a.depth"),
-        (f"{'x' * 30}.deepth", ["pond.depth", "lake.depth"], "pond.depth"),
-        (f"{'x' * 30}.deepth", ["lake.depth", "pond.depth"], "lake.depth"),
-        ("cells", ["hazard", "seed"], ""),
-        ("cells", [], ""),
-    ],
-)
-def test_the_first_of_equally_near_names_is_meant(
-    name: str, known: list[str], nearest: str
-) -> None:
-    assert did_you_mean(name, known) == (f"; did you mean {nearest!r}?" if nearest else "")
-
-
-def test_settings_have_dotted_names_and_only_some_are_rates() -> None:
+def test_fields_have_dotted_names_and_some_are_rates() -> None:
     assert list(setting_fields(Pool, "a.")) == [
         "a.size",
         "a.shape",
@@ -136,17 +122,5 @@ def test_settings_have_dotted_names_and_only_some_are_rates() -> None:
         (float, ()),
     ],
 )
-def test_the_possible_values_of_a_choice(annotation: Any, values: tuple[Any, ...]) -> None:
+def test_a_choice_has_its_possible_values(annotation: Any, values: tuple[Any, ...]) -> None:
     assert choices(annotation) == values
-
-
-@pytest.mark.parametrize("more", [-1, 0, 1, 50])
-def test_a_value_of_the_largest_length_is_shown_whole(more: int) -> None:
-    value = "".join(chr(ord("a") + n % 26) for n in range(SHOWN - 2 + more))
-    whole = f"'{value}'"
-    assert shown(value) == (whole if more <= 0 else f"{whole[: SHOWN - 3]}...")
-
-
-def test_a_large_number_is_shown_in_hexadecimal() -> None:
-    assert shown(2**100 - 1) == "1267650600228229401496703205375"
-    assert shown(2**100) == "0x10000000000000000000000000"

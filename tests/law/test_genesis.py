@@ -1,0 +1,74 @@
+"""Worlds at their beginning: counts, waits, words for bodies, and ages of organisms."""
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from primordia.law.genesis import begin, birth_words, body_words
+from primordia.law.world import ages, ages_total
+from primordia.random.keys import Purpose, bits, stream
+from primordia.random.wide import to_host, wide
+from tests.worlds import MEADOW, law_of
+
+RATCHETS = [
+    {"kind": "ratchet", "setting": "replication", "when": "food", "above": 0.1, "factor": 0.5,
+     "every": every}
+    for every in (7, 10, 1)
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("tick", "births"), [(0, 0), (33, 5), (30, 2**33), (2**33, 1)])
+def test_worlds_begin_at_their_tick_and_wait_until_the_next_multiples(
+    tick: int, births: int
+) -> None:
+    at = {"kind": "schedule", "setting": "hazard", "at": 50, "value": 0.5}
+    seasons = [RATCHETS[0], at, *RATCHETS[1:]]
+    law = law_of(MEADOW, cells=4, seeds=2, sample_every=15, seasons=seasons, hazard=0.125)
+    organisms, worlds = begin(law, np.array([8, 2**63], np.uint64), tick, births)
+    assert to_host(worlds.seed).tolist() == [8, 2**63]
+    assert to_host(worlds.tick).tolist() == [tick] * 2
+    assert to_host(worlds.births).tolist() == [births] * 2
+    assert worlds.sample_wait.tolist() == [15 - tick % 15] * 2
+    assert worlds.looks.wait.tolist() == [[7 - tick % 7, 10 - tick % 10, 1]] * 2
+    assert worlds.climate["hazard"].tolist() == [0.125] * 2
+    for name in ("saturated", "saturated_births", "fixed", "fixed_births"):
+        assert to_host(getattr(worlds, name)).tolist() == [2**64 - 1] * 2, name
+    for name in ("deaths", "extinctions", "organism_ticks", "food"):
+        assert not to_host(getattr(worlds, name)).any(), name
+    assert not organisms.alive.any()
+    assert len(organisms.alive) == 8
+
+
+@pytest.mark.parametrize("words", [0, 1, 2, 3, 6])
+def test_bodies_get_the_words_of_their_world_tick_and_cell(words: int) -> None:
+    """The high words of all draws are first, then the low words. The last low word is left out if odd."""
+    law = law_of(MEADOW, cells=3, seeds=2)
+    worlds = begin(law, np.array([8, 2**63], np.uint64), tick=9).worlds
+    found = np.asarray(birth_words(law, worlds, jnp.bool_(True), words))
+    assert found.shape == (6, words)
+    assert found.dtype == np.uint32
+    draws = -(-words // 2)
+    for cell in range(6):
+        key = stream(wide([8, 2**63]), Purpose.BODY, wide([9, 9])).take(cell // 3)
+        pairs = [bits(key, jnp.uint32(cell % 3), draw) for draw in range(draws)]
+        flat = [int(pair.hi) for pair in pairs] + [int(pair.lo) for pair in pairs]
+        assert found[cell].tolist() == flat[:words]
+    assert not np.asarray(birth_words(law, worlds, jnp.bool_(False), words)).any()
+    key = stream(wide([8, 2**63]), Purpose.BODY, wide([9, 9]))
+    some = body_words(key, jnp.array([2, 0]), words)
+    np.testing.assert_array_equal(some, found[[2, 3]])
+
+
+def test_ages_are_those_of_the_living_and_add_up_by_world() -> None:
+    law = law_of(MEADOW, cells=3, seeds=2)
+    world = begin(law, np.array([1, 2], np.uint64), tick=2**32 + 10)
+    alive = jnp.array([True, False, True, True, True, False])
+    born = wide([0, 0, 2**32 + 10, 2**32 + 9, 2**32 - 5, 3])
+    tick = wide([2**32 + 10, 2**32 + 20])
+    world = world._replace(
+        organisms=world.organisms._replace(alive=alive, born=born),
+        worlds=world.worlds._replace(tick=tick),
+    )
+    expected = [2**32 + 10, 0, 0, 11, 25, 0]
+    assert to_host(ages(world)).tolist() == expected
+    assert to_host(ages_total(world)).tolist() == [2**32 + 10, 36]
