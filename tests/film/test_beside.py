@@ -50,7 +50,8 @@ def film(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Any]:
         monkeypatch.setattr(films, "Frames", frames)
         monkeypatch.setattr(films, "with_colours", lambda first: first)
         monkeypatch.setattr(
-            films.video, "write", lambda _, shown, *__: found.pictures.extend(shown)
+            "primordia.organism.video.write",
+            lambda _, shown, *__: found.pictures.extend(shown),
         )
         films.film(run, tmp_path / "film.mp4", **options)
         return found
