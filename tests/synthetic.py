@@ -35,6 +35,14 @@ def alive(world: Lives, row: int, tick: int) -> bool:
     return world.born[row] <= tick and not (world.died[row] and world.ended[row] <= tick)
 
 
+def occupants(lives: Lives, tick: int) -> dict[int, int]:
+    """Return cell -> row of the organisms of a world that are alive at the end of a tick."""
+    rows = [row for row in range(len(lives)) if alive(lives, row, tick)]
+    found = {int(lives.cell[row]): row for row in rows}
+    assert len(found) == len(rows), "two organisms in a cell"
+    return found
+
+
 def worlds_of(*lived: list[tuple[int, int, bool]], until: int) -> Lives:
     """Return the lives of several worlds."""
     worlds = [world_of(lives, until) for lives in lived]

@@ -1,4 +1,4 @@
-"""The panels of a page against lives of two worlds of unequal length, looked at one by one."""
+"""The panels of a page, compared with counts over the lives of two worlds of unequal length."""
 
 from collections.abc import Iterator
 from itertools import pairwise
@@ -54,7 +54,7 @@ def close(values: list[float | None], expected: list[float]) -> bool:
     return np.allclose(got, expected, rtol=1e-4, equal_nan=True)
 
 
-def test_rates_are_events_of_all_worlds_over_the_ticks_that_these_have_lived() -> None:
+def test_rates_are_the_events_of_all_worlds_per_tick_of_a_world_that_still_runs() -> None:
     lives, edges = unequal(), series.bins(ENDS[0])
     panel = named(lives)["Births and deaths"]
     assert (panel["x"], panel["y"]) == ("time (ticks)", "per tick of a world")
@@ -142,7 +142,7 @@ def test_survival_of_each_quarter_is_the_product_of_the_shares_that_survive() ->
 
 
 def test_quartiles_of_ages_at_death_are_those_of_the_dead_alone() -> None:
-    """Of 60 dead and 30 living, the dead make two bins of 30; a life of one tick is on the axis."""
+    """60 of 90 organisms are dead, and make two bins of 30. A life of one tick lies on the axis."""
     world = world_of([(tick, tick * tick % 61, tick % 3 > 0) for tick in range(90)], until=200)
     dead, living, spread = named(world)["Age at death"]["tables"]
     for table, name, colour in ((dead, "dead", style.SKY), (living, "alive", style.ORANGE)):
@@ -158,6 +158,11 @@ def test_quartiles_of_ages_at_death_are_those_of_the_dead_alone() -> None:
         assert close(curve["values"], [float(np.percentile(half, share)) for _, half in halves])
 
 
+def test_without_deaths_only_the_ages_of_the_living_are_shown() -> None:
+    (table,) = named(world_of([(0, 0, False)], until=50))["Age at death"]["tables"]
+    assert (table["x"], table["curves"][0]["values"]) == ([1], [50])
+
+
 def test_of_many_lives_evenly_spaced_ones_have_a_dot(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(curves, "DOTS", 5)
     world = world_of([(tick, 7, tick < 9) for tick in range(13)])
@@ -167,7 +172,7 @@ def test_of_many_lives_evenly_spaced_ones_have_a_dot(monkeypatch: pytest.MonkeyP
 
 
 def test_the_panels_of_a_fork_count_from_the_fork() -> None:
-    """Of those born before tick 50 only the ones alive then are on record, and no birth counts."""
+    """Organisms born before tick 50 are on record if they were alive then. Their births do not count."""
     world = world_of([(tick, 40, tick < 155) for tick in range(0, 180, 3)], until=200)
     panels = named(world.recorded_since(50))
     for title in ("Organisms alive", "Mean age of the living", "Births and deaths"):

@@ -12,7 +12,6 @@ from typing import Any
 import pytest
 
 import primordia
-from primordia.report.content import _numbers
 from primordia.report.facts import facts
 from primordia.report.lives import chosen, films
 from primordia.runs import loop
@@ -50,22 +49,6 @@ def test_several_runs_are_one_arm(torus: Path, tmp_path: Path) -> None:
     assert here("report", torus, tmp_path / "more", "--out", out).returncode == 0
     assert content(out)["subtitle"].endswith("seeds 5 to 8")
     assert len(content(out)["worlds"]) == 4
-
-
-def test_the_numbers_on_top_are_of_all_worlds() -> None:
-    """The second of three worlds has the most ticks. Nothing is alive in the third."""
-    names = ("ticks", "births", "deaths", "alive", "oldest_age", "extinctions")
-    rows = ((500, 1000, 996, 4, 80, 1), (1200, 70, 67, 3, 450, 0), (900, 9, 9, 0, None, 5))
-    worlds = [dict(zip(names, row, strict=True)) for row in rows]
-    told = {each["name"]: each["value"] for each in _numbers(worlds)}
-    assert told == {
-        "worlds": "3",
-        "ticks": "1,200",
-        "organisms born": "1,079",
-        "died": "1,072",
-        "alive": "7",
-        "age of the oldest alive": "450",
-    }
 
 
 def test_names_that_are_no_page_are_one_line(torus: Path, tmp_path: Path) -> None:
