@@ -1,11 +1,31 @@
-"""What a drawn panel shows: its data, read back from the axes, and the words of its key."""
+"""Figures of invented lives, and what their panels show: data, labels and keys, read from the axes."""
 
+from collections.abc import Callable
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
 from matplotlib.text import Annotation
+
+from primordia.figures import style
+from primordia.runs.lives import Lives
+from tests.worlds import MEADOW, config
+
+
+def run_of(lives: Lives, **settings: Any) -> Any:
+    """Return what figures need of a run: its lives and its settings."""
+    return SimpleNamespace(lives=lives, config=config(MEADOW, **settings))
+
+
+def axes_of(draw: Callable[..., Figure | None], *given: Any) -> list[Axes]:
+    """Return the panels of a figure, drawn in the style of the package."""
+    with style.applied():
+        figure = draw(*given)
+    assert figure is not None
+    return figure.axes
 
 
 def lines(axes: Axes, colour: str | None = None) -> list[tuple[np.ndarray, np.ndarray]]:
