@@ -121,7 +121,7 @@ def test_the_life_beside_a_world_is_the_chosen_one_or_the_oldest(
     film: Callable[..., Any],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """A habitat that draws no pictures shows no life. An error says so if an organism is chosen."""
+    """A habitat that draws no pictures shows no life. If an organism is chosen, its life is tried."""
     asked: list[Any] = []
 
     def noted(what: Any) -> Iterator[Beside]:

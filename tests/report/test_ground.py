@@ -33,7 +33,7 @@ def test_each_cell_shows_the_line_of_its_organism_at_each_moment() -> None:
     """The ink of a line depends on its size, which is counted in cells and moments."""
     lives = takeovers()
     shown, clades = Ground(lives, CELLS), spacetime.clades_of(lives)
-    assert len(clades.renewals) > 5, "the lines are renewed often enough"
+    assert len(clades.renewals) > 5, "lines take over several times"
     segments, inks = shown.segments, all_unpacked(shown.data()["segments"])["ink"]
     seen: dict[int, list[int]] = {}
     for place in range(len(lives)):

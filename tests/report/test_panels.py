@@ -27,7 +27,7 @@ ENDS = 200, 90
 
 
 def unequal() -> Lives:
-    """Return the lives of two worlds, with deaths of two causes; some of both still live."""
+    """Return the lives of two worlds, with deaths of two causes. Both have organisms that are alive."""
     lives = joined(
         [world_of(lived, until) for lived, until in zip((LONG, SHORT), ENDS, strict=True)],
         np.array([0, 1]),
@@ -49,7 +49,7 @@ def named(lives: Lives, **more: Any) -> dict[str, Panel]:
 
 
 def close(values: list[float | None], expected: list[float]) -> bool:
-    """Return whether values, with None for NaN, are these to the digits of a page."""
+    """Return whether values, with None for NaN, equal others to the digits of a page."""
     got = np.array([np.nan if value is None else value for value in values])
     return np.allclose(got, expected, rtol=1e-4, equal_nan=True)
 

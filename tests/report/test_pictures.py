@@ -193,7 +193,7 @@ def test_the_nodes_of_a_phylogeny_have_their_organisms_and_times() -> None:
 
 
 @pytest.mark.parametrize(("most", "numbers"), [(3, [4, 5, 6]), (2, [4, 5]), (1, [5])])
-def test_a_phylogeny_has_at_most_some_of_the_living_spread_over_the_cells(
+def test_a_phylogeny_shows_a_limited_number_of_the_living_spread_over_the_cells(
     most: int, numbers: list[int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The living are 5, 6 and 4 in the order of their cells."""
@@ -223,7 +223,7 @@ def test_each_byte_of_a_film_is_the_ink_of_a_line_and_the_shade_of_an_age(torus:
             assert byte % 32 - 1 == shown.inks(codes)[0]
 
 
-def test_a_film_has_as_many_pictures_as_its_part_of_a_page(
+def test_the_share_of_the_page_limits_the_number_of_pictures_of_a_film(
     torus: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     run = Archive(torus)

@@ -104,25 +104,25 @@ def test_the_command_in_the_page_lives_the_run_again(
     cart_page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    (told,) = content(cart_page)["facts"]
-    command, look = map(shlex.split, told["commands"])
+    (shown,) = content(cart_page)["facts"]
+    command, look = map(shlex.split, shown["commands"])
     assert here(*command[1:], "--quiet").returncode == 0
     (world,) = json.loads(here(*look[1:]).stdout)["worlds"]
-    assert told["digests"] == [{"seed": "0", "digest": world["digest"]}]
+    assert shown["digests"] == [{"seed": "0", "digest": world["digest"]}]
 
 
-def test_a_run_that_flags_do_not_tell_is_told_by_its_settings(tmp_path: Path) -> None:
+def test_a_run_that_flags_cannot_express_is_repeated_by_its_settings(tmp_path: Path) -> None:
     """Its limits are those with which it was resumed."""
     season = {"kind": "schedule", "setting": "hazard", "at": 50, "value": 0.01}
     loop.start(config(cells=8, stop={"ticks": 100}, seasons=[season]), tmp_path / "run")
     loop.resume(tmp_path / "run", {"ticks": 200})
-    told = facts(Archive(tmp_path / "run"), primordia.load(tmp_path / "run").info())
-    assert told["commands"][0] == "primordia run config.toml --out again"
-    assert told["settings"]["stop.ticks"] == "200"
-    (tmp_path / "config.toml").write_text(told["toml"])
+    shown = facts(Archive(tmp_path / "run"), primordia.load(tmp_path / "run").info())
+    assert shown["commands"][0] == "primordia run config.toml --out again"
+    assert shown["settings"]["stop.ticks"] == "200"
+    (tmp_path / "config.toml").write_text(shown["toml"])
     primordia.run(str(tmp_path / "config.toml"), tmp_path / "again")
     again = primordia.load(tmp_path / "again").info()["worlds"]
-    assert [each["digest"] for each in told["digests"]] == [each["digest"] for each in again]
+    assert [each["digest"] for each in shown["digests"]] == [each["digest"] for each in again]
 
 
 def test_a_fork_is_verified_since_it_needs_its_directory(torus: Path, tmp_path: Path) -> None:

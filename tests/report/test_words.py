@@ -176,10 +176,10 @@ def test_the_words_about_one_organism_are_in_the_singular() -> None:
 
 
 def test_quarters_are_of_the_births_of_each_world_and_of_a_fork_alone() -> None:
-    """In each world two thirds of the first quarter live 10 ticks, and two thirds of the others 90 ticks.
+    """In each world two thirds of the first quarter live 10 ticks, and two thirds of the later ones 90.
 
-    The others live far longer, which changes no median. Of the organisms born before a fork, its
-    records hold long lives only.
+    The remaining third lives far longer, which changes no median. Of the organisms born before a fork,
+    the records hold only those that lived until then.
     """
 
     def lived(number: int, births: int) -> int:
