@@ -20,7 +20,7 @@ from primordia.runs.lives import ALIVE, Lives
 from tests.assays.lives import COPY, FOUNDER, MUTANT
 from tests.assays.lives import lives as lives_of
 from tests.figures.reading import axes_of, edges_at, lines, run_of
-from tests.synthetic import alive, worlds_of
+from tests.synthetic import alive, surviving, worlds_of
 
 UNTIL = 160
 CAUSES = [Cause.FATAL, Cause.STARVED, Cause.HAZARD]
@@ -205,14 +205,12 @@ def test_survival_is_drawn_as_counted(lives: Lives, since: Lives) -> None:
     assert (since.lifespan == 10).any(), "some lives end at a labelled age"
     for cohort, (name, colour) in zip(cohorts(since), survival.COHORTS.items(), strict=True):
         ((x, y),) = lines(alive_axes, colour)
-        share, steps = 1.0, dict(zip(x.tolist(), y.tolist(), strict=True))
+        steps = dict(zip(x.tolist(), y.tolist(), strict=True))
         assert (x[0], x[-1], y[0]) == (0, since.lifespan.max(), 1)
         entered = np.maximum(-cohort.born, 0)
-        for age in range(1, int(since.lifespan.max()) + 1):
-            at_risk = ((entered < age) & (age <= cohort.lifespan)).sum()
-            died = (cohort.died & (cohort.lifespan == age)).sum()
-            share *= 1 - died / max(at_risk, 1)
-            assert not died or steps[age] == pytest.approx(share)
+        shares = surviving(cohort, int(since.lifespan.max()))
+        for age in set(cohort.lifespan[cohort.died].tolist()):
+            assert steps[age] == pytest.approx(shares[age])
         check_at_risk(alive_axes, name, colour, entered, cohort.lifespan)
         ((_, risk),) = lines(by_age, colour)
         check_risk(risk, entered, cohort.lifespan, cohort.died, int(since.lifespan.max()))

@@ -13,7 +13,7 @@ from primordia.comparison.survival import survival
 from primordia.report import arms
 from primordia.report.arms import _effects, _outcomes, _over_time, _survival
 from primordia.runs.lives import Lives, joined
-from tests.synthetic import alive, world_of
+from tests.synthetic import alive, surviving, world_of
 
 COLOURS = "#111111", "#222222", "#333333"
 LIVED = [(tick, tick % 7 + tick // 5, tick % 4 > 0) for tick in range(0, 100, 2)]
@@ -76,11 +76,7 @@ def test_survival_of_each_arm_has_its_name_and_colour(compared: Comparison) -> N
     for table, part, name, colour in zip(panel["tables"], parts, names, COLOURS, strict=True):
         (curve,) = table["curves"]
         assert (curve["name"], curve["colour"], curve["kind"]) == (name, colour, "steps")
-        lives, share, shares = world_of(part, until=200), 1.0, [1.0]
-        for age in range(1, 51):
-            at_risk = int((lives.lifespan >= age).sum())
-            share *= 1 - int(((lives.lifespan == age) & lives.died).sum()) / max(at_risk, 1)
-            shares.append(share)
+        shares = surviving(world_of(part, until=200), 50)
         assert (table["x"][0], table["x"][-1]) == (1, 50)
         assert curve["values"][1:] == pytest.approx([shares[age] for age in table["x"]][1:], 1e-4)
 

@@ -18,7 +18,7 @@ from primordia.report import curves
 from primordia.report.curves import Panel
 from primordia.runs.lives import ALIVE, Lives, joined
 from tests.report.conftest import TORUS
-from tests.synthetic import alive, world_of
+from tests.synthetic import alive, surviving, world_of
 from tests.worlds import config
 
 LONG = [(tick, tick % 13 + tick // 4, tick % 5 > 0) for tick in range(1, 150, 2)]
@@ -124,21 +124,10 @@ def test_survival_of_each_quarter_is_the_product_of_the_shares_that_survive() ->
         (curve,) = table["curves"]
         assert (curve["name"], curve["kind"]) == (f"{name} of the births", "steps")
         assert curve["colour"] == colours[number]
-        lived = [
-            (int(age), bool(died))
-            for age, died, each in zip(lives.lifespan, lives.died, quarter, strict=True)
-            if each == number
-        ]
-        share, shares = 1.0, {0: 1.0}
-        for age in range(1, int(lives.lifespan.max()) + 1):
-            at_risk = sum(each >= age for each, _ in lived)
-            share *= 1 - lived.count((age, True)) / at_risk if at_risk else 1
-            shares[age] = share
+        shares = surviving(lives.take(np.equal(quarter, number)), int(lives.lifespan.max()))
         assert table["x"][-1] == lives.lifespan.max()
         assert close(curve["values"], [shares[age] for age in table["x"]])
-        assert {round(each, 9) for each in shares.values()} - {1.0} <= {
-            round(shares[age], 9) for age in table["x"]
-        }
+        assert {*shares} - {1.0} <= {shares[age] for age in table["x"]}, "each step is drawn"
 
 
 def test_quartiles_of_ages_at_death_are_those_of_the_dead_alone() -> None:
