@@ -5,12 +5,14 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+import pytest
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.text import Annotation
 
-from primordia.figures import style
+from primordia.figures import foraging, style
+from primordia.history.foraging import Foraging
 from primordia.runs.lives import Lives
 from tests.worlds import MEADOW, config
 
@@ -26,6 +28,17 @@ def axes_of(draw: Callable[..., Figure | None], *given: Any) -> list[Axes]:
         figure = draw(*given)
     assert figure is not None
     return figure.axes
+
+
+def food_panel(measured: Foraging, rate: float | None = None) -> Axes:
+    """Return the panel of food for measured values; `rate`: ticks in a second, None without a clock."""
+    run = SimpleNamespace(
+        config=SimpleNamespace(metabolism=True), description=SimpleNamespace(rate=rate)
+    )
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(foraging, "foraging", lambda _: measured)
+        (axes,) = axes_of(foraging.draw, run, 0)
+    return axes
 
 
 def lines(axes: Axes, colour: str | None = None) -> list[tuple[np.ndarray, np.ndarray]]:

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -19,7 +18,7 @@ from primordia.law.world import Cause
 from primordia.runs.lives import ALIVE, Lives
 from tests.assays.lives import COPY, FOUNDER, MUTANT
 from tests.assays.lives import lives as lives_of
-from tests.figures.reading import axes_of, edges_at, lines, run_of
+from tests.figures.reading import axes_of, edges_at, food_panel, lines, run_of
 from tests.synthetic import alive, surviving, worlds_of
 
 UNTIL = 160
@@ -245,17 +244,11 @@ def check_risk(
 
 
 @pytest.mark.parametrize(("rate", "unit"), [(50.0, "second"), (None, "tick")])
-def test_food_is_drawn_in_the_unit_of_its_title(
-    rate: float | None, unit: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_food_is_drawn_in_the_unit_of_its_title(rate: float | None, unit: str) -> None:
     draw = np.random.default_rng(1)
     food, enough = draw.random((3, 9)), draw.random((3, 9))
     measured = Foraging(7, np.linspace(10, 90, 9), food, enough)
-    monkeypatch.setattr(foraging, "foraging", lambda _: measured)
-    run: Any = SimpleNamespace(
-        config=SimpleNamespace(metabolism=True), description=SimpleNamespace(rate=rate)
-    )
-    (axes,) = axes_of(foraging.draw, run, 0)
+    axes = food_panel(measured, rate)
     assert axes.get_title(loc="left").endswith(f"in a {unit}")
     check_worlds(axes, food * (rate or 1), measured.middle, style.BLUE)
     for (x, y), values in zip(lines(axes, foraging.BREAK_EVEN), enough, strict=False):

@@ -9,11 +9,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from primordia.figures import ages, foraging, population, style, survival, threshold
+from primordia.figures import ages, population, style, survival, threshold
 from primordia.history.foraging import Foraging
 from primordia.law.world import Cause
 from primordia.runs.lives import Lives
-from tests.figures.reading import axes_of, key, labels, lines, run_of
+from tests.figures.reading import axes_of, food_panel, key, labels, lines, run_of
 from tests.synthetic import world_of, worlds_of
 
 CELLS = 1500
@@ -96,14 +96,7 @@ def test_an_axis_of_time_holds_at_least_ten_ticks(last: int, end: int) -> None:
 
 def foraged(food: np.ndarray, enough: np.ndarray) -> Axes:
     middle = np.linspace(30, 90, food.shape[1]) if food.shape[1] else np.zeros(0)
-    measured = Foraging(25, middle, food, enough)
-    run: Any = SimpleNamespace(
-        config=SimpleNamespace(metabolism=True), description=SimpleNamespace(rate=None)
-    )
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(foraging, "foraging", lambda _: measured)
-        (axes,) = axes_of(foraging.draw, run, 0)
-    return axes
+    return food_panel(Foraging(25, middle, food, enough))
 
 
 def test_an_infinite_break_even_is_not_drawn() -> None:
