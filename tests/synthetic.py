@@ -35,6 +35,24 @@ def alive(world: Lives, row: int, tick: int) -> bool:
     return world.born[row] <= tick and not (world.died[row] and world.ended[row] <= tick)
 
 
+def occupants(lives: Lives, tick: int) -> dict[int, int]:
+    """Return cell -> row of the organisms of a world that are alive at the end of a tick."""
+    rows = [row for row in range(len(lives)) if alive(lives, row, tick)]
+    found = {int(lives.cell[row]): row for row in rows}
+    assert len(found) == len(rows), "two organisms in a cell"
+    return found
+
+
+def surviving(lives: Lives, longest: int) -> list[float]:
+    """Return the share that survives each age from 0 to `longest`, counted age by age."""
+    shares = [1.0]
+    for age in range(1, longest + 1):
+        at_risk = ((lives.entered < age) & (age <= lives.lifespan)).sum()
+        died = (lives.died & (lives.lifespan == age)).sum()
+        shares.append(shares[-1] * (1 - died / max(at_risk, 1)))
+    return shares
+
+
 def worlds_of(*lived: list[tuple[int, int, bool]], until: int) -> Lives:
     """Return the lives of several worlds."""
     worlds = [world_of(lives, until) for lives in lived]

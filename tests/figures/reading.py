@@ -1,11 +1,44 @@
-"""What a drawn panel shows: its data, read back from the axes, and the words of its key."""
+"""Figures of invented lives, and what their panels show: data, labels and keys, read from the axes."""
 
+from collections.abc import Callable
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+import pytest
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
 from matplotlib.text import Annotation
+
+from primordia.figures import foraging, style
+from primordia.history.foraging import Foraging
+from primordia.runs.lives import Lives
+from tests.worlds import MEADOW, config
+
+
+def run_of(lives: Lives, **settings: Any) -> Any:
+    """Return what figures need of a run: its lives and its settings."""
+    return SimpleNamespace(lives=lives, config=config(MEADOW, **settings))
+
+
+def axes_of(draw: Callable[..., Figure | None], *given: Any) -> list[Axes]:
+    """Return the panels of a figure, drawn in the style of the package."""
+    with style.applied():
+        figure = draw(*given)
+    assert figure is not None
+    return figure.axes
+
+
+def food_panel(measured: Foraging, rate: float | None = None) -> Axes:
+    """Return the panel of food for measured values; `rate`: ticks in a second, None without a clock."""
+    run = SimpleNamespace(
+        config=SimpleNamespace(metabolism=True), description=SimpleNamespace(rate=rate)
+    )
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(foraging, "foraging", lambda _: measured)
+        (axes,) = axes_of(foraging.draw, run, 0)
+    return axes
 
 
 def lines(axes: Axes, colour: str | None = None) -> list[tuple[np.ndarray, np.ndarray]]:

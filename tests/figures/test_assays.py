@@ -1,7 +1,6 @@
-"""Figures of assays draw what the assays found: data, medians, marks and words are read back."""
+"""Figures of assays show what the assays found: data, medians, marks and words."""
 
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
@@ -17,12 +16,7 @@ from primordia.assays.line import Line, Step
 from primordia.figures import style
 from primordia.figures.assays import ablate, compete, effects, garden, heredity, line, threshold
 from primordia.history.threshold import Threshold
-from tests.figures.reading import edges_at, key, labels, lines, points, ticks
-
-
-def axes_of(draw: Callable[[Any], Any], found: list[Any]) -> list[Axes]:
-    with style.applied():
-        return draw(found).axes
+from tests.figures.reading import axes_of, edges_at, key, labels, lines, points, ticks
 
 
 def levels(axes: Axes, colour: str = style.FAINT) -> list[float]:
@@ -113,7 +107,7 @@ def test_effects_are_drawn_as_shares_of_mutants_with_quartiles_of_organisms() ->
 
 
 def beds() -> list[Bed]:
-    """Return beds of two worlds of unequal size, in which some lives are equal and one is of no tick."""
+    """Return beds of two worlds of unequal size. Some lives are equally long, and one ended at once."""
     lives = {
         ("oldest", 0): ([9, 8, 0], [3.0, 0.0, 6.0]),
         ("oldest", 1): ([7], [6.0]),
@@ -128,7 +122,7 @@ def beds() -> list[Bed]:
     ]
 
 
-def test_the_garden_is_drawn_life_beside_life_and_as_survival_of_each_group() -> None:
+def test_the_garden_is_drawn_as_pairs_of_lives_and_as_survival_of_each_group() -> None:
     pairs, again = axes_of(garden.draw, beds())
     assert points(pairs, style.BLUE) == [(9, 3), (8, 1), (1, 6), (7, 6)]
     assert points(pairs, style.ORANGE) == [(2, 2.5), (1, 1), (5, 2.5), (4, 50), (3, 8)]
@@ -141,7 +135,7 @@ def test_the_garden_is_drawn_life_beside_life_and_as_survival_of_each_group() ->
     for group, colour in colours.items():
         lived = np.concatenate([bed.reborn for bed in beds() if bed.group == group])
         (curve,) = (each for each in again.get_lines() if each.get_color() == colour)
-        assert curve.get_drawstyle() == "steps-pre", "the share falls after the ends of lives"
+        assert curve.get_drawstyle() == "steps-pre", "the share falls after the end of a life"
         x, y = (np.asarray(values, float) for values in curve.get_data())
         assert sorted(np.maximum(lived, 1).tolist()) == x.tolist()
         for life, share in zip(x, np.maximum.reduceat(y, np.searchsorted(x, x)), strict=True):
@@ -152,7 +146,7 @@ def test_the_garden_is_drawn_life_beside_life_and_as_survival_of_each_group() ->
 
 
 def test_heredity_is_drawn_as_strips_of_the_worlds() -> None:
-    """In the second world there are too few copies; in the fourth nothing was measured."""
+    """The second world has too few copies. In the fourth nothing was measured."""
     draw = np.random.default_rng(6)
 
     def pairs(known: bool) -> Pairs:
@@ -192,7 +186,7 @@ def test_heredity_is_drawn_as_strips_of_the_worlds() -> None:
 
 
 def test_the_threshold_is_drawn_as_strips_of_the_worlds() -> None:
-    """Infinite values cannot be drawn; a single world has its dot in the middle of the strip."""
+    """Infinite values are not drawn. The dot of a single world lies in the middle of its strip."""
     found = [
         Threshold(0, 0.5, None, 3.0),
         Threshold(1, 0.25, 0.75, 2.0),

@@ -1,4 +1,4 @@
-"""The figure of a comparison draws the values of each run, their medians and what they mean."""
+"""The figure of a comparison: the values of each run, their medians, labels and legend."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ from tests.figures.test_drawn import LIVES, UNTIL
 
 
 def arm(name: str, seed: int, known: bool = True, worlds: int = 3) -> ComparedArm:
-    """Return a run with invented values, of which that of the last world may be unknown."""
+    """Return a run with invented values. `known`: whether the values of its last world are known."""
     draw = np.random.default_rng(seed)
     is_known = np.array([*[True] * (worlds - 1), known])
 
@@ -87,13 +87,10 @@ def test_where_few_worlds_saturate_a_comparison_draws_ticks_for_each_death() -> 
     assert labels(alive) == ("Alive at each age", "age (ticks)", "fraction of organisms")
     assert labels(dying) == ("Ticks lived for each death", worlds_and_median, "")
     assert labels(food) == ("Food gathered in a second", worlds_and_median, "")
-    assert (alive.get_xlim(), dying.get_xlim(), food.get_xlim()) == (
-        (1, 100),
-        (0, UNTIL),
-        (0, UNTIL),
-    )
+    assert alive.get_xlim() == (1, 100)
+    assert dying.get_xlim() == food.get_xlim() == (0, UNTIL)
     assert (dying.get_yscale(), food.get_yscale()) == ("log", "linear")
-    assert legend(figure) == ["one"], "no saturation is drawn, so no mark needs a meaning"
+    assert legend(figure) == ["one"], "saturation is not drawn, and has no mark"
     assert rows_and_columns(figure) == (1, 3)
     one.measured["food"] = one.measured["births"]
     assert rows_and_columns(drawn(one)) == (1, 2)
@@ -147,7 +144,7 @@ def test_a_run_without_any_saturated_world_is_marked_beside_one_that_saturated()
 def test_the_axis_of_saturation_begins_at_one_or_three_times_a_power_of_ten(
     values: list[int], first: float, last: float, halves: bool
 ) -> None:
-    """It ends a fifth after the last value. Fewer than two powers of ten get marks at 3, 30, ... too."""
+    """The axis ends a fifth after the last value. A short axis also has marks at 3, 30, ..."""
     one, two = arm("one", 1), arm("two", 2)
     for each, some in ((one, values), (two, [values[1]] * 3)):
         each.measured["births"] = Measured(np.array(some, float), np.full(3, True))
@@ -157,7 +154,7 @@ def test_the_axis_of_saturation_begins_at_one_or_three_times_a_power_of_ten(
     assert (30 in np.round(places)) == halves
 
 
-def test_intervals_of_survival_are_drawn_of_five_worlds_or_more() -> None:
+def test_intervals_of_survival_are_drawn_for_five_worlds_or_more() -> None:
     enough, few = arm("enough", 1, worlds=5), arm("few", 2, worlds=4)
     axes = drawn(enough, few).axes[0]
     (band,) = axes.collections
@@ -187,7 +184,7 @@ def test_each_world_has_a_curve_if_no_run_has_many_worlds_and_runs_are_few(
 
 
 def test_few_runs_go_from_dark_to_light_and_many_have_distinct_colours() -> None:
-    """The reference is always black. Dashes begin when all colours are used, then dots."""
+    """The reference is always black. If all colours are used, lines are dashed, and then dotted."""
 
     def light(look: dict[str, str]) -> float:
         return float(np.dot(to_rgb(look["color"]), (0.299, 0.587, 0.114)))

@@ -1,4 +1,4 @@
-"""Figures of lines of descent draw what was measured: invented measurements are read back."""
+"""Figures of lines of descent show what was measured, here invented values."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -13,7 +13,7 @@ from primordia.figures import descent, style
 from primordia.figures import lines as descents
 from tests.assays.lives import COPY, FOUNDER, MUTANT
 from tests.assays.lives import lives as lives_of
-from tests.figures.reading import edges_at, key, labels, lines, points
+from tests.figures.reading import axes_of, edges_at, key, labels, lines, points
 
 FOUNDED = 30
 TICKS = FOUNDED + np.array([0, 1, 10, 100, 250])
@@ -48,11 +48,6 @@ REMARK = "no two of the living have a common ancestor on record"
 SINCE = "time since lines were founded (ticks)"
 
 
-def drawn(found: Any) -> list[Axes]:
-    with style.applied():
-        return descents.draw(found).axes
-
-
 @pytest.fixture(scope="module")
 def found() -> Any:
     return an_evolution()
@@ -60,7 +55,7 @@ def found() -> Any:
 
 @pytest.fixture(scope="module")
 def all_axes(found: Any) -> list[Axes]:
-    return drawn(found)
+    return axes_of(descents.draw, found)
 
 
 def check_band(axes: Axes, values: np.ndarray) -> None:
@@ -74,7 +69,7 @@ def check_band(axes: Axes, values: np.ndarray) -> None:
 def test_the_shares_of_the_largest_lines_are_drawn_in_order(
     found: Any, all_axes: list[Axes]
 ) -> None:
-    """Of 65 lines, 7 have colours, 53 more are faint and 5 are not drawn; the largest is in front."""
+    """Of 65 lines 7 have colours, 53 are faint, and 5 are not drawn. The largest is in front."""
     axes = all_axes[0]
     coloured = [each for each in axes.get_lines() if each.get_color() in style.PALETTE]
     assert [each.get_color() for each in coloured] == [*style.PALETTE][::-1]
@@ -95,7 +90,7 @@ def test_the_shares_of_the_largest_lines_are_drawn_in_order(
 def test_a_world_with_few_lines_and_without_pairs_is_drawn() -> None:
     none = SimpleNamespace(back=np.zeros(0, int), share=np.zeros(0))
     found = an_evolution(2, sweeps=[], pairs=none)
-    axes, _, diversity, pairs = drawn(found)
+    axes, _, diversity, pairs = axes_of(descents.draw, found)
     for colour, place in zip(style.PALETTE, found.ranked, strict=False):
         ((_, share),) = lines(axes, colour)
         np.testing.assert_array_equal(share, found.shares[:, place])
@@ -108,7 +103,7 @@ def test_a_world_with_few_lines_and_without_pairs_is_drawn() -> None:
 def test_the_effective_number_of_lines_is_of_order_two_and_ends_with_the_last_line(
     found: Any, all_axes: list[Axes]
 ) -> None:
-    """An extinct world has no line left; one line is still drawn."""
+    """At the last tick no line is left, and no point is drawn."""
     axes = all_axes[1]
     assert points(axes, style.BLUE) == [(1, 7), (1, 6), (10, 1), (100, 3)]
     check_band(axes, np.maximum(found.drift.effective, 1))
@@ -160,13 +155,10 @@ def some_ancestors(count: int, blocks: int = 2, **others: Any) -> Any:
     return SimpleNamespace(**{**found, **others})
 
 
-def panels(found: Any) -> list[Axes]:
-    with style.applied():
-        return descent.draw(found).axes
-
-
 def test_ancestors_are_drawn_at_their_births() -> None:
-    lives, changes, _ = panels(some_ancestors(6, changes=np.arange(12.0).reshape(6, 2)))
+    lives, changes, _ = axes_of(
+        descent.draw, some_ancestors(6, changes=np.arange(12.0).reshape(6, 2))
+    )
     assert points(lives, style.BLUE) == [(3, 30), (5, 1), (7, 10), (9, 20)]
     assert points(lives, style.ORANGE) == [(11, 8), (13, 1)]
     assert labels(lives) == ("The ancestors of organism 77 of world 2", "", "ticks lived")
@@ -182,7 +174,7 @@ def test_ancestors_are_drawn_at_their_births() -> None:
 
 @pytest.mark.parametrize("blocks", [6, 7, 9])
 def test_up_to_six_blocks_are_named_and_colours_begin_again(blocks: int) -> None:
-    changes = panels(some_ancestors(5, blocks))[1]
+    changes = axes_of(descent.draw, some_ancestors(5, blocks))[1]
     colours = [each.get_color() for each in changes.get_lines()]
     assert colours == [*style.PALETTE, *style.PALETTE][:blocks]
     assert len(key(changes)) == (blocks if blocks == 6 else 0)
@@ -193,7 +185,7 @@ def test_sizes_of_mutations_are_drawn_if_any_is_known(known: int) -> None:
     sizes = np.full((5, 2), np.nan)
     sizes[2, :known] = 3
     for changes in (sizes, None):
-        axes = panels(some_ancestors(5, changes=changes))[1]
+        axes = axes_of(descent.draw, some_ancestors(5, changes=changes))[1]
         texts = {each.get_text() for each in axes.findobj(Text)}
         drawn = changes is not None and known > 0
         assert ("mutations are unknown" in texts) != drawn
@@ -202,9 +194,9 @@ def test_sizes_of_mutations_are_drawn_if_any_is_known(known: int) -> None:
 
 @pytest.mark.parametrize("count", [5, 20])
 def test_the_shares_of_some_ancestors_are_drawn_from_their_births(count: int) -> None:
-    """All of a short line, or 7 evenly spaced over a long one, from its first to its last."""
+    """A short line is drawn whole. A long line is drawn by 7 evenly spaced ancestors, with both ends."""
     found = some_ancestors(count)
-    shares = panels(found)[2]
+    shares = axes_of(descent.draw, found)[2]
     places = [0, 1, 2, 3, 4] if count == 5 else [0, 3, 6, 9, 12, 15, 19]
     for place, colour in zip(places, style.PALETTE, strict=False):
         after = [tick for tick in (2, 3, 4, 11, 40) if tick >= 2 * place + 3]

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -19,9 +18,8 @@ from primordia.law.world import Cause
 from primordia.runs.lives import ALIVE, Lives
 from tests.assays.lives import COPY, FOUNDER, MUTANT
 from tests.assays.lives import lives as lives_of
-from tests.figures.reading import edges_at, lines
-from tests.synthetic import alive, worlds_of
-from tests.worlds import MEADOW, config
+from tests.figures.reading import axes_of, edges_at, food_panel, lines, run_of
+from tests.synthetic import alive, surviving, worlds_of
 
 UNTIL = 160
 CAUSES = [Cause.FATAL, Cause.STARVED, Cause.HAZARD]
@@ -72,11 +70,8 @@ def since(lives: Lives) -> Lives:
     return shifted(lives, FORK if lives is KINDS["fork"] else 0)
 
 
-def axes_of(draw: Any, lives: Lives) -> list[Axes]:
-    run: Any = SimpleNamespace(lives=lives, config=config(MEADOW, cells=64, seeds=3))
-    with style.applied():
-        figure = draw(run, 0)
-    return figure.axes
+def panels(draw: Any, lives: Lives) -> list[Axes]:
+    return axes_of(draw, run_of(lives, cells=64, seeds=3), 0)
 
 
 def worlds(lives: Lives) -> list[Lives]:
@@ -121,7 +116,7 @@ def mean(ages: list[int]) -> float:
 
 
 def test_population_is_drawn_as_counted(lives: Lives, since: Lives) -> None:
-    living, fates, rates = axes_of(population.draw, lives)
+    living, fates, rates = panels(population.draw, lives)
     ticks = series.moments(int(since.ended.max()))
     check_worlds(living, by_tick(since, ticks, len), ticks, population.LIVING)
     check_fates(fates, ticks, since)
@@ -154,7 +149,7 @@ def check_rates(axes: Axes, since: Lives) -> None:
 
 
 def test_ages_are_drawn_as_counted(lives: Lives, since: Lives) -> None:
-    over_time, over_births, dead = axes_of(ages.draw, lives)
+    over_time, over_births, dead = panels(ages.draw, lives)
     ticks = series.moments(int(since.ended.max()))
     check_worlds(over_time, by_tick(since, ticks, mean), ticks, style.BLUE)
     number = np.arange(1, max(map(len, worlds(since))) + 1)
@@ -185,15 +180,15 @@ def check_quartiles(axes: Axes, rank: np.ndarray, lifespan: np.ndarray) -> None:
 
 
 def test_no_more_dots_are_drawn_than_there_is_room_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of 450 lives, every so many is drawn, from the first on, among the dead and the living."""
+    """Of the dead, and of the living, every n-th one has a dot, beginning with the first."""
     monkeypatch.setattr(ages, "DOTS", 12)
-    _, _, axes = axes_of(ages.draw, LIVES)
+    _, _, axes = panels(ages.draw, LIVES)
     rank = np.tile(np.arange(1, 151), 3)
     for colour, group in ((style.SKY, LIVES.died), (style.ORANGE, ~LIVES.died)):
         ((x, _),) = lines(axes, colour)
-        each = int(group.sum()) // 12 + 1
+        n = int(group.sum()) // 12 + 1
         assert 6 < len(x) <= 12
-        np.testing.assert_array_equal(x, [rank[row] for row in np.flatnonzero(group)[0::each]])
+        np.testing.assert_array_equal(x, [rank[row] for row in np.flatnonzero(group)[::n]])
 
 
 def cohorts(lives: Lives) -> list[Lives]:
@@ -203,20 +198,18 @@ def cohorts(lives: Lives) -> list[Lives]:
 
 
 def test_survival_is_drawn_as_counted(lives: Lives, since: Lives) -> None:
-    """An organism is at risk up to the age at which its life ends. If it was alive at a fork, it is at
-    risk only after its age there."""
-    alive_axes, by_age, over_time = axes_of(survival.draw, lives)
+    """An organism is at risk up to the age at which its life ends. An organism that was alive at a fork
+    is at risk only after its age there."""
+    alive_axes, by_age, over_time = panels(survival.draw, lives)
     assert (since.lifespan == 10).any(), "some lives end at a labelled age"
     for cohort, (name, colour) in zip(cohorts(since), survival.COHORTS.items(), strict=True):
         ((x, y),) = lines(alive_axes, colour)
-        share, steps = 1.0, dict(zip(x.tolist(), y.tolist(), strict=True))
+        steps = dict(zip(x.tolist(), y.tolist(), strict=True))
         assert (x[0], x[-1], y[0]) == (0, since.lifespan.max(), 1)
         entered = np.maximum(-cohort.born, 0)
-        for age in range(1, int(since.lifespan.max()) + 1):
-            at_risk = ((entered < age) & (age <= cohort.lifespan)).sum()
-            died = (cohort.died & (cohort.lifespan == age)).sum()
-            share *= 1 - died / max(at_risk, 1)
-            assert not died or steps[age] == pytest.approx(share)
+        shares = surviving(cohort, int(since.lifespan.max()))
+        for age in set(cohort.lifespan[cohort.died].tolist()):
+            assert steps[age] == pytest.approx(shares[age])
         check_at_risk(alive_axes, name, colour, entered, cohort.lifespan)
         ((_, risk),) = lines(by_age, colour)
         check_risk(risk, entered, cohort.lifespan, cohort.died, int(since.lifespan.max()))
@@ -251,20 +244,11 @@ def check_risk(
 
 
 @pytest.mark.parametrize(("rate", "unit"), [(50.0, "second"), (None, "tick")])
-def test_food_is_drawn_in_the_unit_of_its_title(
-    rate: float | None, unit: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_food_is_drawn_in_the_unit_of_its_title(rate: float | None, unit: str) -> None:
     draw = np.random.default_rng(1)
     food, enough = draw.random((3, 9)), draw.random((3, 9))
     measured = Foraging(7, np.linspace(10, 90, 9), food, enough)
-    monkeypatch.setattr(foraging, "foraging", lambda _: measured)
-    run: Any = SimpleNamespace(
-        config=SimpleNamespace(metabolism=True), description=SimpleNamespace(rate=rate)
-    )
-    with style.applied():
-        figure = foraging.draw(run, 0)
-    assert figure is not None
-    (axes,) = figure.axes
+    axes = food_panel(measured, rate)
     assert axes.get_title(loc="left").endswith(f"in a {unit}")
     check_worlds(axes, food * (rate or 1), measured.middle, style.BLUE)
     for (x, y), values in zip(lines(axes, foraging.BREAK_EVEN), enough, strict=False):
@@ -279,19 +263,15 @@ def test_the_threshold_is_drawn_stretch_by_stretch() -> None:
         rows += [(0, COPY, 100)] * 20 + [(0, MUTANT, 100)] * good + [(0, MUTANT, 1)] * (20 - good)
         rows += [(-1, FOUNDER, 1)] * 135
     world = lives_of(*rows)
-    run: Any = SimpleNamespace(lives=world)
-    with style.applied():
-        figure = threshold.draw(run, 0)
-    assert figure is not None
+    found = axes_of(threshold.draw, run_of(world), 0)
     edges = np.linspace(0, len(world), len(world) // threshold.ENOUGH + 1).astype(int)
     expected = over_births(0, world, edges)
     assert len(expected) == 4
-    for axes, name in zip(figure.axes, ("mutated", "as_good", "held"), strict=True):
+    for axes, name in zip(found, ("mutated", "as_good", "held"), strict=True):
         ((x, y),) = lines(axes, style.BLUE)
         np.testing.assert_allclose(x, (edges[1:] + edges[:-1]) / 2)
         np.testing.assert_allclose(y, [getattr(each, name) for each in expected])
-    few: Any = SimpleNamespace(lives=lives_of(*rows[:300]))
-    assert threshold.draw(few, 0) is None
+    assert threshold.draw(run_of(lives_of(*rows[:300])), 0) is None
 
 
 def test_the_invented_lives_are_of_all_kinds() -> None:

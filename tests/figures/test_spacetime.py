@@ -1,4 +1,4 @@
-"""The figure in space and time: colours, places and words are worked out organism by organism."""
+"""The space-time figure: its colours, places and words, compared with each organism."""
 
 from collections import Counter
 from types import SimpleNamespace
@@ -15,9 +15,8 @@ from primordia.figures import spacetime, style
 from primordia.history.clades import Clades
 from primordia.law.world import BirthCause, Cause
 from primordia.runs.lives import ALIVE, Lives
-from tests.figures.reading import key, labels
-from tests.synthetic import alive, world_of, worlds_of
-from tests.worlds import MEADOW, config
+from tests.figures.reading import axes_of, key, labels, run_of
+from tests.synthetic import occupants, world_of, worlds_of
 
 CELLS, LAST = 8, 400
 
@@ -25,7 +24,7 @@ CELLS, LAST = 8, 400
 def a_history(seed: int) -> Lives:
     """Return one world of 8 cells in which organisms copy themselves into empty cells and die.
 
-    All die at tick 200, and at the last tick all but one.
+    All organisms die at tick 200. At the last tick all but one die.
     """
     draw = np.random.default_rng(seed)
     born: list[tuple[int, int, int]] = []  # tick, parent, cell
@@ -58,11 +57,6 @@ def a_history(seed: int) -> Lives:
     )
 
 
-def occupants(lives: Lives, tick: int) -> dict[int, int]:
-    """Return cell -> row of the living after a tick."""
-    return {int(lives.cell[row]): row for row in range(len(lives)) if alive(lives, row, tick)}
-
-
 def expected_inks(
     lives: Lives, of: Clades, sizes: Counter[tuple[int, int]]
 ) -> dict[tuple[int, int], tuple[Any, bool]]:
@@ -87,7 +81,7 @@ def expected_inks(
 
 
 @pytest.mark.parametrize("seed", [2, 11])
-def test_the_colour_of_each_line_follows_from_its_size_its_age_and_its_end(seed: int) -> None:
+def test_the_colour_of_a_line_depends_on_its_size_its_age_and_its_end(seed: int) -> None:
     lives, ticks = a_history(seed), np.arange(0, LAST + 1, 2)
     of = spacetime.clades_of(lives)
     image = spacetime.picture(lives, of, np.arange(CELLS), ticks)
@@ -112,13 +106,11 @@ def test_the_invented_histories_have_lines_of_all_kinds() -> None:
 
 
 def drawn(lives: Lives, world: int = 0, **settings: Any) -> Axes:
-    run: Any = SimpleNamespace(lives=lives, config=config(MEADOW, **settings))
-    with style.applied():
-        return spacetime.draw(run, world).axes[0]
+    return axes_of(spacetime.draw, run_of(lives, **settings), world)[0]
 
 
 def test_the_picture_goes_from_the_first_birth_to_the_last(monkeypatch: pytest.MonkeyPatch) -> None:
-    """If there are more births or cells than pixels, evenly spaced ones are drawn."""
+    """A picture with fewer pixels than births or cells has evenly spaced ones."""
     monkeypatch.setattr(spacetime, "ROWS", 5)
     monkeypatch.setattr(spacetime, "COLUMNS", 4)
     other = [(0, 5, True), (1, 9, False)]
@@ -144,8 +136,8 @@ def test_the_picture_goes_from_the_first_birth_to_the_last(monkeypatch: pytest.M
 
 
 def test_round_ticks_stand_at_the_number_of_births_by_then() -> None:
-    """Births in a round tick count. Places that are no more than a 25th of all births from the last
-    one are left out, and so is the place after the last birth."""
+    """Births in a round tick count. A mark stands more than a 25th of all births after the mark before.
+    No mark stands after the last birth."""
     births = {
         0: 50,
         10: 1,
@@ -163,17 +155,16 @@ def test_round_ticks_stand_at_the_number_of_births_by_then() -> None:
     assert len(born) == 200
     axes = drawn(world_of([(tick, 1, True) for tick in born], until=3000), cells=300)
     (right,) = axes.child_axes
-    assert [*right.yaxis.get_major_locator().tick_values(0, 1)] == [51, 90, 110, 170, 180, 199]
-    written = [
-        right.yaxis.get_major_formatter()(place, 0) for place in (51, 90, 110, 170, 180, 199)
-    ]
+    places = 51, 90, 110, 170, 180, 199
+    assert [*right.yaxis.get_major_locator().tick_values(0, 1)] == [*places]
+    written = [right.yaxis.get_major_formatter()(place, 0) for place in places]
     assert written == ["10", "20", "100", "200", "500", "1k"]
     assert right.get_ylabel() == "time (ticks)"
 
 
 def test_the_first_renewal_and_eight_takeovers_are_marked() -> None:
-    """A mark stands before the births of its tick, which have the colours of the new lines. Near the
-    top its words are below the line."""
+    """A mark stands before the births of its tick, since these have the colours of the new lines. Near
+    the top the words of a mark are below its line."""
     lives = world_of([(tick, 2, True) for tick in range(210)], until=300)
     takeover = [False, *[True] * 3, False, *[True] * 6, False, True]
     renewals = np.array([3, 9, 10, *range(20, 120, 10)])

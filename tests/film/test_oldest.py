@@ -23,8 +23,8 @@ def test_the_oldest_so_far_has_the_greatest_age_by_then(
 
 
 def test_among_equal_ages_the_living_come_before_the_dead_and_the_first_before_later_ones() -> None:
-    """The first three live 10 ticks each. The last one is as old at tick 40, when all others are
-    dead."""
+    """The first three live 10 ticks each. The last one reaches this age at tick 40, after their
+    deaths."""
     world = world_of([(0, 9, True), (5, 9, True), (8, 9, True), (30, 60, False)], until=90)
     found = oldest_so_far(world, np.array([9, 10, 15, 18, 39, 40, 41]))
     assert found.tolist() == [0, 0, 0, 0, 0, 3, 3]

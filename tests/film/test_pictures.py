@@ -9,7 +9,7 @@ from primordia.figures import spacetime
 from primordia.film import colours as colouring
 from primordia.film import shape as shapes
 from primordia.film.colours import FADING, FLASH, GROUND, PALETTE, colours
-from primordia.film.frame import HEIGHT, WIDTH, Frames, fitted
+from primordia.film.frame import HEIGHT, STRIPS, WIDTH, Frames, fitted, with_colours
 from primordia.film.moments import RATE, SECONDS, moments
 from primordia.film.shape import PAPER, SIDE, Ring, shape
 from primordia.law.placement import Placement
@@ -52,11 +52,11 @@ def test_a_newborn_flashes_once() -> None:
 
 
 @pytest.mark.parametrize("together", [1, 10**6])
-def test_light_is_that_of_the_age_and_of_a_birth_since_the_moment_before(
+def test_a_cell_is_lighter_with_age_and_flashes_after_a_birth(
     together: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Of 40 cells half are empty for ever. A flash is weaker the more cells have a newborn, and there
-    is none if a quarter has."""
+    """Half of the 40 cells are always empty. A flash is weaker if more cells have a newborn. There is no
+    flash if a quarter of the cells have one."""
     monkeypatch.setattr(colouring, "MOST", together)
     lived = [(tick // 3 * 3, tick, tick % 3 > 0) for tick in range(14)] + [(20, 60, False)] * 6
     world, cells = world_of(lived, until=90), np.arange(40)
@@ -106,8 +106,8 @@ def test_large_worlds_are_drawn_in_part() -> None:
     assert len(ring.cells) <= Ring.MOST
 
 
-def test_a_long_torus_is_drawn_in_part_by_its_longer_side() -> None:
-    """Of 1,000 rows of 2 cells each third row and the first column are drawn."""
+def test_the_longer_side_of_a_torus_decides_which_cells_are_drawn() -> None:
+    """The torus has 1,000 rows of 2 cells. The picture has every third row, and the first column."""
     long = shape(Placement(topology="torus4", rows=1000), 2000)
     assert long.cells.tolist() == [6 * row for row in range(334)]
     flat = shape(Placement(topology="torus4", rows=2), 8)
@@ -169,8 +169,8 @@ def test_a_picture_has_the_world_the_life_and_the_share_that_has_passed() -> Non
     assert fitted(life, (900, 20)).size == (60, 20)
 
 
-def test_words_are_where_they_belong() -> None:
-    """The title is above, the counts are on the left below, and the words on a life on the right."""
+def test_a_picture_has_its_words_and_the_life_in_their_places() -> None:
+    """The title is above, the counts are below on the left, and the words about a life on the right."""
     world, life = np.full((SIDE, SIDE, 3), 90, np.uint8), Image.new("RGB", (40, 10), "red")
 
     def drawn(title: str, counts: str, about: str, alone: bool = False) -> np.ndarray:
@@ -194,3 +194,14 @@ def test_words_are_where_they_belong() -> None:
     assert grey.min(axis=0).tolist() == [48, 20]
     alone = np.argwhere((drawn("", "", "", alone=True) == 90).all(axis=2))
     assert alone.min(axis=0).tolist() == [48, (WIDTH - SIDE) // 2]
+
+
+def test_the_colours_of_a_gif_have_each_hue_dark_middle_and_light() -> None:
+    seen = np.asarray(with_colours(Image.new("RGB", (960, 576))))
+    assert seen.shape == (2 * 144, 240, 3)
+    assert not seen[:144].any(), "the picture itself is above"
+    high = 144 // STRIPS
+    rows = [seen[144 + high * number + high // 2].astype(float) for number in range(STRIPS)]
+    for row, light in zip(rows, (0.5, 0.75, 1.0), strict=True):
+        np.testing.assert_allclose(row, light * rows[2], atol=1)
+    assert len(np.unique(rows[2], axis=0)) > 30

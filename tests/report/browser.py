@@ -136,6 +136,11 @@ class Page:
         self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": listed})
 
 
+def differ(one: np.ndarray, other: np.ndarray) -> bool:
+    """Return whether the pixels of two pictures differ."""
+    return one.shape != other.shape or bool((one != other).any())
+
+
 @contextmanager
 def browser() -> Iterator[Page]:
     """Start Chromium without a screen; skip the test if there is none."""

@@ -1,4 +1,4 @@
-"""The arms of an experiment beside each other: each number is that of its own arm."""
+"""The arms of an experiment side by side: tables of outcomes and effects, and curves."""
 
 from pathlib import Path
 from types import SimpleNamespace
@@ -13,7 +13,7 @@ from primordia.comparison.survival import survival
 from primordia.report import arms
 from primordia.report.arms import _effects, _outcomes, _over_time, _survival
 from primordia.runs.lives import Lives, joined
-from tests.synthetic import alive, world_of
+from tests.synthetic import alive, surviving, world_of
 
 COLOURS = "#111111", "#222222", "#333333"
 LIVED = [(tick, tick % 7 + tick // 5, tick % 4 > 0) for tick in range(0, 100, 2)]
@@ -45,8 +45,8 @@ def compared() -> Comparison:
 
 
 def test_outcomes_and_effects_are_those_of_each_arm(compared: Comparison) -> None:
-    """Of nine pairs of a world of the last arm and one of the first, the last arm has fewer births
-    in six and more in two; the order of one is unknown."""
+    """There are nine pairs of a world of the last arm and a world of the first. The last arm has fewer
+    births in six pairs and more in two; the order of one pair is unknown."""
     table = _outcomes(compared)
     assert table["head"] == [
         "arm", "hazard", "metabolism.cap", "worlds saturated",
@@ -76,18 +76,14 @@ def test_survival_of_each_arm_has_its_name_and_colour(compared: Comparison) -> N
     for table, part, name, colour in zip(panel["tables"], parts, names, COLOURS, strict=True):
         (curve,) = table["curves"]
         assert (curve["name"], curve["colour"], curve["kind"]) == (name, colour, "steps")
-        lives, share, shares = world_of(part, until=200), 1.0, [1.0]
-        for age in range(1, 51):
-            at_risk = int((lives.lifespan >= age).sum())
-            share *= 1 - int(((lives.lifespan == age) & lives.died).sum()) / max(at_risk, 1)
-            shares.append(share)
+        shares = surviving(world_of(part, until=200), 50)
         assert (table["x"][0], table["x"][-1]) == (1, 50)
         assert curve["values"][1:] == pytest.approx([shares[age] for age in table["x"]][1:], 1e-4)
 
 
 def test_curves_over_time_are_medians_of_the_worlds_of_each_arm() -> None:
-    """The worlds of an arm end at different ticks. Half of them with a value is enough. At tick 1
-    all ages are 0, which a logarithmic axis cannot show."""
+    """The worlds of an arm end at different ticks. A median needs values of half of them. At tick 1 all
+    ages are 0, which a logarithmic axis cannot show."""
     ends = [(200, 130, 130, 201), (150, 160, 170)]
     worlds = [
         [
@@ -101,12 +97,8 @@ def test_curves_over_time_are_medians_of_the_worlds_of_each_arm() -> None:
         for name, each in zip(("mild", "harsh"), worlds, strict=True)
     ]
     ages, living = _over_time(runs, COLOURS[:2])
-    assert (ages["log_x"], ages["log_y"], living["log_x"], living["log_y"]) == (
-        True,
-        True,
-        True,
-        False,
-    )
+    assert (ages["log_x"], ages["log_y"]) == (True, True)
+    assert (living["log_x"], living["log_y"]) == (True, False)
     assert (ages["y"], living["y"]) == ("age (ticks)", "organisms")
     assert (ages["title"], living["title"]) == ("Mean age of the living", "Organisms alive")
 
@@ -131,7 +123,7 @@ def test_curves_over_time_are_medians_of_the_worlds_of_each_arm() -> None:
                 assert shown == (middle if middle is None else pytest.approx(middle, 1e-4)), tick
 
 
-def test_the_arms_of_forks_are_followed_from_the_fork() -> None:
+def test_curves_of_forks_begin_at_the_fork() -> None:
     lives = world_of(LIVED, until=200)
     run: Any = SimpleNamespace(path=Path("fork"), lives=lives.recorded_since(50))
     for panel in _over_time([run, run], COLOURS[:2]):
@@ -146,7 +138,7 @@ def test_the_arms_of_forks_are_followed_from_the_fork() -> None:
             assert shown == pytest.approx(expected, 1e-4)
 
 
-def test_an_experiment_with_one_arm_has_its_curves_alone() -> None:
+def test_an_experiment_with_one_arm_has_curves_and_no_tables() -> None:
     run: Any = SimpleNamespace(path=Path("only"), lives=world_of(LIVED, until=200))
     alone = arms.arms([run])
     assert (alone["tables"], alone["notes"]) == ([], [])

@@ -1,4 +1,4 @@
-"""What a page says of its run: names, numbers, films, and how the run is lived again."""
+"""The content of a page: worlds, numbers, films, settings and the commands that repeat the run."""
 
 import base64
 from pathlib import Path
@@ -10,7 +10,7 @@ import pytest
 from primordia.errors import InputError
 from primordia.history.info import info
 from primordia.report import content, lives
-from primordia.report.content import of_experiment, of_run
+from primordia.report.content import _numbers, of_experiment, of_run
 from primordia.report.facts import commands, facts
 from primordia.report.words import setting
 from primordia.runs.archive import Archive
@@ -24,7 +24,7 @@ from tests.worlds import config
     ("most", "left_out"),
     [(1, "2 further worlds not shown"), (2, "1 further world not shown"), (3, ""), (6, "")],
 )
-def test_as_many_worlds_are_shown_as_a_page_has_room_for(
+def test_a_page_shows_its_first_worlds_and_counts_the_others(
     torus: Path, most: int, left_out: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(content, "WORLDS", most)
@@ -42,7 +42,7 @@ def test_as_many_worlds_are_shown_as_a_page_has_room_for(
     assert (made["title"], made["arms"], made["films"]) == ("meadow", None, None)
 
 
-def test_the_numbers_of_a_single_world_have_its_extinctions(cart: Path) -> None:
+def test_the_numbers_of_a_single_world_include_its_extinctions(cart: Path) -> None:
     run = Archive(cart)
     made = of_run(run, filmed=False)
     (world,) = info(run)["worlds"]
@@ -58,7 +58,23 @@ def test_the_numbers_of_a_single_world_have_its_extinctions(cart: Path) -> None:
     assert made["worlds"][0]["rate"] == run.description.rate == 50
 
 
-def test_the_content_of_an_experiment_is_of_all_its_arms(
+def test_the_numbers_on_top_are_of_all_worlds() -> None:
+    """The second of three worlds has the most ticks. Nothing is alive in the third."""
+    names = ("ticks", "births", "deaths", "alive", "oldest_age", "extinctions")
+    rows = ((500, 1000, 996, 4, 80, 1), (1200, 70, 67, 3, 450, 0), (900, 9, 9, 0, None, 5))
+    worlds = [dict(zip(names, row, strict=True)) for row in rows]
+    shown = {each["name"]: each["value"] for each in _numbers(worlds)}
+    assert shown == {
+        "worlds": "3",
+        "ticks": "1,200",
+        "organisms born": "1,079",
+        "died": "1,072",
+        "alive": "7",
+        "age of the oldest alive": "450",
+    }
+
+
+def test_the_page_of_an_experiment_covers_all_its_arms(
     torus: Path, cart: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(content, "arms", lambda runs: [run.path.name for run in runs])
@@ -77,19 +93,19 @@ def test_the_content_of_an_experiment_is_of_all_its_arms(
         " together have 4 worlds.",
         setting(runs[0].config),
     ]
-    told = {each["name"]: each["value"] for each in made["numbers"]}
-    assert told["worlds"] == "4"
-    assert told["organisms born"] == f"{sum(len(run.lives) for run in runs):,}"
-    assert told["died"] == f"{sum(int(run.lives.died.sum()) for run in runs):,}"
+    numbers = {each["name"]: each["value"] for each in made["numbers"]}
+    assert numbers["worlds"] == "4"
+    assert numbers["organisms born"] == f"{sum(len(run.lives) for run in runs):,}"
+    assert numbers["died"] == f"{sum(int(run.lives.died.sum()) for run in runs):,}"
     assert [each["name"] for each in made["worlds"]] == ["torus, seed 5", "cart, seed 0"]
     for shown, run in zip(made["worlds"], runs, strict=True):
         assert shown["ground"]["births"] == len(run.lives.of_world(0))
     assert made["arms"] == [each["name"] for each in made["facts"]] == ["torus", "cart"]
-    for told_, run in zip(made["facts"], runs, strict=True):
-        assert [each["digest"] for each in told_["digests"]] == [
+    for of_arm, run in zip(made["facts"], runs, strict=True):
+        assert [each["digest"] for each in of_arm["digests"]] == [
             world["digest"] for world in info(run)["worlds"]
         ]
-        assert told_["settings"]["cells"] == str(run.config.cells)
+        assert of_arm["settings"]["cells"] == str(run.config.cells)
 
 
 def invented(**changed: Any) -> Any:
@@ -108,8 +124,8 @@ def invented(**changed: Any) -> Any:
     return SimpleNamespace(**{**parts, **changed})
 
 
-def test_films_of_lives_say_whose_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A life that is exactly as long as the limit is filmed, as the first and last six seconds."""
+def test_a_film_of_a_life_names_its_organism(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A life as long as the limit is filmed too. A film shows the first and the last six seconds."""
     asked = []
 
     def replay(run: Any, organism: int, world: int, out: Path, part: float) -> Path:
@@ -136,7 +152,7 @@ def test_films_of_lives_say_whose_they_are(monkeypatch: pytest.MonkeyPatch) -> N
     assert lives.films(alone)["films"][1]["about"] == "Organism 1: born at tick 1, 6 ticks, dead"
 
 
-def test_lives_that_are_not_filmed_have_a_reason_each(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_each_life_that_is_not_filmed_has_its_reason(monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(run: Any, *_: Any, **more: Any) -> Path:
         raise InputError(f"{run.path} has no pictures")
 
@@ -151,30 +167,31 @@ def test_lives_that_are_not_filmed_have_a_reason_each(monkeypatch: pytest.Monkey
     )
 
 
-def test_settings_are_told_unless_they_are_empty() -> None:
-    """Zero and false are settings. Names of files are told without folders."""
+def test_a_page_lists_all_settings_that_are_not_empty() -> None:
+    """Zero and false are values. Files are named without their folders."""
     numbers = {
         "worlds": [{"seed": 5, "digest": "a"}, {"seed": 6, "digest": "b"}],
         "exact": False,
         "restarts": 3,
     }
-    told = facts(invented(), numbers)
-    assert told["settings"]["hazard"] == "0.0"
-    assert told["settings"]["brain.biases"] == "false"
-    assert told["settings"]["stop.ticks"] == "2700"
-    assert not {"about", "seasons", "ancestors", "fork", "stop.births"} & set(told["settings"])
-    assert told["versions"] == {"primordia": "1"}
-    assert told["digests"] == [{"seed": "5", "digest": "a"}, {"seed": "6", "digest": "b"}]
-    assert (told["exact"], told["restarts"]) == (False, 3)
+    listed = facts(invented(), numbers)
+    assert listed["settings"]["hazard"] == "0.0"
+    assert listed["settings"]["brain.biases"] == "false"
+    assert listed["settings"]["stop.ticks"] == "2700"
+    assert not {"about", "seasons", "ancestors", "fork", "stop.births"} & set(listed["settings"])
+    assert listed["versions"] == {"primordia": "1"}
+    assert listed["digests"] == [{"seed": "5", "digest": "a"}, {"seed": "6", "digest": "b"}]
+    assert (listed["exact"], listed["restarts"]) == (False, 3)
     grown = config(TORUS, about="").model_copy(update={"ancestors": ("/home/me/best.npz",)})
-    told = facts(invented(config=grown), numbers)
-    assert told["settings"]["ancestors"] == "['best.npz']"
-    assert "/home" not in told["toml"]
-    assert told["commands"] == ["primordia verify run"]
+    listed = facts(invented(config=grown), numbers)
+    assert listed["settings"]["ancestors"] == "['best.npz']"
+    assert "/home" not in listed["toml"]
+    assert listed["commands"] == ["primordia verify run"]
 
 
-def test_a_run_is_repeated_by_flags_where_flags_can_tell_it() -> None:
-    """A list, a setting of the task that the run has not, and a task of the user's own need the file."""
+def test_a_run_is_repeated_by_flags_if_flags_can_express_it() -> None:
+    """Three runs need the file: one of a user's own task, one with a list among its settings, and one
+    that lacks a setting of its task."""
     file = ["primordia run config.toml --out again", "primordia info again --json"]
     own = config("CartPole-survival", cells=12, stop={"until": None}, brain={"biases": True})
     assert commands(own, "run", False) == [
@@ -186,4 +203,4 @@ def test_a_run_is_repeated_by_flags_where_flags_can_tell_it() -> None:
     season = {"kind": "schedule", "setting": "hazard", "at": 50, "value": 0.01}
     assert commands(config(cells=8, seasons=[season]), "run", False) == file
     linear = config("CartPole-survival", brain={"kind": "linear"})
-    assert commands(linear, "run", False) == file, "the task has hidden neurons, this run has none"
+    assert commands(linear, "run", False) == file, "a linear brain has no hidden neurons to set"

@@ -1,4 +1,4 @@
-"""The space-time picture and its organisms in a world in which lines take over again and again."""
+"""The space-time picture of a page and its organisms, in a world in which lines often take over."""
 
 from dataclasses import replace
 from typing import Any
@@ -14,13 +14,13 @@ from primordia.report.organisms import organisms
 from primordia.runs.lives import Lives
 from tests.pedigrees import moran
 from tests.report.unpacked import all_unpacked, unpacked
-from tests.synthetic import alive
+from tests.synthetic import occupants
 
 CELLS = 8
 
 
 def takeovers(births: int = 300, cells: int = CELLS) -> Lives:
-    """Return a world of full cells: each tick one dies, and a child is born in its cell."""
+    """Return a world whose cells are full. In each tick one organism dies, and a child takes its cell."""
     lives = moran(cells, births)
     cell = np.arange(len(lives))
     for row in range(cells, len(lives)):
@@ -29,26 +29,20 @@ def takeovers(births: int = 300, cells: int = CELLS) -> Lives:
     return replace(lives, cell=cell.astype(np.int32))
 
 
-def occupant(lives: Lives, cell: int, tick: int) -> int:
-    """Return the row of the organism in a cell after a tick."""
-    here = np.flatnonzero(lives.cell == cell).tolist()
-    (row,) = [row for row in here if alive(lives, row, tick)]
-    return int(row)
-
-
-def test_the_line_of_each_cell_is_that_of_its_organism_at_each_moment() -> None:
-    """A line has the ink of its size, counted in cells and moments."""
+def test_each_cell_shows_the_line_of_its_organism_at_each_moment() -> None:
+    """The ink of a line depends on its size, which is counted in cells and moments."""
     lives = takeovers()
     shown, clades = Ground(lives, CELLS), spacetime.clades_of(lives)
-    assert len(clades.renewals) > 5, "the lines are renewed often enough"
+    assert len(clades.renewals) > 5, "lines take over several times"
     segments, inks = shown.segments, all_unpacked(shown.data()["segments"])["ink"]
     seen: dict[int, list[int]] = {}
     for place in range(len(lives)):
         tick = int(lives.born[place])
+        living = occupants(lives, tick)
         there = np.flatnonzero((segments["start"] <= place) & (place < segments["stop"]))
         assert sorted(lives.cell[segments["row"][there]].tolist()) == list(range(CELLS))
         for at in there.tolist():
-            row = occupant(lives, int(lives.cell[segments["row"][at]]), tick)
+            row = living[int(lives.cell[segments["row"][at]])]
             (code,) = spacetime.line_codes(lives, clades, np.array([[row]]), np.array([tick]))[0]
             assert (segments["row"][at], segments["code"][at]) == (row, code)
             seen.setdefault(int(code), []).append(int(inks[at]))
@@ -58,7 +52,7 @@ def test_the_line_of_each_cell_is_that_of_its_organism_at_each_moment() -> None:
     assert [set(seen[code]) for code in codes.tolist()] == [{ink} for ink in expected]
 
 
-def test_the_first_marks_tell_when_and_why_lines_began() -> None:
+def test_the_first_marks_say_when_and_why_lines_began() -> None:
     lives = takeovers(cells=4)
     clades = spacetime.clades_of(lives)
     marks = Ground(lives, 4).data()["marks"]
@@ -70,8 +64,8 @@ def test_the_first_marks_tell_when_and_why_lines_began() -> None:
 
 
 def test_of_many_cells_every_third_is_shown(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A line that lives only in the other cells has a strong ink too if it lasted. All lines began
-    three births before the end."""
+    """All lines began three births before the end. A line that lasted has a strong ink, also if it lives
+    only in cells that are not shown."""
     monkeypatch.setattr(ground, "COLUMNS", 3)
     lives = takeovers().recorded_until(274)
     shown, clades = Ground(lives, CELLS), spacetime.clades_of(lives)
@@ -86,15 +80,16 @@ def test_of_many_cells_every_third_is_shown(monkeypatch: pytest.MonkeyPatch) -> 
     hidden = every[~np.isin(every, shown.segments["code"])]
     inks = spacetime.line_inks(lives, clades, every, np.ones(len(every), int))
     strong = np.isin(hidden, every[inks < len(spacetime.COLOURS)])
-    assert 0 < strong.sum() < len(hidden), "some of these lines lasted"
+    assert 0 < strong.sum() < len(hidden), "some of these lines lasted, and some did not"
     assert ((shown.inks(every)[np.isin(every, hidden)] < len(spacetime.COLOURS)) == strong).all()
 
 
 @pytest.mark.parametrize("share", [1, 3])
-def test_a_world_is_whole_up_to_its_part_of_the_page(
+def test_a_world_is_shown_in_part_if_it_exceeds_its_share_of_the_page(
     share: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Of a larger world 5 moments are read, and at most 40 of the living are given besides."""
+    """A larger world is shown at 5 moments. The page then has the organisms of these moments, and up to
+    40 of the living."""
     lives = takeovers()
     monkeypatch.setattr(ground, "SEEN", share * CELLS * 5)
     monkeypatch.setattr(ground, "WHOLE", share * 308)
@@ -107,16 +102,16 @@ def test_a_world_is_whole_up_to_its_part_of_the_page(
     assert unpacked(data["moments"]).tolist() == moments
     assert unpacked(data["ticks"]).tolist() == lives.born[moments].tolist()
     ticks = lives.born[moments].tolist()
-    seen = {occupant(lives, cell, tick) for cell in range(CELLS) for tick in ticks}
+    seen = {row for tick in ticks for row in occupants(lives, tick).values()}
     assert part.rows.tolist() == sorted(seen | set(np.flatnonzero(~lives.died).tolist()))
     monkeypatch.setattr(ground, "COLUMNS", 1)
     few = Ground(lives, CELLS, share)
     monkeypatch.setattr(ground, "SEEN", share * 3)
-    alone = {occupant(lives, 0, int(lives.born[place])) for place in (0, 153, 307)}
+    alone = {occupants(lives, int(lives.born[place]))[0] for place in (0, 153, 307)}
     assert few.rows.tolist() == sorted(alone | set(np.flatnonzero(~lives.died)[:3].tolist()))
 
 
-def test_organisms_left_out_of_a_page_are_counted_as_ancestors_and_children() -> None:
+def test_organisms_that_a_page_leaves_out_count_as_ancestors_and_children() -> None:
     """The world's first birth on record is at tick 1,000, as in a fork."""
     lives = takeovers()
     cause = np.where(lives.died & (lives.id % 2 > 0), Cause.HAZARD, lives.cause).astype(np.int8)
@@ -125,9 +120,9 @@ def test_organisms_left_out_of_a_page_are_counted_as_ancestors_and_children() ->
     lives = replace(lives, cause=cause, birth_cause=origin, id=lives.id + 50, **ticks)
     lives = replace(lives, parent=np.where(lives.parent < 0, -1, lives.parent + 50))
     rows = np.arange(5, len(lives), 4)
-    told: Any = organisms(lives, rows)
-    facts = all_unpacked(told)
-    assert told["first"] == 1000
+    shown: Any = organisms(lives, rows)
+    facts = all_unpacked(shown)
+    assert shown["first"] == 1000
 
     def above(row: int) -> list[int]:
         parent = int(lives.parent[row])
@@ -149,8 +144,8 @@ def test_organisms_left_out_of_a_page_are_counted_as_ancestors_and_children() ->
             "generation": len(above(row)),
             "children": int((lives.parent == row + 50).sum()),
         }
-        assert why < 0 or told["causes"][why] == ("hazard" if row % 2 else "fatal")
-    assert told["origins"] == ["founder", "copy", "mutant"]
+        assert why < 0 or shown["causes"][why] == ("hazard" if row % 2 else "fatal")
+    assert shown["origins"] == ["founder", "copy", "mutant"]
 
 
 def test_the_palette_has_the_colours_of_the_figures_and_then_pale_ones() -> None:

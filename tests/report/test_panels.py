@@ -1,4 +1,4 @@
-"""The panels of a page against lives of two worlds of unequal length, looked at one by one."""
+"""The panels of a page, compared with counts over the lives of two worlds of unequal length."""
 
 from collections.abc import Iterator
 from itertools import pairwise
@@ -18,7 +18,7 @@ from primordia.report import curves
 from primordia.report.curves import Panel
 from primordia.runs.lives import ALIVE, Lives, joined
 from tests.report.conftest import TORUS
-from tests.synthetic import alive, world_of
+from tests.synthetic import alive, surviving, world_of
 from tests.worlds import config
 
 LONG = [(tick, tick % 13 + tick // 4, tick % 5 > 0) for tick in range(1, 150, 2)]
@@ -27,7 +27,7 @@ ENDS = 200, 90
 
 
 def unequal() -> Lives:
-    """Return the lives of two worlds, with deaths of two causes; some of both still live."""
+    """Return the lives of two worlds, with deaths of two causes. Both have organisms that are alive."""
     lives = joined(
         [world_of(lived, until) for lived, until in zip((LONG, SHORT), ENDS, strict=True)],
         np.array([0, 1]),
@@ -49,12 +49,12 @@ def named(lives: Lives, **more: Any) -> dict[str, Panel]:
 
 
 def close(values: list[float | None], expected: list[float]) -> bool:
-    """Return whether values, with None for NaN, are these to the digits of a page."""
+    """Return whether values, with None for NaN, equal others to the digits of a page."""
     got = np.array([np.nan if value is None else value for value in values])
     return np.allclose(got, expected, rtol=1e-4, equal_nan=True)
 
 
-def test_rates_are_events_of_all_worlds_over_the_ticks_that_these_have_lived() -> None:
+def test_rates_are_the_events_of_all_worlds_per_tick_of_a_world_that_still_runs() -> None:
     lives, edges = unequal(), series.bins(ENDS[0])
     panel = named(lives)["Births and deaths"]
     assert (panel["x"], panel["y"]) == ("time (ticks)", "per tick of a world")
@@ -124,25 +124,14 @@ def test_survival_of_each_quarter_is_the_product_of_the_shares_that_survive() ->
         (curve,) = table["curves"]
         assert (curve["name"], curve["kind"]) == (f"{name} of the births", "steps")
         assert curve["colour"] == colours[number]
-        lived = [
-            (int(age), bool(died))
-            for age, died, each in zip(lives.lifespan, lives.died, quarter, strict=True)
-            if each == number
-        ]
-        share, shares = 1.0, {0: 1.0}
-        for age in range(1, int(lives.lifespan.max()) + 1):
-            at_risk = sum(each >= age for each, _ in lived)
-            share *= 1 - lived.count((age, True)) / at_risk if at_risk else 1
-            shares[age] = share
+        shares = surviving(lives.take(np.equal(quarter, number)), int(lives.lifespan.max()))
         assert table["x"][-1] == lives.lifespan.max()
         assert close(curve["values"], [shares[age] for age in table["x"]])
-        assert {round(each, 9) for each in shares.values()} - {1.0} <= {
-            round(shares[age], 9) for age in table["x"]
-        }
+        assert {*shares} - {1.0} <= {shares[age] for age in table["x"]}, "each step is drawn"
 
 
 def test_quartiles_of_ages_at_death_are_those_of_the_dead_alone() -> None:
-    """Of 60 dead and 30 living, the dead make two bins of 30; a life of one tick is on the axis."""
+    """60 of 90 organisms are dead, and make two bins of 30. A life of one tick lies on the axis."""
     world = world_of([(tick, tick * tick % 61, tick % 3 > 0) for tick in range(90)], until=200)
     dead, living, spread = named(world)["Age at death"]["tables"]
     for table, name, colour in ((dead, "dead", style.SKY), (living, "alive", style.ORANGE)):
@@ -158,6 +147,11 @@ def test_quartiles_of_ages_at_death_are_those_of_the_dead_alone() -> None:
         assert close(curve["values"], [float(np.percentile(half, share)) for _, half in halves])
 
 
+def test_without_deaths_only_the_ages_of_the_living_are_shown() -> None:
+    (table,) = named(world_of([(0, 0, False)], until=50))["Age at death"]["tables"]
+    assert (table["x"], table["curves"][0]["values"]) == ([1], [50])
+
+
 def test_of_many_lives_evenly_spaced_ones_have_a_dot(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(curves, "DOTS", 5)
     world = world_of([(tick, 7, tick < 9) for tick in range(13)])
@@ -167,7 +161,7 @@ def test_of_many_lives_evenly_spaced_ones_have_a_dot(monkeypatch: pytest.MonkeyP
 
 
 def test_the_panels_of_a_fork_count_from_the_fork() -> None:
-    """Of those born before tick 50 only the ones alive then are on record, and no birth counts."""
+    """Organisms born before tick 50 are on record if they were alive then. Their births do not count."""
     world = world_of([(tick, 40, tick < 155) for tick in range(0, 180, 3)], until=200)
     panels = named(world.recorded_since(50))
     for title in ("Organisms alive", "Mean age of the living", "Births and deaths"):

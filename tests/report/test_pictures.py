@@ -20,7 +20,7 @@ from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
 from tests.pedigrees import lives_of
 from tests.report.unpacked import all_unpacked, unpacked
-from tests.synthetic import alive
+from tests.synthetic import occupants
 
 PARENTS = st.lists(st.integers(-1, 30), min_size=1, max_size=40).map(
     lambda drawn: np.array([min(parent, row - 1) for row, parent in enumerate(drawn)])
@@ -32,13 +32,6 @@ PARENTS = st.lists(st.integers(-1, 30), min_size=1, max_size=40).map(
 def test_packed_arrays_come_out_as_they_went_in(values: list[int], rising: bool) -> None:
     given_ = np.array(sorted(values) if rising else values, np.int64)
     assert unpacked(packed(given_, rising)).tolist() == given_.tolist()
-
-
-def occupant(lives: Lives, cell: int, tick: int) -> int:
-    """Return the row of the organism in a cell after a tick, or -1, by looking at all of them."""
-    here = [row for row in np.flatnonzero(lives.cell == cell).tolist() if alive(lives, row, tick)]
-    assert len(here) <= 1
-    return here[0] if here else -1
 
 
 @pytest.mark.parametrize("whole", [True, False])
@@ -59,8 +52,7 @@ def test_space_time_shows_who_was_where_after_each_moment(
         there = np.flatnonzero((segments["start"] <= place) & (place < segments["stop"]))
         seen = {int(segments["column"][i]): int(segments["organism"][i]) for i in there}
         assert len(seen) == len(there), "two organisms in a cell"
-        expected = {cell: occupant(lives, cell, tick) for cell in range(24)}
-        numbers = {cell: int(lives.id[row]) for cell, row in expected.items() if row >= 0}
+        numbers = {cell: int(lives.id[row]) for cell, row in occupants(lives, tick).items()}
         assert {cell: int(facts["number"][at]) for cell, at in seen.items()} == numbers
 
 
@@ -77,18 +69,6 @@ def test_the_lines_of_space_time_have_the_inks_of_the_figure(torus: Path) -> Non
     picture = spacetime.picture(lives, clades, np.arange(24), ticks)
     drawn = picture[np.arange(len(ticks)), segments["column"]]
     assert (strong == (drawn.min(axis=1) < spacetime.PALE)).all(), "pale in the figure too"
-
-
-def test_facts_of_organisms_are_those_of_the_records(torus: Path) -> None:
-    lives = Archive(torus).lives.of_world(2)
-    facts = all_unpacked(organisms(lives, np.arange(len(lives))))
-    assert facts["number"].tolist() == lives.id.tolist()
-    assert facts["born"].tolist() == (lives.born - lives.born[0]).tolist()
-    assert facts["lifespan"].tolist() == lives.lifespan.tolist()
-    assert facts["cause"].tolist() == (lives.cause + 1).tolist()
-    assert (facts["parent"] - 1).tolist() == lives.parent.tolist()
-    children = [int((lives.parent == number).sum()) for number in lives.id.tolist()]
-    assert facts["children"].tolist() == children
 
 
 @given(PARENTS, st.data())
@@ -164,9 +144,9 @@ def test_a_film_of_a_torus_shows_every_cell(torus: Path) -> None:
         shown["places"], shown["ticks"], shown["alive"], pictures, strict=True
     ):
         assert tick == lives.born[place]
-        there = [occupant(lives, cell, tick) for cell in range(24)]
-        assert (picture > 0).tolist() == [row >= 0 for row in there]
-        assert alive_ == sum(row >= 0 for row in there)
+        there = occupants(lives, tick)
+        assert np.flatnonzero(picture).tolist() == sorted(there)
+        assert alive_ == len(there)
     shades = pictures[pictures > 0] >> film.INK_BITS
     assert shades.min() == 0
     assert shades.max() == 7, "the largest number of three bits"
@@ -181,7 +161,7 @@ def test_a_ring_has_no_film(torus: Path) -> None:
 
 
 def tiny() -> Lives:
-    """Return a world in which three live: the last child of 0, 1 and 3, and 5 with its child."""
+    """Return a world in which organisms 4, 5 and 6 live; 6 is the child of 5."""
     parents = [-1, 0, 0, 1, 3, 2, 5]
     lives = lives_of(
         parents, [0, 2, 2, 3, 5, 5, 7], [4, 4, 6, 6, 9, 9, 9], [True] * 4 + [False] * 3
@@ -190,38 +170,38 @@ def tiny() -> Lives:
     return replace(lives, cell=cells, seen=lives.born + 1)
 
 
-def test_the_nodes_of_a_phylogeny_tell_their_organisms_and_times() -> None:
-    """A line begins at the first birth of its tick: the child of 0 that leads to 4 is born together
-    with the one that leads to 5."""
-    shown = Ground(tiny(), 6)
-    told = tree(shown)
-    assert told is not None
-    assert (told["living"], told["shown"]) == (3, 3)
+def test_the_nodes_of_a_phylogeny_have_their_organisms_and_times() -> None:
+    """Each line begins at the first birth of its tick. Organisms 1 and 2 are born in one tick, so their
+    lines begin together."""
+    picture = Ground(tiny(), 6)
+    made = tree(picture)
+    assert made is not None
+    assert (made["living"], made["shown"]) == (3, 3)
     names = "number", "born", "parent", "start", "stop", "level", "alive", "skipped"
-    rows = [tuple(node[name] for name in names) for node in told["nodes"]]
+    rows = [tuple(node[name] for name in names) for node in made["nodes"]]
     assert rows == [
         (0, 0, -1, 0, 1, 0, False, 0),
         (5, 5, 0, 1, 7, 0, True, 1),
         (6, 7, 1, 6, 7, 1, True, 0),
         (4, 5, 0, 1, 7, 2, True, 2),
     ]
-    segments = all_unpacked(shown.data()["segments"])
-    for node in told["nodes"][1:]:
+    segments = all_unpacked(picture.data()["segments"])
+    for node in made["nodes"][1:]:
         own = np.flatnonzero(segments["organism"] == node["number"])
         last = own[np.argmax(segments["stop"][own])]
         assert node["ink"] == segments["ink"][last], "the ink that the line has now"
 
 
 @pytest.mark.parametrize(("most", "numbers"), [(3, [4, 5, 6]), (2, [4, 5]), (1, [5])])
-def test_of_many_that_live_some_are_shown_spread_over_the_cells(
+def test_a_phylogeny_shows_a_limited_number_of_the_living_spread_over_the_cells(
     most: int, numbers: list[int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """In the order of their cells the living are 5, 6 and 4."""
+    """The living are 5, 6 and 4 in the order of their cells."""
     monkeypatch.setattr(phylogeny, "LEAVES", most)
-    told = tree(Ground(tiny(), 6))
-    assert told is not None
-    assert (told["living"], told["shown"]) == (3, len(numbers))
-    alive_ = [node["number"] for node in told["nodes"] if node["alive"]]
+    made = tree(Ground(tiny(), 6))
+    assert made is not None
+    assert (made["living"], made["shown"]) == (3, len(numbers))
+    alive_ = [node["number"] for node in made["nodes"] if node["alive"]]
     assert sorted(alive_) == numbers
     assert tree(Ground(tiny().take(np.arange(4)), 6)) is None, "nothing lives"
 
@@ -235,18 +215,15 @@ def test_each_byte_of_a_film_is_the_ink_of_a_line_and_the_shade_of_an_age(torus:
     assert made is not None
     pictures, longest = unpacked(made["cells"]).reshape(-1, 24), int(lives.lifespan.max())
     for tick, picture in list(zip(made["ticks"], pictures, strict=True))[::9]:
-        for cell, byte in enumerate(picture.tolist()):
-            row = occupant(lives, cell, tick)
-            if row < 0:
-                assert byte == 0
-                continue
+        for cell, row in occupants(lives, tick).items():
+            byte = int(picture[cell])
             age = tick - int(lives.born[row])
             assert byte // 32 == min(int(8 * np.log1p(age) / np.log1p(longest)), 7)
             codes = spacetime.line_codes(lives, clades, np.array([[row]]), np.array([tick]))[0]
             assert byte % 32 - 1 == shown.inks(codes)[0]
 
 
-def test_a_film_has_as_many_pictures_as_its_part_of_a_page(
+def test_the_share_of_the_page_limits_the_number_of_pictures_of_a_film(
     torus: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     run = Archive(torus)

@@ -12,7 +12,6 @@ from typing import Any
 import pytest
 
 import primordia
-from primordia.report.content import _numbers
 from primordia.report.facts import facts
 from primordia.report.lives import chosen, films
 from primordia.runs import loop
@@ -50,22 +49,6 @@ def test_several_runs_are_one_arm(torus: Path, tmp_path: Path) -> None:
     assert here("report", torus, tmp_path / "more", "--out", out).returncode == 0
     assert content(out)["subtitle"].endswith("seeds 5 to 8")
     assert len(content(out)["worlds"]) == 4
-
-
-def test_the_numbers_on_top_are_of_all_worlds() -> None:
-    """The second of three worlds has the most ticks. Nothing is alive in the third."""
-    names = ("ticks", "births", "deaths", "alive", "oldest_age", "extinctions")
-    rows = ((500, 1000, 996, 4, 80, 1), (1200, 70, 67, 3, 450, 0), (900, 9, 9, 0, None, 5))
-    worlds = [dict(zip(names, row, strict=True)) for row in rows]
-    told = {each["name"]: each["value"] for each in _numbers(worlds)}
-    assert told == {
-        "worlds": "3",
-        "ticks": "1,200",
-        "organisms born": "1,079",
-        "died": "1,072",
-        "alive": "7",
-        "age of the oldest alive": "450",
-    }
 
 
 def test_names_that_are_no_page_are_one_line(torus: Path, tmp_path: Path) -> None:
@@ -121,25 +104,25 @@ def test_the_command_in_the_page_lives_the_run_again(
     cart_page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    (told,) = content(cart_page)["facts"]
-    command, look = map(shlex.split, told["commands"])
+    (shown,) = content(cart_page)["facts"]
+    command, look = map(shlex.split, shown["commands"])
     assert here(*command[1:], "--quiet").returncode == 0
     (world,) = json.loads(here(*look[1:]).stdout)["worlds"]
-    assert told["digests"] == [{"seed": "0", "digest": world["digest"]}]
+    assert shown["digests"] == [{"seed": "0", "digest": world["digest"]}]
 
 
-def test_a_run_that_flags_do_not_tell_is_told_by_its_settings(tmp_path: Path) -> None:
+def test_a_run_that_flags_cannot_express_is_repeated_by_its_settings(tmp_path: Path) -> None:
     """Its limits are those with which it was resumed."""
     season = {"kind": "schedule", "setting": "hazard", "at": 50, "value": 0.01}
     loop.start(config(cells=8, stop={"ticks": 100}, seasons=[season]), tmp_path / "run")
     loop.resume(tmp_path / "run", {"ticks": 200})
-    told = facts(Archive(tmp_path / "run"), primordia.load(tmp_path / "run").info())
-    assert told["commands"][0] == "primordia run config.toml --out again"
-    assert told["settings"]["stop.ticks"] == "200"
-    (tmp_path / "config.toml").write_text(told["toml"])
+    shown = facts(Archive(tmp_path / "run"), primordia.load(tmp_path / "run").info())
+    assert shown["commands"][0] == "primordia run config.toml --out again"
+    assert shown["settings"]["stop.ticks"] == "200"
+    (tmp_path / "config.toml").write_text(shown["toml"])
     primordia.run(str(tmp_path / "config.toml"), tmp_path / "again")
     again = primordia.load(tmp_path / "again").info()["worlds"]
-    assert [each["digest"] for each in told["digests"]] == [each["digest"] for each in again]
+    assert [each["digest"] for each in shown["digests"]] == [each["digest"] for each in again]
 
 
 def test_a_fork_is_verified_since_it_needs_its_directory(torus: Path, tmp_path: Path) -> None:

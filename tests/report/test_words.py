@@ -1,12 +1,15 @@
-"""The words of a page, sentence by sentence, from numbers that are invented."""
+"""The sentences of a page about its run, from invented numbers and lives."""
 
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
+from primordia.history.info import info
 from primordia.law.world import Cause
-from primordia.report.words import setting, words
+from primordia.report.words import DEATHS, setting, words
+from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
 from tests.report.conftest import TORUS
 from tests.synthetic import world_of, worlds_of
@@ -21,15 +24,6 @@ WORLD: dict[str, Any] = {
     "saturation": None,
     "alive": 10,
 }
-KILLED = {
-    "fatal": "killed by their world",
-    "starved": "of hunger",
-    "hazard": "by accident",
-    "replaced": "because a child took their cell",
-    "fault": "of a fault in their body or brain",
-    "time-limit": "at the time limit of the task",
-    "restart": "when the run was resumed without their bodies",
-}
 
 
 def world(**changed: Any) -> dict[str, Any]:
@@ -37,7 +31,7 @@ def world(**changed: Any) -> dict[str, Any]:
     return {**WORLD, "deaths_by_cause": deaths, **changed}
 
 
-def told(
+def sentences(
     *worlds: dict[str, Any], lives: Lives | None = None, rate: float | None = None, **settings: Any
 ) -> list[str]:
     run: Any = SimpleNamespace(
@@ -55,7 +49,7 @@ def test_the_story_of_a_saturated_world() -> None:
         fixation={"tick": 2700, "births": 1017},
         saturation={"tick": 6543, "births": 1400},
     )
-    _, happened, _ = told(one, rate=50, saturation_ticks=2000)
+    _, happened, _ = sentences(one, rate=50, saturation_ticks=2000)
     assert happened == (
         "In 7,200 ticks (2 min 24 s of simulated time), 1,500 organisms were born, and 1,490 died:"
         " 1,200 killed by their world, 200 of hunger, 90 by accident. The world died out 2 times,"
@@ -76,43 +70,49 @@ def test_the_story_of_a_saturated_world() -> None:
     ],
 )  # fmt: skip
 def test_the_story_of_a_world_that_is_not_saturated(alive: int, end: str) -> None:
-    assert told(world(alive=alive))[1].endswith(end)
+    assert sentences(world(alive=alive))[1].endswith(end)
 
 
-def test_the_story_of_several_worlds_counts_all_of_them() -> None:
+def test_the_story_of_several_worlds_adds_up_their_numbers() -> None:
     saturated = {"tick": 900, "births": 7}
     worlds = [
         world(ticks=900, births=1000, deaths={"hazard": 5, "fault": 2}, extinctions=1),
         world(ticks=1800, births=200, deaths={"fault": 30}, saturation=saturated, extinctions=3),
-        world(ticks=1300, births=30, deaths={"starved": 1000}, saturation=saturated),
+        world(
+            ticks=1300,
+            births=30,
+            deaths={"starved": 1000, "fatal": 4, "replaced": 6, "time-limit": 7, "restart": 8},
+            saturation=saturated,
+        ),
     ]
     fill = {"genesis": "fill", "saturation_ticks": 1500}
-    _, happened, _ = told(*worlds, **fill)
+    _, happened, _ = sentences(*worlds, **fill)
     assert happened == (
-        "In up to 1,800 ticks of each world, 1,230 organisms were born in all, and 1,037 died: 1,000"
-        " of hunger, 5 by accident, 32 of a fault in their body or brain. In all, the worlds died"
-        " out 4 times, and life began again with founders in all cells. 2 of 3 worlds are"
-        " saturated: all cells full, and no death for 1,500 ticks."
+        "In up to 1,800 ticks of each world, 1,230 organisms were born in all, and 1,062 died: 4"
+        " killed by their world, 1,000 of hunger, 5 by accident, 6 because a child took their cell,"
+        " 32 of a fault in their body or brain, 7 at the time limit of the task, 8 when the run was"
+        " resumed without their bodies. In all, the worlds died out 4 times, and life began again"
+        " with founders in all cells. 2 of 3 worlds are saturated: all cells full, and no death for"
+        " 1,500 ticks."
     )
-    assert "none has died. All worlds are saturated" in told(*[world(saturation=saturated)] * 2)[1]
-    assert "0 of 2 worlds are saturated" in told(world(), world())[1]
+    assert (
+        "none has died. All worlds are saturated"
+        in sentences(*[world(saturation=saturated)] * 2)[1]
+    )
+    assert "0 of 2 worlds are saturated" in sentences(world(), world())[1]
 
 
-@pytest.mark.parametrize("cause", Cause, ids=lambda cause: cause.label)
-def test_each_cause_of_death_has_its_words(cause: Cause) -> None:
-    (sentence, *_) = told(world(deaths={cause.label: 1300}))[1].split(". ")
-    assert sentence.endswith(f"and 1,300 died, {KILLED[cause.label]}")
-    other = next(each for each in Cause if each != cause)
-    (sentence, *_) = told(world(deaths={cause.label: 1300, other.label: 2}))[1].split(". ")
-    assert "and 1,302 died: " in sentence
-    assert f"1,300 {KILLED[cause.label]}" in sentence
-    assert f"2 {KILLED[other.label]}" in sentence
+def test_each_cause_of_death_has_its_own_words() -> None:
+    assert DEATHS.keys() == {cause.label for cause in Cause}
+    assert len(set(DEATHS.values())) == len(DEATHS)
+    (alone, *_) = sentences(world(deaths={"hazard": 1300}))[1].split(". ")
+    assert alone.endswith("and 1,300 died, by accident")
 
 
-def test_a_world_that_died_out_began_again_as_its_settings_say() -> None:
+def test_a_world_that_died_out_began_again_with_the_founders_of_its_settings() -> None:
     begin = "The world died out once, and life began again with "
-    assert f"{begin}a random founder." in told(world(extinctions=1))[1]
-    assert f"{begin}founders in all cells." in told(world(extinctions=1), genesis="fill")[1]
+    assert f"{begin}a random founder." in sentences(world(extinctions=1))[1]
+    assert f"{begin}founders in all cells." in sentences(world(extinctions=1), genesis="fill")[1]
     given = config(TORUS, seeds=1).model_copy(update={"ancestors": ("a.npz",)})
     run: Any = SimpleNamespace(
         config=given, lives=world_of([(0, 5, False)]), description=SimpleNamespace(rate=None)
@@ -120,37 +120,37 @@ def test_a_world_that_died_out_began_again_as_its_settings_say() -> None:
     assert f"{begin}the given genomes." in words(run, {"worlds": [world(extinctions=1)]})[1]
 
 
-def test_the_longest_life_is_the_first_of_equals_in_any_world() -> None:
-    """The living count: organism 1 of world 1 has lived 1,600 ticks, as has organism 2."""
+def test_the_longest_life_is_named_and_the_first_of_equal_ones() -> None:
+    """In world 1, organism 1 is alive after 1,600 ticks, and organism 2 died at this age."""
     lives = worlds_of(
         [(0, 1000, True), (5, 1500, True)],
         [(0, 9, True), (400, 1000, False), (400, 1599, True)],
         until=2000,
     )
-    assert told(world(), world(), lives=lives, rate=0.5)[2] == (
+    assert sentences(world(), world(), lives=lives, rate=0.5)[2] == (
         "The longest life is that of organism 1 of world 1, born at tick 400: 1,600 ticks (53 min"
         " 20 s of simulated time). This organism is alive."
     )
-    dead = told(world(), lives=world_of([(1200, 4, True)]))[2]
+    dead = sentences(world(), lives=world_of([(1200, 4, True)]))[2]
     assert dead == (
         "The longest life is that of organism 0, born at tick 1,200: 5 ticks. This organism is dead."
     )
 
 
-def test_quarters_are_compared_from_ten_lives_each() -> None:
-    """The median of ten lives is the fifth: of those that lived 1 to 10 ticks, 5."""
+def test_quarters_are_compared_if_each_has_ten_lives() -> None:
+    """The median of ten lives is the fifth: in each quarter they last 1 to 10 ticks."""
     lived = [(n, n % 10, True) for n in range(40)]
-    (said,) = told(world(), lives=world_of(lived))[2:]
+    (said,) = sentences(world(), lives=world_of(lived))[2:]
     assert said.startswith(
         "In the first quarter of the births, half of the organisms lived 5 ticks or more; in the"
         " last quarter, half lived 5 ticks or more so far. "
     )
-    assert told(world(), lives=world_of(lived[:39]))[2].startswith("The longest life")
+    assert sentences(world(), lives=world_of(lived[:39]))[2].startswith("The longest life")
 
 
-def test_the_setting_is_told_as_it_is() -> None:
-    known = setting(config(TORUS, seeds=1, cells=1200, metabolism=None, inheritance="parent"))
-    assert known == (
+def test_the_settings_are_put_into_words() -> None:
+    meadow = setting(config(TORUS, seeds=1, cells=1200, metabolism=None, inheritance="parent"))
+    assert meadow == (
         "Meadows in which nothing moves. The world has 1,200 cells on a torus, a plane whose"
         " opposite edges meet. In each cell lives at most one organism: a small neural network with"
         " its own simulated body. There is no goal and no reward. An organism lives until its world"
@@ -160,5 +160,53 @@ def test_the_setting_is_told_as_it_is() -> None:
     ring = setting(config(TORUS, about="", seeds=2000, placement={"topology": "ring"}))
     assert ring.startswith("Each of 2,000 worlds has 24 cells on a ring. ")
     assert ring.endswith(" An organism that gathers too little food starves.")
-    replacing = setting(config(TORUS, placement={"rule": "replacing"}))
+    replacing = setting(config(TORUS, placement={"topology": "well-mixed", "rule": "replacing"}))
+    assert "24 cells, all of which are neighbours" in replacing
     assert "copies itself into a neighbouring cell, whose organism dies." in replacing
+    assert "Nothing is inherited" in setting(config(TORUS, inheritance="founder"))
+
+
+def test_the_words_about_one_organism_are_in_the_singular() -> None:
+    lives = world_of([(0, 0, False)], until=50)
+    _, happened, longest = sentences(world(ticks=50, births=1, alive=1), lives=lives)
+    assert happened.startswith("In 50 ticks, 1 organism was born, and none has died.")
+    assert longest == (
+        "The longest life is that of organism 0, born at tick 0: 50 ticks. This organism is alive."
+    )
+
+
+def test_quarters_are_of_the_births_of_each_world_and_of_a_fork_alone() -> None:
+    """In each world two thirds of the first quarter live 10 ticks, and two thirds of the later ones 90.
+
+    The remaining third lives far longer, which changes no median. Of the organisms born before a fork,
+    the records hold only those that lived until then.
+    """
+
+    def lived(number: int, births: int) -> int:
+        return (9 if 4 * number < births else 89) + 700 * (number % 3 == 1)
+
+    sizes = (400, *[20] * 10)
+    worlds = [[(n, lived(n, births), True) for n in range(births)] for births in sizes]
+    said = sentences(*[world()] * len(sizes), lives=worlds_of(*worlds, until=900))[2]
+    assert said.startswith(
+        "In the first quarter of the births, half of the organisms lived 10 ticks or more; in the last"
+        " quarter, half lived 90 ticks or more so far."
+    )
+    born = [(n, 499 if n < 50 and n % 2 else 19, True) for n in range(100)]
+    fork = sentences(world(), lives=world_of(born).recorded_since(50))[2]
+    assert fork.startswith(
+        "In the first quarter of the births since the fork, half of the organisms"
+    )
+    assert "lived 20 ticks or more; in the last" in fork
+
+
+def test_the_words_of_a_recorded_run_have_its_numbers(torus: Path) -> None:
+    run = Archive(torus)
+    numbers = info(run)
+    about, happened, lives = words(run, numbers)
+    births = sum(world["births"] for world in numbers["worlds"])
+    assert about.startswith("Meadows in which nothing moves. Each of 3 worlds has 24 cells on")
+    assert "no goal and no reward" in about
+    assert "starves" in about
+    assert f"{births:,} organisms were born" in happened
+    assert f"organism {int(run.lives.id[run.lives.lifespan.argmax()]):,} of world" in lives

@@ -1,4 +1,4 @@
-"""Panels say what they show: titles, labels of axes, keys and limits, also in a fork."""
+"""Titles, labels, keys and limits of the panels, also of a fork."""
 
 from types import SimpleNamespace
 from typing import Any
@@ -9,13 +9,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from primordia.figures import ages, foraging, population, style, survival, threshold
+from primordia.figures import ages, population, style, survival, threshold
 from primordia.history.foraging import Foraging
 from primordia.law.world import Cause
 from primordia.runs.lives import Lives
-from tests.figures.reading import key, labels, lines
+from tests.figures.reading import axes_of, food_panel, key, labels, lines, run_of
 from tests.synthetic import world_of, worlds_of
-from tests.worlds import MEADOW, config
 
 CELLS = 1500
 ONE = [(0, 20, True), (1, 50, True), (2, 30, True), (5, 0, False), (7, 40, True)]
@@ -34,16 +33,9 @@ def kind(request: pytest.FixtureRequest) -> str:
     return str(request.param)
 
 
-def axes_of(draw: Any, lives: Lives, **settings: Any) -> list[Axes]:
-    run: Any = SimpleNamespace(lives=lives, config=config(MEADOW, cells=CELLS, seeds=2, **settings))
-    with style.applied():
-        figure = draw(run, 0)
-    return figure.axes
-
-
-def test_population_says_what_it_shows(kind: str) -> None:
+def test_labels_and_limits_of_population(kind: str) -> None:
     lives, time, last = KINDS[kind]
-    living, fates, rates = axes_of(population.draw, lives)
+    living, fates, rates = axes_of(population.draw, run_of(lives, cells=CELLS), 0)
     several = kind != "one"
     assert labels(living) == ("Population", time, "organisms")
     assert labels(fates) == ("Fate of all organisms born", time, "")
@@ -64,9 +56,9 @@ def test_population_says_what_it_shows(kind: str) -> None:
     assert living.get_ylim() == (0, pytest.approx(1.12 * CELLS)), "room for the words"
 
 
-def test_ages_say_what_they_show(kind: str) -> None:
+def test_labels_and_limits_of_ages(kind: str) -> None:
     lives, time, last = KINDS[kind]
-    over_time, over_births, dead = axes_of(ages.draw, lives)
+    over_time, over_births, dead = axes_of(ages.draw, run_of(lives), 0)
     assert labels(over_time) == ("Mean age of the living over time", time, "age (ticks)")
     title = "Mean age of the living over births"
     assert labels(over_births) == (title, "organisms born so far", "")
@@ -79,9 +71,9 @@ def test_ages_say_what_they_show(kind: str) -> None:
     assert dead.get_ylim()[0] == 1
 
 
-def test_survival_says_what_it_shows(kind: str) -> None:
+def test_labels_and_limits_of_survival(kind: str) -> None:
     lives, time, last = KINDS[kind]
-    alive, by_age, over_time = axes_of(survival.draw, lives)
+    alive, by_age, over_time = axes_of(survival.draw, run_of(lives), 0)
     risk = "deaths per tick lived"
     assert labels(alive) == ("Alive at each age", "age (ticks)", "fraction alive")
     assert labels(by_age) == ("Risk of death by age", "age (ticks)", risk)
@@ -104,18 +96,10 @@ def test_an_axis_of_time_holds_at_least_ten_ticks(last: int, end: int) -> None:
 
 def foraged(food: np.ndarray, enough: np.ndarray) -> Axes:
     middle = np.linspace(30, 90, food.shape[1]) if food.shape[1] else np.zeros(0)
-    measured = Foraging(25, middle, food, enough)
-    run: Any = SimpleNamespace(
-        config=SimpleNamespace(metabolism=True), description=SimpleNamespace(rate=None)
-    )
-    with pytest.MonkeyPatch.context() as patch, style.applied():
-        patch.setattr(foraging, "foraging", lambda _: measured)
-        figure = foraging.draw(run, 0)
-        assert figure is not None
-    return figure.axes[0]
+    return food_panel(Foraging(25, middle, food, enough))
 
 
-def test_the_break_even_is_drawn_where_there_is_one() -> None:
+def test_an_infinite_break_even_is_not_drawn() -> None:
     food = np.array([[0.25, 0.5, 0.75], [0.5, -0.75, 1.0]])
     enough = np.array([[np.inf, 0.5, 0.25], [np.inf, 0.75, 0.5]])
     axes = foraged(food, enough)
@@ -132,7 +116,7 @@ def test_the_break_even_is_drawn_where_there_is_one() -> None:
     assert nowhere.get_ylim()[0] == 0
 
 
-def test_foraging_says_that_there_are_no_samples_yet() -> None:
+def test_the_panel_of_food_says_if_there_are_no_samples_yet() -> None:
     axes = foraged(np.zeros((1, 0)), np.zeros((1, 0)))
     assert "no samples yet" in {each.get_text() for each in axes.texts}
     assert len(axes.get_yticks()) == 0
@@ -140,13 +124,13 @@ def test_foraging_says_that_there_are_no_samples_yet() -> None:
 
 
 @pytest.mark.parametrize("worlds", [1, 2])
-def test_the_threshold_says_what_it_shows(worlds: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What is unknown is a gap in the curve."""
+def test_labels_and_curves_of_the_threshold(worlds: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Unknown values are gaps in the curve."""
     lives = worlds_of(*([(0, 3, True)] * count for count in (500, 380)[:worlds]), until=9)
     measured = SimpleNamespace(mutated=0.5, as_good=None, held=2.0)
     unknown = SimpleNamespace(mutated=None, as_good=None, held=None)
     monkeypatch.setattr(threshold, "over_births", lambda *_: [measured, unknown])
-    axes = axes_of(threshold.draw, lives)
+    axes = axes_of(threshold.draw, run_of(lives), 0)
     titles = "p: children that mutate", "v: mutants as good", "Does a good line persist?"
     spread = SPREAD if worlds == 2 else {}
     for each, title, value in zip(axes, titles, (0.5, np.nan, 2.0), strict=True):
@@ -160,10 +144,10 @@ def test_the_threshold_says_what_it_shows(worlds: int, monkeypatch: pytest.Monke
     assert axes[2].get_yscale() == "log"
 
 
-def test_the_threshold_is_not_drawn_if_it_is_known_nowhere(
+def test_a_threshold_that_is_unknown_everywhere_is_not_drawn(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """There are at most 20 stretches, and the births of the largest world decide."""
+    """The number of stretches follows from the births of the largest world, and is at most 20."""
     edges = []
 
     def noted(world: int, lives: Lives, of_births: np.ndarray) -> list[Any]:

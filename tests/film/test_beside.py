@@ -1,0 +1,186 @@
+"""What a film shows beside and below a world: the life of an organism, names and counts."""
+
+from collections.abc import Callable, Iterator
+from itertools import islice, repeat
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from primordia.film import beside
+from primordia.film import film as films
+from primordia.film.beside import Beside
+from primordia.runs.lives import Lives, joined
+from tests.synthetic import alive, world_of
+from tests.worlds import MEADOW, config
+
+PICTURE = Image.new("RGB", (4, 3))
+LIVED = [(tick * 30, 45, tick < 40) for tick in range(60)]
+TWO_WORLDS = joined([world_of(LIVED[:9], 900), world_of(LIVED, 1800)], np.array([0, 1]))
+
+
+def a_run(lives: Lives, lacks: bool = False) -> Any:
+    """Return a run of invented lives; the second world has had 1,234 births."""
+    return SimpleNamespace(
+        lives=lives,
+        path=Path("run"),
+        config=config(MEADOW, seeds=lives.worlds, cells=60, saturation_ticks=70),
+        habitat=SimpleNamespace(rate=50.0, lacks=lambda _: ["picture"] if lacks else []),
+        count=lambda name: np.array([60, 1234]),
+    )
+
+
+@pytest.fixture
+def film(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Any]:
+    """Return a function that films a run and returns what its pictures are made from.
+
+    No picture is drawn, and no file is written.
+    """
+
+    def made(run: Any, **options: Any) -> Any:
+        found = SimpleNamespace(title=None, pictures=[])
+
+        def frames(*given: Any) -> Any:
+            found.title = given
+            return SimpleNamespace(draw=lambda world, *given: given)
+
+        monkeypatch.setattr(films, "Frames", frames)
+        monkeypatch.setattr(films, "with_colours", lambda first: first)
+        monkeypatch.setattr(
+            "primordia.organism.video.write",
+            lambda _, shown, *__: found.pictures.extend(shown),
+        )
+        films.film(run, tmp_path / "film.mp4", **options)
+        return found
+
+    return made
+
+
+def life(number: int) -> Beside:
+    return Beside(PICTURE, f"life {number}")
+
+
+def test_each_picture_has_the_counts_of_its_tick_and_the_share_that_has_passed(
+    film: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(beside, "oldest", lambda _, __, ticks: map(life, range(len(ticks))))
+    here = TWO_WORLDS.of_world(1)
+    ticks = [*range(0, 1801, 30)]
+    pictures = film(a_run(TWO_WORLDS), world=1).pictures
+    assert pictures[len(ticks) :] == [pictures[len(ticks) - 1]] * films.STILL
+    for number, tick in enumerate(ticks):
+        births = sum(born <= tick for born, *_ in LIVED) if tick < 1770 else 1234
+        living = sum(alive(here, row, tick) for row in range(60))
+        counts, share, *shown = pictures[number]
+        assert counts == f"tick {tick:,}   births {births:,}   alive {living:,}"
+        assert share == pytest.approx((number + 1) / len(ticks))
+        assert tuple(shown) == life(number)
+
+
+@pytest.mark.parametrize("lacks", [False, True])
+def test_the_title_names_the_world_if_there_are_several(
+    lacks: bool, film: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A world whose habitat draws no pictures is shown alone."""
+    monkeypatch.setattr(beside, "oldest", lambda _, __, ticks: map(life, range(len(ticks))))
+    several, single = a_run(TWO_WORLDS, lacks), a_run(TWO_WORLDS.of_world(0), lacks)
+    assert film(several, world=1, ticks=(0, 60)).title == ("meadow, world 1", lacks)
+    assert film(single, ticks=(0, 60)).title == ("meadow", lacks)
+
+
+def test_a_cell_is_lightest_at_the_age_of_a_saturated_world(
+    film: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[int] = []
+
+    def colours(_: Lives, cells: np.ndarray, ticks: np.ndarray, full: int) -> Iterator[np.ndarray]:
+        asked.append(full)
+        return repeat(np.zeros((len(cells), 3), np.uint8), len(ticks))
+
+    monkeypatch.setattr(films, "colours", colours)
+    film(a_run(world_of(LIVED, 1800), lacks=True), ticks=(0, 60))
+    assert asked == [70]
+
+
+@pytest.mark.parametrize(
+    ("organism", "lacks", "expected"),
+    [
+        (None, False, ["oldest"]),
+        (None, True, []),
+        (0, False, [("chosen", 0, 1, 4)]),
+        (7, True, [("chosen", 7, 1, 4)]),
+    ],
+)
+def test_the_life_beside_a_world_is_the_chosen_one_or_the_oldest(
+    organism: int | None,
+    lacks: bool,
+    expected: list[Any],
+    film: Callable[..., Any],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A habitat that draws no pictures shows no life. If an organism is chosen, its life is tried."""
+    asked: list[Any] = []
+
+    def noted(what: Any) -> Iterator[Beside]:
+        asked.append(what)
+        return map(life, range(4))
+
+    monkeypatch.setattr(beside, "oldest", lambda *_: noted("oldest"))
+    monkeypatch.setattr(beside, "chosen", lambda _, *given: noted(("chosen", *given)))
+    found = film(a_run(TWO_WORLDS, lacks), world=1, ticks=(0, 90), organism=organism)
+    assert asked == expected
+    shown = [Beside(*given) for _, _, *given in found.pictures[:4]]
+    nothing = [Beside(None, "")] * 4
+    assert shown == (list(map(life, range(4))) if expected else nothing)
+
+
+def test_the_oldest_so_far_begins_its_life_when_it_is_first_shown(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Organism 0 lives 10 ticks. Organism 2 grows older, and is shown after the first four seconds."""
+
+    def pictures_of(run: Any, organism: int, world: int) -> Iterator[Any]:
+        return ((organism, world, number) for number in range(1000))
+
+    monkeypatch.setattr(beside, "pictures_of", pictures_of)
+    parts = [world_of([(0, 9, True), (1, 3, True), (5, 95, False)], 1000)] * 2
+    lives = joined(parts, np.array([0, 1])).of_world(1)
+    ticks = np.arange(1, 201)
+    shown = list(beside.oldest(a_run(lives), lives, ticks))
+    assert shown[:120] == [Beside((0, 1, at), "the oldest so far: organism 0") for at in range(120)]
+    assert shown[120:] == [Beside((2, 1, at), "the oldest so far: organism 2") for at in range(80)]
+    late = lives.take(np.array([2]))
+    assert (
+        next(beside.oldest(a_run(late), late, ticks[9:])).about == "the oldest so far: organism 2"
+    )
+    assert list(beside.chosen(a_run(lives), 1200, 1, 2)) == [
+        Beside((1200, 1, at), "organism 1,200") for at in range(2)
+    ]
+
+
+@pytest.mark.parametrize("rate", [50.0, 15.0, 30.0, 12.0, 20.0, 90.0])
+def test_a_life_is_shown_from_its_birth_to_its_end_at_thirty_pictures_a_second(
+    rate: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The life began at tick 100 and is on record from tick 103 to 110.
+
+    Picture k shows the tick that contains second k / 30. The last tick is always shown, and its
+    picture stays.
+    """
+    record = SimpleNamespace(born=np.array([100]))
+    life, stretch = SimpleNamespace(record=record, begins=103, ends=110), np.arange(100, 120)
+
+    def moments(_: Any, whole: list[range], step: int) -> Iterator[tuple[int, Any, int]]:
+        return ((0, SimpleNamespace(tick=stretch), age) for age in whole[0][::step])
+
+    monkeypatch.setattr("primordia.film.beside.RelivedLife.of", lambda *_: life)
+    monkeypatch.setattr("primordia.organism.replay.picture_rate", lambda _: rate)
+    monkeypatch.setattr("primordia.organism.replay.moments", moments)
+    monkeypatch.setattr("primordia.organism.replay.picture_of", lambda life, stretch, i: i)
+    ages = [4 + int(picture * rate / 30) for picture in range(30)]
+    ages = [age for age in ages if age <= 10]
+    pictures: list[Any] = list(islice(beside.pictures_of(a_run(world_of(LIVED)), 0, 0), 30))
+    assert pictures == ages + [10] * (30 - len(ages))

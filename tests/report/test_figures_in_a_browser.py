@@ -1,0 +1,267 @@
+"""Figures of the page: they show the content of the page, and follow mouse, keys, wheel and fingers."""
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from selenium.webdriver import ActionChains
+from selenium.webdriver.common.actions.wheel_input import ScrollOrigin
+from selenium.webdriver.common.keys import Keys
+
+from primordia.runs.archive import Archive
+from tests.report.browser import PHONE, Page, differ
+from tests.report.unpacked import unpacked
+
+CANVAS = ".ground canvas"
+
+
+@pytest.fixture
+def world(torus_page: Path, page: Page) -> dict[str, Any]:
+    """Open the page of a run on a torus, and return the content of its first world."""
+    page.open_file(torus_page)
+    content = json.loads(page.text("#content"))
+    return {**content["worlds"][0], "palette": content["palette"]}
+
+
+def test_a_chart_shows_values_and_zooms_by_mouse_keys_and_buttons(
+    cart_page: Path, page: Page
+) -> None:
+    page.open_file(cart_page)
+    chart = page.one(".chart")
+    plot = page.until(lambda: page.one(".chart .plot .u-over"))
+
+    def value_at(x: float) -> str:
+        page.hover(plot, x, 0.5)
+        return page.text(".chart .key")
+
+    first = value_at(0.05)
+    assert re.search(r"mean age [\d.,]+at [\d,]+", first), first
+    assert value_at(0.9) != first
+    assert value_at(0.05) == first
+    group = page.one(".chart .plot")
+    for zoom, back in (
+        (lambda: page.drag(plot, 0.4, 0.8), lambda: page.keys(group, "0")),
+        (lambda: page.keys(group, "+"), lambda: page.keys(group, "-")),
+        (
+            lambda: chart.find_elements("css selector", ".zoom button")[1].click(),
+            lambda: chart.find_elements("css selector", ".zoom button")[2].click(),
+        ),
+    ):
+        zoom()
+        assert value_at(0.05) != first
+        back()
+        assert value_at(0.05) == first
+    page.keys(group, Keys.ARROW_RIGHT, Keys.ARROW_RIGHT, Keys.ARROW_RIGHT)
+    assert page.text(".chart .key") != first
+
+
+def test_space_time_zooms_and_moves_by_wheel_keys_mouse_and_buttons(
+    cart_page: Path, page: Page
+) -> None:
+    page.open_file(cart_page)
+    canvas = page.one(CANVAS)
+    page.click(canvas, 0.02, 0.02)  # outside of the picture: the canvas gets the keys alone
+    whole = page.pixels(canvas)
+    turn = ActionChains(page.driver).scroll_from_origin(ScrollOrigin.from_element(canvas), 0, -300)
+    ways: dict[str, Any] = {
+        "wheel": turn.perform,
+        "key": lambda: page.keys(canvas, "+"),
+        "button": lambda: page.all(".ground .zoom button")[1].click(),
+    }
+    for name, zoom in ways.items():
+        zoom()
+        page.until(lambda: differ(page.pixels(canvas), whole))
+        near = page.pixels(canvas)
+        page.keys(canvas, Keys.ARROW_DOWN)
+        assert differ(page.pixels(canvas), near), name
+        page.drag(canvas, 0.3, 0.6)
+        page.keys(canvas, "0")
+        assert not differ(page.pixels(canvas), whole), name
+    assert page.text(".organism h3") == "No organism is chosen", "a drag is no click"
+
+
+def test_two_fingers_zoom_the_picture_and_a_tap_chooses(cart_page: Path, page: Page) -> None:
+    page.size(*PHONE, mobile=True)
+    page.open_file(cart_page)
+    canvas = page.one(CANVAS)
+    page.script("arguments[0].scrollIntoView({block: 'center'})", canvas)
+    whole = page.pixels(canvas)
+    box = page.script(
+        "const {left, top} = arguments[0].getBoundingClientRect(); return [left, top]", canvas
+    )
+    points = [[(150 - apart, 200), (150 + apart, 200)] for apart in (20, 35, 50, 65, 80)]
+    page.touch("touchStart", box, points[0])
+    for each in points[1:]:
+        page.touch("touchMove", box, each)
+    page.touch("touchEnd", box, [])
+    page.until(lambda: differ(page.pixels(canvas), whole))
+    assert page.text(".organism h3") == "No organism is chosen", "a pinch is no tap"
+    page.touch("touchStart", box, [(150, 200)])
+    page.touch("touchEnd", box, [])
+    page.until(lambda: page.text(".organism h3") != "No organism is chosen")
+
+
+def test_the_page_scrolls_by_the_wheel_until_the_picture_is_chosen(
+    cart_page: Path, page: Page
+) -> None:
+    page.open_file(cart_page)
+    canvas = page.one(CANVAS)
+    whole = page.pixels(canvas)
+    ActionChains(page.driver).scroll_by_amount(0, 300).perform()
+    page.until(lambda: page.script("return scrollY") > 0)
+    assert not differ(page.pixels(canvas), whole)
+
+
+def test_a_film_moves_by_keys_plays_and_shows_the_organism_of_a_cell(
+    torus: Path, torus_page: Path, page: Page
+) -> None:
+    page.open_file(torus_page)
+    canvas, slider = page.one(".film canvas"), page.one(".film input")
+    last = page.pixels(canvas)
+    assert page.script("return arguments[0].width", canvas) == 6
+    page.keys(slider, Keys.HOME)
+    assert page.text(".film .readout").startswith("birth 1,")
+    first = page.pixels(canvas)
+    assert differ(first, last)
+    page.keys(slider, Keys.ARROW_RIGHT, Keys.ARROW_RIGHT)
+    third = page.text(".film .readout")
+    assert third.startswith("birth 3,")
+    assert slider.get_attribute("aria-valuetext") == third
+    button = page.one(".film button")
+    button.click()
+    assert button.text == "Pause"
+    page.until(lambda: page.text(".film .readout") != third)
+    button.click()
+    assert button.text == "Play"
+    page.keys(slider, Keys.END)
+    world = Archive(torus).lives.of_world(0)
+    row = int(np.flatnonzero(world.ended > world.born[-1])[0])  # alive in the last picture
+    down, across = divmod(int(world.cell[row]), 6)
+    page.click(canvas, (across + 0.5) / 6, (down + 0.5) / 4)
+    assert page.text(".organism h3") == f"Organism {world.id[row]:,}"
+
+
+def test_each_picture_of_a_film_has_its_words_and_its_colours(
+    world: dict[str, Any], page: Page
+) -> None:
+    """The colour of a young organism is mixed with up to half of white. A light page has the inks of the
+    figures."""
+    film, canvas = world["film"], page.one(".film canvas")
+    cells = unpacked(film["cells"]).reshape(len(film["places"]), -1)
+    strong = np.array(world["palette"][: len(world["palette"]) // 2])
+    ground = page.script("return rgbOf(variable('--empty'))")
+    inks = [*strong, *(ink + 0.66 * (ground - ink) for ink in strong)]
+
+    def words(at: int) -> str:
+        return f"birth {film['places'][at] + 1:,}, tick {film['ticks'][at]:,}, {film['alive'][at]} alive"
+
+    assert page.text(".film .readout") == words(-1), "the present is shown first"
+    for at in (0, len(cells) // 2, len(cells) - 1):
+        page.script(
+            "const slider = document.querySelector('.film input'); slider.value = arguments[0];"
+            " slider.dispatchEvent(new Event('input'));",
+            at,
+        )
+        assert page.text(".film .readout") == words(at)
+        pixels = page.pixels(canvas)[..., :3].reshape(-1, 3).astype(float)
+        for byte, pixel in zip(cells[at].tolist(), pixels, strict=True):
+            ink = inks[byte % 32 - 1]
+            light = 0.5 * (1 - (byte // 32) / 7)
+            expected = ink + light * (255 - ink) if byte else np.array(ground)
+            np.testing.assert_allclose(pixel, expected, atol=1.5)
+
+
+def test_the_phylogeny_is_read_by_mouse_and_keys(torus_page: Path, page: Page) -> None:
+    page.open_file(torus_page)
+    page.keys(page.one(".tree"), Keys.ARROW_DOWN, Keys.ARROW_DOWN)
+    readout = page.text(".tree + .readout")
+    match = re.match(r"organism ([\d,]+), born at tick [\d,]+, alive, ", readout)
+    assert match, readout
+    page.until(lambda: page.all(".tree .on"))
+    page.keys(page.one(".tree"), Keys.ENTER)
+    assert page.text(".organism h3") == f"Organism {match[1]}"
+    page.hover(page.all(".tree .hit")[3], 0.5, 0.5)
+    page.until(lambda: page.text(".tree + .readout") != readout)
+
+
+def test_the_phylogeny_is_drawn_over_births_and_keys_walk_through_its_living(
+    world: dict[str, Any], page: Page
+) -> None:
+    tree = world["tree"]
+    nodes = tree["nodes"]
+    width = page.script("return document.querySelector('.tree').clientWidth")
+    gap = min(max(420 / tree["shown"], 3), 14)
+
+    def x(place: float) -> float:
+        return 4 + place / world["ground"]["births"] * (width - 8)
+
+    def y(level: int) -> float:
+        return 24 + (level + 0.5) * gap
+
+    bars = page.script(
+        "return [...document.querySelectorAll('.tree .bar')].map((bar) => bar.getAttribute('d')"
+        ".match(/[-\\d.]+/g).map(Number))"
+    )
+    for node, bar in zip(nodes, bars, strict=True):
+        stop = max(x(node["stop"]), x(node["start"]) + 1)
+        assert bar == pytest.approx([x(node["start"]), y(node["level"]), stop])
+    living = sorted((node["level"], at) for at, node in enumerate(nodes) if node["alive"])
+    press = (
+        "const event = new KeyboardEvent('keydown', { key: arguments[0] });"
+        " document.querySelector('.tree').dispatchEvent(event);"
+        " return [document.querySelector('.tree + .readout').textContent,"
+        " [...document.querySelectorAll('.tree .bar.on')].map((each) => Number(each.dataset.node))]"
+    )
+    order = [at for _, at in living]
+    keys = ["ArrowDown"] * (len(order) + 1) + ["ArrowUp"] * (len(order) + 1)
+    walk = [*order, order[-1], *order[-2::-1], order[0], order[0]]
+    for key, at in zip(keys, walk, strict=True):
+        words, marked = page.script(press, key)
+        assert words.startswith(
+            f"organism {nodes[at]['number']:,}, born at tick {nodes[at]['born']:,}, "
+        )
+        line = {at}
+        while nodes[at]["parent"] >= 0:
+            line.add(at := nodes[at]["parent"])
+        assert set(marked) == line
+
+
+def test_a_line_of_descent_stays_marked_when_the_tree_is_drawn_again(
+    torus_page: Path, page: Page
+) -> None:
+    page.open_file(torus_page)
+    page.keys(page.one(".tree"), Keys.ARROW_DOWN)
+    marked = "return [...document.querySelectorAll('.tree .on')].map((each) => each.dataset.node)"
+    line = page.until(lambda: page.script(marked))
+    drawn = page.one(".tree svg")
+    page.size(900, 900)
+    page.until(lambda: page.one(".tree svg") != drawn)
+    assert page.script(marked) == line
+
+
+def test_another_world_is_shown_when_it_is_chosen(torus_page: Path, page: Page) -> None:
+    page.open_file(torus_page)
+    before = page.pixels(page.one(CANVAS))
+    options = page.all("#world option")
+    assert [each.text for each in options] == ["seed 5", "seed 6", "seed 7"]
+    options[2].click()
+    page.until(lambda: differ(page.pixels(page.one(CANVAS)), before))
+
+
+def test_a_choice_of_world_ends_the_zoom_and_the_choice_of_an_organism(
+    torus_page: Path, page: Page
+) -> None:
+    page.open_file(torus_page)
+    page.one("#number").send_keys("7", Keys.ENTER)
+    assert page.text(".organism h3") == "Organism 7"
+    page.script("document.querySelectorAll('.ground .zoom button')[1].click()")
+    assert page.script("return document.querySelector('#ground').classList.contains('zoomed')")
+    before = page.one("#ground")
+    page.all("#world option")[1].click()
+    page.until(lambda: page.one("#ground") != before)
+    assert page.text(".organism h3") == "No organism is chosen"
+    page.wait_for_figures()
+    assert not page.script("return document.querySelector('#ground').classList.contains('zoomed')")
