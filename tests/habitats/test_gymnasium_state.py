@@ -57,7 +57,7 @@ class Thing:
 
 
 def test_every_kind_of_value_is_restored() -> None:
-    """Two names of one object remain names of one object. An attribute that was added later is removed."""
+    """Two names of one object still name one object. An attribute that was added later is removed."""
     one, other = Thing(3), Thing(7)
     other.later = 9  # type: ignore[attr-defined]
     own = other.part, other.generator
