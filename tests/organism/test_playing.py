@@ -88,10 +88,10 @@ def test_only_what_is_frozen_changes_a_game(
 
 
 @pytest.mark.parametrize("freezes", [False, True])
-def test_watched_games_tell_what_brains_think_from(players: Players, freezes: bool) -> None:
-    """The same in both habitats; memory is zero at the start, and the games are the same.
+def test_watched_games_show_the_inputs_of_brains(players: Players, freezes: bool) -> None:
+    """Both habitats give the same games and the same inputs. Memory is zero at the start.
 
-    Inputs that are frozen are told as they are, not as they are frozen.
+    The inputs that are shown are the live ones, also where the brain gets frozen ones.
     """
     watched = Manner(100, some_frozen(players) if freezes else None, watched=True)
     told = [list(stretches(each, 1, watched)) for each in (players, on_host(players))]
