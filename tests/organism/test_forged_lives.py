@@ -67,7 +67,7 @@ def test_a_forged_death_is_noticed(
 ) -> None:
     """The forger has changed one number of a closed segment, and computed all checksums again.
 
-    An organism that dies by itself dies in the same tick again. Any other life goes on to the recorded end.
+    An organism that dies by itself dies in the same tick again. Other lives go on to the recorded end.
     """
     run = Path(shutil.copytree(chain[0], tmp_path / "run"))
     lives = Archive(run).lives.of_world(0)

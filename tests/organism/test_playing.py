@@ -94,13 +94,13 @@ def test_watched_games_show_the_inputs_of_brains(players: Players, freezes: bool
     The inputs that are shown are the live ones, also where the brain gets frozen ones.
     """
     watched = Manner(100, some_frozen(players) if freezes else None, watched=True)
-    told = [list(stretches(each, 1, watched)) for each in (players, on_host(players))]
+    watched_in = [list(stretches(each, 1, watched)) for each in (players, on_host(players))]
     ours, theirs = (
         [
             np.concatenate(part)
             for part in zip(*((s.playing, *(s.met or ())) for s in each), strict=True)
         ]
-        for each in told
+        for each in watched_in
     )
     playing = ours[0][: len(theirs[0])]
     np.testing.assert_array_equal(playing, theirs[0])
