@@ -96,7 +96,7 @@ def test_what_is_scored_has_the_reward_and_none_of_the_rules_of_lives() -> None:
     game.close()
 
 
-def test_what_a_simulator_writes_to_standard_output_is_no_answer(capfd: Any) -> None:
+def test_a_simulator_that_writes_to_standard_output_lives_as_a_quiet_one(capfd: Any) -> None:
     quiet, loud = (
         Lived(config(pond(name, saving="replay", workers=2)), 20) for name in ("Pond", "Splashing")
     )

@@ -163,7 +163,7 @@ def test_each_game_begins_with_the_store_of_its_player(players: Players) -> None
 
 
 @pytest.mark.parametrize("where", ["in JAX", "on the host"])
-def test_a_brain_whose_thoughts_are_not_finite_ends_its_game_in_its_first_tick(
+def test_a_brain_whose_outputs_are_not_finite_ends_its_game_in_its_first_tick(
     players: Players, where: str
 ) -> None:
     """The games of the other players stay the same."""
