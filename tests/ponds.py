@@ -234,3 +234,15 @@ for kind in KINDS:
     gymnasium.register(
         f"{kind.__name__}-v0", entry_point=f"tests.ponds:{kind.__name__}", max_episode_steps=50
     )
+
+
+def noted_seeds(monkeypatch: Any) -> list[int]:
+    """Return the seeds with which ponds are reset from now on."""
+    seeds, reset = list[int](), Pond.reset
+
+    def noting(self: Pond, *, seed: int, options: Any = None) -> Any:
+        seeds.append(seed)
+        return reset(self, seed=seed, options=options)
+
+    monkeypatch.setattr(Pond, "reset", noting)
+    return seeds

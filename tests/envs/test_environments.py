@@ -76,13 +76,13 @@ def test_a_life_has_the_numbers_that_it_has_in_a_run(task: str, tmp_path: Path) 
 
 
 def played(env: Any, seed: int, actions: np.ndarray) -> list[tuple[Any, ...]]:
-    """Return what one environment tells, life after life."""
-    told: list[tuple[Any, ...]] = [(env.reset(seed=seed)[0],)]
+    """Return the results of one environment, life after life."""
+    results: list[tuple[Any, ...]] = [(env.reset(seed=seed)[0],)]
     for action in actions:
-        told.append(env.step(action))
-        if told[-1][2]:
-            told.append((env.reset()[0],))
-    return told
+        results.append(env.step(action))
+        if results[-1][2]:
+            results.append((env.reset()[0],))
+    return results
 
 
 @pytest.mark.parametrize("mode", [AutoresetMode.NEXT_STEP, AutoresetMode.DISABLED])
@@ -114,10 +114,10 @@ def test_environments_side_by_side_are_those_alone(task: str, mode: AutoresetMod
                 one[number] = env.reset()[0]
                 assert (rewards[number], ended[number]) == (0, False)
                 continue
-            one[number], reward, died, _, told = env.step(actions[number])
+            one[number], reward, died, _, own = env.step(actions[number])
             assert (rewards[number], ended[number]) == (reward, died)
-            assert {name for name in info if name[0] != "_" and info[f"_{name}"][number]} == {*told}
-            assert {name: info[name][number] for name in told} == told
+            assert {name for name in info if name[0] != "_" and info[f"_{name}"][number]} == {*own}
+            assert {name: info[name][number] for name in own} == own
         assert not cut.any()
         deaths += ended.sum()
         over = ended
@@ -125,8 +125,8 @@ def test_environments_side_by_side_are_those_alone(task: str, mode: AutoresetMod
     many.close()
 
 
-def test_bodies_that_have_died_stay_as_they_are_until_a_reset() -> None:
-    """The first body dies long before the others, which are pushed to and fro."""
+def test_bodies_that_have_died_do_not_change_until_a_reset() -> None:
+    """The first body dies long before the others, which are pushed left and right in turn."""
     many = LifeVectorEnv("CartPole-survival", 3, reward=1.0, autoreset_mode="Disabled")
     before, _ = many.reset(seed=2)
     over, deaths, ticks = np.zeros(3, bool), list[int](), 0
@@ -144,8 +144,8 @@ def test_bodies_that_have_died_stay_as_they_are_until_a_reset() -> None:
     assert deaths[0] + 9 < deaths[1]
 
 
-def test_the_last_senses_of_a_body_are_its_own_also_while_another_begins() -> None:
-    """Poles that are always pushed the same way fall after nine or ten ticks; newborn poles stand."""
+def test_a_dying_body_keeps_its_own_senses_while_another_is_born() -> None:
+    """Poles that are always pushed to one side fall in nine or ten ticks. A newborn pole is upright."""
     many, over, together = LifeVectorEnv("CartPole-survival", 8), np.zeros(8, bool), 0
     many.reset(seed=2)
     for _ in range(90):
@@ -180,7 +180,7 @@ def test_a_life_can_be_seen() -> None:
 
 @pytest.mark.parametrize(("task", "rate"), [("CartPole-survival", 50), ("gym:CartPole-v1", 50)])
 def test_films_of_a_life_have_the_speed_of_its_habitat(task: str, rate: float) -> None:
-    """Gymnasium's recorders play as many pictures for each second as the metadata say."""
+    """Gymnasium's recorders read the pictures per second from the metadata."""
     assert LifeEnv(task).metadata["render_fps"] == pytest.approx(rate)
     assert LifeEnv.metadata["render_fps"] == 30
 

@@ -138,7 +138,7 @@ def test_senses_come_in_the_order_of_the_settings(count: int) -> None:
     ],
 )
 def test_limits_are_settings(change: dict, state: list, fatal: bool) -> None:
-    """A body that is exactly at a limit lives."""
+    """A body exactly at a limit is alive."""
     _, outcome = CartPole(**change).step(jnp.array([state], jnp.float32), jnp.array([0]))
     assert bool(outcome.fatal[0]) is fatal
 
@@ -160,7 +160,7 @@ def coloured(picture: np.ndarray, colour: tuple[int, int, int]) -> tuple[np.ndar
 
 @pytest.mark.parametrize("angle", [-60.0, 0.0, 30.0, 60.0, 100.0])
 def test_the_pole_is_drawn_at_its_angle(angle: float) -> None:
-    """It is 150 pixels long; at positive angles it leans to the right."""
+    """The pole is 150 pixels long. At a positive angle it leans to the right."""
     theta = math.radians(angle)
     picture = np.asarray(draw(np.array([0, 0, theta, 0], np.float32), 1, 2.4))
     rows, columns = coloured(picture, (200, 85, 61))
@@ -176,7 +176,7 @@ def test_the_pole_is_drawn_at_its_angle(angle: float) -> None:
 def test_the_track_is_as_long_as_its_limit_and_has_ends_where_it_is_limited(
     limit: float, x: float, middle: int
 ) -> None:
-    """A track without a limit in practice is drawn as long as the usual one, and without its ends."""
+    """A track with a limit of 100 or more is drawn with the default length and without ends."""
     picture = np.asarray(draw(np.array([x, 0, 0, 0], np.float32), 1, limit))
     columns = coloured(picture, (35, 57, 91))[1]
     assert (columns.min() + columns.max()) / 2 == pytest.approx(middle, abs=4)

@@ -13,8 +13,17 @@ from jax import Array
 import primordia
 from primordia.config import validated
 from primordia.errors import InputError
-from primordia.habitats import Ability, Discrete, HostHabitat, JaxHabitat, Outcome
+from primordia.habitats import (
+    Ability,
+    Compound,
+    Continuous,
+    Discrete,
+    HostHabitat,
+    JaxHabitat,
+    Outcome,
+)
 from primordia.habitats.cartpole.habitat import CartPole
+from primordia.habitats.checks import check_properties
 from primordia.runs import loop
 from primordia.settings.base import Settings
 from tests.commands import environment
@@ -219,3 +228,53 @@ def test_the_contract_and_simulators_do_not_load_jax() -> None:
         [sys.executable, "-c", code], env=environment(), capture_output=True, text=True, check=True
     )
     assert done.stdout.strip() == "set()"
+
+
+def plain(**properties: Any) -> Plain:
+    """Return a habitat with other properties."""
+    habitat = Plain()
+    for name, value in properties.items():
+        setattr(habitat, name, value)
+    return habitat
+
+
+BOUNDS: list[tuple[str, Any, Any]] = [
+    ("senses_size", 1, 0),
+    ("senses_size", 2**20, 2**20 + 1),
+    ("senses_size", 1, True),
+    ("words", 0, -1),
+    ("words", 2**20, 2**20 + 1),
+    ("words", 1, 1.0),
+    ("rate", 1e-6, 0.9e-6),
+    ("rate", 1e9, 1.1e9),
+    ("rate", None, "fast"),
+    ("rate", 30, float("nan")),
+    ("action", Discrete(2), Discrete(1)),
+    ("action", Continuous(1), Continuous(0)),
+    ("action", Discrete(2**20), Discrete(2**20 + 1)),
+    ("action", Compound((Discrete(2), Continuous(1))), Compound((Discrete(1), Continuous(1)))),
+    ("action", Compound((Continuous(1),)), Compound(())),
+    ("action", Compound((Discrete(2**20 - 1), Continuous(1))),
+     Compound((Discrete(2**20 - 1), Continuous(2)))),
+    ("versions", {"a": "1"}, {"a": 1}),
+    ("versions", {}, {1: "a"}),
+    ("tallies", (), ("score",)),
+    ("tallies", (), ["score"]),
+]  # fmt: skip
+"""property, a value that is accepted, a value that is refused"""
+
+
+@pytest.mark.parametrize(("name", "accepted", "refused"), BOUNDS)
+def test_a_property_at_its_bound_is_accepted_and_one_beyond_it_is_not(
+    name: str, accepted: Any, refused: Any
+) -> None:
+    check_properties(plain(**{name: accepted}))
+    with pytest.raises(InputError, match=rf"has (the )?{name}\b"):
+        check_properties(plain(**{name: refused}))
+
+
+def test_a_compound_action_has_a_column_for_a_choice_and_several_for_numbers() -> None:
+    action = Compound((Discrete(4), Continuous(3), Discrete(2)))
+    assert (action.size, action.columns) == (9, 5)
+    assert Discrete(4).parts == (Discrete(4),)
+    assert Continuous(3).parts == (Continuous(3),)

@@ -52,10 +52,10 @@ def test_sound_environments_have_no_fault(name: str, saving: str, why: str) -> N
     assert found.ended
 
 
-def test_the_lifespan_is_the_mean_of_the_first_lives_as_far_as_they_were_lived(
+def test_the_lifespan_is_the_mean_of_the_ticks_lived_in_the_first_lives(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The pond counts its own steps in each life; some of the lives are longer than they are lived."""
+    """The test counts the steps of each life. Some lives have not ended when the measurement stops."""
     spans, left = list[int](), list[bool]()
     reset, step = Pond.reset, Pond.step
 
@@ -102,7 +102,7 @@ FOODS: list[tuple[Any, str | None]] = [
 def test_a_function_of_food_returns_a_number(
     amount: Any, says: str | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """It is given what a step returns."""
+    """The function is given what a step returns."""
     given: list[tuple[Any, ...]] = []
 
     def food(*step: Any) -> Any:

@@ -10,7 +10,7 @@ pytest.importorskip("gymnasium")
 from gymnasium import spaces
 
 from primordia.habitats import Compound, Continuous, Discrete
-from primordia.habitats.gymnasium.spaces import Acting, Observation
+from primordia.habitats.gymnasium.spaces import Acting, Observation, described
 from tests.ponds import Odd
 
 
@@ -120,3 +120,38 @@ def test_what_has_no_fixed_length_is_refused(space: Any, says: str) -> None:
     for kind in (Observation, Acting):
         with pytest.raises(ValueError, match=says):
             kind(space)
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "scaled", "senses", "action"),
+    [
+        (-1e6, 1e6, False, [-3, 5], [-0.5, 20]),
+        (-0.99e6, 0.99e6, True, [-3 / 0.99e6, 5 / 0.99e6], [-0.495e6, 0.99e6]),
+        (-8.0, np.inf, False, [-3, 5], [-0.5, 20]),
+        (-np.inf, 8.0, False, [-3, 5], [-0.5, 8]),
+        (-8.0, 8.0, True, [-0.375, 0.625], [-4, 8]),
+    ],
+)
+def test_a_bound_of_a_million_is_no_bound(
+    low: float, high: float, scaled: bool, senses: list[float], action: list[float]
+) -> None:
+    """A sense or an output is scaled only if it has both bounds. Every output is cut at a bound."""
+    box = spaces.Box(low, high, (2,), np.float64)
+    observation, acting = Observation(box), Acting(box)
+    found = observation.senses(np.ones(2), squash=False)(np.array([[-3.0, 5.0]]))
+    np.testing.assert_allclose(found, [senses], rtol=1e-6)
+    assert observation.unbounded().tolist() == [not scaled] * 2
+    rows = acting.rows(np.array([[-0.5, 20.0]], np.float32))
+    np.testing.assert_allclose(rows, [action])
+
+
+def test_a_number_with_a_single_value_is_divided_by_its_scale() -> None:
+    observation = Observation(spaces.Box(8.0, 8.0, (2,), np.float64))
+    senses = observation.senses(np.array([4.0, 2.0]), squash=False)
+    assert senses(np.array([[8.0, 8.0]])).tolist() == [[2.0, 4.0]]
+
+
+def test_a_box_is_described_by_its_least_and_largest_number() -> None:
+    low, high = np.float32([-1, -5]), np.float32([2, 3])
+    assert described(spaces.Box(low, high)) == "Box (2,) of float32, from -5 to 3"
+    assert described(spaces.Discrete(3)) == "Discrete(3)"

@@ -1,4 +1,4 @@
-"""The state of an environment as plain data: every kind of value comes back as it was."""
+"""The state of an environment as plain data: every kind of value is restored."""
 
 from collections import OrderedDict, deque
 from enum import Enum
@@ -56,8 +56,8 @@ class Thing:
         }
 
 
-def test_every_kind_of_value_comes_back_as_it_was() -> None:
-    """Values that are one object stay one, and what came later is removed."""
+def test_every_kind_of_value_is_restored() -> None:
+    """Two names of one object still name one object. An attribute that was added later is removed."""
     one, other = Thing(3), Thing(7)
     other.later = 9  # type: ignore[attr-defined]
     own = other.part, other.generator

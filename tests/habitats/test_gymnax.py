@@ -1,22 +1,16 @@
 """Environments in JAX: lives from words and age, senses, actions, death, food, and errors."""
 
-from types import SimpleNamespace
 from typing import Any
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 import pytest
-from hypothesis import example, given
-from hypothesis import strategies as st
-from jax import lax
 
 from primordia.config import validated
 from primordia.errors import InputError
 from primordia.habitats.contract import Ability, Continuous, Discrete
 from primordia.habitats.gymnax.habitat import Gymnax
-from primordia.habitats.gymnax.rounded import rounded, uses_first
-from primordia.habitats.gymnax.spaces import Senses
+from primordia.habitats.gymnax.rounded import uses_first
 from primordia.testing import check_habitat
 
 WORDS = np.arange(8, dtype=np.uint32).reshape(4, 2)
@@ -108,20 +102,6 @@ def test_senses_are_scaled_where_their_space_has_bounds() -> None:
     np.testing.assert_array_equal(squashed[:, 1], place[:, 1])
 
 
-@given(st.integers(-800, 800), st.integers(0, 800))
-@example(0, 16)
-@example(40, 8)
-def test_a_box_becomes_minus_one_to_one_unless_it_is_within_these_or_a_point(
-    first: int, count: int
-) -> None:
-    low, width = first / 8, count / 8  # exact, so that a bound of 1 is no more than 1
-    space = SimpleNamespace(low=low, high=low + width, shape=(3,))
-    senses = Senses(space, jax.ShapeDtypeStruct((3,), jnp.float32), squash=False)
-    places = np.float32([low, low + width / 2, low + width])
-    kept = width == 0 or max(-low, low + width) <= 1
-    np.testing.assert_allclose(senses.of(places), places if kept else [-1, 0, 1], atol=1e-3)
-
-
 def test_a_choice_is_an_action_and_rooms_are_senses_of_which_one_is_one() -> None:
     habitat = Gymnax(env="tests.walks:Choice")
     assert (habitat.action, habitat.senses_size) == (Discrete(3), 4)
@@ -196,35 +176,6 @@ def test_a_library_that_is_missing_is_named(monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.setitem(__import__("sys").modules, "octax.environments", None)
     with pytest.raises(ValueError, match=r"pip install 'primordia\[octax\]'"):
         Gymnax(env="octax:never")
-
-
-def test_every_product_is_rounded_before_it_is_added(optimised: None) -> None:
-    rng = np.random.default_rng(0)
-    a, b, c = (rng.normal(size=500).astype(np.float32) for _ in range(3))
-
-    def sums(a: Any, b: Any, c: Any) -> Any:
-        branch = lax.cond(c[0] > 9, lambda: a, lambda: a * b + c)
-        loop = lax.fori_loop(0, 3, lambda i, x: x * b + c, a)
-        scanned = lax.scan(lambda x, y: (x * y + c, None), a, jnp.stack([b, a]))[0]
-        return branch, loop, scanned, a**3 + c, jax.jit(jnp.square)(a) - c
-
-    found = jax.jit(lambda zero, *each: rounded(sums, zero)(*each))(np.uint32(0), a, b, c)
-    thrice = ((a * b + c) * b + c) * b + c
-    expected = a * b + c, thrice, (a * b + c) * a + c, a * (a * a) + c, a * a - c
-    for one, other in zip(found, expected, strict=True):
-        np.testing.assert_array_equal(one, other)
-
-
-def test_a_sum_over_nothing_is_zero_and_nothing_has_no_sums() -> None:
-    def products(a: Any, b: Any) -> Any:
-        return a @ b, b.T @ a.T, b.sum(axis=0)
-
-    zero, a = np.uint32(0), np.ones((0, 3), np.float32)
-    for b in (np.ones((3, 2), np.float32), np.ones((3, 0), np.float32)):
-        for one, other in zip(rounded(products, zero)(a, b), products(a, b), strict=True):
-            np.testing.assert_array_equal(one, other)
-    one = rounded(lambda a: a.T @ a, zero)(a)
-    np.testing.assert_array_equal(one, np.zeros((3, 3)))
 
 
 def test_it_is_known_whether_a_function_uses_its_first_argument() -> None:

@@ -1,16 +1,17 @@
-"""What is wrong with an environment in JAX is found, and said."""
+"""The check of environments in JAX: faults that are found, and measured lifespans."""
 
+from types import SimpleNamespace
 from typing import Any
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
-from jax import lax
 
-from primordia.habitats.gymnax.check import measure
+from primordia.habitats.contract import Discrete
+from primordia.habitats.gymnax import check
+from primordia.habitats.gymnax.check import Measured, measure
 from primordia.habitats.gymnax.habitat import Gymnax
-from primordia.habitats.gymnax.rounded import rounded
-from primordia.testing import check_habitat
 
 
 @pytest.mark.parametrize(
@@ -40,27 +41,48 @@ def test_lives_are_measured() -> None:
     assert (endless.lifespan, endless.ended) == (500.0, 0)
 
 
-def test_sums_and_matrix_products_do_not_depend_on_the_number_of_bodies(optimised: None) -> None:
-    check_habitat(Gymnax(env="tests.walks:Turning"))
+class Walked:
+    """A habitat without faults; the test gives its lives."""
+
+    words, action = 2, Discrete(3)
+    simulator = SimpleNamespace(changes_state=lambda: False, repeats=lambda: True)
 
 
-def test_sums_and_matrix_products_are_those_of_numpy() -> None:
-    rng = np.random.default_rng(0)
-    a, b = rng.normal(size=(3, 5, 7, 2)), rng.normal(size=(7, 4, 3))
-    whole = rng.integers(9, size=(5, 3))
+def test_the_lifespan_is_the_mean_of_all_lives_also_of_those_that_go_on(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Three lives have 1, 2 and 9 ticks; the second goes on. The largest numbers are of all ticks."""
+    spans, ended = np.array([1, 2, 9]), np.array([True, False, True])
+    ticks = np.arange(1, 10)[:, None]
+    largest = np.float32([[k, 9 - k] for k in range(9)])
+    sound = np.ones(9, bool)
+    seen = check._Seen(ticks <= spans, (ticks >= spans) & ended, largest, sound, sound, sound)
+    habitat: Any = Walked()
 
-    def sums(a: Any, b: Any, whole: Any) -> Any:
-        product = lax.dot_general(a, b, (((2,), (0,)), ((0,), (2,))))
-        integers = whole.sum(0), whole @ whole.T
-        return product, a.sum(), a.sum(axis=(1, 3)), a[:, :, :0].sum(axis=2), *integers
+    def measured(given: check._Seen) -> Measured:
+        monkeypatch.setattr(check, "_lived", lambda *_: jax.tree.map(jnp.asarray, given))
+        return check.measure(habitat)
 
-    found = jax.jit(lambda zero, *each: rounded(sums, zero)(*each))(
-        np.uint32(0), a.astype(np.float32), b.astype(np.float32), whole
-    )
-    expected = (
-        np.einsum("nikj,kln->nijl", a, b), a.sum(), a.sum(axis=(1, 3)), np.zeros((3, 5, 2)),
-        whole.sum(0), whole @ whole.T,
-    )  # fmt: skip
-    for one, other in zip(found, expected, strict=True):
-        assert one.shape == np.shape(other)
-        np.testing.assert_allclose(one, other, rtol=1e-4, atol=1e-5)
+    found = measured(seen)
+    assert (found.lifespan, found.ended, found.faults) == (4.0, 2, [])
+    assert found.largest.tolist() == [8, 9]
+    for name, says in (
+        ("finite", "an observation is not finite"),
+        ("inside", "an observation is outside the declared space"),
+        ("rewarded", "a reward is not finite"),
+    ):
+        once: Any = {name: np.arange(9) != 4}
+        assert measured(seen._replace(**once)).faults == [says]
+
+
+def test_values_of_a_body_that_has_ended_are_no_fault() -> None:
+    nan = np.nan
+    senses = SimpleNamespace(declared=lambda obs: (jnp.abs(obs) <= 9).all(axis=1))
+    habitat: Any = SimpleNamespace(senses=senses)
+    values = {"done": jnp.array([False, True, True]), "reward": jnp.float32([1, 2, nan]),
+              "obs": jnp.float32([[3, -4], [5, 0], [nan, 70]])}  # fmt: skip
+    seen = check._seen(habitat, values, jnp.array([True, True, False]))
+    assert [bool(each) for each in (seen.inside, seen.finite, seen.rewarded)] == [True] * 3
+    assert seen.largest.tolist() == [5, 4]
+    seen = check._seen(habitat, values, jnp.array([False, True, True]))
+    assert [bool(each) for each in (seen.inside, seen.finite, seen.rewarded)] == [False] * 3

@@ -189,27 +189,6 @@ def test_births_are_spread_as_the_settings_say() -> None:
     assert np.abs(gaussian._bodies.views["qvel"]).max() > 6
 
 
-def test_a_reached_target_feeds_once_and_then_moves() -> None:
-    habitat = of_task("Reacher-forager", 1000)
-    born(habitat, 1000)
-    all_alive, places = np.ones(1000, bool), []
-    for _ in range(20):
-        before = habitat._bodies.views["qpos"][:, 2:].copy()
-        senses, outcome = habitat.step(np.full((1000, 2), 0.05, np.float32), all_alive)
-        fed, after = outcome.food == 1, habitat._bodies.views["qpos"][:, 2:]
-        apart = np.hypot(*habitat._bodies.views["xpos"]["fingertip"][:, :2].T)
-        assert ((outcome.food == 0) | fed).all()
-        assert (after[~fed] == before[~fed]).all()
-        assert (after[fed] != before[fed]).all()
-        np.testing.assert_array_equal(senses[:, 4:6], after.astype(np.float32))
-        assert (np.hypot(*before[fed].T) <= apart[fed] + 0.06).all()
-        places.append(after[fed])
-    radius = np.hypot(*np.concatenate(places).T)
-    assert len(radius) > 50
-    assert radius.max() <= 0.2
-    assert np.median(radius) == pytest.approx(0.2 / np.sqrt(2), rel=0.15)
-
-
 def test_the_dead_are_not_stepped_and_a_failure_does_not_disturb_other_bodies() -> None:
     habitat, undisturbed = opened(), opened()
     for each in (habitat, undisturbed):

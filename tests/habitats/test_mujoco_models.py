@@ -110,11 +110,6 @@ def test_wrong_settings_are_errors_that_say_why(
     assert not Path("MUJOCO_LOG.TXT").exists()
 
 
-def test_a_target_that_an_unknown_body_must_reach_is_refused(tmp_path: Path) -> None:
-    flags = ["--habitat.target.by", "nose", "--out", tmp_path / "run"]
-    complains(here("run", "Reacher-forager", *flags), 2, "target: there is no body 'nose'; known")
-
-
 def test_without_the_extra_the_error_says_what_to_install(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

@@ -1,4 +1,4 @@
-"""Files of lives: all columns of all ticks, in each kind of file."""
+"""Files of a life tick by tick: every kind of file holds all columns of all ticks."""
 
 from pathlib import Path
 from typing import Any
@@ -27,7 +27,7 @@ def lived(first: int, ticks: int) -> Stretch:
 
 
 def columns(path: Path) -> dict[str, Any]:
-    """Return the columns of a file; those of a vector one by one."""
+    """Return the columns of a file. A vector is split into columns of single numbers."""
     if path.suffix == ".npz":
         with np.load(path) as npz:
             whole = dict(npz)

@@ -67,7 +67,7 @@ def test_a_forged_death_is_noticed(
 ) -> None:
     """The forger has changed one number of a closed segment, and computed all checksums again.
 
-    A life that dies by itself ends then, whatever its record says; any other goes on to the recorded end.
+    An organism that dies by itself dies in the same tick again. Other lives go on to the recorded end.
     """
     run = Path(shutil.copytree(chain[0], tmp_path / "run"))
     lives = Archive(run).lives.of_world(0)
@@ -86,10 +86,11 @@ def test_a_forged_death_is_noticed(
         complains(done, 1, f"organism {number} of world 0, lived again, differs from its record")
         found = json.loads(done.stdout)
         assert not found["agrees"]
-        told = found["respects"][0]["recorded"]
-        assert told == lives.ended[lives.id == number] + (change is later) - (change is earlier)
-        own_end = change is later and cause is not Cause.REPLACED
-        assert found["ends"] == told - own_end
+        recorded = found["respects"][0]["recorded"]
+        true_end = lives.ended[lives.id == number]
+        assert recorded == true_end + (change is later) - (change is earlier)
+        dies_before = change is later and cause is not Cause.REPLACED
+        assert found["ends"] == recorded - dies_before
         assert {row["name"] for row in found["respects"] if not row["agrees"]} >= respects
     shown = here("revive", run, chosen[0])
     assert shown.returncode == 1

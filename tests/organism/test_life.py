@@ -167,7 +167,7 @@ def test_an_accident_kills_only_what_dies_of_nothing_else() -> None:
 def test_a_life_begins_with_the_store_in_force_in_the_tick_of_its_birth(
     which: str, request: pytest.FixtureRequest
 ) -> None:
-    """In this past the store is another in each tick."""
+    """In this past, the store is as large as the number of the tick."""
     run = Archive(request.getfixturevalue(which))
     past = SimpleNamespace(of_lives=lambda lives, ticks: {"metabolism.store": np.float32(ticks)})
     for row in np.flatnonzero(run.lives.born > 0)[[0, 9, -1]]:

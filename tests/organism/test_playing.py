@@ -88,19 +88,19 @@ def test_only_what_is_frozen_changes_a_game(
 
 
 @pytest.mark.parametrize("freezes", [False, True])
-def test_watched_games_tell_what_brains_think_from(players: Players, freezes: bool) -> None:
-    """The same in both habitats; memory is zero at the start, and the games are the same.
+def test_watched_games_show_the_inputs_of_brains(players: Players, freezes: bool) -> None:
+    """Both habitats give the same games and the same inputs. Memory is zero at the start.
 
-    Inputs that are frozen are told as they are, not as they are frozen.
+    The inputs that are shown are the live ones, also where the brain gets frozen ones.
     """
     watched = Manner(100, some_frozen(players) if freezes else None, watched=True)
-    told = [list(stretches(each, 1, watched)) for each in (players, on_host(players))]
+    watched_in = [list(stretches(each, 1, watched)) for each in (players, on_host(players))]
     ours, theirs = (
         [
             np.concatenate(part)
             for part in zip(*((s.playing, *(s.met or ())) for s in each), strict=True)
         ]
-        for each in told
+        for each in watched_in
     )
     playing = ours[0][: len(theirs[0])]
     np.testing.assert_array_equal(playing, theirs[0])
@@ -163,7 +163,7 @@ def test_each_game_begins_with_the_store_of_its_player(players: Players) -> None
 
 
 @pytest.mark.parametrize("where", ["in JAX", "on the host"])
-def test_a_brain_whose_thoughts_are_not_finite_ends_its_game_in_its_first_tick(
+def test_a_brain_whose_outputs_are_not_finite_ends_its_game_in_its_first_tick(
     players: Players, where: str
 ) -> None:
     """The games of the other players stay the same."""

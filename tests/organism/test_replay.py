@@ -42,14 +42,14 @@ SHOWN: list[tuple[int, tuple[int | None, int | None], float | None, list[range]]
     (170, (None, 5000), 1.0, [range(101, 931)]),
     (170, (0, 102), 1.0, [range(101, 103)]),
 ]
-"""the tick after which the life begins, ages asked for, seconds of a part, parts; death at age 930"""
+"""the tick after which the life begins, ages requested, seconds of a part, parts; death is at age 930"""
 
 
 @pytest.mark.parametrize(("begins", "ages", "seconds", "parts"), SHOWN)
-def test_the_ages_shown_are_those_asked_for_as_far_as_they_are_lived(
+def test_the_ages_shown_are_those_requested_within_the_life(
     monkeypatch: pytest.MonkeyPatch, begins: int, ages: Any, seconds: Any, parts: list[range]
 ) -> None:
-    """A life is shown in parts only if no age is asked for."""
+    """A life is shown in two parts only if no age is requested."""
     life: Any = SimpleNamespace(record=SimpleNamespace(born=[70]), begins=begins, ends=1000)
     monkeypatch.setattr(replay, "picture_rate", lambda life: RATE)
     assert replay.parts_of(life, ages, seconds) == parts
@@ -73,7 +73,7 @@ def test_if_no_age_is_left_to_show_the_error_says_which_ages_can_be_seen(
     ("name", "rate", "step"),
     [("a.mp4", 60, 1), ("a.mp4", 61, 2), ("a.gif", 25, 1), ("a.gif", 50, 2), ("a.gif", 60, 3)],
 )
-def test_a_film_has_the_speed_of_the_life_and_no_more_pictures_than_its_kind_of_file_can_show(
+def test_a_film_has_the_speed_of_the_life_and_at_most_the_rate_of_its_kind_of_file(
     monkeypatch: pytest.MonkeyPatch, name: str, rate: float, step: int
 ) -> None:
     made: list[Any] = []
@@ -144,7 +144,7 @@ def test_a_caption_counts_the_age_from_the_birth_wherever_the_film_begins(
 
 
 @pytest.mark.parametrize("cause", [Cause.STARVED, None])
-def test_a_caption_tells_the_energy_and_in_the_last_tick_the_cause_of_death(
+def test_a_caption_shows_the_energy_and_in_the_last_tick_the_cause_of_death(
     monkeypatch: pytest.MonkeyPatch, cause: Cause | None
 ) -> None:
     written: list[tuple[str, ...]] = []
@@ -186,7 +186,9 @@ def test_captions_are_in_the_upper_corners_and_below_the_left_one() -> None:
     assert 12 <= left[1] < left[3] < 32 <= below[1] < below[3] < 56
 
 
-def test_a_card_tells_how_many_ticks_are_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_card_shows_the_number_of_ticks_that_are_left_out(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     cards: list[tuple[Any, str]] = []
 
     def card(size: Any, words: str) -> Image.Image:

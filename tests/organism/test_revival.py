@@ -230,8 +230,8 @@ def test_a_file_that_cannot_be_written_has_the_status_that_the_help_states(
 ) -> None:
     number = dead(Archive(chain[0]))
     complains(here("revive", chain[0], number, "--save", "/proc/a.npz"), 1, "cannot be written")
-    told = " ".join(here("revive", "--help").stdout.split())
-    assert "1 if one differs or a file cannot be written" in told
+    text = " ".join(here("revive", "--help").stdout.split())
+    assert "1 if one differs or a file cannot be written" in text
 
 
 def test_an_organism_that_was_just_born_agrees_and_has_nothing_to_save(

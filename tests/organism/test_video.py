@@ -114,7 +114,7 @@ def test_a_film_takes_the_time_that_it_shows(rate: float, tmp_path: Path) -> Non
     np.testing.assert_allclose(times, np.arange(5) / rate, rtol=1e-3)
 
 
-def test_a_gif_that_would_be_too_fast_is_refused(tmp_path: Path) -> None:
+def test_a_gif_that_shows_a_picture_for_too_long_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "film.gif"
     sample = Image.effect_noise((16, 16), 90).convert("RGB")
     pictures = [Image.new("RGB", (16, 16), (light,) * 3) for light in (0, 255, 255)]
@@ -131,7 +131,7 @@ def test_a_gif_that_would_be_too_fast_is_refused(tmp_path: Path) -> None:
 def test_a_gif_has_the_colours_of_the_sample_or_of_its_first_picture(
     sampled: bool, tmp_path: Path
 ) -> None:
-    """Its pictures are half as large, and play again and again."""
+    """Its pictures have half the size, and it plays in a loop."""
     red, green, white = (250, 0, 0), (0, 250, 0), (255, 255, 255)
     pictures = [striped(white, red), striped(green, red), striped(red, white)]
     sample = striped(green, red)

@@ -87,7 +87,7 @@ class Adding(Plain):
 
 
 class Remembering(Plain):
-    """Its outputs are those of each organism, and its memories are not."""
+    """Its memory depends on other organisms; its output does not."""
 
     def memory(self, senses: int, outputs: int) -> int:
         return outputs

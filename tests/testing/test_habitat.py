@@ -174,7 +174,7 @@ class Fixed(Wagon):
 
 
 class Whole(Wagon):
-    """It restores all bodies together, and not one of them alone."""
+    """It restores several bodies together, but not one alone."""
 
     def load(self, arrays: dict[str, np.ndarray]) -> None:
         if len(arrays["place"]) > 1:

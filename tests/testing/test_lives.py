@@ -1,4 +1,4 @@
-"""The lives that a check of a habitat plays: which bodies are born and stepped, when, and how."""
+"""The lives that a check of a habitat plays: which bodies are born and stepped in which tick."""
 
 from typing import Any
 
@@ -13,11 +13,11 @@ from primordia.testing.lives import HALF, TICKS, Lives, Past, actions
 from primordia.testing.trial import ALL
 
 FATAL_AT = 9
-"""The age at which bodies whose word is even die."""
+"""The age at which bodies with an even word die."""
 
 
 class Noted(HostHabitat):
-    """Bodies that know the word of their birth and their age. All calls are noted."""
+    """A habitat that notes all calls. A body is the word of its birth, and its age."""
 
     senses_size, action, words = 2, Discrete(5), 1
     ends = "fatal"
@@ -74,7 +74,7 @@ ENDS = np.where(DIES, FATAL_AT, TICKS)
 
 
 def stepped(calls: list[tuple[Any, ...]]) -> list[list[int]]:
-    """Return the action of each cell in each step; -1 for cells that were not to be stepped."""
+    """Return the action of each cell in each step; -1 for cells that are not alive."""
     return [call[1] for call in calls if call[0] == "step"]
 
 
@@ -82,12 +82,12 @@ def ages(past: Past) -> list[int]:
     return [int(row[0][1]) for row in past]
 
 
-def expected_steps(ages_by_tick: list[np.ndarray], who: np.ndarray) -> list[list[int]]:
+def expected_steps(ages_by_tick: list[np.ndarray], bodies: np.ndarray) -> list[list[int]]:
     """Return actions by tick and cell; a body of a negative age, or at its end, has none."""
     return [
         [
             int(ACTION[age, body]) if 0 <= age < ENDS[body] else -1
-            for age, body in zip(row, who, strict=True)
+            for age, body in zip(row, bodies, strict=True)
         ]
         for row in ages_by_tick
     ]
@@ -114,7 +114,7 @@ def test_all_lives_are_played_to_their_ends_side_by_side(
         ]
 
 
-def test_few_lives_are_those_of_the_last_bodies_in_reversed_order() -> None:
+def test_lives_among_few_are_those_of_the_last_bodies_in_reversed_order() -> None:
     pasts = Lives(habitat := Noted()).among(3)
     who = np.array([ALL - 1, ALL - 2, ALL - 3])
     assert habitat.calls[:2] == [("open", 3, False), ("reset", [0, 1, 2], WORD[who].tolist())]

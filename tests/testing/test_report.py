@@ -50,7 +50,7 @@ def test_the_last_rows_of_a_tree(count: int, rows: list[int]) -> None:
     assert (a.tolist(), b[0].tolist()) == (rows, [row * 10 for row in rows])
 
 
-def test_what_fails_is_told_as_the_fault_of_a_part() -> None:
+def test_failures_are_errors_of_the_contract_that_name_the_part() -> None:
     with pytest.raises(ContractError, match=re.escape("a: b: c")), kept():
         raise InputError("habitat: a: b: c")
     with pytest.raises(ContractError, match=r"^Linear is wrong$"):
@@ -62,11 +62,11 @@ def test_what_fails_is_told_as_the_fault_of_a_part() -> None:
 
 
 class ByIdentity:
-    """Equal parts of this class are different things."""
+    """Parts that are equal only if they are one object."""
 
 
 class ByValue(ByIdentity):
-    """Equal parts have the same hash."""
+    """Parts that are equal and have the same hash."""
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, ByValue)
@@ -76,7 +76,7 @@ class ByValue(ByIdentity):
 
 
 class Unhashed(ByIdentity):
-    """Parts that are compared and not hashed."""
+    """Parts that can be compared but not hashed."""
 
     def __eq__(self, other: object) -> bool:
         return True
@@ -85,12 +85,12 @@ class Unhashed(ByIdentity):
 
 
 @pytest.mark.parametrize("part", [ByIdentity(), Unhashed()])
-def test_parts_that_share_no_code_are_warned_of(part: object) -> None:
+def test_a_part_that_cannot_share_compiled_code_gives_a_warning(part: object) -> None:
     with pytest.warns(UserWarning, match=f"^{type(part).__name__} is not hashed by its values"):
         advise(part)
 
 
-def test_parts_that_share_code_are_not_warned_of() -> None:
+def test_a_part_that_shares_compiled_code_gives_no_warning() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         advise(ByValue())

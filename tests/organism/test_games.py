@@ -1,4 +1,4 @@
-"""The manner in which an evaluation plays its games, and what is counted of them."""
+"""Games of an evaluation: which are played, under which rules, and how distinct games are counted."""
 
 from dataclasses import dataclass
 from types import SimpleNamespace
@@ -19,7 +19,7 @@ NUMBERS = [(9, 1), (4, 0)]
 
 @dataclass(frozen=True)
 class Rules:
-    """A law, as far as an evaluation reads it."""
+    """The parts of a law that an evaluation reads."""
 
     motor: Any
     metabolism: str | None = "hunger"
@@ -27,7 +27,7 @@ class Rules:
 
 
 def played(ticks: list[list[int]], course: list[list[int]] | None = None) -> Games:
-    """Return games of some players, all cut, without food."""
+    """Return games of some players: all are cut, and no food is eaten."""
     length = np.array(ticks)
     courses = np.array(course or ticks, np.uint64)
     return Games(length, np.zeros(length.shape, bool), 0.0 * length, courses, [length[:, 0]] * 2)
@@ -35,7 +35,7 @@ def played(ticks: list[list[int]], course: list[list[int]] | None = None) -> Gam
 
 @pytest.fixture
 def calls(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
-    """Return the inputs of each call of `play`; games differ from player to player."""
+    """Replace `play`, and return the inputs of each call. Each player has games of other lengths."""
     noted: list[dict[str, Any]] = []
 
     def play(players: Players, games: int, ticks: int, **given: Any) -> Games:
@@ -50,11 +50,11 @@ def calls(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
 def evaluated(
     monkeypatch: pytest.MonkeyPatch, game: Any, words: int = 4, motor: str = "direct", **given: Any
 ) -> list[Evaluation]:
-    """Evaluate two players in a changed habitat, of which the game is the original task."""
+    """Evaluate two players in a changed habitat, whose original task is `game`."""
     habitat: Any = SimpleNamespace(name="changed", words=words, original=lambda: game)
     after = SimpleNamespace(build_habitat=lambda: habitat)
     monkeypatch.setattr(evaluation, "changed", lambda config, changes: after)
-    habitat_before: Any = SimpleNamespace(name="as it was")
+    habitat_before: Any = SimpleNamespace(name="unchanged")
     law: Any = Rules(SimpleNamespace(kind=motor))
     rates: Any = None
     own = Players(law, habitat_before, np.zeros((2, 5), np.float32), rates, rates)
@@ -119,7 +119,7 @@ def test_ignored_senses_repeat_one_game_in_the_habitat_of_the_task(
     monkeypatch: pytest.MonkeyPatch, calls: list[dict[str, Any]]
 ) -> None:
     evaluated(monkeypatch, SimpleNamespace(name="game", episode=5), senses="ignored")
-    assert [call["habitat"].name for call in calls] == ["as it was", "changed", "game"]
+    assert [call["habitat"].name for call in calls] == ["unchanged", "changed", "game"]
     assert [call["games"] for call in calls] == [1, 7, 7]
     assert [call["ticks"] for call in calls] == [100, 100, 5]
     assert [call.get("frozen") for call in calls] == [None] * 3
@@ -129,7 +129,7 @@ def test_ignored_senses_repeat_one_game_in_the_habitat_of_the_task(
 
 
 @pytest.mark.parametrize("wrong", [{"games": 0}, {"ticks": 0}, {"games": -1, "ticks": 5}])
-def test_an_evaluation_has_a_game_of_a_tick(
+def test_an_evaluation_has_at_least_one_game_of_one_tick(
     monkeypatch: pytest.MonkeyPatch, calls: list[dict[str, Any]], wrong: dict[str, int]
 ) -> None:
     with pytest.raises(InputError, match="at least one game of at least one tick"):
@@ -137,7 +137,7 @@ def test_an_evaluation_has_a_game_of_a_tick(
     assert len(evaluated(monkeypatch, None, games=1, ticks=1)) == 2
 
 
-def test_distinct_games_are_those_of_the_whole_game_if_there_is_one() -> None:
+def test_distinct_games_are_counted_in_whole_games_if_there_are_any() -> None:
     lived = played([[1, 1, 1, 1]], [[5, 5, 6, 6]]).of_player(0)
     whole = played([[1, 1, 1, 1]], [[1, 2, 3, 3]]).of_player(0)
     assert Evaluation(0, 0, "live", lived, None, deterministic=False).distinct == 2
@@ -172,7 +172,7 @@ def test_games_differ_in_course_if_senses_or_food_of_a_tick_differ() -> None:
         return int(_marks(Stretch(given, given, eaten, marks, given))[0, 0])
 
     assert marked(3, 7, None) == marked(3, 7, 0.0) == 3 * 2**32 + 7
-    places = (
+    different = (
         (3, 7, 0.0),
         (4, 7, 0.0),
         (3, 8, 0.0),
@@ -181,7 +181,7 @@ def test_games_differ_in_course_if_senses_or_food_of_a_tick_differ() -> None:
         (3, 7, 0.5),
         (3, 7, -1.0),
     )
-    assert len({marked(*place) for place in places}) == len(places)
+    assert len({marked(*each) for each in different}) == len(different)
 
 
 def test_only_the_settings_that_are_named_change() -> None:

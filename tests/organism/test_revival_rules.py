@@ -1,4 +1,4 @@
-"""Where a revived life begins, if not with the birth, and what is noted of a comparison."""
+"""Rules of revival: the state with which a life begins, the notes of a comparison, and the result."""
 
 from pathlib import Path
 from types import SimpleNamespace
@@ -19,7 +19,8 @@ KEPT = ({"ticks": [9, 1200]}, {"ticks": [9, 1100]}, {"ticks": [9, 60]})
 def stored(
     monkeypatch: pytest.MonkeyPatch, since: int | None, born: int = 60, ended: int = 1300
 ) -> int | None:
-    """Return the tick in which the life of organism 3 of world 1 is to begin; None: with its birth."""
+    """Return the tick of the state with which a life begins; None if it begins at birth."""
+    # the life of organism 3 of world 1
     lives = SimpleNamespace(
         row=lambda organism, world: {(3, 1): 2}[organism, world],
         born=np.array([0, 0, born]),
@@ -45,10 +46,10 @@ def test_a_life_begins_with_the_newest_state_that_is_not_later(
 @pytest.mark.parametrize(
     ("born", "ended", "begins"), [(60, 61, 60), (60, 1100, 60), (61, 1101, 1100), (61, 1200, 1100)]
 )
-def test_a_life_begins_with_a_state_after_which_it_goes_on(
+def test_a_life_begins_with_a_state_that_it_outlives(
     monkeypatch: pytest.MonkeyPatch, born: int, ended: int, begins: int
 ) -> None:
-    """It may be born in the tick of the state, but it does not die in this tick."""
+    """An organism may be born in the tick of the state, but must not die in it."""
     assert stored(monkeypatch, 10**9, born, ended) == begins
 
 
@@ -84,7 +85,7 @@ def test_if_no_state_is_early_enough_the_error_says_which_are_kept(
 def test_each_limit_of_a_comparison_is_noted_once(
     monkeypatch: pytest.MonkeyPatch, progress: dict[str, Any], given: dict[str, Any], notes: list
 ) -> None:
-    """One world has stopped earlier than the other."""
+    """One world stopped earlier than the other."""
     monkeypatch.setattr(directory, "is_written", lambda path: given.get("written", False))
     run: Any = SimpleNamespace(
         path="RUN",
@@ -99,7 +100,7 @@ def test_each_limit_of_a_comparison_is_noted_once(
     assert all(part in note for part, note in zip(notes, found, strict=True))
 
 
-def test_a_life_of_one_tick_can_be_saved_and_one_of_none_cannot(
+def test_a_life_of_one_tick_can_be_saved_and_one_of_no_tick_cannot(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     written: list[Any] = []
@@ -115,7 +116,7 @@ def test_a_life_of_one_tick_can_be_saved_and_one_of_none_cannot(
         revival._lived(lived(5), Path("a.npz"))
 
 
-def test_what_is_found_is_told_in_plain_values() -> None:
+def test_a_revival_has_plain_values_for_json() -> None:
     respects = (Respect("tick", 9, 9), Respect("cause", "starved", None))
     found = Revival(3, 1, "fork", 60, 1300, respects, ("a note",), (Path("a.npz"),))
     assert found.to_dict() == {

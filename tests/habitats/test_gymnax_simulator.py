@@ -1,4 +1,4 @@
-"""Parts of environments in JAX: where they come from, their parameters, packed states, and powers."""
+"""Environments in JAX: their libraries, time limits, parameters, and packed states."""
 
 from types import SimpleNamespace
 from typing import Any
@@ -7,12 +7,10 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from jax import lax
 
 from primordia.habitats.gymnax import libraries
 from primordia.habitats.gymnax.libraries import NEVER, package_of
 from primordia.habitats.gymnax.packed import pack
-from primordia.habitats.gymnax.rounded import rounded
 from primordia.habitats.gymnax.simulator import Simulator, _as
 
 
@@ -30,7 +28,7 @@ def test_the_package_of_an_environment_follows_from_its_name(name: str, package:
     assert package_of(name) == package
 
 
-def test_the_versions_of_an_environment_of_ones_own_are_those_of_no_library() -> None:
+def test_an_environment_of_the_user_has_no_versions_of_libraries() -> None:
     assert libraries.versions("tests.walks:Walk") == {}
 
 
@@ -59,7 +57,7 @@ def test_the_time_limit_of_a_game_of_octax_is_set_when_it_is_made(
 
 
 class Cut:
-    """An environment that is done at the age of 3 alone, and is cut from the age of 5 on."""
+    """An environment that is done only at age 3 and reports a time limit from age 5 on."""
 
     def reset_env(self, key: Any, params: Any) -> tuple[Any, Any]:
         return jnp.float32(0), jnp.int32(0)
@@ -75,7 +73,7 @@ class Cut:
 
 
 @pytest.mark.parametrize("time_limit", [False, True])
-def test_an_environment_that_tells_when_it_is_cut_ends_then_if_its_limit_is_kept(
+def test_a_reported_time_limit_ends_a_life_only_if_the_limit_is_kept(
     time_limit: bool,
 ) -> None:
     env, key = Simulator(Cut(), 5, time_limit), jnp.zeros(2, jnp.uint32)
@@ -121,7 +119,7 @@ def test_a_parameter_of_another_type_is_refused(default: Any, given: Any) -> Non
 
 
 def test_a_packed_state_is_the_state_bit_for_bit() -> None:
-    """Single numbers are words of 32 bits in one array; arrays stay as they are."""
+    """Single numbers become words of 32 bits in one array; arrays are unchanged."""
     state = {
         "a": jnp.float32(-0.1), "b": jnp.arange(3.0), "c": jnp.bool_(True), "d": jnp.int32(-7),
         "e": {"f": jnp.uint32(2**32 - 1), "g": jnp.zeros((2, 2), bool), "h": jnp.bool_(False)},
@@ -136,34 +134,3 @@ def test_a_packed_state_is_the_state_bit_for_bit() -> None:
     for one, other in zip(jax.tree.leaves(back), jax.tree.leaves(state), strict=True):
         assert one.dtype == other.dtype
         np.testing.assert_array_equal(one, other)
-
-
-def test_powers_and_scans_are_those_of_numpy() -> None:
-    """Powers are products of squares, from the smallest on, each rounded."""
-    a = np.float32([0.3, -1.7, 2.9])
-    rows = np.float32([[0.1, 0.2, 0.3], [1.1, -1.2, 1.3], [7.0, 8.0, 9.0]])
-
-    def powers(a: Any, rows: Any) -> Any:
-        def step(x: Any, row: Any) -> Any:
-            return x * row + 1, x - row
-
-        last, passed = lax.scan(step, a, rows, reverse=True)
-        grown = lax.while_loop(lambda x: x[0] < 9, lambda x: x * x + a * a, a + 1)
-        return [lax.integer_pow(a, y) for y in (0, 1, 2, 5, 6, -1, -3)], last, passed, grown
-
-    found, last, passed, grown = rounded(powers, jnp.uint32(0))(a, rows)
-    two, one = a * a, np.float32(1)
-    four = two * two
-    expected = [a * 0 + 1, a, two, a * four, two * four, one / a, one / (a * two)]
-    for power, wanted in zip(found, expected, strict=True):
-        np.testing.assert_array_equal(power, wanted)
-    x, seen = a, []
-    for row in rows[::-1]:
-        x, before = x * row + 1, x - row
-        seen.append(before)
-    np.testing.assert_array_equal(last, x)
-    np.testing.assert_array_equal(passed, seen[::-1])
-    x = a + 1
-    while x[0] < 9:
-        x = x * x + two
-    np.testing.assert_array_equal(grown, x)

@@ -1,0 +1,47 @@
+"""Pictures of environments in JAX: grids of colours, or bars."""
+
+import colorsys
+
+import numpy as np
+import pytest
+
+from primordia.habitats.framed import MARGIN
+from primordia.habitats.gymnax.picture import BAR, GROUND, WIDTH, draw
+
+
+def test_a_cell_of_a_grid_has_the_colour_of_its_last_channel_that_is_not_zero() -> None:
+    """A share between 0 and 1 is a mixture with the ground; a larger one is the whole colour."""
+    grid = np.zeros((2, 4, 5), np.float32)
+    grid[0, 1, 3] = 1
+    grid[0, 2, [1, 4]] = 1
+    grid[1, 0, 2] = 0.5
+    grid[1, 3, 0] = 7
+    grid[1, 1, 0] = -1
+    colour = [255 * np.array(colorsys.hsv_to_rgb(hue / 5, 0.65, 0.95)) for hue in range(5)]
+    expected = np.tile(GROUND.astype(float), (2, 4, 1))
+    expected[0, 1], expected[0, 2], expected[1, 3] = colour[3], colour[4], colour[0]
+    expected[1, 0] = (GROUND + colour[2]) / 2
+    picture = np.asarray(draw(grid.ravel(), (2, 4, 5)))
+    assert picture.shape == (MARGIN + 2 * 100, 4 * 100, 3)
+    for row in range(2):
+        for column in range(4):
+            cell = picture[MARGIN + 100 * row :, 100 * column :][:100, :100]
+            np.testing.assert_allclose(cell, np.tile(expected[row, column], (100, 100, 1)), atol=1)
+
+
+@pytest.mark.parametrize("count", [2, 5, WIDTH, 2 * WIDTH])
+def test_a_sense_is_a_bar_from_the_middle_up_or_down(count: int) -> None:
+    """The bars of +1 and -1, which larger senses have too, end 4 pixels before the edge."""
+    senses = np.zeros(count, np.float32)
+    senses[0], senses[1], senses[-1] = 0.5, -3.0, np.nan if count > 2 else -3.0
+    picture = np.asarray(draw(senses, None))[MARGIN:]
+    width = max(count, WIDTH)
+    assert picture.shape == (WIDTH // 2, width, 3)
+    middle, each = WIDTH // 4, width / count
+    bar = (picture == np.array([int(BAR[k : k + 2], 16) for k in (1, 3, 5)])).all(axis=2)
+    for place, (top, bottom) in enumerate(((middle - 48, middle), (middle, middle + 96))):
+        rows = np.flatnonzero(bar[:, int((place + 0.4) * each)])
+        assert (rows.min(), rows.max()) == pytest.approx((top, bottom), abs=1)
+    above, below = (np.flatnonzero(part.any(axis=0)) for part in (bar[:middle], bar[middle + 1 :]))
+    assert (above.min(), above.max()) == (0, max(round(0.8 * each) - 1, 0))
+    assert (below.min(), below.max()) == (round(each), max(round(1.8 * each) - 1, round(each)))
