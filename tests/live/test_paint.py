@@ -1,4 +1,4 @@
-"""What is painted: heights, letters, lights and colours, each computed here in another way."""
+"""Heights, letters, lights and colours of drawn cells, each computed here in another way."""
 
 import colorsys
 
@@ -9,7 +9,6 @@ from rich.segment import Segment
 from primordia.live.paint import (
     EMPTY,
     Cells,
-    Row,
     colour,
     field,
     levels,
@@ -20,21 +19,10 @@ from primordia.live.paint import (
     skyline,
     strip,
 )
+from tests.live.drawn import colours, text
 
 BARS = " ▁▂▃▄▅▆▇█"
 AGES = np.array([0.0, 0.2, 0.4, 0.6, 0.8, 1.0])
-
-
-def text(rows: list[Row]) -> list[str]:
-    return ["".join(segment.text for segment in row) for row in rows]
-
-
-def colours(segment: Segment) -> tuple[tuple[int, ...], tuple[int, ...] | None]:
-    """Return red, green and blue of the upper and the lower half of a character."""
-    style = segment.style
-    assert style is not None
-    lower = None if style.bgcolor is None else tuple(style.bgcolor.get_truecolor())
-    return tuple(style.color.get_truecolor()), lower
 
 
 def test_age_is_on_a_logarithmic_scale_up_to_the_full_age() -> None:
@@ -101,22 +89,28 @@ def test_a_cell_of_two_columns_has_one_row_and_a_cell_of_four_has_two() -> None:
     (upper, _), (lower, _) = field(cells, columns=2, scale=2, letters=False)
     for segment, line in ((upper, 1), (lower, 3)):
         one, other = colours(segment)
-        assert one == other, "both halves are of one cell"
+        assert one == other, "both halves belong to one cell"
         np.testing.assert_allclose(one, 0.4 * np.array(colour(line)), atol=1)
 
 
 def test_a_picture_keeps_its_colours_to_four_bits() -> None:
-    pixels = np.array([[[255, 15, 16]], [[0, 255, 0]], [[16, 31, 255]]], np.uint8)
-    (upper,), (lower,) = photograph(pixels)
-    assert colours(upper) == ((255, 0, 17), (0, 255, 0))
-    assert colours(lower) == ((17, 17, 255), None)
+    """Two points, one above the other, are a character."""
+    pixels = np.array(
+        [[[255, 15, 16], [1, 2, 3]], [[0, 255, 0], [255, 0, 0]], [[16, 31, 255], [0, 0, 0]]],
+        np.uint8,
+    )
+    drawn = [[colours(each) for each in row] for row in photograph(pixels)]
+    assert drawn == [
+        [((255, 0, 17), (0, 255, 0)), ((0, 0, 0), (255, 0, 0))],
+        [((17, 17, 255), None), ((0, 0, 0), None)],
+    ]
 
 
 def test_levels_go_in_eight_equal_steps_from_minus_one_to_one() -> None:
     steps = [-1 + 2 * step / 7 for step in range(8)]
     assert levels(np.array(steps)) == "▁▂▃▄▅▆▇█"
     assert levels(np.array([-9.0, 9.0, -np.inf, np.inf])) == "▁█▁█"
-    assert levels(np.array([np.nan])) == levels(np.array([0.0])), "what is no number is drawn as 0"
+    assert levels(np.array([np.nan])) == levels(np.array([0.0])), "an undefined value is drawn as 0"
 
 
 def test_a_row_is_padded_to_a_width_and_never_cut() -> None:

@@ -1,4 +1,4 @@
-"""The numbers of the view: each is the count on record, in its place, with its unit."""
+"""The numbers of the view, each in its place with its unit; the bar of saturation; and the keys."""
 
 from itertools import pairwise
 from typing import Any
@@ -7,6 +7,7 @@ import pytest
 from rich.segment import Segment
 
 from primordia.law.world import Cause
+from primordia.live.census import Census
 from primordia.live.ground import Medians
 from primordia.live.panel import (
     Outlook,
@@ -19,38 +20,36 @@ from primordia.live.panel import (
     saturation,
     with_prefix,
 )
+from tests.live.drawn import text
 from tests.live.posed import counted
-from tests.live.test_paint import text
 from tests.worlds import MEADOW, config
 
-RING, PAUSED = {"seed": 7, "cells": 1024}, "at most 3 ticks/s"
+RING, PACE = {"seed": 7, "cells": 1024}, "at most 3 ticks/s"
 WELL_MIXED = {**RING, "placement": {"topology": "well-mixed"}}
 
 
 @pytest.mark.parametrize(
-    ("settings", "about"),
+    ("settings", "size", "shape"),
     [
-        (RING, "  seed 7, 1,024 cells on a ring"),
-        (WELL_MIXED, "  seed 7, 1,024 cells well-mixed"),
-        ({**RING, "placement": {"topology": "torus4"}}, "  seed 7, 1,024 cells on a torus"),
-        ({**RING, "placement": {"topology": "torus8"}}, "  seed 7, 1,024 cells on a torus"),
-        ({**RING, "seeds": 3}, "  3 worlds, seeds 7 to 9, 1,024 cells each on a ring"),
+        (RING, "seed 7, 1,024 cells", "on a ring"),
+        (WELL_MIXED, "seed 7, 1,024 cells", "well-mixed"),
+        ({**RING, "placement": {"topology": "torus4"}}, "seed 7, 1,024 cells", "on a torus"),
+        ({**RING, "placement": {"topology": "torus8"}}, "seed 7, 1,024 cells", "on a torus"),
+        ({**RING, "seeds": 3}, "3 worlds, seeds 7 to 9, 1,024 cells each", "on a ring"),
         ({**WELL_MIXED, "seeds": 1000},
-         "  1,000 worlds, seeds 7 to 1006, 1,024 cells each well-mixed"),
+         "1,000 worlds, seeds 7 to 1006, 1,024 cells each", "well-mixed"),
     ],
 )  # fmt: skip
 def test_the_heading_has_the_size_of_the_run_and_its_seeds(
-    settings: dict[str, Any], about: str
+    settings: dict[str, Any], size: str, shape: str
 ) -> None:
-    of, clock = config(MEADOW, **settings), f"{PAUSED}, 1 min 5 s"
-    needed = len("meadow") + len(about) + 2 + len(clock)
-    (row,) = text([heading(of, PAUSED, 65.0, needed)])
-    assert row == f"meadow{about}  {clock}"
-    (row,) = text([heading(of, PAUSED, 65.0, needed - 1)])
-    shorter = about.rsplit(" on a " if " on a " in about else " ", 1)[0]
-    assert row == f"meadow{shorter}{' ' * (len(about) - len(shorter) + 1)}{clock}"
-    (row,) = text([heading(of, "", 65.0, 12)])
-    assert row == "meadow 1 min 5 s", "only the task and the time are always told"
+    """The shape is left out where there is no room; the task and the time are always shown."""
+    of, clock = config(MEADOW, **settings), f"{PACE}, 1 min 5 s"
+    whole = f"meadow  {size} {shape}  {clock}"
+    assert text([heading(of, PACE, 65.0, len(whole))]) == [whole]
+    gap = " " * len(f" {shape} ")
+    assert text([heading(of, PACE, 65.0, len(whole) - 1)]) == [f"meadow  {size}{gap}{clock}"]
+    assert text([heading(of, "", 65.0, 12)]) == ["meadow 1 min 5 s"]
 
 
 COUNTS: dict[str, Any] = {
@@ -85,7 +84,7 @@ def test_each_number_is_that_of_all_worlds_that_are_shown() -> None:
     ]
 
 
-def test_unknown_numbers_are_left_out_and_numbers_of_nothing_are_not() -> None:
+def test_unknown_numbers_are_left_out_and_zeros_are_not() -> None:
     found = numbers(counted(1), 8, Outlook(None, None), None, None)
     assert found == {
         "tick": "0", "alive": "0 of 8", "mean age": "0", "births": "0", "deaths": "0", "oldest": "0",
@@ -141,12 +140,12 @@ def test_the_rows_of_numbers_are_cut_before_the_causes_and_the_bar() -> None:
         (15, "900 re"),
     ],
 )
-def test_causes_of_death_of_all_worlds_are_told_by_their_number(width: int, said: str) -> None:
+def test_causes_of_death_of_all_worlds_are_ordered_by_their_counts(width: int, said: str) -> None:
     (row, _) = text(panel({}, counted(2, **COUNTS), [], width, 9))
     assert row == f"died of  {said}"
 
 
-def test_every_cause_is_told_by_its_own_name() -> None:
+def test_every_cause_has_its_own_name() -> None:
     for cause in Cause:
         deaths = [[3 * (each == cause) for each in Cause]]
         (row, _) = text(panel({}, counted(1, deaths=deaths), [], 80, 9))
@@ -188,6 +187,35 @@ def test_a_narrow_bar_says_less(width: int, said: str) -> None:
     assert text([saturation(calm, 8, 1000, width)]) == [said]
 
 
+@pytest.mark.parametrize("width", [20, 30, 80])
+def test_only_a_saturated_world_is_called_saturated(width: int) -> None:
+    def said(each: Census) -> str:
+        (row,) = text([saturation(each, 8, 1000, width)])
+        assert len(row) <= width
+        return row
+
+    assert "saturated" not in said(counted(alive=[7]))
+    assert "saturated" not in said(counted(alive=[8], calm=[999]))
+    assert "saturated" in said(counted(alive=[7], calm=[3], saturated=[1234]))
+
+
+@pytest.mark.parametrize(
+    ("alive", "calm", "said", "filled"),
+    [
+        ([7], [500], "full and calm for 0 of 1,000 ticks", 0),
+        ([8], [500], "full and calm for 500 of 1,000 ticks", 12),
+        ([8], [2000], "full and calm for 1,000 of 1,000 ticks", 24),
+        ([7, 8], [900, 250], "one world full and calm for 250 of 1,000 ticks", 6),
+        ([7, 0], [900, 900], "no world full and calm for 1,000 ticks", 0),
+    ],
+)
+def test_a_bar_of_24_columns_grows_only_with_the_calm_of_full_worlds(
+    alive: list[int], calm: list[int], said: str, filled: int
+) -> None:
+    some = counted(len(alive), alive=alive, calm=calm)
+    assert text([saturation(some, 8, 1000, 80)]) == [bar(filled, 24, said)]
+
+
 ROWS = [
     "space pause  s step  -+ speed  w world  o organism  n next  ? words  q quit",
     "space pause s step -+ speed w world o organism n next ? q quit",
@@ -203,12 +231,12 @@ def test_keys_lose_their_names_where_there_is_no_room() -> None:
         assert text([keys("s-won?q", len(row) - 1)]) == [shorter]
 
 
-def test_keys_without_meaning_are_not_named() -> None:
+def test_only_the_given_keys_are_named() -> None:
     """The first character of `space` is an s, too."""
     assert text([keys("s-o?q", 80)]) == [
         "space pause  s step  -+ speed  o organism  ? words  q quit"
     ]
-    assert text([keys("s-won?q", 3)]) == [ROWS[-1]], "the keys themselves are always named"
+    assert text([keys("s-won?q", 3)]) == [ROWS[-1]], "all keys are shown, even if there is no room"
 
 
 @pytest.mark.parametrize(

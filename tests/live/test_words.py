@@ -1,4 +1,4 @@
-"""The pages of words."""
+"""The pages that explain words and keys."""
 
 from itertools import pairwise
 
@@ -6,7 +6,7 @@ import pytest
 
 from primordia.live.panel import KEYS as NAMED
 from primordia.live.words import KEYS, WORDS, pages
-from tests.live.test_paint import text
+from tests.live.drawn import text
 
 
 @pytest.mark.parametrize("size", [(120, 40), (100, 21), (60, 12), (20, 5), (10, 1)])
