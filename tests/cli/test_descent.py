@@ -115,7 +115,7 @@ def line(place: int, **other: Any) -> dict[str, Any]:
 
 def world(count: int, **other: Any) -> Any:
     """Return a world of lines. Its numbers at the last tick differ from all others."""
-    told = {
+    exported = {
         "lines": [line(place) for place in range(count)],
         "founded": 1500,
         "shadows": 2000,
@@ -125,7 +125,7 @@ def world(count: int, **other: Any) -> Any:
     values: dict[str, Any] = {
         "world": 3, "founders": np.arange(count), "ticks": np.array([1500, 1600, 9000]),
         "effective": np.array([[9.0, 8, 7], [6, 5, 4], [3, 2, 1.5]]), "sweeps": [],
-        "diversity": np.array([11111, 22222, 33333]), "to_dict": lambda: told,
+        "diversity": np.array([11111, 22222, 33333]), "to_dict": lambda: exported,
         "pairs": Times(np.array([1000, 3000]), np.array([0.25, 0.5])),
         "neutral_pairs": Times(np.array([5000]), np.array([0.8])),
     }  # fmt: skip

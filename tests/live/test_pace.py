@@ -1,4 +1,4 @@
-"""The pace: which speed comes next, how long it waits, and how long the next chunk is."""
+"""The pace of a run: the next speed, the waits, and the length of the next chunk."""
 
 from functools import partial
 from types import SimpleNamespace

@@ -96,11 +96,11 @@ def test_unknown_numbers_are_left_out_and_zeros_are_not() -> None:
 
 
 @pytest.mark.parametrize(
-    ("cells", "said"),
+    ("cells", "shown"),
     [(499_999, "25 of 999,998"), (500_000, "25 of 1.0 M"), (10**7, "25 of 20.0 M")],
 )
-def test_from_a_million_cells_on_numbers_are_short(cells: int, said: str) -> None:
-    assert numbers(counted(2, **COUNTS), cells, Outlook(None, None), None, None)["alive"] == said
+def test_from_a_million_cells_on_numbers_are_short(cells: int, shown: str) -> None:
+    assert numbers(counted(2, **COUNTS), cells, Outlook(None, None), None, None)["alive"] == shown
 
 
 def test_at_most_five_numbers_stand_side_by_side_in_columns() -> None:
@@ -130,7 +130,7 @@ def test_the_rows_of_numbers_are_cut_before_the_causes_and_the_bar() -> None:
 
 
 @pytest.mark.parametrize(
-    ("width", "said"),
+    ("width", "shown"),
     [
         (200, "900 replaced, 30 time-limit, 30 hazard, 9 fatal"),
         (56, "900 replaced, 30 time-limit, 30 hazard, 9 fatal"),
@@ -140,9 +140,9 @@ def test_the_rows_of_numbers_are_cut_before_the_causes_and_the_bar() -> None:
         (15, "900 re"),
     ],
 )
-def test_causes_of_death_of_all_worlds_are_ordered_by_their_counts(width: int, said: str) -> None:
+def test_causes_of_death_of_all_worlds_are_ordered_by_their_counts(width: int, shown: str) -> None:
     (row, _) = text(panel({}, counted(2, **COUNTS), [], width, 9))
-    assert row == f"died of  {said}"
+    assert row == f"died of  {shown}"
 
 
 def test_every_cause_has_its_own_name() -> None:
@@ -152,12 +152,12 @@ def test_every_cause_has_its_own_name() -> None:
         assert row == f"died of  3 {cause.label}"
 
 
-def bar(filled: int, length: int, said: str) -> str:
-    return f"{'━' * filled}{'╌' * (length - filled)}  {said}"
+def bar(filled: int, length: int, shown: str) -> str:
+    return f"{'━' * filled}{'╌' * (length - filled)}  {shown}"
 
 
 @pytest.mark.parametrize(
-    ("saturated", "width", "said"),
+    ("saturated", "width", "shown"),
     [
         ([1234], 80, bar(24, 24, "saturated since tick 1,234")),
         ([1234], 36, bar(8, 8, "saturated since tick 1,234")),
@@ -171,36 +171,38 @@ def bar(filled: int, length: int, said: str) -> str:
     ],
 )
 def test_the_bar_has_the_share_of_saturated_worlds(
-    saturated: list[int], width: int, said: str
+    saturated: list[int], width: int, shown: str
 ) -> None:
-    assert text([saturation(counted(len(saturated), saturated=saturated), 8, 100, width)]) == [said]
+    assert text([saturation(counted(len(saturated), saturated=saturated), 8, 100, width)]) == [
+        shown
+    ]
 
 
 @pytest.mark.parametrize(
-    ("width", "said"),
+    ("width", "shown"),
     [(46, bar(4, 8, "full and calm for 500 of 1,000 ticks")),
      (45, "full and calm for 500 of 1,000 ticks"), (35, bar(8, 16, "calm 500 of 1,000")),
      (17, "calm 500 of 1,000"), (16, "calm 50%"), (5, "calm ")],
 )  # fmt: skip
-def test_a_narrow_bar_says_less(width: int, said: str) -> None:
+def test_a_narrow_bar_says_less(width: int, shown: str) -> None:
     calm = counted(1, alive=[8], calm=[500])
-    assert text([saturation(calm, 8, 1000, width)]) == [said]
+    assert text([saturation(calm, 8, 1000, width)]) == [shown]
 
 
 @pytest.mark.parametrize("width", [20, 30, 80])
 def test_only_a_saturated_world_is_called_saturated(width: int) -> None:
-    def said(each: Census) -> str:
+    def bar_of(each: Census) -> str:
         (row,) = text([saturation(each, 8, 1000, width)])
         assert len(row) <= width
         return row
 
-    assert "saturated" not in said(counted(alive=[7]))
-    assert "saturated" not in said(counted(alive=[8], calm=[999]))
-    assert "saturated" in said(counted(alive=[7], calm=[3], saturated=[1234]))
+    assert "saturated" not in bar_of(counted(alive=[7]))
+    assert "saturated" not in bar_of(counted(alive=[8], calm=[999]))
+    assert "saturated" in bar_of(counted(alive=[7], calm=[3], saturated=[1234]))
 
 
 @pytest.mark.parametrize(
-    ("alive", "calm", "said", "filled"),
+    ("alive", "calm", "shown", "filled"),
     [
         ([7], [500], "full and calm for 0 of 1,000 ticks", 0),
         ([8], [500], "full and calm for 500 of 1,000 ticks", 12),
@@ -210,10 +212,10 @@ def test_only_a_saturated_world_is_called_saturated(width: int) -> None:
     ],
 )
 def test_a_bar_of_24_columns_grows_only_with_the_calm_of_full_worlds(
-    alive: list[int], calm: list[int], said: str, filled: int
+    alive: list[int], calm: list[int], shown: str, filled: int
 ) -> None:
     some = counted(len(alive), alive=alive, calm=calm)
-    assert text([saturation(some, 8, 1000, 80)]) == [bar(filled, 24, said)]
+    assert text([saturation(some, 8, 1000, 80)]) == [bar(filled, 24, shown)]
 
 
 ROWS = [
@@ -240,22 +242,22 @@ def test_only_the_given_keys_are_named() -> None:
 
 
 @pytest.mark.parametrize(
-    ("number", "said"),
+    ("number", "shown"),
     [(0.4, "0"), (1, "1"), (999, "999"), (1000, "1.0 k"), (99_900, "99.9 k"), (100_000, "100 k"),
      (999.7, "1.0 k"), (99_960, "100 k"), (999_700, "1.0 M"), (1e6, "1.0 M"),
      (12.34e6, "12.3 M"), (1e9, "1.0 G"), (2.5e12, "2500 G")],
 )  # fmt: skip
-def test_a_prefix_stands_for_each_thousand(number: float, said: str) -> None:
-    assert with_prefix(number) == said
+def test_a_prefix_stands_for_each_thousand(number: float, shown: str) -> None:
+    assert with_prefix(number) == shown
 
 
 @pytest.mark.parametrize(
-    ("seconds", "said"),
+    ("seconds", "shown"),
     [(59.4, "59 s"), (59.6, "1 min 0 s"), (60, "1 min 0 s"), (3599.4, "59 min 59 s"),
      (3599.6, "1 h 0 min"), (3600, "1 h 0 min"), (7325, "2 h 2 min"), (3.6e6 + 61, "1,000 h 1 min")],
 )  # fmt: skip
-def test_a_duration_has_its_two_largest_units(seconds: float, said: str) -> None:
-    assert duration(seconds) == said
+def test_a_duration_has_its_two_largest_units(seconds: float, shown: str) -> None:
+    assert duration(seconds) == shown
 
 
 def test_the_first_text_that_fits_is_taken_or_the_beginning_of_the_last() -> None:

@@ -68,12 +68,12 @@ def test_a_part_of_a_torus_is_its_first_rows_and_columns() -> None:
     cells = old(24)
     whole, nothing = Torus(4, 6, letters=True).draw(cells, [], letter_room(9, 9))
     assert (text(whole), nothing) == (["ABCDEF", "GHIJKL", "MNOPQR", "STUVWX"], "")
-    part, said = Torus(4, 6, letters=True).draw(cells, [], letter_room(5, 3))
+    part, note = Torus(4, 6, letters=True).draw(cells, [], letter_room(5, 3))
     assert text(part) == ["ABCDE", "GHIJK", "MNOPQ"]
-    assert said == "shown: 3 x 5 of 4 x 6 cells"
-    pixels, said = Torus(4, 6, letters=False).draw(cells, [], colour_room(5, 1))
+    assert note == "shown: 3 x 5 of 4 x 6 cells"
+    pixels, note = Torus(4, 6, letters=False).draw(cells, [], colour_room(5, 1))
     expected = mosaic(np.array([[0, 1, 2, 3, 4], [6, 7, 8, 9, 10]]) * 4 + 3)
-    assert (pixels, said) == (expected, "shown: 2 x 5 of 4 x 6 cells")
+    assert (pixels, note) == (expected, "shown: 2 x 5 of 4 x 6 cells")
 
 
 @pytest.mark.parametrize(("height", "rows"), [(2, 2), (4, 4), (9, 4)])
@@ -108,8 +108,8 @@ def test_the_past_of_a_ring_is_below_it_with_the_latest_moment_first() -> None:
 def test_many_cells_make_several_equal_skylines(
     cells: int, width: int, height: int, rows: list[str], part: str
 ) -> None:
-    drawn, said = Ring(cells).draw(old(cells), [np.zeros(cells)], colour_room(width, height))
-    assert (text(drawn), said) == (rows, part)
+    drawn, note = Ring(cells).draw(old(cells), [np.zeros(cells)], colour_room(width, height))
+    assert (text(drawn), note) == (rows, part)
 
 
 def test_letters_in_one_row_are_capitals_for_the_old_and_elsewhere_below_bars() -> None:
@@ -119,7 +119,7 @@ def test_letters_in_one_row_are_capitals_for_the_old_and_elsewhere_below_bars() 
 
 
 @pytest.mark.parametrize(
-    ("form", "room", "said"),
+    ("form", "room", "note"),
     [
         (Ring(9), colour_room(9, 1), "height: age"),
         (Ring(9), letter_room(9, 1), "capitals: old"),
@@ -128,8 +128,8 @@ def test_letters_in_one_row_are_capitals_for_the_old_and_elsewhere_below_bars() 
         (Torus(3, 3, letters=True), letter_room(9, 9), "capitals: old"),
     ],
 )
-def test_a_legend_explains_how_age_is_drawn(form: Any, room: Room, said: str) -> None:
-    assert form.age(room) == said
+def test_a_legend_explains_how_age_is_drawn(form: Any, room: Room, note: str) -> None:
+    assert form.age(room) == note
 
 
 # Tiles.
@@ -210,8 +210,8 @@ def test_cells_show_lines_of_descent_where_these_are_followed_and_branches_elsew
     scene = Stage().scene(law(4, 3), world, followed, None, room)
     assert text(scene.rows) == [" 9 F·g·", "10 ···H", "11 DE··"]
     assert scene.legend == "capitals: old, letter: line of descent"
-    for alone, said in ((1, "line of descent"), (2, "branch of the founder")):
-        assert Stage().scene(law(4, 3), world, followed, alone, room).legend.endswith(said)
+    for alone, note in ((1, "line of descent"), (2, "branch of the founder")):
+        assert Stage().scene(law(4, 3), world, followed, alone, room).legend.endswith(note)
 
 
 def test_the_width_of_a_cell_is_that_of_the_worlds_that_are_shown() -> None:
