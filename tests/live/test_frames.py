@@ -9,7 +9,7 @@ import pytest
 from primordia.live import view as views
 from primordia.live import watching
 from primordia.live.watching import Plain
-from tests.live.posed import status, view
+from tests.live.posed import Clock, status, view
 
 
 class Frames:
@@ -131,8 +131,7 @@ def test_a_plain_line_has_the_counts_of_all_worlds_every_two_seconds(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """No line follows the first chunk. From 10 to 12 s, three worlds live 1,000 organism-ticks each."""
-    clock: Any = SimpleNamespace(perf_counter=lambda: clock.now)
-    monkeypatch.setattr(watching, "time", clock)
+    monkeypatch.setattr(watching, "time", clock := Clock())
     paced: list[Any] = []
     plain = Plain(lambda of: paced.append(of))
     for now, lived, tick in (

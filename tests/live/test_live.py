@@ -14,9 +14,6 @@ from rich.segment import Segment
 from primordia.engine.engine import Engine
 from primordia.live import view as live
 from primordia.live.census import Census
-from primordia.live.forms import Room
-from primordia.live.paint import EMPTY, Cells, Row, field, skyline, strip
-from primordia.live.scene import Grid, _labelled
 from primordia.live.watching import Plain
 from primordia.runs import loop
 from tests.commands import here
@@ -24,46 +21,6 @@ from tests.live.drawn import text
 from tests.live.posed import look_alive
 from tests.live.terminals import opened
 from tests.worlds import MEADOW, config
-
-# The picture.
-
-
-def cells(line: list[int], ticks: list[int]) -> Cells:
-    return Cells.of(np.array(line), np.array(ticks), full=1000)
-
-
-def test_bars_grow_with_age_and_empty_cells_are_dots() -> None:
-    some = cells([4, 4, EMPTY, 9, 9], [0, 30, 0, 1000, 10**9])
-    assert text(skyline(some, wide=2, tall=2, letters=False)) == ["      █ █ ", "▁ █ · █ █ "]
-    assert text(skyline(some, wide=1, tall=1, letters=True)) == ["▁▄ ▇▇", "ee·jj"]
-    assert text([strip(some, letters=False)]) == ["▁▄·▇▇"]
-    assert text([strip(some, letters=True)]) == ["ee·JJ"]
-
-
-def test_each_line_has_its_own_colour() -> None:
-    first, second, third = strip(cells([0, 1, 0], [9, 9, 9]), letters=False)
-    assert first.style == third.style != second.style
-
-
-def test_a_torus_is_drawn_with_two_rows_in_a_line() -> None:
-    some = cells([1, 1, 2, 2, 3, EMPTY], [1000] * 6)
-    rows = field(some, columns=2, scale=1, letters=False)
-    assert text(rows) == ["▀▀", "▀▀"]
-    assert [len(row) for row in rows] == [1, 2], "there is a segment for each stretch of one style"
-    assert len(field(some, columns=2, scale=4, letters=False)) == 6
-    assert text(field(some, columns=2, scale=1, letters=True)) == ["BB", "CC", "D·"]
-
-
-def test_tiles_side_by_side_are_equally_wide() -> None:
-    drawn: list[Row] = [[Segment("ab")], [Segment("abcd"), Segment("e")], []]
-
-    def widths(across: int) -> list[int]:
-        grid = Grid(across, 2, Room(6, 3, letters=False), 0)
-        return [len(row) for row in text(_labelled(drawn, "7 ", " \u2713", grid))]
-
-    assert widths(across=2) == [10, 10, 10]
-    assert widths(across=1) == [6, 7, 2], "alone in its row it needs no padding"
-
 
 # The view as a whole.
 

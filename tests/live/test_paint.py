@@ -1,4 +1,4 @@
-"""Heights, letters, lights and colours of drawn cells, each computed here in another way."""
+"""Heights, letters, lights and colours of drawn cells."""
 
 import colorsys
 
@@ -29,6 +29,33 @@ def test_age_is_on_a_logarithmic_scale_up_to_the_full_age() -> None:
     """log(10) is half of log(100), and log(1) is 0."""
     cells = Cells.of(np.zeros(6, np.int64), np.array([-3, 0, 9, 99, 100, 10**12]), full=99)
     np.testing.assert_allclose(cells.age, [0, 0, 0.5, 1, 1, 1])
+
+
+def aged(line: list[int], ticks: list[int]) -> Cells:
+    """Return cells of some lines and ages; 1,000 ticks is the full age."""
+    return Cells.of(np.array(line), np.array(ticks), full=1000)
+
+
+def test_bars_grow_with_age_and_empty_cells_are_dots() -> None:
+    some = aged([4, 4, EMPTY, 9, 9], [0, 30, 0, 1000, 10**9])
+    assert text(skyline(some, wide=2, tall=2, letters=False)) == ["      █ █ ", "▁ █ · █ █ "]
+    assert text(skyline(some, wide=1, tall=1, letters=True)) == ["▁▄ ▇▇", "ee·jj"]
+    assert text([strip(some, letters=False)]) == ["▁▄·▇▇"]
+    assert text([strip(some, letters=True)]) == ["ee·JJ"]
+
+
+def test_each_line_has_its_own_colour() -> None:
+    first, second, third = strip(aged([0, 1, 0], [9, 9, 9]), letters=False)
+    assert first.style == third.style != second.style
+
+
+def test_a_torus_is_drawn_with_two_rows_in_a_line() -> None:
+    some = aged([1, 1, 2, 2, 3, EMPTY], [1000] * 6)
+    rows = field(some, columns=2, scale=1, letters=False)
+    assert text(rows) == ["▀▀", "▀▀"]
+    assert [len(row) for row in rows] == [1, 2], "there is a segment for each stretch of one style"
+    assert len(field(some, columns=2, scale=4, letters=False)) == 6
+    assert text(field(some, columns=2, scale=1, letters=True)) == ["BB", "CC", "D·"]
 
 
 @pytest.mark.parametrize("tall", [1, 2, 3])

@@ -4,12 +4,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from rich.segment import Segment
 
 from primordia.history.lines import Lines
 from primordia.law.world import World
 from primordia.live.forms import Ring, Room, Torus
 from primordia.live.paint import EMPTY, Cells, mosaic
-from primordia.live.scene import Grid, Stage, cell_width
+from primordia.live.scene import Grid, Stage, _labelled, cell_width
 from tests.live.drawn import colours, text
 from tests.live.posed import law, posed
 
@@ -157,6 +158,17 @@ def test_tiles_are_those_with_the_largest_cells(
 ) -> None:
     """Beside each drawing are four columns."""
     assert Grid.of(form, worlds, 4, room) == grid
+
+
+def test_tiles_side_by_side_are_equally_wide() -> None:
+    drawn: list[Any] = [[Segment("ab")], [Segment("abcd"), Segment("e")], []]
+
+    def widths(across: int) -> list[int]:
+        grid = Grid(across, 2, Room(6, 3, letters=False), 0)
+        return [len(row) for row in text(_labelled(drawn, "7 ", " \u2713", grid))]
+
+    assert widths(across=2) == [10, 10, 10]
+    assert widths(across=1) == [6, 7, 2], "a tile that is alone in its row needs no padding"
 
 
 def three(**more: Any) -> World:

@@ -1,4 +1,4 @@
-"""The screen: nothing is cut or folded, the organism that is shown, and words that are all explained."""
+"""The screen of a world: its parts fill it, and it shows the organism that is chosen."""
 
 from types import SimpleNamespace
 from typing import Any
@@ -10,18 +10,12 @@ import pytest
 from primordia.engine.engine import Engine
 from primordia.history.threshold import Threshold
 from primordia.law.metabolism import ONE
-from primordia.law.world import Cause
-from primordia.live.census import Census
 from primordia.live.companion import Companion, _perceived
-from primordia.live.ground import Medians
-from primordia.live.paint import width_of
-from primordia.live.panel import Outlook, numbers
 from primordia.live.terminal import Keyboard
 from primordia.live.view import View
-from primordia.live.words import WORDS, pages
 from primordia.runs.loop import Status
 from tests.live.drawn import text
-from tests.live.posed import counted, look_alive, terminal
+from tests.live.posed import look_alive, terminal
 from tests.worlds import MEADOW, config
 
 SIZES = [(120, 40), (80, 24), (60, 15)]
@@ -76,17 +70,6 @@ def test_a_torus_of_1024_cells_is_whole_and_large() -> None:
     assert blocks(120, 40) == (64, 32)
     assert blocks(80, 24) == (32, 16)
     assert "shown: 20 x 32 of 32 x 32 cells" in "\n".join(screen(made, "", 60, 15))
-
-
-def test_one_world_after_another_is_shown() -> None:
-    made = meadow(cells=16, seeds=2)
-    alive = [int(Census.of(made.state.world, world).alive.sum()) for world in (None, 0, 1)]
-    assert alive[0] == alive[1] + alive[2]
-    for presses, (count, cells) in enumerate(
-        zip([*alive, alive[0]], (32, 16, 16, 32), strict=True)
-    ):
-        rows = "\n".join(screen(made, "w" * presses, 80, 24))
-        assert f"{count} of {cells}" in rows
 
 
 def test_numbers_about_good_lines_are_those_of_the_worlds_that_are_shown() -> None:
@@ -157,13 +140,3 @@ def test_a_habitat_that_fails_to_draw_is_not_asked_again(monkeypatch: pytest.Mon
     for _ in range(3):
         assert "action" in "\n".join(text(view._rows(status)))
     assert len(asked) == 1
-
-
-def test_every_word_is_explained_and_fits() -> None:
-    named = numbers(counted(alive=[7]), 8, Outlook(1.0, 9.0), 1, Medians(0.5, 0.5, 1.0))
-    assert {*named, *(cause.label for cause in Cause)} <= {*WORDS}
-    for width, height in SIZES:
-        found = pages(width, height)
-        assert all(len(page) <= height for page in found)
-        assert max(width_of(row) for page in found for row in page) <= width
-        assert {*WORDS} <= {row[0].text.strip() for page in found for row in page}

@@ -12,7 +12,7 @@ from primordia.live.terminal import Keyboard
 from primordia.live.words import pages
 from primordia.runs.loop import Status
 from tests.live.drawn import text
-from tests.live.posed import counted, status, view
+from tests.live.posed import Clock, counted, status, view
 
 
 def value_of(shown: Any, of: Status, name: str) -> str | None:
@@ -36,8 +36,7 @@ def test_the_numbers_are_those_of_the_world_that_is_shown_and_the_speed_is_that_
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """In 2 s the worlds lived 10, 40 and 0 organism-ticks. Takeovers are known in two worlds only."""
-    clock: Any = SimpleNamespace(perf_counter=lambda: clock.now)
-    monkeypatch.setattr(views, "time", clock)
+    monkeypatch.setattr(views, "time", clock := Clock())
     births, deaths = [11, 22, 33], [[each] + [0] * 6 for each in (1, 2, 4)]
     first = status(births=births, deaths=deaths, organism_ticks=[100, 200, 300])
     later = status(births=births, deaths=deaths, organism_ticks=[110, 240, 300])
