@@ -11,7 +11,7 @@ from primordia.cli.numbers import COUNT, TICKS, Finite
     [(TICKS, 1, 2_147_483_647), (COUNT, 1, 65_536)],
     ids=["ticks", "count"],
 )
-def test_bounds_are_the_last_numbers_that_are_taken(
+def test_only_numbers_within_the_bounds_are_accepted(
     kind: click.IntRange, least: int, most: int
 ) -> None:
     for number in (least, most):

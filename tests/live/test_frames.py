@@ -32,7 +32,7 @@ class Frames:
         self.now += self.cost
 
     def live(self, seconds: float, each: float, worlds: int = 1) -> None:
-        """Let chunks of `each` seconds be lived."""
+        """Give the view chunks of `each` seconds until some seconds have passed."""
         until, of = self.now + seconds, status(worlds)
         while self.now < until:
             self.view(of)

@@ -87,7 +87,7 @@ def test_a_run_that_cannot_keep_up_is_slowed_from_its_own_speed(clock: Clock) ->
 def test_only_a_delay_of_less_than_a_tenth_of_a_second_is_made_up(
     delay: float, late: int, last: int, ends: float, clock: Clock
 ) -> None:
-    """The limit is 10 ticks a second. From tick `late` on the run could be faster than its limit."""
+    """The limit is 10 ticks a second. The delay comes before tick `late`."""
     pace = Pace(10)
     pace(at(0), clock.sleep)
     clock.now += delay
@@ -134,7 +134,7 @@ def test_each_step_is_a_tick_and_then_the_run_waits(clock: Clock) -> None:
     assert (status.engine.longest, str(pace)) == (None, "")
 
 
-def test_steps_that_were_not_lived_are_forgotten_with_the_pause(clock: Clock) -> None:
+def test_the_end_of_a_pause_cancels_steps_that_were_not_lived(clock: Clock) -> None:
     pace, waits = Pace(), list[float]()
     pace.step()
     pace.pause()

@@ -59,7 +59,7 @@ def test_a_cell_of_a_torus_is_a_square_of_half_rows(room: Room, scale: int) -> N
     assert Torus(4, 6, room.letters).scale(room) == scale
 
 
-def test_the_least_room_of_a_torus_has_two_rows_of_cells_in_a_row_of_colours() -> None:
+def test_a_row_of_colours_has_two_rows_of_a_torus_and_a_row_of_letters_one() -> None:
     assert [Torus(rows, 6, letters).least for rows, letters in ((4, False), (5, False), (5, True))] == [
         (6, 2), (6, 3), (6, 5),
     ]  # fmt: skip
@@ -113,7 +113,7 @@ def test_many_cells_make_several_equal_skylines(
     assert (text(drawn), note) == (rows, part)
 
 
-def test_letters_in_one_row_are_capitals_for_the_old_and_elsewhere_below_bars() -> None:
+def test_letters_are_capitals_for_the_old_in_one_row_and_are_below_bars_in_more() -> None:
     cells = Cells(np.array([0, 1, EMPTY]), np.array([1.0, 0.2, 0.0]))
     assert text(Ring(3).draw(cells, [], letter_room(3, 1))[0]) == ["Ab·"]
     assert text(Ring(3).draw(cells, [], letter_room(3, 2))[0]) == ["▇▂ ", "ab·"]

@@ -106,7 +106,7 @@ def test_the_pages_of_words_are_shown_one_after_another(size: tuple[int, int]) -
             shown._obey("?", of)
             assert text(shown._rows(of))[1 : 1 + len(page)] == text(page)
         shown._obey("?", of)
-        assert "died of" in "\n".join(text(shown._rows(of))), "the world again"
+        assert "died of" in "\n".join(text(shown._rows(of))), "the world is shown again"
 
 
 def test_the_heading_has_the_pace_and_the_time_of_the_run() -> None:
