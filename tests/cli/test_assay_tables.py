@@ -1,9 +1,8 @@
-"""Tables of assays: each cell holds the median and quartiles of its own values, written out here."""
+"""Tables of assays: each cell has the median and quartiles of its own values."""
 
 import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 from unittest.mock import call, patch
 
 import numpy as np
@@ -19,7 +18,7 @@ from primordia.cli.assays import options, tables
 from primordia.history.threshold import Threshold
 
 OFFSETS = (8, 0, 2)
-"""What three worlds or organisms have above the least of them; their mean is not their median."""
+"""Differences of three worlds or organisms from the least one; the mean is not the median."""
 
 
 def spread(least: int) -> str:
@@ -27,10 +26,10 @@ def spread(least: int) -> str:
     return f"{least + 2} ({least + 1} to {least + 5})"
 
 
-def cells(told: tables.Told) -> dict[str, list[str]]:
+def cells(table: tables.Told) -> dict[str, list[str]]:
     """Return the cells of each row by the row's name."""
-    assert all(len(row) == len(told.head) for row in told.rows)
-    return {row[0]: list(row[1:]) for row in told.rows}
+    assert all(len(row) == len(table.head) for row in table.rows)
+    return {row[0]: list(row[1:]) for row in table.rows}
 
 
 def test_heredity_has_pairs_in_all_and_spreads_over_worlds() -> None:
@@ -43,10 +42,10 @@ def test_heredity_has_pairs_in_all_and_spreads_over_worlds() -> None:
         )
         for world, more in enumerate(OFFSETS)
     ]
-    told = tables.heredity("run", found)
-    assert told.title == "run: 3 worlds, medians (quartiles)"
-    assert list(told.head) == ["", "copies", "mutants", "both"]
-    assert cells(told) == {
+    table = tables.heredity("run", found)
+    assert table.title == "run: 3 worlds, medians (quartiles)"
+    assert list(table.head) == ["", "copies", "mutants", "both"]
+    assert cells(table) == {
         "pairs": ["300,010", "600,010", "900,010"],
         "slope": [spread(100), spread(200), spread(300)],
         "exactly as long": [spread(120), spread(220), spread(320)],
@@ -59,12 +58,12 @@ def test_heredity_has_pairs_in_all_and_spreads_over_worlds() -> None:
 
 
 def test_only_worlds_above_one_hold_their_line() -> None:
-    """The threshold is exactly 1 in one world, above 1 in two, below in one, and unknown in one."""
+    """The number is 1 in one world, above 1 in two, below 1 in one, and unknown in one."""
     worlds = [(0.5, 0.5, 4.0), (0.5, 0.0, 2.0), (0.25, 1.0, 1.5), (1.0, 0.5, 1.0), (0.0, None, 3.0)]
     found = [Threshold(number, *each) for number, each in enumerate(worlds)]
     assert [each.held for each in found] == [3, 1, 1.5, 0.5, None]
-    told = tables.threshold("run", found)
-    assert cells(told) == {
+    table = tables.threshold("run", found)
+    assert cells(table) == {
         "p, share of children that mutate": ["0.5 (0.25 to 0.5)"],
         "v, share of good parents' mutants that are as good": ["0.5 (0.375 to 0.625)"],
         "s, life of good parents' copies / life of all organisms": ["2 (1.5 to 3)"],
@@ -82,33 +81,33 @@ def test_effects_of_each_mutation_are_its_own() -> None:
         for name, each in (("as set", lived), ("scale 1", longer))
         for number, (parent, mutants) in enumerate(each.items())
     ]
-    told = tables.effects("run", found)
-    assert told.title == "run: 3 organisms; each mutation made 4 mutants of each"
-    assert list(told.head[1:]) == [
+    table = tables.effects("run", found)
+    assert table.title == "run: 3 organisms; each mutation made 4 mutants of each"
+    assert list(table.head[1:]) == [
         "as long",
         "longer",
         "a tenth longer",
         "a third shorter",
         "median life",
     ]
-    assert cells(told) == {
+    assert cells(table) == {
         "as set": ["0.583", "0.250", "0.167", "0.167", "205 (142 to 252)"],
         "scale 1": ["0.000", "0.750", "0.667", "0.167", "450 (352 to 458)"],
     }
-    assert "The organisms lived 200 (150 to 250) ticks." in told.notes[0]
+    assert "The organisms lived 200 (150 to 250) ticks." in table.notes[0]
     assert tables.effects("run", found[::3]).title.startswith("run: 1 organism; ")
 
 
-def test_ablations_are_held_against_the_intact_life() -> None:
+def test_ablated_lives_are_compared_with_intact_lives() -> None:
     intact = [100 + more for more in OFFSETS]
     found = [
         Ablation(without, number, 0, each, each * kept)
         for without, kept in (("memory", 0.5), ("sense 0", 2.0))
         for number, each in enumerate(intact)
     ]
-    told = tables.ablate("run", found)
-    assert told.title == "run: 3 organisms, medians (quartiles)"
-    assert cells(told) == {
+    table = tables.ablate("run", found)
+    assert table.title == "run: 3 organisms, medians (quartiles)"
+    assert cells(table) == {
         "nothing": [spread(100), "1"],
         "memory": ["51 (50.5 to 52.5)", "0.5"],
         "sense 0": ["204 (202 to 210)", "2"],
@@ -116,7 +115,7 @@ def test_ablations_are_held_against_the_intact_life() -> None:
 
 
 def test_a_garden_has_means_of_beds_and_medians_of_worlds() -> None:
-    """Founders were in no world, and one world has a bed of another size."""
+    """The founders have no recorded lives. The beds of the three worlds have different sizes."""
 
     def bed(group: str, world: int, recorded: list[int] | None, reborn: list[float]) -> Bed:
         lived = None if recorded is None else np.array(recorded)
@@ -142,9 +141,9 @@ def test_a_line_is_a_column_with_its_first_last_and_largest_step() -> None:
     ]
     falling = [Step(0, 1, 0, "founder", 3, 90), Step(1, 2, 20, "mutant", 3, 80)]
     found = [Line(15, 3, 4321, 1234, steps), Line(2, 0, 1, 2, falling)]
-    told = tables.line("run", found)
-    assert list(told.head) == ["", "organism 15 of world 3", "organism 2 of world 0"]
-    assert cells(told) == {
+    table = tables.line("run", found)
+    assert list(table.head) == ["", "organism 15 of world 3", "organism 2 of world 0"]
+    assert cells(table) == {
         "generations": ["4,321", "1"],
         "different genomes": ["1,234", "2"],
         "born again": ["6", "2"],
@@ -159,13 +158,13 @@ def test_two_genomes_share_the_living() -> None:
     """The second wins two of four worlds, the first one, and one is a draw."""
     late = np.array([0.75, 0.25, 0.0, 0.5])
     share = np.stack([np.full(4, 0.5), late], axis=1)
-    told = tables.compete("both", [Competition("a", "b", np.array([0, 5000]), share)])
-    assert told.title == "both: each genome begins in half of the cells, 5,000 ticks, no mutation"
-    assert cells(told) == {
+    table = tables.compete("both", [Competition("a", "b", np.array([0, 5000]), share)])
+    assert table.title == "both: each genome begins in half of the cells, 5,000 ticks, no mutation"
+    assert cells(table) == {
         "a": ["4", "1", "0.375 (0.188 to 0.562)"],
         "b": ["4", "2", "0.625 (0.438 to 0.812)"],
     }
-    assert told.notes[0].endswith(" Sign test over worlds: p = 1.")
+    assert table.notes[0].endswith(" Sign test over worlds: p = 1.")
 
 
 @dataclass(frozen=True)
@@ -202,19 +201,17 @@ def test_each_of_several_arms_has_a_table_and_a_folder_of_figures(
     out, err = capsys.readouterr()
     figures = "Figure: x.png and x.svg\n" * len(arms)
     if as_json:
-        told = {arm: [{"number": place}] for place, arm in enumerate(found)}
-        assert (json.loads(out), err) == (told, figures)
+        expected = {arm: [{"number": place}] for place, arm in enumerate(found)}
+        assert (json.loads(out), err) == (expected, figures)
     else:
         assert (out, err) == (figures, "")
 
 
-@pytest.mark.parametrize("make", [tables.heredity, tables.threshold])
-def test_what_no_world_knows_is_a_dash(make: Any) -> None:
+def test_unknown_numbers_are_dashes() -> None:
     unknown = Pairs(0, None, None, None, None)
-    none = {
-        tables.heredity: Inherited(0, unknown, unknown, unknown, None, None),
-        tables.threshold: Threshold(0, None, None, None),
-    }[make]
-    texts = [text for row in make("run", [none]).rows for text in row[1:]]
-    assert set(texts) <= {"-", "0", "", "0 of 0"}
-    assert "-" in texts
+    inherited = tables.heredity("run", [Inherited(0, unknown, unknown, unknown, None, None)])
+    assert [list(row[1:]) for row in inherited.rows] == [
+        ["0"] * 3, *[["-"] * 3] * 4, *[["", "", "-"]] * 2,
+    ]  # fmt: skip
+    persists = tables.threshold("run", [Threshold(0, None, None, None)])
+    assert [row[1] for row in persists.rows] == ["-"] * 4 + ["0 of 0"]

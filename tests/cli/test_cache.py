@@ -88,8 +88,8 @@ def test_processors_of_other_features_have_other_folders(tmp_path: Path) -> None
 
 
 @pytest.mark.parametrize("line", ["model name", "flags", "CPU implementer", "CPU part", "Features"])
-def test_every_feature_of_the_first_core_counts_and_nothing_else(line: str, tmp_path: Path) -> None:
-    """Processors of Arm name theirs otherwise than those of Intel."""
+def test_only_the_features_of_the_first_core_count(line: str, tmp_path: Path) -> None:
+    """Arm and Intel have different names for features."""
 
     def named(value: str, clock: int = 2000, other: str = "x") -> str:
         core = f"processor : 0\n{line} : {value}\nBogoMIPS : {clock}\n"

@@ -34,7 +34,7 @@ def failed(job: int) -> Entry:
 
 
 def shown(status: CampaignStatus, clock: Clock | None = None) -> list[list[str]]:
-    """Return the words of each line, parted where two or more spaces part columns."""
+    """Return the columns of each line; two or more spaces separate columns."""
     console = Console(width=300, color_system=None)
     with console.capture() as captured:
         console.print(table(status, clock))
@@ -47,7 +47,7 @@ def shown(status: CampaignStatus, clock: Clock | None = None) -> list[list[str]]
 
 
 def at(monkeypatch: pytest.MonkeyPatch, seconds: float) -> Any:
-    """Let the clock show a second. Return the clock, which can be set."""
+    """Return a clock that shows these seconds and can be set."""
     now: Any = SimpleNamespace(perf_counter=lambda: now.seconds, strftime=lambda _: "12:00:00")
     now.seconds = seconds
     monkeypatch.setattr(campaign_view, "time", now)
@@ -88,10 +88,10 @@ def test_the_first_jobs_are_listed_and_the_others_are_counted(count: int) -> Non
     assert more == ([f"and {count - SHOWN} more"] if count > SHOWN else [])
 
 
-def test_time_left_of_the_first_jobs_is_that_of_the_slowest_for_each_round(
+def test_time_left_is_that_of_the_slowest_job_in_each_round_of_jobs(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Two processes have seven jobs to do, which are four rounds of the slower job's time."""
+    """Two processes have seven jobs to do, which are four rounds of 30 s."""
     now = at(monkeypatch, 50.0)
     jobs = {"done": 3, "running": 2, "failed": 0, "waiting": 5}
     under_way = running(0, 30.0, 2e6), running(1, 10.0, 1e6)
@@ -105,7 +105,7 @@ def test_time_left_of_the_first_jobs_is_that_of_the_slowest_for_each_round(
     assert shown(status, clock)[-1] == [f"{jobs_text}; {text}; 1 min 15 s so far"]
 
 
-def test_a_slow_reading_is_made_seldom(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_slow_reading_is_repeated_rarely(monkeypatch: pytest.MonkeyPatch) -> None:
     """A reading of 0.1 s takes a fiftieth of the time if the next begins 5 s later."""
     now, made = at(monkeypatch, 100.0), list[float]()
     now.took = 0.0
@@ -126,24 +126,24 @@ def test_a_slow_reading_is_made_seldom(monkeypatch: pytest.MonkeyPatch) -> None:
         assert len(made) == 3
 
 
-def test_all_running_jobs_make_the_speed() -> None:
+def test_the_speed_is_that_of_all_running_jobs() -> None:
     entries = running(0, None, 2.0), running(1, None, 5.0), running(2, None, None)
     status = CampaignStatus("?", JOBS, (), entries, (failed(4),))
     assert status.rate == 7
-    told = status.to_dict()
-    assert [each["job"] for each in told["running"]] == [0, 1, 2]
-    assert [each["rate"] for each in told["running"]] == [2, 5, None]
-    assert told["failed"] == [{"job": 4, "arm": "few", "error": "reason 4"}]
+    values = status.to_dict()
+    assert [each["job"] for each in values["running"]] == [0, 1, 2]
+    assert [each["rate"] for each in values["running"]] == [2, 5, None]
+    assert values["failed"] == [{"job": 4, "arm": "few", "error": "reason 4"}]
 
 
 @pytest.mark.parametrize(("quiet", "moments"), [(True, []), (False, [0.0, 60.5, 121.0])])
-def test_what_is_no_terminal_gets_a_line_each_minute(
+def test_without_a_terminal_a_line_is_printed_each_minute(
     quiet: bool,
     moments: list[float],
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """The first at once; with --quiet, none, and nothing is read."""
+    """The first line is printed at once. With --quiet nothing is printed, and nothing is read."""
     now, moments_read = at(monkeypatch, 100.0), list[float]()
 
     def read() -> CampaignStatus:

@@ -1,4 +1,4 @@
-"""Tables of lines of descent: each column has its own numbers, and the notes those of the last tick."""
+"""Tables of ancestors and of lines: each column has its own numbers, and notes have those of the end."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -31,7 +31,7 @@ def shown() -> Iterator[Shown]:
 
 
 def step(place: int, birth: str, **other: Any) -> dict[str, Any]:
-    """Return an ancestor; each number is another one."""
+    """Return an ancestor; no two of its numbers are equal."""
     names = "organism", "generation", "born", "lifespan", "children", "tenth", "half", "fixed"
     numbers = {name: 1000 * number + place for number, name in enumerate(names, 1)}
     return {**numbers, "birth_cause": birth, "cause": "starved", **other}
@@ -85,9 +85,9 @@ def test_ancestors_that_are_left_out_are_counted(count: int, shown: Shown) -> No
     steps = [step(place, "copy") for place in range(count)]
     descent._show_ancestors(RUN, ancestors(steps, size=np.zeros(count)))
     assert len(shown["rows"]) == 20
-    told = [note for note in shown["notes"] if "left out" in note]
-    assert len(told) == (count > 20)
-    assert all(note.startswith(f"{count - 20:,} ancestors are left out.") for note in told)
+    left_out = [note for note in shown["notes"] if "left out" in note]
+    assert len(left_out) == (count > 20)
+    assert all(note.startswith(f"{count - 20:,} ancestors are left out.") for note in left_out)
 
 
 def test_changes_that_are_unknown_are_dashes(shown: Shown) -> None:
@@ -97,7 +97,7 @@ def test_changes_that_are_unknown_are_dashes(shown: Shown) -> None:
     assert "The changes are unknown: no trust." in shown["notes"]
 
 
-def test_the_common_ancestor_is_told_with_its_birth_and_its_time() -> None:
+def test_the_text_about_the_common_ancestor_has_its_birth_and_its_time() -> None:
     common = CommonAncestor(organism=1111, born=2222, since=3333, generation=4444)
     assert descent._common_text(ancestors([], common=common)) == (
         "The common ancestor of the living is organism 1,111, born at tick 2,222 in generation 4,444."
@@ -114,8 +114,8 @@ def line(place: int, **other: Any) -> dict[str, Any]:
 
 
 def world(count: int, **other: Any) -> Any:
-    """Return a world of lines of which the last instants have numbers of their own."""
-    told = {
+    """Return a world of lines. Its numbers at the last tick differ from all others."""
+    exported = {
         "lines": [line(place) for place in range(count)],
         "founded": 1500,
         "shadows": 2000,
@@ -125,7 +125,7 @@ def world(count: int, **other: Any) -> Any:
     values: dict[str, Any] = {
         "world": 3, "founders": np.arange(count), "ticks": np.array([1500, 1600, 9000]),
         "effective": np.array([[9.0, 8, 7], [6, 5, 4], [3, 2, 1.5]]), "sweeps": [],
-        "diversity": np.array([11111, 22222, 33333]), "to_dict": lambda: told,
+        "diversity": np.array([11111, 22222, 33333]), "to_dict": lambda: exported,
         "pairs": Times(np.array([1000, 3000]), np.array([0.25, 0.5])),
         "neutral_pairs": Times(np.array([5000]), np.array([0.8])),
     }  # fmt: skip
@@ -145,8 +145,8 @@ def test_a_row_of_a_line_has_its_shares_slopes_and_p_values(shown: Shown) -> Non
     ]
 
 
-def test_notes_are_of_the_end(shown: Shown) -> None:
-    """The mean time of pairs on record is 1,000 and 3,000 ticks, equally often."""
+def test_notes_are_about_the_last_tick(shown: Shown) -> None:
+    """Pairs on record have their common ancestor 1,000 or 3,000 ticks ago, equally often."""
     descent._show_lines(RUN, world(2))
     notes = " ".join(shown["notes"])
     assert (
@@ -168,9 +168,9 @@ def test_notes_are_of_the_end(shown: Shown) -> None:
 def test_the_ten_largest_lines_are_shown_and_the_others_counted(count: int, shown: Shown) -> None:
     descent._show_lines(RUN, world(count))
     assert [row[0] for row in shown["rows"]] == [f"{1000 + n:,}" for n in range(min(count, 10))]
-    told = [note for note in shown["notes"] if "left out" in note]
+    left_out = [note for note in shown["notes"] if "left out" in note]
     expected = f"{count - 10:,} smaller lines are left out; --json shows all."
-    assert told == ([expected] if count > 10 else [])
+    assert left_out == ([expected] if count > 10 else [])
 
 
 def test_only_a_sweep_past_half_of_the_living_is_under_way() -> None:

@@ -1,4 +1,4 @@
-"""Commands on runs: each option reaches the Python interface, and each line says what came back."""
+"""Commands on runs: each option reaches the Python interface, and each result is printed."""
 
 import json
 from pathlib import Path
@@ -20,7 +20,7 @@ PICTURES = [Path("out/compare.png"), Path("out/compare.svg")]
 
 
 class Loaded:
-    """A run that notes what it is asked."""
+    """A run that notes each call."""
 
     def __init__(self, asked: list[Any], differences: list[str]) -> None:
         self.asked, self.differences = asked, differences
@@ -45,7 +45,7 @@ class Loaded:
 
 @pytest.fixture
 def asked(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
-    """Return what commands ask of a run, in order, with the differences that `verify` finds last."""
+    """Return the calls of commands, in their order. `verify` finds differences in the run `wrong`."""
     noted: list[Any] = []
 
     def load(run: Any, trust: bool = False) -> Loaded:
@@ -106,7 +106,7 @@ LINES: dict[str, list[tuple[Any, ...]]] = {
 
 
 @pytest.mark.parametrize("line", LINES)
-def test_every_option_is_handed_on(
+def test_every_option_reaches_the_python_interface(
     line: str, asked: list[Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -127,7 +127,7 @@ def test_every_option_is_handed_on(
         ("compare one two", "the tables\nFigure: out/compare.png and out/compare.svg"),
     ],
 )  # fmt: skip
-def test_a_command_says_what_came_back(
+def test_a_command_prints_the_result(
     line: str, says: str, asked: list[Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -144,7 +144,7 @@ def test_a_comparison_as_json_is_one_object_and_still_draws(
 
 
 @pytest.mark.usefixtures("asked")
-def test_a_run_that_differs_is_told_by_its_first_difference() -> None:
+def test_the_first_difference_of_a_run_is_named() -> None:
     done = here("verify", "wrong")
     complains(done, 1, "wrong differs from its records when repeated: tick 3 of world 1\n")
     assert done.stdout == ""
@@ -159,7 +159,7 @@ def test_a_horizon_is_at_least_one(unit: str) -> None:
 def test_imported_weights_name_their_task_and_the_run_that_takes_them(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The task is the one that the file of settings names, and the file is what `run` takes."""
+    """The file of settings names the task, and `run` takes this file."""
     monkeypatch.chdir(tmp_path)
     chosen = config(MEADOW, brain={"kind": "feed-forward", "hidden": 2})
     Path("mine.toml").write_text(chosen.to_toml(), encoding="utf-8")

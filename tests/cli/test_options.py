@@ -21,7 +21,7 @@ WORLDS: dict[str, Any] = {"checkpoint_every": 7.0, "device": "gpu", "listen": No
 
 @pytest.fixture
 def run() -> Iterator[MagicMock]:
-    """Let `load` return a run that notes what it is asked for."""
+    """Let `load` return a run that notes each call."""
     noted = create_autospec(primordia.Run(RUN), instance=True)
     for name in ("ancestors", "organism"):
         getattr(noted, name).return_value = MagicMock()
@@ -78,7 +78,7 @@ CALLS: dict[tuple[Any, ...], Any] = {
 
 
 @pytest.mark.parametrize("words", CALLS, ids=lambda words: " ".join(map(str, words)))
-def test_a_command_passes_on_what_it_is_given(
+def test_each_argument_reaches_the_function(
     words: tuple[Any, ...], run: MagicMock, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -94,7 +94,7 @@ def test_a_command_passes_on_what_it_is_given(
     ],
     ids=lambda words: words[0],
 )  # fmt: skip
-def test_code_is_trusted_if_asked_and_not_otherwise(
+def test_code_is_trusted_only_if_asked(
     words: tuple[Any, ...], run: MagicMock, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -119,7 +119,7 @@ def test_a_run_is_begun_with_the_settings_of_its_flags(
         assert asked.call_args == call(task, place, {"seed": 3}, resume=False, **own)
 
 
-def test_a_life_is_lived_again_as_asked(run: MagicMock) -> None:
+def test_a_life_is_lived_again_with_the_given_options(run: MagicMock) -> None:
     with patch("primordia.organism.revival.revive") as asked:
         asked.return_value.to_dict.return_value = {}
         files = ("--save", OUT, "--video", "V")
@@ -141,7 +141,7 @@ def test_one_organism_is_evaluated_in_its_world(run: MagicMock) -> None:
 SHORT = ("--games", 2, "--ticks", 9, "--sticky", 0.5, "--json")
 
 
-def test_assays_of_a_run_pass_on_what_they_are_given(run: MagicMock) -> None:
+def test_the_options_of_assays_reach_their_functions(run: MagicMock) -> None:
     own: dict[str, Any] = {"habitat": {"sticky": 0.5}, "games": 2, "ticks": 9}
     opened = run.opened.return_value
     with patch("primordia.assays.garden.garden", return_value=[]) as garden:

@@ -1,14 +1,15 @@
-"""Standard streams that cannot be written."""
+"""Standard streams: their names, errors when they cannot be written, and messages."""
 
 import errno
 import io
 import os
+import sys
 from collections.abc import Iterator
 from typing import Any
 
 import pytest
 
-from primordia.cli.streams import Printable, _stream, report
+from primordia.cli.streams import LONGEST, Printable, prepare, report
 
 
 class Full(io.RawIOBase):
@@ -47,13 +48,23 @@ def test_a_stream_that_cannot_be_written_is_named(file: Full, text: str, error: 
     assert (caught.value.errno, caught.value.filename) == (error, "standard output")
 
 
-def test_a_message_has_an_end(capsys: pytest.CaptureFixture[str]) -> None:
-    report("x" * 10**6)
-    assert len(capsys.readouterr().err) < 3000
+@pytest.mark.parametrize("more", [0, 1])
+def test_a_message_is_one_line_and_a_longer_one_is_cut(
+    more: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    report("x" * (LONGEST + more))
+    assert capsys.readouterr().err == f"primordia: {'x' * LONGEST}{'...' * more}\n"
+    report("one  \n  two\r\nthree")
+    assert capsys.readouterr().err == "primordia: one two three\n"
 
 
-@pytest.mark.parametrize(("number", "title"), [(1, "standard output"), (2, "standard error")])
-def test_a_stream_has_its_own_name_and_errors_are_shown_at_once(number: int, title: str) -> None:
-    stream = _stream(number)
-    assert (stream.fileno(), stream.title) == (number, title)
-    assert stream.line_buffering == (number == 2 or os.isatty(number))
+def test_standard_streams_have_names_and_errors_are_shown_at_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    for name in ("stdout", "stderr", "__stdout__"):
+        monkeypatch.setattr(sys, name, None)
+    prepare()
+    streams: Any = sys.stdout, sys.stderr
+    assert [(each.fileno(), each.title, each.line_buffering) for each in streams] == [
+        (1, "standard output", os.isatty(1)), (2, "standard error", True),
+    ]  # fmt: skip

@@ -1,14 +1,23 @@
-"""Worlds and counts that are posed for the live view, without any law that would change them."""
+"""Worlds, counts, views and a clock for tests of the live view, without a law that changes worlds."""
 
+import io
 from types import SimpleNamespace
 from typing import Any
 
+import jax.numpy as jnp
 import numpy as np
+from rich.console import Console
 
+from primordia.engine.engine import Engine
+from primordia.engine.state import State
+from primordia.law.events import BIRTHS, DEATHS, Rows
 from primordia.law.placement import Placement
 from primordia.law.world import Cause, Organisms, World, Worlds
 from primordia.live.census import Census
-from primordia.random.wide import wide
+from primordia.live.view import View
+from primordia.random.wide import Wide, wide
+from primordia.runs.loop import Status
+from tests.worlds import MEADOW, config
 
 
 def posed(alive: list[list[int]], born: list[list[int]], tick: list[int], **more: Any) -> World:
@@ -50,3 +59,62 @@ def counted(worlds: int = 1, **counts: Any) -> Census:
     single = {name: counts.pop(name, 0) for name in ("mean_age", "oldest")}
     arrays = {name: np.array(value, np.int64) for name, value in (columns | counts).items()}
     return Census(**arrays, mean_age=float(single["mean_age"]), oldest=single["oldest"])
+
+
+NOTHING = tuple(
+    Rows(np.zeros((1, columns.width), np.uint32), np.int32(0)) for columns in (BIRTHS, DEATHS)
+)
+
+
+def status(worlds: int = 3, tick: int = 100, **more: Any) -> Status:
+    """Return the status of worlds of four cells.
+
+    One organism is alive in the first world, two are in the second, and so on. Each world is a tick
+    behind the one before it.
+    """
+    alive = [[int(cell <= world) for cell in range(4)] for world in range(worlds)]
+    world = posed(alive, [[0] * 4] * worlds, [tick - at for at in range(worlds)], **more)
+    engine: Any = SimpleNamespace(
+        law=law(4, worlds), config=config(MEADOW, cells=4, seeds=worlds), longest=None,
+        state=SimpleNamespace(world=world), events=SimpleNamespace(births=NOTHING[0], deaths=NOTHING[1]),
+    )  # fmt: skip
+    return Status(engine, 75.0)
+
+
+def terminal(width: int, height: int, **more: Any) -> Console:
+    """Return a terminal with all colours; `more` has other options of a console."""
+    options: Any = {"force_terminal": True, "color_system": "truecolor", **more}
+    return Console(file=io.StringIO(), width=width, height=height, **options)
+
+
+def view(width: int = 100, height: int = 30, keyboard: Any = None, **more: Any) -> Any:
+    """Return a view in such a terminal."""
+    return View(terminal(width, height, **more), keyboard=keyboard)
+
+
+class Clock:
+    """Seconds that pass only while something waits, or if a test sets them; it notes the waits."""
+
+    def __init__(self) -> None:
+        self.now, self.waits = 0.0, list[float]()
+
+    def perf_counter(self) -> float:
+        """Return the time."""
+        return self.now
+
+    def sleep(self, seconds: float) -> None:
+        """Wait."""
+        self.waits.append(seconds)
+        self.now += seconds + 1e-9
+
+
+def look_alive(made: Engine) -> None:
+    """Pose four fifths of the cells as organisms of many ages, without events."""
+    world, bodies = made.state
+    cells = np.arange(len(world.organisms.alive), dtype=np.uint32)
+    number, born = (Wide(jnp.zeros_like(cells), jnp.asarray(n)) for n in (cells, cells % 999))
+    organisms = world.organisms._replace(alive=cells % 5 > 0, number=number, born=born)
+    thousand = wide([1000] * made.law.worlds)
+    worlds = world.worlds._replace(tick=thousand, births=thousand)
+    made.state = State(World(organisms, worlds), bodies)
+    made.advance = lambda _: made.events

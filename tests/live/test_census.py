@@ -1,9 +1,8 @@
-"""The counts of a run and its speed, from worlds that differ in every count."""
+"""The counts of worlds that differ in every count, the speed of a run, and the time left."""
 
 from typing import Any
 
 import jax.numpy as jnp
-import numpy as np
 import pytest
 
 from primordia.engine.state import Limits
@@ -22,14 +21,15 @@ COUNTS: dict[str, list[Any]] = {
     "calm": [3, 0, 50],
     "saturated": [-1, 60, 2**33],
 }
-"""Counts of three worlds. In the first, organisms of 5, 5 and 60 ticks live; in the second none; in the
-third one. The oldest cells are empty, and more than 32 bits are needed."""
+"""Counts of three worlds; some need more than 32 bits."""
 WORLD = posed(
     [[1, 1, 0, 1], [0, 0, 0, 0], [0, 0, 1, 0]],
     [[95, 95, 0, 40], [1, 2, 3, 4], [0, 1, 2**33 + 2, 0]],
     COUNTS["tick"],
     **{name: value for name, value in COUNTS.items() if name != "tick"},
 )
+"""Three organisms are alive in the first world, none in the second, and one in the third. The earliest
+births are those of empty cells, which do not count."""
 AGES: dict[int | None, list[int]] = {
     None: [5, 5, 60, 5],
     0: [5, 5, 60],
@@ -49,7 +49,7 @@ def test_a_census_has_the_counts_of_all_worlds_or_of_one(alone: int | None) -> N
     assert found.oldest == max(ages, default=0)
 
 
-def test_a_speed_is_that_since_the_latest_census_of_at_least_two_seconds_ago() -> None:
+def test_a_speed_is_measured_since_the_latest_census_of_at_least_two_seconds_ago() -> None:
     speed = Speed()
     seen = [(0.0, 0), (1.0, 10), (2.0, 30), (3.0, 70), (3.5, 80), (10.0, 340), (10.5, 341)]
     since = [None, 0, 0, 1, 1, 4, 4]
@@ -61,7 +61,23 @@ def test_a_speed_is_that_since_the_latest_census_of_at_least_two_seconds_ago() -
         then, before = seen[first]
         rate = (lived - before) / (now - then)
         assert speed.organism_ticks_per_s() == pytest.approx(10 * rate)
-        assert speed.ticks_per_s() == pytest.approx(2 * rate), "of the fastest world"
+        assert speed.ticks_per_s() == pytest.approx(2 * rate), "that of the fastest world"
+
+
+NEVER = 2**64 - 1
+
+
+def seconds_left(
+    before: Census, after: Census, ticks: int, births: int = NEVER, saturation: bool = False
+) -> float | None:
+    """Return the time left of two worlds whose counts became `after` in two seconds.
+
+    The run stops at some ticks, at some births, or at saturation.
+    """
+    speed = Speed()
+    speed.add(8.0, before)
+    speed.add(10.0, after)
+    return speed.seconds_left(Limits(wide([ticks] * 2), wide([births] * 2), jnp.bool_(saturation)))
 
 
 @pytest.mark.parametrize(
@@ -72,37 +88,47 @@ def test_a_speed_is_that_since_the_latest_census_of_at_least_two_seconds_ago() -
         ([700, 150], [7, 7], 14.0),  # the first is beyond its limit, as after a limit was lowered
         ([500, 500], [7, 7], 0.0),
         ([700, 600], [7, 7], 0.0),
-        ([500, 100], [7, 7], None),  # the second will never come to a limit
-        ([500, 100], [7, 9], 1.0),  # but it has births: 1 a second, and another one to go
+        ([500, 100], [7, 7], None),  # the second never reaches a limit
+        ([500, 100], [7, 9], 1.0),  # the second has one birth a second, and needs one more
         ([500, 100], [7, 12], 0.0),
     ],
 )  # fmt: skip
-def test_worlds_at_a_limit_or_at_a_standstill_have_no_time_left_or_an_unknown_one(
+def test_worlds_at_a_limit_have_no_time_left_and_worlds_at_a_standstill_an_unknown_time(
     ticks: list[int], births: list[int], left: float | None
 ) -> None:
     """Two worlds were at 100 ticks and 7 births two seconds ago; limits are 500 ticks and 10 births."""
-    speed = Speed()
-    speed.add(8.0, counted(2, tick=[100, 100], births=[7, 7]))
-    speed.add(10.0, counted(2, tick=ticks, births=births))
-    limits = Limits(wide([500] * 2), wide([10] * 2), jnp.bool_(False))
-    assert speed.seconds_left(limits) == left
+    before = counted(2, tick=[100, 100], births=[7, 7])
+    assert seconds_left(before, counted(2, tick=ticks, births=births), 500, 10) == left
 
 
-def test_a_world_that_has_stopped_has_no_time_left() -> None:
-    """The first world was at its limit before; the second needs 350 ticks more, 25 a second."""
-    speed = Speed()
-    speed.add(8.0, counted(2, tick=[500, 100]))
-    speed.add(10.0, counted(2, tick=[500, 150]))
-    never = np.full(2, 2**64 - 1, np.uint64)
-    assert speed.seconds_left(Limits(wide([500] * 2), wide(never), jnp.bool_(False))) == 14.0
+def test_a_world_that_stopped_before_has_no_time_left() -> None:
+    """The first world is at its limit; the second needs 350 ticks more, 25 a second."""
+    before, after = (counted(2, tick=tick) for tick in ([500, 100], [500, 150]))
+    assert seconds_left(before, after, 500) == 14.0
 
 
-def test_an_unknown_number_of_ticks_is_not_a_limit() -> None:
-    speed = Speed()
-    speed.add(0.0, counted(1, tick=[0], births=[0]))
-    speed.add(2.0, counted(1, tick=[10], births=[4]))
-    never = np.array([2**64 - 1], np.uint64)
-    limits = [
-        Limits(wide(t), wide(b), jnp.bool_(False)) for t, b in ((never, [10]), (never, never))
-    ]
-    assert [speed.seconds_left(each) for each in limits] == [3.0, None]
+def test_time_left_is_that_of_the_world_that_stops_last() -> None:
+    """In a second the worlds live 50 and 100 ticks, and the first has 5 births."""
+    before = counted(2, tick=[0, 0], births=[10, 10])
+    after = counted(2, tick=[100, 200], births=[20, 10])
+    assert seconds_left(before, after, 500) == 8.0
+    assert seconds_left(before, after, 500, 40) == 4.0, (
+        "the second world reaches its 500 ticks in 3"
+    )
+    assert seconds_left(before, after, NEVER, 40) is None, "the second world has no births"
+    after = counted(2, tick=[100, 200], births=[20, 20])
+    assert seconds_left(before, after, NEVER, 40) == 4.0
+    assert seconds_left(before, after, NEVER) is None
+
+
+@pytest.mark.parametrize(
+    ("saturated", "ends", "goes_on"),
+    [([-1, -1], 8.0, 8.0), ([50, -1], 3.0, 8.0), ([-1, 50], 8.0, 8.0), ([50, 60], 0.0, 8.0)],
+)
+def test_a_saturated_world_has_time_left_unless_the_run_stops_at_saturation(
+    saturated: list[int], ends: float, goes_on: float
+) -> None:
+    """In 2 s the worlds lived 100 and 200 ticks of 500, so they need another 8 s and 3 s."""
+    before, after = counted(2), counted(2, tick=[100, 200], saturated=saturated)
+    assert seconds_left(before, after, 500, saturation=True) == ends
+    assert seconds_left(before, after, 500) == goes_on

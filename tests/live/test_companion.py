@@ -1,4 +1,4 @@
-"""The organism beside its world: which it is, what is said of it, and how large it is drawn."""
+"""The organism beside its world: which organism it is, its facts, and the size of its picture."""
 
 from types import SimpleNamespace
 from typing import Any
@@ -15,8 +15,8 @@ from primordia.live.companion import Body, Companion
 from primordia.live.forms import Room
 from primordia.live.paint import levels
 from primordia.random.wide import to_host
+from tests.live.drawn import colours, text
 from tests.live.posed import law, posed
-from tests.live.test_paint import colours, text
 
 SENSES, MEMORY = np.array([-1.0, 1.0]), np.array([1.0, -1.0, 0.0])
 BODY = Body(np.zeros(2), np.array([0.25, -1.0]))
@@ -64,13 +64,13 @@ def perceived(monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, int]]:
 
 
 @pytest.mark.parametrize(("alone", "cells"), [(None, [0, 6, 5, 1, 2]), (0, [0, 1, 2]), (1, [6, 5])])
-def test_organisms_follow_by_age_in_the_worlds_that_are_shown(
+def test_organisms_of_the_worlds_that_are_shown_follow_each_other_by_age(
     alone: int | None, cells: list[int]
 ) -> None:
-    """Ages are those in the organism's own world, and equal birth numbers are other organisms."""
+    """An age is measured in the organism's own world. Two organisms with one birth number are two."""
     shown, of = Companion(), engine()
-    for cell in [*cells, cells[0]]:
-        assert shown.find(of, alone, step=1 if shown._who else 0) == cell
+    for place, cell in enumerate([*cells, cells[0]]):
+        assert shown.find(of, alone, step=min(place, 1)) == cell
         assert shown.find(of, alone) == cell
 
 
@@ -81,9 +81,9 @@ def test_an_organism_of_another_world_gives_way_to_the_oldest_of_the_world_that_
         6,
         5,
     ]
-    assert shown.find(of, 1) == 5, "it is of this world"
+    assert shown.find(of, 1) == 5, "this organism is in world 1"
     assert shown.find(of, 0) == 0
-    assert shown.find(of, 1, step=1) == 6, "a step from a world that is left begins with the oldest"
+    assert shown.find(of, 1, step=1) == 6, "a step in another world begins with the oldest"
 
 
 @pytest.mark.parametrize(
@@ -94,7 +94,7 @@ def test_an_organism_of_another_world_gives_way_to_the_oldest_of_the_world_that_
         (3, "organism 1,234 in cell 1 of world 0", "20 ticks", "750.0", "2.5"),
     ],
 )
-def test_an_organism_is_told_by_its_own_numbers(
+def test_an_organism_has_its_own_numbers(
     steps: int, title: str, age: str, energy: str, eaten: str | None,
     perceived: list[tuple[int, int]],
 ) -> None:  # fmt: skip
@@ -122,7 +122,7 @@ def test_what_does_not_fit_is_left_out() -> None:
         text(shown.rows(of, 1, Room(width, 1, letters=False)))[0] for width in (31, 30, 21, 20, 9)
     ]
     assert titles == [
-        "organism 3 in cell 2 of world 1", "3 in cell 2 of world 1"[:30], "organism 3", "organism 3",
+        "organism 3 in cell 2 of world 1", "3 in cell 2 of world 1", "organism 3", "organism 3",
         "organism ",
     ]  # fmt: skip
     assert text(shown.rows(of, 1, Room(15, 4, letters=False)))[3] == "does next  push"
@@ -145,7 +145,7 @@ def test_in_a_single_world_no_world_is_named_and_an_action_without_words_is_a_nu
         (Room(80, 16, letters=False), (40, 10)),  # ten rows are left: twenty points high
         (Room(20, 40, letters=False), (20, 5)),
         (Room(80, 10, letters=False), (16, 4)),
-        (Room(80, 9, letters=False), None),  # a picture of three rows shows nothing
+        (Room(80, 9, letters=False), None),  # a picture of three rows would be too small
         (Room(80, 30, letters=True), None),
     ],
 )
@@ -169,7 +169,7 @@ def test_a_picture_fills_its_room_without_the_margin_for_captions(
 def test_an_organism_thinks_with_its_own_genome_memory_seed_and_cell_in_the_next_tick(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Cell 6 is cell 2 of the second world, at tick 1,000. Bodies on the host are drawn as they are."""
+    """Cell 6 is cell 2 of the second world, at tick 1,000. The drawn body is the one on the host."""
     given: list[Any] = []
 
     def shared(*_: Any) -> Any:

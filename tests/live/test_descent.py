@@ -1,4 +1,4 @@
-"""Lines of descent in the live view: they are given up where following them would take too long."""
+"""Lines of descent in the live view: takeovers, and when the view stops following lines to save time."""
 
 from types import SimpleNamespace
 from typing import Any
@@ -7,45 +7,12 @@ import numpy as np
 import pytest
 
 from primordia.history.lines import NO_PARENT, Turnover
+from primordia.law.world import World
 from primordia.live import descent
 from primordia.live.descent import Descent
 from tests.live.posed import posed
 
-
-def follow(followed: Descent, births: range, wall_s: float = 0.0) -> None:
-    """Take a chunk with founders of these numbers."""
-    born = np.array(births, np.int64)
-    none = np.zeros(0, np.int64)
-    happened = Turnover(born, np.full(len(born), NO_PARENT), born, none, none)
-    state = SimpleNamespace(world=SimpleNamespace(organisms=None))
-    engine = SimpleNamespace(law=SimpleNamespace(cells=64), state=state, events=[happened])
-    status: Any = SimpleNamespace(engine=engine, wall_s=wall_s)
-    followed.follow(status, 1)
-
-
-@pytest.fixture(autouse=True)
-def small(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Descent, "EVENTS", 10)
-    monkeypatch.setattr(descent, "turnovers", lambda events, cells, shown: events)
-
-
-def test_lines_are_given_up_after_too_many_births() -> None:
-    followed = Descent()
-    follow(followed, range(6))
-    follow(followed, range(6, 10))
-    assert set(followed.lines[0].line_of) == set(range(10))
-    follow(followed, range(10, 11))
-    assert followed.lines == {}
-    assert followed.takeovers([0]) is None
-
-
-def test_with_time_there_may_be_more_births() -> None:
-    followed = Descent()
-    follow(followed, range(20), wall_s=1.0)
-    follow(followed, range(20, 30), wall_s=2.0)
-    assert set(followed.lines[0].line_of) == set(range(30))
-    follow(followed, range(30, 31), wall_s=2.0)
-    assert followed.takeovers([0]) is None
+EMPTY = posed([[0] * 64] * 3, [[0] * 64] * 3, [1] * 3)
 
 
 def births(*numbers: int, parent: int = NO_PARENT, tick: int = 0) -> Turnover:
@@ -60,19 +27,44 @@ def deaths(*numbers: int, tick: int) -> Turnover:
     return Turnover(none, none, none, dead, np.full(len(dead), tick))
 
 
-def status(happened: list[Turnover], world: Any = None, cells: int = 64) -> Any:
+def status(
+    happened: list[Turnover], world: World = EMPTY, cells: int = 64, wall_s: float = 0.0
+) -> Any:
+    """Return the status of a run after a chunk with these events of each world."""
     engine = SimpleNamespace(
         law=SimpleNamespace(cells=cells), state=SimpleNamespace(world=world), events=happened
     )
-    return SimpleNamespace(engine=engine, wall_s=0.0)
+    return SimpleNamespace(engine=engine, wall_s=wall_s)
 
 
-EMPTY = posed([[0] * 64] * 3, [[0] * 64] * 3, [1] * 3)
+@pytest.fixture(autouse=True)
+def small(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Descent, "EVENTS", 10)
+    monkeypatch.setattr(descent, "turnovers", lambda events, cells, shown: events)
+
+
+def test_lines_are_given_up_after_too_many_births() -> None:
+    followed = Descent()
+    followed.follow(status([births(*range(6))]), 1)
+    followed.follow(status([births(*range(6, 10))]), 1)
+    assert set(followed.lines[0].line_of) == set(range(10))
+    followed.follow(status([births(*range(10, 11))]), 1)
+    assert followed.lines == {}
+    assert followed.takeovers([0]) is None
+
+
+def test_with_time_there_may_be_more_births() -> None:
+    followed = Descent()
+    followed.follow(status([births(*range(20))], wall_s=1.0), 1)
+    followed.follow(status([births(*range(20, 30))], wall_s=2.0), 1)
+    assert set(followed.lines[0].line_of) == set(range(30))
+    followed.follow(status([births(*range(30, 31))], wall_s=2.0), 1)
+    assert followed.takeovers([0]) is None
 
 
 def test_deaths_count_as_births_do() -> None:
     followed = Descent()
-    followed.follow(status([births(*range(6))], EMPTY), 1)
+    followed.follow(status([births(*range(6))]), 1)
     followed.follow(status([deaths(0, 1, 2, 3, tick=1)]), 1)
     assert followed.takeovers([0]) is not None
     followed.follow(status([deaths(4, tick=2)]), 1)
@@ -81,19 +73,20 @@ def test_deaths_count_as_births_do() -> None:
 
 def test_takeovers_that_were_missed_stay_unknown_when_lines_are_followed_again() -> None:
     followed = Descent()
-    followed.follow(status([births(*range(11))], EMPTY), 1)
+    followed.follow(status([births(*range(11))]), 1)
     assert followed.lines == {}
-    later = status([births(11, tick=5)], posed([[1] * 64], [[0] * 64], [5]))
-    later.wall_s = 9.0
+    later = status([births(11, tick=5)], posed([[1] * 64], [[0] * 64], [5]), wall_s=9.0)
     followed.follow(later, 1)
     assert set(followed.lines[0].line_of) == set(range(64))
     assert followed.takeovers([0]) is None
 
 
-def test_takeovers_are_those_of_the_named_worlds_and_known_only_of_worlds_that_are_shown() -> None:
+def test_takeovers_are_counted_in_the_named_worlds_and_known_only_of_worlds_that_are_shown() -> (
+    None
+):
     """Each world has four cells, so lines begin with two organisms."""
     followed = Descent()
-    followed.follow(status([births(0, 1)] * 3, EMPTY, cells=4), 3)
+    followed.follow(status([births(0, 1)] * 3, cells=4), 3)
     followed.follow(status([deaths(0, tick=1), births(), deaths(1, tick=1)], cells=4), 3)
     assert [followed.takeovers(worlds) for worlds in ([0], [1], [2], [0, 1, 2])] == [1, 0, 1, 2]
     followed.follow(status([births()] * 2, cells=4), 2)
@@ -107,8 +100,8 @@ def test_takeovers_are_those_of_the_named_worlds_and_known_only_of_worlds_that_a
     assert followed.takeovers([0, 1, 2]) is None, "world 2 was not followed for a chunk"
 
 
-def test_the_lines_of_a_run_that_goes_on_begin_with_its_own_living() -> None:
-    """The second of two worlds has organisms 9 and 8, whose line takes over when 8 has died."""
+def test_the_lines_of_a_resumed_run_begin_with_its_living_organisms() -> None:
+    """In the second world, organisms 9 and 8 are alive. The line of 9 takes over when 8 has died."""
     world = posed(
         [[1, 0, 0, 0], [0, 1, 1, 0]], [[0] * 4] * 2, [5, 5], number=[[7, 0, 0, 0], [9, 9, 8, 0]]
     )
@@ -125,17 +118,17 @@ def test_lines_begin_with_sixteen_organisms_or_with_half_of_the_cells() -> None:
         followed.follow(status([births(0)], world, cells), 1)
         for number in range(1, crowd):
             assert followed.lines[0].renewals == []
-            followed._followed = 0
-            followed.follow(status([births(number, parent=0, tick=number)], cells=cells), 1)
+            child = births(number, parent=0, tick=number)
+            followed.follow(status([child], cells=cells, wall_s=9.0), 1)
         assert followed.lines[0].renewals == [crowd - 1]
 
 
-def test_lines_of_large_worlds_are_not_followed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Descent, "CELLS", 63)
+@pytest.mark.parametrize(("most", "takeovers"), [(63, None), (64, 0)])
+def test_lines_of_large_worlds_are_not_followed(
+    most: int, takeovers: int | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each world has 64 cells."""
+    monkeypatch.setattr(Descent, "CELLS", most)
     followed = Descent()
-    follow(followed, range(3))
-    assert followed.takeovers([0]) is None
-    monkeypatch.setattr(Descent, "CELLS", 64)
-    followed = Descent()
-    follow(followed, range(3))
-    assert followed.takeovers([0]) == 0
+    followed.follow(status([births(*range(3))]), 1)
+    assert followed.takeovers([0]) == takeovers

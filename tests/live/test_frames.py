@@ -1,4 +1,4 @@
-"""When the view draws, and when plain lines are printed in its place."""
+"""The times at which the view draws, takes past moments, and prints plain lines."""
 
 from types import SimpleNamespace
 from typing import Any
@@ -9,11 +9,11 @@ import pytest
 from primordia.live import view as views
 from primordia.live import watching
 from primordia.live.watching import Plain
-from tests.live.test_view import status, view
+from tests.live.posed import Clock, status, view
 
 
 class Frames:
-    """A view whose frames take some seconds of a clock, and note when they began."""
+    """A view whose frames take some seconds of a clock. It notes when each frame began."""
 
     def __init__(self, cost: float, monkeypatch: pytest.MonkeyPatch, keyboard: Any = None) -> None:
         self.now, self.cost, self.began = 100.0, cost, list[float]()
@@ -32,7 +32,7 @@ class Frames:
         self.now += self.cost
 
     def live(self, seconds: float, each: float, worlds: int = 1) -> None:
-        """Let chunks of `each` seconds be lived."""
+        """Give the view chunks of `each` seconds until some seconds have passed."""
         until, of = self.now + seconds, status(worlds)
         while self.now < until:
             self.view(of)
@@ -56,7 +56,7 @@ def test_a_past_moment_of_a_world_alone_is_taken_every_tenth_of_a_second(
     np.testing.assert_allclose(np.diff([at for at, _ in frames.moments]), 0.12)
     frames.moments.clear()
     frames.live(1.0, 0.03, worlds=3)
-    assert frames.moments == [], "of several worlds side by side none is taken"
+    assert frames.moments == [], "several worlds side by side have no past"
     frames.view._alone = 2
     frames.live(1.0, 0.03, worlds=3)
     assert {world for _, world in frames.moments} == {2}
@@ -66,7 +66,7 @@ def test_a_past_moment_of_a_world_alone_is_taken_every_tenth_of_a_second(
     np.testing.assert_allclose(np.diff([at for at, _ in frames.moments]), 0.03)
 
 
-def test_time_of_waiting_is_used_for_a_frame_that_is_not_drawn_yet(
+def test_a_waiting_run_draws_a_state_that_is_not_drawn_yet(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     frames = Frames(0.0625, monkeypatch)
@@ -74,13 +74,13 @@ def test_time_of_waiting_is_used_for_a_frame_that_is_not_drawn_yet(
     frames.view(status(1))
     assert len(frames.began) == 1
     frames.view._react(0.0625)
-    assert len(frames.began) == 1, "there is no more time than a frame takes"
+    assert len(frames.began) == 1, "the wait is as short as a frame"
     frames.view._react(0.07)
     frames.view._react(0.07)
     assert len(frames.began) == 2, "a state is drawn once"
 
 
-def test_a_key_and_another_size_are_drawn_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_key_and_a_new_size_cause_a_frame_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     presses = iter(["", "", "w?", ""])
     frames = Frames(0.05, monkeypatch, SimpleNamespace(pressed=lambda _: next(presses)))
     frames.view(status(3))
@@ -130,9 +130,8 @@ def test_before_the_first_chunk_the_view_says_that_it_compiles() -> None:
 def test_a_plain_line_has_the_counts_of_all_worlds_every_two_seconds(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The first chunk is not counted. A line at 12 s has the 3,000 organism-ticks of 2 s before it."""
-    clock: Any = SimpleNamespace(perf_counter=lambda: clock.now)
-    monkeypatch.setattr(watching, "time", clock)
+    """No line follows the first chunk. From 10 to 12 s, three worlds live 1,000 organism-ticks each."""
+    monkeypatch.setattr(watching, "time", clock := Clock())
     paced: list[Any] = []
     plain = Plain(lambda of: paced.append(of))
     for now, lived, tick in (

@@ -5,26 +5,18 @@ import os
 import signal
 import sys
 from collections.abc import Iterator
-from functools import partial
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from rich.console import Console
 
 import primordia
-from primordia.live import pace as paces
-from primordia.live.pace import FRAME, LEVELS, Pace
+from primordia.live.pace import Pace
 from primordia.live.terminal import Keyboard
 from primordia.live.view import View
-from primordia.live.watching import watching
-from primordia.random.wide import Wide
 from primordia.runs import loop
-from primordia.runs.loop import Listener, Status
 from tests.live.terminals import Terminal, opened
 from tests.worlds import MEADOW, config
 
@@ -175,87 +167,3 @@ def test_q_writes_a_checkpoint_from_which_the_run_goes_on(tmp_path: Path) -> Non
         watch(" ssq", tmp_path / "keys")
     loop.resume(tmp_path / "keys")
     assert digests(tmp_path / "keys") == watch("", tmp_path / "none")
-
-
-# The pace.
-
-
-class Clock:
-    """Seconds that pass when something waits or lives."""
-
-    def __init__(self) -> None:
-        self.now = 0.0
-
-    def perf_counter(self) -> float:
-        return self.now
-
-    def sleep(self, seconds: float) -> None:
-        self.now += seconds + 1e-9
-
-
-def lived(listen: Listener, clock: Clock, capacity: float, seconds: float) -> tuple[int, float]:
-    """Live at a pace on a machine of `capacity` ticks a second -> ticks, seconds."""
-    engine: Any = SimpleNamespace(longest=None)
-    tick, began = 0, clock.now
-    while clock.now - began < seconds:
-        ticks = min(engine.longest or 10**9, max(int(0.2 * capacity), 1))
-        tick += ticks
-        clock.now += ticks / capacity
-        words = Wide(*np.array([[0, 0], [tick, 3]], np.uint32))
-        worlds = SimpleNamespace(worlds=SimpleNamespace(tick=words))
-        engine.state = SimpleNamespace(world=worlds)
-        listen(Status(engine, clock.now))
-    return tick, clock.now - began
-
-
-@given(
-    limit=st.floats(0.5, 1e5),
-    capacity=st.floats(20.0, 1e6),
-)
-def test_no_more_ticks_a_second_than_the_limit(limit: float, capacity: float) -> None:
-    clock = Clock()
-    with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(paces, "time", clock)
-        ticks, seconds = lived(partial(Pace(limit), react=clock.sleep), clock, capacity, 20.0)
-        first = max(int(0.2 * capacity), 1)  # the first chunk knows no limit
-        assert ticks - first <= limit * seconds + max(limit * FRAME, 1)
-        assert ticks >= 0.8 * min(limit, capacity) * 20.0 - 1, "and hardly fewer"
-
-
-def test_slower_and_faster_go_through_levels(monkeypatch: pytest.MonkeyPatch) -> None:
-    clock = Clock()
-    monkeypatch.setattr(paces, "time", clock)
-    pace = Pace()
-    pace.slower(5000.0)
-    assert pace.limit == 3000
-    for _ in range(2 * len(LEVELS)):
-        pace.slower(5000.0)
-    assert pace.limit == 1
-    pace.faster()
-    pace.faster()
-    assert pace.limit == 10
-    lived(partial(pace, react=clock.sleep), clock, 5.0, 10.0)
-    pace.faster()
-    assert pace.limit is None, "a higher limit would make no difference"
-    pace.faster()
-    assert str(pace) == ""
-
-
-@pytest.mark.parametrize("quiet", [True, False])
-def test_a_speed_holds_also_where_nothing_is_drawn(
-    quiet: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Of a quiet run, and of one that prints plain lines, since its output is no terminal."""
-    clock = Clock()
-    monkeypatch.setattr(paces, "time", clock)
-    monkeypatch.setattr("primordia.live.watching.Plain._print", lambda *_: None)
-    monkeypatch.setattr(Pace.__call__, "__defaults__", (clock.sleep,))
-    with watching(quiet, 50.0) as listen:
-        assert listen is not None
-        ticks, seconds = lived(listen, clock, 1000.0, 20.0)
-    assert 0.8 * 50 * seconds <= ticks <= 50 * seconds + 200
-
-
-def test_a_quiet_run_without_a_speed_is_not_listened_to() -> None:
-    with watching(quiet=True) as listen:
-        assert listen is None

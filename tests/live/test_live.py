@@ -6,78 +6,21 @@ import re
 from pathlib import Path
 from typing import Any
 
-import jax.numpy as jnp
 import numpy as np
 import pytest
 from rich.console import Console, ConsoleDimensions
 from rich.segment import Segment
 
 from primordia.engine.engine import Engine
-from primordia.engine.state import Limits, State
-from primordia.law.world import World
 from primordia.live import view as live
-from primordia.live.census import Census, Speed
-from primordia.live.forms import Room
-from primordia.live.paint import EMPTY, Cells, Row, field, skyline, strip
-from primordia.live.panel import duration, with_prefix
-from primordia.live.scene import Grid, _labelled
+from primordia.live.census import Census
 from primordia.live.watching import Plain
-from primordia.random.wide import Wide, wide
 from primordia.runs import loop
 from tests.commands import here
+from tests.live.drawn import text
+from tests.live.posed import look_alive
 from tests.live.terminals import opened
 from tests.worlds import MEADOW, config
-
-# The picture.
-
-
-def text(rows: list[Row]) -> list[str]:
-    return ["".join(segment.text for segment in row) for row in rows]
-
-
-def cells(line: list[int], ticks: list[int]) -> Cells:
-    return Cells.of(np.array(line), np.array(ticks), full=1000)
-
-
-def test_bars_grow_with_age_and_empty_cells_are_dots() -> None:
-    some = cells([4, 4, EMPTY, 9, 9], [0, 30, 0, 1000, 10**9])
-    assert text(skyline(some, wide=2, tall=2, letters=False)) == ["      █ █ ", "▁ █ · █ █ "]
-    assert text(skyline(some, wide=1, tall=1, letters=True)) == ["▁▄ ▇▇", "ee·jj"]
-    assert text([strip(some, letters=False)]) == ["▁▄·▇▇"]
-    assert text([strip(some, letters=True)]) == ["ee·JJ"]
-
-
-def test_each_line_has_its_own_colour() -> None:
-    first, second, third = strip(cells([0, 1, 0], [9, 9, 9]), letters=False)
-    assert first.style == third.style != second.style
-
-
-def test_a_torus_is_drawn_with_two_rows_in_a_line() -> None:
-    some = cells([1, 1, 2, 2, 3, EMPTY], [1000] * 6)
-    rows = field(some, columns=2, scale=1, letters=False)
-    assert text(rows) == ["▀▀", "▀▀"]
-    assert [len(row) for row in rows] == [1, 2], "there is a segment for each stretch of one style"
-    assert len(field(some, columns=2, scale=4, letters=False)) == 6
-    assert text(field(some, columns=2, scale=1, letters=True)) == ["BB", "CC", "D·"]
-
-
-def test_tiles_side_by_side_are_equally_wide() -> None:
-    drawn: list[Row] = [[Segment("ab")], [Segment("abcd"), Segment("e")], []]
-
-    def widths(across: int) -> list[int]:
-        grid = Grid(across, 2, Room(6, 3, letters=False), 0)
-        return [len(row) for row in text(_labelled(drawn, "7 ", " \u2713", grid))]
-
-    assert widths(across=2) == [10, 10, 10]
-    assert widths(across=1) == [6, 7, 2], "alone in its row it needs no padding"
-
-
-def test_numbers_are_written_in_short_form() -> None:
-    assert [with_prefix(x) for x in (None, 0, 999, 1500, 1.234e6, 4.56e8)] == [
-        "-", "0", "999", "1.5 k", "1.2 M", "456 M",
-    ]  # fmt: skip
-    assert [duration(x) for x in (0.4, 75, 3725)] == ["0 s", "1 min 15 s", "1 h 2 min"]
-
 
 # The view as a whole.
 
@@ -102,18 +45,6 @@ def running(request: pytest.FixtureRequest) -> tuple[str, Engine]:
     else:
         look_alive(made)
     return name, made
-
-
-def look_alive(made: Engine) -> None:
-    """Pose four fifths of the cells as organisms of many ages, without events."""
-    world, bodies = made.state
-    cells = np.arange(len(world.organisms.alive), dtype=np.uint32)
-    number, born = (Wide(jnp.zeros_like(cells), jnp.asarray(n)) for n in (cells, cells % 999))
-    organisms = world.organisms._replace(alive=cells % 5 > 0, number=number, born=born)
-    thousand = wide([1000] * made.law.worlds)
-    worlds = world.worlds._replace(tick=thousand, births=thousand)
-    made.state = State(World(organisms, worlds), bodies)
-    made.advance = lambda _: made.events
 
 
 def shown(made: Engine, chunks: int = 2, **options: Any) -> tuple[str, list[str]]:
@@ -196,48 +127,6 @@ def test_the_view_follows_the_living(running: tuple[str, Engine]) -> None:
         here = slice(world * cells, (world + 1) * cells)
         alive, number = np.asarray(organisms.alive)[here], np.asarray(organisms.number.lo)[here]
         assert set(lines.line_of) == set(number[alive].tolist())
-
-
-def census(tick: list[int], births: list[int], saturated: tuple[int, int] = (-1, -1)) -> Census:
-    """Return the census of two worlds."""
-    each = np.zeros(2, np.int64)
-    return Census(
-        tick=np.array(tick), alive=each, births=np.array(births), deaths=each, calm=each,
-        extinctions=each, organism_ticks=10 * np.array(tick), saturated=np.array(saturated),
-        mean_age=0.0, oldest=0,
-    )  # fmt: skip
-
-
-def test_time_left_is_that_of_the_world_that_stops_last() -> None:
-    def left(ticks: int, births: int) -> float | None:
-        saturation = jnp.bool_(False)
-        return speed.seconds_left(Limits(wide([ticks] * 2), wide([births] * 2), saturation))
-
-    speed, never = Speed(), 2**64 - 1
-    speed.add(10.0, census([0, 0], [10, 10]))
-    assert speed.organism_ticks_per_s() is None
-    assert left(500, never) is None
-    speed.add(12.0, census([100, 200], [20, 10]))
-    assert speed.organism_ticks_per_s() == 1500
-    assert left(500, never) == pytest.approx(8.0)
-    assert left(500, 40) == pytest.approx(4.0), "the second world reaches its 500 ticks in 3"
-    assert left(never, 40) is None, "the second world has no births"
-
-
-@pytest.mark.parametrize(
-    ("saturated", "ends", "goes_on"),
-    [((-1, -1), 8.0, 8.0), ((50, -1), 3.0, 8.0), ((-1, 50), 8.0, 8.0), ((50, 60), 0.0, 8.0)],
-)
-def test_a_saturated_world_has_time_left_unless_the_run_stops_at_saturation(
-    saturated: tuple[int, int], ends: float, goes_on: float
-) -> None:
-    """In 2 s the worlds lived 100 and 200 ticks of 500, so they need another 8 s and 3 s."""
-    speed = Speed()
-    speed.add(10.0, census([0, 0], [0, 0]))
-    speed.add(12.0, census([100, 200], [0, 0], saturated))
-    for stops, expected in ((True, ends), (False, goes_on)):
-        limits = Limits(wide([500] * 2), wide([2**64 - 1] * 2), jnp.bool_(stops))
-        assert speed.seconds_left(limits) == pytest.approx(expected)
 
 
 def test_a_frame_spells_out_control_characters() -> None:

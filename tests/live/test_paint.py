@@ -1,4 +1,4 @@
-"""What is painted: heights, letters, lights and colours, each computed here in another way."""
+"""Heights, letters, lights and colours of drawn cells."""
 
 import colorsys
 
@@ -9,7 +9,6 @@ from rich.segment import Segment
 from primordia.live.paint import (
     EMPTY,
     Cells,
-    Row,
     colour,
     field,
     levels,
@@ -20,27 +19,43 @@ from primordia.live.paint import (
     skyline,
     strip,
 )
+from tests.live.drawn import colours, text
 
 BARS = " ▁▂▃▄▅▆▇█"
 AGES = np.array([0.0, 0.2, 0.4, 0.6, 0.8, 1.0])
-
-
-def text(rows: list[Row]) -> list[str]:
-    return ["".join(segment.text for segment in row) for row in rows]
-
-
-def colours(segment: Segment) -> tuple[tuple[int, ...], tuple[int, ...] | None]:
-    """Return red, green and blue of the upper and the lower half of a character."""
-    style = segment.style
-    assert style is not None
-    lower = None if style.bgcolor is None else tuple(style.bgcolor.get_truecolor())
-    return tuple(style.color.get_truecolor()), lower
 
 
 def test_age_is_on_a_logarithmic_scale_up_to_the_full_age() -> None:
     """log(10) is half of log(100), and log(1) is 0."""
     cells = Cells.of(np.zeros(6, np.int64), np.array([-3, 0, 9, 99, 100, 10**12]), full=99)
     np.testing.assert_allclose(cells.age, [0, 0, 0.5, 1, 1, 1])
+
+
+def aged(line: list[int], ticks: list[int]) -> Cells:
+    """Return cells of some lines and ages; 1,000 ticks is the full age."""
+    return Cells.of(np.array(line), np.array(ticks), full=1000)
+
+
+def test_bars_grow_with_age_and_empty_cells_are_dots() -> None:
+    some = aged([4, 4, EMPTY, 9, 9], [0, 30, 0, 1000, 10**9])
+    assert text(skyline(some, wide=2, tall=2, letters=False)) == ["      █ █ ", "▁ █ · █ █ "]
+    assert text(skyline(some, wide=1, tall=1, letters=True)) == ["▁▄ ▇▇", "ee·jj"]
+    assert text([strip(some, letters=False)]) == ["▁▄·▇▇"]
+    assert text([strip(some, letters=True)]) == ["ee·JJ"]
+
+
+def test_each_line_has_its_own_colour() -> None:
+    first, second, third = strip(aged([0, 1, 0], [9, 9, 9]), letters=False)
+    assert first.style == third.style != second.style
+
+
+def test_a_torus_is_drawn_with_two_rows_in_a_line() -> None:
+    some = aged([1, 1, 2, 2, 3, EMPTY], [1000] * 6)
+    rows = field(some, columns=2, scale=1, letters=False)
+    assert text(rows) == ["▀▀", "▀▀"]
+    assert [len(row) for row in rows] == [1, 2], "there is a segment for each stretch of one style"
+    assert len(field(some, columns=2, scale=4, letters=False)) == 6
+    assert text(field(some, columns=2, scale=1, letters=True)) == ["BB", "CC", "D·"]
 
 
 @pytest.mark.parametrize("tall", [1, 2, 3])
@@ -101,22 +116,28 @@ def test_a_cell_of_two_columns_has_one_row_and_a_cell_of_four_has_two() -> None:
     (upper, _), (lower, _) = field(cells, columns=2, scale=2, letters=False)
     for segment, line in ((upper, 1), (lower, 3)):
         one, other = colours(segment)
-        assert one == other, "both halves are of one cell"
+        assert one == other, "both halves belong to one cell"
         np.testing.assert_allclose(one, 0.4 * np.array(colour(line)), atol=1)
 
 
 def test_a_picture_keeps_its_colours_to_four_bits() -> None:
-    pixels = np.array([[[255, 15, 16]], [[0, 255, 0]], [[16, 31, 255]]], np.uint8)
-    (upper,), (lower,) = photograph(pixels)
-    assert colours(upper) == ((255, 0, 17), (0, 255, 0))
-    assert colours(lower) == ((17, 17, 255), None)
+    """Two points, one above the other, are a character."""
+    pixels = np.array(
+        [[[255, 15, 16], [1, 2, 3]], [[0, 255, 0], [255, 0, 0]], [[16, 31, 255], [0, 0, 0]]],
+        np.uint8,
+    )
+    drawn = [[colours(each) for each in row] for row in photograph(pixels)]
+    assert drawn == [
+        [((255, 0, 17), (0, 255, 0)), ((0, 0, 0), (255, 0, 0))],
+        [((17, 17, 255), None), ((0, 0, 0), None)],
+    ]
 
 
 def test_levels_go_in_eight_equal_steps_from_minus_one_to_one() -> None:
     steps = [-1 + 2 * step / 7 for step in range(8)]
     assert levels(np.array(steps)) == "▁▂▃▄▅▆▇█"
     assert levels(np.array([-9.0, 9.0, -np.inf, np.inf])) == "▁█▁█"
-    assert levels(np.array([np.nan])) == levels(np.array([0.0])), "what is no number is drawn as 0"
+    assert levels(np.array([np.nan])) == levels(np.array([0.0])), "an undefined value is drawn as 0"
 
 
 def test_a_row_is_padded_to_a_width_and_never_cut() -> None:

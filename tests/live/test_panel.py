@@ -1,4 +1,4 @@
-"""The numbers of the view: each is the count on record, in its place, with its unit."""
+"""The numbers of the view, each in its place with its unit; the bar of saturation; and the keys."""
 
 from itertools import pairwise
 from typing import Any
@@ -7,6 +7,7 @@ import pytest
 from rich.segment import Segment
 
 from primordia.law.world import Cause
+from primordia.live.census import Census
 from primordia.live.ground import Medians
 from primordia.live.panel import (
     Outlook,
@@ -19,38 +20,36 @@ from primordia.live.panel import (
     saturation,
     with_prefix,
 )
+from tests.live.drawn import text
 from tests.live.posed import counted
-from tests.live.test_paint import text
 from tests.worlds import MEADOW, config
 
-RING, PAUSED = {"seed": 7, "cells": 1024}, "at most 3 ticks/s"
+RING, PACE = {"seed": 7, "cells": 1024}, "at most 3 ticks/s"
 WELL_MIXED = {**RING, "placement": {"topology": "well-mixed"}}
 
 
 @pytest.mark.parametrize(
-    ("settings", "about"),
+    ("settings", "size", "shape"),
     [
-        (RING, "  seed 7, 1,024 cells on a ring"),
-        (WELL_MIXED, "  seed 7, 1,024 cells well-mixed"),
-        ({**RING, "placement": {"topology": "torus4"}}, "  seed 7, 1,024 cells on a torus"),
-        ({**RING, "placement": {"topology": "torus8"}}, "  seed 7, 1,024 cells on a torus"),
-        ({**RING, "seeds": 3}, "  3 worlds, seeds 7 to 9, 1,024 cells each on a ring"),
+        (RING, "seed 7, 1,024 cells", "on a ring"),
+        (WELL_MIXED, "seed 7, 1,024 cells", "well-mixed"),
+        ({**RING, "placement": {"topology": "torus4"}}, "seed 7, 1,024 cells", "on a torus"),
+        ({**RING, "placement": {"topology": "torus8"}}, "seed 7, 1,024 cells", "on a torus"),
+        ({**RING, "seeds": 3}, "3 worlds, seeds 7 to 9, 1,024 cells each", "on a ring"),
         ({**WELL_MIXED, "seeds": 1000},
-         "  1,000 worlds, seeds 7 to 1006, 1,024 cells each well-mixed"),
+         "1,000 worlds, seeds 7 to 1006, 1,024 cells each", "well-mixed"),
     ],
 )  # fmt: skip
 def test_the_heading_has_the_size_of_the_run_and_its_seeds(
-    settings: dict[str, Any], about: str
+    settings: dict[str, Any], size: str, shape: str
 ) -> None:
-    of, clock = config(MEADOW, **settings), f"{PAUSED}, 1 min 5 s"
-    needed = len("meadow") + len(about) + 2 + len(clock)
-    (row,) = text([heading(of, PAUSED, 65.0, needed)])
-    assert row == f"meadow{about}  {clock}"
-    (row,) = text([heading(of, PAUSED, 65.0, needed - 1)])
-    shorter = about.rsplit(" on a " if " on a " in about else " ", 1)[0]
-    assert row == f"meadow{shorter}{' ' * (len(about) - len(shorter) + 1)}{clock}"
-    (row,) = text([heading(of, "", 65.0, 12)])
-    assert row == "meadow 1 min 5 s", "only the task and the time are always told"
+    """The shape is left out where there is no room; the task and the time are always shown."""
+    of, clock = config(MEADOW, **settings), f"{PACE}, 1 min 5 s"
+    whole = f"meadow  {size} {shape}  {clock}"
+    assert text([heading(of, PACE, 65.0, len(whole))]) == [whole]
+    gap = " " * len(f" {shape} ")
+    assert text([heading(of, PACE, 65.0, len(whole) - 1)]) == [f"meadow  {size}{gap}{clock}"]
+    assert text([heading(of, "", 65.0, 12)]) == ["meadow 1 min 5 s"]
 
 
 COUNTS: dict[str, Any] = {
@@ -85,7 +84,7 @@ def test_each_number_is_that_of_all_worlds_that_are_shown() -> None:
     ]
 
 
-def test_unknown_numbers_are_left_out_and_numbers_of_nothing_are_not() -> None:
+def test_unknown_numbers_are_left_out_and_zeros_are_not() -> None:
     found = numbers(counted(1), 8, Outlook(None, None), None, None)
     assert found == {
         "tick": "0", "alive": "0 of 8", "mean age": "0", "births": "0", "deaths": "0", "oldest": "0",
@@ -97,11 +96,11 @@ def test_unknown_numbers_are_left_out_and_numbers_of_nothing_are_not() -> None:
 
 
 @pytest.mark.parametrize(
-    ("cells", "said"),
+    ("cells", "shown"),
     [(499_999, "25 of 999,998"), (500_000, "25 of 1.0 M"), (10**7, "25 of 20.0 M")],
 )
-def test_from_a_million_cells_on_numbers_are_short(cells: int, said: str) -> None:
-    assert numbers(counted(2, **COUNTS), cells, Outlook(None, None), None, None)["alive"] == said
+def test_from_a_million_cells_on_numbers_are_short(cells: int, shown: str) -> None:
+    assert numbers(counted(2, **COUNTS), cells, Outlook(None, None), None, None)["alive"] == shown
 
 
 def test_at_most_five_numbers_stand_side_by_side_in_columns() -> None:
@@ -131,7 +130,7 @@ def test_the_rows_of_numbers_are_cut_before_the_causes_and_the_bar() -> None:
 
 
 @pytest.mark.parametrize(
-    ("width", "said"),
+    ("width", "shown"),
     [
         (200, "900 replaced, 30 time-limit, 30 hazard, 9 fatal"),
         (56, "900 replaced, 30 time-limit, 30 hazard, 9 fatal"),
@@ -141,24 +140,24 @@ def test_the_rows_of_numbers_are_cut_before_the_causes_and_the_bar() -> None:
         (15, "900 re"),
     ],
 )
-def test_causes_of_death_of_all_worlds_are_told_by_their_number(width: int, said: str) -> None:
+def test_causes_of_death_of_all_worlds_are_ordered_by_their_counts(width: int, shown: str) -> None:
     (row, _) = text(panel({}, counted(2, **COUNTS), [], width, 9))
-    assert row == f"died of  {said}"
+    assert row == f"died of  {shown}"
 
 
-def test_every_cause_is_told_by_its_own_name() -> None:
+def test_every_cause_has_its_own_name() -> None:
     for cause in Cause:
         deaths = [[3 * (each == cause) for each in Cause]]
         (row, _) = text(panel({}, counted(1, deaths=deaths), [], 80, 9))
         assert row == f"died of  3 {cause.label}"
 
 
-def bar(filled: int, length: int, said: str) -> str:
-    return f"{'━' * filled}{'╌' * (length - filled)}  {said}"
+def bar(filled: int, length: int, shown: str) -> str:
+    return f"{'━' * filled}{'╌' * (length - filled)}  {shown}"
 
 
 @pytest.mark.parametrize(
-    ("saturated", "width", "said"),
+    ("saturated", "width", "shown"),
     [
         ([1234], 80, bar(24, 24, "saturated since tick 1,234")),
         ([1234], 36, bar(8, 8, "saturated since tick 1,234")),
@@ -172,20 +171,51 @@ def bar(filled: int, length: int, said: str) -> str:
     ],
 )
 def test_the_bar_has_the_share_of_saturated_worlds(
-    saturated: list[int], width: int, said: str
+    saturated: list[int], width: int, shown: str
 ) -> None:
-    assert text([saturation(counted(len(saturated), saturated=saturated), 8, 100, width)]) == [said]
+    assert text([saturation(counted(len(saturated), saturated=saturated), 8, 100, width)]) == [
+        shown
+    ]
 
 
 @pytest.mark.parametrize(
-    ("width", "said"),
+    ("width", "shown"),
     [(46, bar(4, 8, "full and calm for 500 of 1,000 ticks")),
      (45, "full and calm for 500 of 1,000 ticks"), (35, bar(8, 16, "calm 500 of 1,000")),
      (17, "calm 500 of 1,000"), (16, "calm 50%"), (5, "calm ")],
 )  # fmt: skip
-def test_a_narrow_bar_says_less(width: int, said: str) -> None:
+def test_a_narrow_bar_says_less(width: int, shown: str) -> None:
     calm = counted(1, alive=[8], calm=[500])
-    assert text([saturation(calm, 8, 1000, width)]) == [said]
+    assert text([saturation(calm, 8, 1000, width)]) == [shown]
+
+
+@pytest.mark.parametrize("width", [20, 30, 80])
+def test_only_a_saturated_world_is_called_saturated(width: int) -> None:
+    def bar_of(each: Census) -> str:
+        (row,) = text([saturation(each, 8, 1000, width)])
+        assert len(row) <= width
+        return row
+
+    assert "saturated" not in bar_of(counted(alive=[7]))
+    assert "saturated" not in bar_of(counted(alive=[8], calm=[999]))
+    assert "saturated" in bar_of(counted(alive=[7], calm=[3], saturated=[1234]))
+
+
+@pytest.mark.parametrize(
+    ("alive", "calm", "shown", "filled"),
+    [
+        ([7], [500], "full and calm for 0 of 1,000 ticks", 0),
+        ([8], [500], "full and calm for 500 of 1,000 ticks", 12),
+        ([8], [2000], "full and calm for 1,000 of 1,000 ticks", 24),
+        ([7, 8], [900, 250], "one world full and calm for 250 of 1,000 ticks", 6),
+        ([7, 0], [900, 900], "no world full and calm for 1,000 ticks", 0),
+    ],
+)
+def test_a_bar_of_24_columns_grows_only_with_the_calm_of_full_worlds(
+    alive: list[int], calm: list[int], shown: str, filled: int
+) -> None:
+    some = counted(len(alive), alive=alive, calm=calm)
+    assert text([saturation(some, 8, 1000, 80)]) == [bar(filled, 24, shown)]
 
 
 ROWS = [
@@ -203,31 +233,31 @@ def test_keys_lose_their_names_where_there_is_no_room() -> None:
         assert text([keys("s-won?q", len(row) - 1)]) == [shorter]
 
 
-def test_keys_without_meaning_are_not_named() -> None:
+def test_only_the_given_keys_are_named() -> None:
     """The first character of `space` is an s, too."""
     assert text([keys("s-o?q", 80)]) == [
         "space pause  s step  -+ speed  o organism  ? words  q quit"
     ]
-    assert text([keys("s-won?q", 3)]) == [ROWS[-1]], "the keys themselves are always named"
+    assert text([keys("s-won?q", 3)]) == [ROWS[-1]], "all keys are shown, even if there is no room"
 
 
 @pytest.mark.parametrize(
-    ("number", "said"),
+    ("number", "shown"),
     [(0.4, "0"), (1, "1"), (999, "999"), (1000, "1.0 k"), (99_900, "99.9 k"), (100_000, "100 k"),
      (999.7, "1.0 k"), (99_960, "100 k"), (999_700, "1.0 M"), (1e6, "1.0 M"),
      (12.34e6, "12.3 M"), (1e9, "1.0 G"), (2.5e12, "2500 G")],
 )  # fmt: skip
-def test_a_prefix_stands_for_each_thousand(number: float, said: str) -> None:
-    assert with_prefix(number) == said
+def test_a_prefix_stands_for_each_thousand(number: float, shown: str) -> None:
+    assert with_prefix(number) == shown
 
 
 @pytest.mark.parametrize(
-    ("seconds", "said"),
+    ("seconds", "shown"),
     [(59.4, "59 s"), (59.6, "1 min 0 s"), (60, "1 min 0 s"), (3599.4, "59 min 59 s"),
      (3599.6, "1 h 0 min"), (3600, "1 h 0 min"), (7325, "2 h 2 min"), (3.6e6 + 61, "1,000 h 1 min")],
 )  # fmt: skip
-def test_a_duration_has_its_two_largest_units(seconds: float, said: str) -> None:
-    assert duration(seconds) == said
+def test_a_duration_has_its_two_largest_units(seconds: float, shown: str) -> None:
+    assert duration(seconds) == shown
 
 
 def test_the_first_text_that_fits_is_taken_or_the_beginning_of_the_last() -> None:

@@ -1,17 +1,18 @@
-"""Drawings of worlds: which cell is drawn where, how large, and what is said of it."""
+"""Drawings of worlds: the place and size of each cell, labels, legends, and the past of a ring."""
 
 from typing import Any
 
 import numpy as np
 import pytest
+from rich.segment import Segment
 
 from primordia.history.lines import Lines
 from primordia.law.world import World
 from primordia.live.forms import Ring, Room, Torus
 from primordia.live.paint import EMPTY, Cells, mosaic
-from primordia.live.scene import Grid, Stage, cell_width
+from primordia.live.scene import Grid, Stage, _labelled, cell_width
+from tests.live.drawn import colours, text
 from tests.live.posed import law, posed
-from tests.live.test_paint import colours, text
 
 
 def old(count: int) -> Cells:
@@ -58,7 +59,7 @@ def test_a_cell_of_a_torus_is_a_square_of_half_rows(room: Room, scale: int) -> N
     assert Torus(4, 6, room.letters).scale(room) == scale
 
 
-def test_the_least_room_of_a_torus_has_two_rows_of_cells_in_a_row_of_colours() -> None:
+def test_a_row_of_colours_has_two_rows_of_a_torus_and_a_row_of_letters_one() -> None:
     assert [Torus(rows, 6, letters).least for rows, letters in ((4, False), (5, False), (5, True))] == [
         (6, 2), (6, 3), (6, 5),
     ]  # fmt: skip
@@ -68,12 +69,12 @@ def test_a_part_of_a_torus_is_its_first_rows_and_columns() -> None:
     cells = old(24)
     whole, nothing = Torus(4, 6, letters=True).draw(cells, [], letter_room(9, 9))
     assert (text(whole), nothing) == (["ABCDEF", "GHIJKL", "MNOPQR", "STUVWX"], "")
-    part, said = Torus(4, 6, letters=True).draw(cells, [], letter_room(5, 3))
+    part, note = Torus(4, 6, letters=True).draw(cells, [], letter_room(5, 3))
     assert text(part) == ["ABCDE", "GHIJK", "MNOPQ"]
-    assert said == "shown: 3 x 5 of 4 x 6 cells"
-    pixels, said = Torus(4, 6, letters=False).draw(cells, [], colour_room(5, 1))
+    assert note == "shown: 3 x 5 of 4 x 6 cells"
+    pixels, note = Torus(4, 6, letters=False).draw(cells, [], colour_room(5, 1))
     expected = mosaic(np.array([[0, 1, 2, 3, 4], [6, 7, 8, 9, 10]]) * 4 + 3)
-    assert (pixels, said) == (expected, "shown: 2 x 5 of 4 x 6 cells")
+    assert (pixels, note) == (expected, "shown: 2 x 5 of 4 x 6 cells")
 
 
 @pytest.mark.parametrize(("height", "rows"), [(2, 2), (4, 4), (9, 4)])
@@ -83,7 +84,7 @@ def test_bars_have_at_most_four_rows(height: int, rows: int) -> None:
     assert part == ""
 
 
-def test_the_past_of_a_ring_is_below_it_the_latest_first() -> None:
+def test_the_past_of_a_ring_is_below_it_with_the_latest_moment_first() -> None:
     """Seven rows have four of bars, and room for six moments."""
     past = [np.array([4 * at, 4 * at + 3]) for at in range(8)]
     drawn, _ = Ring(2).draw(old(2), past, colour_room(4, 7))
@@ -108,18 +109,18 @@ def test_the_past_of_a_ring_is_below_it_the_latest_first() -> None:
 def test_many_cells_make_several_equal_skylines(
     cells: int, width: int, height: int, rows: list[str], part: str
 ) -> None:
-    drawn, said = Ring(cells).draw(old(cells), [np.zeros(cells)], colour_room(width, height))
-    assert (text(drawn), said) == (rows, part)
+    drawn, note = Ring(cells).draw(old(cells), [np.zeros(cells)], colour_room(width, height))
+    assert (text(drawn), note) == (rows, part)
 
 
-def test_letters_in_one_row_are_capitals_for_the_old_and_elsewhere_below_bars() -> None:
+def test_letters_are_capitals_for_the_old_in_one_row_and_are_below_bars_in_more() -> None:
     cells = Cells(np.array([0, 1, EMPTY]), np.array([1.0, 0.2, 0.0]))
     assert text(Ring(3).draw(cells, [], letter_room(3, 1))[0]) == ["Ab·"]
     assert text(Ring(3).draw(cells, [], letter_room(3, 2))[0]) == ["▇▂ ", "ab·"]
 
 
 @pytest.mark.parametrize(
-    ("form", "room", "said"),
+    ("form", "room", "note"),
     [
         (Ring(9), colour_room(9, 1), "height: age"),
         (Ring(9), letter_room(9, 1), "capitals: old"),
@@ -128,8 +129,8 @@ def test_letters_in_one_row_are_capitals_for_the_old_and_elsewhere_below_bars() 
         (Torus(3, 3, letters=True), letter_room(9, 9), "capitals: old"),
     ],
 )
-def test_a_form_says_how_age_is_shown(form: Any, room: Room, said: str) -> None:
-    assert form.age(room) == said
+def test_a_legend_explains_how_age_is_drawn(form: Any, room: Room, note: str) -> None:
+    assert form.age(room) == note
 
 
 # Tiles.
@@ -138,13 +139,13 @@ def test_a_form_says_how_age_is_shown(form: Any, room: Room, said: str) -> None:
 @pytest.mark.parametrize(
     ("form", "worlds", "room", "grid"),
     [
-        # Three, four or five torus worlds side by side have cells of 2 columns; the fewest are taken.
+        # Cells have 2 columns if three, four or five of these worlds are side by side.
         (Torus(4, 4, letters=False), 6, colour_room(60, 12), Grid(3, 6, colour_room(16, 5), 1)),
         (Ring(20), 4, colour_room(64, 4), Grid(1, 4, colour_room(60, 1), 0)),
         (Ring(20), 4, colour_room(64, 3), Grid(2, 4, colour_room(28, 1), 0)),
         (Ring(20), 4, colour_room(64, 12), Grid(1, 4, colour_room(60, 2), 1)),
         (Ring(20), 1, colour_room(64, 12), Grid(1, 1, colour_room(60, 12), 0)),
-        # Where no cell of all worlds fits, as many worlds are shown as do.
+        # Where not all worlds fit, as many are shown as fit.
         (Ring(200), 8, colour_room(80, 5), Grid(1, 5, colour_room(76, 1), 0)),
         (Ring(200), 3, colour_room(80, 5), Grid(1, 3, colour_room(76, 1), 0)),
         (Ring(30), 9, colour_room(70, 3), Grid(2, 6, colour_room(31, 1), 0)),
@@ -159,8 +160,19 @@ def test_tiles_are_those_with_the_largest_cells(
     assert Grid.of(form, worlds, 4, room) == grid
 
 
+def test_tiles_side_by_side_are_equally_wide() -> None:
+    drawn: list[Any] = [[Segment("ab")], [Segment("abcd"), Segment("e")], []]
+
+    def widths(across: int) -> list[int]:
+        grid = Grid(across, 2, Room(6, 3, letters=False), 0)
+        return [len(row) for row in text(_labelled(drawn, "7 ", " \u2713", grid))]
+
+    assert widths(across=2) == [10, 10, 10]
+    assert widths(across=1) == [6, 7, 2], "a tile that is alone in its row needs no padding"
+
+
 def three(**more: Any) -> World:
-    """Return three rings of four cells at other ticks; ages are 95 and 8, 95, and 10."""
+    """Return three rings of four cells at different ticks. The ages are 95 and 8, 95, and 10 twice."""
     return posed(
         [[1, 0, 1, 0], [0, 0, 0, 1], [1, 1, 0, 0]],
         [[5, 0, 92, 0], [0, 0, 0, 205], [0, 0, 9, 9]],
@@ -170,7 +182,7 @@ def three(**more: Any) -> World:
 
 
 def test_each_world_has_its_seed_its_own_ages_and_its_own_mark() -> None:
-    """With letters; a capital is for ages from 9 on, since log(10) is half of log(100)."""
+    """Organisms from age 9 on are capital letters, since log(10) is half of log(100)."""
     world, room = three(saturated=[-1, 250, -1]), letter_room(40, 3)
     scene = Stage().scene(law(4, 3), world, {}, None, room)
     assert text(scene.rows) == [" 9 A·b·", "10 ···C ✓", "11 DE··"]
@@ -200,7 +212,7 @@ def test_one_world_alone_fills_the_room() -> None:
     assert [text(scene.rows) for scene in drawn] == [["A·b·"], ["···C"], ["DE··"]]
 
 
-def test_lines_of_descent_take_the_place_of_branches_where_they_are_followed() -> None:
+def test_cells_show_lines_of_descent_where_these_are_followed_and_branches_elsewhere() -> None:
     """Birth numbers need more than 32 bits."""
     far = 2**40
     world = three(number=[[far, 0, 1, 0], [0, 0, 0, 7], [3, 4, 0, 0]])
@@ -210,8 +222,8 @@ def test_lines_of_descent_take_the_place_of_branches_where_they_are_followed() -
     scene = Stage().scene(law(4, 3), world, followed, None, room)
     assert text(scene.rows) == [" 9 F·g·", "10 ···H", "11 DE··"]
     assert scene.legend == "capitals: old, letter: line of descent"
-    for alone, said in ((1, "line of descent"), (2, "branch of the founder")):
-        assert Stage().scene(law(4, 3), world, followed, alone, room).legend.endswith(said)
+    for alone, note in ((1, "line of descent"), (2, "branch of the founder")):
+        assert Stage().scene(law(4, 3), world, followed, alone, room).legend.endswith(note)
 
 
 def test_the_width_of_a_cell_is_that_of_the_worlds_that_are_shown() -> None:
@@ -243,7 +255,7 @@ def test_a_moment_is_remembered_once_and_shown_below_the_present() -> None:
     first = stage.scene(of, at(1, [1, 0]), {}, None, room)
     assert text(first.rows)[4:] == ["", ""]
     again = stage.scene(of, at(1, [1, 0]), {}, None, room)
-    assert text(again.rows)[4:] == ["", ""], "a moment is no past of itself"
+    assert text(again.rows)[4:] == ["", ""], "the present is not part of the past"
     stage.follow(of, at(2, [0, 1]), {}, 0)
     stage.follow(of, at(2, [0, 1]), {}, 0)
     last = stage.scene(of, at(3, [1, 1]), {}, None, room)

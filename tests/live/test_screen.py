@@ -1,44 +1,31 @@
-"""The screen: nothing is cut or folded, the organism that is shown, and words that are all explained."""
+"""The screen of a world: its parts fill it, and it shows the organism that is chosen."""
 
-import io
-from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from rich.console import Console
 
 from primordia.engine.engine import Engine
 from primordia.history.threshold import Threshold
 from primordia.law.metabolism import ONE
-from primordia.law.world import Cause
-from primordia.live.census import Census
 from primordia.live.companion import Companion, _perceived
-from primordia.live.ground import Medians
-from primordia.live.paint import photograph, width_of
-from primordia.live.panel import Outlook, numbers, saturation
 from primordia.live.terminal import Keyboard
 from primordia.live.view import View
-from primordia.live.words import WORDS, pages
 from primordia.runs.loop import Status
-from tests.live.test_live import look_alive, text
+from tests.live.drawn import text
+from tests.live.posed import look_alive, terminal
 from tests.worlds import MEADOW, config
 
 SIZES = [(120, 40), (80, 24), (60, 15)]
 
 
-def posed(**settings: Any) -> Engine:
+def meadow(**settings: Any) -> Engine:
+    """Return a meadow whose organisms are posed as if they had lived."""
     made = Engine(config(MEADOW, hazard=0.02, **settings))
     look_alive(made)
     return made
-
-
-def terminal(width: int, height: int) -> Console:
-    """Return a terminal with all colours."""
-    colours: Any = {"force_terminal": True, "color_system": "truecolor"}
-    return Console(file=io.StringIO(), width=width, height=height, **colours)
 
 
 def screen(made: Engine, keys: str, width: int, height: int) -> list[str]:
@@ -60,7 +47,7 @@ def screen(made: Engine, keys: str, width: int, height: int) -> list[str]:
     {"cells": 16, "seeds": 200},
 ], ids=str)  # fmt: skip
 def test_screens_are_filled_and_not_overfilled(settings: dict[str, Any]) -> None:
-    made = posed(**settings)
+    made = meadow(**settings)
     for width, height in SIZES:
         for keys in ("", "o", "w", "wo", "?"):
             rows = screen(made, keys, width, height)
@@ -73,7 +60,7 @@ def test_screens_are_filled_and_not_overfilled(settings: dict[str, Any]) -> None
 
 
 def test_a_torus_of_1024_cells_is_whole_and_large() -> None:
-    made = posed(cells=1024, placement={"topology": "torus8"})
+    made = meadow(cells=1024, placement={"topology": "torus8"})
 
     def blocks(width: int, height: int) -> tuple[int, int]:
         rows = [row.split(" ")[0] for row in screen(made, "", width, height)]
@@ -85,20 +72,9 @@ def test_a_torus_of_1024_cells_is_whole_and_large() -> None:
     assert "shown: 20 x 32 of 32 x 32 cells" in "\n".join(screen(made, "", 60, 15))
 
 
-def test_one_world_after_another_is_shown() -> None:
-    made = posed(cells=16, seeds=2)
-    alive = [int(Census.of(made.state.world, world).alive.sum()) for world in (None, 0, 1)]
-    assert alive[0] == alive[1] + alive[2]
-    for presses, (count, cells) in enumerate(
-        zip([*alive, alive[0]], (32, 16, 16, 32), strict=True)
-    ):
-        rows = "\n".join(screen(made, "w" * presses, 80, 24))
-        assert f"{count} of {cells}" in rows
-
-
-def test_whether_good_lines_hold_is_told_of_the_worlds_that_are_shown() -> None:
-    """The numbers of world 2 are unknown, so the medians of all worlds are halfway between the others."""
-    made, view = posed(cells=16, seeds=3), View(terminal(120, 24))
+def test_numbers_about_good_lines_are_those_of_the_worlds_that_are_shown() -> None:
+    """World 2 has no such numbers. The medians of all worlds are halfway between worlds 0 and 1."""
+    made, view = meadow(cells=16, seeds=3), View(terminal(120, 24))
     known = [Threshold(0, 0.2, 0.1, 2.0), Threshold(1, 0.6, 0.5, 3.0), Threshold(2, 0.4, None, 1.0)]
     ground: Any = SimpleNamespace(measured=lambda _: known)
     view._ground, status = ground, Status(made, 1.0)
@@ -106,14 +82,14 @@ def test_whether_good_lines_hold_is_told_of_the_worlds_that_are_shown() -> None:
     names = ("children mutate", "mutants as good", "good lines hold")
     of_each = [("20%", "10%", "1.64"), ("60%", "50%", "2.10"), None]
     for values in (("40%", "30%", "1.87"), *of_each):
-        told = " ".join("\n".join(text(view._rows(status))).split())
+        rows = " ".join("\n".join(text(view._rows(status))).split())
         for name, value in zip(names, values or names, strict=True):
-            assert f"{name} {value}" in told if values else name not in told
+            assert f"{name} {value}" in rows if values else name not in rows
         view._obey("w", status)
 
 
 def test_the_oldest_organism_is_shown_and_then_the_next() -> None:
-    made, companion = posed(cells=16), Companion()
+    made, companion = meadow(cells=16), Companion()
     born = np.asarray(made.state.world.organisms.born.lo)
     alive = np.asarray(made.state.world.organisms.alive)
     order = [cell for cell in np.argsort(born, kind="stable").tolist() if alive[cell]]
@@ -151,7 +127,7 @@ def die(made: Engine, *cells: int) -> None:
 
 
 def test_a_habitat_that_fails_to_draw_is_not_asked_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    made, asked = posed(cells=16), []
+    made, asked = meadow(cells=16), []
 
     def picture(*_: Any) -> None:
         asked.append(1)
@@ -164,68 +140,3 @@ def test_a_habitat_that_fails_to_draw_is_not_asked_again(monkeypatch: pytest.Mon
     for _ in range(3):
         assert "action" in "\n".join(text(view._rows(status)))
     assert len(asked) == 1
-
-
-def test_a_picture_has_two_points_in_a_character() -> None:
-    pixels = np.zeros((3, 2, 3), np.uint8)
-    pixels[0, 0], pixels[1, 0] = (255, 0, 0), (0, 0, 255)
-    rows = photograph(pixels)
-    assert [width_of(row) for row in rows] == [2, 2]
-    style = rows[0][0].style
-    assert style is not None
-    assert style.color is not None
-    assert style.bgcolor is not None
-    assert style.color.get_truecolor() == (255, 0, 0)
-    assert style.bgcolor.get_truecolor() == (0, 0, 255)
-
-
-def census(alive: int, calm: int, saturated: int) -> Census:
-    one = np.ones(1, np.int64)
-    return Census(one, alive * one, one, np.ones((1, 7), np.int64), one, one, calm * one,
-                  saturated * one, 0.0, 0)  # fmt: skip
-
-
-@pytest.mark.parametrize("width", [20, 30, 80])
-def test_saturated_is_said_only_of_a_world_that_is(width: int) -> None:
-    def said(each: Census) -> str:
-        row = saturation(each, 8, 1000, width)
-        assert width_of(row) <= width
-        return "".join(segment.text for segment in row)
-
-    assert "saturated" not in said(census(7, 0, -1))
-    assert "saturated" not in said(census(8, 999, -1))
-    assert "saturated" in said(census(7, 3, 1234))
-
-
-@pytest.mark.parametrize(
-    ("alive", "calm", "said", "filled"),
-    [
-        ([7], [500], "full and calm for 0 of 1,000 ticks", 0),
-        ([8], [500], "full and calm for 500 of 1,000 ticks", 12),
-        ([8], [2000], "full and calm for 1,000 of 1,000 ticks", 24),
-        ([7, 8], [900, 250], "one world full and calm for 250 of 1,000 ticks", 6),
-        ([7, 0], [900, 900], "no world full and calm for 1,000 ticks", 0),
-    ],
-)
-def test_a_bar_of_24_columns_grows_only_with_the_calm_of_full_worlds(
-    alive: list[int], calm: list[int], said: str, filled: int
-) -> None:
-    some = replace(
-        census(0, 0, -1),
-        tick=np.ones(len(alive), np.int64),
-        alive=np.array(alive),
-        calm=np.array(calm),
-        saturated=np.full(len(alive), -1),
-    )
-    row = "".join(segment.text for segment in saturation(some, 8, 1000, 80))
-    assert row == "━" * filled + "╌" * (24 - filled) + f"  {said}"
-
-
-def test_every_word_is_explained_and_fits() -> None:
-    named = numbers(census(7, 0, -1), 8, Outlook(1.0, 9.0), 1, Medians(0.5, 0.5, 1.0))
-    assert {*named, *(cause.label for cause in Cause)} <= {*WORDS}
-    for width, height in SIZES:
-        found = pages(width, height)
-        assert all(len(page) <= height for page in found)
-        assert max(width_of(row) for page in found for row in page) <= width
-        assert {*WORDS} <= {row[0].text.strip() for page in found for row in page}

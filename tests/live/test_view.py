@@ -1,50 +1,21 @@
-"""What keys do to the view, and which numbers it then shows."""
+"""The effect of keys on the view, and the numbers that it shows."""
 
-import io
 import re
 from collections import defaultdict
 from types import SimpleNamespace
 from typing import Any
 
-import numpy as np
 import pytest
-from rich.console import Console
 
-from primordia.law.events import BIRTHS, DEATHS, Rows
 from primordia.live import view as views
-from primordia.live.pace import Pace
 from primordia.live.terminal import Keyboard
-from primordia.live.view import View
 from primordia.live.words import pages
 from primordia.runs.loop import Status
-from tests.live.posed import counted, law, posed
-from tests.live.test_paint import text
-from tests.worlds import MEADOW, config
-
-NOTHING = tuple(
-    Rows(np.zeros((1, columns.width), np.uint32), np.int32(0)) for columns in (BIRTHS, DEATHS)
-)
+from tests.live.drawn import text
+from tests.live.posed import Clock, counted, status, view
 
 
-def status(worlds: int = 3, tick: int = 100, **more: Any) -> Status:
-    """Return the status of worlds of four cells, of which the first 1, 2, ... are alive."""
-    alive = [[int(cell <= world) for cell in range(4)] for world in range(worlds)]
-    world = posed(alive, [[0] * 4] * worlds, [tick - at for at in range(worlds)], **more)
-    engine: Any = SimpleNamespace(
-        law=law(4, worlds), config=config(MEADOW, cells=4, seeds=worlds), longest=None,
-        state=SimpleNamespace(world=world), events=SimpleNamespace(births=NOTHING[0], deaths=NOTHING[1]),
-    )  # fmt: skip
-    return Status(engine, 75.0)
-
-
-def view(width: int = 100, height: int = 30, keyboard: Any = None, **more: Any) -> Any:
-    options: Any = {"force_terminal": True, "color_system": "truecolor", **more}
-    return View(
-        Console(file=io.StringIO(), width=width, height=height, **options), keyboard=keyboard
-    )
-
-
-def told(shown: Any, of: Status, name: str) -> str | None:
+def value_of(shown: Any, of: Status, name: str) -> str | None:
     """Return the value that is shown with a name; None if the name is not shown."""
     rows = "\n".join(text(shown._rows(of)))
     found = re.search(rf"\b{name} +(\S+( of \S+)?)", rows)
@@ -64,9 +35,8 @@ def test_w_shows_one_world_after_another_and_then_all(worlds: int) -> None:
 def test_the_numbers_are_those_of_the_world_that_is_shown_and_the_speed_is_that_of_all(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """In 2 s the worlds lived 10, 40 and 0 organism-ticks. Takeovers are known of two worlds only."""
-    clock: Any = SimpleNamespace(perf_counter=lambda: clock.now)
-    monkeypatch.setattr(views, "time", clock)
+    """In 2 s the worlds lived 10, 40 and 0 organism-ticks. Takeovers are known in two worlds only."""
+    monkeypatch.setattr(views, "time", clock := Clock())
     births, deaths = [11, 22, 33], [[each] + [0] * 6 for each in (1, 2, 4)]
     first = status(births=births, deaths=deaths, organism_ticks=[100, 200, 300])
     later = status(births=births, deaths=deaths, organism_ticks=[110, 240, 300])
@@ -91,7 +61,7 @@ def test_the_numbers_are_those_of_the_world_that_is_shown_and_the_speed_is_that_
             shown._rows(first)
             clock.now = 12.0
             shown._descent.lines, shown._descent._throughout = lines, set(lines)
-            assert told(shown, later, name) == value, (name, presses)
+            assert value_of(shown, later, name) == value, (name, presses)
 
 
 def test_keys_change_the_pace_from_the_speed_of_the_fastest_world() -> None:
@@ -106,13 +76,13 @@ def test_keys_change_the_pace_from_the_speed_of_the_fastest_world() -> None:
     assert shown._speed.ticks_per_s() == 400
     shown._obey(" ", of)
     assert not shown._pace.paused
-    assert shown._speed.ticks_per_s() is None, "the time of a pause is not that of ticks"
+    assert shown._speed.ticks_per_s() is None, "no speed is measured across a pause"
 
 
 def test_n_moves_among_the_organisms_of_the_world_that_is_shown() -> None:
     shown, of, asked = view(), status(), list[Any]()
     shown._obey("n", of)
-    assert shown._companion is None, "nothing is shown that could be left"
+    assert shown._companion is None, "no organism is shown yet"
     shown._obey("o", of)
 
     def find(engine: Any, alone: int | None, step: int) -> None:
@@ -128,7 +98,7 @@ def test_n_moves_among_the_organisms_of_the_world_that_is_shown() -> None:
 
 @pytest.mark.parametrize("size", [(100, 30), (60, 12)])
 def test_the_pages_of_words_are_shown_one_after_another(size: tuple[int, int]) -> None:
-    """A row is the heading and one has the keys; the cursor needs another."""
+    """One row is the heading, one has the keys, and one is for the cursor."""
     shown, of = view(*size, keyboard=Keyboard()), status()
     room = size[0], size[1] - 3
     for _ in range(2):
@@ -136,7 +106,7 @@ def test_the_pages_of_words_are_shown_one_after_another(size: tuple[int, int]) -
             shown._obey("?", of)
             assert text(shown._rows(of))[1 : 1 + len(page)] == text(page)
         shown._obey("?", of)
-        assert "died of" in "\n".join(text(shown._rows(of))), "the world again"
+        assert "died of" in "\n".join(text(shown._rows(of))), "the world is shown again"
 
 
 def test_the_heading_has_the_pace_and_the_time_of_the_run() -> None:
@@ -147,7 +117,7 @@ def test_the_heading_has_the_pace_and_the_time_of_the_run() -> None:
     assert heading.endswith(" at most 30 ticks/s, 1 min 15 s")
 
 
-def test_the_bar_counts_up_to_the_ticks_that_the_law_demands() -> None:
+def test_the_bar_shows_the_ticks_that_saturation_requires() -> None:
     world = status(1, calm=[7])
     organisms = world.engine.state.world.organisms
     organisms.alive[:] = True
@@ -188,5 +158,5 @@ def test_letters_take_the_place_of_fewer_than_256_colours(
     assert view(**options)._letters == letters
 
 
-def test_a_pace_of_its_own_is_full_speed() -> None:
-    assert (str(view()._pace), isinstance(view()._pace, Pace)) == ("", True)
+def test_a_view_limits_the_speed_only_if_asked() -> None:
+    assert view()._pace.limit is None

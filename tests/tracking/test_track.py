@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import primordia
-from primordia.errors import Trouble
+from primordia.errors import InputError, Trouble
 from primordia.runs import directory, loop
 from primordia.tracking.track import Sources, track
 from tests import commands
@@ -258,3 +258,48 @@ def test_wandb_does_not_try_to_reach_the_network(
         with pytest.raises(BlockingIOError):
             proxy.accept()
     assert offline_runs(tmp_path)
+
+
+class Clock:
+    """A clock that moves only while the program sleeps, and sends a signal at a certain time."""
+
+    def __init__(self, signal_at: float = 1e9) -> None:
+        self.now, self.naps, self.signal_at = 50.0, list[float](), 50.0 + signal_at
+
+    def monotonic(self) -> float:
+        return self.now
+
+    def sleep(self, seconds: float) -> None:
+        self.naps.append(seconds)
+        if self.now <= self.signal_at < self.now + seconds:
+            signal.raise_signal(signal.SIGINT)
+        self.now += seconds
+
+
+def test_a_look_follows_after_the_given_time_and_a_signal_ends_the_wait(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    looks: list[float] = []
+    clock = Clock()
+
+    def look() -> Sources:
+        looks.append(clock.now)
+        return Sources({}, len(looks) < 3)
+
+    monkeypatch.setattr("primordia.tracking.track.time", clock)
+    with pytest.raises(InputError, match="the runs has no row of metrics yet"):
+        track(look, "the runs", tmp_path, follow=True, every=1.5)
+    assert looks == pytest.approx([50, 51.5, 53])
+    assert max(clock.naps) <= 0.2
+    clock, looks = Clock(signal_at=2.5), []
+    monkeypatch.setattr("primordia.tracking.track.time", clock)
+    with pytest.raises(KeyboardInterrupt):
+        track(look, "the runs", tmp_path, follow=True, every=100)
+    assert looks == [50]
+    assert 52.5 <= clock.now <= 52.7 + 1e-9
+
+
+@pytest.mark.parametrize("every", [0, -1, float("nan")])
+def test_the_time_between_looks_is_above_0(every: float, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=f"seconds above 0, not {every}"):
+        track(pytest.fail, "runs", tmp_path, every=every)

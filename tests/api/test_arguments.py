@@ -1,4 +1,4 @@
-"""Each argument of a run's methods reaches the function behind it, and nothing else does."""
+"""Each argument of the Python interface reaches the function behind it."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -18,7 +18,7 @@ RUN, OUT = Path("RUN"), Path("OUT")
 
 @pytest.fixture
 def opened() -> Iterator[MagicMock]:
-    """Let the records be of a run with organisms of two worlds."""
+    """Replace the records of any run. The row of an organism is 100 times its world plus its number."""
     records = MagicMock(paths=(RUN,))
     lives = records.lives
     lives.row = lambda organism, world: 100 * world + organism
@@ -81,7 +81,7 @@ CASES: list[tuple[str, tuple[Any, ...], dict[str, Any], str, Any]] = [
 
 
 @pytest.mark.parametrize(("name", "words", "options", "behind", "expected"), CASES)
-def test_a_method_passes_on_what_it_is_given(
+def test_each_argument_of_a_method_reaches_the_function_behind_it(
     name: str, words: Any, options: Any, behind: str, expected: Any, opened: MagicMock
 ) -> None:
     with patch.object(runs, behind) as function:

@@ -1,4 +1,4 @@
-"""The parts of the screen: which room each of them gets, and where it is drawn."""
+"""The layout of the screen: the room of each part, and its place."""
 
 from typing import Any
 
@@ -8,13 +8,13 @@ from rich.segment import Segment
 from primordia.live.forms import Room
 from primordia.live.scene import Scene
 from primordia.live.screen import composed, joined
-from tests.live.test_paint import text
+from tests.live.drawn import text
 
 Size = tuple[int, int]
 
 
 class Parts:
-    """Parts that fill their rooms, apart from three rows of numbers, and note the rooms."""
+    """Parts that note their rooms. The numbers have three rows; the others fill their rooms."""
 
     def __init__(self, cell: Any = lambda _: 1, part: str = "") -> None:
         self.cell, self.part = cell, part
@@ -48,9 +48,11 @@ def test_numbers_are_beside_the_world_where_this_makes_no_cell_smaller() -> None
     """The 80 columns have 52 for the world, 2 between, and 26 for the numbers."""
     parts = Parts()
     rows = parts.screen(80, 24)
-    assert parts.asked["measure"] == [(52, 22), (80, 18)], "rooms for the world beside and above"
+    assert parts.asked["measure"] == [(52, 22), (80, 18)], (
+        "the world beside the numbers, and above them"
+    )
     assert parts.asked["W"] == [(52, 22)]
-    assert parts.asked["n"] == [(80, 12), (26, 23)], "the first only tells how many rows it has"
+    assert parts.asked["n"] == [(80, 12), (26, 23)], "the first only counts the rows of the numbers"
     assert rows[0] == ""
     assert rows[1:4] == ["W" * 52 + "  " + "n" * 26] * 3
     assert rows[4:23] == ["W" * 52] * 19
@@ -65,8 +67,8 @@ def test_numbers_are_below_the_world_where_this_makes_cells_larger() -> None:
 
 
 @pytest.mark.parametrize(("height", "taken"), [(8, (52, 8)), (9, (80, 6))])
-def test_where_not_all_cells_fit_the_larger_room_is_taken(height: int, taken: Size) -> None:
-    """Beside the numbers there are 52 x 8 or 52 x 9 characters; above them, 80 x 5 or 80 x 6."""
+def test_a_world_whose_cells_do_not_all_fit_takes_the_larger_room(height: int, taken: Size) -> None:
+    """The room beside the numbers has 52 x 8 or 52 x 9 characters, that above them 80 x 5 or 80 x 6."""
     parts = Parts(lambda _: 0)
     parts.screen(80, height)
     assert parts.asked["W"] == [taken]
@@ -97,7 +99,7 @@ def test_a_world_of_twelve_rows_has_a_legend(height: int, legend: bool) -> None:
     assert rows[:-3] == ["W" * 80] * 11 + ["colour: line of descent"] * legend
 
 
-def test_the_part_that_is_shown_takes_a_row_of_the_world() -> None:
+def test_the_note_about_what_is_shown_takes_a_row_of_the_world() -> None:
     parts = Parts(lambda room: room.width // 10, part="shown: the first 8 of 10 cells")
     rows = parts.screen(80, 24)
     assert parts.asked["W"] == [(80, 18), (80, 17)]
@@ -127,7 +129,7 @@ def test_an_organism_is_below_the_numbers_that_are_beside_the_world() -> None:
 def test_an_organism_beside_its_world_has_two_fifths_of_the_width(
     width: int, organism: int
 ) -> None:
-    """It has 28 to 64 columns, and the world what is left."""
+    """It has 28 to 64 columns. The world has the rest."""
     parts = Parts(lambda room: room.width // 10)
     rows = parts.screen(width, 24, organism=True)
     assert parts.asked["o"] == [(organism, 19)]
@@ -147,7 +149,7 @@ def test_an_organism_takes_the_place_of_a_world_that_would_be_too_narrow(
     assert rows == ["", *["o" * organism] * 19, "", *["n" * width] * 3]
 
 
-def test_blocks_side_by_side_are_two_columns_apart_whichever_is_longer() -> None:
+def test_blocks_side_by_side_are_two_columns_apart() -> None:
     left, right = ([[Segment(each)] for each in block] for block in (("abc", "d"), ("x", "y", "z")))
     assert text(joined(left, right)) == ["abc  x", "d    y", "     z"]
     assert text(joined(right, left)) == ["x  abc", "y  d", "z"]

@@ -1,0 +1,36 @@
+"""The table of `revive`: a relived life beside its record."""
+
+from pathlib import Path
+from unittest.mock import patch
+
+import pytest
+
+from primordia.cli import revive
+from primordia.organism.revival import Respect, Revival
+
+
+@pytest.mark.parametrize(
+    ("begin", "where"),
+    [("birth", "its birth"), ("fork", "the fork"), ("checkpoint", "the checkpoint")],
+)
+def test_a_relived_life_is_shown_beside_its_record(begin: str, where: str) -> None:
+    respects = (
+        Respect("tick of death", 4321, 4321),
+        Respect("cause of death", "fatal", "starved"),
+        Respect("energy left", 1234.5, None),
+        Respect("food", 1234567, 1234568.5),
+    )
+    notes, files = ("one thing", "another"), (Path("a.npz"), Path("b.gif"))
+    found = Revival(5, 2, begin, 1000, 4321, respects, notes, files)
+    with patch.object(revive, "show_table") as table:
+        revive._show(found)
+    title, head, rows, below = table.call_args.args
+    assert title == f"organism 5 of world 2, lived again from {where} at tick 1,000 to tick 4,321"
+    assert list(head) == ["", "recorded", "relived", "agrees"]
+    assert rows == [
+        ("tick of death", "4,321", "4,321", "yes"),
+        ("cause of death", "fatal", "starved", "NO"),
+        ("energy left", "1,234.5", "-", "NO"),
+        ("food", "1,234,567", "1,234,568.5", "NO"),
+    ]
+    assert below == ["Note: one thing.", "Note: another.", "a.npz", "b.gif"]

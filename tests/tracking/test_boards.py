@@ -1,0 +1,69 @@
+"""What is written for each dashboard: axes, times, and nothing about the machine."""
+
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from primordia.errors import InputError
+from primordia.tracking import tensorboard
+from primordia.tracking.reader import World
+from primordia.tracking.tensorboard import TensorBoard
+from primordia.tracking.weights_and_biases import WeightsAndBiases
+from tests.dashboards import events, offline_records
+
+
+def test_a_run_of_wandb_has_ticks_as_its_axis_and_nothing_of_the_machine(tmp_path: Path) -> None:
+    board = WeightsAndBiases(tmp_path)
+    board.add(World("seed-1", "2" * 16, "g", {"seed": 1}), [{"tick": 10, "living": 3}])
+    (opened,) = board._open.values()
+    for about in ("machine_info", "meta", "stats"):
+        assert getattr(opened.settings, f"x_disable_{about}"), (
+            "wandb takes samples only after seconds"
+        )
+    assert opened.settings.disable_git
+    assert opened.settings.disable_code
+    board.close()
+    (records,) = offline_records(tmp_path)
+    axes = {
+        record.metric.name or record.metric.glob_name: record.metric.step_metric
+        for record in records
+        if record.HasField("metric")
+    }
+    assert axes == {"tick": "", "*": "tick"}
+    (about,) = (record.run for record in records if record.HasField("run"))
+    assert (about.run_id, about.HasField("git")) == ("2" * 16, False)
+    assert about.host == "unnamed"
+    assert {record.WhichOneof("record_type") for record in records} == {
+        *("header", "run", "metric", "history", "summary", "telemetry", "exit")
+    }
+    assert not [path for path in tmp_path.glob("wandb/*/files/**/*") if path.is_file()]
+
+
+def test_events_have_the_time_at_which_they_were_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    now = iter((1234.5, 2345.5))
+    monkeypatch.setattr(tensorboard, "time", SimpleNamespace(time=lambda: next(now)))
+    board, world = TensorBoard(tmp_path), World("seed-1", "0" * 16, "g", {})
+    board.add(world, [{"tick": 10, "living": 3.0}, {"tick": 20, "living": 4.0}])
+    board.add(world, [{"tick": 30, "living": 5.0}])
+    board.close()
+    found = [(event.wall_time, event.step) for event in events(tmp_path / "seed-1")]
+    assert found == [(1234.5, 10), (1234.5, 20), (2345.5, 30)]
+
+
+@pytest.mark.parametrize("name", ["events.out.tfevents.1", "notes.primordia-{0}", "z"])
+def test_only_files_of_the_same_world_are_replaced(name: str, tmp_path: Path) -> None:
+    """If the folder has any other file, nothing is removed."""
+    world, row = World("seed-1", "1" * 16, "g", {}), {"tick": 10, "living": 3.0}
+    for _ in range(2):
+        board = TensorBoard(tmp_path)
+        board.add(world, [row])
+        board.close()
+    (own,) = (tmp_path / "seed-1").iterdir()
+    other = tmp_path / "seed-1" / name.format(world.identity)
+    other.touch()
+    with pytest.raises(InputError, match=f"{other.name} belongs to another world"):
+        TensorBoard(tmp_path).add(world, [row])
+    assert {*(tmp_path / "seed-1").iterdir()} == {own, other}
