@@ -72,8 +72,8 @@ def test_a_single_late_birth_is_spaced_too() -> None:
     assert _spaced(np.array([7]), np.zeros(0), 3).tolist() == [7]
 
 
-def test_a_bed_tells_what_it_keeps() -> None:
-    """What is kept is a share of means: 9 of 12 ticks, not the mean of the organisms' shares."""
+def test_a_bed_keeps_the_ratio_of_its_means() -> None:
+    """It keeps 9 of 12 ticks. The mean of the organisms' ratios would be another number."""
     bed = Bed("oldest", 1, np.array([4, 9]), np.array([4, 20]), np.array([8.0, 10.0]))
     assert bed.to_dict() == {
         "group": "oldest",
@@ -90,7 +90,7 @@ def test_a_bed_tells_what_it_keeps() -> None:
 def test_births_after_the_given_share_are_late(
     poles: primordia.Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Each organism's life is the mean of its games, which are cut at the given tick."""
+    """An organism's life is the mean of its games, which are cut at the given tick."""
     asked = []
 
     def lived(players: Players, games: int, ticks: int) -> np.ndarray:
