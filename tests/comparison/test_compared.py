@@ -14,7 +14,7 @@ from primordia.comparison.measured import Measured
 from primordia.comparison.moments import saturation
 from primordia.errors import InputError
 from primordia.runs.arrays import NEVER
-from primordia.runs.lives import Lives
+from primordia.runs.lives import Lives, joined
 from tests.synthetic import worlds_of
 from tests.worlds import MEADOW, config
 
@@ -124,10 +124,7 @@ def test_all_worlds_are_compared_up_to_the_first_end() -> None:
     """One world of the second run ends first."""
     one, two = lived(2, 1), lived(3, 2)
     stopped = two.of_world(1).recorded_until(60)
-    rows = [two.of_world(0), stopped, two.of_world(2)]
-    two = Lives(**{
-        name: np.concatenate([getattr(each, name) for each in rows]) for name in vars(stopped)
-    })  # fmt: skip
+    two = joined([two.of_world(0), stopped, two.of_world(2)], np.zeros(3, int))
     compared = compare([run("a", one), run("b", two)])
     for arm, lives in zip(compared.arms, (one, two), strict=True):
         assert arm.pace.edges.tolist() == np.linspace(0, 60, 13).tolist()
