@@ -1,4 +1,4 @@
-"""The notes below the tables of a comparison: each is there exactly where it applies."""
+"""The notes below the tables of a comparison: each is printed only if it applies."""
 
 from typing import Any
 

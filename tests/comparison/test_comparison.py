@@ -1,4 +1,4 @@
-"""Comparisons of invented runs: the base, the unit and the reach of each number, counted plainly."""
+"""Comparisons of invented runs: the lives, ticks and worlds that each number counts."""
 
 from pathlib import Path
 from types import SimpleNamespace
@@ -116,8 +116,9 @@ def test_a_crash_depends_on_the_cells_of_its_own_run() -> None:
         assert [arm.extinctions.crashes.tolist() for arm in compared.arms] == [
             [each] for each in crashes
         ]
-        assert [told["crashes"] for told in compared.to_dict()["runs"]] == crashes
-        assert [told["extinctions"] for told in compared.to_dict()["runs"]] == [1, 1]
+        runs = compared.to_dict()["runs"]
+        assert [each["crashes"] for each in runs] == crashes
+        assert [each["extinctions"] for each in runs] == [1, 1]
 
 
 def test_all_worlds_are_compared_up_to_the_first_end() -> None:
@@ -140,7 +141,7 @@ def test_all_worlds_are_compared_up_to_the_first_end() -> None:
 
 @pytest.mark.parametrize(("saturated", "whole"), [(1, False), (2, True)])
 def test_lives_are_cut_only_if_saturation_is_rare_in_all_runs(saturated: int, whole: bool) -> None:
-    """One of four worlds of a run is few, and two are half of them."""
+    """Lives are cut if fewer than half of each run's worlds saturate."""
     one, two = lived(4, 1), lived(4, 2).recorded_until(70)
     some: Saturated = dict.fromkeys(range(saturated), (30, 60))
     compared = compare([run("a", one, some), run("b", two)])
@@ -151,7 +152,7 @@ def test_lives_are_cut_only_if_saturation_is_rare_in_all_runs(saturated: int, wh
     assert [arm.saturated for arm in compared.arms] == [saturated, 0]
 
 
-def test_a_world_saturates_only_before_both_horizons() -> None:
+def test_a_world_counts_as_saturated_only_before_both_horizons() -> None:
     lives = lived(4, 1)
     moments: Saturated = {0: (29, 59), 1: (30, 59), 2: (29, 60), 3: (40, 100)}
     for horizons, known in (
@@ -201,11 +202,11 @@ def test_plain_values_have_the_quartiles_of_each_outcome() -> None:
     one, two = lived(5, 1), lived(6, 2)
     moments: Saturated = {world: (30 + world, 60 + 2 * world) for world in range(4)}
     compared = compare([run("a", one, moments), run("b", two, moments, seed=50)])
-    told = compared.to_dict()
-    assert {name: told[name] for name in ("task", "age", "begin", "births", "ticks")} == {
+    plain = compared.to_dict()
+    assert {name: plain[name] for name in ("task", "age", "begin", "births", "ticks")} == {
         "task": "meadow", "age": AGE, "begin": 0, "births": None, "ticks": None,
     }  # fmt: skip
-    first, second = told["runs"]
+    first, second = plain["runs"]
     assert (first["worlds"], second["worlds"]) == (5, 6)
     assert (first["saturated"], second["saturated"]) == (4, 4)
     assert (first["settings"], second["settings"]) == (
@@ -223,7 +224,7 @@ def test_plain_values_have_the_quartiles_of_each_outcome() -> None:
         assert against.worlds == 5
 
 
-def test_settings_are_told_if_any_run_has_another_value() -> None:
+def test_settings_are_given_if_any_run_has_another_value() -> None:
     lives = lived(1, 1)
     changed: list[dict[str, Any]] = [{}, {"hazard": 0.1}, {"about": "a text"}, {"metabolism": None}]
     arms = compare([run(str(k), lives, **each) for k, each in enumerate(changed)]).arms
@@ -236,7 +237,7 @@ def test_settings_are_told_if_any_run_has_another_value() -> None:
 def test_food_is_compared_in_the_unit_of_its_title(
     rate: float | None, unit: str, span: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """It is gathered in all worlds of each run, between the first and the last common tick."""
+    """Food is counted in all worlds of each run, from the first to the last common tick."""
     asked = []
 
     def gathering(run: Any, worlds: int, *rest: float) -> Gathering:
