@@ -81,7 +81,7 @@ def test_a_cluster_that_is_not_there_is_one_clear_line(
     file, out = write(tmp_path), tmp_path / "out"
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
-        nobody = f"127.0.0.1:{taken.getsockname()[1]}"
-        complains(here("experiment", file, "--out", out, "--ray", nobody), 2, "no cluster answers")
+        unused = f"127.0.0.1:{taken.getsockname()[1]}"
+        complains(here("experiment", file, "--out", out, "--ray", unused), 2, "no cluster answers")
     monkeypatch.setitem(sys.modules, "ray", None)
     complains(here("experiment", file, "--out", out, "--ray"), 2, "pip install 'primordia[ray]'")

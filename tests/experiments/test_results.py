@@ -10,12 +10,13 @@ from unittest.mock import ANY, MagicMock
 import numpy as np
 import pytest
 
-from primordia.comparison.comparison import ComparedArm, Comparison
+from primordia.comparison.comparison import ComparedArm
 from primordia.comparison.measured import Measured
 from primordia.experiments import results
 from primordia.history.extinctions import Extinctions
 from primordia.runs.arrays import NEVER
 from primordia.runs.directory import VERSIONS
+from tests.comparison.arms import side_by_side
 
 NOON = 1_700_000_000 + 12 * 3600
 DAY = 24 * 3600
@@ -33,10 +34,6 @@ def arm(name: str, births: list[float], unsaturated: int, **other: list[float]) 
     measured |= {key: Measured(np.array(each), np.isfinite(each)) for key, each in other.items()}
     seeds = np.arange(worlds, dtype=np.uint64) + np.uint64(len(name))
     return ComparedArm(name, {"hazard": len(name) / 10}, seeds, measured, **WHAT)
-
-
-def compared(*arms: ComparedArm) -> Comparison:
-    return Comparison("meadow", arms, 20, 0, None, None, "tick")
 
 
 ONE = arm("one", [10, 20, 30, 40, 50], 1, lifespan=[4, 5, 6, 7, 8])
@@ -80,7 +77,7 @@ def test_the_summary_has_a_row_for_each_arm() -> None:
         {"extinctions": np.array([0, 0, 5, 5, 0, 9]), "crashes": np.array([0, 0, 0, 0, 0, 7])},
         {"extinctions": np.array([0, 0, 0]), "crashes": np.array([0, 0, 0])},
     ]
-    head, *rows = rows_of(results.summary(compared(ONE, THREE, FOUR), counted))
+    head, *rows = rows_of(results.summary(side_by_side(ONE, THREE, FOUR), counted))
     assert head[:6] == ["", "hazard", "worlds", "saturated", "extinctions (median)", "crashes"]
     assert head[6:] == ["births to saturation", "ticks to saturation", "mean lifespan"]
     assert [row[:6] for row in rows] == [
@@ -97,7 +94,7 @@ def test_the_summary_has_a_row_for_each_arm() -> None:
 
 def test_each_arm_is_compared_with_the_first() -> None:
     """Of the 30 pairs with arm `three`, its lives are longer in 5, equal in 4 and shorter in 21."""
-    whole = compared(ONE, THREE, FOUR)
+    whole = side_by_side(ONE, THREE, FOUR)
     head, *rows = rows_of(results.effects(whole))
     assert head == ["against one", *whole.outcomes.values()]
     assert [row[0] for row in rows] == ["three", "four"]
@@ -111,7 +108,7 @@ def test_each_arm_is_compared_with_the_first() -> None:
 
 def test_arms_with_the_same_seeds_have_effects_within_seeds() -> None:
     other = arm("two", [20, 30, 40, 50, 60], 0, lifespan=[5, 6, 7, 8, 9])
-    (row,) = rows_of(results.effects(compared(ONE, other)))[1:]
+    (row,) = rows_of(results.effects(side_by_side(ONE, other)))[1:]
     delta = sum(np.sign(b - a) for a in (4, 5, 6, 7, 8) for b in (5, 6, 7, 8, 9)) / 25
     assert row[3].startswith(f"{delta:+.2f} medium longer; within seeds +1.00; 1.17 (")
 
@@ -121,7 +118,7 @@ def test_the_last_deaths_are_spread_over_the_worlds_of_each_arm() -> None:
         [{"late_deaths": count, "late_lifespan": 10.0 * count} for count in counts]
         for counts in ((8, 0, 2), (5,))
     ]
-    head, *rows = rows_of(results.dying(compared(ONE, THREE), ends))
+    head, *rows = rows_of(results.dying(side_by_side(ONE, THREE), ends))
     assert head == ["", "deaths in the last quarter", "their median lifespan"]
     assert rows == [["one", "2 (1 to 5)", "20 (10 to 50)"], ["three", "5", "50"]]
 
@@ -135,7 +132,7 @@ def test_the_csv_has_a_row_for_each_world_and_an_empty_cell_for_the_unknown() ->
         {"seed": np.array([3, 4]), "saturated_tick": np.array([NEVER, 9], np.uint64)},
         {"seed": np.array([5]), "saturated_tick": np.array([0], np.uint64)},
     ]
-    text = results.world_rows(compared(one, two), counted, [])
+    text = results.world_rows(side_by_side(one, two), counted, [])
     assert list(csv.reader(text.splitlines())) == [
         ["arm", "seed", "saturated_tick", "mean_lifespan", "late_food"],
         ["one", "3", "", "4.01", "70"],
@@ -154,7 +151,7 @@ def test_the_parts_of_the_page_are_in_order_and_have_each_arm(
         arm(name, births, missing, lifespan=births, pace=[float(place)] * 3)
         for place, name in enumerate(("one", "three"), 1)
     ]
-    whole = compared(*arms)
+    whole = side_by_side(*arms)
     none = np.zeros(3, int)
     counted = {
         name: {"extinctions": none + place, "crashes": none} for place, name in enumerate("ab", 1)
