@@ -131,7 +131,7 @@ def test_the_living_are_counted_by_the_founders_from_whom_they_descend(seed: int
     np.testing.assert_array_equal(shares, [0.5, 1 - first, 1 - first, np.nan, np.nan])
 
 
-def test_of_an_odd_number_of_ticks_the_middle_one_is_late() -> None:
+def test_the_middle_of_an_odd_number_of_ticks_is_late() -> None:
     share = np.array([[0.0, 0.0, 1.0, 0.4, 0.4], [1.0, 1.0, 0.2, 0.5, 0.5]])
     found = Competition("a", "b", np.arange(5), share)
     np.testing.assert_allclose(found.late_share, [0.6, 0.4])
@@ -151,7 +151,7 @@ def test_of_an_odd_number_of_ticks_the_middle_one_is_late() -> None:
 def test_only_what_the_competition_needs_is_changed_in_the_settings(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The genomes stay as they are: no mutation, no second parent, no season of the mutation."""
+    """The genomes do not change: no mutation, no second parent, no season of the mutation."""
     scale = {"kind": "schedule", "setting": "mutation.scale", "at": 9, "value": 0.05}
     hazard = {"kind": "schedule", "setting": "hazard", "at": 9, "value": 0.05}
     before = config(

@@ -52,7 +52,7 @@ def test_founders_live_in_the_changed_habitat_too(poles: primordia.Run) -> None:
         garden(poles.opened(), habitat={"weight": 1})
 
 
-def test_the_oldest_come_first_and_of_equals_the_last_born() -> None:
+def test_the_oldest_come_first_and_among_equals_the_last_born() -> None:
     rows, lifespan = np.array([2, 3, 5, 6, 8]), np.array([99, 99, 4, 7, 99, 7, 9, 99, 7])
     assert _oldest(rows, lifespan, 3).tolist() == [6, 8, 5]
     assert _oldest(rows, lifespan, 9).tolist() == [6, 8, 5, 3, 2]

@@ -106,7 +106,7 @@ def test_where_the_long_lived_have_more_children_selection_is_above_zero() -> No
 
 
 def test_each_world_has_its_own_measures() -> None:
-    """Two worlds of unequal size: in the second, children live a tenth longer, or a third shorter."""
+    """Children of the first world live as long as their parent; of the second, longer or shorter."""
     first = lives((-1, FOUNDER, 30), *[(0, COPY, 30)] * 12)
     second = lives((-1, FOUNDER, 30), (0, COPY, 33), (0, MUTANT, 20), (0, MUTANT, 21))
     both = joined([first, second], np.arange(2))
@@ -123,7 +123,7 @@ def test_each_world_has_its_own_measures() -> None:
 
 
 def test_the_price_equation_by_hand() -> None:
-    """Three parents have two children, one child and none. Lifespans are natural logarithms."""
+    """Three founders have two children, one child and none. Logarithms of lifespans are natural."""
     rows = [(-1, FOUNDER, 1), (-1, FOUNDER, 10), (-1, FOUNDER, 100), (2, COPY, 5000)]
     selection, transmission = price(
         families_of(lives(*rows, (2, MUTANT, 10), (1, COPY, 10)), np.array([3, 4, 5]))

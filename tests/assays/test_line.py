@@ -34,7 +34,7 @@ def test_the_largest_step_is_the_largest_ratio() -> None:
     assert found is not None
     assert [step.organism for step in found] == [2, 3]
     assert invented(10, 5, 5).largest is None
-    assert invented(10, 20, 40).to_dict()["largest_step"] == [0, 1], "of equals the first"
+    assert invented(10, 20, 40).to_dict()["largest_step"] == [0, 1], "the first of equal steps"
     assert invented(10, 20).to_dict()["largest_step"] == [0, 1]
 
 

@@ -24,7 +24,7 @@ Saturated = dict[int, tuple[int, int]]
 
 
 def lived(worlds: int, name: int) -> Lives:
-    """Return lives of which all but the last three of each world have ended before the tick UNTIL."""
+    """Return lives. All but the last three of each world end before the tick UNTIL."""
     draw = np.random.default_rng(name)
     born = [np.sort(draw.integers(0, 90, 40)) for _ in range(worlds)]
     lives = [
@@ -86,7 +86,7 @@ def test_lives_count_up_to_the_smallest_age_of_all_runs() -> None:
 
 
 def test_a_life_of_exactly_the_smallest_age_is_long() -> None:
-    """Lives of the first world have 4, 15 and 31 ticks, of the second 14 and 20; others are alive."""
+    """Lives of the first world have 4, 15 and 31 ticks, and those of the second have 14 and 20."""
     living = (50, 0, False)
     one, two = [(0, 3, True), (1, 14, True), (2, 30, True)], [(0, 13, True), (1, 19, True)]
     lives = worlds_of([*one, living], [*two, living], until=UNTIL)
@@ -106,7 +106,7 @@ def test_a_life_of_exactly_the_smallest_age_is_long() -> None:
 
 
 def test_a_crash_depends_on_the_cells_of_its_own_run() -> None:
-    """Four children are alive before the world dies out: half of 8 cells, and not of 16."""
+    """Four children are alive before the world dies out, which are half of 8 cells, and not of 16."""
     lives = worlds_of([(0, 9, True), *[(1, 8, True)] * 4, (10, 5, False)], until=60)
     lives.parent[1:5] = 0
     for cells, crashes in (((8, 16), [1, 0]), ((16, 8), [0, 1])):

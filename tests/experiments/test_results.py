@@ -113,7 +113,7 @@ def test_arms_with_the_same_seeds_have_effects_within_seeds() -> None:
     assert row[3].startswith(f"{delta:+.2f} medium longer; within seeds +1.00; 1.17 (")
 
 
-def test_the_last_deaths_are_spread_over_the_worlds_of_each_arm() -> None:
+def test_last_deaths_have_a_median_and_quartiles_over_the_worlds_of_each_arm() -> None:
     ends = [
         [{"late_deaths": count, "late_lifespan": 10.0 * count} for count in counts]
         for counts in ((8, 0, 2), (5,))
@@ -124,7 +124,7 @@ def test_the_last_deaths_are_spread_over_the_worlds_of_each_arm() -> None:
 
 
 def test_the_csv_has_a_row_for_each_world_and_an_empty_cell_for_the_unknown() -> None:
-    """The arms have different numbers of worlds; values have two decimals."""
+    """The arms have different numbers of worlds. Values have two decimals."""
     nan = float("nan")
     one = arm("one", [10, 20], 1, lifespan=[4.006, nan], food=[70, 80])
     two = arm("two", [30], 0, lifespan=[1 / 3], food=[12345678])

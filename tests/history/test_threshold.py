@@ -124,7 +124,7 @@ def test_each_world_has_its_own_threshold() -> None:
     }  # fmt: skip
 
 
-def test_mutants_that_outlive_copies_count_as_as_good_and_no_better() -> None:
+def test_mutants_that_outlive_copies_count_as_equally_good() -> None:
     rows: list = [(-1, FOUNDER, 100)] + [(-1, FOUNDER, 1)] * 300
     copies: list = [(0, COPY, 100)] * 5 + [(0, COPY, 1)] * 5
     better: list = [(0, MUTANT, 100)] * 8 + [(0, MUTANT, 1)] * 2

@@ -147,7 +147,7 @@ def test_shares_begin_at_the_fork_if_the_line_is_older(monkeypatch: pytest.Monke
 
 @pytest.mark.parametrize("count", [19, 20, 21, 30, 57, 400])
 def test_places_of_a_table_are_the_largest_gains_and_evenly_spaced_others(count: int) -> None:
-    """Nine of 20 have the largest ratios of lifespan to parent's lifespan; of equal ones, the older."""
+    """Nine of 20 places have the largest ratios of lifespan to the parent's; of equals, the older."""
     spans = [(7 * place) % 23 for place in range(count)]
     line = world_of([(place, each, True) for place, each in enumerate(spans)], until=999)
     found: Any = SimpleNamespace(line=line)
