@@ -53,6 +53,18 @@ def line_to(lives: Lives, row: int) -> list[int]:
     return line
 
 
+def share_after(lives: Lives, ancestor: int, tick: int) -> float:
+    """Return the share of those alive after a tick that descend from an ancestor, or are it."""
+    living = living_after(lives, tick)
+    return sum(ancestor in line_to(lives, row) for row in living) / max(len(living), 1)
+
+
+def common_after(lives: Lives, tick: int) -> int | None:
+    """Return the youngest common ancestor of those alive after a tick."""
+    lines = [line_to(lives, row) for row in living_after(lives, tick)]
+    return next((row for row in lines[0] if all(row in line for line in lines)), None)
+
+
 def moran(
     size: int, births: int, name: int = 0, fitness: Callable[[int], float] | None = None
 ) -> Lives:

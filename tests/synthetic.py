@@ -1,12 +1,10 @@
 """Tables of invented lives: of one world, or of several."""
 
-from dataclasses import fields
-
 import numpy as np
 from hypothesis import strategies as st
 
 from primordia.law.world import Cause
-from primordia.runs.lives import ALIVE, Lives
+from primordia.runs.lives import ALIVE, Lives, joined
 
 LIFE = st.tuples(st.integers(0, 40), st.integers(0, 40), st.booleans())
 LIVED = st.lists(LIFE, min_size=1, max_size=20)
@@ -55,10 +53,4 @@ def surviving(lives: Lives, longest: int) -> list[float]:
 
 def worlds_of(*lived: list[tuple[int, int, bool]], until: int) -> Lives:
     """Return the lives of several worlds."""
-    worlds = [world_of(lives, until) for lives in lived]
-    columns = {
-        field.name: np.concatenate([getattr(world, field.name) for world in worlds])
-        for field in fields(Lives)
-    }
-    numbers = np.repeat(np.arange(len(worlds), dtype=np.int32), list(map(len, worlds)))
-    return Lives(**{**columns, "world": numbers})
+    return joined([world_of(lives, until) for lives in lived], np.arange(len(lived)))

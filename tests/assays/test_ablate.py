@@ -1,14 +1,25 @@
-"""What organisms need."""
+"""What organisms need: how long they live without senses, memory or weights."""
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
+import pytest
 
 import primordia
-from primordia.assays.ablate import _losses, ablate
-from primordia.assays.subjects import of_run
+from primordia.assays import ablate as module
+from primordia.assays.ablate import Ablation, _losses, ablate
+from primordia.assays.subjects import Subjects, of_run
+from primordia.organism.games import Players
+from primordia.organism.playing.seats import Frozen
 from primordia.runs import loop
 from tests.worlds import MEADOW, config
+
+
+@pytest.fixture(scope="module")
+def subjects(poles: primordia.Run) -> Subjects:
+    return of_run(poles.opened())
 
 
 def test_frozen_senses_are_those_of_an_evaluation(poles: primordia.Run) -> None:
@@ -21,8 +32,7 @@ def test_frozen_senses_are_those_of_an_evaluation(poles: primordia.Run) -> None:
     assert [each.intact for each in own] == [each.lived.ticks.mean() for each in whole]
 
 
-def test_each_loss_is_measured_for_each_organism(poles: primordia.Run) -> None:
-    subjects = of_run(poles.opened())
+def test_each_loss_is_measured_for_each_organism(subjects: Subjects) -> None:
     found = ablate(subjects, each_sense=True, games=1, ticks=100)
     names = list(dict.fromkeys(each.without for each in found))
     blocks = [f"{name} weights" for name in subjects.law.heredity.layout.names]
@@ -30,8 +40,7 @@ def test_each_loss_is_measured_for_each_organism(poles: primordia.Run) -> None:
     assert len(found) == 2 * len(names)
 
 
-def test_a_block_without_weights_is_a_block_of_zeros(poles: primordia.Run) -> None:
-    subjects = of_run(poles.opened())
+def test_a_block_without_weights_is_a_block_of_zeros(subjects: Subjects) -> None:
     layout = subjects.law.heredity.layout
     parts = layout.split(subjects.players.genomes)
     silent = layout.join({**parts, "output": np.zeros_like(parts["output"])})
@@ -43,9 +52,8 @@ def test_a_block_without_weights_is_a_block_of_zeros(poles: primordia.Run) -> No
     assert own == [each.intact for each in expected[: len(own)]]
 
 
-def test_no_loss_takes_more_than_it_says(poles: primordia.Run) -> None:
+def test_no_loss_takes_more_than_it_says(subjects: Subjects) -> None:
     """Each block of weights is lost alone, and a loss of senses or memory leaves all weights."""
-    subjects = of_run(poles.opened())
     layout, whole = subjects.law.heredity.layout, subjects.players.genomes
     for loss in _losses(subjects, each_sense=True):
         left, before = layout.split(loss.genomes), layout.split(whole)
@@ -66,10 +74,9 @@ def test_where_nothing_matters_nothing_is_needed(tmp_path: Path) -> None:
 
 
 def test_a_sense_that_has_no_weight_is_not_missed_and_is_the_only_one_kept(
-    poles: primordia.Run,
+    subjects: Subjects,
 ) -> None:
     """Without weights on all senses but one, only the loss of that one changes a life."""
-    subjects = of_run(poles.opened())
     layout = subjects.law.heredity.layout
     parts = layout.split(subjects.players.genomes)
     of_sense = np.moveaxis(parts["input"], parts["input"].shape[1:].index(4) + 1, -1).copy()
@@ -80,3 +87,44 @@ def test_a_sense_that_has_no_weight_is_not_missed_and_is_the_only_one_kept(
     changed = {each.without for each in found if each.lifespan != each.intact}
     assert "sense 2" in changed
     assert not changed & {"sense 0", "sense 1", "sense 3"}
+
+
+def test_an_ablation_keeps_a_share_of_the_intact_life() -> None:
+    one = Ablation("memory", 7, 3, 40.0, 10.0)
+    assert one.to_dict() == {
+        "without": "memory", "organism": 7, "world": 3, "intact": 40, "lifespan": 10, "kept": 0.25
+    }  # fmt: skip
+
+
+def test_each_ablated_life_is_compared_with_the_organisms_intact_life(
+    subjects: Subjects, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Both lives are means over the same number of games, which are cut at the same tick."""
+    asked = []
+
+    def lived(players: Players, games: int, ticks: int, frozen: Frozen | None = None) -> np.ndarray:
+        asked.append((games, ticks))
+        changed = (players.genomes != subjects.players.genomes).any()
+        loss = 0 if frozen is None else 1 + 10 * changed + 3 * int(frozen.memory.any())
+        return np.array([[40, 60, 110], [10, 20, 60]]) - loss
+
+    monkeypatch.setattr(module, "lifespans_in_games", lived)
+    found = ablate(subjects, games=3, ticks=66)
+    assert set(asked) == {(3, 66)}
+    organisms = subjects.organism.tolist()
+    losses = {"senses": 1, "memory": 4} | {
+        f"{name} weights": 11 for name in subjects.law.heredity.layout.names
+    }
+    assert [(e.without, e.organism, e.world, e.intact, e.lifespan) for e in found] == [
+        (name, organisms[world], world, life, life - loss)
+        for name, loss in losses.items()
+        for world, life in enumerate((70, 30))
+    ]
+
+
+def test_a_brain_without_memory_loses_none(subjects: Subjects) -> None:
+    law = SimpleNamespace(senses=4, memory=0, heredity=subjects.law.heredity)
+    players: Any = SimpleNamespace(genomes=subjects.players.genomes, law=law)
+    names = [each.name for each in _losses(subjects._replace(players=players), True)]
+    blocks = [f"{name} weights" for name in subjects.law.heredity.layout.names]
+    assert names == ["senses", *blocks, "sense 0", "sense 1", "sense 2", "sense 3"]

@@ -117,7 +117,7 @@ def test_the_command_takes_runs_organisms_and_files(poles: primordia.Run, tmp_pa
 
 @pytest.mark.parametrize("seed", [6, 7])
 def test_the_living_are_counted_by_the_founders_from_whom_they_descend(seed: int) -> None:
-    """Founders take the genomes in turn by the sum of the seed and their birth number."""
+    """A founder has the first genome if the sum of the seed and its birth number is even."""
     rows: list = [(-1, FOUNDER, 6), (-1, FOUNDER, 9), (0, COPY, 3), (2, COPY, 1), (1, COPY, 4)]
     rows += [(3, COPY, 1), (4, COPY, 5), *[(5, COPY, 2)] * 2, (-1, FOUNDER, 8, "alive")]
     world, ticks = lives_of(*rows, (9, COPY, 9, "alive")), np.array([0, 1, 5, 6, 9, 10, 11, 12])
@@ -131,7 +131,7 @@ def test_the_living_are_counted_by_the_founders_from_whom_they_descend(seed: int
     np.testing.assert_array_equal(shares, [0.5, 1 - first, 1 - first, np.nan, np.nan])
 
 
-def test_the_middle_tick_of_an_odd_number_is_late() -> None:
+def test_the_middle_of_an_odd_number_of_ticks_is_late() -> None:
     share = np.array([[0.0, 0.0, 1.0, 0.4, 0.4], [1.0, 1.0, 0.2, 0.5, 0.5]])
     found = Competition("a", "b", np.arange(5), share)
     np.testing.assert_allclose(found.late_share, [0.6, 0.4])
@@ -151,7 +151,7 @@ def test_the_middle_tick_of_an_odd_number_is_late() -> None:
 def test_only_what_the_competition_needs_is_changed_in_the_settings(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The genomes stay as they are: no mutation, no second parent, no season of the mutation."""
+    """The genomes do not change: no mutation, no second parent, no season of the mutation."""
     scale = {"kind": "schedule", "setting": "mutation.scale", "at": 9, "value": 0.05}
     hazard = {"kind": "schedule", "setting": "hazard", "at": 9, "value": 0.05}
     before = config(
@@ -168,10 +168,10 @@ def test_only_what_the_competition_needs_is_changed_in_the_settings(
     assert (after.cells, after.hazard, after.habitat) == (24, 0.01, before.habitat)
 
 
-def test_each_world_is_counted_with_its_own_seed_and_the_first_name_is_the_first_genome(
+def test_each_world_is_counted_with_its_own_seed_and_names_are_in_the_order_of_genomes(
     sides: tuple[Subjects, Subjects], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Each world's share is its own; there are 101 ticks from the first to the last."""
+    """Shares are counted at 101 ticks from the first to the last."""
     good, bad = sides
     worlds = [lives_of((-1, FOUNDER, 5 + w), (-1, FOUNDER, 3)) for w in range(3)]
     held = SimpleNamespace(

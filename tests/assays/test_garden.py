@@ -52,7 +52,7 @@ def test_founders_live_in_the_changed_habitat_too(poles: primordia.Run) -> None:
         garden(poles.opened(), habitat={"weight": 1})
 
 
-def test_the_oldest_come_first_and_of_equals_the_last_born() -> None:
+def test_the_oldest_come_first_and_among_equals_the_last_born() -> None:
     rows, lifespan = np.array([2, 3, 5, 6, 8]), np.array([99, 99, 4, 7, 99, 7, 9, 99, 7])
     assert _oldest(rows, lifespan, 3).tolist() == [6, 8, 5]
     assert _oldest(rows, lifespan, 9).tolist() == [6, 8, 5, 3, 2]
@@ -72,8 +72,8 @@ def test_a_single_late_birth_is_spaced_too() -> None:
     assert _spaced(np.array([7]), np.zeros(0), 3).tolist() == [7]
 
 
-def test_a_bed_tells_what_it_keeps() -> None:
-    """What is kept is a share of means: 9 of 12 ticks, not the mean of the organisms' shares."""
+def test_a_bed_keeps_the_ratio_of_its_means() -> None:
+    """It keeps 9 of 12 ticks. The mean of the organisms' ratios would be another number."""
     bed = Bed("oldest", 1, np.array([4, 9]), np.array([4, 20]), np.array([8.0, 10.0]))
     assert bed.to_dict() == {
         "group": "oldest",
@@ -90,7 +90,7 @@ def test_a_bed_tells_what_it_keeps() -> None:
 def test_births_after_the_given_share_are_late(
     poles: primordia.Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Each organism's life is the mean of its games, which are cut at the given tick."""
+    """An organism's life is the mean of its games, which are cut at the given tick."""
     asked = []
 
     def lived(players: Players, games: int, ticks: int) -> np.ndarray:

@@ -1,6 +1,5 @@
 """Inheritance of lifespan: slopes that are known, and the Price equation, which is an identity."""
 
-from dataclasses import fields
 from types import SimpleNamespace
 from typing import Any
 
@@ -11,7 +10,7 @@ from hypothesis import strategies as st
 
 from primordia.assays.heredity import heredity, price, slope
 from primordia.history.families import LEAST, families, families_of
-from primordia.runs.lives import Lives
+from primordia.runs.lives import Lives, joined
 from tests.assays.lives import COPY, FOUNDER, MUTANT, lives
 
 
@@ -107,14 +106,10 @@ def test_where_the_long_lived_have_more_children_selection_is_above_zero() -> No
 
 
 def test_each_world_has_its_own_measures() -> None:
-    """Two worlds of unequal size: in the second, children live a tenth longer, or a third shorter."""
+    """Children of the first world live as long as their parent; of the second, longer or shorter."""
     first = lives((-1, FOUNDER, 30), *[(0, COPY, 30)] * 12)
     second = lives((-1, FOUNDER, 30), (0, COPY, 33), (0, MUTANT, 20), (0, MUTANT, 21))
-    columns = {
-        each.name: np.concatenate([getattr(first, each.name), getattr(second, each.name)])
-        for each in fields(Lives)
-    }
-    both = Lives(**{**columns, "world": np.repeat(np.int32([0, 1]), (13, 4))})
+    both = joined([first, second], np.arange(2))
     one, other = heredity(SimpleNamespace(lives=both), 0.0)
     assert (one.world, other.world) == (0, 1)
     assert (one.copies.pairs, one.copies.as_long) == (12, 1)
@@ -122,13 +117,13 @@ def test_each_world_has_its_own_measures() -> None:
     found = [(each.longer, each.as_long, each.shorter) for each in (other.copies, other.mutants)]
     assert found == [(1, 0, 0), (0, 0, 0.5)]
     assert (other.both.pairs, other.both.longer) == (3, pytest.approx(1 / 3))
-    told = other.to_dict()
-    assert (told["world"], told["copies"]["pairs"], told["mutants"]["shorter"]) == (1, 1, 0.5)
-    assert (told["selection"], told["transmission"]) == (other.selection, other.transmission)
+    plain = other.to_dict()
+    assert (plain["world"], plain["copies"]["pairs"], plain["mutants"]["shorter"]) == (1, 1, 0.5)
+    assert (plain["selection"], plain["transmission"]) == (other.selection, other.transmission)
 
 
 def test_the_price_equation_by_hand() -> None:
-    """Of three parents one has two children, one has one and one has none; e is the log unit."""
+    """Three founders have two children, one child and none. Logarithms of lifespans are natural."""
     rows = [(-1, FOUNDER, 1), (-1, FOUNDER, 10), (-1, FOUNDER, 100), (2, COPY, 5000)]
     selection, transmission = price(
         families_of(lives(*rows, (2, MUTANT, 10), (1, COPY, 10)), np.array([3, 4, 5]))

@@ -34,7 +34,7 @@ def test_the_largest_step_is_the_largest_ratio() -> None:
     assert found is not None
     assert [step.organism for step in found] == [2, 3]
     assert invented(10, 5, 5).largest is None
-    assert invented(10, 20, 40).to_dict()["largest_step"] == [0, 1], "of equals the first"
+    assert invented(10, 20, 40).to_dict()["largest_step"] == [0, 1], "the first of equal steps"
     assert invented(10, 20).to_dict()["largest_step"] == [0, 1]
 
 
@@ -100,8 +100,8 @@ def test_each_genome_plays_the_games_of_the_last_organism(
         np.testing.assert_array_equal(genome, organism.genome())
 
 
-def test_copies_of_one_parent_bring_no_new_genome() -> None:
-    """The first organism on record brings one, even if it is a copy; so do children of two parents."""
+def test_copies_of_one_parent_have_no_new_genome() -> None:
+    """The first organism on record has a new genome even if it is a copy; so has a child of two."""
     lives = lives_of(
         (-1, FOUNDER, 9), (0, COPY, 9), (1, COPY, 9), (2, MUTANT, 9), (3, COPY, 9), (4, COPY, 9)
     )

@@ -124,7 +124,7 @@ def test_founders_of_a_task_are_those_that_they_always_were() -> None:
 def test_organisms_of_a_run_keep_their_order_worlds_and_present_climate(
     poles: primordia.Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Settings that seasons change are those at the end of each organism's own world."""
+    """Settings that seasons change are those at the end of the organism's world."""
     run, asked = poles.opened(), []
 
     def noted(past: PastClimate, lives: Lives, ticks: np.ndarray) -> Climates:
@@ -161,7 +161,7 @@ def test_a_run_in_which_nothing_was_born_since_the_fork_has_no_champion(
 def test_genomes_of_a_file_play_games_of_their_own_numbers(
     poles: primordia.Run, tmp_path: Path
 ) -> None:
-    """So a genome's games do not depend on which others are chosen; a changed habitat is theirs."""
+    """A genome's games do not depend on the other chosen genomes. They have the changed habitat."""
     file = tmp_path / "some.safetensors"
     poles.export(file, 0, 5, 9)
     whole, some = of_file(file), of_file(file, (2, 0), habitat={"angle_limit": 5.0})

@@ -1,4 +1,4 @@
-"""How organisms died in the last quarter: the scores at their deaths, and what is unknown."""
+"""Deaths in the last quarter of the compared time: their number, lifespans and scores."""
 
 from types import SimpleNamespace
 from typing import Any
@@ -29,15 +29,15 @@ def last(*worlds: list[tuple[int, int]]) -> list[dict[str, float]]:
 
 
 def test_the_best_score_may_be_below_zero() -> None:
-    """The last quarter begins after tick 90, and the best score is that of any death."""
+    """The last quarter begins after tick 90. The best score counts all deaths."""
     first, second = last([(40, -1), (95, -7), (100, -9)], [(30, 3), (110, -2)])
     assert (first["best_score"], second["best_score"]) == (-1, 3)
     assert (first["late_score"], second["late_score"]) == (-8, -2)
     assert (first["late_deaths"], second["late_lifespan"]) == (2, 110)
 
 
-def test_the_last_quarter_begins_after_its_first_tick_and_has_its_last() -> None:
-    """It is from after tick 90 up to tick 120; a later death is not compared."""
+def test_the_last_quarter_has_the_tick_of_its_end_and_not_that_of_its_beginning() -> None:
+    """The last quarter is ticks 91 to 120. A later death does not count."""
     before, within, after = [(20, 5), (90, 70)], [(91, 4), (100, 1), (120, 30)], [(121, 99)]
     first, second, third = last([*before, *within], [*within, *after], [*before, *after])
     assert first == {
@@ -48,8 +48,8 @@ def test_the_last_quarter_begins_after_its_first_tick_and_has_its_last() -> None
     assert np.isnan([third["late_lifespan"], third["late_score"]]).all()
 
 
-def test_the_living_are_no_deaths_and_scores_are_left_out_where_there_are_none() -> None:
-    """One organism of the first world is alive in tick 120; the lives count, not the ticks."""
+def test_the_living_do_not_count_and_habitats_without_scores_have_none() -> None:
+    """One organism of the first world, and that of the second, are alive in tick 120."""
     lives = worlds_of([(0, 99, True), (60, 49, True), (3, 0, False)], [(80, 0, False)], until=120)
     run: Any = SimpleNamespace(lives=lives, schema=SimpleNamespace(tallies=[]), table=None)
     one, other = last_deaths(run, COMPARED)

@@ -1,4 +1,4 @@
-"""The notes below the tables of a comparison: each is there exactly where it applies."""
+"""The notes below the tables of a comparison: each is printed only if it applies."""
 
 from typing import Any
 
@@ -7,7 +7,7 @@ import pytest
 
 from primordia.comparison.measured import Measured
 from primordia.comparison.tables import comparison_tables, evidence_notes
-from tests.comparison.test_tables import arm, side_by_side
+from tests.comparison.arms import arm, side_by_side
 
 
 def notes(*arms: Any, **changed: Any) -> str:

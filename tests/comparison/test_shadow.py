@@ -124,22 +124,22 @@ def test_numbers_over_worlds_are_medians_of_their_ratios() -> None:
     (drawn,) = resamples(6)
     medians = np.sort([np.median(ratios[rows]) for rows in drawn])
     assert found.ratio_interval == (medians[25], medians[-1 - 25])
-    told = found.to_dict()
+    plain = found.to_dict()
     lives = [np.concatenate(each) for each in (original, shadow)]
-    assert [told[line]["mean"] for line in ("original", "shadow")] == [
+    assert [plain[line]["mean"] for line in ("original", "shadow")] == [
         pytest.approx(each.mean()) for each in lives
     ]
-    assert told["original"]["reached_cut"] == 6
-    assert told["shadow"]["reached_cut"] == 0
+    assert plain["original"]["reached_cut"] == 6
+    assert plain["shadow"]["reached_cut"] == 0
     expected = {
         "name": "run", "worlds": 6, "births": 99, "organisms": 11, "cut": 60,
         "ticks": lives[0].sum() + lives[1].sum(), "worlds_longer": 4, "worlds_shorter": 1,
         "p": found.p, "ratio": 2.5, "interval": found.ratio_interval,
     }  # fmt: skip
-    assert expected.items() <= told.items()
+    assert expected.items() <= plain.items()
 
 
-def test_organisms_are_those_in_the_middle_of_equal_parts_without_the_last_birth() -> None:
+def test_organisms_are_in_the_middle_of_equal_parts_of_all_births_but_the_last() -> None:
     """World 3 has nine births, world 5 three, world 6 one, and world 8 two."""
     worlds = np.repeat([3, 5, 6, 8], [9, 3, 1, 2])
     rows = 100 + 2 * np.arange(len(worlds))
@@ -150,8 +150,10 @@ def test_organisms_are_those_in_the_middle_of_equal_parts_without_the_last_birth
     assert _sample(worlds, rows, 100).tolist() == [*third, *fifth, *eighth]
 
 
-def test_lives_are_cut_where_saturation_is_unless_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Organisms that were alive at a fork are not counted; those of the second world are too few."""
+def test_lives_are_cut_at_the_age_of_saturation_or_at_a_given_one(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Organisms that were alive at a fork are not counted. The second world has one birth, too few."""
     cuts: list[int] = []
 
     def lifespans(run: Any, rows: np.ndarray, redrawn: bool, cut: int) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""A comparison as text: each number and word of the tables, and the notes that explain them."""
+"""A comparison as text: each number and word of the tables."""
 
 from typing import Any
 
@@ -6,48 +6,12 @@ import numpy as np
 import pytest
 
 from primordia.comparison import tables
-from primordia.comparison.comparison import ComparedArm, Comparison
 from primordia.comparison.contrast import Contrast, contrast
-from primordia.comparison.gathering import Gathering
 from primordia.comparison.measured import Measured
-from primordia.comparison.pace import WINDOWS, Pace
 from primordia.comparison.pairs import Paired
-from primordia.comparison.survival import survival
-from primordia.history.extinctions import Extinctions
-from tests.synthetic import worlds_of
+from tests.comparison.arms import arm, side_by_side
 
-OUTCOMES = ("first", "births", "ticks", "lifespan", "longest", "pace", "food")
 INF = float("inf")
-
-
-def arm(
-    name: str, values: list[float], known: list[bool] | None = None, seed: int = 0, **counts: Any
-) -> ComparedArm:
-    """Return a run whose worlds have these values of `births`, and others of the other outcomes."""
-    worlds = len(values)
-    is_known = np.array(known or [True] * worlds)
-    measured = {
-        outcome: Measured(np.array(values, float) * 10**k, is_known)
-        for k, outcome in enumerate(OUTCOMES, -1)
-    }
-    lost = [np.array(counts.get(each, [0] * worlds)) for each in ("total", "crashes")]
-    lives = worlds_of(*([(0, 5, True)] for _ in range(worlds)), until=20)
-    nothing = np.zeros((worlds, WINDOWS))
-    return ComparedArm(
-        name,
-        counts.get("settings", {}),
-        np.arange(seed, seed + worlds, dtype=np.uint64),
-        measured,
-        survival(lives, worlds, 10),
-        Pace(np.linspace(0, 20, WINDOWS + 1), nothing, nothing.astype(int)),
-        Gathering(nothing, measured["food"]),
-        Extinctions(*lost),
-    )
-
-
-def side_by_side(*arms: ComparedArm, **changed: Any) -> Comparison:
-    values = {"age": 12_000, "begin": 0, "births": None, "ticks": None, "span": "second", **changed}
-    return Comparison("meadow", arms, **values)
 
 
 def cells(line: str) -> list[str]:
@@ -79,13 +43,13 @@ def test_numbers_have_three_digits_or_more(value: float, text: str) -> None:
     ("bounds", "text"),
     [((2, 2), "2"), ((2, 3.5), "2..3.5"), ((1200, INF), ">= 1,200"), ((0, INF), "unknown")],
 )
-def test_bounds_are_told_as_far_as_they_are_known(bounds: tuple[float, float], text: str) -> None:
+def test_bounds_are_given_as_far_as_they_are_known(bounds: tuple[float, float], text: str) -> None:
     assert tables.bounds_text(bounds) == text
     assert tables.ratio_text(effect(ratio=bounds, interval=None)) == text
     assert tables.ratio_text(effect(ratio=bounds, interval=(0.5, INF))) == f"{text} (0.5 to inf)"
 
 
-def test_quartiles_of_worlds_are_told_after_the_median() -> None:
+def test_quartiles_of_worlds_follow_the_median() -> None:
     """Quartiles of an outcome are values of worlds; those of other numbers may lie between."""
     worlds = [9, 1, 7, 3, 5, 8, 2]
     assert tables.quartiles_text(arm("one", worlds), "births") == "5 (2 to 8)"
@@ -110,7 +74,7 @@ def test_quartiles_of_worlds_are_told_after_the_median() -> None:
         ("pace", "fewer", "more"), ("food", "less", "more"),
     ],
 )  # fmt: skip
-def test_the_direction_of_an_effect_is_told(outcome: str, smaller: str, larger: str) -> None:
+def test_an_effect_has_its_direction(outcome: str, smaller: str, larger: str) -> None:
     assert tables.effect_text(effect(), outcome) == f"+0.40 medium {larger}"
     assert tables.effect_text(effect(delta=-0.5), outcome) == f"-0.50 large {smaller}"
     assert tables.effect_text(effect(delta=0.0), outcome) == "+0.00 negligible"
@@ -119,14 +83,14 @@ def test_the_direction_of_an_effect_is_told(outcome: str, smaller: str, larger: 
 
 
 @pytest.mark.parametrize("pairs", [25, 100, 900])
-def test_the_share_of_pairs_is_told_in_whole_percent(pairs: int) -> None:
-    """It is rounded down, so 100 % are never told of a share."""
+def test_the_share_of_pairs_is_given_in_whole_percent(pairs: int) -> None:
+    """It is rounded down, so it is never 100 % if the order of some pairs is unknown."""
     for known in range(pairs):
         words = f"; order known in {100 * known // pairs} % of pairs"
         assert tables.effect_text(effect(decided=known / pairs), "births").endswith(words)
 
 
-def test_pairs_and_needed_worlds_are_told_if_there_are_any() -> None:
+def test_pairs_and_needed_worlds_are_given_if_there_are_any() -> None:
     pairs = Paired(8, 6, 2)
     assert tables.paired_text(effect(paired=pairs)) == "+0.50"
     assert tables.paired_text(effect()) == ""
@@ -153,8 +117,8 @@ def test_the_first_table_has_settings_saturations_and_extinctions() -> None:
         assert words in cells(text.splitlines()[0])
 
 
-def test_each_run_is_told_beside_the_reference() -> None:
-    """Two contrasts: one has pairs, the other has other seeds and a larger median."""
+def test_each_run_is_in_a_row_below_the_reference() -> None:
+    """Run `low` has the seeds of the reference. Run `far` has other seeds and a larger median."""
     arms = (
         arm("ref", [1, 2, 3, 4, 5, 6]),
         arm("low", [1, 1, 2, 3, 4, 5]),
@@ -183,7 +147,7 @@ def test_each_run_is_told_beside_the_reference() -> None:
 
 
 def test_each_table_has_the_effects_of_its_own_outcome() -> None:
-    """In each later outcome, one more of the second run's worlds has the larger value."""
+    """In each outcome, one more world of the second run has a larger value than in the one before."""
     ref, other = arm("ref", [10] * 5), arm("other", [10] * 5, seed=9)
     shares = {"first": 0, "births": 1, "ticks": 2, "lifespan": 3, "food": 4}
     for outcome, larger in shares.items():

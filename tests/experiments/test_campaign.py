@@ -1,4 +1,4 @@
-"""An experiment in its directory: what belongs to which arm, and which jobs are left."""
+"""An experiment in its directory: the runs of each arm, and the jobs that are left."""
 
 from pathlib import Path
 from typing import Any
@@ -22,7 +22,7 @@ def chosen(tmp_path: Path) -> Campaign:
 
 
 def end(chosen: Campaign, *numbers: int, state: Any = "done") -> None:
-    """Let some jobs have ended, each with a run that has a checkpoint."""
+    """End some jobs, each with a run that has a checkpoint."""
     for number in numbers:
         job = chosen.jobs[number]
         run = chosen.path / job.folder
@@ -54,7 +54,7 @@ def test_jobs_that_are_left_are_those_not_done(chosen: Campaign) -> None:
 
 
 def test_info_has_for_each_arm_its_own_settings_and_worlds(chosen: Campaign) -> None:
-    """Settings that all arms share are not told; an arm that has not begun has no worlds."""
+    """Settings that all arms share are left out. An arm that has not begun has no worlds."""
     end(chosen, 1)
     worlds = {chosen.path / "harsh": [{"seed": 3}, {"seed": 4}]}
 
@@ -67,8 +67,8 @@ def test_info_has_for_each_arm_its_own_settings_and_worlds(chosen: Campaign) -> 
         patch.object(campaign, "opened", opened),
         patch.object(campaign, "info", lambda folder: {"worlds": worlds[folder]}),
     ):
-        told = chosen.info()
-    assert told == {
+        found = chosen.info()
+    assert found == {
         "question": "Is it mild?",
         "jobs": {"done": 1, "running": 0, "failed": 0, "waiting": 3},
         "arms": [

@@ -156,7 +156,7 @@ def test_a_process_that_dies_is_replaced_and_its_job_tried_again(
     assert digests_of(begin(out)) == alone
 
 
-def test_a_job_that_fails_stops_nobody_else(tmp_path: Path) -> None:
+def test_a_job_that_fails_stops_no_other_job(tmp_path: Path) -> None:
     file, out = write(tmp_path), tmp_path / "out"
     chosen = begin(file, out)
     (out / "mild").mkdir()

@@ -12,10 +12,16 @@ from tests.experiments.test_shipped import EXPERIMENTS
 from tests.worlds import MEADOW, config
 
 
-def test_jumps_are_found_where_they_are_and_nowhere_else(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Steps are found at their places; an order without meaning has none, as often as promised."""
+@pytest.fixture
+def jumps(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """Return the module `experiments/jumps.py`."""
     monkeypatch.syspath_prepend(str(EXPERIMENTS))
-    jumps, noise = import_module("jumps"), np.random.default_rng(3)
+    return import_module("jumps")
+
+
+def test_jumps_are_found_where_they_are_and_nowhere_else(jumps: Any) -> None:
+    """Steps are found at their places. Of 60 series of noise, few have a jump."""
+    noise = np.random.default_rng(3)
     stairs = np.repeat([2.0, 4.0, 3.0, 6.0], [120, 200, 80, 100])
 
     def parted(series: np.ndarray) -> Any:
@@ -32,33 +38,26 @@ def test_jumps_are_found_where_they_are_and_nowhere_else(monkeypatch: pytest.Mon
     assert len(parted(np.arange(19.0)).ends) == 1
 
 
-def test_a_smooth_rise_has_no_sudden_jumps_and_a_step_has_one(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """Both have jumps: a staircase runs along a smooth rise."""
-    monkeypatch.syspath_prepend(str(EXPERIMENTS))
-    jumps, noise, at = import_module("jumps"), np.random.default_rng(5), np.linspace(0, 1, 300)
+def test_a_smooth_rise_has_no_sudden_jumps_and_a_step_has_one(jumps: Any) -> None:
+    """Both have jumps, since a staircase is fitted to a smooth rise too."""
+    noise, at = np.random.default_rng(5), np.linspace(0, 1, 300)
     smooth = [3 * at, 3 / (1 + np.exp(-12 * (at - 0.5))), 2 * np.sqrt(at), np.log1p(20 * at)]
-    rises = [jumps.described(smooth[n % 4] + 0.4 * noise.standard_normal(300)) for n in range(48)]
+    rises = [jumps.described(smooth[n % 4] + 0.4 * noise.standard_normal(300)) for n in range(24)]
     assert np.median([each["jumps"] for each in rises]) >= 2
     assert abs(np.mean([each["jumps"] - each["jumps if smooth"] for each in rises])) < 1
-    assert sum(each["sudden jumps"] > 0 for each in rises) <= 6  # 2.4 are a twentieth
-    assert sum(each["p of the largest"] <= 0.05 for each in rises) <= 6
+    assert sum(each["sudden jumps"] > 0 for each in rises) <= 4  # 1.2 are a twentieth
+    assert sum(each["p of the largest"] <= 0.05 for each in rises) <= 4
     step = 2.0 * (at > 0.4)
-    steps = [jumps.described(step + 0.3 * noise.standard_normal(300)) for _ in range(12)]
+    steps = [jumps.described(step + 0.3 * noise.standard_normal(300)) for _ in range(6)]
     assert all(each["jumps"] == 1 for each in steps)
-    assert sum(each["sudden jumps"] == 1 for each in steps) >= 11
-    assert sum(each["p of the largest"] <= 0.05 for each in steps) >= 11
+    assert sum(each["sudden jumps"] == 1 for each in steps) >= 5
+    assert sum(each["p of the largest"] <= 0.05 for each in steps) >= 5
 
 
-def test_jumps_of_a_run_are_found_in_each_world(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.syspath_prepend(str(EXPERIMENTS))
+def test_jumps_of_a_run_are_found_in_each_world(jumps: Any, tmp_path: Path) -> None:
     settings = {**MEADOW, "brain": {"hidden": 1}, "seeds": 2, "hazard": 0.05, "replication": 0.3}
     safer = {"kind": "schedule", "setting": "hazard", "at": 500, "value": 0.005}
     loop.start(config({**settings, "seasons": [safer], "stop": {"ticks": 3000}}), tmp_path / "a")
-    jumps = import_module("jumps")
     rows = jumps.steps_of(tmp_path / "a")
     assert all(1 <= row["jumps"] <= 2 for row in rows), (
         "organisms that die soon after the change lived before it"

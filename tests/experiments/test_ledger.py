@@ -1,4 +1,4 @@
-"""What the ledger says of a job: who runs it, how far its worlds are, and how it ended."""
+"""The ledger's entries of jobs: the process that runs a job, the counts of its worlds, and its end."""
 
 import json
 import os
@@ -44,7 +44,7 @@ def state_of(folder: Path, **values: Any) -> str:
 
 
 def test_a_job_of_this_machine_runs_while_its_process_lives(tmp_path: Path, ended: int) -> None:
-    """However long ago the file was written."""
+    """The age of the file does not matter."""
     here = socket.gethostname()
     for process, state in (
         (os.getpid(), "running"),
@@ -59,7 +59,7 @@ def test_a_job_of_this_machine_runs_while_its_process_lives(tmp_path: Path, ende
 def test_a_job_of_another_machine_runs_until_it_is_silent_for_long(
     tmp_path: Path, ended: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Its process cannot be seen from here."""
+    """This machine cannot see its process."""
     monkeypatch.setattr("primordia.experiments.ledger.time.time", lambda: 50_000.0)
     for age, state in ((SILENT - 1, "running"), (SILENT, "waiting"), (SILENT + 1, "waiting")):
         written = {"host": "elsewhere", "process": ended, "updated": 50_000 - age}
@@ -125,10 +125,10 @@ def test_an_error_is_an_ending_and_failures_are_on_record(
     assert (found.state, found.error) == expected
 
 
-def test_a_running_job_tells_the_counts_of_each_of_its_worlds(
+def test_a_running_job_writes_the_counts_of_each_of_its_worlds(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The last counts before its end are those of the run; the time left is then 0."""
+    """The last counts before the end are those of the run, and the time left is then 0."""
     written: list[Entry] = []
     write_entry = Ledger.write
 
@@ -176,7 +176,7 @@ def test_each_world_is_counted_by_itself() -> None:
 
 
 def test_counts_are_written_at_intervals(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The first at once, the next when the interval has passed."""
+    """The first counts are written at once, and the next when the interval has passed."""
     now, written = [100.0], list[float]()
     monkeypatch.setattr("primordia.experiments.job.time.perf_counter", lambda: now[0])
     monkeypatch.setattr("primordia.experiments.job.Census.of", MagicMock())

@@ -1,4 +1,4 @@
-"""Where jobs run: which place is chosen, what it is told, and what is said of its jobs at the end."""
+"""Jobs in processes of this machine or in tasks of a cluster: their options, and how they end."""
 
 import socket
 from concurrent.futures import Future
@@ -63,20 +63,20 @@ def test_jobs_run_at_once_on_each_core_unless_a_number_is_given(
     made.assert_called_once_with(Path("out"), at_once, 7.0, device)
 
 
-@pytest.mark.parametrize(("address", "told"), [("", None), ("host:1", "host:1")])
+@pytest.mark.parametrize(("given", "address"), [("", None), ("host:1", "host:1")])
 def test_a_cluster_has_an_address_or_is_that_of_this_machine(
-    address: str, told: str | None, monkeypatch: pytest.MonkeyPatch
+    given: str, address: str | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     made = MagicMock()
     monkeypatch.setattr(places, "OnRay", made)
-    places.place_for(Path("out"), 4, None, address, 7.0, "gpu")
-    made.assert_called_once_with(Path("out"), 7.0, "gpu", told)
+    places.place_for(Path("out"), 4, None, given, 7.0, "gpu")
+    made.assert_called_once_with(Path("out"), 7.0, "gpu", address)
 
 
-def test_a_process_is_told_the_interval_of_checkpoints_and_the_device(
+def test_a_process_gets_the_interval_of_checkpoints_and_the_device(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Each process has one core. What the processes print is kept, also from the last time."""
+    """Each process has one core. The log of an earlier command is kept."""
     opened = MagicMock()
     monkeypatch.setattr("primordia.experiments.here.subprocess.Popen", opened)
     (tmp_path / "workers.log").write_text("before\n")
@@ -156,7 +156,7 @@ def test_a_task_waits_for_the_lock_of_a_dead_node_for_a_while(
     assert set(tries) == {(tmp_path, 7.0, "gpu")}
 
 
-def test_what_a_cluster_gives_up_is_a_failure_of_its_own_job() -> None:
+def test_a_task_that_a_cluster_loses_is_a_failure_of_its_job() -> None:
     done: Future[Any] = Future()
     done.set_result((3, "failed", "full", False))
     assert on_ray._ending(JOB, done) == Ending(3, "failed", "full", again=False)
@@ -205,8 +205,10 @@ def test_python_raises_the_first_failure(tmp_path: Path, monkeypatch: pytest.Mon
         primordia.experiment(write(tmp_path), tmp_path / "out")
 
 
-def test_python_passes_on_what_it_is_given(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Only jobs of the named arm run, and results are written only if no job is left."""
+def test_python_passes_its_options_to_the_place(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Only jobs of the named arm run. Jobs of the other arm are left, so no results are written."""
     asked, looks = MagicMock(return_value=Place(*["done"] * 4)), list[dict[str, int]]()
     gathered = MagicMock()
     monkeypatch.setattr(api, "place_for", asked)
@@ -232,9 +234,12 @@ def test_one_job_has_the_interval_and_the_device_of_the_command(
     assert (done.returncode, done.stderr) == (1, "primordia: job 2 (mild) failed: full\n")
     chosen = begin(out)
     asked.assert_called_once_with(chosen.plan, chosen.jobs[2], out, 7.0, "gpu")
-    assert command._jobs(1234) == "1,234 jobs"
 
 
 def test_a_cluster_has_no_number_of_jobs() -> None:
     with pytest.raises(InputError, match="--jobs is for jobs on this machine"):
         places.place_for(Path("out"), 4, 1, "")
+
+
+def test_numbers_of_jobs_have_a_comma_after_the_thousands() -> None:
+    assert command._jobs(1234) == "1,234 jobs"

@@ -49,7 +49,7 @@ def test_each_world_of_an_arm_is_in_one_job(tmp_path: Path, seeds: int, worlds: 
     ("seeds", "names"),
     [(9, ["0-4", "5-8"]), (10, ["0-4", "5-9"]), (11, ["00-04", "05-09", "10"]), (5, ["0-4"])],
 )
-def test_folders_of_jobs_have_as_many_digits_as_the_last_world(
+def test_numbers_in_folders_of_jobs_have_as_many_digits_as_the_last_world(
     tmp_path: Path, seeds: int, names: list[str]
 ) -> None:
     got = jobs(write(tmp_path, seeds=seeds, jobs={"worlds": 5}, arms=ARMS[:1]))
@@ -57,7 +57,7 @@ def test_folders_of_jobs_have_as_many_digits_as_the_last_world(
 
 
 def test_arms_may_have_different_numbers_of_worlds(tmp_path: Path) -> None:
-    """The jobs take turns while there are any of an arm."""
+    """Jobs of the arms take turns until an arm has no more."""
     arms = [{"name": "few", "seeds": 1}, {"name": "many", "seeds": 5}, {"name": "some"}]
     assert [(job.arm, job.first, job.worlds) for job in jobs(write(tmp_path, arms=arms))] == [
         ("few", 0, 1),

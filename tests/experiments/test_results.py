@@ -1,6 +1,7 @@
-"""The files of results: each arm and each world has its own numbers, in the column that names them."""
+"""The files of results: their tables, their order, and the last line with the day and the versions."""
 
 import csv
+import os
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -9,12 +10,16 @@ from unittest.mock import ANY, MagicMock
 import numpy as np
 import pytest
 
-from primordia.comparison.comparison import ComparedArm, Comparison
+from primordia.comparison.comparison import ComparedArm
 from primordia.comparison.measured import Measured
 from primordia.experiments import results
 from primordia.history.extinctions import Extinctions
 from primordia.runs.arrays import NEVER
+from primordia.runs.directory import VERSIONS
+from tests.comparison.arms import side_by_side
 
+NOON = 1_700_000_000 + 12 * 3600
+DAY = 24 * 3600
 WHAT: dict[str, Any] = {"survival": None, "pace": None, "gathering": None, "extinctions": None}
 
 
@@ -29,10 +34,6 @@ def arm(name: str, births: list[float], unsaturated: int, **other: list[float]) 
     measured |= {key: Measured(np.array(each), np.isfinite(each)) for key, each in other.items()}
     seeds = np.arange(worlds, dtype=np.uint64) + np.uint64(len(name))
     return ComparedArm(name, {"hazard": len(name) / 10}, seeds, measured, **WHAT)
-
-
-def compared(*arms: ComparedArm) -> Comparison:
-    return Comparison("meadow", arms, 20, 0, None, None, "tick")
 
 
 ONE = arm("one", [10, 20, 30, 40, 50], 1, lifespan=[4, 5, 6, 7, 8])
@@ -62,8 +63,8 @@ def test_the_counts_of_a_world_are_its_own(monkeypatch: pytest.MonkeyPatch) -> N
     )
     lost = Extinctions(np.array([30, 31]), np.array([5, 6]))
     monkeypatch.setattr(results, "extinctions_of", lambda arm: lost if arm is records else None)
-    told = {name: column.tolist() for name, column in results.counts(records).items()}
-    assert told == {
+    found = {name: column.tolist() for name, column in results.counts(records).items()}
+    assert found == {
         "seed": [7, 8], "ticks": [10, 11], "births": [20, 21], "extinctions": [30, 31],
         "crashes": [5, 6], "alive": [3, 1], "saturated_births": [30, 31], "saturated_tick": [40, 41],
     }  # fmt: skip
@@ -76,7 +77,7 @@ def test_the_summary_has_a_row_for_each_arm() -> None:
         {"extinctions": np.array([0, 0, 5, 5, 0, 9]), "crashes": np.array([0, 0, 0, 0, 0, 7])},
         {"extinctions": np.array([0, 0, 0]), "crashes": np.array([0, 0, 0])},
     ]
-    head, *rows = rows_of(results.summary(compared(ONE, THREE, FOUR), counted))
+    head, *rows = rows_of(results.summary(side_by_side(ONE, THREE, FOUR), counted))
     assert head[:6] == ["", "hazard", "worlds", "saturated", "extinctions (median)", "crashes"]
     assert head[6:] == ["births to saturation", "ticks to saturation", "mean lifespan"]
     assert [row[:6] for row in rows] == [
@@ -91,9 +92,9 @@ def test_the_summary_has_a_row_for_each_arm() -> None:
     ]
 
 
-def test_each_arm_is_held_against_the_first() -> None:
+def test_each_arm_is_compared_with_the_first() -> None:
     """Of the 30 pairs with arm `three`, its lives are longer in 5, equal in 4 and shorter in 21."""
-    whole = compared(ONE, THREE, FOUR)
+    whole = side_by_side(ONE, THREE, FOUR)
     head, *rows = rows_of(results.effects(whole))
     assert head == ["against one", *whole.outcomes.values()]
     assert [row[0] for row in rows] == ["three", "four"]
@@ -105,25 +106,25 @@ def test_each_arm_is_held_against_the_first() -> None:
     assert rows[1][1] == "-1.00 earlier; 0.0667"
 
 
-def test_effects_within_seeds_are_told_if_arms_have_the_same_seeds() -> None:
+def test_arms_with_the_same_seeds_have_effects_within_seeds() -> None:
     other = arm("two", [20, 30, 40, 50, 60], 0, lifespan=[5, 6, 7, 8, 9])
-    (row,) = rows_of(results.effects(compared(ONE, other)))[1:]
+    (row,) = rows_of(results.effects(side_by_side(ONE, other)))[1:]
     delta = sum(np.sign(b - a) for a in (4, 5, 6, 7, 8) for b in (5, 6, 7, 8, 9)) / 25
     assert row[3].startswith(f"{delta:+.2f} medium longer; within seeds +1.00; 1.17 (")
 
 
-def test_the_last_deaths_are_spread_over_the_worlds_of_each_arm() -> None:
+def test_last_deaths_have_a_median_and_quartiles_over_the_worlds_of_each_arm() -> None:
     ends = [
         [{"late_deaths": count, "late_lifespan": 10.0 * count} for count in counts]
         for counts in ((8, 0, 2), (5,))
     ]
-    head, *rows = rows_of(results.dying(compared(ONE, THREE), ends))
+    head, *rows = rows_of(results.dying(side_by_side(ONE, THREE), ends))
     assert head == ["", "deaths in the last quarter", "their median lifespan"]
     assert rows == [["one", "2 (1 to 5)", "20 (10 to 50)"], ["three", "5", "50"]]
 
 
-def test_the_csv_has_a_row_for_each_world_and_no_number_for_the_unknown() -> None:
-    """The arms have different numbers of worlds; values have two decimals."""
+def test_the_csv_has_a_row_for_each_world_and_an_empty_cell_for_the_unknown() -> None:
+    """The arms have different numbers of worlds. Values have two decimals."""
     nan = float("nan")
     one = arm("one", [10, 20], 1, lifespan=[4.006, nan], food=[70, 80])
     two = arm("two", [30], 0, lifespan=[1 / 3], food=[12345678])
@@ -131,7 +132,7 @@ def test_the_csv_has_a_row_for_each_world_and_no_number_for_the_unknown() -> Non
         {"seed": np.array([3, 4]), "saturated_tick": np.array([NEVER, 9], np.uint64)},
         {"seed": np.array([5]), "saturated_tick": np.array([0], np.uint64)},
     ]
-    text = results.world_rows(compared(one, two), counted, [])
+    text = results.world_rows(side_by_side(one, two), counted, [])
     assert list(csv.reader(text.splitlines())) == [
         ["arm", "seed", "saturated_tick", "mean_lifespan", "late_food"],
         ["one", "3", "", "4.01", "70"],
@@ -141,16 +142,16 @@ def test_the_csv_has_a_row_for_each_world_and_no_number_for_the_unknown() -> Non
 
 
 @pytest.mark.parametrize("saturate", [True, False])
-def test_the_parts_of_the_page_are_in_order_and_those_of_each_arm(
+def test_the_parts_of_the_page_are_in_order_and_have_each_arm(
     saturate: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Last deaths are told only if worlds do not saturate."""
+    """The page has last deaths only if the worlds do not saturate."""
     births, missing = [10.0, 20, 30], 0 if saturate else 3
     arms = [
         arm(name, births, missing, lifespan=births, pace=[float(place)] * 3)
         for place, name in enumerate(("one", "three"), 1)
     ]
-    whole = compared(*arms)
+    whole = side_by_side(*arms)
     none = np.zeros(3, int)
     counted = {
         name: {"extinctions": none + place, "crashes": none} for place, name in enumerate("ab", 1)
@@ -180,3 +181,37 @@ def test_the_parts_of_the_page_are_in_order_and_those_of_each_arm(
     last = [line.rpartition(",")[2] for line in paths[1].read_text().splitlines()]
     assert saturate or last == ["late_deaths", *"111222"]
     figure.savefig.assert_called_once_with(ANY, dpi=200, format="png")
+
+
+def begun(folder: Path, name: str, day: int, version: str, **limits: int | None) -> Any:
+    """Return what `made` reads of an arm of two runs; the second run began a day later."""
+    paths = []
+    for number in range(2):
+        file = folder / f"{name}-{number}" / VERSIONS
+        file.parent.mkdir()
+        file.touch()
+        os.utime(file, (NOON + (day + number) * DAY,) * 2)
+        paths.append(file.parent)
+    progress = SimpleNamespace(limits=list(limits.items()))
+    return SimpleNamespace(paths=paths, versions={"jax": version}, progress=progress)
+
+
+def test_the_last_line_gives_what_all_arms_share_once(tmp_path: Path) -> None:
+    arms = [
+        begun(tmp_path, "a", 3, "1", ticks=500, births=None, until=40),
+        begun(tmp_path, "b", 1, "1", ticks=500, births=None, until=40),
+    ]
+    line = "Run on 2023-11-16 with jax 1. Each world stopped at: ticks 500 or until 40."
+    assert results.made("ab", arms) == line
+
+
+def test_the_last_line_names_the_arms_where_they_differ(tmp_path: Path) -> None:
+    arms = [
+        begun(tmp_path, "a", 0, "1", ticks=500),
+        begun(tmp_path, "b", 0, "1, 2", ticks=900),
+        begun(tmp_path, "c", 0, "1", ticks=500),
+    ]
+    assert results.made("abc", arms) == (
+        "Run on 2023-11-15 with jax 1 (a, c); jax 1, 2 (b)."
+        " Each world stopped at: ticks 500 (a, c); ticks 900 (b)."
+    )

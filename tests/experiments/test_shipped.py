@@ -13,7 +13,9 @@ from safetensors import safe_open
 import primordia
 from primordia.comparison.late import last_deaths
 from primordia.config import load
+from primordia.experiments.campaign import begin
 from primordia.experiments.file import read
+from primordia.experiments.job import live
 from primordia.experiments.results import COLUMNS
 from primordia.runs import loop
 from primordia.runs.opening import opened
@@ -225,12 +227,15 @@ def test_the_share_of_starts_that_a_world_masters_is_counted(
     values = {"question": "Any?", **shared, "stop": {"ticks": 1500, "until": "none"}, "arms": arms}
     (file := tmp_path / "poles" / "any.toml").parent.mkdir()
     file.write_text(tomli_w.dumps(values))
-    primordia.experiment(file)
+    chosen = begin(file)
+    for job in chosen.jobs:  # in this process, which keeps its compiled code
+        live(chosen.plan, job, chosen.path)
     starts.report(file)
     rows = list(
         csv.DictReader((tmp_path / "poles/results/any-starts.csv").read_text().splitlines())
     )
-    run, lives = primordia.load("runs/any/with"), primordia.load("runs/any/with").lives()
+    run = primordia.load("runs/any/with")
+    lives = run.lives()
     for world, row in enumerate(row for row in rows if row["who"] == "with: all alive"):
         alive = [int(n) for n in lives.id[(lives.world == world) & ~lives.died]]
         played = run.evaluate(

@@ -38,7 +38,7 @@ def test_the_bounds_of_the_interval_are_equally_far_from_both_ends() -> None:
 
 
 def test_each_arm_has_the_worlds_of_its_own_jobs() -> None:
-    """Also those of a job that failed; the arms have different numbers of worlds."""
+    """Worlds of a failed job count too. The arms have different numbers of worlds."""
 
     def counts(deaths: int, lived: int, saturated: int | None) -> WorldCounts:
         return WorldCounts(
@@ -58,16 +58,16 @@ def test_each_arm_has_the_worlds_of_its_own_jobs() -> None:
         Entry(job=4, arm="two", state="done", worlds=[counts(1, number, 1) for number in range(5)]),
     ]
     plan = Plan(question="?", worlds=2, arms=arms)
-    told = status(plan, entries, ("one", "two", "none"))
-    assert told.jobs == {"done": 2, "running": 1, "failed": 1, "waiting": 1}
-    assert told.arms == (
+    found = status(plan, entries, ("one", "two", "none"))
+    assert found.jobs == {"done": 2, "running": 1, "failed": 1, "waiting": 1}
+    assert found.arms == (
         ArmStatus("one", 4, 3, 1, 70.0, None),
         ArmStatus("two", 7, 6, 6, 2.5, (0.0, 4.0)),
         ArmStatus("none", 2, 0, 0, None, None),
     )
     assert status(plan, entries[1:2], ["two"]).arms == (ArmStatus("two", 7, 1, 1, 3.0, None),)
-    assert [entry.job for entry in told.running] == [1]
-    assert [(entry.job, entry.error) for entry in told.failed] == [(3, "full")]
+    assert [entry.job for entry in found.running] == [1]
+    assert [(entry.job, entry.error) for entry in found.failed] == [(3, "full")]
 
 
 ARM = {"name": "a", "settings": {"seeds": 2}}
@@ -137,7 +137,7 @@ def test_a_forged_entry_counts_as_none(forged: dict[str, Any], tmp_path: Path) -
 def test_time_left_follows_from_the_jobs_done_since_the_command_began(
     before: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The jobs that were done before took none of this command's time, and failed jobs take no more."""
+    """Jobs that were done before the command, and jobs that failed, do not change the time left."""
     now: Any = SimpleNamespace(perf_counter=lambda: now.seconds, strftime=lambda _: "12:00:00")
     now.seconds = 1000.0
     monkeypatch.setattr("primordia.cli.campaign_view.time", now)

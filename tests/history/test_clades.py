@@ -97,6 +97,6 @@ def test_lines_of_a_world_that_was_never_crowded_are_its_founders() -> None:
     ("most", "crowd"), [(1, 1), (2, 1), (3, 1), (5, 2), (31, 15), (32, 16), (33, 16), (100, 16)]
 )
 def test_a_crowd_is_16_or_half_of_the_largest_population(most: int, crowd: int) -> None:
-    """The population is largest in tick 2. As many are born after it, one after another."""
+    """The population is largest in tick 2. Later, the same number is born, one after another."""
     lived = [(2, 1, True)] * most + [(10 + 3 * later, 0, True) for later in range(most)]
     assert crowd_size(world_of(lived, until=400)) == crowd

@@ -81,7 +81,7 @@ def test_a_record_that_begins_later_holds_the_extinctions_since(
     assert later.crashes[0] <= extinctions([world], CELLS).crashes[0]
 
 
-def test_extinctions_are_told_with_the_number_of_worlds_that_crashed() -> None:
+def test_the_text_of_crashes_has_the_number_of_worlds_that_crashed() -> None:
     def text(*crashes: int) -> str:
         return Extinctions(np.full(len(crashes), 3000), np.array(crashes)).text
 
@@ -118,7 +118,7 @@ def worlds_with(before: list[int] | None, counts: list[int], lives: Lives | None
 
 
 def test_crashes_are_those_of_their_own_worlds() -> None:
-    """Worlds that did not die out, or not since the fork, stand between the others."""
+    """Some worlds between the others did not die out, or not since the fork."""
     risen, flat = (lived([(1, 9, [(1, 5)] * n), (1, 9, [])] * 2)[0] for n in (4, 3))
     calm, _ = lived([(3, 9, [])])
     lives = joined([calm, risen, flat, calm, risen], np.arange(5))

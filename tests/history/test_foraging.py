@@ -13,7 +13,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import primordia
-from primordia.comparison.gathering import gathering
 from primordia.figures import foraging as figure
 from primordia.figures import style
 from primordia.history import foraging as module
@@ -115,50 +114,9 @@ def test_food_is_known_up_to_the_end_of_a_run(tmp_path: Path) -> None:
         np.testing.assert_array_equal(some, each[[0, 40, 70]])
 
 
-def test_late_food_is_that_of_the_last_quarter() -> None:
-    """The compared time is ticks 24 to 144, so each of its 12 windows ends with a sample."""
-    draw, span = np.random.default_rng(2), 50.0
-    tick = np.array([0, *range(24, 145, 10)])
-    food, lived = draw.integers(1, 99, (2, 2, len(tick) - 1)) * [[[1]], [[100]]]
-    sums = [np.insert(np.cumsum(each, axis=1), 0, 0, axis=1) for each in (food, lived)]
-    columns = [np.repeat([0, 1], len(tick)), np.tile(tick, 2), *(each.ravel() for each in sums)]
-    metrics = pa.table(dict(zip(("world", "tick", "food", "organism_ticks"), columns, strict=True)))
-    ends = {"tick": np.full(2, 144), "food": sums[0][:, -1] * ONE, "organism_ticks": sums[1][:, -1]}
-    run: Any = SimpleNamespace(
-        metrics=metrics, origin=None, count=lambda name: ends[name.removeprefix("world.worlds.")]
-    )
-    found = gathering(run, 2, 24, 144, span)
-    np.testing.assert_allclose(found.curve, span * food[:, 1:] / lived[:, 1:])
-    late = food[:, -3:].sum(axis=1) / lived[:, -3:].sum(axis=1)
-    np.testing.assert_allclose(found.late.value, span * late)
-    assert found.late.known.all()
-
-
-def test_food_is_known_if_any_world_gathered_some() -> None:
-    """The second world gathered nothing. Where no world did, metrics are not read."""
-    tick = np.arange(0, 121, 10)
-    sums = np.concatenate([2 * tick, 0 * tick]), np.tile(5 * tick, 2)
-    columns = dict(zip(("food", "organism_ticks"), sums, strict=True))
-    metrics = pa.table({"world": np.repeat([0, 1], 13), "tick": np.tile(tick, 2), **columns})
-    ends = {"tick": [120, 120], "food": [240 * ONE, 0], "organism_ticks": [600, 600]}
-    run: Any = SimpleNamespace(
-        metrics=metrics,
-        origin=None,
-        count=lambda name: np.array(ends[name.removeprefix("world.worlds.")]),
-    )
-    found = gathering(run, 2, 0, 120, 10)
-    assert (found.late.value.tolist(), found.late.known.tolist()) == ([4, 0], [True, True])
-    np.testing.assert_allclose(found.curve, np.repeat([[4.0], [0.0]], 12, axis=1))
-    ends["food"], run.metrics = [0, 0], None
-    none = gathering(run, 2, 0, 120, 10)
-    assert (none.late.value.tolist(), none.late.known.tolist()) == ([0, 0], [False, False])
-    assert np.isnan(none.curve).all()
-    assert none.curve.shape == (2, 12)
-
-
 @pytest.mark.parametrize("begun", [0, 30])
 def test_worlds_of_unequal_length_share_their_intervals(begun: int) -> None:
-    """Two worlds of a run or a fork: their food, and their climates, which seasons changed."""
+    """Two worlds of a run, or of a fork, have different food, and seasons change their climates."""
     ends, every, gains = (begun + 40, begun + 60), 10, ((2.0, 4.0), (0.5, 1.0))
     food, change = ((3, 1), (5, 2)), begun + 20
     earlier = 100 if begun else 0

@@ -39,7 +39,7 @@ def test_the_first_founders_are_those_that_they_always_were(run: Records) -> Non
 
 
 def test_founders_are_made_for_their_world_as_it_began(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The climate and the seed are those of the world, at tick 0; the numbers go on from call to call."""
+    """They have the world's seed, and its climate at tick 0. Founders are made 4 at a time."""
     asked: list[tuple[list[int], list[int]]] = []
     numbers: list[int] = []
 

@@ -66,7 +66,7 @@ def test_bins_are_five_for_each_factor_of_ten() -> None:
 
 
 def test_the_middle_of_a_bin_is_that_of_its_ticks_on_a_logarithmic_axis() -> None:
-    """The bin from 2 to 10 has the ticks 3 to 10."""
+    """The last bin has the ticks 3 to 10."""
     middle = series.middle(np.array([0, 1, 2, 10]))
     np.testing.assert_allclose(middle, [1, 2, np.sqrt(3 * 10)])
 
@@ -75,6 +75,9 @@ def test_the_middle_of_a_bin_is_that_of_its_ticks_on_a_logarithmic_axis() -> Non
 def test_curves_have_points_at_even_distances_on_a_logarithmic_axis(last: int) -> None:
     ticks = series.moments(last)
     assert ticks.tolist() == sorted({round(last ** (k / 999)) for k in range(1000)})
+
+
+def test_a_run_without_ticks_has_one_point() -> None:
     assert series.moments(0).tolist() == [1]
 
 

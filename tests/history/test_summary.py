@@ -110,11 +110,12 @@ def test_the_summary_of_many_worlds_gives_quartiles() -> None:
         ([10, 11, 1, 2, 0], "seeds 0 to 2, 10 to 11"),
         ([2**64 - 1, 0], f"seeds 0, {2**64 - 1}"),
         (range(0, 8, 2), "seeds 0, 2, 4, 6"),
+        (range(0, 10, 2), "seeds 0, 2, 4, others up to 8"),
         (range(0, 20, 2), "seeds 0, 2, 4, others up to 18"),
     ],
 )
-def test_seeds_with_gaps_are_told_as_they_are(seeds: Iterable[int], text: str) -> None:
-    """The worlds of several runs stand in the order of the runs."""
+def test_ranges_of_seeds_are_named(seeds: Iterable[int], text: str) -> None:
+    """Up to four ranges are listed. Seeds of several runs may be out of order."""
     assert seeds_text(seeds) == text
     assert f"  {text}: " in summarised([world(seed=seed) for seed in seeds] * 5)
 
@@ -127,7 +128,7 @@ def test_three_quarters_of_the_worlds_reach_the_third_quartile() -> None:
 
 
 def unequal() -> list[dict[str, Any]]:
-    """Return five worlds, of which no two have the same numbers."""
+    """Return five worlds with different numbers."""
     causes = [{"fatal": 10**k, "hazard": 3 * k, "fault": 0} for k in range(5)]
     return [
         world(
@@ -142,7 +143,7 @@ def unequal() -> list[dict[str, Any]]:
     ]  # fmt: skip
 
 
-def test_numbers_of_five_unequal_worlds_are_told_together() -> None:
+def test_five_unequal_worlds_are_summarised_together() -> None:
     assert summarised(unequal()).splitlines() == [
         "T: 5 worlds of 8 cells",
         "  seeds 0, 3, 6, others up to 12: 5,010 ticks, 1,010 births, deaths: 11,111 fatal, 30 hazard",
@@ -153,7 +154,7 @@ def test_numbers_of_five_unequal_worlds_are_told_together() -> None:
     ]
 
 
-def test_four_worlds_are_told_one_by_one() -> None:
+def test_four_worlds_are_summarised_one_by_one() -> None:
     worlds = unequal()[:4]
     lines = summarised(worlds).splitlines()
     assert [line.split(":")[0] for line in lines if line.startswith("  seed")] == [
@@ -165,10 +166,9 @@ def test_four_worlds_are_told_one_by_one() -> None:
     ]  # fmt: skip
 
 
-def test_what_befell_a_run_is_told() -> None:
-    """Restarts, damaged checkpoints and parts that cannot be repeated."""
-    told = summarised([world()], restarts=1, damaged=["one", "other"], exact=False)
-    assert told.splitlines()[-4:] == [
+def test_a_summary_ends_with_restarts_damaged_checkpoints_and_inexact_parts() -> None:
+    text = summarised([world()], restarts=1, damaged=["one", "other"], exact=False)
+    assert text.splitlines()[-4:] == [
         "  not exact: parts of this run cannot be repeated bit for bit",
         "  not the newest state, since a checkpoint is damaged: one",
         "  not the newest state, since a checkpoint is damaged: other",
@@ -179,21 +179,14 @@ def test_what_befell_a_run_is_told() -> None:
     assert summarised([world()]).count("\n") == 3
 
 
-def test_counts_of_a_habitat_are_told_as_medians_with_the_best() -> None:
+def test_counts_of_a_habitat_are_given_as_medians_with_the_best() -> None:
     tallies = {"score": {"median": 1234.4, "best": 5678}, "kills": {"median": 2.0, "best": 9}}
     line = "    tallies of the living: median score 1,234 (best 5,678), kills 2 (best 9)"
     assert line in summarised([world(tallies=tallies)]).splitlines()
 
 
-@pytest.mark.parametrize(
-    ("count", "end"), [(4, "6"), (5, "others up to 8"), (6, "others up to 10")]
-)
-def test_up_to_four_ranges_of_seeds_are_listed(count: int, end: str) -> None:
-    assert seeds_text(range(0, 2 * count, 2)) == f"seeds 0, 2, 4, {end}"
-
-
-def test_break_even_is_that_of_all_worlds_or_is_not_told() -> None:
-    """A world without such an amount leaves its unit out."""
+def test_the_break_even_is_given_in_units_that_all_worlds_have() -> None:
+    """One world has no food per second, so only the food per tick is given."""
     each = [
         world(break_even={"food_per_tick": tick, "food_per_second": second})
         for tick, second in ((0.5, None), (0.1, 9.0), (0.3, 6.0))

@@ -97,7 +97,7 @@ def test_stretches_of_births_are_measured_one_by_one() -> None:
 
 
 def test_a_parent_is_good_from_the_90th_percentile_of_late_births_on() -> None:
-    """Early organisms live long, and do not count. Of 100 late births 11 live 50 ticks or more."""
+    """Early organisms live long and do not count. Of 100 late births, 11 live 50 ticks or more."""
     early: list = [(-1, FOUNDER, 50), (-1, FOUNDER, 49), *[(-1, FOUNDER, 900)] * 98]
     late: list = [(0, COPY, 50)] * 5 + [(0, COPY, 60)] * 6 + [(0, COPY, 1)] * 9
     late += [(0, MUTANT, 1)] * 30 + [(1, COPY, 1)] * 20 + [(1, MUTANT, 1)] * 30
@@ -124,7 +124,7 @@ def test_each_world_has_its_own_threshold() -> None:
     }  # fmt: skip
 
 
-def test_mutants_that_outlive_copies_count_as_as_good_and_no_better() -> None:
+def test_mutants_that_outlive_copies_count_as_equally_good() -> None:
     rows: list = [(-1, FOUNDER, 100)] + [(-1, FOUNDER, 1)] * 300
     copies: list = [(0, COPY, 100)] * 5 + [(0, COPY, 1)] * 5
     better: list = [(0, MUTANT, 100)] * 8 + [(0, MUTANT, 1)] * 2
@@ -144,7 +144,7 @@ def test_pairs_are_complete_once_both_are_dead() -> None:
 
 
 def test_organisms_alive_at_a_fork_are_parents_but_no_births() -> None:
-    """Those that were alive had lived long by then; only the births since the fork are measured."""
+    """Organisms that were alive at the fork had lived long. Only later births are measured."""
     rows: list = [(-1, FOUNDER, 100)] + [(0, MUTANT, 500)] * 20
     later: list = [(0, COPY, 100)] * 10 + [(0, MUTANT, 100)] * 5 + [(0, MUTANT, 1)] * 5
     later += [(-1, FOUNDER, 1)] * 100

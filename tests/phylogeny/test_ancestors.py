@@ -1,4 +1,4 @@
-"""What is told of a line of descent, beside walks through pedigrees, one organism and tick at a time."""
+"""Numbers of a line of descent, compared with walks through pedigrees, one organism at a time."""
 
 from types import SimpleNamespace
 from typing import Any
@@ -12,7 +12,15 @@ from primordia.law.world import Cause
 from primordia.phylogeny import descent
 from primordia.phylogeny.descent import Ancestors, ancestors
 from primordia.runs.lives import ALIVE, Lives
-from tests.pedigrees import line_to, lives_of, living_after, moran, walked
+from tests.pedigrees import (
+    common_after,
+    line_to,
+    lives_of,
+    living_after,
+    moran,
+    share_after,
+    walked,
+)
 from tests.synthetic import world_of
 
 SPLIT: list = [([0], []), ([0, 1], [2]), ([1], [0]), ([0, 2], []), ([], [1])]
@@ -51,22 +59,19 @@ def followed(lives: Lives, organism: int, monkeypatch: pytest.MonkeyPatch) -> An
 def first_after(lives: Lives, ancestor: int, share: float) -> int | None:
     """Return the first tick after which an ancestor's descendants are more than a share, or all."""
     for tick in range(int(lives.ended.max()) + 1):
-        living = living_after(lives, tick)
-        own = sum(ancestor in line_to(lives, row) for row in living)
-        if living and (own > share * len(living) or own == len(living)):
+        own = share_after(lives, ancestor, tick)
+        if own > share or own == 1:
             return tick
     return None
 
 
 def common_of(lives: Lives) -> dict[str, int] | None:
     """Return the youngest ancestor of all the living, and since when they all descend from it."""
-    end = int(lives.ended.max())
-    lines = [line_to(lives, row) for row in living_after(lives, end)]
-    row = next((each for each in lines[0] if all(each in line for line in lines)), None)
+    since = int(lives.ended.max())
+    row = common_after(lives, since)
     if row is None:
         return None
-    since = end
-    while all(row in line_to(lives, each) for each in living_after(lives, since - 1)):
+    while share_after(lives, row, since - 1) == 1:
         since -= 1
     generation = len(line_to(lives, row)) - 1
     born = int(lives.born[row])
@@ -74,7 +79,7 @@ def common_of(lives: Lives) -> dict[str, int] | None:
 
 
 @pytest.mark.parametrize("name", PEDIGREES)
-def test_all_that_is_told_of_a_line_is_that_of_a_walk(
+def test_plain_values_of_a_line_are_those_of_a_walk(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     lives = PEDIGREES[name]
@@ -118,7 +123,7 @@ def test_all_that_is_told_of_a_line_is_that_of_a_walk(
 def test_shares_of_descendants_are_those_of_a_count(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The instants begin with the birth of the line's oldest, and end with the last tick."""
+    """The ticks begin with the birth of the first ancestor, and end with the last tick."""
     lives = PEDIGREES[name]
     found = followed(lives, len(lives) - 1, monkeypatch)
     line = found.line.id.tolist()
@@ -141,8 +146,8 @@ def test_shares_begin_at_the_fork_if_the_line_is_older(monkeypatch: pytest.Monke
 
 
 @pytest.mark.parametrize("count", [19, 20, 21, 30, 57, 400])
-def test_telling_places_are_the_largest_gains_and_evenly_spaced_others(count: int) -> None:
-    """Nine of 20 places have the largest ratios of lifespan to parent's; of equals, the older."""
+def test_places_of_a_table_are_the_largest_gains_and_evenly_spaced_others(count: int) -> None:
+    """Nine of 20 places have the largest ratios of lifespan to the parent's; of equals, the older."""
     spans = [(7 * place) % 23 for place in range(count)]
     line = world_of([(place, each, True) for place, each in enumerate(spans)], until=999)
     found: Any = SimpleNamespace(line=line)
@@ -198,11 +203,13 @@ def test_each_run_gives_the_changes_after_its_fork(monkeypatch: pytest.MonkeyPat
     assert descent._changes(runs, line, 1) == (None, "other is not trusted")
 
 
-def test_the_cause_of_each_death_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_plain_values_of_a_line_have_the_cause_of_each_death(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     causes = [*Cause, ALIVE]
     count = len(causes)
     lives = lives_of(list(range(-1, count - 1)), [0] * count, [9] * count, [True] * count)
     lives.cause[:] = causes
-    told = followed(lives, count - 1, monkeypatch).to_dict()["line"]
+    line = followed(lives, count - 1, monkeypatch).to_dict()["line"]
     named = [cause.name.lower().replace("_", "-") for cause in Cause]
-    assert [step["cause"] for step in told] == [*named, None]
+    assert [step["cause"] for step in line] == [*named, None]

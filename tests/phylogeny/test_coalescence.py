@@ -132,7 +132,7 @@ def test_an_era_begins_with_the_last_founders(history: list[Event], founders: in
 
 
 def test_the_trunk_follows_the_most_living_descendants() -> None:
-    """The larger of two trees, and in it the largest branch, which is neither the first nor the last."""
+    """It follows the larger of two trees. The largest branch is neither the first nor the last."""
     #                 0   1  2  3  4  5  6  7  8  9
     lives = lives_of(
         parent=[-1, -1, -1, 1, 1, 1, 4, 4, 2, 5],
@@ -144,7 +144,7 @@ def test_the_trunk_follows_the_most_living_descendants() -> None:
 
 
 def chance_to_have_met(lives: Lives, since: int) -> dict[int, float]:
-    """Return, by ticks back, the chance of a pair to meet at births after a tick, from the last on."""
+    """Return the chance that a pair has met, by ticks back from the end, at births after a tick."""
     births = [
         (int(lives.born[row]), row)
         for row in range(len(lives))
@@ -163,8 +163,8 @@ def chance_to_have_met(lives: Lives, since: int) -> dict[int, float]:
 GROWN: list[Event] = [([0], []), ([0, 1], []), ([2], [1]), ([1, 3], []), ([], [2, 0]), ([1], [])]
 
 
-def test_drift_alone_is_told_from_the_births_and_the_population_since_the_founding() -> None:
-    """The population grows and shrinks; births before an extinction, and founders, do not count."""
+def test_times_by_drift_alone_follow_from_births_and_population_since_the_founding() -> None:
+    """The population grows and shrinks. Founders, and births before an extinction, do not count."""
     died_out: list[Event] = [([0], []), ([], [0, 1])]
     for lives, since in ((walked(GROWN), 0), (walked(died_out + GROWN), 2)):
         expected = chance_to_have_met(lives, since)
@@ -177,8 +177,8 @@ def test_drift_alone_is_told_from_the_births_and_the_population_since_the_foundi
         assert times.median == reached[0]
 
 
-def test_drift_alone_in_a_fork_is_told_from_births_after_it() -> None:
-    """Organisms that were alive at the fork, also those born in its tick, did not meet after it."""
+def test_times_by_drift_alone_in_a_fork_follow_from_births_after_it() -> None:
+    """Births up to the tick of the fork do not count."""
     lives = walked(GROWN + GROWN)
     fork = lives.recorded_since(8)
     assert (fork.born == 8).any()

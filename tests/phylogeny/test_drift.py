@@ -1,4 +1,4 @@
-"""The neutral shadow, event by event: what is drawn, how often, and what does not depend on it."""
+"""The neutral shadow, event by event: what is drawn, how often, and by which keys."""
 
 from typing import Any
 
@@ -33,7 +33,7 @@ def test_each_of_the_living_is_the_parent_or_dies_with_equal_probability() -> No
     np.testing.assert_allclose(died.effective[:, 1], 4)
 
 
-def test_a_line_that_is_alone_is_all_of_the_living_however_many_they_are() -> None:
+def test_a_single_line_is_always_all_of_the_living() -> None:
     lives = walked([([0], []), ([0, 1], []), ([], []), ([], [0, 1, 2]), ([0], [])])
     found = dealt(lives, [0, 1, 2, 3, 4, 5], 1)
     assert (found.final == 1).all()
@@ -88,7 +88,7 @@ def test_more_draws_leave_fewer_shadows_within_bounds(
 
 
 def test_each_line_with_a_slope_counts_as_draws(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Without events lines keep their numbers; here 40 births of founders are the events."""
+    """The events are 40 births of founders."""
     lives = lives_of([-1] * 80, [0] * 40 + list(range(1, 41)), [40] * 80, [False] * 80)
     monkeypatch.setattr(module, "DRAWS", 40 * 2 * 300)
     monkeypatch.setattr(slopes, "_drift_on", lambda *_: None)
@@ -100,7 +100,7 @@ def test_each_line_with_a_slope_counts_as_draws(monkeypatch: pytest.MonkeyPatch)
 
 
 def test_a_line_grows_and_shrinks_by_its_share_and_ends_with_all_or_nothing() -> None:
-    """Lines of 1, 2 and 3 of 5 are drawn in a fifth, two and three fifths of their shadows."""
+    """Of five organisms, a line of one changes in a fifth of its shadows, a line of two in two fifths."""
     for history, step in (([([0], [])], 1), ([([], [0])], -1)):
         lives = walked(history, founders=5)
         deal = Deal.of(lives, Turnover.of(lives), np.array([0, 1]), seed=4, what=1)

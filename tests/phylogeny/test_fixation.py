@@ -9,13 +9,17 @@ from primordia.phylogeny.ancestry import nearest
 from primordia.phylogeny.fixation import UNKNOWN, branches, first_ticks
 from primordia.phylogeny.living import Turnover
 from primordia.phylogeny.sweeps import sweeps
-from primordia.runs.lives import Lives
-from tests.pedigrees import HISTORY, Event, line_to, lives_of, living_after, moran, walked
-
-
-def share_after(lives: Lives, ancestor: int, tick: int) -> float:
-    living = living_after(lives, tick)
-    return sum(ancestor in line_to(lives, row) for row in living) / max(len(living), 1)
+from tests.pedigrees import (
+    HISTORY,
+    Event,
+    common_after,
+    line_to,
+    lives_of,
+    living_after,
+    moran,
+    share_after,
+    walked,
+)
 
 
 @given(history=HISTORY, founders=st.integers(1, 3), which=st.integers(0, 99))
@@ -70,12 +74,6 @@ def test_the_nearest_marked_ancestor_is_found_across_parts() -> None:
     assert found[[4999, 5000, 6999, 7000, 9999]].tolist() == [0, 5000, 5000, 0, 0]
 
 
-def common_after(lives: Lives, tick: int) -> int | None:
-    """Return the youngest common ancestor of those alive after a tick."""
-    lines = [line_to(lives, row) for row in living_after(lives, tick)]
-    return next((row for row in lines[0] if all(row in line for line in lines)), None)
-
-
 @given(history=HISTORY, founders=st.integers(1, 3))
 def test_sweeps_are_the_changes_of_the_common_ancestor(history: list[Event], founders: int) -> None:
     lives = walked(history, founders)
@@ -126,7 +124,7 @@ def test_of_two_sweeps_under_way_the_younger_counts() -> None:
 
 
 def test_sweeps_of_a_fork_are_those_of_organisms_born_after_it() -> None:
-    """Two sweeps are those of organisms alive at the fork, one of them born in its tick."""
+    """Two of three sweeps began before the fork or in its tick."""
     lives = lives_of(
         parent=[-1, 0, 1, 1, 2, 4],
         born=[0, 4, 10, 10, 15, 17],
@@ -140,7 +138,7 @@ def test_sweeps_of_a_fork_are_those_of_organisms_born_after_it() -> None:
     assert (under_way.organism, under_way.fixed, under_way.half) == (4, None, 20)
 
 
-def test_in_a_world_without_life_sweeps_lead_to_the_last_to_die() -> None:
+def test_in_a_world_without_life_sweeps_end_with_the_last_death() -> None:
     """Organism 1 and its children outlive the founder; the last of three dies at tick 9."""
     lives = lives_of([-1, 0, 1, 1], [0, 2, 3, 4], [5, 7, 9, 8], [True] * 4)
     found = sweeps(lives)

@@ -1,4 +1,4 @@
-"""The record of a run up to a fork, joined with that of the fork, at each tick of invented worlds."""
+"""The record of a run up to a fork, joined with the record of the fork, for forks at each tick."""
 
 from dataclasses import fields, replace
 from pathlib import Path
@@ -30,7 +30,7 @@ WHOLE = joined([walked(LIVED, 2), walked(OTHER, 2)], np.array([0, 1]))
 END = len(LIVED)
 
 
-def told(lives: Lives, more: float) -> Phylogeny:
+def with_facts(lives: Lives, more: float) -> Phylogeny:
     """Return lives with a fact of each birth and of each death, different in each record."""
     number = lives.id + 1000.0 * lives.world + more
     food = pa.array(number / 2, mask=~lives.died)
@@ -39,12 +39,12 @@ def told(lives: Lives, more: float) -> Phylogeny:
 
 def source(monkeypatch: pytest.MonkeyPatch) -> Any:
     """Return a run that has gone on after its forks."""
-    monkeypatch.setattr(forks, "recorded", lambda _: told(WHOLE, 0.25))
+    monkeypatch.setattr(forks, "recorded", lambda _: with_facts(WHOLE, 0.25))
     return SimpleNamespace(path=Path("run"), ends=np.array([END, END]))
 
 
 def forked(tick: int, monkeypatch: pytest.MonkeyPatch, more: int = 0) -> Any:
-    """Return a fork with the births of its worlds until then, or some more in the second one."""
+    """Return a fork with the births until its tick, and `more` births in the second world."""
     births = [((WHOLE.world == world) & (WHOLE.born <= tick)).sum() for world in (0, 1)]
     counted = np.array([births[0], births[1] + more])
     monkeypatch.setattr(forks, "read_count", lambda *_: counted)
@@ -55,9 +55,9 @@ def forked(tick: int, monkeypatch: pytest.MonkeyPatch, more: int = 0) -> Any:
 def test_a_run_until_its_fork_and_the_fork_are_the_whole_life(
     tick: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Births are told as the run records them until the fork; lives end as the fork records."""
+    """Births until the fork are those of the run. Lives end as the fork records."""
     run, fork = source(monkeypatch), forked(tick, monkeypatch)
-    later = told(WHOLE.recorded_since(tick), 0.75)
+    later = with_facts(WHOLE.recorded_since(tick), 0.75)
     found = forks._joined(forks._until(run, tick), later, fork)
     assert found is not None
     for each in fields(Lives):
@@ -84,21 +84,21 @@ def test_a_run_is_not_cut_at_a_tick_that_a_world_has_not_reached(
 
 
 @pytest.mark.parametrize("column", AS_INHERITED)
-def test_a_fork_of_another_run_is_told_by_any_of_its_inherited_columns(
+def test_a_fork_of_another_run_is_recognised_by_any_of_its_inherited_columns(
     column: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     run, fork = source(monkeypatch), forked(4, monkeypatch)
     lives = WHOLE.recorded_since(4)
     values = getattr(lives, column).copy()
     values[np.flatnonzero(lives.inherited)[-1]] += 1
-    later = told(replace(lives, **{column: values}), 0.75)
+    later = with_facts(replace(lives, **{column: values}), 0.75)
     assert forks._joined(forks._until(run, 4), later, fork) is None
 
 
-def test_a_fork_of_another_run_is_told_by_its_birth_numbers(
+def test_a_fork_of_another_run_is_recognised_by_its_birth_numbers(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    run, later = source(monkeypatch), told(WHOLE.recorded_since(4), 0.75)
+    run, later = source(monkeypatch), with_facts(WHOLE.recorded_since(4), 0.75)
     for more, same in ((-1, False), (0, True), (1, False)):
         fork = forked(4, monkeypatch, more)
         assert (forks._joined(forks._until(run, 4), later, fork) is not None) == same

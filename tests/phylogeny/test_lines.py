@@ -1,4 +1,4 @@
-"""What is told of the lines of a world, beside loops in plain Python, and which lines are measured."""
+"""Numbers of the lines of a world, compared with loops in plain Python, and which lines are measured."""
 
 from dataclasses import replace
 from math import exp, log, nan
@@ -22,7 +22,7 @@ from tests.synthetic import world_of, worlds_of
 
 TICKS, LIVING = [20, 21, 30, 50], [12, 14, 20, 16]
 COUNTS = [[3, 4, 5], [6, 4, 2], [2, 14, 1], [1, 6, 6]]
-"""Of each of three lines at each tick; others are alive too."""
+"""Organisms of each of three lines at each tick; other organisms are alive too."""
 SLOPES = [0.004, nan, -0.01]
 
 
@@ -88,7 +88,7 @@ def agree(found: Any, expected: Any) -> None:
         assert found == (pytest.approx(expected) if isinstance(expected, float) else expected)
 
 
-def test_all_that_is_told_of_lines_is_computed_from_their_counts() -> None:
+def test_plain_values_of_lines_are_computed_from_their_counts() -> None:
     found = invented()
     shares = [[n / m for n in row] for row, m in zip(COUNTS, LIVING, strict=True)]
     within = [[n / sum(row) for n in row] for row in COUNTS]
@@ -161,7 +161,7 @@ def test_all_that_is_told_of_lines_is_computed_from_their_counts() -> None:
 
 
 def test_the_mean_of_the_effective_number_counts_and_not_its_end() -> None:
-    """The shadows are around the recorded mean, and all are below the recorded number at the end."""
+    """All shadows are near the recorded mean, and below the recorded number at the end."""
     found = invented()
     mean = float(found.effective[2].mean())
     shadows = np.full((9, 4), mean) + np.linspace(-0.04, 0.04, 9)[:, None]
@@ -172,10 +172,10 @@ def test_the_mean_of_the_effective_number_counts_and_not_its_end() -> None:
 
 def test_without_a_death_slopes_have_no_lifespan_as_their_unit() -> None:
     found = replace(invented(), lives=world_of([(0, 0, False)] * 6, until=50))
-    told = found.to_dict()
-    assert told["lifespan"] is None
-    assert [line["slope_per_lifespan"] for line in told["lines"]] == [None] * 3
-    assert [line["slope"] for line in told["lines"]] == [None, 0.004, -0.01]
+    plain = found.to_dict()
+    assert plain["lifespan"] is None
+    assert [line["slope_per_lifespan"] for line in plain["lines"]] == [None] * 3
+    assert [line["slope"] for line in plain["lines"]] == [None, 0.004, -0.01]
 
 
 def test_each_world_is_measured_with_its_own_lives_and_seed(
@@ -245,6 +245,7 @@ def test_lines_are_founded_by_a_crowd_since_the_last_extinction_or_the_fork() ->
     """A crowd is half of the most that live: 16 of 32 in the first world, and 8 of 16 in the fork."""
     twice = walked([*GROWTH, (list(range(16)), []), ([], list(range(32))), *GROWTH, *TURNOVER[:3]])
     assert founding_tick(twice) == 6 + 3
+    assert founding_tick(moran(40, 50)) == 0
     grown = walked([*GROWTH, *TURNOVER])
     assert founding_tick(grown) == 3
     assert founding_tick(grown.recorded_since(2)) == 3

@@ -5,9 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from primordia.errors import InputError
 from primordia.phylogeny.drift import drift
-from primordia.phylogeny.frequencies import founders, founding_tick, instants, lines_of
+from primordia.phylogeny.frequencies import founders, instants, lines_of
 from primordia.phylogeny.lines import WorldLines, lines_of_world, two_sided
 from primordia.phylogeny.living import Census, Turnover
 from primordia.phylogeny.slopes import between, observed, of_shadows
@@ -149,17 +148,6 @@ def test_lines_are_the_descendants_of_the_living_at_a_tick(
         first = [next((a for a in line_to(lives, each) if a in own), None) for each in now]
         assert row.tolist() == [first.count(each) for each in own.tolist()]
         assert living == len(now)
-
-
-def test_lines_begin_with_the_founders_of_a_full_world_and_with_a_crowd_elsewhere() -> None:
-    assert founding_tick(moran(40, 50)) == 0
-    doubling = walked([([0], []), ([0, 1], []), ([0, 1, 2, 3], [])] + [([], [])] * 5)
-    assert founding_tick(doubling) == 2  # 8 at most, so half of them
-
-
-def test_a_tick_that_is_not_on_record_is_refused() -> None:
-    with pytest.raises(InputError, match="tick 51 is not on record; the ticks are 0 to 50"):
-        founders(moran(5, 50), 51)
 
 
 def test_p_values_count_the_value_itself_and_both_sides() -> None:

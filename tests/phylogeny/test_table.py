@@ -228,7 +228,7 @@ def parted(mate: list[int | None]) -> Phylogeny:
 
 
 def test_only_a_child_whose_first_parent_is_on_record_has_a_mate_there() -> None:
-    """A mate that is not on record is none, and a root has no mate."""
+    """A mate that is not on record is left out, and a root has no mate."""
     rooted = parted([2, 4, 5, 1]).rooted()
     assert rooted.lives.parent.tolist() == [-1, -1, 4, 6]
     assert rooted.of_births["mate"].to_pylist() == [None, None, 5, None]
@@ -244,7 +244,7 @@ def test_a_mate_that_is_not_older_is_damage(mate: int) -> None:
 
 
 def test_facts_of_a_run_and_its_fork_follow_one_another() -> None:
-    """A fork may count more than the run did, or less; what only one of them has is null elsewhere."""
+    """A fork may have other facts than the run. A fact that only one of them has is null elsewhere."""
     one = {"food": pa.array([0.5, 2.0]), "mate": pa.array([None, 3], pa.int64())}
     other = {"size": pa.array([7, 8, 9], pa.int32()), "food": pa.array([1, None, 4], pa.int32())}
     found = stacked(one, other, (2, 3))
@@ -256,7 +256,7 @@ def test_facts_of_a_run_and_its_fork_follow_one_another() -> None:
 
 
 def test_a_part_may_be_one_world_and_one_line_of_it() -> None:
-    """A line is of world 0 if no world is named."""
+    """Without a named world, a line is of world 0."""
     small, large = [(0, 0, True), (1, 1, True)], [(0, 0, True), (1, 1, False), (2, 1, True)]
     whole, world = forest(small, large, small), 10**12
     for number, first in ((0, 0), (1, 2), (2, 5)):

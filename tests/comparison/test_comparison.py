@@ -1,4 +1,4 @@
-"""Comparisons of invented runs: the base, the unit and the reach of each number, counted plainly."""
+"""Comparisons of invented runs: the lives, ticks and worlds that each number counts."""
 
 from pathlib import Path
 from types import SimpleNamespace
@@ -14,7 +14,7 @@ from primordia.comparison.measured import Measured
 from primordia.comparison.moments import saturation
 from primordia.errors import InputError
 from primordia.runs.arrays import NEVER
-from primordia.runs.lives import Lives
+from primordia.runs.lives import Lives, joined
 from tests.synthetic import worlds_of
 from tests.worlds import MEADOW, config
 
@@ -24,7 +24,7 @@ Saturated = dict[int, tuple[int, int]]
 
 
 def lived(worlds: int, name: int) -> Lives:
-    """Return lives of which all but the last three of each world have ended before the tick UNTIL."""
+    """Return lives. All but the last three of each world end before the tick UNTIL."""
     draw = np.random.default_rng(name)
     born = [np.sort(draw.integers(0, 90, 40)) for _ in range(worlds)]
     lives = [
@@ -86,7 +86,7 @@ def test_lives_count_up_to_the_smallest_age_of_all_runs() -> None:
 
 
 def test_a_life_of_exactly_the_smallest_age_is_long() -> None:
-    """Lives of the first world have 4, 15 and 31 ticks, of the second 14 and 20; others are alive."""
+    """Lives of the first world have 4, 15 and 31 ticks, and those of the second have 14 and 20."""
     living = (50, 0, False)
     one, two = [(0, 3, True), (1, 14, True), (2, 30, True)], [(0, 13, True), (1, 19, True)]
     lives = worlds_of([*one, living], [*two, living], until=UNTIL)
@@ -106,7 +106,7 @@ def test_a_life_of_exactly_the_smallest_age_is_long() -> None:
 
 
 def test_a_crash_depends_on_the_cells_of_its_own_run() -> None:
-    """Four children are alive before the world dies out: half of 8 cells, and not of 16."""
+    """Four children are alive before the world dies out, which are half of 8 cells, and not of 16."""
     lives = worlds_of([(0, 9, True), *[(1, 8, True)] * 4, (10, 5, False)], until=60)
     lives.parent[1:5] = 0
     for cells, crashes in (((8, 16), [1, 0]), ((16, 8), [0, 1])):
@@ -116,18 +116,16 @@ def test_a_crash_depends_on_the_cells_of_its_own_run() -> None:
         assert [arm.extinctions.crashes.tolist() for arm in compared.arms] == [
             [each] for each in crashes
         ]
-        assert [told["crashes"] for told in compared.to_dict()["runs"]] == crashes
-        assert [told["extinctions"] for told in compared.to_dict()["runs"]] == [1, 1]
+        runs = compared.to_dict()["runs"]
+        assert [each["crashes"] for each in runs] == crashes
+        assert [each["extinctions"] for each in runs] == [1, 1]
 
 
 def test_all_worlds_are_compared_up_to_the_first_end() -> None:
     """One world of the second run ends first."""
     one, two = lived(2, 1), lived(3, 2)
     stopped = two.of_world(1).recorded_until(60)
-    rows = [two.of_world(0), stopped, two.of_world(2)]
-    two = Lives(**{
-        name: np.concatenate([getattr(each, name) for each in rows]) for name in vars(stopped)
-    })  # fmt: skip
+    two = joined([two.of_world(0), stopped, two.of_world(2)], np.zeros(3, int))
     compared = compare([run("a", one), run("b", two)])
     for arm, lives in zip(compared.arms, (one, two), strict=True):
         assert arm.pace.edges.tolist() == np.linspace(0, 60, 13).tolist()
@@ -143,7 +141,7 @@ def test_all_worlds_are_compared_up_to_the_first_end() -> None:
 
 @pytest.mark.parametrize(("saturated", "whole"), [(1, False), (2, True)])
 def test_lives_are_cut_only_if_saturation_is_rare_in_all_runs(saturated: int, whole: bool) -> None:
-    """One of four worlds of a run is few, and two are half of them."""
+    """Lives are cut if fewer than half of each run's worlds saturate."""
     one, two = lived(4, 1), lived(4, 2).recorded_until(70)
     some: Saturated = dict.fromkeys(range(saturated), (30, 60))
     compared = compare([run("a", one, some), run("b", two)])
@@ -154,7 +152,7 @@ def test_lives_are_cut_only_if_saturation_is_rare_in_all_runs(saturated: int, wh
     assert [arm.saturated for arm in compared.arms] == [saturated, 0]
 
 
-def test_a_world_saturates_only_before_both_horizons() -> None:
+def test_a_world_counts_as_saturated_only_before_both_horizons() -> None:
     lives = lived(4, 1)
     moments: Saturated = {0: (29, 59), 1: (30, 59), 2: (29, 60), 3: (40, 100)}
     for horizons, known in (
@@ -204,11 +202,11 @@ def test_plain_values_have_the_quartiles_of_each_outcome() -> None:
     one, two = lived(5, 1), lived(6, 2)
     moments: Saturated = {world: (30 + world, 60 + 2 * world) for world in range(4)}
     compared = compare([run("a", one, moments), run("b", two, moments, seed=50)])
-    told = compared.to_dict()
-    assert {name: told[name] for name in ("task", "age", "begin", "births", "ticks")} == {
+    plain = compared.to_dict()
+    assert {name: plain[name] for name in ("task", "age", "begin", "births", "ticks")} == {
         "task": "meadow", "age": AGE, "begin": 0, "births": None, "ticks": None,
     }  # fmt: skip
-    first, second = told["runs"]
+    first, second = plain["runs"]
     assert (first["worlds"], second["worlds"]) == (5, 6)
     assert (first["saturated"], second["saturated"]) == (4, 4)
     assert (first["settings"], second["settings"]) == (
@@ -226,7 +224,7 @@ def test_plain_values_have_the_quartiles_of_each_outcome() -> None:
         assert against.worlds == 5
 
 
-def test_settings_are_told_if_any_run_has_another_value() -> None:
+def test_settings_are_given_if_any_run_has_another_value() -> None:
     lives = lived(1, 1)
     changed: list[dict[str, Any]] = [{}, {"hazard": 0.1}, {"about": "a text"}, {"metabolism": None}]
     arms = compare([run(str(k), lives, **each) for k, each in enumerate(changed)]).arms
@@ -239,7 +237,7 @@ def test_settings_are_told_if_any_run_has_another_value() -> None:
 def test_food_is_compared_in_the_unit_of_its_title(
     rate: float | None, unit: str, span: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """It is gathered in all worlds of each run, between the first and the last common tick."""
+    """Food is counted in all worlds of each run, from the first to the last common tick."""
     asked = []
 
     def gathering(run: Any, worlds: int, *rest: float) -> Gathering:
