@@ -100,6 +100,7 @@ def test_the_story_of_several_worlds_adds_up_their_numbers() -> None:
         in sentences(*[world(saturation=saturated)] * 2)[1]
     )
     assert "0 of 2 worlds are saturated" in sentences(world(), world())[1]
+    assert "1 of 2 worlds is saturated" in sentences(world(saturation=saturated), world())[1]
 
 
 def test_each_cause_of_death_has_its_own_words() -> None:

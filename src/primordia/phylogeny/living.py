@@ -84,7 +84,7 @@ class Turnover:
     def of(cls, lives: Lives) -> "Turnover":
         """Return the turnover of one world."""
         dead = np.flatnonzero(lives.died)
-        dead = dead[np.argsort(lives.ended[dead])]
+        dead = dead[np.argsort(lives.ended[dead], kind="stable")]
         founder = lives.parent < 0
         parts = np.flatnonzero(~founder), dead, np.flatnonzero(founder)
         tick = np.concatenate([lives.born[parts[0]], lives.ended[dead], lives.born[parts[2]]])

@@ -104,11 +104,12 @@ def _many_worlds(worlds: list[dict[str, Any]], run: Records, rate: float | None)
     longest = max(world["ticks"] for world in worlds)
     saturated = sum(world["saturation"] is not None for world in worlds)
     most = "All" if saturated == len(worlds) else f"{saturated:,} of {len(worlds):,}"
+    are = "is" if saturated == 1 else "are"
     return [
         f"In up to {longest:,} ticks{simulated(longest, rate)} of each world,"
         f" {count(total('births'), 'organism')} were born in all, and {_deaths(worlds)}.",
         *_extinct(total("extinctions"), run.config, "In all, the worlds"),
-        f"{most} worlds are saturated: all cells full, and no death for"
+        f"{most} worlds {are} saturated: all cells full, and no death for"
         f" {run.config.saturation_ticks:,} ticks.",
     ]
 
