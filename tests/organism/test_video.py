@@ -114,6 +114,22 @@ def test_a_film_takes_the_time_that_it_shows(rate: float, tmp_path: Path) -> Non
     np.testing.assert_allclose(times, np.arange(5) / rate, rtol=1e-3)
 
 
+@pytest.mark.parametrize("rate", [15.0, 125 / 6, 200 / 9, 25.0, 1 / 3])
+def test_a_gif_takes_the_time_that_it_shows(rate: float, tmp_path: Path) -> None:
+    """To a hundredth of a second, in which a GIF counts."""
+    path = tmp_path / "film.gif"
+    sample = Image.effect_noise((16, 16), 90).convert("RGB")
+    pictures = (Image.new("RGB", (16, 16), (12 * light,) * 3) for light in range(20))
+    video.write(path, pictures, rate, sample)
+    with Image.open(path) as gif:
+        assert getattr(gif, "n_frames", 1) == 20
+        end = 0
+        for number in range(20):
+            gif.seek(number)
+            end += gif.info["duration"]
+            assert end == pytest.approx(1000 * (number + 1) / rate, abs=5)
+
+
 def test_a_gif_that_shows_a_picture_for_too_long_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "film.gif"
     sample = Image.effect_noise((16, 16), 90).convert("RGB")

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from fractions import Fraction
 from functools import partial
+from itertools import starmap
 from pathlib import Path
 
 import av
@@ -71,18 +72,23 @@ def _frame(picture: Image.Image) -> av.VideoFrame:
 def _gif(
     path: Path, pictures: Iterator[Image.Image], rate: float, sample: Image.Image | None
 ) -> None:
-    """Write a GIF of half the size, with the colours of the sample, or of the first picture."""
+    """Write a GIF of half the size, with the colours of the sample, or of the first picture.
+
+    A GIF counts time in hundredths of a second, so pictures take turns in being shown one longer.
+    """
     first = next(pictures)
     palette = (sample or first).quantize(
         colors=256 if sample else 64, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE
     )
-    small = (
-        picture.reduce(2).quantize(palette=palette, dither=Image.Dither.NONE)
-        for picture in _all(first, pictures)
-    )
-    next(small).save(
-        path, save_all=True, append_images=small, duration=round(1000 / rate), loop=0, optimize=True
-    )
+
+    def small(number: int, picture: Image.Image) -> Image.Image:
+        reduced = picture.reduce(2).quantize(palette=palette, dither=Image.Dither.NONE)
+        begin, end = (round(100 * each / rate) for each in (number, number + 1))
+        reduced.info["duration"] = 10 * (end - begin)  # in milliseconds
+        return reduced
+
+    all_small = starmap(small, enumerate(_all(first, pictures)))
+    next(all_small).save(path, save_all=True, append_images=all_small, loop=0, optimize=True)
 
 
 def _all(first: Image.Image, others: Iterator[Image.Image]) -> Iterator[Image.Image]:
