@@ -46,6 +46,8 @@ def test_survival_is_the_estimate_of_kaplan_and_meier(
     split = stats.CensoredData(lives.lifespan[lives.died], right=lives.lifespan[~lives.died])
     expected = stats.ecdf(split).sf.evaluate(estimate.ages)
     np.testing.assert_allclose(estimate.curve, expected, atol=1e-12)
+    deaths = {age for lived in worlds for age, died in lived if died and age <= limit}
+    np.testing.assert_array_equal(estimate.ages, sorted(deaths))
     np.testing.assert_array_equal(estimate.steps, [0, *estimate.ages, limit])
     np.testing.assert_array_equal(
         estimate.with_ends(estimate.curve), [1, *estimate.curve, (1, *estimate.curve)[-1]]

@@ -161,7 +161,7 @@ def test_the_oldest_so_far_begins_its_life_when_it_is_first_shown(
     ]
 
 
-@pytest.mark.parametrize("rate", [50.0, 15.0, 30.0, 12.0, 20.0, 90.0])
+@pytest.mark.parametrize("rate", [50.0, 15.0, 30.0, 12.0, 20.0, 90.0, 75.0])
 def test_a_life_is_shown_from_its_birth_to_its_end_at_thirty_pictures_a_second(
     rate: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -256,6 +256,12 @@ def test_lines_are_founded_by_a_crowd_since_the_last_extinction_or_the_fork() ->
         assert founding_tick(quiet.recorded_since(fork)) == fork
 
 
+def test_a_crowd_is_counted_after_the_deaths_of_its_tick() -> None:
+    """Of 16 that are alive after the births of tick 1, 12 are alive after it; a crowd is 16."""
+    history: list[Event] = [(list(range(8)), [0, 1, 2, 3]), (list(range(4)), [])]
+    assert founding_tick(walked([*history, (list(range(16)), [])], founders=8)) == 2
+
+
 def test_lines_cannot_be_founded_before_the_fork() -> None:
     fork = moran(5, 50).recorded_since(20)
     assert fork.born.min() < 20

@@ -11,6 +11,7 @@ from collections.abc import Generator, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
+from unittest.mock import MagicMock
 from urllib.parse import urlsplit
 
 import pytest
@@ -21,7 +22,7 @@ from primordia.report.content import of_run
 from primordia.report.page import embedded
 from primordia.report.server import HERE, Server
 from primordia.report.watched import Watched
-from primordia.runs import loop
+from primordia.runs import directory, loop
 from primordia.runs.archive import Archive
 from tests import commands
 from tests.commands import complains, here
@@ -269,6 +270,20 @@ def test_a_page_follows_its_run(run: Path, monkeypatch: pytest.MonkeyPatch) -> N
         ended.set()
         thread.join()
     assert content.data() == embedded(of_run(Archive(run), filmed=False)).encode()
+
+
+def test_a_page_of_several_runs_goes_on_while_one_of_them_is_written(
+    run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    other, several = tmp_path / "other", MagicMock()
+    other.mkdir()
+    several.paths = [run, other]
+    monkeypatch.setattr(watched, "of_run", lambda *_, **__: {})
+    content = Watched(lambda: several)
+    assert not json.loads(content.news(None, 0.0))["going"]
+    with directory.locked(other):
+        content.look()
+        assert json.loads(content.news(None, 0.0))["going"]
 
 
 def test_a_connection_that_a_browser_closes_prints_nothing(

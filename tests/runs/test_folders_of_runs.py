@@ -124,6 +124,16 @@ def test_a_run_goes_on_only_with_the_settings_of_its_beginning(
         directory.check_same_settings(here, tmp_path)
 
 
+def test_a_run_with_settings_that_are_not_given_does_not_go_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    there = config(MEADOW, mutation={"blocks": {"recurrent": {"scale": 0.5}}})
+    monkeypatch.setattr(directory, "read_config", lambda _: there)
+    differs = "mutation.blocks.recurrent.scale is 0.5 there, and None here; choose another --out"
+    with pytest.raises(InputError, match=differs):
+        directory.check_same_settings(config(MEADOW), tmp_path)
+
+
 def test_begin_or_resume_passes_on_all_its_arguments(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
