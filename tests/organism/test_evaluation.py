@@ -209,6 +209,7 @@ def test_wrong_input_is_an_error_that_says_why(pong: Path, poles: Path) -> None:
         ((poles, "--angle_limit", "-1"), "habitat.angle_limit"),
         ((pong, "--sticky", "1.5"), "sticky"),
         ((pong, "--open-loop", "--freeze-senses"), "exclude each other"),
+        ((pong, "--organism", 0, "--founders", 500), "exclude each other"),
         ((pong, "--games", "0"), "--games"),
         ((pong, "--organism", "9999"), "no organism 9999"),
     ):

@@ -183,7 +183,7 @@ def test_the_message_of_a_finished_run_has_its_limits(tmp_path: Path) -> None:
 def test_each_failure_is_a_line_at_the_end_of_a_file(tmp_path: Path) -> None:
     faults.note(tmp_path, [])
     assert not (tmp_path / "faults.txt").exists()
-    faults.note(tmp_path, ["first", "second\x1b"])
+    faults.note(tmp_path, ["first", "second\x1b\nand more"])
     faults.note(tmp_path, ["third"])
     lines = (tmp_path / "faults.txt").read_text().splitlines()
     assert (len(lines), lines[0], lines[2]) == (3, "first", "third")

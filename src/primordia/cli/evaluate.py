@@ -37,9 +37,7 @@ SENSES = {
 @click.option(
     "--founders",
     type=click.IntRange(1, 2**20),
-    default=500,
-    show_default=True,
-    help="Choose the best of this number of founders. If the run had fewer births, try as many"
+    help="Choose the best of this number of founders [500]. If the run had fewer births, try as many"
     " founders as births.",
 )
 @click.option(
@@ -70,7 +68,7 @@ def evaluate(
     organism: int | None,
     world: int | None,
     games: int,
-    founders: int,
+    founders: int | None,
     ticks: int,
     freeze_senses: bool,
     open_loop: bool,
@@ -91,6 +89,8 @@ def evaluate(
 
     if freeze_senses and open_loop:
         raise InputError("--freeze-senses and --open-loop exclude each other; give one of them")
+    if organism is not None and founders is not None:
+        raise InputError("--founders and --organism exclude each other: one organism plays alone")
     senses: Any = "frozen" if freeze_senses else "ignored" if open_loop else "live"
     opened = load(run, trust)
     options: Any = {"games": games, "ticks": ticks, "senses": senses, "habitat": habitat}
@@ -98,7 +98,8 @@ def evaluate(
         result = opened.organism(organism, world or 0).evaluate(**options)
         click.echo(json.dumps(result.to_dict()) if as_json else evaluation_text(result, habitat))
         return
-    found = opened.standings(founders, world, **options)
+    number = {} if founders is None else {"founders": founders}
+    found = opened.standings(world=world, **number, **options)
     if as_json:
         click.echo(json.dumps({"rows": [each.to_dict() for each in found]}))
     else:

@@ -38,7 +38,7 @@ WORDS = {
     " that of the parents' copies.",
     "good lines hold": "Above 1, a long-lived line persists in spite of its bad mutants. Below 1, such"
     " lines are lost.",
-    "organism-ticks/s": "Ticks lived by all organisms together in a second of your time.",
+    "organism-ticks/s": "Ticks lived by the organisms of all worlds together in a second of your time.",
     "time left": "Time until the last world reaches its limit, at the present speed.",
     "calm": "Without births and deaths.",
     "saturated": "The world has been full and calm for the number of ticks that the task demands.",

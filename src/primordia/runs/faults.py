@@ -21,7 +21,7 @@ def note(run: Path, lines: list[str]) -> None:
     """
     if not lines:
         return
-    text = "".join(f"{printable(line)}\n" for line in lines).encode()
+    text = "".join(printable(line, kept="\t") + "\n" for line in lines).encode()
     try:
         flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT | os.O_NOFOLLOW | os.O_NONBLOCK
         file = os.open(run / FILE, flags, 0o666)
