@@ -70,10 +70,12 @@ def test_each_column_has_the_number_that_its_title_names() -> None:
     world: dict[str, Any] = {name: 1000.25 * number for number, name in enumerate(numbers, 1)}
     world |= {"seed": 1000, "deaths_by_cause": {"fatal": 2345, "hazard": 0, "starved": 1}}
     world |= {"saturation": {"tick": 7000, "births": 8000}}
-    parts = Parts(notebook.of_run({"task": "x", "cells": 1024, "worlds": [world]}))
+    new = dict.fromkeys(numbers, 0) | {"deaths_by_cause": {}, "saturation": None}
+    parts = Parts(notebook.of_run({"task": "x", "cells": 1024, "worlds": [world, new]}))
     head = ["seed", "ticks", "births", "alive", "mean age", "oldest", "deaths", "saturated at tick"]
     row = ["1000", "2,000", "3,001", "4,001", "5,001", "6,002", "2,345 fatal, 1 starved", "7,000"]
-    assert parts.texts == ["x: 1 world of 1,024 cells", *head, *row]
+    zeros = ["0"] * 6 + ["", ""]
+    assert parts.texts == ["x: 2 worlds of 1,024 cells", *head, *row, *zeros]
 
 
 @pytest.mark.parametrize("count", [notebook.MOST, notebook.MOST + 1, notebook.MOST + 1200])

@@ -44,6 +44,12 @@ def test_the_text_about_an_organism_has_its_spreads_and_counts() -> None:
     ]
 
 
+def test_games_that_happened_to_be_equal_were_random_all_the_same() -> None:
+    equal = games([9, 9])._replace(course=np.zeros(2, np.uint64))
+    found = Evaluation(7, 0, "live", equal, None, deterministic=False)
+    assert evaluation_text(found, {}).splitlines()[1] == "  1 distinct game"
+
+
 def standing(name: str, chosen_from: int, *lived: tuple[int, int], score: int = 0) -> Standing:
     """Return a group with organisms of (world, ticks); whole games have a length of twice the ticks."""
     each = [

@@ -9,6 +9,7 @@ import pytest
 
 from primordia.errors import InputError
 from primordia.organism import diary, revival
+from primordia.organism.reliving.course import OWN, recorded
 from primordia.organism.revival import Respect, Revival
 from primordia.runs import checkpoint, directory
 
@@ -98,6 +99,33 @@ def test_each_limit_of_a_comparison_is_noted_once(
     found = revival._notes(run, course)
     assert len(found) == len(notes)
     assert all(part in note for part, note in zip(notes, found, strict=True))
+
+
+@pytest.mark.parametrize(
+    ("name", "compared"), [("bodies.age", "body"), ("bodies.place", "body"), (OWN[0], "memory")]
+)
+def test_every_array_of_a_living_organism_is_compared(name: str, compared: str) -> None:
+    """The organism lives in cell 1 of world 2, of two cells each."""
+
+    def values(row: int) -> dict[str, Any]:
+        names = (*OWN, "bodies.age", "bodies.place")
+        state = {each: np.arange(6) for each in names}
+        state[name][row] += 1
+        run = SimpleNamespace(schema=SimpleNamespace(tallies=()), state=state)
+        life: Any = SimpleNamespace(
+            run=run,
+            cause=None,
+            world=2,
+            config=SimpleNamespace(cells=2),
+            record=SimpleNamespace(cell=np.array([1])),
+            habitat=SimpleNamespace(kind="jax"),
+            begins=3,
+            ends=9,
+        )
+        return recorded(life)
+
+    other, own = values(row=4), values(row=5)
+    assert {each for each in own if own[each] != other[each]} == {compared}
 
 
 def test_a_life_of_one_tick_can_be_saved_and_one_of_no_tick_cannot(

@@ -63,6 +63,17 @@ class Moody(Still):
         return super().reset(words) + counted()
 
 
+class Changeable(Still):
+    """A habitat of which one result is another number each time that it is traced."""
+
+    result: str = "effort"
+
+    def step(self, bodies: Array, action: Array) -> tuple[Array, Outcome]:
+        values = jnp.full(len(bodies), counted())
+        value = values % 2 == 0 if self.result == "expired" else values.astype(jnp.float32)
+        return bodies, super().step(bodies, action)[1]._replace(**{self.result: value})
+
+
 class Sloppy(Still):
     def step(self, bodies: Array, action: Array) -> tuple[Array, Outcome]:
         return bodies, Outcome(jnp.zeros(len(bodies), bool), food=bodies[:, :1])
@@ -116,6 +127,7 @@ JAX_FAULTS: list[tuple[Any, str]] = [
         "body .* has a different life at age 1 among 1 bodies than among 32; .* elementwise",
     ),
     (Moody(), "when it is traced again, so it draws from more than `words`"),
+    *((Changeable(result=each), "when it is traced again") for each in ("effort", "expired")),
     (Sloppy(), r"gives outcome.food as float32 \(32, 1\); the contract says float32 \(32,\)"),
     (Wide(), r"gives senses as float32 \(32, 2\); the contract says float32 \(32, 3\)"),
     (Melting(), "gives bodies after a step as float16"),
