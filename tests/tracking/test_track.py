@@ -204,6 +204,19 @@ def test_a_run_without_a_whole_checkpoint_is_waited_for(run: Path, tmp_path: Pat
     assert event_rows(tmp_path / "seed-3") == single(expected(path)[3])
 
 
+def test_a_run_that_is_still_damaged_at_the_last_look_is_trouble(run: Path, tmp_path: Path) -> None:
+    damaged = Path(shutil.copytree(run, tmp_path / "damaged"))
+    for state in damaged.glob("checkpoints/*/state.npz"):
+        state.write_bytes(state.read_bytes()[:-1])
+    looks = iter([True, False])
+
+    def look() -> Sources:
+        return Sources({"a": [run], "b": [damaged]}, next(looks))
+
+    with pytest.raises(Trouble, match=f"no checkpoint of {damaged}"):
+        track(look, "runs", tmp_path, follow=True, every=AT_ONCE)
+
+
 def test_a_run_of_wandb_that_the_program_has_open_goes_on(
     run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
