@@ -3,11 +3,13 @@
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
+from unittest.mock import MagicMock
 
 import pytest
 
 import primordia
 from primordia.api import notebook
+from primordia.errors import Trouble
 from primordia.experiments.status import ArmStatus, CampaignStatus
 from primordia.runs import loop
 from tests.worlds import config
@@ -65,17 +67,26 @@ def test_a_run_that_cannot_be_read_shows_the_error(tmp_path: Path) -> None:
     ]
 
 
+def test_a_damaged_run_shows_the_damage(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(primordia.Run, "info", MagicMock(side_effect=Trouble("births are damaged")))
+    assert shown(primordia.Run(Path("run"))).texts == ["births are damaged"]
+
+
 def test_each_column_has_the_number_that_its_title_names() -> None:
     numbers = "seed", "ticks", "births", "alive", "mean_age", "oldest_age"
     world: dict[str, Any] = {name: 1000.25 * number for number, name in enumerate(numbers, 1)}
     world |= {"seed": 1000, "deaths_by_cause": {"fatal": 2345, "hazard": 0, "starved": 1}}
     world |= {"saturation": {"tick": 7000, "births": 8000}}
-    new = dict.fromkeys(numbers, 0) | {"deaths_by_cause": {}, "saturation": None}
-    parts = Parts(notebook.of_run({"task": "x", "cells": 1024, "worlds": [world, new]}))
+    parts = Parts(notebook.of_run({"task": "x", "cells": 1024, "worlds": [world]}))
     head = ["seed", "ticks", "births", "alive", "mean age", "oldest", "deaths", "saturated at tick"]
     row = ["1000", "2,000", "3,001", "4,001", "5,001", "6,002", "2,345 fatal, 1 starved", "7,000"]
-    zeros = ["0"] * 6 + ["", ""]
-    assert parts.texts == ["x: 2 worlds of 1,024 cells", *head, *row, *zeros]
+    assert parts.texts == ["x: 1 world of 1,024 cells", *head, *row]
+    world |= {"alive": 0, "mean_age": None, "oldest_age": None, "saturation": None}
+    new = {**world, "ticks": 0, "alive": 1, "mean_age": 0.0, "oldest_age": 0, "deaths_by_cause": {}}
+    parts = Parts(notebook.of_run({"task": "x", "cells": 1024, "worlds": [world, new]}))
+    empty = ["1000", "2,000", "3,001", "0", "", "", "2,345 fatal, 1 starved", ""]
+    assert parts.texts[0] == "x: 2 worlds of 1,024 cells"
+    assert parts.texts[9:] == [*empty, "1000", "0", "3,001", "1", "0", "0", "", ""]
 
 
 @pytest.mark.parametrize("count", [notebook.MOST, notebook.MOST + 1, notebook.MOST + 1200])

@@ -6,6 +6,8 @@ from types import SimpleNamespace
 from typing import Any
 from unittest.mock import ANY, MagicMock, call, patch
 
+import numpy as np
+import pyarrow as pa
 import pytest
 
 import primordia
@@ -54,6 +56,30 @@ def test_an_organism_is_found_in_its_world(
 ) -> None:
     found: Any = getattr(primordia.Run(RUN), name)(*words, **options)
     assert (found.run, found.row) == (opened, row)
+
+
+def test_the_champions_are_those_of_all_worlds(opened: MagicMock) -> None:
+    opened.lives.champions = lambda: np.array([3, 104, 205])
+    found: Any = primordia.Run(RUN).champions()
+    assert [(each.run, each.row) for each in found] == [(opened, row) for row in (3, 104, 205)]
+
+
+def test_the_file_of_a_bundle_is_that_of_the_single_run(opened: MagicMock) -> None:
+    """A pattern may name the run."""
+    opened.path = RUN
+    with patch("primordia.api.runs.bundle.write") as write:
+        assert primordia.Run(Path("R*")).bundle("OUT") == OUT
+    write.assert_called_once_with(RUN, OUT)
+
+
+def test_all_columns_of_a_table_are_arrays(opened: MagicMock) -> None:
+    """Booleans and missing values cannot be read without a copy."""
+    opened.table = {"births": pa.table({"id": [3, 4], "inherited": [True, False]})}.get
+    found = primordia.Run(RUN).arrays("births")
+    assert {name: values.tolist() for name, values in found.items()} == {
+        "id": [3, 4],
+        "inherited": [True, False],
+    }
 
 
 CASES: list[tuple[str, tuple[Any, ...], dict[str, Any], str, Any]] = [
@@ -162,6 +188,25 @@ def test_a_run_begins_with_the_settings_and_keywords_that_are_given(
     assert (chosen.cells, chosen.seed, place, run.path) == (8, 2, OUT, OUT)
     assert live.call_args.kwargs == given
     selected.assert_called_once_with("gpu")
+
+
+def test_a_run_or_a_fork_without_a_directory_gets_a_new_one(
+    opened: MagicMock, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("runs", "first-at9").mkdir(parents=True)
+    with (
+        patch("primordia.api.loop.start") as start,
+        patch("primordia.api.runs.loop.resume") as resume,
+        patch.object(runs, "fork") as fork,
+    ):
+        new = Path("runs", "CartPole-survival-seed3")
+        assert primordia.run("CartPole-survival", seed=3).path == start.call_args.args[1] == new
+        assert start.call_args.kwargs == {"checkpoint_every": 60.0, "listen": None}
+        fresh = Path("runs", "first-at9-2")
+        assert primordia.Run(Path("else", "first")).fork(9).path == fresh
+        assert fork.call_args == call(opened, 9, fresh, {}, None)
+        assert resume.call_args == call(fresh, checkpoint_every=60.0, listen=None)
 
 
 def test_a_new_directory_has_the_first_free_number(

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from primordia.habitats.framed import framed
+from primordia.habitats.framed import MARGIN, PAPER, framed
 from primordia.law.metabolism import ONE
 from primordia.live import companion as companions
 from primordia.live.companion import Body, Companion
@@ -37,7 +37,7 @@ def engine(**more: Any) -> Any:
     )
     organisms = world.organisms._replace(
         energy=np.arange(8) * ONE * 1500 // 2,
-        eaten=np.array([0, 5 * ONE // 2, 0, 0, 0, 0, 2000 * ONE, 0]),
+        eaten=np.array([0, 5 * ONE // 2, 0, 0, 0, ONE // 2, 2000 * ONE, 0]),
         genome={"input": np.arange(16.0).reshape(8, 2)},
         memory=np.arange(24.0).reshape(8, 3),
     )
@@ -91,6 +91,7 @@ def test_an_organism_of_another_world_gives_way_to_the_oldest_of_the_world_that_
     [
         (0, "organism 3 in cell 0 of world 0", "50 ticks", "0.0", None),
         (1, "organism 3 in cell 2 of world 1", "40 ticks", "4,500.0", "2,000.0"),
+        (2, "organism 4 in cell 1 of world 1", "30 ticks", "3,750.0", "0.5"),
         (3, "organism 1,234 in cell 1 of world 0", "20 ticks", "750.0", "2.5"),
     ],
 )
@@ -164,6 +165,18 @@ def test_a_picture_fills_its_room_without_the_margin_for_captions(
     assert [len(row) for row in text(drawn)] == ([] if size is None else [size[0]] * size[1])
     assert all(colours(each) == ((255, 0, 0), (255, 0, 0)) for row in drawn for each in row)
     assert pictured == ([] if size is None else [(BODY.body, BODY.action)])
+
+
+@pytest.mark.usefixtures("perceived")
+def test_a_picture_without_the_margin_is_whole_also_if_it_has_points_of_the_margins_colour() -> (
+    None
+):
+    """The picture is red, and 40 points wide and high. Half of its first rows are as pale as paper."""
+    of, pixels = engine(), np.full((40, 40, 3), (255, 0, 0), np.uint8)
+    pixels[:MARGIN, :20] = [int(PAPER[at : at + 2], 16) for at in (1, 3, 5)]
+    of.habitat.picture = lambda *_: Image.fromarray(pixels)
+    drawn = text(Companion().rows(of, 0, Room(40, 26, letters=False))[1:-5])
+    assert [len(row) for row in drawn] == [40] * 20
 
 
 def test_an_organism_thinks_with_its_own_genome_memory_seed_and_cell_in_the_next_tick(

@@ -123,12 +123,15 @@ def test_lines_begin_with_sixteen_organisms_or_with_half_of_the_cells() -> None:
         assert followed.lines[0].renewals == [crowd - 1]
 
 
-@pytest.mark.parametrize(("most", "takeovers"), [(63, None), (64, 0)])
+@pytest.mark.parametrize(
+    ("most", "shown", "takeovers"),
+    [(63, 1, None), (64, 1, 0), (127, 2, None), (128, 2, 0), (191, 3, None)],
+)
 def test_lines_of_large_worlds_are_not_followed(
-    most: int, takeovers: int | None, monkeypatch: pytest.MonkeyPatch
+    most: int, shown: int, takeovers: int | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Each world has 64 cells."""
     monkeypatch.setattr(Descent, "CELLS", most)
     followed = Descent()
-    followed.follow(status([births(*range(3))]), 1)
-    assert followed.takeovers([0]) == takeovers
+    followed.follow(status([births(*range(3))] * shown), shown)
+    assert followed.takeovers(range(shown)) == takeovers

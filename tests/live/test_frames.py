@@ -2,6 +2,7 @@
 
 from types import SimpleNamespace
 from typing import Any
+from unittest.mock import MagicMock
 
 import numpy as np
 import pytest
@@ -57,10 +58,11 @@ def test_a_past_moment_of_a_world_alone_is_taken_every_tenth_of_a_second(
     frames.moments.clear()
     frames.live(1.0, 0.03, worlds=3)
     assert frames.moments == [], "several worlds side by side have no past"
-    frames.view._alone = 2
-    frames.live(1.0, 0.03, worlds=3)
-    assert {world for _, world in frames.moments} == {2}
-    frames.moments.clear()
+    for alone in (0, 2):
+        frames.view._alone = alone
+        frames.live(1.0, 0.03, worlds=3)
+        assert {world for _, world in frames.moments} == {alone}
+        frames.moments.clear()
     frames.view._pace.limited = True
     frames.live(1.0, 0.03)
     np.testing.assert_allclose(np.diff([at for at, _ in frames.moments]), 0.03)
@@ -83,6 +85,8 @@ def test_a_waiting_run_draws_a_state_that_is_not_drawn_yet(
 def test_a_key_and_a_new_size_cause_a_frame_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     presses = iter(["", "", "w?", ""])
     frames = Frames(0.05, monkeypatch, SimpleNamespace(pressed=lambda _: next(presses)))
+    frames.view._console.clear = lambda: cleared.append(len(frames.began))
+    cleared: list[int] = []
     frames.view(status(3))
     assert len(frames.began) == 1
     frames.view._console.size = frames.view._console.size._replace(width=50)
@@ -92,6 +96,7 @@ def test_a_key_and_a_new_size_cause_a_frame_at_once(monkeypatch: pytest.MonkeyPa
     assert (len(frames.began), frames.view._alone, frames.view._page) == (3, 0, 0)
     frames.view._react(0.0)
     assert len(frames.began) == 3
+    assert cleared == [1], "the second frame is drawn on an empty screen"
 
 
 def test_lines_are_followed_in_as_many_worlds_as_the_screen_has_rows(
@@ -125,6 +130,32 @@ def test_before_the_first_chunk_the_view_says_that_it_compiles() -> None:
     shown = view()
     with shown:
         assert "Compiling, which takes some seconds" in shown._console.file.getvalue()
+        shown._live.update, cleared = MagicMock(), shown._live
+    cleared.update.assert_called_once_with("")
+
+
+@pytest.mark.parametrize(
+    ("terminal", "dumb", "keys", "drawn"),
+    [(False, False, False, False), (True, True, True, False), (True, False, True, True),
+     (True, False, False, True)],
+)  # fmt: skip
+def test_a_view_is_drawn_in_a_terminal_that_can_move_its_cursor(
+    terminal: bool, dumb: bool, keys: bool, drawn: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Elsewhere there are plain lines. The view has keys if standard input is a terminal too."""
+    made, keyboard = MagicMock(), MagicMock(there=keys)
+    keyboard.return_value.__enter__.return_value = keyboard
+    console = SimpleNamespace(is_dumb_terminal=dumb)
+    monkeypatch.setattr(watching, "Console", lambda **_: console)
+    monkeypatch.setattr(watching, "Keyboard", keyboard)
+    monkeypatch.setattr(watching, "View", made)
+    monkeypatch.setattr("sys.stdout", SimpleNamespace(isatty=lambda: terminal))
+    with watching.watching(False, 50.0) as listen:
+        assert isinstance(listen, Plain) is not drawn
+    assert made.call_count == drawn
+    for shown in made.call_args_list:
+        of, pace, given = shown.args
+        assert (of, pace.limit, given) == (console, 50.0, keyboard if keys else None)
 
 
 def test_a_plain_line_has_the_counts_of_all_worlds_every_two_seconds(

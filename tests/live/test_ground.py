@@ -125,4 +125,6 @@ def test_medians_are_those_of_the_worlds_in_which_all_numbers_are_known() -> Non
     unknown = Threshold(3, 0.5, None, 2.0)
     assert medians([]) is medians([unknown]) is None
     assert medians([unknown, known[1]]) == Medians(0.2, 0.1, pytest.approx(1.64))
+    lost = Threshold(4, 0.4, 0.5, 0.0)
+    assert medians([unknown, lost]) == Medians(0.4, 0.5, 0.0), "a line that never lasts is known"
     assert medians([unknown, *known]) == Medians(0.2, 0.2, pytest.approx(1.64))

@@ -6,7 +6,9 @@ import signal
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
+from unittest.mock import MagicMock
 
 import numpy as np
 import pytest
@@ -107,6 +109,39 @@ def test_a_command_in_the_background_leaves_the_terminal_alone(
         terminal.press(b"abc\n")
         assert keys.pressed(0.0) == ""
         assert terminal.modes() == before
+
+
+def test_a_command_that_goes_into_the_background_leaves_the_terminal_to_the_shell(
+    terminal: Terminal, keyboard: type[Keyboard], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It still waits, and ends without a change of modes that the shell has set."""
+    waits: list[float] = []
+    monkeypatch.setattr("primordia.live.terminal.time", SimpleNamespace(sleep=waits.append))
+    with keyboard() as keys:
+        taken = terminal.modes()
+        monkeypatch.setattr(Keyboard, "_in_front", lambda _: False)
+        terminal.press(b"a")
+        assert [keys.pressed(seconds) for seconds in (0.25, 0.0, 0.125)] == ["", "", ""]
+        assert waits == [0.25, 0.125]
+        assert keys.there
+    assert terminal.modes() == taken
+
+
+def test_a_terminal_that_is_gone_has_no_more_keys(
+    keyboard: type[Keyboard], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A read at the end of a file returns nothing at once, so that a wait for keys would not wait."""
+    waits: list[float] = []
+    monkeypatch.setattr("primordia.live.terminal.time", SimpleNamespace(sleep=waits.append))
+    monkeypatch.setattr("select.select", lambda *_: ([1], [], []))
+    for gone in (MagicMock(return_value=b""), MagicMock(side_effect=OSError)):
+        with keyboard() as keys:
+            monkeypatch.setattr("os.read", gone)
+            assert keys.pressed(5.0) == ""
+            assert not keys.there
+            assert keys.pressed(0.5) == ""
+        gone.assert_called_once()
+    assert waits == [0.5, 0.5]
 
 
 def test_without_a_terminal_there_are_no_keys(monkeypatch: pytest.MonkeyPatch) -> None:

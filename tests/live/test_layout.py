@@ -99,6 +99,15 @@ def test_a_world_of_twelve_rows_has_a_legend(height: int, legend: bool) -> None:
     assert rows[:-3] == ["W" * 80] * 11 + ["colour: line of descent"] * legend
 
 
+@pytest.mark.parametrize(("height", "rows"), [(24, 12), (9, 4), (7, 3), (6, 3), (5, 3), (3, 3)])
+def test_numbers_below_a_world_have_half_of_the_rows_and_at_least_three(
+    height: int, rows: int
+) -> None:
+    parts = Parts(lambda room: room.width // 10)
+    parts.screen(80, height)
+    assert parts.asked["n"] == [(80, rows)]
+
+
 def test_the_note_about_what_is_shown_takes_a_row_of_the_world() -> None:
     parts = Parts(lambda room: room.width // 10, part="shown: the first 8 of 10 cells")
     rows = parts.screen(80, 24)

@@ -24,9 +24,9 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
 
 
 def at(tick: int) -> Status:
-    """Return the status of a run whose first world is at a tick, and whose second has stopped."""
+    """Return the status of a run whose second world is at a tick. The worlds beside it have stopped."""
     engine: Any = SimpleNamespace(longest=-1)
-    world = SimpleNamespace(worlds=SimpleNamespace(tick=wide(np.array([tick, 3]))))
+    world = SimpleNamespace(worlds=SimpleNamespace(tick=wide(np.array([3, tick, 9]))))
     engine.state = SimpleNamespace(world=world)
     return Status(engine, 0.0)
 

@@ -150,6 +150,8 @@ def test_every_cause_has_its_own_name() -> None:
         deaths = [[3 * (each == cause) for each in Cause]]
         (row, _) = text(panel({}, counted(1, deaths=deaths), [], 80, 9))
         assert row == f"died of  3 {cause.label}"
+    once = counted(1, deaths=[[1] + [0] * (len(Cause) - 1)])
+    assert text(panel({}, once, [], 80, 9))[0] == f"died of  1 {Cause(0).label}"
 
 
 def bar(filled: int, length: int, shown: str) -> str:

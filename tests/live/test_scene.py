@@ -72,6 +72,9 @@ def test_a_part_of_a_torus_is_its_first_rows_and_columns() -> None:
     part, note = Torus(4, 6, letters=True).draw(cells, [], letter_room(5, 3))
     assert text(part) == ["ABCDE", "GHIJK", "MNOPQ"]
     assert note == "shown: 3 x 5 of 4 x 6 cells"
+    for width, height, shown in ((5, 9, "4 x 5"), (9, 3, "3 x 6")):
+        _, note = Torus(4, 6, letters=True).draw(cells, [], letter_room(width, height))
+        assert note == f"shown: {shown} of 4 x 6 cells"
     pixels, note = Torus(4, 6, letters=False).draw(cells, [], colour_room(5, 1))
     expected = mosaic(np.array([[0, 1, 2, 3, 4], [6, 7, 8, 9, 10]]) * 4 + 3)
     assert (pixels, note) == (expected, "shown: 2 x 5 of 4 x 6 cells")
@@ -201,6 +204,15 @@ def test_worlds_that_do_not_fit_are_neither_drawn_nor_marked() -> None:
     assert "✓" not in scene.legend
 
 
+def test_the_note_names_worlds_and_cells_that_do_not_fit() -> None:
+    """Two rows hold two worlds. Beside a drawing are four columns, so 16 of 20 columns are cells."""
+    world = posed([[1] * 40] * 3, [[0] * 40] * 3, [10] * 3)
+    scene = Stage().scene(law(40, 3), world, {}, None, letter_room(20, 2))
+    assert scene.part == "shown: the first 2 of 3 worlds; shown: the first 16 of 40 cells"
+    scene = Stage().scene(law(40, 3), world, {}, None, letter_room(20, 3))
+    assert scene.part == "shown: the first 16 of 40 cells"
+
+
 def test_an_empty_row_is_below_each_tile_of_several_rows() -> None:
     rows = text(Stage().scene(law(4, 3), three(), {}, None, colour_room(40, 12)).rows)
     assert [number for number, row in enumerate(rows) if not row] == [3, 7, 11]
@@ -232,7 +244,7 @@ def test_the_width_of_a_cell_is_that_of_the_worlds_that_are_shown() -> None:
     assert cell_width(law(10, 3), seeds, None, room) == 6, "60 columns for each of three rows"
     assert cell_width(law(10, 3), seeds, 1, room) == 6
     assert cell_width(law(10, 6), seeds, None, room) == 2, "two side by side have 28 columns"
-    assert cell_width(law(10, 6), seeds, 5, room) == 6
+    assert [cell_width(law(10, 6), seeds, alone, room) for alone in (0, 5)] == [6, 6]
     assert cell_width(law(40, 6), seeds, None, room) == 0, "not all worlds fit"
     assert cell_width(law(10, 6), [999, *range(1000, 1005)], None, room) == 2
     assert cell_width(law(10, 6), [10**11, *seeds[1:]], None, room) == 1, "labels have 15 columns"

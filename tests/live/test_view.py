@@ -5,11 +5,14 @@ from collections import defaultdict
 from types import SimpleNamespace
 from typing import Any
 
+import jax.numpy as jnp
 import pytest
 
+from primordia.engine.state import Limits
 from primordia.live import view as views
 from primordia.live.terminal import Keyboard
 from primordia.live.words import pages
+from primordia.random.wide import wide
 from primordia.runs.loop import Status
 from tests.live.drawn import text
 from tests.live.posed import Clock, counted, status, view
@@ -62,6 +65,19 @@ def test_the_numbers_are_those_of_the_world_that_is_shown_and_the_speed_is_that_
             clock.now = 12.0
             shown._descent.lines, shown._descent._throughout = lines, set(lines)
             assert value_of(shown, later, name) == value, (name, presses)
+
+
+def test_the_time_left_is_that_until_the_limits_of_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In 2 s each world lives 200 ticks. The last of the three needs 702 more ticks up to 1,000."""
+    monkeypatch.setattr(views, "time", clock := Clock())
+    none = [2**64 - 1] * 3
+    limits = Limits(wide([1000] * 3), wide(none), jnp.bool_(False))
+    for given, left in ((limits, "7"), (None, None)):
+        shown = view()
+        for clock.now, tick in ((10.0, 100), (12.0, 300)):
+            of = Status(status(tick=tick).engine, clock.now, given)
+            found = value_of(shown, of, "time left")
+        assert found == left
 
 
 def test_keys_change_the_pace_from_the_speed_of_the_fastest_world() -> None:

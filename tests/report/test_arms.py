@@ -1,5 +1,6 @@
 """The arms of an experiment side by side: tables of outcomes and effects, and curves."""
 
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -82,9 +83,9 @@ def test_survival_of_each_arm_has_its_name_and_colour(compared: Comparison) -> N
 
 
 def test_curves_over_time_are_medians_of_the_worlds_of_each_arm() -> None:
-    """The worlds of an arm end at different ticks. A median needs values of half of them. At tick 1 all
-    ages are 0, which a logarithmic axis cannot show."""
-    ends = [(200, 130, 130, 201), (150, 160, 170)]
+    """The worlds of an arm end at different ticks, the last of them in the second arm. A median needs
+    values of half of the worlds. At tick 1 all ages are 0, which a logarithmic axis cannot show."""
+    ends = [(150, 160, 170), (200, 130, 130, 201)]
     worlds = [
         [
             world_of([(tick + 1, age, died) for tick, age, died in LIVED[i:]], end)
@@ -136,6 +137,24 @@ def test_curves_of_forks_begin_at_the_fork() -> None:
             ]
             expected = len(since) if panel["y"] == "organisms" else np.mean(since)
             assert shown == pytest.approx(expected, 1e-4)
+
+
+def test_two_arms_have_tables_notes_and_curves(
+    compared: Comparison, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The first note says what is in the tables. The others belong to this comparison."""
+    lives = world_of(LIVED, until=200)
+    runs: Any = [SimpleNamespace(path=Path(name), lives=lives) for name in ("mild", "harsh")]
+    two = replace(compared, arms=compared.arms[:2])
+    monkeypatch.setattr(arms, "compare", lambda given: two if given is runs else None)
+    monkeypatch.setattr(arms, "evidence_notes", lambda given: [given.task, "Needs: 9."])
+    made = arms.arms(runs)
+    assert [table["title"] for table in made["tables"]] == ["Outcomes", "Effects"]
+    assert "Cliff's delta" in made["notes"][0]
+    assert made["notes"][1:] == ["meadow", "Needs: 9."]
+    assert [panel["title"] for panel in made["panels"]] == [
+        "Alive at each age", "Mean age of the living", "Organisms alive",
+    ]  # fmt: skip
 
 
 def test_an_experiment_with_one_arm_has_curves_and_no_tables() -> None:

@@ -1,15 +1,17 @@
 """The content of a page: worlds, numbers, films, settings and the commands that repeat the run."""
 
 import base64
+import shutil
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
-from primordia.errors import InputError
+from primordia.errors import InputError, Trouble
 from primordia.history.info import info
-from primordia.report import content, lives
+from primordia.report import content, ground, lives
+from primordia.report.arms import names
 from primordia.report.content import _numbers, of_experiment, of_run
 from primordia.report.facts import commands, facts
 from primordia.report.words import setting
@@ -42,6 +44,48 @@ def test_a_page_shows_its_first_worlds_and_counts_the_others(
     assert (made["title"], made["arms"], made["films"]) == ("meadow", None, None)
 
 
+def test_each_world_in_a_page_gets_an_equal_part_of_the_page(
+    torus: Path, cart: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two of three worlds are shown, or the first worlds of two of three arms. A world is given
+    completely if its births are at most half of those that a page can hold."""
+    monkeypatch.setattr(content, "WORLDS", 2)
+    monkeypatch.setattr(content, "arms", lambda runs: None)
+    other = Path(shutil.copytree(torus, tmp_path / "other"))
+    runs = [Archive(torus), Archive(cart), Archive(other)]
+    chosen: Any = SimpleNamespace(
+        opened=lambda: runs,
+        plan=SimpleNamespace(question="Why?"),
+        path=tmp_path,
+        status=lambda: SimpleNamespace(jobs={}),
+    )
+
+    def shown(made: dict[str, Any]) -> list[bool]:
+        return [world["ground"]["whole"] for world in made["worlds"]]
+
+    births = len(runs[0].lives.of_world(0))
+    monkeypatch.setattr(ground, "SEEN", 1)
+    for most, whole in ((2 * births, True), (2 * births - 1, False)):
+        monkeypatch.setattr(ground, "WHOLE", most)
+        assert shown(of_run(runs[0], filmed=False))[0] is whole
+        made = of_experiment(chosen)
+        assert shown(made)[0] is whole
+        assert [world["name"] for world in made["worlds"]] == ["torus, seed 5", "cart, seed 0"]
+        assert len(made["facts"]) == 3
+
+
+def test_a_run_in_the_present_folder_has_the_name_of_the_folder(
+    torus: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(torus)
+    run = Archive(Path())
+    assert of_run(run, filmed=False)["subtitle"] == "torus, seeds 5 to 7"
+    assert names([run]) == ["torus"]
+    assert facts(
+        invented(path=Path(), description=SimpleNamespace(code={"pond.py": "1"})), NUMBERS
+    )["commands"] == ["primordia verify torus"]
+
+
 def test_the_numbers_of_a_single_world_include_its_extinctions(cart: Path) -> None:
     run = Archive(cart)
     made = of_run(run, filmed=False)
@@ -60,9 +104,9 @@ def test_the_numbers_of_a_single_world_include_its_extinctions(cart: Path) -> No
 
 def test_the_numbers_on_top_are_of_all_worlds() -> None:
     """The second of three worlds has the most ticks. Nothing is alive in the third."""
-    names = ("ticks", "births", "deaths", "alive", "oldest_age", "extinctions")
+    columns = ("ticks", "births", "deaths", "alive", "oldest_age", "extinctions")
     rows = ((500, 1000, 996, 4, 80, 1), (1200, 70, 67, 3, 450, 0), (900, 9, 9, 0, None, 5))
-    worlds = [dict(zip(names, row, strict=True)) for row in rows]
+    worlds = [dict(zip(columns, row, strict=True)) for row in rows]
     shown = {each["name"]: each["value"] for each in _numbers(worlds)}
     assert shown == {
         "worlds": "3",
@@ -124,6 +168,13 @@ def invented(**changed: Any) -> Any:
     return SimpleNamespace(**{**parts, **changed})
 
 
+NUMBERS: dict[str, Any] = {
+    "worlds": [{"seed": 5, "digest": "a"}, {"seed": 6, "digest": "b"}],
+    "exact": False,
+    "restarts": 3,
+}
+
+
 def test_a_film_of_a_life_names_its_organism(monkeypatch: pytest.MonkeyPatch) -> None:
     """A life as long as the limit is filmed too. A film shows the first and the last six seconds."""
     asked = []
@@ -152,9 +203,12 @@ def test_a_film_of_a_life_names_its_organism(monkeypatch: pytest.MonkeyPatch) ->
     assert lives.films(alone)["films"][1]["about"] == "Organism 1: born at tick 1, 6 ticks, dead"
 
 
-def test_each_life_that_is_not_filmed_has_its_reason(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("kind", [InputError, Trouble])
+def test_each_life_that_is_not_filmed_has_its_reason(
+    kind: type[Exception], monkeypatch: pytest.MonkeyPatch
+) -> None:
     def refuse(run: Any, *_: Any, **more: Any) -> Path:
-        raise InputError(f"{run.path} has no pictures")
+        raise kind(f"{run.path} has no pictures")
 
     monkeypatch.setattr("primordia.device.prepare", lambda: None)
     monkeypatch.setattr(lives, "LONGEST", {"jax": 1500, "host": 1499})
@@ -169,12 +223,7 @@ def test_each_life_that_is_not_filmed_has_its_reason(monkeypatch: pytest.MonkeyP
 
 def test_a_page_lists_all_settings_that_are_not_empty() -> None:
     """Zero and false are values. Files are named without their folders."""
-    numbers = {
-        "worlds": [{"seed": 5, "digest": "a"}, {"seed": 6, "digest": "b"}],
-        "exact": False,
-        "restarts": 3,
-    }
-    listed = facts(invented(), numbers)
+    listed = facts(invented(), NUMBERS)
     assert listed["settings"]["hazard"] == "0.0"
     assert listed["settings"]["brain.biases"] == "false"
     assert listed["settings"]["stop.ticks"] == "2700"
@@ -183,7 +232,7 @@ def test_a_page_lists_all_settings_that_are_not_empty() -> None:
     assert listed["digests"] == [{"seed": "5", "digest": "a"}, {"seed": "6", "digest": "b"}]
     assert (listed["exact"], listed["restarts"]) == (False, 3)
     grown = config(TORUS, about="").model_copy(update={"ancestors": ("/home/me/best.npz",)})
-    listed = facts(invented(config=grown), numbers)
+    listed = facts(invented(config=grown), NUMBERS)
     assert listed["settings"]["ancestors"] == "['best.npz']"
     assert "/home" not in listed["toml"]
     assert listed["commands"] == ["primordia verify run"]

@@ -49,6 +49,12 @@ def test_no_number_is_lost_between_points_of_one_place() -> None:
     assert table["curves"][0]["values"] == [6, None]
 
 
+def test_a_curve_of_zeros_is_a_curve() -> None:
+    zeros = curves.curve("none", np.zeros(2), "#000000")
+    table = curves.table(np.array([1, 2]), zeros)
+    assert table["curves"] == [{**zeros, "values": [0, 0]}]
+
+
 def test_thinned_curves_keep_their_ends() -> None:
     x = np.arange(1, 100_000)
     places, values = curves.thinned(x, x.astype(float))

@@ -35,6 +35,8 @@ def test_each_cell_shows_the_line_of_its_organism_at_each_moment() -> None:
     shown, clades = Ground(lives, CELLS), spacetime.clades_of(lives)
     assert len(clades.renewals) > 5, "lines take over several times"
     segments, inks = shown.segments, all_unpacked(shown.data()["segments"])["ink"]
+    places = list(zip(lives.cell[segments["row"]], segments["start"], strict=True))
+    assert places == sorted(places), "by cell, and then by time"
     seen: dict[int, list[int]] = {}
     for place in range(len(lives)):
         tick = int(lives.born[place])

@@ -116,6 +116,17 @@ def test_the_same_content_makes_the_same_bytes() -> None:
     assert page(content()) == page(content())
 
 
+def test_texts_in_lists_of_any_kind_have_no_control_characters() -> None:
+    made = json.loads(embedded([["a\x1b[31m"], ("b\x07", {"c\x1b": ("\x9b",)})]))
+    assert made == [["a\\x1b[31m"], ["b\\x07", {"c\\x1b": ["\\x9b"]}]]
+
+
+def test_a_page_in_a_file_has_no_script_that_asks_a_server() -> None:
+    made = {live: Read(page(content(), live)).texts["script"][-1] for live in (False, True)}
+    assert [made[live].count("new EventSource") for live in (False, True)] == [0, 1]
+    assert made[True].startswith(made[False])
+
+
 def test_the_policy_changes_with_the_scripts() -> None:
     assert policy("", ["a"], False) != policy("", ["b"], False)
 

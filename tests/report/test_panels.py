@@ -111,6 +111,32 @@ def test_population_and_mean_age_of_a_world_end_with_its_last_tick() -> None:
             assert [each["values"][i] for i in after] == [worlds[0]["values"][i] for i in after]
 
 
+def test_curves_go_on_until_the_last_tick_of_any_world() -> None:
+    """The first of two worlds is the shorter one."""
+    worlds = [world_of(SHORT, ENDS[1]), world_of(LONG, ENDS[0])]
+    panels = named(joined(worlds, np.array([0, 1])))
+    for title in ("Organisms alive", "Mean age of the living"):
+        for table in panels[title]["tables"]:
+            assert table["x"][-1] == ENDS[0]
+
+
+def test_a_mean_age_below_one_tick_is_shown_and_an_age_of_zero_is_not() -> None:
+    """At tick 2 one of the two organisms is newborn, and the other is a tick old."""
+    world = world_of([(1, 0, False), (2, 0, False)], until=4)
+    (table,) = named(world)["Mean age of the living"]["tables"]
+    assert (table["x"], table["curves"][0]["values"]) == ([1, 2, 3, 4], [None, 0.5, 1.5, 2.5])
+
+
+@pytest.mark.parametrize("births", [1, 2, 3, 4, 5])
+def test_each_quarter_with_a_birth_has_a_curve(births: int) -> None:
+    """Birth n of N is in quarter 4 n / N, rounded down."""
+    world = world_of([(tick, 3, True) for tick in range(births)])
+    quarters = ["first", "second", "third", "last"]
+    names = {f"{quarters[4 * n // births]} quarter of the births" for n in range(births)}
+    tables = named(world)["Alive at each age"]["tables"]
+    assert {table["curves"][0]["name"] for table in tables} == names
+
+
 def test_survival_of_each_quarter_is_the_product_of_the_shares_that_survive() -> None:
     lives = unequal()
     panel = named(lives)["Alive at each age"]
@@ -239,6 +265,33 @@ def test_a_count_of_the_habitat_has_its_mean_and_best_at_the_samples_of_each_wor
         assert middle["name"] == f"{name}, median and quartiles of 3 worlds"
         assert middle["colour"] == colour
         assert middle["values"] == [2 * size, None, 8.5 * size]
+
+
+def test_each_count_of_a_habitat_has_its_panel_with_a_limited_number_of_samples(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Of ten samples every third is shown, if four points are allowed."""
+    monkeypatch.setattr(curves, "POINTS", 4)
+    at = np.arange(10)
+    columns = {f"{name}_{part}": at * size for name, part, size in SIZES}
+    metrics = pa.table({"world": 0 * at, "tick": 50 * at, **columns})
+    more: dict[str, Any] = {"description": SimpleNamespace(rate=None, tallies=("score", "goals"))}
+    run = config(TORUS, seeds=1, metabolism=None)
+    panels = named(unequal().of_world(0), metrics=metrics, config=run, **more)
+    for name, part, size in SIZES:
+        panel = panels[f"{name} of the living"]
+        assert panel["y"] == name
+        (table,) = (each for each in panel["tables"] if each["curves"][0]["name"] == part)
+        assert table["x"] == [0, 150, 300, 450]
+        assert table["curves"][0]["values"] == [0, 3 * size, 6 * size, 9 * size]
+
+
+SIZES = (
+    ("score", "mean", 1.0),
+    ("score", "best", 2.0),
+    ("goals", "mean", 3.0),
+    ("goals", "best", 4.0),
+)
 
 
 def test_numbers_of_a_page_have_five_digits_and_no_fraction_if_they_are_whole() -> None:

@@ -1,5 +1,6 @@
 """The pictures of a page hold what the records say, cell by cell and moment by moment."""
 
+import base64
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -19,8 +20,10 @@ from primordia.report.tree import Node, grown, in_order, tree
 from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
 from tests.pedigrees import lives_of
+from tests.report.conftest import TORUS
 from tests.report.unpacked import all_unpacked, unpacked
 from tests.synthetic import occupants
+from tests.worlds import config
 
 PARENTS = st.lists(st.integers(-1, 30), min_size=1, max_size=40).map(
     lambda drawn: np.array([min(parent, row - 1) for row, parent in enumerate(drawn)])
@@ -32,6 +35,29 @@ PARENTS = st.lists(st.integers(-1, 30), min_size=1, max_size=40).map(
 def test_packed_arrays_come_out_as_they_went_in(values: list[int], rising: bool) -> None:
     given_ = np.array(sorted(values) if rising else values, np.int64)
     assert unpacked(packed(given_, rising)).tolist() == given_.tolist()
+
+
+@pytest.mark.parametrize(
+    ("values", "rising", "kind"),
+    [
+        ([0, 255], False, "uint8"),
+        ([0, 256], False, "uint16"),
+        ([65_535, 0], False, "uint16"),
+        ([65_536], False, "uint32"),
+        ([2**32 - 1], False, "uint32"),
+        ([2**32], False, "float64"),
+        ([2**32, 2**32 + 255, 2**32 + 256], True, "float64"),
+        ([7, 262, 517], True, "uint8"),  # the differences are 7, 255 and 255
+        ([], True, "uint8"),
+    ],
+)
+def test_packed_arrays_have_the_shortest_type_and_no_time(
+    values: list[int], rising: bool, kind: str
+) -> None:
+    """Bytes 4 to 7 of a gzip file are the time at which it was written (RFC 1952)."""
+    made = packed(np.array(values, np.int64), rising)
+    assert (made["type"], made["rising"]) == (kind, rising)
+    assert base64.b64decode(made["data"])[4:8] == bytes(4)
 
 
 @pytest.mark.parametrize("whole", [True, False])
@@ -86,7 +112,9 @@ def test_ancestors_and_generations_are_those_of_a_walk(parents: np.ndarray, data
 @given(PARENTS, st.data())
 def test_the_phylogeny_joins_lines_where_they_part(parents: np.ndarray, data: Any) -> None:
     leaves = sorted(data.draw(st.sets(st.integers(0, len(parents) - 1), min_size=1)))
-    nodes = in_order(grown(parents, leaves))
+    roots = grown(parents, leaves)
+    assert [root.row for root in roots] == sorted(root.row for root in roots), "in order of birth"
+    nodes = in_order(roots)
     of_row = {node.row: node for node in nodes}
 
     def line(row: int) -> list[int]:
@@ -103,7 +131,7 @@ def test_the_phylogeny_joins_lines_where_they_part(parents: np.ndarray, data: An
     for row, node in of_row.items():
         ways = {each[each.index(row) - 1] for each in lines if row in each and each[0] != row}
         assert node.alive or len(ways) > 1 or parents[row] < 0, "each node is needed"
-        assert {child.left_by for child in node.children} == ways
+        assert [child.left_by for child in node.children] == sorted(ways, reverse=True)
     levels = [node.level for node in nodes if node.alive]
     assert sorted(levels) == list(range(len(leaves)))
     assert not_crossing(nodes)
@@ -154,8 +182,8 @@ def test_a_film_of_a_torus_shows_every_cell(torus: Path) -> None:
 
 def test_a_ring_has_no_film(torus: Path) -> None:
     run = Archive(torus)
-    config = run.config.model_copy(update={"placement": type(run.config.placement)()})
-    assert film.film(Ground(run.lives.of_world(0), 24), config) is None
+    ring = run.config.model_copy(update={"placement": type(run.config.placement)()})
+    assert film.film(Ground(run.lives.of_world(0), 24), ring) is None
     odd = run.config.model_copy(update={"cells": 23})
     assert film.film(Ground(run.lives.of_world(0), 24), odd) is None, "no torus has 23 cells"
 
@@ -192,6 +220,21 @@ def test_the_nodes_of_a_phylogeny_have_their_organisms_and_times() -> None:
         assert node["ink"] == segments["ink"][last], "the ink that the line has now"
 
 
+def test_the_inks_of_a_phylogeny_are_those_of_the_lines_that_live_now() -> None:
+    """At tick 3, organisms 0, 2 and 3 are one line. At tick 5, when the last of the other line has died,
+    each of them begins a line."""
+    lives = lives_of([-1, -1, 0, 0], [0, 0, 2, 3], [9, 5, 9, 9], [False, True, False, False])
+    picture = Ground(replace(lives, cell=np.arange(4, dtype=np.int32), seen=lives.born), 4)
+    made = tree(picture)
+    assert made is not None
+    codes = spacetime.line_codes(lives, picture.clades, np.array([[0], [2], [3]]), np.array([9]))
+    inks = picture.inks(codes[:, 0]).tolist()
+    assert len(set(inks)) == 3
+    assert {node["number"]: node["ink"] for node in made["nodes"]} == dict(
+        zip((0, 2, 3), inks, strict=True)
+    )
+
+
 @pytest.mark.parametrize(("most", "numbers"), [(3, [4, 5, 6]), (2, [4, 5]), (1, [5])])
 def test_a_phylogeny_shows_a_limited_number_of_the_living_spread_over_the_cells(
     most: int, numbers: list[int], monkeypatch: pytest.MonkeyPatch
@@ -221,6 +264,17 @@ def test_each_byte_of_a_film_is_the_ink_of_a_line_and_the_shade_of_an_age(torus:
             assert byte // 32 == min(int(8 * np.log1p(age) / np.log1p(longest)), 7)
             codes = spacetime.line_codes(lives, clades, np.array([[row]]), np.array([tick]))[0]
             assert byte % 32 - 1 == shown.inks(codes)[0]
+
+
+def test_shades_of_a_film_reach_up_to_the_longest_life_also_if_it_goes_on() -> None:
+    """At tick 7, two organisms are 2 ticks old and one is newborn. At tick 30 the former are 25."""
+    lives = tiny()
+    lives = replace(lives, ended=np.where(lives.died, lives.ended, 30))
+    made = film.film(Ground(lives, 6), config(TORUS, cells=6))
+    assert made is not None
+    last = unpacked(made["cells"]).reshape(-1, 6)[-1]
+    shade = int(8 * np.log1p(2) / np.log1p(25))
+    assert [int(last[cell]) // 32 for cell in (1, 3, 5)] == [shade, 0, shade]
 
 
 def test_the_share_of_the_page_limits_the_number_of_pictures_of_a_film(

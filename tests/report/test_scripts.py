@@ -145,7 +145,20 @@ TEXTS = [
     (f"card({PAIR}, 1).map((each) => each.textContent)",
      ["Organism 7", "Borntick 1,005, with mutationsCell3Lived5,000 ticks (1 min 40 s)"
       "Diedtick 6,005, hazardParent0Generation1Children0"]),
+    (f"card({PAIR}, 0).map((each) => each.textContent)",
+     ["Organism 0", "Borntick 1,000, a founderCell0Age300 ticks (6 s)StatealiveParentnone"
+      "Generation0Children1: 7 "]),
     (f"childrenOf({MANY}, 0).textContent", "12: 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, … "),
+    ("[0, 1, 9, 10, 11].map((count) => childrenOf({ facts: { children: [count],"
+     " number: [...Array(11).keys()], parent: [0, ...Array(10).fill(1)].slice(0, count + 1) } }, 0)"
+     ".textContent.trim())",
+     ["0", "1: 1", "9: 1, 2, 3, 4, 5, 6, 7, 8, 9", "10: 1, 2, 3, 4, 5, 6, 7, 8, 9, 10",
+      "11: 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, …"]),
+    ("childrenOf({ facts: { children: [3], number: [4, 9], parent: [0, 5] } }, 0).textContent",
+     "3: 9, … "),
+    ("[0, 1, 2].map((at) => parentOf({ facts: { number: [3, 9, 12], parent: [0, 8, 10] } }, at))"
+     ".map((each) => each.textContent || each)",
+     ["none", "7, not in the picture", "9"]),
     (f"[0, 1, 2].map((at) => nodeText({NODES}, at))",
      ["organism 5, born at tick 1,200, an ancestor, no parent on record",
       "organism 1,700, born at tick 3,000, alive, 1 generation from organism 5",
@@ -167,6 +180,12 @@ TEXTS = [
      ["This run is not exact: parts of the run cannot be repeated bit for bit.",
       "The living got new bodies 1,200 times, when the run was resumed.",
       "primordia run config.toml\nbCopy", "config.toml, which the command takescells = 8Copy"]),
+    (f"factsOf({{ ...{FACTS}, name: '', digests: [{{ seed: '3', digest: 'abc' }}, {{ seed: '4',"
+     " digest: 'de' }] }).map((each) => each.textContent)",
+     ["primordia run aCopy", "All settings as config.tomlcells = 8Copy", "Settingscells8",
+      "Versionsjax1", "Digests of the worldsseed 3abcseed 4de"]),
+    ("groundText({ topology: 'well-mixed', cells: 8, shown: 8, whole: true }).split(';')[0]",
+     "Cells lie across, all neighbours of each other"),
     ("livesSection({ films: [], missing: 'no' }).textContent", "LivesNot filmed: no."),
     ("[...wideTable({ title: 't', head: ['a', 'b'], rows: [['x', '1'], ['y', '2']] })"
      ".querySelectorAll('caption, th, td')].map((each) => each.textContent)",
@@ -176,7 +195,19 @@ TEXTS = [
      ["Organism 7 was not born in this world.", "Organism 7 is not in this picture.",
       "Give a birth number."]),
 ]  # fmt: skip
+MARKED = (
+    "((tick, cause) => { const marks = []; markInFilm({ fillRect: (...box) => marks.push(box) },"
+    " { at: 1, ticks: [0, tick], columns: 4 }, { facts: { first: 4, born: [0, 6], lifespan: [1, 5],"
+    " cause: [1, cause], cell: [0, 6] } }, 1); return marks; })"
+)
+"""The marks of an organism in cell 6, which is born at tick 10 and dies at tick 15, or is alive."""
+FILM = [
+    (f"[0, 9, 10, 14, 15].map((tick) => {MARKED}(tick, 1))",
+     [[], [], [[2, 1, 1, 1]], [[2, 1, 1, 1]], []]),
+    (f"[9, 10, 15, 99].map((tick) => {MARKED}(tick, 0).length)", [0, 1, 1, 1]),
+]  # fmt: skip
 CASES: dict[str, Any] = {
+    "film": FILM,
     "texts": TEXTS,
     "numbers": NUMBERS,
     "places": PLACES,

@@ -74,8 +74,6 @@ def test_the_page_and_its_content_are_those_of_the_run(server: Server, torus: Pa
     answer, body = asked(server, "/")
     assert (answer.status, answer.headers["Content-Type"]) == (200, "text/html; charset=utf-8")
     assert b"connect-src &#x27;self&#x27;" in body
-    assert answer.headers["Content-Security-Policy"] == "frame-ancestors 'none'"
-    assert answer.headers["X-Content-Type-Options"] == "nosniff"
     answer, data = asked(server, "/data")
     assert (answer.status, answer.headers["Content-Type"]) == (200, "application/json")
     assert data.decode() == embedded(of_run(Archive(torus), filmed=False))
@@ -84,6 +82,17 @@ def test_the_page_and_its_content_are_those_of_the_run(server: Server, torus: Pa
         answer, nothing = asked(server, path, "HEAD")
         assert (answer.status, nothing) == (200, b"")
         assert int(answer.headers["Content-Length"]) == len(whole)
+
+
+def test_no_answer_is_stored_or_shown_in_another_page(server: Server) -> None:
+    asks = ("GET", "/"), ("GET", "/data"), ("HEAD", "/events"), ("GET", "/no"), ("POST", "/")
+    for method, path in asks:
+        headers = asked(server, path, method)[0].headers
+        assert headers["Cache-Control"] == "no-store"
+        assert headers["Content-Security-Policy"] == "frame-ancestors 'none'"
+        assert headers["Cross-Origin-Resource-Policy"] == "same-origin"
+        assert headers["Referrer-Policy"] == "no-referrer"
+        assert headers["X-Content-Type-Options"] == "nosniff"
 
 
 def test_it_is_reached_from_this_machine_alone(server: Server) -> None:
@@ -128,8 +137,11 @@ def test_no_link_of_a_run_is_followed(run: Path, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("method", ["POST", "PUT", "PATCH", "DELETE", "OPTIONS"])
 def test_the_page_can_only_be_read(server: Server, method: str) -> None:
-    answer, _ = asked(server, "/", method)
+    answer, body = asked(server, "/", method)
     assert (answer.status, answer.headers["Allow"]) == (405, "GET, HEAD")
+    assert body == b"405 Method Not Allowed\n"
+    answer, body = asked(server, "/no", "HEAD")
+    assert (answer.status, body) == (404, b"")
 
 
 @pytest.mark.parametrize("method", ["TRACE", "CONNECT", "BREW"])

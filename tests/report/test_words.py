@@ -108,6 +108,10 @@ def test_each_cause_of_death_has_its_own_words() -> None:
     assert len(set(DEATHS.values())) == len(DEATHS)
     (alone, *_) = sentences(world(deaths={"hazard": 1300}))[1].split(". ")
     assert alone.endswith("and 1,300 died, by accident")
+    (once, *_) = sentences(world(deaths={"hazard": 1}))[1].split(". ")
+    assert once.endswith("and 1 died, by accident")
+    (both, *_) = sentences(world(deaths={"fatal": 1, "starved": 2}))[1].split(". ")
+    assert both.endswith("and 3 died: 1 killed by their world, 2 of hunger")
 
 
 def test_a_world_that_died_out_began_again_with_the_founders_of_its_settings() -> None:
@@ -136,6 +140,8 @@ def test_the_longest_life_is_named_and_the_first_of_equal_ones() -> None:
     assert dead == (
         "The longest life is that of organism 0, born at tick 1,200: 5 ticks. This organism is dead."
     )
+    first = worlds_of([(0, 20, True)], [(0, 9, True)], until=50)
+    assert "organism 0 of world 0, born" in sentences(world(), world(), lives=first)[2]
 
 
 def test_quarters_are_compared_if_each_has_ten_lives() -> None:
@@ -161,6 +167,7 @@ def test_the_settings_are_put_into_words() -> None:
     ring = setting(config(TORUS, about="", seeds=2000, placement={"topology": "ring"}))
     assert ring.startswith("Each of 2,000 worlds has 24 cells on a ring. ")
     assert ring.endswith(" An organism that gathers too little food starves.")
+    assert setting(config(TORUS, about="", seeds=2)).startswith("Each of 2 worlds has 24 cells on")
     replacing = setting(config(TORUS, placement={"topology": "well-mixed", "rule": "replacing"}))
     assert "24 cells, all of which are neighbours" in replacing
     assert "copies itself into a neighbouring cell, whose organism dies." in replacing

@@ -1,0 +1,190 @@
+"""Several runs, arms and experiments: each of them and each argument reaches the function behind it."""
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+from unittest.mock import MagicMock, call, patch
+
+import pytest
+
+import primordia
+from primordia import api
+from primordia import device as devices
+from primordia.api import runs
+from primordia.comparison import comparison
+from primordia.errors import InputError
+from primordia.phylogeny import formats
+from primordia.runs import opening
+
+RUN, OUT, MORE = Path("RUN"), Path("OUT"), Path("MORE")
+
+
+def test_all_runs_of_an_arm_are_opened_in_their_order() -> None:
+    arm = primordia.Run(RUN, (OUT, MORE))
+    for name in ("opened", "only"):
+        with patch.object(opening, name) as behind:
+            assert getattr(arm, name)() is behind.return_value
+        behind.assert_called_once_with([RUN, OUT, MORE])
+
+
+def test_a_comparison_has_all_runs_of_an_arm_and_all_arms_of_an_experiment() -> None:
+    """An experiment is given as such or by its directory."""
+    arms = [MagicMock() for _ in range(4)]
+    with (
+        patch("primordia.api.is_experiment", lambda path: path == OUT),
+        patch.object(api.Experiment, "records", side_effect=[arms[:2], arms[2:]]),
+        patch.object(opening, "opened", side_effect=lambda places, *_: places),
+        patch.object(comparison, "compare") as compare,
+    ):
+        primordia.compare(primordia.Run(RUN, (MORE,)), "OUT", api.Experiment(RUN))
+    compare.assert_called_once_with([[RUN, MORE], *arms], None, None)
+
+
+@pytest.mark.parametrize("trust", [False, True])
+def test_trust_is_for_the_code_in_all_directories_and_for_its_present_version(trust: bool) -> None:
+    archives = MagicMock(side_effect=lambda path, edited=False: SimpleNamespace(
+        code=lambda: (path, edited)
+    ))  # fmt: skip
+    with (
+        patch("primordia.api.is_experiment", return_value=False),
+        patch.object(primordia.Run, "directories", lambda run: (run.path, *run.others)),
+        patch("primordia.api.Archive", archives),
+        patch("primordia.api.code.trust") as trusted,
+    ):
+        loaded = primordia.load(["RUN", OUT, "MORE"], trust)
+    assert loaded == primordia.Run(RUN, (OUT, MORE))
+    both = [call((path, edited)) for path in (RUN, OUT, MORE) for edited in (False, True)]
+    assert trusted.call_args_list == (both if trust else [])
+
+
+def test_an_experiment_is_loaded_as_such_only_alone() -> None:
+    with (
+        patch("primordia.api.is_experiment", lambda path: path == OUT),
+        patch.object(primordia.Run, "directories", lambda run: ()),
+        patch.object(api.Experiment, "directories", lambda run: ()),
+    ):
+        loaded = [primordia.load(places) for places in (RUN, "OUT", [OUT], [OUT, RUN])]
+    assert [type(each) for each in loaded] == [
+        primordia.Run, api.Experiment, api.Experiment, primordia.Run,
+    ]  # fmt: skip
+    with pytest.raises(InputError, match="no run is given"):
+        primordia.load([])
+
+
+def test_the_arms_of_an_experiment_are_runs_in_the_order_of_the_experiment() -> None:
+    campaign = SimpleNamespace(arms={"mild": RUN / "mild", "harsh": RUN / "harsh"})
+    with patch("primordia.api.experiments.campaign.recorded", return_value=campaign):
+        arms = api.Experiment(RUN).arms
+    assert list(arms.items()) == [(name, primordia.Run(RUN / name)) for name in ("mild", "harsh")]
+
+
+@pytest.mark.parametrize("written", [(), (RUN,), (MORE,), (RUN, MORE)])
+def test_dashboards_follow_an_arm_while_one_of_its_runs_is_written(written: Any) -> None:
+    with (
+        patch.object(primordia.Run, "directories", lambda run: (run.path, *run.others)),
+        patch("primordia.api.runs.directory.is_written", lambda path: path in written),
+    ):
+        sources = primordia.Run(RUN, (MORE,)).sources()
+    assert sources.runs == {"": (RUN, MORE)}
+    assert sources.go_on == bool(written)
+
+
+@pytest.mark.parametrize("arms", [["mild"], ["mild", "harsh"]])
+@pytest.mark.parametrize(
+    ("jobs", "go_on"),
+    [
+        ({"done": 9, "running": 0, "failed": 0, "waiting": 0}, False),
+        ({"done": 9, "running": 0, "failed": 2, "waiting": 0}, False),
+        ({"done": 9, "running": 1, "failed": 0, "waiting": 0}, True),
+        ({"done": 0, "running": 0, "failed": 0, "waiting": 1}, True),
+    ],
+)
+def test_dashboards_follow_an_experiment_while_jobs_run_or_wait(
+    jobs: dict[str, int], go_on: bool, arms: list[str]
+) -> None:
+    """An arm that is alone needs no name."""
+    paths = {name: (RUN / name / "a", RUN / name / "b") for name in arms}
+    campaign = SimpleNamespace(status=lambda: SimpleNamespace(jobs=jobs), runs=lambda: paths)
+    with patch("primordia.api.experiments.campaign.recorded", return_value=campaign):
+        sources = api.Experiment(RUN).sources()
+        directories = api.Experiment(RUN).directories()
+    assert sources.runs == (paths if len(arms) > 1 else {"": paths["mild"]})
+    assert sources.go_on is go_on
+    assert directories == tuple(path for each in paths.values() for path in each)
+
+
+@pytest.mark.parametrize("out", [None, "OUT.csv"])
+def test_a_phylogeny_is_of_the_whole_past_and_of_the_part_that_is_chosen(out: str | None) -> None:
+    run, say = primordia.Run(RUN), MagicMock()
+    with (
+        patch.object(opening, "only") as only,
+        patch.object(runs, "whole_past") as past,
+        patch.object(runs, "chosen") as chosen,
+        patch.object(runs, "table") as table,
+        patch.object(formats, "save") as save,
+    ):
+        made = run.lineage(0, out=out, say=say, world=2, extant=True)
+    past.assert_called_once_with(only.return_value, say)
+    chosen.assert_called_once_with(past.return_value.whole, 0, world=2, extant=True)
+    if out is None:
+        assert made is table.return_value
+        table.assert_called_once_with(chosen.return_value)
+        save.assert_not_called()
+    else:
+        assert made is None
+        save.assert_called_once_with(chosen.return_value, Path(out), say)
+
+
+def test_a_repetition_has_its_device_and_its_listener() -> None:
+    with (
+        patch.object(opening, "only") as only,
+        patch.object(devices, "selected") as selected,
+        patch.object(runs, "verify") as verify,
+    ):
+        assert primordia.Run(RUN).verify("gpu", print) is verify.return_value
+    verify.assert_called_once_with(only.return_value, print)
+    selected.assert_called_once_with("gpu")
+
+
+def test_dashboards_get_the_folders_and_options_that_are_given() -> None:
+    run = primordia.Run(RUN / "one")
+    with patch.object(runs, "track") as track:
+        run.track("boards", OUT, follow=True, every=7.0)
+    track.assert_called_once_with(run.sources, "one", "boards", OUT, follow=True, every=7.0)
+
+
+@pytest.mark.parametrize(("out", "path"), [(None, None), ("OUT", OUT)])
+def test_the_page_of_an_experiment_has_its_place(out: str | None, path: Path | None) -> None:
+    with (
+        patch("primordia.api.experiments.campaign.recorded") as recorded,
+        patch("primordia.report.report.report") as report,
+    ):
+        assert api.Experiment(RUN).report(out) is report.return_value
+    report.assert_called_once_with(recorded.return_value, path)
+
+
+@pytest.mark.parametrize(("left", "gathered"), [([], True), ([5], False)])
+def test_results_are_written_when_no_job_of_any_arm_is_left(
+    left: list[int], gathered: bool
+) -> None:
+    """All jobs of the named arm are done before."""
+    campaign = MagicMock(path=OUT, left=lambda only=(): [] if only else left)
+    with patch("primordia.api.campaigns.begin", return_value=campaign) as begin:
+        made = primordia.experiment("file.toml", only=["mild"])
+    begin.assert_called_once_with(Path("file.toml"), None)
+    assert campaign.gather.called is gathered
+    assert made == api.Experiment(OUT)
+
+
+def test_the_stop_of_an_experiment_is_that_of_the_program() -> None:
+    ending = SimpleNamespace(stopped=True, failed=[SimpleNamespace(job=3, error="full")])
+    campaign = MagicMock(path=OUT, left=lambda only=(): [5])
+    with (
+        patch("primordia.api.campaigns.begin", return_value=campaign) as begin,
+        patch("primordia.api.place_for") as place,
+        patch("primordia.api.live_all", return_value=ending),
+        pytest.raises(KeyboardInterrupt),
+    ):
+        primordia.experiment(RUN, "OUT")
+    begin.assert_called_once_with(RUN, OUT)
+    place.assert_called_once_with(OUT, 1, None, None, 60.0, "cpu")
