@@ -29,6 +29,7 @@ class Notebook:
     def __init__(self, saves: bool = True) -> None:
         self.saves, self.bodies = saves, {"body": np.arange(6)}
         self.begun: list[tuple] = []
+        self.error: Exception | None = None
         self.loaded: dict[str, np.ndarray] = {}
 
     def can(self, ability: Ability) -> bool:
@@ -41,6 +42,8 @@ class Notebook:
         self.loaded = arrays
         if "body" not in arrays:
             raise KeyError("body")
+        if self.error is not None:
+            raise self.error
 
     def reset(self, cells: np.ndarray, words: np.ndarray) -> np.ndarray:
         self.begun.append((cells.tolist(), words.tolist()))
@@ -91,6 +94,24 @@ def test_a_habitat_is_restored_from_what_it_stored_and_from_nothing_else() -> No
     del arrays["bodies.body"]
     with pytest.raises(Trouble, match="does not fit this run: its bodies cannot be loaded: 'body'"):
         chunks(habitat).load(template, arrays)
+
+
+@pytest.mark.parametrize("error", [IndexError("no"), KeyError("no"), ValueError("no")])
+def test_whatever_a_habitat_says_about_stored_bodies_is_trouble(error: Exception) -> None:
+    habitat, template = Notebook(), State({"a": np.zeros(2, np.float32)}, np.zeros_like(SENSES))
+    habitat.error = error
+    arrays = {"world.a": np.ones(2, np.float32), "bodies.senses": SENSES, "bodies.body": np.ones(6)}
+    with pytest.raises(Trouble, match=f"this run: its bodies cannot be loaded: {error}$"):
+        chunks(habitat).load(template, arrays)
+
+
+def test_a_habitat_that_cannot_save_goes_on_with_the_senses_of_new_bodies() -> None:
+    made, reset = chunks(Notebook(saves=False)), SENSES + 100
+    made._reset_to_birth = lambda world, senses: reset
+    template = State({"a": np.zeros(2, np.float32)}, np.zeros_like(SENSES))
+    loaded = made.load(template, {"world.a": np.ones(2, np.float32), "bodies.senses": SENSES})
+    assert loaded.world["a"].tolist() == [1, 1]
+    assert loaded.bodies is reset
 
 
 def test_bodies_of_the_living_are_reset_with_the_random_words_of_their_births() -> None:

@@ -62,6 +62,7 @@ class Scripted:
 
     def remember(self, bulk: Any, held: Any, senses: np.ndarray, ran: Any) -> Any:
         self.log.append(("remember", senses[:, 0].tolist()))
+        self.ran = ran
         return bulk
 
     def begin(self) -> None:
@@ -110,6 +111,19 @@ def test_deaths_are_noted_before_a_reset_and_samples_after_it() -> None:
     ]  # fmt: skip
     assert (senses, done) == ([90, 90, 90, 6], 10)
     assert SENSES[:, 0].tolist() == [0, 2, 4, 6], "the given state is unchanged"
+
+
+def test_the_newborn_remember_the_senses_of_their_own_bodies() -> None:
+    """A moment may be due in the tick of a single birth, in those worlds that ran."""
+    ran, yes = np.array([True, False]), np.bool_(True)
+    born = decided(50, newborn=mask(2), remembered=yes, go_on=np.bool_(False), ran=ran)
+    scripted = Scripted(decided(4), (4, born))
+    advanced(scripted, 9)
+    assert scripted.log[-4:] == [
+        ("reset", [2], [[4, 5]]), ("think", [90, 90, 70, 6]), ("remember", [90, 90, 70, 6]),
+        ("samples", [1, 2, 3]),
+    ]  # fmt: skip
+    assert scripted.ran is ran
 
 
 def test_genesis_takes_no_tick_and_leaves_the_given_state_unchanged() -> None:

@@ -106,9 +106,16 @@ def test_a_run_that_goes_on_is_bundled_as_of_its_newest_checkpoint(
         primordia.load(run).bundle(tmp_path / "a.zip")
     assert seen[-1] == "000008"
     assert primordia.load(tmp_path / "a.zip").info() == primordia.load(run).info()
-    monkeypatch.setattr(bundle, "_named", lambda archive: {"checkpoints/000001/gone": None})
+    tried: list[Any] = []
+
+    def gone(archive: Any) -> Any:
+        tried.append(archive)
+        return {"checkpoints/000001/gone": None}
+
+    monkeypatch.setattr(bundle, "_named", gone)
     with pytest.raises(Trouble, match="changes faster than it can be read"):
         bundle.write(run, tmp_path / "b.zip")
+    assert len(tried) == bundle.TRIES
     assert not (tmp_path / "b.zip").exists()
 
 
@@ -159,16 +166,37 @@ def test_a_bundle_that_is_written_again_is_read_again(
         sent.unlink()
 
 
+@pytest.mark.parametrize("change", ["nothing", "size", "time", "file"])
+def test_a_bundle_is_unpacked_again_only_if_it_is_another_file(
+    change: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Any one of its length, its time and its inode tells."""
+    unpacked: list[bytes] = []
+    monkeypatch.setattr(bundle, "_extract", lambda file, _: unpacked.append(file.read_bytes()))
+    (file := tmp_path / "a.zip").write_bytes(b"first")
+    first, at = bundle.opened(file), file.stat()
+    if change == "file":
+        (tmp_path / "b").write_bytes(b"other")
+        (tmp_path / "b").replace(file)
+    elif change != "nothing":
+        file.write_bytes(b"longer" if change == "size" else b"other")
+    os.utime(file, ns=(at.st_atime_ns, at.st_mtime_ns + (change == "time")))
+    assert (bundle.opened(file) == first) == (change == "nothing")
+    assert len(unpacked) == 1 + (change != "nothing")
+
+
 def test_one_process_unpacks_a_bundle_into_a_folder(file: Path, tmp_path: Path) -> None:
     unfinished = tmp_path / ".writing-run"
     unfinished.mkdir()
     (unfinished / "births").mkdir()  # of a process that was killed
+    (unfinished / "births" / "left").touch()
     with directory.locked(unfinished):
         done = here("unbundle", file, tmp_path / "run")
         complains(done, 2, "is being written by another process")
     assert (unfinished / "births").exists()
     assert here("unbundle", file, tmp_path / "run").returncode == 0
     assert not unfinished.exists()
+    assert not (tmp_path / "run" / "births" / "left").exists()
     assert here("info", tmp_path / "run").returncode == 0
 
 

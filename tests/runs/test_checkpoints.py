@@ -50,6 +50,18 @@ def test_the_newest_two_are_kept_and_numbers_begin_at_0(run: Path) -> None:
     assert [number_in(each) for each in checkpoint.whole_checkpoints(run)] == [3, 2]
 
 
+def test_all_that_are_older_than_the_newest_two_are_removed(
+    run: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A run may hold more of them, such as one that another program has copied together."""
+    monkeypatch.setattr(checkpoint, "KEPT", 4)
+    for number in range(4):
+        save(run, number)
+    monkeypatch.setattr(checkpoint, "KEPT", 2)
+    save(run, 4)
+    assert names(run) == ["000003", "000004"]
+
+
 def test_numbers_of_more_than_six_digits_are_in_order_of_size(run: Path) -> None:
     save(run, 0)
     (run / "checkpoints" / "000000").rename(run / "checkpoints" / "999999")
@@ -146,6 +158,8 @@ NAMES = {
     "code": False,
     "code/a.py": True,
     "code/../a.py": False,
+    "code/a/../../a.py": False,
+    "code/a/..": False,
     "other/a.py": False,
     "code/" + "d/" * 15 + "a.py": True,
     "code/" + "d/" * 16 + "a.py": False,

@@ -73,6 +73,11 @@ def lives_of(births: dict[str, list[Any]], deaths: dict[str, list[Any]], begins:
         (4, {"parent": 4}, "organism 3 is not younger than its parent"),
         (4, {"parent": None}, "organism 3 has no parent and is no founder"),
         (4, {"id": 1, "parent": 0}, "organism 1 is not recorded in order of birth"),
+        (
+            4,
+            {"id": 0, "parent": None, "cause": "founder"},
+            "organism 0 is not recorded in order of birth",
+        ),
         (3, {"cause": "tired"}, "'tired' is not a cause"),
     ],
 )
@@ -87,6 +92,7 @@ def test_an_impossible_birth_is_named(row: int, values: dict[str, Any], fault: s
         (0, {"world": 2}, "an organism lives in a world that does not exist"),
         (1, {"world": -1}, "an organism lives in a world that does not exist"),
         (1, {"id": 1}, "organism 1 dies without having been born"),
+        (1, {"id": 3}, "organism 3 dies without having been born"),
         (0, {"id": 2}, "organism 2 dies without having been born"),
         (0, {"tick": 9}, "organism 1 dies before its birth, or after the last tick"),
         (0, {"tick": 51}, "organism 1 dies before its birth, or after the last tick"),

@@ -81,6 +81,15 @@ def test_time_since_the_fork_is_counted_from_its_tick(lives: Lives, tick: int) -
     assert (since.entered == fork.entered).all()
 
 
+def test_a_world_that_had_no_organism_at_the_fork_counts_from_the_same_tick() -> None:
+    """In the first world, the first organism of the new record is born after the fork at 20."""
+    fork = worlds_of([(0, 9, True), (23, 9, True)], [(0, 30, True)], until=UNTIL).recorded_since(20)
+    since = fork.since_fork()
+    assert fork.inherited.tolist() == [False, True]
+    assert (since.born.tolist(), since.seen.tolist()) == ([3, -20], [3, 0])
+    assert since.ended.tolist() == [13, 11]
+
+
 def test_the_lives_of_one_world_are_taken_alone(lives: Lives) -> None:
     assert lives.worlds == 3
     assert rows(lives.of_world(0)) == [row for row in rows(lives) if row[0] == 0]

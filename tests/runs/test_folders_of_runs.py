@@ -41,11 +41,9 @@ def test_a_lock_is_seen_while_it_is_held(tmp_path: Path) -> None:
 
 STARTED = (
     "versions.json",
-    "births/a",
     ".writing-config.toml",
-    "code/a.py",
-    "origin/a",
-    "config.toml",
+    *("births/a", "deaths/a", "metrics/a", "checkpoints/000000", "code/a.py", "origin/a"),
+    *("config.toml", "description.json", "founders.safetensors", ".writing-checkpoints"),
 )
 
 
@@ -67,6 +65,29 @@ def test_files_of_a_start_that_was_killed_are_removed_and_others_stay(tmp_path: 
         (run / name).touch()
     assert not directory.clear_unbegun(run), "a folder with versions is a run"
     assert (run / "config.toml").exists()
+
+
+@pytest.mark.parametrize("origin", [False, True])
+@pytest.mark.parametrize("versions", [False, True])
+@pytest.mark.parametrize("replaced", [False, True])
+def test_only_a_run_that_can_go_on_outlives_an_error_at_its_start(
+    versions: bool, origin: bool, replaced: bool, tmp_path: Path
+) -> None:
+    """It has versions and a checkpoint. A folder that another process has put there is left alone."""
+    (tmp_path / "config.toml").touch()
+    if versions:
+        (tmp_path / "versions.json").touch()
+    if origin:
+        (tmp_path / "origin").mkdir()
+    before = sorted(tmp_path.iterdir())
+
+    def check() -> None:
+        if replaced:
+            raise Trouble("it was replaced")
+
+    directory._remove_unbegun(tmp_path, check)
+    stays = (versions and origin) or replaced
+    assert sorted(tmp_path.iterdir()) == (before if stays else [])
 
 
 @pytest.mark.parametrize("error", [Trouble("full"), KeyboardInterrupt(), MemoryError()])
@@ -134,11 +155,20 @@ def test_a_run_with_settings_that_are_not_given_does_not_go_on(
         directory.check_same_settings(config(MEADOW), tmp_path)
 
 
+@pytest.mark.parametrize(
+    "limits",
+    [
+        {"ticks": 7, "births": 5, "until": "saturation"},
+        {"ticks": 7, "births": None, "until": None},
+        {"ticks": None, "births": 5, "until": None},
+    ],
+)
 def test_begin_or_resume_passes_on_all_its_arguments(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    limits: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """A limit that is no longer given is removed."""
     calls = list[tuple[Any, ...]]()
-    settings = config(MEADOW, stop={"ticks": 7, "births": 5, "until": "saturation"})
+    settings = config(MEADOW).model_copy(update={"stop": Stop(**limits)})
 
     def listen(_: loop.Status) -> None: ...
 
@@ -154,7 +184,6 @@ def test_begin_or_resume_passes_on_all_its_arguments(
         monkeypatch.setattr(directory, "clear_unbegun", lambda _, there=there: there)
         notes = loop.begin_or_resume(settings, tmp_path, **passed)
         assert notes == ([] if there else ["a note"])
-    limits = {"ticks": 7, "births": 5, "until": "saturation"}
     assert calls == [
         (settings, tmp_path, passed), (settings, tmp_path), (tmp_path, limits, passed)
     ]  # fmt: skip

@@ -9,6 +9,7 @@ import warnings
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -16,6 +17,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import primordia
+from primordia import files
 from primordia.errors import InputError
 from primordia.runs import bundle, loop, manifest
 from tests.bundles import SETTINGS, temporary_files  # noqa: F401, which pytest calls
@@ -190,6 +192,7 @@ def test_a_hostile_bundle_is_refused_in_one_line(file: Path, tmp_path: Path, kin
     assert os.listdir(tmp_path) == ["forged.zip"]
 
 
+MANIFEST = "checkpoints/000001/manifest.json"
 CENTRAL, LOCAL = b"PK\x01\x02", b"PK\x03\x04"
 """Signatures of what a zip says of a file at its end, and before the file."""
 
@@ -210,6 +213,11 @@ def other_name(content: bytearray) -> None:
 
 def huge(content: bytearray) -> None:
     marked(content, CENTRAL, 20, struct.pack("<II", 10**9, 10**9))
+
+
+def shorter(content: bytearray) -> None:
+    """The last file is said to become smaller than what is stored."""
+    marked(content, CENTRAL, 24, struct.pack("<I", 1))
 
 
 def unknown_method(content: bytearray) -> None:
@@ -241,6 +249,7 @@ ODD: dict[Callable[[bytearray], None], str] = {
     encrypted: "is encrypted",
     other_name: "differ",
     huge: "its files are larger than the bundle",
+    shorter: "is compressed",
     unknown_method: "is compressed",
     far_away: "is not a valid bundle",
     upon_another: "differ",
@@ -262,6 +271,42 @@ def test_an_odd_zip_is_refused_in_one_line(
     assert os.listdir(tempfile.gettempdir()) == before
     (tmp_path / "text.zip").write_text("no zip")
     complains(here("info", tmp_path / "text.zip"), 2, "is neither a run of primordia nor a bundle")
+
+
+def test_files_are_together_no_larger_than_their_bundle(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Entries of a zip may overlap, so that one content is written many times."""
+    file = zipped([(plain("run/a"), b"x" * 100)], tmp_path / "a.zip")
+    held = {name: plain(f"run/{name}") for name in "ab"}
+    for each in held.values():
+        each.file_size = file.stat().st_size // 2 + 1
+    monkeypatch.setattr(bundle, "_entries", lambda _: held)
+    with pytest.raises(InputError, match="its files are larger than the bundle"):
+        bundle.unbundle(file, tmp_path / "run")
+
+
+@pytest.mark.parametrize("name", ["versions.json", "origin/manifest.json", MANIFEST])
+def test_files_that_are_read_at_once_are_small(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(files, "READABLE", 3)
+    names = {"versions.json", "origin/manifest.json", MANIFEST}
+    parts = [(plain(f"run/{each}"), bytes(4 if each == name else 3)) for each in names]
+    held = zipfile.ZipFile(zipped(parts, tmp_path / "a.zip"))
+    with held, pytest.raises(ValueError, match=f"^{name} is too large$"):
+        bundle._seals(held, bundle._entries(held))
+
+
+@pytest.mark.parametrize("part", ["", ".", "..", *'\\:*?"<>|', "\n", "\x1b", "\u202e"])
+def test_the_name_of_a_file_is_one_on_every_system(part: str) -> None:
+    entry = plain("run/code/x.py", 0)  # some programs store no mode
+    held: Any = SimpleNamespace(infolist=lambda: [entry])
+    assert [*bundle._entries(held)] == ["code/x.py"]
+    for inner in (part, f"a{part}b") if part.strip(".") else (part,):
+        entry.orig_filename = f"run/code/{inner}/x.py"
+        with pytest.raises(ValueError, match="is not the path of a file in a run"):
+            bundle._entries(held)
 
 
 CHANGES = st.lists(

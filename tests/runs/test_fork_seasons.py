@@ -1,12 +1,17 @@
 """Seasons of a fork: its ratchets look back as far as the fork, and no further."""
 
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
+import jax.numpy as jnp
 import pytest
 
 import primordia
 from primordia.errors import InputError
+from primordia.law.world import Worlds
+from primordia.random.wide import to_host, wide
+from primordia.runs import fork as forks
 from primordia.runs import loop
 from tests.worlds import MEADOW, config
 
@@ -67,3 +72,50 @@ def test_a_season_of_a_metabolism_that_there_is_not_is_refused(
         loop.start(config(MEADOW, brain={"hidden": 1}, stop={"ticks": 5}), tmp_path / "run")
         with pytest.raises(InputError, match=r"metabolism\.gain"):
             primordia.load(tmp_path / "run").fork(3, tmp_path / "fork", seasons=[season])
+
+
+COUNTS = {"food": [100, 2**40], "organism_ticks": [300, 2**50]}
+"""Counts of two worlds at a fork."""
+
+
+def worlds_at_fork() -> Worlds:
+    worlds: Any = Worlds(*[wide([1, 2])] * len(Worlds._fields))
+    counts = {name: wide(values) for name, values in COUNTS.items()}
+    calm = jnp.array([7, 8])
+    return worlds._replace(**counts, calm=calm, sample_wait=calm, looks="old", climate={})
+
+
+@pytest.mark.parametrize("at", [1, 20, 33, 70])
+def test_each_new_ratchet_looks_at_multiples_of_its_period_and_counts_from_the_fork(
+    at: int,
+) -> None:
+    made = config(meadow(1.0, seasons=[ratchet(0.4), {**ratchet(0.4), "every": 7}]))
+    after: Any = SimpleNamespace(law=SimpleNamespace(seasons=made.seasons))
+    looks = forks._looks(worlds_at_fork(), after, at)
+    assert looks.wait.tolist() == [[10 - at % 10, 7 - at % 7]] * 2
+    assert to_host(looks.food).tolist() == [[each] * 2 for each in COUNTS["food"]]
+    assert to_host(looks.organism_ticks).tolist() == [
+        [each] * 2 for each in COUNTS["organism_ticks"]
+    ]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "looks"),
+    [
+        ([ratchet(0.4)], [ratchet(0.4)], "old"),
+        ([ratchet(0.4)], [ratchet(0.5)], "new"),
+        ([ratchet(0.4)], [], "new"),
+        ([], [ratchet(0.4)], "new"),
+        ([ratchet(0.4), ratchet(0.5)], [ratchet(0.5), ratchet(0.4)], "new"),
+    ],
+)
+def test_ratchets_begin_to_count_at_the_fork_if_any_season_has_changed(
+    old: list[dict], new: list[dict], looks: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(forks, "_looks", lambda *_: "new")
+    nothing: Any = SimpleNamespace(law=SimpleNamespace(beginning=()))
+    before, after = (config(meadow(1.0, seasons=seasons)) for seasons in (old, new))
+    world: Any = "organisms", worlds_at_fork()
+    forked = forks._adapt(world, nothing, nothing, before, after, 10)
+    assert forked.worlds.looks == looks
+    assert forked.organisms == "organisms", "all keep their energy"

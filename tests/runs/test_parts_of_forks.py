@@ -1,5 +1,6 @@
 """Forks of invented worlds: possible ticks, organisms alive at the tick, and changes of the state."""
 
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -9,12 +10,13 @@ import numpy as np
 import pytest
 
 from primordia.errors import InputError, Trouble
+from primordia.law.events import birth_columns
 from primordia.law.world import Worlds
 from primordia.random.wide import to_host, wide
-from primordia.runs import fork
-from primordia.runs.arrays import NEVER
+from primordia.runs import checkpoint, fork
+from primordia.runs.arrays import NEVER, world_ticks
 from tests.synthetic import worlds_of
-from tests.worlds import MEADOW, config
+from tests.worlds import MEADOW, config, merged
 
 FIRST = [(0, 9, True), (0, 19, True), (5, 14, True), (10, 30, False)]
 SECOND = [(0, 9, True), (10, 0, False), (11, 0, False)]
@@ -139,3 +141,129 @@ def test_the_length_of_saved_states_is_no_part_of_the_form_of_an_array() -> None
     assert fork._form("bodies.states", arrays) == (4,)
     assert fork._form("bodies.other", arrays) == (4, 9)
     assert fork._form("bodies.none", arrays) == ()
+
+
+@pytest.mark.parametrize("mates", [False, True])
+def test_births_of_the_living_are_in_order_of_events_and_have_their_own_notes(mates: bool) -> None:
+    """They are in order of ticks, and within a tick in order of worlds and cells, as in every run.
+
+    Their mates are left out, since the living are the roots of later lines.
+    """
+    lives = worlds_of([(9, 0, False), (4, 0, False)], [(4, 0, False), (7, 0, False)], until=40)
+    lives = replace(lives, cell=np.array([3, 1, 4, 0]), parent=np.array([-1, 0, -1, 0]))
+    lives = lives.take(np.array([3, 0, 2, 1]))
+    notes = np.arange(4 * CELLS).reshape(-1, 2)
+    heredity = SimpleNamespace(
+        recombination="crossover" if mates else None,
+        mutation=SimpleNamespace(notes=("step", "way")),
+    )
+    organisms = SimpleNamespace(notes=notes)
+    engine: Any = SimpleNamespace(
+        law=SimpleNamespace(cells=CELLS, heredity=heredity),
+        state=SimpleNamespace(world=SimpleNamespace(organisms=organisms)),
+    )
+    rows = birth_columns(mates, ("step", "way")).unpacked(fork._birth_rows(lives, engine))
+    assert rows["tick"].tolist() == [4, 4, 7, 9]
+    assert rows["cell"].tolist() == [3, 9, 5, 1]
+    assert rows["id"].tolist() == [0, 0, 1, 1]
+    assert rows["parent"].tolist() == [-1, -1, 0, 0]
+    assert rows["step"].tolist() == [6, 18, 10, 2]
+    assert rows["way"].tolist() == [7, 19, 11, 3]
+    assert rows.get("mate", np.zeros(0)).tolist() == ([-1] * 4 if mates else [])
+
+
+@pytest.mark.parametrize(
+    ("settings", "changed"),
+    [
+        ({}, {}),
+        ({"hazard": 0.0}, {"hazard": 0.0}),
+        ({"mutation": {"scale": 0.5}}, {"mutation": {"scale": 0.5}}),
+        ({"sample_every": 7, "seed": 0}, {"sample_every": 7, "seed": 0}),
+        ({"seasons": []}, {"seasons": []}),
+    ],
+)
+def test_a_fork_has_all_other_settings_of_its_source(
+    settings: dict[str, Any], changed: dict[str, Any], tmp_path: Path
+) -> None:
+    """A setting may be changed to 0, or to nothing."""
+    own = {"seed": 3, "hazard": 0.25, "mutation": {"probability": 0.5, "scale": 0.125}}
+    own["seasons"] = [{"kind": "schedule", "setting": "hazard", "at": 9, "value": 0.5}]
+    (tmp_path / "config.toml").write_text(config(MEADOW, **own).to_toml())
+    forked = fork._fork_config(tmp_path, settings, 6)
+    values = config(MEADOW, **merged(own, changed)).model_dump()
+    assert forked.model_dump() == values | {"fork": {"run": str(tmp_path), "tick": 6}}
+
+
+class Past:
+    """An engine of two worlds that notes what is loaded, and advances all worlds by 2 ticks at most."""
+
+    def __init__(self, exact: bool = True) -> None:
+        self.ticks, self.loaded = np.array([0, 0]), list[dict]()
+        self.chunks = SimpleNamespace(exact=exact)
+
+    def limits(self, stop: dict[str, int]) -> int:
+        return stop["ticks"]
+
+    def any_running(self, limit: int) -> bool:
+        return bool((self.ticks < limit).any())
+
+    def advance(self, limit: int) -> None:
+        self.ticks = np.minimum(self.ticks + 2, limit)
+
+    def load(self, arrays: dict) -> None:
+        self.loaded.append(arrays)
+        self.ticks = world_ticks(arrays).astype(np.int64)
+
+
+def stored(*ticks: int) -> dict[str, np.ndarray]:
+    low = np.array(ticks, np.uint32)
+    return {"world.worlds.tick.lo": low, "world.worlds.tick.hi": np.zeros_like(low)}
+
+
+KEPT = [stored(9, 12), stored(8, 10), stored(8, 8), stored(3, 3)]
+"""Checkpoints, newest first. In some of them one world is ahead of the other."""
+
+
+@pytest.mark.parametrize(
+    ("at", "loaded", "heard"),
+    [(12, 0, [11, 12]), (11, 1, [10, 11]), (9, 2, [9]), (8, 2, []), (5, 3, [5]), (2, None, [2])],
+)
+def test_the_past_is_lived_again_from_the_newest_state_in_which_no_world_is_later(
+    at: int, loaded: int | None, heard: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(fork, "Engine", lambda _: Past())
+    monkeypatch.setattr(checkpoint, "whole_checkpoints", lambda *_: iter(KEPT))
+    source: Any = SimpleNamespace(config=None, path=Path("run"), fault_in=None, other_versions=[],
+                                  arrays_of=lambda each: each)  # fmt: skip
+    told: list[int] = []
+
+    def listen(now: Any) -> None:
+        told.append(int(now.engine.ticks.min()))
+
+    engine: Any = fork._engine_at(source, at, listen)
+    assert engine.loaded == ([] if loaded is None else [KEPT[loaded]])
+    assert engine.ticks.tolist() == [at, at]
+    assert told == heard
+
+
+@pytest.mark.parametrize(
+    ("versions", "exact", "says"),
+    [
+        (["jax 1 then, 2 now"], True, "run cannot be lived again up to tick 9: jax 1 then, 2 now"),
+        (["a", "b"], True, "run cannot be lived again up to tick 9: a; b"),
+        ([], False, "run is not exact, so it cannot be lived again up to tick 9"),
+    ],
+)
+def test_a_past_that_does_not_repeat_is_not_lived_again(
+    versions: list[str], exact: bool, says: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A fork at the tick of a stored state needs no repetition."""
+    monkeypatch.setattr(fork, "Engine", lambda _: Past(exact))
+    monkeypatch.setattr(checkpoint, "whole_checkpoints", lambda *_: iter(KEPT))
+    source: Any = SimpleNamespace(config=None, path=Path("run"), fault_in=None,
+                                  other_versions=versions, arrays_of=lambda each: each)  # fmt: skip
+    with pytest.raises(InputError) as raised:
+        fork._engine_at(source, 9, None)
+    assert str(raised.value) == says
+    stays: Any = fork._engine_at(source, 8, None)
+    assert stays.ticks.tolist() == [8, 8]

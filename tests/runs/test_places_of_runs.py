@@ -44,6 +44,15 @@ def test_a_folder_of_runs_gives_those_with_a_checkpoint_in_order_of_names(tmp_pa
         only([tmp_path / "arm"])
 
 
+def test_runs_of_a_pattern_are_in_order_of_names(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A file system may give names in any order."""
+    runs = [begun(tmp_path / name) for name in "abc"]
+    monkeypatch.setattr(opening, "glob", lambda _: [str(runs[at]) for at in (1, 2, 0)])
+    assert run_paths(tmp_path / "*") == runs
+
+
 def test_a_folder_of_runs_without_a_checkpoint_is_an_error(tmp_path: Path) -> None:
     begun(tmp_path / "arm" / "a", checkpoint=None)
     with pytest.raises(InputError, match="arm has no checkpoint of any of its runs yet"):

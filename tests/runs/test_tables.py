@@ -111,6 +111,26 @@ def test_samples_are_totals_and_means_of_the_living() -> None:
     assert SCHEMA.within_world("metrics", rows)[:, 0].tolist() == [0, 0]
 
 
+@pytest.mark.parametrize("population", [1, 2, 3])
+def test_the_means_of_a_sample_are_over_all_its_organisms(population: int) -> None:
+    rows = samples_of(population=[population, 0], age_total=[12, 0], energy_total=[18 * 1024, 0])
+    table = SCHEMA.arrow("metrics", rows).to_pydict()
+    assert table["mean_age"] == [12 / population, 0.0]
+    assert table["mean_energy"] == [18 / population, 0.0]
+
+
+def test_a_tally_may_be_called_a_mean() -> None:
+    """Its best is an integer, and its mean is not."""
+    schema = Schema(CELLS, mates=False, notes=(), rates=(), tallies=("score_mean", "b"))
+    own = {"score_mean_best": -7, "b_best": 5}
+    own |= {name: np.float32(2.5).view(np.int32).item() for name in ("score_mean_mean", "b_mean")}
+    columns = schema.columns("metrics")
+    rows = columns.rows(**{name: np.array([own.get(name, 0)]) for name in columns.names})
+    table = schema.arrow("metrics", rows).to_pydict()
+    assert [table[name] for name in ("score_mean_mean", "score_mean_best")] == [[2.5], [-7]]
+    assert [table[name] for name in ("b_mean", "b_best")] == [[2.5], [5]]
+
+
 @pytest.mark.parametrize(
     ("names", "table", "column"),
     [
@@ -249,6 +269,8 @@ def test_a_segment_has_the_columns_rows_and_values_of_its_table(
     pq.write_table(table, path)
     if fault is None:
         assert segment.read(path, 2, DEATHS, None).to_pydict() == columns
+        for some in (["mate", "world"], ["world", "mate"]):
+            assert segment.read(path, 2, DEATHS, some).column_names == some
         assert segment.read(path, 2, DEATHS, ["mate", "world"]).to_pydict() == {
             "mate": [None, None], "world": [0, 1]
         }  # fmt: skip

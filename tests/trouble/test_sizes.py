@@ -60,6 +60,11 @@ def test_arrays_are_no_larger_than_their_file() -> None:
     assert _sizes(archive, 30) == {"a": 10, "b": 10, "c": 10}
     with pytest.raises(ValueError, match="larger than their file"):
         _sizes(archive, 29)
+    for each in entries:  # one of several is enough
+        each.compress_type = zipfile.ZIP_DEFLATED
+        with pytest.raises(ValueError, match="compressed"):
+            _sizes(archive, 30)
+        each.compress_type = zipfile.ZIP_STORED
 
 
 def test_rows_are_counted_before_they_are_read(run: Path, monkeypatch: pytest.MonkeyPatch) -> None:

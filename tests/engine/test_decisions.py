@@ -1,0 +1,125 @@
+"""Decisions after a settled tick of several worlds, of which some have stopped; nothing is compiled."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from primordia.engine import calls
+from primordia.engine.calls import Unsettled, _Steps
+from primordia.engine.held import Bulk
+from primordia.law import events
+
+CELLS = 2
+"""Cells of each of three worlds."""
+
+
+def cells(*numbers: int) -> Any:
+    return jnp.asarray(np.isin(np.arange(3 * CELLS), numbers))
+
+
+def worlds(*numbers: int) -> Any:
+    return jnp.asarray(np.isin(np.arange(3), numbers))
+
+
+def steps() -> _Steps:
+    """Return the steps of a law, whose form of worlds is the worlds themselves."""
+    law: Any = SimpleNamespace(worlds=3, per_cell=lambda each: jnp.repeat(each, CELLS))
+    form: Any = SimpleNamespace(release=lambda world, bulk: world, hold=lambda world: world)
+    return _Steps(law, form, 5)
+
+
+@pytest.fixture
+def patched(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
+    """Give the law's functions these results; `asked` are the arguments of some of them."""
+    given: dict[str, Any] = {"live": worlds(0, 2), "due": worlds(), "room": True, "asked": {}}
+
+    def due(law: Any, now: str, ran: Any) -> Any:
+        given["asked"]["ran"] = np.flatnonzero(ran).tolist()
+        return given["due"]
+
+    def words(law: Any, now: str, any_newborn: Any, count: int) -> str:
+        given["asked"]["words"] = bool(any_newborn), count
+        return "words"
+
+    def left(law: Any, world: Any, limits: str, live: Any) -> str:
+        given["asked"]["live"] = np.flatnonzero(live).tolist()
+        return "left"
+
+    monkeypatch.setattr(calls, "running", lambda _, limits: given["live"])
+    monkeypatch.setattr(events, "have_room", lambda *_: given["room"])
+    monkeypatch.setattr(calls, "moment_due", due)
+    monkeypatch.setattr(calls, "birth_words", words)
+    monkeypatch.setattr(calls, "ticks_left", left)
+    return given
+
+
+def world_with(alive: Any) -> Any:
+    return SimpleNamespace(organisms=SimpleNamespace(alive=alive), worlds="now")
+
+
+@pytest.mark.parametrize("live", [(), (1,), (0, 2), (0, 1, 2)])
+@pytest.mark.parametrize("due", [(), (2,), (0, 1, 2)])
+@pytest.mark.parametrize("newborn", [(), (3,), range(6)])
+@pytest.mark.parametrize("room", [True, False])
+def test_a_run_goes_on_while_any_world_does_and_the_lists_have_room(
+    live: tuple, due: tuple, newborn: Any, room: bool, patched: dict[str, Any]
+) -> None:
+    """One newborn needs random words, and one world in which a moment is due needs memory."""
+    patched.update(live=worlds(*live), due=worlds(*due), room=room)
+    alive = [0, 3, 4, 5]
+    ran = worlds(0, 1)
+    made = steps()._decide(
+        world_with(cells(*alive)), "events", cells(1), cells(*newborn), ran, "limits"
+    )
+    assert np.flatnonzero(made.alive).tolist() == alive
+    active = [cell for cell in alive if cell // CELLS in live]
+    assert np.flatnonzero(made.active).tolist() == active
+    assert bool(made.go_on) == (len(live) > 0 and room)
+    assert bool(made.remembered) == (len(due) > 0)
+    assert (made.words, made.due, made.ran is ran) == ("words", "left", True)
+    assert patched["asked"] == {
+        "ran": [0, 1], "words": (len(newborn) > 0, 5), "live": list(live)
+    }  # fmt: skip
+
+
+def test_a_survey_has_no_deaths_and_no_births_and_no_world_that_ran(
+    patched: dict[str, Any],
+) -> None:
+    made = steps().survey({}, world_with(cells(0, 5)), "events", "limits")
+    assert not np.concatenate([made.died, made.newborn, made.ran]).any()
+    assert patched["asked"] == {"ran": [], "words": (False, 5), "live": [0, 2]}
+
+
+def test_an_organism_has_died_if_its_cell_is_empty_or_has_a_newborn(
+    patched: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """World 1 has stopped, so its organisms rest. Cell 0 stays empty, and cell 5 is newly occupied."""
+    before, after = world_with(cells(1, 2, 4)), SimpleNamespace(organisms="lived", worlds="later")
+    rested: list[list[int]] = []
+
+    def rest(one: Any, other: str, active: Any) -> str:
+        assert (one, other) == (before.organisms, "lived")
+        rested.append(np.flatnonzero(active).tolist())
+        return "rested"
+
+    def settle(law: Any, world: Any, events: str, fates: str, ticks: int, ran: Any) -> tuple:
+        assert (world.organisms, world.worlds, events) == ("rested", "later", "events")
+        assert (fates, ticks, np.flatnonzero(ran).tolist()) == ("fates", 7, [0, 2])
+        return world_with(cells(2, 4, 5)), "more events", cells(4, 5)
+
+    monkeypatch.setattr(calls, "rest", rest)
+    monkeypatch.setattr(calls, "settle", settle)
+    monkeypatch.setattr(Bulk, "of", lambda world: "bulk")
+    bulk, lists, held, made = steps().settle(
+        Bulk({}, None), "events", before, Unsettled(after, "fates", 7), "limits"
+    )
+    assert rested == [[1, 4]]
+    assert np.flatnonzero(made.died).tolist() == [1, 4]
+    assert np.flatnonzero(made.newborn).tolist() == [4, 5]
+    assert np.flatnonzero(made.ran).tolist() == [0, 2]
+    packed: Any = held
+    assert np.flatnonzero(packed.organisms.alive).tolist() == [2, 4, 5]
+    assert (bulk, lists) == ("bulk", "more events")

@@ -1,0 +1,98 @@
+"""A resume of an invented run: its limits, its exactness, its restarts, and notes for the user."""
+
+from contextlib import nullcontext
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from primordia.runs import checkpoint, directory, loop
+from primordia.runs.manifest import Progress
+from primordia.settings.limits import Stop
+from tests.worlds import MEADOW, config
+
+STOP, LATER = Stop(ticks=5), Stop(ticks=9, births=7)
+"""The limits in the settings of the run, and those that an earlier resume has given."""
+
+
+def resumed(
+    patch: pytest.MonkeyPatch,
+    damaged: list[str],
+    *,
+    kept: bool = True,
+    exact: bool = True,
+    was_exact: bool = True,
+    differ: tuple[str, ...] = (),
+    done: bool = False,
+    limits: dict[str, Any] | None = None,
+) -> tuple[list[str], Progress]:
+    """Resume a run and return the notes, and the progress with which it is driven on."""
+    progress = Progress(limits=LATER, wall_s=20.0, exact=was_exact, restarts=2)
+    last = SimpleNamespace(manifest=SimpleNamespace(progress=progress)) if kept else None
+    settings = config(MEADOW).model_copy(update={"stop": STOP})
+    run = SimpleNamespace(
+        changed_code=[], config=settings, other_versions=[*differ], newest=(last, damaged),
+        admit=lambda: None, arrays_of=lambda each: each,
+    )  # fmt: skip
+    engine = SimpleNamespace(
+        chunks=SimpleNamespace(exact=exact),
+        limits=lambda each: each,
+        any_running=lambda _: not done,
+    )
+    driven: list[Progress] = []
+    for place, name, value in (
+        (loop, "Archive", lambda _: run), (loop, "checked", lambda each, source: each),
+        (loop, "Engine", lambda _: engine), (loop, "recorder_for", lambda *_: None),
+        (loop, "restore", lambda *_: None), (directory, "locked", lambda _: nullcontext()),
+        (directory, "make_folders", lambda _: None),
+        (checkpoint, "remove_leftovers", lambda *_: None),
+        (loop, "drive", lambda *given: driven.append(given[3])),
+    ):  # fmt: skip
+        patch.setattr(place, name, value)
+    notes = loop.resume(Path("run"), limits, inexact=bool(differ))
+    return notes, driven[0]
+
+
+def test_every_damaged_checkpoint_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    notes, _ = resumed(monkeypatch, ["b is missing", "a is damaged"], done=True)
+    assert notes[:2] == [
+        "a damaged checkpoint was not used: b is missing",
+        "a damaged checkpoint was not used: a is damaged",
+    ]
+    assert len(notes) == 3
+    assert notes[2].startswith("nothing to do: every world of run has reached a limit (ticks 9, b")
+    assert resumed(monkeypatch, [])[0] == []
+
+
+@pytest.mark.parametrize("was_exact", [True, False])
+@pytest.mark.parametrize("exact", [True, False])
+@pytest.mark.parametrize("differ", [(), ("jax 1 then, 2 now",)])
+def test_a_run_is_exact_if_it_was_and_its_habitat_and_versions_are(
+    was_exact: bool, exact: bool, differ: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Bodies of a habitat that cannot save them begin again, and that is counted."""
+    given: dict[str, Any] = {"exact": exact, "was_exact": was_exact, "differ": differ}
+    _, progress = resumed(monkeypatch, [], **given)
+    assert progress.exact == (was_exact and exact and not differ)
+    assert (progress.restarts, progress.wall_s) == (2 if exact else 3, 20.0)
+    _, begun = resumed(monkeypatch, [], kept=False, **given)
+    assert begun.exact == (exact and not differ)
+    assert (begun.restarts, begun.wall_s) == (0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("given", "limits"),
+    [
+        (None, LATER),
+        ({"ticks": 11}, Stop(ticks=11, births=7)),
+        ({"births": None}, Stop(ticks=9)),
+        ({"until": "saturation"}, Stop(ticks=9, births=7, until="saturation")),
+    ],
+)
+def test_limits_stay_until_another_is_given(
+    given: dict[str, Any] | None, limits: Stop, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert resumed(monkeypatch, [], limits=given)[1].limits == limits
+    first = resumed(monkeypatch, [], limits=given, kept=False)[1].limits
+    assert first == STOP.model_copy(update=given or {})
