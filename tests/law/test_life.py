@@ -9,7 +9,8 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from primordia.habitats import Continuous, Outcome
+from primordia.habitats import Compound, Continuous, Discrete, Outcome
+from primordia.habitats.contract import Action
 from primordia.law import life, tick
 from primordia.law.genesis import begin
 from primordia.law.law import Law
@@ -96,13 +97,13 @@ def test_food_is_counted_with_a_metabolism_and_without() -> None:
         assert after.energy.tolist() == [energy * ONE for energy in energies]
 
 
-def thought(motor: Motor, outputs: np.ndarray) -> Thought:
+def thought(motor: Motor, outputs: np.ndarray, action: Action = Continuous(3)) -> Thought:  # noqa: B008
     """Return the thoughts of brains that give these outputs and remember their senses."""
 
     def brain(genome: Any, memory: Any, senses: Any) -> tuple[Any, Any]:
         return memory + senses, jnp.asarray(outputs)
 
-    law = replace(meadow_law(), brain=brain, motor=motor, action=Continuous(3))
+    law = replace(meadow_law(), brain=brain, motor=motor, action=action)
     key = stream(wide(np.arange(len(outputs))), Purpose.MOTOR, wide(np.full(len(outputs), 4)))
     memory, senses = np.ones((2, len(outputs), 3), np.float32)
     return life.think(law, {}, memory, senses, key, np.arange(len(outputs)))
@@ -125,6 +126,18 @@ def test_the_gaussian_motor_adds_noise_of_its_own_scale_to_each_output() -> None
     for sd in (0.0, 0.25, 2.0):
         action = thought(Motor(kind="gaussian", sd=sd), outputs).action
         np.testing.assert_allclose(action, outputs + sd * noise, rtol=1e-6)
+
+
+def test_the_gaussian_motor_leaves_choices_alone() -> None:
+    """A choice is the largest output, whatever the noise; only the numbers beside it have noise."""
+    outputs = np.random.default_rng(5).normal(size=(40, 5)).astype(np.float32)
+    key = stream(wide(np.arange(40)), Purpose.MOTOR, wide(np.full(40, 4)))
+    noise = quantiles()[np.asarray(noise_index(key, np.arange(40), 5))]
+    action = Compound((Discrete(2), Continuous(1), Discrete(2)))
+    found = np.asarray(thought(Motor(kind="gaussian", sd=100.0), outputs, action).action)
+    np.testing.assert_array_equal(found[:, 0], outputs[:, :2].argmax(axis=1))
+    np.testing.assert_allclose(found[:, 1], outputs[:, 2] + 100 * noise[:, 2], rtol=1e-5)
+    np.testing.assert_array_equal(found[:, 2], outputs[:, 3:].argmax(axis=1))
 
 
 def a_world(alive: np.ndarray, hazard: list[float], replication: list[float]) -> World:
