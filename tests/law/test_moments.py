@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 
 from primordia.habitats import Compound, Continuous, Discrete
-from primordia.law.moments import change_in
-from primordia.law.world import Remembered
+from primordia.law.genesis import begin
+from primordia.law.moments import change_in, remember
+from primordia.law.world import Remembered, World
+from primordia.random.wide import wide
 from tests.toys import Mill
 from tests.worlds import MEADOW, MILL, Lived, config, law_of
 
@@ -71,6 +73,38 @@ def assert_of_parents(lived: Lived, tick: int, before: Any, now: Any, places: li
         np.testing.assert_array_equal(now.known[cell][places], before.known[parent][places])
         np.testing.assert_array_equal(now.senses[cell][places], before.senses[parent][places])
     return len(newborn)
+
+
+def test_a_moment_is_stored_only_in_worlds_that_ran_to_a_tick_of_moments() -> None:
+    """Of four worlds one is due, one is between its ticks, one has stopped, and one is due elsewhere."""
+    law = law_of(MEADOW, cells=2, seeds=4, mutation=MUTATION)
+    organisms, worlds = begin(law, np.arange(4, dtype=np.uint64))
+    alive = jnp.array([1, 1, 1, 1, 1, 1, 1, 0], bool)
+    before = jax.tree.map(lambda leaf: jnp.full_like(leaf, -5), organisms.moments)
+    assert before is not None
+    before = before._replace(known=jnp.zeros_like(before.known).at[:, 0].set(True))
+    organisms = organisms._replace(
+        alive=alive, memory=jnp.full_like(organisms.memory, 7), moments=before
+    )
+    world = World(organisms, worlds._replace(tick=wide([6, 7, 6, 21])))
+    senses = jnp.arange(8 * law.senses, dtype=jnp.float32).reshape(8, -1)
+    live = jnp.array([True, True, False, True])
+    after = remember(law, world, senses, live).organisms.moments
+    assert after is not None
+    places = {
+        0: 6 // EVERY % KEPT,
+        1: 6 // EVERY % KEPT,
+        6: 21 // EVERY % KEPT,
+        7: 21 // EVERY % KEPT,
+    }
+    for cell in range(8):
+        for place in range(KEPT):
+            stored = places.get(cell) == place
+            known = bool(alive[cell]) if stored else place == 0
+            assert bool(after.known[cell, place]) == known
+            sensed = senses[cell].tolist() if stored else [-5.0] * law.senses
+            assert after.senses[cell, place].tolist() == sensed
+            assert set(after.memory[cell, place].tolist()) == {7.0 if stored else -5.0}
 
 
 ORGAN = {**MILL, "habitat": {"name": "tests.toys:Organ"}}
