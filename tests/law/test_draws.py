@@ -5,6 +5,7 @@ The worlds have so many cells that births are written two at a time, and the las
 
 from typing import Any
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -72,7 +73,7 @@ def born() -> tuple[Law, World, World, dict[str, np.ndarray]]:
     wants = np.zeros((W, N), bool)
     for each, cells in enumerate(PARENTS):
         wants[each, cells] = True
-    after, lists, _ = turnover(
+    after, lists, _ = jax.jit(turnover, static_argnums=0)(
         law, world, log.empty(law), jnp.ones(W, bool), jnp.asarray(wants.ravel()),
         jnp.full(W * N, -1, jnp.int32), birth_keys(law, world.worlds),
     )  # fmt: skip
