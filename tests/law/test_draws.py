@@ -144,6 +144,7 @@ def test_a_child_is_of_the_branch_of_its_parent_unless_that_is_a_founder(born: A
     branch = to_host(after.organisms.branch)
     assert branch[births["cell"]].tolist() == [BRANCHES[cell // N] for cell in births["cell"]]
     assert to_host(after.worlds.fixed).tolist() == [TICK] * W
+    assert to_host(after.worlds.fixed_births).tolist() == [3, 2], "births of the tick are counted"
 
 
 def test_organisms_that_are_not_born_keep_their_weights(born: Any) -> None:
