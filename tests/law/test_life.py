@@ -72,6 +72,9 @@ def test_of_all_reasons_to_die_the_gravest_is_the_cause(hungry: bool) -> None:
         else:
             expected.append(Cause.TIME_LIMIT if has["expired"] else -1)
     assert cause.tolist() == expected
+    of_bodies = Cause.TIME_LIMIT, Cause.STARVED, Cause.FATAL, Cause.FAULT
+    assert of_bodies == life.BODILY, "a life that is lived alone can end by each of them"
+    assert set(expected) == {-1, *of_bodies} - ({Cause.STARVED} if not hungry else set())
 
 
 def test_without_food_and_effort_only_the_drain_changes_energy() -> None:
@@ -157,6 +160,21 @@ def fates(world: World, active: np.ndarray, **outcome: Any) -> tuple[World, tick
     quiet = Thought(world.organisms.memory, np.zeros(12, np.int32), np.zeros(12, bool))
     of = Outcome(**{"fatal": np.zeros(12, bool), **outcome})
     return tick.judge(meadow_law(), world, quiet, np.zeros(12), of, keys, active)
+
+
+def test_the_motor_of_a_cell_draws_for_its_world_tick_and_place_in_the_world() -> None:
+    def brain(genome: Any, memory: Any, senses: Any) -> tuple[Any, Any]:
+        return memory - 1, 2 * senses
+
+    motor = Motor(kind="gaussian", sd=0.5)
+    law = replace(meadow_law(), brain=brain, motor=motor, action=Continuous(2))
+    world = a_world(np.ones(12, bool), [0, 0], [0, 0])
+    senses = np.arange(24, dtype=np.float32).reshape(12, 2)
+    found = tick.think(law, world, senses, tick.keys_of(world.worlds, jnp.int32(3)))
+    key = stream(wide(np.repeat([5, 2**40], 6)), Purpose.MOTOR, wide(np.full(12, 12)))
+    noise = quantiles()[np.asarray(noise_index(key, np.tile(np.arange(6), 2), 2))]
+    np.testing.assert_allclose(found.action, 2 * senses + 0.5 * noise, rtol=1e-6)
+    assert (np.asarray(found.memory) == -1).all()
 
 
 def drawn(purpose: Purpose, chances: list[float]) -> np.ndarray:
