@@ -161,9 +161,11 @@ def output(law: Any, genome: np.ndarray, moments: Remembered, row: int, place: i
     return np.asarray(law.brain(blocks, memory[None], senses[None])[1][0])
 
 
-def test_a_moment_has_changed_if_any_of_its_choices_has() -> None:
+@pytest.mark.parametrize("memory", [1, 0])
+def test_a_moment_has_changed_if_any_of_its_choices_has(memory: int) -> None:
     """The change is the larger of two numbers, here of two choices and two vectors.
 
+    It is measured in brains without memory too.
     One is the share of moments with another choice. The other is the root mean square difference of
     the vectors' numbers, each at most 1.
     """
@@ -181,7 +183,9 @@ def test_a_moment_has_changed_if_any_of_its_choices_has() -> None:
         return memory, jnp.where(child, senses, jnp.asarray(before))
 
     law = replace(law_of(MEADOW), brain=brain, action=action)
-    moments = Remembered(jnp.asarray(rows, jnp.float32), jnp.zeros((5, 4, 1)), jnp.asarray(known))
+    moments = Remembered(
+        jnp.asarray(rows, jnp.float32), jnp.zeros((5, 4, memory)), jnp.asarray(known)
+    )
     parents = jnp.zeros((5, law.heredity.layout.length))
     change = np.asarray(change_in(law, moments, parents)(parents + 1))
     expected = [3 / 4, np.sqrt((0.5**2 + 0.25**2) / 3), np.sqrt(2 / 3), 1.0, np.inf]
