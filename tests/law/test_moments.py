@@ -165,9 +165,8 @@ def output(law: Any, genome: np.ndarray, moments: Remembered, row: int, place: i
 def test_a_moment_has_changed_if_any_of_its_choices_has(memory: int) -> None:
     """The change is the larger of two numbers, here of two choices and two vectors.
 
-    It is measured in brains without memory too.
     One is the share of moments with another choice. The other is the root mean square difference of
-    the vectors' numbers, each at most 1.
+    the vectors' numbers, each at most 1. Both are measured in brains without memory too.
     """
     action = Compound((Discrete(2), Continuous(1), Discrete(2), Continuous(2)))
     before = np.array([1, 0, 0, 1, 0, 0, 0], np.float32)

@@ -16,7 +16,7 @@ from primordia.random.wide import to_host, wide
 from tests.law.test_placement import one_after_another
 from tests.worlds import MEADOW, law_of
 
-N, SEED, TICK = 12, 11, 30
+N, SEED, TICK = 12, 12, 30
 CAUSES = np.array([-1, 1, -1, 0, -1, 2, -1, 5, -1, 4, -1, -1])
 """Causes of death; all others want a child, but for the last cell, which is empty."""
 ALIVE = np.arange(N) < N - 1
@@ -75,6 +75,7 @@ def test_an_organism_that_dies_is_not_replaced_by_the_child_in_its_cell(tick: An
     }
     assert dict(zip(deaths["id"].tolist(), deaths["cause"].tolist(), strict=True)) == expected
     assert taken[CAUSES >= 0].any()
+    assert taken[~ALIVE].all(), "a birth in an empty cell is no death"
     assert Cause.REPLACED in expected.values()
     assert births["cell"].tolist() == np.flatnonzero(taken).tolist()
     assert births["parent"].tolist() == (parents()[taken] + 100).tolist()
