@@ -70,3 +70,24 @@ def test_a_memory_of_any_length_up_to_the_largest_passes(replaced: dict[str, Any
 def test_a_fault_of_a_brain_is_named(replaced: dict[str, Any], says: str) -> None:
     with pytest.raises(InputError, match=f"^brain: Plain {says}"):
         check_brain(plain(**replaced), SENSES, OUTPUTS)
+
+
+def test_a_brain_is_asked_and_called_with_the_counts_of_its_task() -> None:
+    """The shapes of blocks, memory and output may depend on both counts, each in its own way."""
+    asked: list[tuple[int, ...]] = []
+
+    class Asking(Brain):
+        def blocks(self, senses: int, outputs: int) -> Any:
+            asked.append((senses, outputs))
+            return {"w": (outputs, senses), "v": (2 * senses,)}
+
+        def memory(self, senses: int, outputs: int) -> int:
+            asked.append((senses, outputs))
+            return senses + 2 * outputs
+
+        def __call__(self, genome: Genome, memory: Array, senses: Array) -> Any:
+            asked.append((*genome["w"].shape[1:], *genome["v"].shape[1:], *memory.shape[1:]))
+            return jnp.concatenate([senses, memory[:, SENSES:]], axis=1), genome["w"].sum(axis=2)
+
+    check_brain(Asking(), SENSES, OUTPUTS)
+    assert set(asked) == {(SENSES, OUTPUTS), (OUTPUTS, SENSES, 2 * SENSES, SENSES + 2 * OUTPUTS)}

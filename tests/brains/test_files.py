@@ -95,3 +95,72 @@ def test_blocks_may_be_in_another_order_but_further_blocks_are_refused(tmp_path:
     genomes.write(tmp_path / "y", more, np.zeros((2, 10), np.float32), {})
     with pytest.raises(InputError, match=r"y holds genomes of another brain: .*bias 1"):
         genomes.read([str(tmp_path / "y")], LAYOUT)
+
+
+NEEDS = "input 2x3, output 3x1"
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"input": (2, 4)}, f"the block input is 2x4; this task's brain needs {NEEDS}"),
+        ({"output": ()}, f"the block output is a single number; this task's brain needs {NEEDS}"),
+        (
+            {"input": (3, 2)},
+            f"the block input is 3x2; this task's brain needs {NEEDS}; transpose the block",
+        ),
+        (
+            {"output": (1, 3)},
+            f"the block output is 1x3; this task's brain needs {NEEDS}; transpose the block",
+        ),
+        ({"output": None}, f"the block output is missing; this task's brain needs {NEEDS}"),
+        (
+            {"c": (1,), "a": (1,), "b": (1,)},
+            f"a is not a block of this task's brain, which has {NEEDS}",
+        ),
+    ],
+)
+def test_the_first_block_of_a_state_that_does_not_fit_is_named_with_its_shape(
+    change: dict[str, tuple[int, ...] | None], says: str, tmp_path: Path
+) -> None:
+    """The block is to be transposed only if its shape is the right one in reverse."""
+    shapes = {**dict(LAYOUT.blocks), **change}
+    save_file(
+        {name: np.zeros(shape) for name, shape in shapes.items() if shape is not None},
+        tmp_path / "x",
+    )
+    with pytest.raises(InputError, match=rf"/x: {says}$"):
+        genomes.of_state(tmp_path / "x", LAYOUT)
+
+
+def test_shapes_of_another_brain_are_named_beside_those_of_this_one(tmp_path: Path) -> None:
+    other = Layout((("input", (3, 2)), ("output", (3, 1))))
+    genomes.write(tmp_path / "x", other, numbered(2), {})
+    says = f"holds genomes of another brain: input 3x2, output 3x1; this task's brain is {NEEDS}$"
+    with pytest.raises(InputError, match=says):
+        genomes.read([str(tmp_path / "x")], LAYOUT)
+
+
+@pytest.mark.parametrize(
+    ("error", "says"),
+    [
+        (PermissionError(13, "Permission denied"), "cannot be read: Permission denied"),
+        (OSError("bad sector"), "cannot be read: bad sector"),
+        (ValueError("a torn header"), "is not a safetensors file: a torn header"),
+    ],
+)
+def test_a_file_that_cannot_be_opened_is_named_with_the_reason(
+    error: Exception, says: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fails(*_: object) -> None:
+        raise error
+
+    (path,) = written(tmp_path, 1)
+    monkeypatch.setattr(genomes, "safe_open", fails)
+    for read in (
+        lambda: genomes.read([path], LAYOUT),
+        lambda: genomes.of_state(Path(path), LAYOUT),
+        lambda: genomes.about(Path(path)),
+    ):
+        with pytest.raises(InputError, match=f"^{path} {says}$"):
+            read()

@@ -2,8 +2,10 @@
 
 from typing import Any
 
+import jax
 import numpy as np
 import pytest
+from jax.lax import Precision
 
 from primordia.brains.layers import gate, layer, linear, matvec, mix
 
@@ -36,6 +38,16 @@ def test_a_layer_stores_the_longer_axis_last(
     assert layer("w", inputs, outputs) == {"w": shape}
     weights, x = normal(3, *shape), normal(3, inputs)
     np.testing.assert_allclose(matvec(weights, x), times(weights, x), rtol=1e-4, atol=1e-4)
+
+
+def test_products_keep_all_bits_of_float32_on_every_device() -> None:
+    """By default a GPU rounds the factors to fewer bits."""
+    (product,) = (
+        each
+        for each in jax.make_jaxpr(matvec)(normal(3, 4, 32), normal(3, 4)).eqns
+        if each.primitive.name == "dot_general"
+    )
+    assert product.params["precision"] in (Precision.HIGHEST, (Precision.HIGHEST,) * 2)
 
 
 @pytest.mark.parametrize(("inputs", "outputs", "shape"), SIZES)

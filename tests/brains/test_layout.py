@@ -82,6 +82,10 @@ def test_equal_layouts_are_one_value() -> None:
         ((("w", [2, 3]),), r"block 'w' has the shape \[2, 3\]"),
         ((("w", (2.0,)),), r"block 'w' has the shape \(2.0,\)"),
         ((("w", 3),), "block 'w' has the shape 3"),
+        ((("w", (2, True)),), r"block 'w' has the shape \(2, True\)"),
+        ((("w\n", (2,)),), r"'w\\n' cannot name a block"),
+        ((("w", (2,)), ("v", (0, 2))), r"block 'v' has the shape \(0, 2\)"),
+        ((("w", (2,)), ("u.v", (2,))), "'u.v' cannot name a block"),
     ],
 )
 def test_impossible_blocks_are_refused(blocks: tuple, says: str) -> None:

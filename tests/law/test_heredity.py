@@ -1,19 +1,22 @@
 """Heredity of invented births: genomes of founders, of children, and of children with a mate."""
 
 from dataclasses import replace
-from typing import Any
+from typing import Any, ClassVar
 
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from jax import Array
 
 from primordia.brains.layout import Layout
+from primordia.law.genesis import begin
 from primordia.law.heredity import Birth, Heredity
 from primordia.law.recombination import Recombination
-from primordia.mutations.contract import PURPOSES, Draws, Family
+from primordia.mutations.contract import PURPOSES, Change, Draws, Family
 from primordia.mutations.gaussian import Gaussian
 from primordia.random.keys import Purpose, streams
 from primordia.random.wide import wide
+from tests.worlds import MEADOW, law_of
 
 LAYOUT = Layout((("input", (3, 2)), ("output", (2, 3))))
 ANCESTORS = np.arange(5 * 12, dtype=np.float32).reshape(5, 12)
@@ -27,6 +30,18 @@ PARENTS = np.random.default_rng(4).normal(size=(K, 12)).astype(np.float32)
 def heredity_of(**values: Any) -> Heredity:
     plain = Heredity(LAYOUT, Gaussian(probability=0.5, scale=0.1), None, "parent", None, worlds=1)
     return replace(plain, **values)
+
+
+class Noted(Gaussian):
+    """A mutation with two notes. Founders have 3 and -1, and children add 10 to those of a parent."""
+
+    notes: ClassVar = ("plus", "minus")
+
+    def note(self, layout: Layout, family: Family, change: Change | None) -> Array:
+        return family.notes + 10
+
+    def founders_notes(self, count: int) -> Array:
+        return jnp.tile(jnp.array([3, -1], jnp.int32), (count, 1))
 
 
 def births(heredity: Heredity, founder: np.ndarray) -> Birth:
@@ -89,6 +104,19 @@ def test_without_inheritance_all_newborn_have_genomes_of_ancestors() -> None:
         turns = [(seed + number) % 2**64 % 5 for seed, number in zip(SEEDS, NUMBERS, strict=True)]
         np.testing.assert_array_equal(genome, ANCESTORS[turns])
         assert not mutated.any()
+
+
+@pytest.mark.parametrize("founder", [SOME, SOME | True, SOME & False])
+def test_founders_have_the_mutations_notes_for_founders(founder: np.ndarray) -> None:
+    """In a world that begins, each empty cell has these notes too, for children that take its notes."""
+    heredity = heredity_of(mutation=Noted())
+    notes = jnp.arange(2 * K, dtype=jnp.int32).reshape(K, 2)
+    newborn = heredity.make_newborn(births(heredity, founder), jnp.asarray(PARENTS), notes, None)
+    expected = [[3, -1] if founder[row] else [2 * row + 10, 2 * row + 11] for row in range(K)]
+    assert newborn.notes.tolist() == expected
+    law = law_of(MEADOW, cells=3, seeds=2)
+    law = replace(law, heredity=replace(law.heredity, mutation=Noted()))
+    assert begin(law, np.arange(2, dtype=np.uint64)).organisms.notes.tolist() == [[3, -1]] * 6
 
 
 def test_only_a_child_with_a_mate_has_weights_of_the_mate() -> None:

@@ -9,7 +9,8 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from primordia.habitats import Continuous, Outcome
+from primordia.habitats import Compound, Continuous, Discrete, Outcome
+from primordia.habitats.contract import Action
 from primordia.law import life, tick
 from primordia.law.genesis import begin
 from primordia.law.law import Law
@@ -71,6 +72,9 @@ def test_of_all_reasons_to_die_the_gravest_is_the_cause(hungry: bool) -> None:
         else:
             expected.append(Cause.TIME_LIMIT if has["expired"] else -1)
     assert cause.tolist() == expected
+    of_bodies = Cause.TIME_LIMIT, Cause.STARVED, Cause.FATAL, Cause.FAULT
+    assert of_bodies == life.BODILY, "a life that is lived alone can end by each of them"
+    assert set(expected) == {-1, *of_bodies} - ({Cause.STARVED} if not hungry else set())
 
 
 def test_without_food_and_effort_only_the_drain_changes_energy() -> None:
@@ -96,13 +100,13 @@ def test_food_is_counted_with_a_metabolism_and_without() -> None:
         assert after.energy.tolist() == [energy * ONE for energy in energies]
 
 
-def thought(motor: Motor, outputs: np.ndarray) -> Thought:
+def thought(motor: Motor, outputs: np.ndarray, action: Action = Continuous(3)) -> Thought:  # noqa: B008
     """Return the thoughts of brains that give these outputs and remember their senses."""
 
     def brain(genome: Any, memory: Any, senses: Any) -> tuple[Any, Any]:
         return memory + senses, jnp.asarray(outputs)
 
-    law = replace(meadow_law(), brain=brain, motor=motor, action=Continuous(3))
+    law = replace(meadow_law(), brain=brain, motor=motor, action=action)
     key = stream(wide(np.arange(len(outputs))), Purpose.MOTOR, wide(np.full(len(outputs), 4)))
     memory, senses = np.ones((2, len(outputs), 3), np.float32)
     return life.think(law, {}, memory, senses, key, np.arange(len(outputs)))
@@ -127,6 +131,18 @@ def test_the_gaussian_motor_adds_noise_of_its_own_scale_to_each_output() -> None
         np.testing.assert_allclose(action, outputs + sd * noise, rtol=1e-6)
 
 
+def test_the_gaussian_motor_leaves_choices_alone() -> None:
+    """A choice is the largest output, whatever the noise; only the numbers beside it have noise."""
+    outputs = np.random.default_rng(5).normal(size=(40, 5)).astype(np.float32)
+    key = stream(wide(np.arange(40)), Purpose.MOTOR, wide(np.full(40, 4)))
+    noise = quantiles()[np.asarray(noise_index(key, np.arange(40), 5))]
+    action = Compound((Discrete(2), Continuous(1), Discrete(2)))
+    found = np.asarray(thought(Motor(kind="gaussian", sd=100.0), outputs, action).action)
+    np.testing.assert_array_equal(found[:, 0], outputs[:, :2].argmax(axis=1))
+    np.testing.assert_allclose(found[:, 1], outputs[:, 2] + 100 * noise[:, 2], rtol=1e-5)
+    np.testing.assert_array_equal(found[:, 2], outputs[:, 3:].argmax(axis=1))
+
+
 def a_world(alive: np.ndarray, hazard: list[float], replication: list[float]) -> World:
     world = begin(meadow_law(), np.array([5, 2**40], np.uint64), tick=9)
     climate = world.worlds.climate | {
@@ -144,6 +160,21 @@ def fates(world: World, active: np.ndarray, **outcome: Any) -> tuple[World, tick
     quiet = Thought(world.organisms.memory, np.zeros(12, np.int32), np.zeros(12, bool))
     of = Outcome(**{"fatal": np.zeros(12, bool), **outcome})
     return tick.judge(meadow_law(), world, quiet, np.zeros(12), of, keys, active)
+
+
+def test_the_motor_of_a_cell_draws_for_its_world_tick_and_place_in_the_world() -> None:
+    def brain(genome: Any, memory: Any, senses: Any) -> tuple[Any, Any]:
+        return memory - 1, 2 * senses
+
+    motor = Motor(kind="gaussian", sd=0.5)
+    law = replace(meadow_law(), brain=brain, motor=motor, action=Continuous(2))
+    world = a_world(np.ones(12, bool), [0, 0], [0, 0])
+    senses = np.arange(24, dtype=np.float32).reshape(12, 2)
+    found = tick.think(law, world, senses, tick.keys_of(world.worlds, jnp.int32(3)))
+    key = stream(wide(np.repeat([5, 2**40], 6)), Purpose.MOTOR, wide(np.full(12, 12)))
+    noise = quantiles()[np.asarray(noise_index(key, np.tile(np.arange(6), 2), 2))]
+    np.testing.assert_allclose(found.action, 2 * senses + 0.5 * noise, rtol=1e-6)
+    assert (np.asarray(found.memory) == -1).all()
 
 
 def drawn(purpose: Purpose, chances: list[float]) -> np.ndarray:

@@ -1,7 +1,8 @@
-"""Mates in several worlds: the mate is the living neighbour of a child that is not its parent."""
+"""Mates in several worlds: who they are, and that mutation begins with the genome of both parents."""
 
 from typing import Any
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ import pytest
 from primordia.law import events as log
 from primordia.law.genesis import begin
 from primordia.law.turnover import birth_keys, turnover
-from primordia.law.world import BirthCause, Cause
+from primordia.law.world import BirthCause, Cause, World
 from primordia.random.wide import wide
 from tests.worlds import MEADOW, law_of
 
@@ -85,3 +86,42 @@ def test_a_mate_is_a_neighbour_in_the_childs_world_that_survives_the_tick(
         if law.heredity.mutation.notes:
             note = -(cell.astype(int) + 1) if "belongs" in mutation else -parent
             assert births["quarters"][w].view(np.int32) == after.organisms.notes[cell, 0] == note
+
+
+def test_a_calibrated_mutation_is_measured_against_the_genome_of_both_parents() -> None:
+    """A child with the mate's weights acts unlike its parent before it mutates, and keeps acting so.
+
+    Mutations are much smaller than the weights. So the largest of them, q = 0, changes no choice.
+    Children know the moments of their parents. The last world is empty, and its founder knows none.
+    """
+    worlds = 8
+    law = law_of(
+        MEADOW, cells=3, seeds=worlds, brain={"kind": "linear"}, placement={"rule": "empty-only"},
+        recombination={"unit": "block"},
+        mutation={"kind": "calibrated", "probability": 1.0, "differs": 0.0, "remembered": 2},
+    )  # fmt: skip
+    organisms, counts = begin(law, np.arange(worlds, dtype=np.uint64), tick=9)
+    of_parent, of_mate = np.float32([[1, 0], [1, 0]]), np.float32([[0, 1], [0, 1]])
+    genome = np.tile([of_parent, np.zeros((2, 2), np.float32), of_mate], (worlds, 1, 1))
+    known = jax.tree.map(jnp.ones_like, organisms.moments)
+    empty = np.arange(3 * worlds) >= 3 * (worlds - 1)
+    alive = jnp.asarray((np.arange(3 * worlds) % 3 != 1) & ~empty)
+    organisms = organisms._replace(
+        alive=alive, genome={"output": jnp.asarray(genome)}, moments=known
+    )
+    after, lists, newborn = jax.jit(turnover, static_argnums=0)(
+        law, World(organisms, counts), log.empty(law), jnp.ones(worlds, bool),
+        alive & (jnp.arange(3 * worlds) % 3 == 0), jnp.full(3 * worlds, -1, jnp.int32),
+        birth_keys(law, counts),
+    )  # fmt: skip
+    assert newborn.tolist()[:-3] == [False, True, False] * (worlds - 1)
+    assert after.organisms.moments is not None
+    knows = np.asarray(after.organisms.moments.known)[np.asarray(newborn)]
+    assert knows.tolist() == [[True, True]] * (worlds - 1) + [[False, False]]
+    rows = np.asarray(lists.births.rows)[: int(lists.births.filled)]
+    assert not log.births_of(law.heredity).unpacked(rows)["quarters"].any()
+    children = np.asarray(after.organisms.genome["output"])[1:-3:3]
+    mated = [abs(child - of_mate).max() < 0.1 for child in children]
+    alone = [abs(child - of_parent).max() < 0.1 for child in children]
+    assert [one != other for one, other in zip(mated, alone, strict=True)] == [True] * 7
+    assert 0 < sum(mated) < 7

@@ -11,7 +11,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
-from primordia.law.metabolism import MOST, ONE, Metabolism, Rates, add, metabolise, to_fixed_point
+from primordia.law.metabolism import (
+    MOST,
+    ONE,
+    Metabolism,
+    Rates,
+    add,
+    break_even,
+    metabolise,
+    to_fixed_point,
+)
 
 FIXED, METABOLISE = jax.jit(to_fixed_point), jax.jit(metabolise)
 RATES = ("store", "drain", "gain", "effort_cost", "cap")
@@ -139,3 +148,15 @@ def test_rates_at_the_ends_of_their_range_are_accepted() -> None:
     for name in ("store", "cap"):
         with pytest.raises(ValidationError, match=f"{name}\n.*greater than 0"):
             Metabolism(**{name: 0.0})
+
+
+@pytest.mark.parametrize(
+    ("drain", "gain", "food"),
+    [(3.0, 2.0, 1.5), (0.0, 2.0, 0.0), (3.0, 0.0, None), (0.0, 0.0, None)],
+)
+def test_break_even_is_the_food_that_pays_for_the_drain(
+    drain: float, gain: float, food: float | None
+) -> None:
+    """Without a drain it is 0, which is a number. Without a gain there is none."""
+    assert break_even(drain, gain) == food
+    assert (break_even(drain, gain) is None) == (food is None)

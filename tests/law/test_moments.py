@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 
 from primordia.habitats import Compound, Continuous, Discrete
-from primordia.law.moments import change_in
-from primordia.law.world import Remembered
+from primordia.law.genesis import begin
+from primordia.law.moments import change_in, remember
+from primordia.law.world import Remembered, World
+from primordia.random.wide import wide
 from tests.toys import Mill
 from tests.worlds import MEADOW, MILL, Lived, config, law_of
 
@@ -73,6 +75,38 @@ def assert_of_parents(lived: Lived, tick: int, before: Any, now: Any, places: li
     return len(newborn)
 
 
+def test_a_moment_is_stored_only_in_worlds_that_ran_to_a_tick_of_moments() -> None:
+    """Of four worlds one is due, one is between its ticks, one has stopped, and one is due elsewhere."""
+    law = law_of(MEADOW, cells=2, seeds=4, mutation=MUTATION)
+    organisms, worlds = begin(law, np.arange(4, dtype=np.uint64))
+    alive = jnp.array([1, 1, 1, 1, 1, 1, 1, 0], bool)
+    before = jax.tree.map(lambda leaf: jnp.full_like(leaf, -5), organisms.moments)
+    assert before is not None
+    before = before._replace(known=jnp.zeros_like(before.known).at[:, 0].set(True))
+    organisms = organisms._replace(
+        alive=alive, memory=jnp.full_like(organisms.memory, 7), moments=before
+    )
+    world = World(organisms, worlds._replace(tick=wide([6, 7, 6, 21])))
+    senses = jnp.arange(8 * law.senses, dtype=jnp.float32).reshape(8, -1)
+    live = jnp.array([True, True, False, True])
+    after = remember(law, world, senses, live).organisms.moments
+    assert after is not None
+    places = {
+        0: 6 // EVERY % KEPT,
+        1: 6 // EVERY % KEPT,
+        6: 21 // EVERY % KEPT,
+        7: 21 // EVERY % KEPT,
+    }
+    for cell in range(8):
+        for place in range(KEPT):
+            stored = places.get(cell) == place
+            known = bool(alive[cell]) if stored else place == 0
+            assert bool(after.known[cell, place]) == known
+            sensed = senses[cell].tolist() if stored else [-5.0] * law.senses
+            assert after.senses[cell, place].tolist() == sensed
+            assert set(after.memory[cell, place].tolist()) == {7.0 if stored else -5.0}
+
+
 ORGAN = {**MILL, "habitat": {"name": "tests.toys:Organ"}}
 
 
@@ -127,11 +161,12 @@ def output(law: Any, genome: np.ndarray, moments: Remembered, row: int, place: i
     return np.asarray(law.brain(blocks, memory[None], senses[None])[1][0])
 
 
-def test_a_moment_has_changed_if_any_of_its_choices_has() -> None:
+@pytest.mark.parametrize("memory", [1, 0])
+def test_a_moment_has_changed_if_any_of_its_choices_has(memory: int) -> None:
     """The change is the larger of two numbers, here of two choices and two vectors.
 
     One is the share of moments with another choice. The other is the root mean square difference of
-    the vectors' numbers, each at most 1.
+    the vectors' numbers, each at most 1. Both are measured in brains without memory too.
     """
     action = Compound((Discrete(2), Continuous(1), Discrete(2), Continuous(2)))
     before = np.array([1, 0, 0, 1, 0, 0, 0], np.float32)
@@ -147,7 +182,9 @@ def test_a_moment_has_changed_if_any_of_its_choices_has() -> None:
         return memory, jnp.where(child, senses, jnp.asarray(before))
 
     law = replace(law_of(MEADOW), brain=brain, action=action)
-    moments = Remembered(jnp.asarray(rows, jnp.float32), jnp.zeros((5, 4, 1)), jnp.asarray(known))
+    moments = Remembered(
+        jnp.asarray(rows, jnp.float32), jnp.zeros((5, 4, memory)), jnp.asarray(known)
+    )
     parents = jnp.zeros((5, law.heredity.layout.length))
     change = np.asarray(change_in(law, moments, parents)(parents + 1))
     expected = [3 / 4, np.sqrt((0.5**2 + 0.25**2) / 3), np.sqrt(2 / 3), 1.0, np.inf]

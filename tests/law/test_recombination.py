@@ -66,6 +66,30 @@ def test_every_candidate_is_as_likely_to_be_the_mate() -> None:
         assert binomial(int((with_all == cell).sum()), int((with_all >= 0).sum()), 1 / 3)
 
 
+def test_a_mate_is_chosen_by_the_high_word_and_refused_by_the_low_one() -> None:
+    """The n-th of the candidates is taken, and a share `probability` of low words brings a mate."""
+    random = np.random.default_rng(6)
+    candidates = random.random((200, 7)) < 0.5
+    high, low = random.integers(0, 2**32, (2, 200), np.uint32)
+    low[:4] = 2**31 - 1, 2**31, 0, 2**32 - 1
+    candidates[:4] = True
+    for probability in (0.0, 0.5, 1.0):
+        word = Wide(jnp.asarray(high), jnp.asarray(low))
+        found = Recombination(probability=probability).mates(word, jnp.asarray(candidates))
+        for row, mate in enumerate(np.asarray(found).tolist()):
+            cells = np.flatnonzero(candidates[row]).tolist()
+            wanted = cells and int(low[row]) < probability * 2**32
+            assert mate == (cells[int(high[row]) * len(cells) >> 32] if wanted else -1)
+
+
+def test_heights_of_several_kinds_have_units_of_their_own() -> None:
+    layout = Layout((("a", (3, 2)), ("b", (1, 5)), ("c", (2, 2, 2)), ("d", (3,)), ("e", (4, 1))))
+    rows = [0, 0, 1, 1, 2, 2, *[3] * 5, *[4] * 4, *[5] * 4, 0, 1, 2, 6, 7, 8, 9]
+    assert Recombination(unit="row").units(layout).tolist() == rows
+    blocks = [0] * 6 + [1] * 5 + [2] * 8 + [3] * 3 + [4] * 4
+    assert Recombination(unit="block").units(layout).tolist() == blocks
+
+
 @pytest.mark.parametrize(
     ("topology", "cells", "near"),
     [

@@ -269,6 +269,30 @@ def test_impossible_seasons_are_refused(change: dict[str, Any]) -> None:
 
 
 @pytest.mark.parametrize(
+    ("kind", "name", "accepted", "refused"),
+    [
+        ("schedule", "at", 1, 0),
+        ("schedule", "value", 0.0, -1e-9),
+        ("ratchet", "above", 0.0, -1e-9),
+        ("ratchet", "factor", 1e-9, 0.0),
+        ("ratchet", "every", 1, 0),
+        ("ratchet", "every", 2**31 - 1, 2**31),
+    ],
+)
+def test_values_of_seasons_are_accepted_up_to_their_bounds(
+    kind: str, name: str, accepted: float, refused: float
+) -> None:
+    good = {
+        "schedule": schedule("hazard", 5, 0.5),
+        "ratchet": ratchet("replication", "mean_age", 1.0, 0.5, 10),
+    }[kind]
+    season = TypeAdapter(Season)
+    assert getattr(season.validate_python({**good, name: accepted}), name) == accepted
+    with pytest.raises(ValidationError, match=name):
+        season.validate_python({**good, name: refused})
+
+
+@pytest.mark.parametrize(
     ("setting", "nearest"),
     [
         ("metabolism.speed", ""),

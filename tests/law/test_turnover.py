@@ -30,7 +30,7 @@ BRANCH[DYING], BRANCH[LOSING], BRANCH[QUIET] = 3, [9, 4, 9, 9], 7
 BEGUN = {
     "births": [1000 + world for world in range(W)],
     "extinctions": [2] * W,
-    "organism_ticks": [0 if world == FIRST else 77 for world in range(W)],
+    "organism_ticks": [2**32 if world == DYING else 77 * (world != FIRST) for world in range(W)],
     "fixed": [20, NEVER, NEVER, NEVER, 30, NEVER],
     "fixed_births": [900, NEVER, NEVER, NEVER, 901, NEVER],
 }

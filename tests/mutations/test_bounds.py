@@ -58,6 +58,8 @@ BOUNDS: list[tuple[dict[str, Any], str, Any, Any]] = [
             ("cap", 1e-3, 0.0),
         ]
     ),
+    ({"recombination.unit": "row"}, "recombination.probability", 0.0, -TINY),
+    ({"recombination.unit": "row"}, "recombination.probability", 1.0, 1 + TINY),
     ({}, "motor.sd", 0.0, -TINY),
     ({}, "motor.sd", 100.0, 100.1),
     ({}, "brain.hidden", 1, 0),

@@ -13,7 +13,7 @@ from primordia.mutations.blocks import FounderBlock
 from primordia.mutations.calibrated import Calibrated
 from primordia.mutations.contract import PURPOSES, Change, Draws, Family, Moments
 from primordia.mutations.lengths import LENGTHS, LONGEST, SHORTEST
-from primordia.random.keys import Purpose, streams
+from primordia.random.keys import Purpose, bits, streams
 from primordia.random.wide import wide
 from primordia.testing import ContractError, check_mutation
 
@@ -83,6 +83,8 @@ def test_copies_have_the_parents_genome_and_no_length() -> None:
     quarters = noted(mutation, of, distance(of.parents))
     children, mutants = mutation.inherit(LAYOUT, of._replace(notes=jnp.asarray(quarters)[:, None]))
     copies = ~np.asarray(mutants)
+    word = bits(of.draws.streams[Purpose.MUTATE], of.draws.cell).hi
+    np.testing.assert_array_equal(copies, np.asarray(word) >= 2**31)
     assert 10 < copies.sum() < K - 10
     np.testing.assert_array_equal(np.asarray(children)[copies], np.asarray(of.parents)[copies])
     assert (quarters[copies] == 0).all()

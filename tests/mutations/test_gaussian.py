@@ -1,6 +1,7 @@
 """Gaussian mutation: its noise, the share of mutants, and children equal to those made by NumPy."""
 
 from statistics import NormalDist
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -10,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from primordia.brains.layout import Layout
+from primordia.mutations.calibrated import Calibrated
 from primordia.mutations.contract import Draws, Family
 from primordia.mutations.gaussian import Block, Gaussian
 from primordia.mutations.noise import noise_index
@@ -161,9 +163,23 @@ def test_a_season_of_the_whole_changes_blocks_without_a_value_of_their_own() -> 
     mutation = Gaussian(blocks={"output": Block(scale=0.5)})
     assert mutation.governed("scale", LAYOUT) == ["blocks.input.scale", "blocks.recurrent.scale"]
     assert len(mutation.governed("probability", LAYOUT)) == 3
+    none = Gaussian(blocks={"input": Block(probability=0.0), "output": Block(scale=0.0)})
+    assert none.governed("scale", LAYOUT) == ["blocks.input.scale", "blocks.recurrent.scale"]
+    assert [rate.split(".")[1] for rate in none.governed("probability", LAYOUT)] == NAMES[1:]
     assert mutation.governed("blocks.output.scale", LAYOUT) == ["blocks.output.scale"]
     for unknown in ("founder_scale", "blocks.input.founder_scale", "blocks.hidden.scale", "blocks"):
         assert mutation.governed(unknown, LAYOUT) == []
+
+
+@pytest.mark.parametrize("kind", [Gaussian, Calibrated])
+def test_each_block_with_values_of_its_own_must_be_a_block_of_the_brain(kind: Any) -> None:
+    values: dict[str, Any] = {"founder_scale": 0.5}
+    kind(blocks=dict.fromkeys(NAMES, values)).check(LAYOUT)
+    for names in (["hidden"], [*NAMES, "hidden"], ["hidden", "output"]):
+        with pytest.raises(
+            ValueError, match=r"no block 'hidden'; it has input, recurrent, output$"
+        ):
+            kind(blocks=dict.fromkeys(names, values)).check(LAYOUT)
 
 
 def same_bits(a: np.ndarray, b: np.ndarray) -> None:

@@ -9,7 +9,7 @@ from primordia.mutations.contract import PURPOSES, Draws, Family
 from primordia.mutations.gaussian import Block, Gaussian
 from primordia.mutations.heritable import Heritable
 from primordia.mutations.lengths import length
-from primordia.random.keys import streams
+from primordia.random.keys import Purpose, bits, streams
 from primordia.random.wide import wide
 from primordia.testing import check_mutation
 from tests.chance import binomial
@@ -36,6 +36,18 @@ def test_the_exponent_of_a_mutant_takes_any_step_up_to_the_stride(stride: int) -
     assert steps.tolist() == list(range(-stride, stride + 1))
     expected = mutants.sum() / len(steps)
     assert (abs(counts - expected) < 5 * expected**0.5).all()
+
+
+def test_the_step_of_a_mutant_is_drawn_by_its_second_word() -> None:
+    """Draw 0 of a birth decides whether it is a mutant, and draw 1 by how much q changes."""
+    mutation = Heritable(stride=3, probability=0.5)
+    of = family(mutation, 5)
+    first, second = (
+        np.asarray(bits(of.draws.streams[Purpose.MUTATE], of.draws.cell, draw).hi).astype(int)
+        for draw in (0, 1)
+    )
+    expected = np.where(first < 2**31, 5 + (second * 7 >> 32) - 3, 5)
+    np.testing.assert_array_equal(mutation.note(LAYOUT, of, None)[:, 0], expected)
 
 
 @pytest.mark.parametrize(("quarters", "bound"), [(16, "coarsest"), (-48, "finest")])

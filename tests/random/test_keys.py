@@ -49,6 +49,15 @@ def test_the_cipher_is_that_of_jax(k0: int, k1: int, counters: list[int]) -> Non
     np.testing.assert_array_equal(jnp.concatenate(ours), expected)
 
 
+def test_each_purpose_keeps_its_number() -> None:
+    """The numbers are part of the format: with another number a run would have other lives."""
+    assert {purpose.name: purpose.value for purpose in Purpose} == {
+        "REPLICATE": 1, "HAZARD": 2, "PLACE": 3, "MUTATE": 4, "NOISE": 5, "FOUNDER": 6, "GENESIS": 7,
+        "BODY": 8, "MOTOR": 9, "EVALUATION": 10, "SHADOW": 11, "REBIRTH": 12, "CONTROL": 13, "MATE": 14,
+        "CROSS": 15, "DRIFT": 16,
+    }  # fmt: skip
+
+
 def test_every_part_of_a_draws_name_matters() -> None:
     seeds, ticks = [0, 1, 2**32, 2**64 - 1], [0, 1, 2**32, 10**12]
     names = np.array(list(product(seeds, list(Purpose), ticks)), object)

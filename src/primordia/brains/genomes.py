@@ -63,7 +63,7 @@ def of_state(path: Path, layout: Layout) -> np.ndarray:
     for name, shape in layout.blocks:
         found = state[name].shape if name in state else None
         if found != shape:
-            other = "is missing" if found is None else f"is {_described({name: found})}"
+            other = "is missing" if found is None else f"is {_size(found)}"
             turned = found is not None and found == shape[::-1]
             raise InputError(
                 f"{path}: the block {name} {other}; this task's brain needs {wanted}"
@@ -138,4 +138,8 @@ def _finite(path: Path, genomes: np.ndarray) -> np.ndarray:
 
 
 def _described(shapes: Mapping[str, Shape]) -> str:
-    return ", ".join(f"{name} {'x'.join(map(str, shape))}" for name, shape in shapes.items()) or "-"
+    return ", ".join(f"{name} {_size(shape)}" for name, shape in shapes.items()) or "-"
+
+
+def _size(shape: Shape) -> str:
+    return "x".join(map(str, shape)) or "a single number"

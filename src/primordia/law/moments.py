@@ -133,7 +133,8 @@ def _share(count: Array, known: Array) -> Array:
 
 
 def _flat(values: Array) -> Array:
-    return values.reshape(-1, values.shape[-1])
+    """Return values (K, R, ...) as (K R, ...). A brain without memory has none in its last axis."""
+    return values.reshape(values.shape[0] * values.shape[1], *values.shape[2:])
 
 
 def _outputs(law: Law, moments: Remembered, genomes: Array) -> Array:
