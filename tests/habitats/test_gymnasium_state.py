@@ -56,24 +56,33 @@ class Thing:
         }
 
 
-def test_every_kind_of_value_is_restored() -> None:
-    """Two names of one object still name one object. An attribute that was added later is removed."""
-    one, other = Thing(3), Thing(7)
+@pytest.mark.parametrize(("saved", "present"), [(3, 7), (7, 2)])
+def test_every_kind_of_value_is_restored(saved: int, present: int) -> None:
+    """Two names of one object still name one object. An attribute that was added later is removed.
+
+    The lists that are restored are longer or shorter than the present ones.
+    """
+    one, other = Thing(saved), Thing(present)
+    one.plain += [np.arange(2), saved] * (saved // 7)
     other.later = 9  # type: ignore[attr-defined]
     own = other.part, other.generator
     one.generator.random(5)
     one.old.random_sample(5)
+    one.old.normal()  # the next normal number is known from here on
     state.decode(other, state.encode(one))
+    assert state.encode(other) == state.encode(one)
+    assert list(map(str, other.plain)) == list(map(str, one.plain))
+    one.plain, other.plain = one.plain[:5], other.plain[:5]
     assert other.values() == one.values()
     assert other.generator.random(3).tolist() == one.generator.random(3).tolist()
-    assert other.old.random_sample(3).tolist() == one.old.random_sample(3).tolist()
+    assert other.old.normal(size=3).tolist() == one.old.normal(size=3).tolist()
     assert (other.part, other.generator) == own
     assert other.parts[0] is other.parts[2] is other.part
     assert other.parts[1] is not other.part
     assert other.itself is other
     assert not hasattr(other, "later")
     other.array[0] = 5  # the array can be written, and is no part of the other environment
-    assert one.array[0].tolist() == [0, 3, 6]
+    assert one.array[0].tolist() == [0, saved, 2 * saved]
 
 
 def test_what_cannot_be_saved_is_named_by_its_place() -> None:
