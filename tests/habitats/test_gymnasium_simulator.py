@@ -78,11 +78,13 @@ def test_a_life_ends_at_the_time_limit_or_when_the_environment_cuts_it(
     assert game._age.tolist() == [2, 3, 4, 5, 4]
 
 
-def environments(**info: int) -> tuple[Environments, dict[str, np.ndarray]]:
+def environments(
+    kind: str = "Pond", food: str = "", **info: int
+) -> tuple[Environments, dict[str, np.ndarray]]:
     """Return ponds in two cells of this process, and the arrays that they fill."""
     shared = fields(Observation(Pond.observation_space), Acting(Pond.action_space), info)
     arrays = {name: np.zeros((2, *shape), dtype) for name, (dtype, shape) in shared.items()}
-    made = Environments(arrays, "tests.ponds:Pond-v0", {}, [], "replay", False, "", info)
+    made = Environments(arrays, f"tests.ponds:{kind}-v0", {}, [], "replay", False, food, info)
     for cell in range(2):
         made.make(cell)
     return made, arrays
@@ -122,6 +124,8 @@ def test_a_fault_leaves_its_message_and_no_results() -> None:
         arrays[name][:] = 1
     made._fail(0, "x" * (MESSAGE + 9))
     assert arrays["message"].sum(axis=1).tolist() == [MESSAGE * ord("x"), 0]
+    made._fail(0, "é" * MESSAGE)
+    assert arrays["message"][0].tobytes().decode() == "é" * (MESSAGE // 2)
     made._fail(0, "short")
     assert arrays["message"][0].tobytes().rstrip(b"\0") == b"short"
     assert arrays["fault"].tolist() == [True, False]
