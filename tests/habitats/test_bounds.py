@@ -19,6 +19,8 @@ BOUNDS: list[tuple[str, str, Any, Any]] = [
     ("Pong-survival", "sticky", 0.99, 1.0),
     ("Pong-survival", "noops", 0, -1),
     ("Pong-survival", "noops", 10_000, 10_001),
+    ("Pong-survival", "senses", (0, 127), (0, 128)),
+    ("Pong-survival", "senses", (127, 0), (0, -1)),
     ("Pong-survival", "mode", 0, -1),
     ("Pong-survival", "difficulty", 0, -1),
     ("Pong-survival", "workers", 0, -1),

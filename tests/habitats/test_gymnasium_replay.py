@@ -64,7 +64,12 @@ def test_a_life_that_could_not_begin_fails_in_its_first_tick_also_after_a_resume
 def test_a_function_of_food_is_given_the_result_of_the_step(monkeypatch: Any) -> None:
     given: list[tuple[Any, ...]] = []
     step = (np.array([5.0, 6.0]), 0.5, False, True, {"age": 1})
-    monkeypatch.setattr(ponds, "food", lambda *each: given.append(each) or 2.5)
+
+    def food(*result: Any) -> float:
+        given.append(result)
+        return 2.5
+
+    monkeypatch.setattr(ponds, "food", food)
     monkeypatch.setattr(Pond, "step", lambda *_: step)
     made, arrays = environments(food="tests.ponds:food")
     lived(made, arrays, 6, 1)

@@ -9,7 +9,7 @@ import pytest
 
 pytest.importorskip("gymnasium")
 
-from primordia.habitats.gymnasium import check, probe, task
+from primordia.habitats.gymnasium import check, environment, probe, task
 from primordia.habitats.gymnasium.check import Measured
 from primordia.habitats.gymnasium.probe import LONGEST, PICTURES_S, _numbers
 from primordia.settings.doors import replication
@@ -75,7 +75,7 @@ def test_a_picture_is_tried_with_the_options_of_the_environment(
         made.append((*given, watched))
         return Pond()
 
-    monkeypatch.setattr(probe.environment, "make", make)
+    monkeypatch.setattr(environment, "make", make)
     assert probe.screen_shape("any", {"edge": 2.0}, ("own",)) == (30, 40, 3)
     assert made == [("any", {"edge": 2.0}, ("own",), True)]
 

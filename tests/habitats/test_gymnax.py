@@ -3,6 +3,7 @@
 from typing import Any
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
@@ -58,6 +59,19 @@ def test_the_environments_time_limit_ends_a_life_only_if_it_is_kept() -> None:
     assert ends(params={"max_steps_in_episode": 7}).index(True) == 6
     assert ends(params={"energy": 4}).index(True) == 3
     assert ends(params={"energy": 3}, time_limit=True).index(True) == 2
+
+
+def test_without_a_condition_no_life_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The test gives the values of a tick, in which two of four walks are done."""
+    done = [True, False, False, True]
+    values = {"done": jnp.array(done)}
+    monkeypatch.setattr(Gymnax, "tick", lambda self, bodies, action: (bodies, values))
+    for fatal, ends in (
+        ("", [False] * 4),
+        ("done", done),
+        ("not done", [False, True, True, False]),
+    ):
+        assert walk(fatal=fatal).step(None, STILL)[1].fatal.tolist() == ends
 
 
 def test_death_and_food_can_speak_of_all_that_the_environment_says() -> None:
@@ -144,7 +158,10 @@ def test_a_picture_is_drawn_of_what_is_sensed() -> None:
 WRONG: list[tuple[dict[str, Any], str]] = [
     ({"env": "tests.walks:Mute"}, "a brain needs two or more choices"),
     ({"env": "tests.walks:Growing"}, "the state has one form"),
-    ({"env": "tests.walks:Nothing"}, "has no default_params, reset_env, step_env"),
+    (
+        {"env": "tests.walks:Nothing"},
+        "has no default_params, reset_env, step_env, action_space, which",
+    ),
     ({"env": "tests.walks:Missing"}, "cannot be made"),
     ({"env": "tests.walks:Walk", "params": {"gust": 1.0}}, "did you mean 'gusts'"),
     (
