@@ -10,7 +10,7 @@ pytest.importorskip("gymnasium")
 from primordia.errors import Trouble
 from tests import ponds
 from tests.habitats.test_gymnasium_simulator import environments
-from tests.ponds import Pond
+from tests.ponds import CRASH, Pond
 
 
 def lived(made: Any, arrays: dict[str, np.ndarray], word: int, ticks: int) -> None:
@@ -59,6 +59,21 @@ def test_a_life_that_could_not_begin_fails_in_its_first_tick_also_after_a_resume
         assert arrays["message"][cell].tobytes().rstrip(b"\0") == b"RuntimeError: no water"
     lived(one, a, 4, 1)
     assert not a["fault"].any()
+
+
+@pytest.mark.parametrize("saving", ["replay", "snapshot"])
+def test_an_environment_that_failed_is_not_used_after_a_resume(saving: str) -> None:
+    """A spoiled pond fails at each reset after an error."""
+    (one, a), (other, b) = (environments("Spoiled", saving=saving) for _ in "ab")
+    word = 2
+    while not a["fault"][0]:
+        word += 2
+        lived(one, a, word, CRASH)
+    other.load(1, one.save(0))
+    b["seed"][1] = word
+    other.reset(1)
+    other.step([1])
+    assert b["fault"].tolist() == [False, False]
 
 
 def test_a_function_of_food_is_given_the_result_of_the_step(monkeypatch: Any) -> None:

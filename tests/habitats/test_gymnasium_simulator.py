@@ -79,12 +79,12 @@ def test_a_life_ends_at_the_time_limit_or_when_the_environment_cuts_it(
 
 
 def environments(
-    kind: str = "Pond", food: str = "", **info: int
+    kind: str = "Pond", food: str = "", saving: str = "replay", **info: int
 ) -> tuple[Environments, dict[str, np.ndarray]]:
     """Return ponds in two cells of this process, and the arrays that they fill."""
     shared = fields(Observation(Pond.observation_space), Acting(Pond.action_space), info)
     arrays = {name: np.zeros((2, *shape), dtype) for name, (dtype, shape) in shared.items()}
-    made = Environments(arrays, f"tests.ponds:{kind}-v0", {}, [], "replay", False, food, info)
+    made = Environments(arrays, f"tests.ponds:{kind}-v0", {}, [], saving, False, food, info)
     for cell in range(2):
         made.make(cell)
     return made, arrays
