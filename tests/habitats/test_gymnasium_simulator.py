@@ -111,6 +111,20 @@ def test_the_seed_of_a_life_has_the_31_upper_bits_of_its_word(
     assert seeds == [2**31 - 1, 3, 0, 2**30]
 
 
+@pytest.mark.parametrize("setting", ["food", "effort", "fatal"])
+def test_each_setting_may_name_info_alone(setting: str) -> None:
+    """The age is 1 after the first tick, and the registered limit of a game is 50 ticks."""
+    game = pond(**{setting: 'info["age"] > 0' if setting == "fatal" else '3 * info["age"]'})
+    game.open(2)
+    game.reset(np.arange(2), np.array([[1], [2]], np.uint32))
+    _, outcome = game.step(np.zeros((2, 1), np.float32), np.ones(2, bool))
+    expected: Any = {"food": [0, 0], "effort": [0, 0], "fatal": [False, False]}
+    expected[setting] = [True, True] if setting == "fatal" else [3, 3]
+    assert {name: getattr(outcome, name).tolist() for name in expected} == expected
+    assert game.episode == 50
+    game.close()
+
+
 def test_there_are_at_most_as_many_workers_as_cells() -> None:
     crowd = Gymnasium(env="tests.ponds:Pond-v0", workers=3)
     crowd.check(3)
@@ -167,3 +181,6 @@ def test_the_versions_are_those_of_the_packages_that_compute_the_environment() -
     environment.make("Hopper-v5", {}, ()).close()
     assert {"gymnasium", "numpy", "mujoco"} == set(environment.versions("Hopper-v5"))
     assert {"gymnasium", "numpy"} == set(environment.versions("CartPole-v1"))
+    pytest.importorskip("Box2D")
+    environment.make("LunarLander-v3", {}, ()).close()
+    assert {"gymnasium", "numpy", "box2d"} == set(environment.versions("LunarLander-v3"))
