@@ -9,8 +9,10 @@ import pytest
 
 pytest.importorskip("gymnasium")
 
+from primordia.errors import InputError
 from primordia.habitats.gymnasium import check, environment, probe, task
 from primordia.habitats.gymnasium.check import Measured
+from primordia.habitats.gymnasium.habitat import Gymnasium
 from primordia.habitats.gymnasium.probe import LONGEST, PICTURES_S, _numbers
 from primordia.settings.doors import replication
 from tests.ponds import Pond, noted_seeds
@@ -78,6 +80,23 @@ def test_a_picture_is_tried_with_the_options_of_the_environment(
     monkeypatch.setattr(environment, "make", make)
     assert probe.screen_shape("any", {"edge": 2.0}, ("own",)) == (30, 40, 3)
     assert made == [("any", {"edge": 2.0}, ("own",), True)]
+
+
+def test_an_environment_that_cannot_draw_is_an_error_that_says_why(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def render(_: Pond) -> None:
+        raise RuntimeError("no\npaint")
+
+    monkeypatch.setattr(Pond, "render", render)
+    game = Gymnasium(env="tests.ponds:Pond-v0", workers=0)
+    with pytest.raises(
+        InputError, match=r"^habitat: tests.ponds:Pond-v0 cannot draw: .*: no paint$"
+    ):
+        game.open(1, watched=True)
+    game.open(1)
+    assert set(game.seen()) == {"obs", "reward"}
+    game.close()
 
 
 @pytest.mark.parametrize(

@@ -27,6 +27,7 @@ print("warned after", file=sys.stderr)
 def test_only_output_around_a_silence_is_seen() -> None:
     """Lines that were printed before, but not yet written, are written."""
     command = [sys.executable, "-c", SPEAKING]
-    done = subprocess.run(command, env=environment(), capture_output=True, text=True, check=True)
+    buffered = {**environment(), "PYTHONUNBUFFERED": ""}
+    done = subprocess.run(command, env=buffered, capture_output=True, text=True, check=True)
     assert done.stdout.split() == ["before", "between", "after"]
     assert done.stderr.splitlines() == ["warned before", "warned after"]
