@@ -1,5 +1,6 @@
 """Births in environments: places, seeds and settings that a caller gives; arrays that a caller keeps."""
 
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -8,8 +9,8 @@ import pytest
 pytest.importorskip("gymnasium")
 
 from primordia.envs import LifeEnv, LifeVectorEnv
-from primordia.envs.bodies import as_rows
-from primordia.habitats.contract import Continuous, Discrete
+from primordia.envs.bodies import as_rows, label
+from primordia.habitats.contract import Compound, Continuous, Discrete
 
 TASK = "CartPole-survival"
 
@@ -60,3 +61,23 @@ def test_choices_of_every_integer_type_are_rows_and_there_is_a_row_for_each_body
     for count in (1, 3):
         with pytest.raises(ValueError, match=rf"give the shape \(2, 2\), not \({count}, 2\)"):
             as_rows(np.zeros((count, 2)), Continuous(2), 2)
+
+
+def test_a_single_body_takes_the_parts_of_a_compound_action() -> None:
+    """The test replaces the bodies and notes their actions."""
+    kind = Compound((Discrete(3), Continuous(2), Discrete(2)))
+    noted: list[Any] = []
+
+    def step(action: np.ndarray, alive: np.ndarray) -> np.ndarray:
+        noted.append(action.tolist())
+        return np.array([-1 if len(noted) < 2 else 0])
+
+    env: Any = object.__new__(LifeEnv)
+    bodies = {"habitat": SimpleNamespace(action=kind), "step": step, "senses": np.zeros((1, 4)),
+              "food": np.array([2.5]), "energy": np.array([7.0])}  # fmt: skip
+    env._bodies, env._alive, env._reward = SimpleNamespace(**bodies), np.ones(1, bool), 1.5
+    _, *result = env.step((2, np.array([0.5, -1]), np.int64(1)))
+    assert result == [1.5, False, False, {"food": 2.5, "energy": 7.0}]
+    _, *result = env.step((0, [0.25, 1], 0))
+    assert result == [0.0, True, False, {"food": 2.5, "energy": 7.0, "cause": label(0)}]
+    assert noted == [[[2, 0.5, -1, 1]], [[0, 0.25, 1, 0]]]

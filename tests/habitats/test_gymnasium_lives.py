@@ -191,6 +191,7 @@ def test_a_life_that_does_not_repeat_is_noticed_when_it_is_needed() -> None:
             "cannot be made: Environment `CartPoll` doesn't exist. Did you mean",
         ),
         ({"env": "CartPole"}, "there is no CartPole; did you mean CartPole-v1?"),
+        ({"env": "tests.ponds:Pond"}, "no tests.ponds:Pond; did you mean tests.ponds:Pond-v0?"),
         ({"env": "no_such_module:Env-v0"}, "No module named 'no_such_module'"),
         ({"env": "tests.ponds:Talking-v0"}, r"observation space\['says'\] is a Text"),
         ({"env": "tests.ponds:Still-v0"}, "its action space has no choice"),

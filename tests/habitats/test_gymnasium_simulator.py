@@ -10,6 +10,7 @@ pytest.importorskip("gymnasium")
 
 import gymnasium
 
+from primordia import own_code
 from primordia.errors import Trouble
 from primordia.habitats.gymnasium import environment
 from primordia.habitats.gymnasium.environment import line
@@ -174,6 +175,19 @@ def test_an_error_is_one_line_that_names_its_kind_unless_gymnasium_wrote_it() ->
     assert line(ValueError()) == "ValueError"
     assert line(gymnasium.error.NameNotFound("no such name")) == "no such name"
     assert line(gymnasium.error.NameNotFound("")) == "NameNotFound"
+
+
+def test_modules_are_imported_in_the_order_of_the_settings_before_that_of_the_name(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    loaded: list[str] = []
+    monkeypatch.setattr(own_code, "load", loaded.append)
+    for name in ("tests.ponds:Pond-v0", "CartPole-v1"):
+        environment.make(name, {}, ("b", "a")).close()
+    assert loaded == ["b", "a", "tests.ponds", "b", "a"]
+    pond = environment.make("tests.ponds:Pond-v0", {"edge": 2.5}, (), watched=True).unwrapped
+    assert isinstance(pond, Pond)
+    assert (pond.edge, pond.render_mode) == (2.5, "rgb_array")
 
 
 def test_the_versions_are_those_of_the_packages_that_compute_the_environment() -> None:

@@ -65,6 +65,7 @@ def test_every_kind_of_value_is_restored(saved: int, present: int) -> None:
     one, other = Thing(saved), Thing(present)
     one.plain += [np.arange(2), saved] * (saved // 7)
     other.later = 9  # type: ignore[attr-defined]
+    del other.tuple, other.small  # so that they are the last attributes when they are restored
     own = other.part, other.generator
     one.generator.random(5)
     one.old.random_sample(5)
