@@ -1,7 +1,8 @@
 """The state of an environment as plain data: every kind of value is restored."""
 
-from collections import OrderedDict, deque
+from collections import Counter, OrderedDict, deque
 from enum import Enum
+from random import Random
 from typing import Any
 
 import numpy as np
@@ -92,4 +93,24 @@ def test_what_cannot_be_saved_is_named_by_its_place() -> None:
     with pytest.raises(
         state.UnknownStateError, match=r"^env\.plain\[5\] is a list_iterator, which"
     ):
+        state.encode(thing)
+
+
+class Reduced(Part):
+    def __reduce__(self) -> Any:
+        return Reduced, (self.number,)
+
+
+class ReducedByProtocol(Part):
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        return ReducedByProtocol, (self.number,)
+
+
+@pytest.mark.parametrize("part", [Random(1), Counter("aab"), Reduced(1), ReducedByProtocol(1)])
+def test_an_object_with_a_state_beside_its_attributes_is_not_saved(part: Any) -> None:
+    """Such an object says how it is pickled. A generator of Python has numbers that are no attributes."""
+    thing = Thing(3)
+    thing.parts[1] = part
+    says = rf"^env\.parts\[1\] is a {type(part).__name__}, which cannot be saved$"
+    with pytest.raises(state.UnknownStateError, match=says):
         state.encode(thing)
