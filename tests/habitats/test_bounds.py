@@ -13,6 +13,8 @@ BOUNDS: list[tuple[str, str, Any, Any]] = [
     ("CartPole-survival", "angle_limit", 180.0, 180.01),
     ("CartPole-survival", "track_limit", 1e-3, 0.0),
     ("CartPole-survival", "spread", 0.0, -1e-9),
+    ("CartPole-survival", "spread", 1e9, 1.1e9),
+    ("CartPole-survival", "senses", ("x",), ()),
     ("Pong-survival", "frame_skip", 1, 0),
     ("Pong-survival", "frame_skip", 100, 101),
     ("Pong-survival", "sticky", 0.0, -1e-9),

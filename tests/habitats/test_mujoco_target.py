@@ -82,6 +82,13 @@ def test_a_target_names_parts_of_the_model(change: dict[str, Any], says: str) ->
         MuJoCo(file="gymnasium:reacher.xml", target={**TARGET, **change})
 
 
+@pytest.mark.parametrize("setting", ["within", "radius"])
+def test_a_target_has_a_distance_and_a_radius(setting: str) -> None:
+    assert getattr(Target(**{**TARGET, setting: 1e-9}), setting) == 1e-9
+    with pytest.raises(ValueError, match=setting):
+        Target(**{**TARGET, setting: 0.0})
+
+
 def test_a_reached_target_feeds_once_and_then_moves() -> None:
     habitat = of_task("Reacher-forager", 1000)
     born(habitat, 1000)

@@ -203,7 +203,8 @@ def test_what_is_saved_has_a_row_for_each_cell(
 ) -> None:
     monkeypatch.setattr(Noted, "save", lambda _: {"x": saved})
     with pytest.raises(ContractError, match=says):
-        Lives(Noted()).restored(slice(None))
+        Lives(habitat := Noted()).restored(slice(None))
+    assert habitat.calls[-1] == ("close",)
 
 
 def test_the_first_life_that_differs_is_named_with_its_age() -> None:
