@@ -14,7 +14,7 @@ TASK = "CartPole-survival"
 def test_a_picture_has_the_present_body_and_the_latest_action() -> None:
     env = LifeEnv(TASK, {"habitat": {"track_limit": 5.0}}, render_mode="rgb_array")
     for seed in (1, 2):
-        pictures, actions = [(env.reset(seed=seed)[0], env.render())], [0, 1, 0]
+        pictures, actions = [(env.reset(seed=seed)[0], env.render())], [0, 1, 1]
         pictures += [(env.step(action)[0], env.render()) for action in actions]
         for (senses, picture), action in zip(pictures, [0, *actions], strict=True):
             drawn = draw(senses, action, 5.0).convert("RGB")
