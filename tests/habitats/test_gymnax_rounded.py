@@ -53,7 +53,8 @@ def test_every_product_is_rounded_before_it_is_added(optimised: None) -> None:
         scanned = lax.scan(lambda x, y: (x * y + c, None), a, jnp.stack([b, a]))[0]
         own = jax.custom_jvp(lambda a, b: a * b + c)
         own.defjvp(lambda given, change: (own(*given), change[0]))
-        return branch, loop, scanned, a**3 + c, jax.jit(jnp.square)(a) - c, own(a, b), a * b
+        rows = (jnp.stack([a, c]) * b).sum(axis=0)
+        return branch, loop, scanned, a**3 + c, jax.jit(jnp.square)(a) - c, own(a, b), rows, a * b
 
     def program(zero: Any, *each: Any) -> Any:
         *others, product = rounded(sums, zero)(*each)
@@ -62,7 +63,7 @@ def test_every_product_is_rounded_before_it_is_added(optimised: None) -> None:
     found = jax.jit(program)(np.uint32(0), a, b, c)
     thrice = ((a * b + c) * b + c) * b + c
     expected = a * b + c, thrice, (a * b + c) * a + c, a * (a * a) + c, a * a - c
-    expected = *expected, a * b + c, a * b + c
+    expected = *expected, a * b + c, a * b + c * b, a * b + c
     for one, other in zip(found, expected, strict=True):
         np.testing.assert_array_equal(one, other)
 
