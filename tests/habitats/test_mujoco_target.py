@@ -113,8 +113,8 @@ def test_a_reached_target_feeds_once_and_then_moves() -> None:
 def test_only_targets_that_the_living_reach_at_the_end_of_a_tick_move() -> None:
     """Nothing but the target needs the places of bodies. A target that moves is at rest."""
     target = {**TARGET, "within": 0.2}
-    own: dict[str, Any] = {"file": "gymnasium:reacher.xml", "senses": ("qpos",), "substeps": 25}
-    habitat = opened(60, **own, target=target, position_noise=2.0, velocity_noise=3.0)
+    own: dict[str, Any] = {"file": "gymnasium:reacher.xml", "senses": ("qpos",)}
+    habitat = opened(60, **own, target=target, position_noise=2.0, velocity_noise=40.0, substeps=1)
     born(habitat, 60)
     model, alive, moves = habitat._model, np.arange(60) % 3 > 0, 0
     data = mujoco.MjData(model)
