@@ -98,3 +98,20 @@ def test_a_time_limit_around_the_environment_is_removed(rules: Any) -> None:
     script = Script()
     assert rules(TimeLimit(script, 2)).env is script
     assert rules(script).env is script
+
+
+def test_a_tick_that_the_environment_cuts_is_lived() -> None:
+    env = Survival(Script(end=5), reward=2.0)
+    env.reset()
+    results = lived(env)
+    assert [reward for reward, *_ in results] == [2.0] * 4 + [0.0]
+    assert [cut for _, _, cut, _ in results] == [False, False, True, False, False]
+
+
+@pytest.mark.parametrize("rules", [Survival, Forager])
+def test_an_environment_that_is_made_from_its_spec_has_the_same_rules(rules: Any) -> None:
+    spec = rules(gymnasium.make("CartPole-v1"), reward=2.5).spec
+    again = gymnasium.make(spec)
+    again.reset(seed=1)
+    assert again.step(0)[1] == 2.5
+    again.close()

@@ -93,6 +93,7 @@ def after(run: primordia.Run, tick: int) -> list[dict[str, Any]]:
         (["--habitat.food", "lives and points"], "where a condition is needed"),
         (["--habitat.actions", "NOOP JUMP"], "there is no JUMP; pong takes NOOP, FIRE"),
         (["--habitat.mode", "77"], "mode: pong has [0, 1], not 77"),
+        (["--habitat.difficulty", "9"], "difficulty: pong has [0, 1, 2, 3], not 9"),
         (["--habitat.sticky", "1.5"], "habitat.sticky"),
         (["--habitat.workers", "9", "--cells", "8"], "9 workers are more than the 8 cells"),
     ],

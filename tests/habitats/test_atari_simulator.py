@@ -12,7 +12,7 @@ import primordia
 from primordia.habitats.atari import simulator
 from primordia.habitats.atari.games import games
 from primordia.habitats.atari.habitat import Atari
-from primordia.habitats.atari.simulator import FIELDS, NOOP, Arcade, console
+from primordia.habitats.atari.simulator import FIELDS, NOOP, SCREEN, Arcade, console
 from primordia.random import dice
 from primordia.runs.archive import Archive
 
@@ -76,6 +76,30 @@ def arcade(cells: int = 2, **options: Any) -> tuple[Arcade, dict[str, np.ndarray
     for cell in range(cells):
         made.make(cell)
     return made, arrays
+
+
+@pytest.mark.parametrize("watched", [False, True])
+def test_an_emulator_that_has_played_is_used_again_only_without_a_screen(
+    watched: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A screen is no part of a state. The new emulators have a screen for each cell."""
+    kept: defaultdict[Any, list[Any]] = defaultdict(list)
+    simulator._start(("pong", None, None))
+    spare = console("pong")
+    kept["pong", None, None].append(spare)
+    monkeypatch.setattr(simulator, "_SPARE", kept)
+    screen = {SCREEN: ("uint8", (210, 160, 3))} if watched else {}
+    monkeypatch.setattr(f"{__name__}.FIELDS", FIELDS | screen)
+    made, arrays = arcade()
+    used = [ale is spare for ale, _ in made._consoles.values()]
+    assert used == [not watched, False]
+    for cell in range(2):
+        made.reset(cell)
+        if watched:
+            np.testing.assert_array_equal(
+                arrays[SCREEN][cell], made._consoles[cell][0].getScreenRGB()
+            )
+            assert arrays[SCREEN][cell].any()
 
 
 def played(made: Arcade, arrays: dict[str, np.ndarray], ticks: int, cell: int = 0) -> list[bytes]:

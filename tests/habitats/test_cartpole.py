@@ -103,7 +103,9 @@ def test_bodies_start_uniform_within_the_spread() -> None:
     np.testing.assert_allclose(bodies.mean(axis=0), 0, atol=5 * 0.1 / np.sqrt(12 * 1e5))
     np.testing.assert_allclose(bodies.std(axis=0), 0.1 / np.sqrt(12), rtol=0.01)
     extremes = np.array([[0] * 4, [2**32 - 1] * 4], np.uint32)
-    np.testing.assert_allclose(CartPole().reset(extremes), [[-0.05] * 4, [0.05] * 4], atol=1e-7)
+    for spread in (0.05, 2.0, 0.0):
+        bodies = CartPole(spread=spread).reset(extremes)
+        np.testing.assert_allclose(bodies, [[-spread] * 4, [spread] * 4], rtol=2e-6)
 
 
 def test_hidden_senses_are_positions_only() -> None:
@@ -184,3 +186,16 @@ def test_the_track_is_as_long_as_its_limit_and_has_ends_where_it_is_limited(
     for end in {60, 580} - {middle}:
         assert (end in grey) == (limit < 100)
     assert grey <= {*range(57, 64), *range(577, 584)}
+
+
+def test_an_arrow_at_the_side_of_the_push_points_at_the_cart() -> None:
+    """Action 1 pushes the left side of the cart. The habitat draws with its own limit."""
+    for action, sign in ((0, 1), (1, -1)):
+        body = np.array([1.0, 0, 0, 0], np.float32)
+        picture = CartPole(track_limit=5.0).picture(body, np.int32(action))
+        assert picture.tobytes() == draw(body, action, 5.0).tobytes()
+        rows, columns = coloured(np.asarray(picture.convert("RGB")), (224, 160, 48))
+        away = sign * (columns - (320 + 260 / 5))
+        assert 37 < away.min() < away.max() < 75
+        heights = [np.ptp(rows[away == distance]) for distance in (50, 60, 68)]
+        assert heights[0] > heights[1] == heights[2]

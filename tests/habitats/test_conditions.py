@@ -80,7 +80,22 @@ def test_amounts_mean_what_they_mean_in_python(text: str) -> None:
 
 
 def test_a_condition_is_an_amount_of_one_where_it_holds() -> None:
-    assert parse("points > 0", "amount", NAMES)(VALUES).tolist() == [0.0, 0.0, 1.0]
+    amounts = parse("points > 0", "amount", NAMES)(VALUES)
+    assert (amounts.tolist(), amounts.dtype) == ([0.0, 0.0, 1.0], np.float32)
+
+
+@pytest.mark.parametrize(
+    ("text", "holds"),
+    [
+        ("points < -9 or points < -9 or lives > 2", [True, False, False]),
+        ("lives >= 0 and lives < 9 and points < 0", [False, True, False]),
+        ("-9 < points <= 0 < lives", [True, False, False]),
+        ("-9 < lives < 9 < points < 9", [False, False, False]),
+    ],
+)
+def test_all_parts_of_a_condition_count(text: str, holds: list[bool]) -> None:
+    """The lives are 3, 0 and 1, and the points 0, -1 and 2.5."""
+    assert parse(text, "condition", NAMES)(VALUES).tolist() == holds
 
 
 @pytest.mark.parametrize(
@@ -112,7 +127,8 @@ def test_lists_of_numbers_are_read(text: str, means: np.ndarray) -> None:
         ("ram[-1] == 0", "ram goes from"),
         ("lives < 1 or ram == 0", "column 14: 'ram' has 4 numbers; say which"),
         ("pionts < 0", "there is no 'pionts'; known: points, lives, ram"),
-        ("points <", "cannot be read at column"),
+        ("points <", "cannot be read at column 1"),
+        ("points < ) 1", "cannot be read at column 10"),
         ("", "cannot be read"),
         ("points", "is a number, not a condition"),
         ("points and lives", "column 1: this is a number, where a condition is needed"),
@@ -135,6 +151,7 @@ def test_lists_of_numbers_are_read(text: str, means: np.ndarray) -> None:
             "speed + ram < 1",
             "column 9: this is a list of 4 numbers, but another operand is a list of 3 numbers",
         ),
+        ("ram + speed < 1", "column 7: this is a list of 3 numbers, but another .* of 4 numbers"),
         ("speed < 1", "'speed' has 3 numbers; say which"),
         ("speed[1:] < 1", "this is a list of 2 numbers, where a number is needed"),
         ("sum(speed[3:]) < 1", "this slice is empty: speed has 3 numbers"),
@@ -182,9 +199,10 @@ def test_a_value_that_is_the_same_for_all_bodies_has_an_entry_for_each() -> None
     for text, kind, dtype in (("2 * 3", "amount", np.float32), ("1 < 2", "condition", bool)):
         every = parse(text, kind, NAMES).of_all(VALUES, 3, dtype)
         assert (every.tolist(), every.dtype) == ([6.0 if dtype is np.float32 else True] * 3, dtype)
-    lives = parse("lives", "amount", NAMES).of_all(VALUES, 3, np.float32)
-    lives[0] = 9  # a copy
-    assert (lives.tolist(), VALUES["lives"].tolist()) == ([9, 0, 1], [3, 0, 1])
+    for name, dtype in (("lives", np.float32), ("points", np.float32), ("speed[0]", np.float64)):
+        every = parse(name, "amount", NAMES).of_all(VALUES, 3, dtype)
+        every[0] = 9  # a copy
+    assert [VALUES[name].ravel()[0] for name in ("lives", "points", "speed")] == [3, 0, 0.5]
 
 
 def test_a_sum_of_many_terms_is_in_the_grammar() -> None:
@@ -201,6 +219,25 @@ def test_arithmetic_of_counts_does_not_wrap(kind: type, text: str) -> None:
     values = {**VALUES, "lives": np.array(counts, kind)}
     amounts = parse(text, "amount", NAMES)(values)
     np.testing.assert_allclose(amounts, [float(eval(text, {"lives": n})) for n in counts])
+
+
+@pytest.mark.parametrize(
+    ("text", "amounts"),
+    [
+        ('info["age"] + info["age"]', [400, 2]),
+        ('-info["age"]', [-200, -1]),
+        ('info["pair"][1] * info["pair"][0]', [60_000, 0]),
+        ("ram[2] - ram[3]", [-254, 1]),
+        ("sum(ram[1:] * ram[1:])", [2 * 255**2 + 1, 1]),
+        ("-sum(ram[1:3])", [-256, -1]),
+    ],
+)
+def test_counts_in_parts_and_lists_do_not_wrap(text: str, amounts: list[int]) -> None:
+    names: Names = {"info": {"age": "amount", "pair": 2}, "ram": 4}
+    age, pair = np.array([200, 1], np.uint8), np.array([[240, 250], [0, 9]], np.uint8)
+    ram = np.array([[7, 255, 1, 255], [7, 0, 1, 0]], np.uint8)
+    values = {"info": {"age": age, "pair": pair}, "ram": ram}
+    assert parse(text, "amount", names)(values).tolist() == amounts
 
 
 @pytest.mark.parametrize("library", [np, jnp])

@@ -23,7 +23,7 @@ from primordia.habitats import (
     Outcome,
 )
 from primordia.habitats.cartpole.habitat import CartPole
-from primordia.habitats.checks import check_properties
+from primordia.habitats.checks import check_arrays, check_properties
 from primordia.runs import loop
 from primordia.settings.base import Settings
 from tests.commands import environment
@@ -125,6 +125,7 @@ def test_the_abilities_of_a_habitat_follow_from_its_methods() -> None:
         CartPole(): {Ability.PICTURE, Ability.SAVE},
         Meadow(): {Ability.SAVE},
         HostCartPole(): {Ability.SAVE},
+        Nameless(): {Ability.SAVE},  # whose methods are those of its base class
         Clocked(): {Ability.SAVE, Ability.TALLY, Ability.PICTURE},
         Mirror("mill"): {Ability.SAVE},
         Forgetful(): set(),
@@ -278,3 +279,25 @@ def test_a_compound_action_has_a_column_for_a_choice_and_several_for_numbers() -
     assert (action.size, action.columns) == (9, 5)
     assert Discrete(4).parts == (Discrete(4),)
     assert Continuous(3).parts == (Continuous(3),)
+
+
+@pytest.mark.parametrize(
+    ("action", "shape", "dtype"),
+    [
+        (Discrete(3), (), jnp.int32),
+        (Continuous(3), (3,), jnp.float32),
+        (Compound((Discrete(4), Continuous(3), Discrete(2))), (5,), jnp.float32),
+    ],
+)
+def test_a_step_is_checked_with_actions_of_their_form(action: Any, shape: Any, dtype: Any) -> None:
+    given: list[Any] = []
+
+    class Noting(Plain):
+        def step(self, bodies: Array, action: Array) -> tuple[Array, Outcome]:
+            given.append((action.shape[1:], action.dtype))
+            return super().step(bodies, action)
+
+    habitat: Any = Noting()
+    habitat.action = action
+    check_arrays(habitat)
+    assert given == [(shape, dtype)]

@@ -165,3 +165,6 @@ def test_a_restored_environment_has_the_state_that_was_saved(name: str) -> None:
     if name.endswith("v5"):
         inner: Any = other.unwrapped
         assert inner.mujoco_renderer.data is inner.data
+        saver: Any = one.unwrapped
+        for field in ("time", "ctrl", "qpos", "qvel", "qacc_warmstart"):
+            np.testing.assert_array_equal(getattr(inner.data, field), getattr(saver.data, field))

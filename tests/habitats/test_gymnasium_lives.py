@@ -39,7 +39,7 @@ def pond(name: str = "Pond", **habitat: Any) -> dict[str, Any]:
 @pytest.mark.parametrize(
     ("name", "settings"),
     [
-        ("Pond", {"saving": "snapshot", "workers": 0}),
+        ("Pond", {"saving": "snapshot", "time_limit": 9, "workers": 0}),
         ("Pond", {"saving": "replay", "workers": 2}),
         ("Pond", {"saving": "restart", "time_limit": 7, "workers": 0}),
         ("Odd", {"saving": "snapshot", "squash": True, "scale": (50.0,), "workers": 0}),
@@ -191,12 +191,14 @@ def test_a_life_that_does_not_repeat_is_noticed_when_it_is_needed() -> None:
             "cannot be made: Environment `CartPoll` doesn't exist. Did you mean",
         ),
         ({"env": "CartPole"}, "there is no CartPole; did you mean CartPole-v1?"),
+        ({"env": "tests.ponds:Pond"}, "no tests.ponds:Pond; did you mean tests.ponds:Pond-v0?"),
         ({"env": "no_such_module:Env-v0"}, "No module named 'no_such_module'"),
         ({"env": "tests.ponds:Talking-v0"}, r"observation space\['says'\] is a Text"),
         ({"env": "tests.ponds:Still-v0"}, "its action space has no choice"),
         ({"fatal": "obs[2] > 1"}, r"obs goes from obs\[0\] to obs\[1\]"),
         ({"food": 'info["wage"]'}, "info has the parts age"),
         ({"food": "tests.ponds:drink"}, "food: tests.ponds:drink cannot be loaded"),
+        ({"food": "tests.ponds:CRASH"}, "food: tests.ponds:CRASH is not a function"),
         ({"scale": [1.0, 2.0, 3.0]}, "scale: give 1 number or 2"),
         ({"scale": [0.0]}, "scale: give 1 number or 2 numbers, all above 0"),
         ({"scale": [1.0, -1.0]}, "scale: give 1 number or 2 numbers, all above 0"),

@@ -10,6 +10,7 @@ pytest.importorskip("gymnasium")
 
 import gymnasium
 
+from primordia import own_code
 from primordia.errors import Trouble
 from primordia.habitats.gymnasium import environment
 from primordia.habitats.gymnasium.environment import line
@@ -78,11 +79,13 @@ def test_a_life_ends_at_the_time_limit_or_when_the_environment_cuts_it(
     assert game._age.tolist() == [2, 3, 4, 5, 4]
 
 
-def environments(**info: int) -> tuple[Environments, dict[str, np.ndarray]]:
+def environments(
+    kind: str = "Pond", food: str = "", saving: str = "replay", **info: int
+) -> tuple[Environments, dict[str, np.ndarray]]:
     """Return ponds in two cells of this process, and the arrays that they fill."""
     shared = fields(Observation(Pond.observation_space), Acting(Pond.action_space), info)
     arrays = {name: np.zeros((2, *shape), dtype) for name, (dtype, shape) in shared.items()}
-    made = Environments(arrays, "tests.ponds:Pond-v0", {}, [], "replay", False, "", info)
+    made = Environments(arrays, f"tests.ponds:{kind}-v0", {}, [], saving, False, food, info)
     for cell in range(2):
         made.make(cell)
     return made, arrays
@@ -109,6 +112,20 @@ def test_the_seed_of_a_life_has_the_31_upper_bits_of_its_word(
     assert seeds == [2**31 - 1, 3, 0, 2**30]
 
 
+@pytest.mark.parametrize("setting", ["food", "effort", "fatal"])
+def test_each_setting_may_name_info_alone(setting: str) -> None:
+    """The age is 1 after the first tick, and the registered limit of a game is 50 ticks."""
+    game = pond(**{setting: 'info["age"] > 0' if setting == "fatal" else '3 * info["age"]'})
+    game.open(2)
+    game.reset(np.arange(2), np.array([[1], [2]], np.uint32))
+    _, outcome = game.step(np.zeros((2, 1), np.float32), np.ones(2, bool))
+    expected: Any = {"food": [0, 0], "effort": [0, 0], "fatal": [False, False]}
+    expected[setting] = [True, True] if setting == "fatal" else [3, 3]
+    assert {name: getattr(outcome, name).tolist() for name in expected} == expected
+    assert game.episode == 50
+    game.close()
+
+
 def test_there_are_at_most_as_many_workers_as_cells() -> None:
     crowd = Gymnasium(env="tests.ponds:Pond-v0", workers=3)
     crowd.check(3)
@@ -122,6 +139,8 @@ def test_a_fault_leaves_its_message_and_no_results() -> None:
         arrays[name][:] = 1
     made._fail(0, "x" * (MESSAGE + 9))
     assert arrays["message"].sum(axis=1).tolist() == [MESSAGE * ord("x"), 0]
+    made._fail(0, "é" * MESSAGE)
+    assert arrays["message"][0].tobytes().decode() == "é" * (MESSAGE // 2)
     made._fail(0, "short")
     assert arrays["message"][0].tobytes().rstrip(b"\0") == b"short"
     assert arrays["fault"].tolist() == [True, False]
@@ -158,8 +177,24 @@ def test_an_error_is_one_line_that_names_its_kind_unless_gymnasium_wrote_it() ->
     assert line(gymnasium.error.NameNotFound("")) == "NameNotFound"
 
 
+def test_modules_are_imported_in_the_order_of_the_settings_before_that_of_the_name(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    loaded: list[str] = []
+    monkeypatch.setattr(own_code, "load", loaded.append)
+    for name in ("tests.ponds:Pond-v0", "CartPole-v1"):
+        environment.make(name, {}, ("b", "a")).close()
+    assert loaded == ["b", "a", "tests.ponds", "b", "a"]
+    pond = environment.make("tests.ponds:Pond-v0", {"edge": 2.5}, (), watched=True).unwrapped
+    assert isinstance(pond, Pond)
+    assert (pond.edge, pond.render_mode) == (2.5, "rgb_array")
+
+
 def test_the_versions_are_those_of_the_packages_that_compute_the_environment() -> None:
     pytest.importorskip("mujoco")
     environment.make("Hopper-v5", {}, ()).close()
     assert {"gymnasium", "numpy", "mujoco"} == set(environment.versions("Hopper-v5"))
     assert {"gymnasium", "numpy"} == set(environment.versions("CartPole-v1"))
+    pytest.importorskip("Box2D")
+    environment.make("LunarLander-v3", {}, ()).close()
+    assert {"gymnasium", "numpy", "box2d"} == set(environment.versions("LunarLander-v3"))

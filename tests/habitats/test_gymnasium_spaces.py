@@ -155,3 +155,44 @@ def test_a_box_is_described_by_its_least_and_largest_number() -> None:
     low, high = np.float32([-1, -5]), np.float32([2, 3])
     assert described(spaces.Box(low, high)) == "Box (2,) of float32, from -5 to 3"
     assert described(spaces.Discrete(3)) == "Discrete(3)"
+
+
+@pytest.mark.parametrize(
+    ("space", "dtype"),
+    [
+        (spaces.Box(0, 255, (2,), np.uint8), "float32"),
+        (spaces.Box(-1, 1, (2,), np.float32), "float32"),
+        (spaces.MultiBinary(3), "float32"),
+        (spaces.Box(-1, 1, (2,), np.float64), "float64"),
+        (spaces.Box(0, 2**30, (2,), np.int32), "float64"),
+        (spaces.Discrete(3), "float64"),
+        (spaces.Tuple([spaces.Box(-1, 1, (2,), np.float32), spaces.Discrete(3)]), "float64"),
+    ],
+)
+def test_a_row_has_float32_if_these_hold_all_values(space: Any, dtype: str) -> None:
+    assert Observation(space).dtype == dtype
+
+
+def test_every_part_of_an_action_has_a_choice() -> None:
+    one, three = spaces.Discrete(1), spaces.Discrete(3)
+    for parts in ([one, three], [three, one], [spaces.MultiDiscrete([2, 1])]):
+        with pytest.raises(ValueError, match="a part of its action space has a single choice"):
+            Acting(spaces.Tuple(parts))
+    with pytest.raises(ValueError, match="its action space has no choice"):
+        Acting(spaces.Tuple([one, one]))
+
+
+def test_numbers_in_rows_and_columns_keep_their_order() -> None:
+    box = spaces.Box(-1, 1, (2, 3), np.float32)
+    acting, numbers = Acting(box), np.linspace(-1, 1, 6, dtype=np.float32)
+    assert acting.kind == Continuous(6)
+    (row,) = acting.rows(numbers[None])
+    assert acting.build(row).tolist() == numbers.reshape(2, 3).tolist()
+    assert row_of(Observation(box), numbers.reshape(2, 3)).tolist() == numbers.tolist()
+
+
+def test_choices_of_a_list_count_from_their_starts() -> None:
+    space = spaces.MultiDiscrete([2, 3], start=[5, -1])
+    observation, acting = Observation(space), Acting(space)
+    assert row_of(observation, np.array([6, 1])).tolist() == [1, 2]
+    assert acting.build(np.array([1.0, 2.0])).tolist() == [6, 1]

@@ -1,7 +1,8 @@
 """The state of an environment as plain data: every kind of value is restored."""
 
-from collections import OrderedDict, deque
+from collections import Counter, OrderedDict, deque
 from enum import Enum
+from random import Random
 from typing import Any
 
 import numpy as np
@@ -56,24 +57,34 @@ class Thing:
         }
 
 
-def test_every_kind_of_value_is_restored() -> None:
-    """Two names of one object still name one object. An attribute that was added later is removed."""
-    one, other = Thing(3), Thing(7)
+@pytest.mark.parametrize(("saved", "present"), [(3, 7), (7, 2)])
+def test_every_kind_of_value_is_restored(saved: int, present: int) -> None:
+    """Two names of one object still name one object. An attribute that was added later is removed.
+
+    The lists that are restored are longer or shorter than the present ones.
+    """
+    one, other = Thing(saved), Thing(present)
+    one.plain += [np.arange(2), saved] * (saved // 7)
     other.later = 9  # type: ignore[attr-defined]
+    del other.tuple, other.small  # so that they are the last attributes when they are restored
     own = other.part, other.generator
     one.generator.random(5)
     one.old.random_sample(5)
+    one.old.normal()  # the next normal number is known from here on
     state.decode(other, state.encode(one))
+    assert state.encode(other) == state.encode(one)
+    assert list(map(str, other.plain)) == list(map(str, one.plain))
+    one.plain, other.plain = one.plain[:5], other.plain[:5]
     assert other.values() == one.values()
     assert other.generator.random(3).tolist() == one.generator.random(3).tolist()
-    assert other.old.random_sample(3).tolist() == one.old.random_sample(3).tolist()
+    assert other.old.normal(size=3).tolist() == one.old.normal(size=3).tolist()
     assert (other.part, other.generator) == own
     assert other.parts[0] is other.parts[2] is other.part
     assert other.parts[1] is not other.part
     assert other.itself is other
     assert not hasattr(other, "later")
     other.array[0] = 5  # the array can be written, and is no part of the other environment
-    assert one.array[0].tolist() == [0, 3, 6]
+    assert one.array[0].tolist() == [0, saved, 2 * saved]
 
 
 def test_what_cannot_be_saved_is_named_by_its_place() -> None:
@@ -82,4 +93,24 @@ def test_what_cannot_be_saved_is_named_by_its_place() -> None:
     with pytest.raises(
         state.UnknownStateError, match=r"^env\.plain\[5\] is a list_iterator, which"
     ):
+        state.encode(thing)
+
+
+class Reduced(Part):
+    def __reduce__(self) -> Any:
+        return Reduced, (self.number,)
+
+
+class ReducedByProtocol(Part):
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        return ReducedByProtocol, (self.number,)
+
+
+@pytest.mark.parametrize("part", [Random(1), Counter("aab"), Reduced(1), ReducedByProtocol(1)])
+def test_an_object_with_a_state_beside_its_attributes_is_not_saved(part: Any) -> None:
+    """Such an object says how it is pickled. A generator of Python has numbers that are no attributes."""
+    thing = Thing(3)
+    thing.parts[1] = part
+    says = rf"^env\.parts\[1\] is a {type(part).__name__}, which cannot be saved$"
+    with pytest.raises(state.UnknownStateError, match=says):
         state.encode(thing)

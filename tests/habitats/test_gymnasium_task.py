@@ -1,5 +1,6 @@
 """Tasks made from Gymnasium environments: what is measured, settings, and facts."""
 
+from itertools import pairwise
 from types import SimpleNamespace
 from typing import Any
 
@@ -8,8 +9,10 @@ import pytest
 
 pytest.importorskip("gymnasium")
 
-from primordia.habitats.gymnasium import check, probe, task
+from primordia.errors import InputError
+from primordia.habitats.gymnasium import check, environment, probe, task
 from primordia.habitats.gymnasium.check import Measured
+from primordia.habitats.gymnasium.habitat import Gymnasium
 from primordia.habitats.gymnasium.probe import LONGEST, PICTURES_S, _numbers
 from primordia.settings.doors import replication
 from tests.ponds import Pond, noted_seeds
@@ -32,6 +35,68 @@ def test_each_life_of_random_play_has_another_seed(monkeypatch: pytest.MonkeyPat
     begins = [k for k, (_, info) in enumerate(seen) if info["age"] == 0]
     assert seeds == [k - number for number, k in enumerate(begins)]
     assert len(seeds) > 5
+
+
+def test_random_play_has_the_options_and_notes_the_info_of_every_tick(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The fish does not reach an edge so far away. The environment cuts each life at an age of 40."""
+    reset, step = Pond.reset, Pond.step
+
+    def begin(self: Pond, **given: Any) -> Any:
+        return reset(self, **given)[0], {"born": 1}
+
+    def go_on(self: Pond, action: Any) -> Any:
+        seen, reward, terminated, _, info = step(self, action)
+        odd = {"half": 0.5} if self.age == 7 else {}
+        return seen, reward, terminated, self.age == 40, {**info, **odd}
+
+    monkeypatch.setattr(Pond, "reset", begin)
+    monkeypatch.setattr(Pond, "step", go_on)
+    seeds = noted_seeds(monkeypatch)
+    probe._info.cache_clear()
+    found = probe.info_of("tests.ponds:Pond-v0", {"edge": 1e9}, ())
+    probe._info.cache_clear()
+    assert found == {"born": 0, "age": 0, "half": 0}
+    assert seeds == [0, 40, 80, 120, 160]
+
+
+def test_an_error_ends_a_life_of_random_play() -> None:
+    seen = probe.random_play("tests.ponds:Crashing-v0", {}, ())
+    ages = [info["age"] for _, info in seen]
+    assert all(age in (0, before + 1) for before, age in pairwise(ages))
+    assert len(seen) < probe.TICKS + ages.count(0)  # a step with an error leaves nothing
+
+
+def test_a_picture_is_tried_with_the_options_of_the_environment(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    made: list[tuple[Any, ...]] = []
+
+    def make(*given: Any, watched: bool = False) -> Pond:
+        made.append((*given, watched))
+        return Pond()
+
+    monkeypatch.setattr(environment, "make", make)
+    assert probe.screen_shape("any", {"edge": 2.0}, ("own",)) == (30, 40, 3)
+    assert made == [("any", {"edge": 2.0}, ("own",), True)]
+
+
+def test_an_environment_that_cannot_draw_is_an_error_that_says_why(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def render(_: Pond) -> None:
+        raise RuntimeError("no\npaint")
+
+    monkeypatch.setattr(Pond, "render", render)
+    game = Gymnasium(env="tests.ponds:Pond-v0", workers=0)
+    with pytest.raises(
+        InputError, match=r"^habitat: tests.ponds:Pond-v0 cannot draw: .*: no paint$"
+    ):
+        game.open(1, watched=True)
+    game.open(1)
+    assert set(game.seen()) == {"obs", "reward"}
+    game.close()
 
 
 @pytest.mark.parametrize(

@@ -3,13 +3,14 @@
 from typing import Any
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
 from primordia.config import validated
 from primordia.errors import InputError
 from primordia.habitats.contract import Ability, Continuous, Discrete
-from primordia.habitats.gymnax.habitat import Gymnax
+from primordia.habitats.gymnax.habitat import Gymnax, _kind, _parts
 from primordia.habitats.gymnax.rounded import uses_first
 from primordia.testing import check_habitat
 
@@ -58,6 +59,19 @@ def test_the_environments_time_limit_ends_a_life_only_if_it_is_kept() -> None:
     assert ends(params={"max_steps_in_episode": 7}).index(True) == 6
     assert ends(params={"energy": 4}).index(True) == 3
     assert ends(params={"energy": 3}, time_limit=True).index(True) == 2
+
+
+def test_without_a_condition_no_life_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The test gives the values of a tick, in which two of four walks are done."""
+    done = [True, False, False, True]
+    values = {"done": jnp.array(done)}
+    monkeypatch.setattr(Gymnax, "tick", lambda self, bodies, action: (bodies, values))
+    for fatal, ends in (
+        ("", [False] * 4),
+        ("done", done),
+        ("not done", [False, True, True, False]),
+    ):
+        assert walk(fatal=fatal).step(None, STILL)[1].fatal.tolist() == ends
 
 
 def test_death_and_food_can_speak_of_all_that_the_environment_says() -> None:
@@ -129,6 +143,16 @@ def test_what_is_scored_has_the_reward_and_the_time_limit() -> None:
     assert (outcomes[0].food > 0).all()
 
 
+def test_parts_are_named_by_their_places_and_arrays_are_lists_of_numbers() -> None:
+    tree = {"a": {"b": 1.5, "c": np.arange(6).reshape(2, 3)}, "d": [True, np.float32(2)]}
+    parts = _parts(tree)
+    assert {name: each.tolist() for name, each in parts.items()} == {
+        "a.b": 1.5, "a.c": [*range(6)], "d.0": True, "d.1": 2.0,
+    }  # fmt: skip
+    kinds = {"a.b": "amount", "a.c": 6, "d.0": "condition", "d.1": "amount"}
+    assert _kind({"state": parts}) == {"state": kinds}
+
+
 def test_equal_settings_share_compiled_code() -> None:
     assert hash(walk(params={"energy": 4})) == hash(walk(params={"energy": 4}))
     assert walk(params={"energy": 4}) != walk(params={"energy": 5})
@@ -144,7 +168,10 @@ def test_a_picture_is_drawn_of_what_is_sensed() -> None:
 WRONG: list[tuple[dict[str, Any], str]] = [
     ({"env": "tests.walks:Mute"}, "a brain needs two or more choices"),
     ({"env": "tests.walks:Growing"}, "the state has one form"),
-    ({"env": "tests.walks:Nothing"}, "has no default_params, reset_env, step_env"),
+    (
+        {"env": "tests.walks:Nothing"},
+        "has no default_params, reset_env, step_env, action_space, which",
+    ),
     ({"env": "tests.walks:Missing"}, "cannot be made"),
     ({"env": "tests.walks:Walk", "params": {"gust": 1.0}}, "did you mean 'gusts'"),
     (

@@ -1,14 +1,14 @@
 """The check of environments in JAX: faults that are found, and measured lifespans."""
 
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, cast
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from primordia.habitats.contract import Discrete
+from primordia.habitats.contract import Continuous, Discrete
 from primordia.habitats.gymnax import check
 from primordia.habitats.gymnax.check import Measured, measure
 from primordia.habitats.gymnax.habitat import Gymnax
@@ -39,6 +39,16 @@ def test_lives_are_measured() -> None:
     assert (found.lifespan, found.ended) == (9.0, 32)
     endless = measure(Gymnax(env="tests.walks:Choice", params={"energy": 100_000}))
     assert (endless.lifespan, endless.ended) == (500.0, 0)
+
+
+def test_actions_of_random_lives_are_of_their_kind_and_use_all_its_values() -> None:
+    chosen = check._actions(cast(Any, SimpleNamespace(action=Discrete(3))))
+    assert (chosen.shape, chosen.dtype) == ((check.TICKS, check.BODIES), np.int32)
+    shares = np.bincount(chosen.ravel()) / chosen.size
+    np.testing.assert_allclose(shares, [1 / 3] * 3, atol=0.02)
+    moved = check._actions(cast(Any, SimpleNamespace(action=Continuous(2))))
+    assert (moved.shape, moved.dtype) == ((check.TICKS, check.BODIES, 2), np.float32)
+    np.testing.assert_allclose([moved.mean(), moved.std()], [0, 1], atol=0.02)
 
 
 class Walked:

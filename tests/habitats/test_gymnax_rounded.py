@@ -51,11 +51,19 @@ def test_every_product_is_rounded_before_it_is_added(optimised: None) -> None:
         branch = lax.cond(c[0] > 9, lambda: a, lambda: a * b + c)
         loop = lax.fori_loop(0, 3, lambda i, x: x * b + c, a)
         scanned = lax.scan(lambda x, y: (x * y + c, None), a, jnp.stack([b, a]))[0]
-        return branch, loop, scanned, a**3 + c, jax.jit(jnp.square)(a) - c
+        own = jax.custom_jvp(lambda a, b: a * b + c)
+        own.defjvp(lambda given, change: (own(*given), change[0]))
+        rows = (jnp.stack([a, c]) * b).sum(axis=0)
+        return branch, loop, scanned, a**3 + c, jax.jit(jnp.square)(a) - c, own(a, b), rows, a * b
 
-    found = jax.jit(lambda zero, *each: rounded(sums, zero)(*each))(np.uint32(0), a, b, c)
+    def program(zero: Any, *each: Any) -> Any:
+        *others, product = rounded(sums, zero)(*each)
+        return *others, product + each[2]
+
+    found = jax.jit(program)(np.uint32(0), a, b, c)
     thrice = ((a * b + c) * b + c) * b + c
     expected = a * b + c, thrice, (a * b + c) * a + c, a * (a * a) + c, a * a - c
+    expected = *expected, a * b + c, a * b + c * b, a * b + c
     for one, other in zip(found, expected, strict=True):
         np.testing.assert_array_equal(one, other)
 
@@ -84,14 +92,15 @@ def test_sums_and_matrix_products_are_those_of_numpy() -> None:
     def sums(a: Any, b: Any, whole: Any) -> Any:
         product = lax.dot_general(a, b, (((2,), (0,)), ((0,), (2,))))
         integers = whole.sum(0), whole @ whole.T
-        return product, a.sum(), a.sum(axis=(1, 3)), a[:, :, :0].sum(axis=2), *integers
+        twice = lax.dot_general(a, b, (((2, 0), (0, 2)), ((), ())))
+        return product, twice, a.sum(), a.sum(axis=(1, 3)), a[:, :, :0].sum(axis=2), *integers
 
     found = jax.jit(lambda zero, *each: rounded(sums, zero)(*each))(
         np.uint32(0), a.astype(np.float32), b.astype(np.float32), whole
     )
     expected = (
-        np.einsum("nikj,kln->nijl", a, b), a.sum(), a.sum(axis=(1, 3)), np.zeros((3, 5, 2)),
-        whole.sum(0), whole @ whole.T,
+        np.einsum("nikj,kln->nijl", a, b), np.einsum("nikj,kln->ijl", a, b), a.sum(),
+        a.sum(axis=(1, 3)), np.zeros((3, 5, 2)), whole.sum(0), whole @ whole.T,
     )  # fmt: skip
     for one, other in zip(found, expected, strict=True):
         assert one.shape == np.shape(other)

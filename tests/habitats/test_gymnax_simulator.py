@@ -1,5 +1,6 @@
 """Environments in JAX: their libraries, time limits, parameters, and packed states."""
 
+from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any
 
@@ -11,7 +12,8 @@ import pytest
 from primordia.habitats.gymnax import libraries
 from primordia.habitats.gymnax.libraries import NEVER, package_of
 from primordia.habitats.gymnax.packed import pack
-from primordia.habitats.gymnax.simulator import Simulator, _as
+from primordia.habitats.gymnax.playground import is_playground
+from primordia.habitats.gymnax.simulator import Simulator, _as, _params
 
 
 @pytest.mark.parametrize(
@@ -30,6 +32,23 @@ def test_the_package_of_an_environment_follows_from_its_name(name: str, package:
 
 def test_an_environment_of_the_user_has_no_versions_of_libraries() -> None:
     assert libraries.versions("tests.walks:Walk") == {}
+
+
+@pytest.mark.parametrize(
+    ("env", "packages"),
+    [
+        ("CartPole-v1", {"gymnax", "flax"}),
+        ("Craftax-Pixels-v1", {"craftax", "flax"}),
+        ("octax:pong", {"octax", "flax"}),
+        ("playground:CartpoleBalance", {"playground", "mujoco-mjx", "mujoco", "flax"}),
+    ],
+)
+def test_the_versions_are_those_of_the_packages_that_compute_an_environment(
+    env: str, packages: set[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(libraries, "version", lambda name: f"1 of {name}")
+    found = libraries.versions.__wrapped__(env)
+    assert found == {name: f"1 of {name}" for name in packages}
 
 
 @pytest.mark.parametrize("time_limit", [False, True])
@@ -84,6 +103,90 @@ def test_a_reported_time_limit_ends_a_life_only_if_the_limit_is_kept(
         done.append(bool(stepped.done))
         assert (stepped.reward.dtype, float(stepped.reward)) == (jnp.float32, 1.0)
     assert done == [False, False, True, False, time_limit, time_limit]
+
+
+@dataclass(frozen=True)
+class Limits:
+    max_steps_in_episode: int = 5
+    max_timesteps: int = 7
+    energy: int = 9
+
+
+@pytest.mark.parametrize(
+    ("given", "time_limit", "means"),
+    [
+        ({}, True, Limits()),
+        ({}, False, Limits(NEVER, NEVER, 9)),
+        ({"energy": 3}, False, Limits(NEVER, NEVER, 3)),
+        ({"max_timesteps": 4}, False, Limits(NEVER, 4, 9)),
+        ({"max_steps_in_episode": 4}, True, Limits(4, 7, 9)),
+    ],
+)
+def test_a_limit_that_is_a_parameter_is_off_unless_it_is_given_or_kept(
+    given: dict[str, Any], time_limit: bool, means: Limits
+) -> None:
+    env = SimpleNamespace(default_params=Limits())
+    params = _params(env, "any", given, time_limit)
+    assert params == means
+    limits = ["max_steps_in_episode", "max_timesteps"]
+    assert Simulator(env, params, time_limit).limits == limits
+
+
+class Changing(Cut):
+    """An environment with a state of two parts; the test gives that of birth, and the later one."""
+
+    def __init__(self, born: Any, later: Any) -> None:
+        self.born, self.later = born, later
+
+    def reset_env(self, key: Any, params: Any) -> tuple[Any, Any]:
+        return jnp.float32(0), self.born
+
+    def step_env(self, key: Any, state: Any, action: Any, params: Any) -> tuple[Any, ...]:
+        return jnp.float32(0), self.later, 1, False, {}
+
+
+@pytest.mark.parametrize("place", [0, 1])
+def test_no_array_of_a_state_changes_its_shape(place: int) -> None:
+    born, later = ([jnp.zeros(2), jnp.zeros(3)] for _ in range(2))
+    later[place] = jnp.zeros(4)
+    with pytest.raises(ValueError, match="one form after a reset and another after a step"):
+        Simulator(Changing(born, later), None, False).reset(jnp.zeros(2, jnp.uint32))
+
+
+def test_a_number_has_a_type_that_holds_its_values_at_birth_and_later() -> None:
+    key = jnp.zeros(2, jnp.uint32)
+    born, later = [jnp.int32(3), jnp.float32(0.5)], [jnp.float32(2.5), jnp.int32(4)]
+    env = Simulator(Changing(born, later), None, False)
+    state = env.reset(key)[1]
+    assert [(each.dtype, each.item()) for each in state] == [(jnp.float32, 3), (jnp.float32, 0.5)]
+    state = env.step(key, state, jnp.int32(0)).state
+    assert [(each.dtype, each.item()) for each in state] == [(jnp.float32, 2.5), (jnp.float32, 4)]
+
+
+@pytest.mark.parametrize("drifts", [False, True])
+def test_functions_repeat_if_they_have_the_same_arrays_when_they_are_traced_again(
+    drifts: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The test keeps JAX's caches, to save time."""
+    calls: list[None] = []
+
+    class Drifting(Cut):
+        def step_env(self, *given: Any) -> tuple[Any, ...]:
+            calls.append(None)
+            seen, *others = super().step_env(*given)
+            return seen + jnp.asarray(np.arange(9.0) + drifts * len(calls)).sum(), *others
+
+    monkeypatch.setattr(jax, "clear_caches", lambda: None)
+    assert Simulator(Drifting(), 5, False).repeats() is not drifts
+
+
+def test_an_environment_like_playgrounds_has_all_of_its_members() -> None:
+    members: dict[str, Any] = {"reset": print, "step": print, "action_size": 2}
+    assert is_playground(SimpleNamespace(**members))
+    assert not is_playground(SimpleNamespace(**members, reset_env=print))
+    for name in members:
+        some = {key: value for key, value in members.items() if key != name}
+        assert not is_playground(SimpleNamespace(**some))
 
 
 GIVEN: list[tuple[Any, Any, Any]] = [

@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-pytest.importorskip("mujoco")
-
 from primordia.habitats.mujoco.habitat import MuJoCo
 from primordia.habitats.mujoco.target import Target
 from primordia.random import dice
-from tests.robots import born, of_task
+from tests.robots import born, of_task, opened
+
+mujoco = pytest.importorskip("mujoco")
 
 TARGET: dict[str, Any] = {
     "body": "target",
@@ -82,6 +82,13 @@ def test_a_target_names_parts_of_the_model(change: dict[str, Any], says: str) ->
         MuJoCo(file="gymnasium:reacher.xml", target={**TARGET, **change})
 
 
+@pytest.mark.parametrize("setting", ["within", "radius"])
+def test_a_target_has_a_distance_and_a_radius(setting: str) -> None:
+    assert getattr(Target(**{**TARGET, setting: 1e-9}), setting) == 1e-9
+    with pytest.raises(ValueError, match=setting):
+        Target(**{**TARGET, setting: 0.0})
+
+
 def test_a_reached_target_feeds_once_and_then_moves() -> None:
     habitat = of_task("Reacher-forager", 1000)
     born(habitat, 1000)
@@ -101,3 +108,28 @@ def test_a_reached_target_feeds_once_and_then_moves() -> None:
     assert len(radius) > 50
     assert radius.max() <= 0.2
     assert np.median(radius) == pytest.approx(0.2 / np.sqrt(2), rel=0.15)
+
+
+def test_only_targets_that_the_living_reach_at_the_end_of_a_tick_move() -> None:
+    """Nothing but the target needs the places of bodies. A target that moves is at rest."""
+    target = {**TARGET, "within": 0.2}
+    own: dict[str, Any] = {"file": "gymnasium:reacher.xml", "senses": ("qpos",)}
+    habitat = opened(60, **own, target=target, position_noise=2.0, velocity_noise=40.0, substeps=1)
+    born(habitat, 60)
+    model, alive, moves = habitat._model, np.arange(60) % 3 > 0, 0
+    data = mujoco.MjData(model)
+    for _ in range(4):
+        before = habitat._bodies.views["qpos"].copy()
+        habitat.step(np.ones((60, 2), np.float32), alive)
+        after, speeds = (habitat._bodies.views[name] for name in ("qpos", "qvel"))
+        assert (speeds[:, 2:] == 0).all()
+        np.testing.assert_array_equal(after[~alive], before[~alive])
+        for cell in np.flatnonzero(alive):
+            data.qpos[:] = [*after[cell, :2], *before[cell, 2:]]
+            mujoco.mj_kinematics(model, data)
+            apart = data.body("target").xpos - data.body("fingertip").xpos
+            moved = bool((after[cell, 2:] != before[cell, 2:]).any())
+            assert moved == (math.dist(apart, [0, 0, 0]) < 0.2)
+            moves += moved
+    assert 20 < moves < 140
+    habitat.close()

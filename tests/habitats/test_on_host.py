@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from primordia.compiled import shared
-from primordia.habitats.bodies import fresh
+from primordia.habitats.bodies import fresh, not_finite
 from primordia.habitats.cartpole.habitat import CartPole
-from primordia.habitats.contract import Outcome
+from primordia.habitats.contract import Ability, Outcome
 from primordia.habitats.on_host import OnHost
 from tests.toys import Echo, Meadow, Mill
 
@@ -110,3 +110,43 @@ def test_it_is_drawn_as_the_jax_habitat_is() -> None:
     body, action = habitat.seen()[3], np.int32(1)
     assert habitat.picture(body, action).tobytes() == CartPole().picture(body, action).tobytes()
     assert (habitat.rate, habitat.caption(body, action)) == (50.0, "action 1")
+
+
+class Crowded(Meadow):
+    """Bodies of twelve arrays: the array of number n holds n more than the first one."""
+
+    def reset(self, words: Any) -> Any:
+        return [super(Crowded, self).reset(words) + np.float32(n) for n in range(12)]
+
+    def sense(self, bodies: Any) -> Any:
+        return super().sense(bodies[0])
+
+    def step(self, bodies: Any, action: Any) -> tuple[Any, Outcome]:
+        outcome = super().step(bodies[0], action)[1]
+        return [body + 1 for body in bodies], outcome
+
+    def caption(self, body: Any, action: Any) -> str:
+        return f"{len(body)} arrays"
+
+
+def test_more_than_ten_arrays_of_a_body_are_restored_in_their_order() -> None:
+    one, other = opened(Crowded(), 3), opened(Crowded(), 3)
+    one.reset(ALL[:3], WORDS[:3, :1])
+    other.load(one.save())
+    jax.tree.map(np.testing.assert_array_equal, other.seen(), one.seen())
+    assert [float(body[0, 0] - other.seen()[0][0, 0]) for body in other.seen()] == [*range(12)]
+
+
+def test_pictures_and_captions_are_those_of_the_jax_habitat() -> None:
+    assert OnHost(Crowded()).caption([0] * 12, np.int32(1)) == "12 arrays"
+    for inner, drawn in ((CartPole(), True), (Crowded(), False)):
+        assert OnHost(inner).can(Ability.PICTURE) == drawn
+        assert OnHost(inner).can(Ability.SAVE)
+
+
+@pytest.mark.parametrize("odd", [np.nan, np.inf, -np.inf])
+def test_one_number_of_one_array_makes_a_body_not_finite(odd: float) -> None:
+    bodies = {"a": np.zeros((5, 2, 2), np.float32), "b": np.zeros(5, np.float32),
+              "c": np.zeros((5, 3), np.int32), "d": np.zeros((5, 1), np.float32)}  # fmt: skip
+    bodies["a"][1, 1, 0] = bodies["b"][2] = bodies["d"][4] = odd
+    assert np.asarray(not_finite(bodies)).tolist() == [False, True, True, False, True]

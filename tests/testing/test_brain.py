@@ -97,6 +97,28 @@ class Remembering(Plain):
         return memory + output[:1], output
 
 
+class Two(Plain):
+    """Two matrices of one shape."""
+
+    def blocks(self, senses: int, outputs: int) -> dict[str, Shape]:
+        return {"v": (outputs, senses), "w": (outputs, senses)}
+
+
+class Partly(Two):
+    """It replaces its second matrix."""
+
+    def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:
+        genome["w"] = genome["w"] + 1
+        return memory, matvec(genome["v"], senses)
+
+
+class Herd(Two):
+    """It adds a number of the second matrix of the first organism."""
+
+    def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:
+        return memory, matvec(genome["v"], senses) + genome["w"][0, 0, 0]
+
+
 class Misnamed(Plain):
     def blocks(self, senses: int, outputs: int) -> dict[str, Shape]:
         return {"my weights": (outputs, senses)}
@@ -130,6 +152,8 @@ class Listed(Plain):
         (Greedy(), "changes its genome argument"),
         (Replacing(), "changes its genome argument"),
         (Adding(), "changes its genome argument"),
+        (Partly(), "changes its genome argument"),
+        (Herd(), "Herd gives different bits for organism 1 when organism 0 has another genome"),
         (Remembering(), "Remembering gives different bits for organism 1 when organism 0 has another"),
         (Misnamed(), "'my weights' cannot name a block .*; use letters"),
         (Growing(), "has different blocks of weights at each call"),

@@ -12,6 +12,7 @@ from primordia.habitats import Continuous, Discrete, HostHabitat, JaxHabitat, Ou
 from primordia.habitats.cartpole.habitat import CartPole
 from primordia.settings.base import Settings
 from primordia.testing import ContractError, check_habitat
+from primordia.testing import habitat as checks
 from tests.testing.impure import counted
 from tests.toys import Clocked, HostCartPole, Mill, Organ
 
@@ -103,6 +104,11 @@ class Mute(Still):
         return bodies, jnp.zeros(len(bodies), bool)
 
 
+class Immortal(Still):
+    def step(self, bodies: Array, action: Array) -> Any:
+        return bodies, Outcome(None)
+
+
 class Senseless(JaxHabitat):
     action, words = Discrete(2), 1
     reset, sense, step = Still.reset, Still.sense, Still.step
@@ -134,6 +140,7 @@ JAX_FAULTS: list[tuple[Any, str]] = [
     (Changing(), "bodies of different forms in step and in reset"),
     (Shared(), "array float32 .3,.; its first axis must be bodies"),
     (Mute(), "returns .* from step; return an Outcome"),
+    (Immortal(), r"gives outcome.fatal as None; the contract says bool \(32,\)"),
     (Senseless(), "has no 'senses_size'; define senses_size as an attribute"),
     (Unready(), "has words = -1; it must be a whole number from 0 to"),
     (Choiceless(), r"has action = Discrete\(size=1\); it must be Discrete\(2\) or more"),
@@ -258,6 +265,10 @@ class Eaten(Scored):
     tallies = ("food",)
 
 
+class Worldly(Scored):
+    tallies = ("age", "world")
+
+
 class Partial(Wagon):
     def save(self) -> dict[str, np.ndarray]:
         return {"place": self.place, "speed": self.speed, "clock": np.zeros(2)}
@@ -280,6 +291,7 @@ HOST_FAULTS: list[tuple[Any, str]] = [
     (Scored(), "does not save its counts; save them as 'tally'"),
     (Miscounted(), "if another lived in its cell before; let `reset` make complete bodies"),
     (Eaten(), r"has tallies \['food'\], which are columns of deaths already"),
+    (Worldly(), r"has tallies \['world'\], which are columns of deaths already"),
     (Partial(), r"saves 'clock' as \(2,\); save NumPy arrays with cells as first axis"),
 ]
 
@@ -298,6 +310,25 @@ def test_the_habitats_without_these_faults(part: Any) -> None:
 def test_a_habitat_with_a_fault(habitat: Any, says: str) -> None:
     with pytest.raises(ContractError, match=says):
         check_habitat(habitat)
+
+
+class Unshared(JaxHabitat):
+    """A habitat that is compared by its identity."""
+
+    senses_size, action, words = 2, Continuous(2), 2
+    reset, sense, step = Still.reset, Still.sense, Still.step
+
+
+def test_a_habitat_that_cannot_share_compiled_code_gives_a_warning(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The test plays no lives."""
+    monkeypatch.setattr(checks, "Lives", lambda _: 1 / 0)
+    with (
+        pytest.warns(UserWarning, match="Unshared is not hashed"),
+        pytest.raises(ZeroDivisionError),
+    ):
+        check_habitat(Unshared())
 
 
 def test_a_habitat_with_an_action_of_several_parts_passes() -> None:

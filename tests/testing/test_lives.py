@@ -12,8 +12,8 @@ from primordia.testing import ContractError
 from primordia.testing.lives import HALF, TICKS, Lives, Past, actions
 from primordia.testing.trial import ALL
 
-FATAL_AT = 9
-"""The age at which bodies with an even word die."""
+LATER, SOONER = 9, 4
+"""The ages at which bodies with an even word die; those with a multiple of 4 die sooner."""
 
 
 class Noted(HostHabitat):
@@ -44,9 +44,10 @@ class Noted(HostHabitat):
     def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
         self.calls.append(("step", np.where(alive, action, -1).tolist()))
         self.bodies[alive, 1] += 1
-        dies = (self.bodies[:, 0] % 2 == 0) & (self.bodies[:, 1] >= FATAL_AT)
+        last = np.where(self.bodies[:, 0] % 4 == 0, SOONER, LATER)
+        dies = (self.bodies[:, 0] % 2 == 0) & (self.bodies[:, 1] >= last)
         none = np.zeros(len(alive), bool)
-        return self.bodies.copy(), Outcome(**{"fatal": none, self.ends: dies})
+        return self.bodies, Outcome(**{"fatal": none, self.ends: dies})  # also later the same array
 
     def save(self) -> dict[str, np.ndarray]:
         return {"bodies": self.bodies}
@@ -69,7 +70,7 @@ class Noted(HostHabitat):
 WORD = words(0, ALL, 1)[:, 0]
 ACTION = actions(Discrete(5))
 DIES = WORD % 1024 % 2 == 0
-ENDS = np.where(DIES, FATAL_AT, TICKS)
+ENDS = np.where(DIES, np.where(WORD % 1024 % 4 == 0, SOONER, LATER), TICKS)
 """Ticks of each life."""
 
 
@@ -99,7 +100,7 @@ def test_all_lives_are_played_to_their_ends_side_by_side(
 ) -> None:
     monkeypatch.setattr(Noted, "ends", ends)
     pasts = Lives(habitat := Noted()).whole()
-    assert 0 < DIES.sum() < ALL
+    assert set(ENDS.tolist()) == {SOONER, LATER, TICKS}
     assert habitat.calls[0] == ("open", ALL, False)
     assert habitat.calls[1] == ("reset", list(range(ALL)), WORD.tolist())
     assert habitat.calls[-1] == ("close",)
@@ -110,8 +111,24 @@ def test_all_lives_are_played_to_their_ends_side_by_side(
         assert {row[0][0] for row in past} == {float(WORD[body] % 1024)}
         place = {"fatal": 1, "expired": 4, "fault": 5}[ends]
         assert [bool(row[place]) for row in past[1:]] == [
-            bool(DIES[body]) and age == FATAL_AT for age in range(1, ENDS[body] + 1)
+            bool(DIES[body]) and age == ENDS[body] for age in range(1, ENDS[body] + 1)
         ]
+
+
+def test_the_counts_of_each_tick_are_noted_also_if_the_habitat_goes_on_in_one_array(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A count is the age of the body plus 7."""
+    counts = np.zeros((ALL, 1), np.int32)
+
+    def tally(self: Noted) -> np.ndarray:
+        counts[:, 0] = self.bodies[:, 1] + 7
+        return counts
+
+    monkeypatch.setattr(Noted, "tally", tally)
+    monkeypatch.setattr(Noted, "tallies", ("count",), raising=False)
+    for body, past in enumerate(Lives(Noted()).whole()):
+        assert [row[-1].tolist() for row in past[1:]] == [[8 + age] for age in range(ENDS[body])]
 
 
 def test_lives_among_few_are_those_of_the_last_bodies_in_reversed_order() -> None:
@@ -186,7 +203,8 @@ def test_what_is_saved_has_a_row_for_each_cell(
 ) -> None:
     monkeypatch.setattr(Noted, "save", lambda _: {"x": saved})
     with pytest.raises(ContractError, match=says):
-        Lives(Noted()).restored(slice(None))
+        Lives(habitat := Noted()).restored(slice(None))
+    assert habitat.calls[-1] == ("close",)
 
 
 def test_the_first_life_that_differs_is_named_with_its_age() -> None:

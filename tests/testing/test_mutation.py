@@ -176,6 +176,18 @@ class Elsewhere(Steady):
         return [setting, "size"]
 
 
+class Misled(Steady):
+    """A season of one of its settings changes a rate that it does not have."""
+
+    size_of_blocks: Rate = 1.0
+
+    def rates(self, layout: Layout) -> dict[str, float]:
+        return {"scale": self.scale}
+
+    def governed(self, setting: str, layout: Layout) -> list[str]:
+        return {"scale": ["scale"], "size_of_blocks": ["size"]}.get(setting, [])
+
+
 class Few(Steady):
     def founders(self, layout: Layout, draws: Draws) -> Array:
         return super().founders(layout, draws)[:, 1:]
@@ -214,6 +226,7 @@ def test_the_mutations_without_these_faults(mutation: Mutation) -> None:
         (Open(), "a season of a setting that the mutation does not have; return"),
         (Closed(), "has a rate scale that no season of scale changes"),
         (Elsewhere(), "a season of .* changes .*size.*, which `rates` lacks"),
+        (Misled(), "a season of size_of_blocks changes size, which `rates` lacks"),
         (
             Few(),
             r"gives genomes of founders as float32 \(32, 83\); the contract says .* \(32, 84\)",

@@ -87,8 +87,11 @@ class _Writer:
         if _kind(value) == "mujoco.MjData":
             return ["fields", self._fields(value, place)]
         # A class with its own pickling has a state beside its attributes.
-        pickled = getattr(type(value), "__reduce_ex__")  # noqa: B009
-        if hasattr(value, "__dict__") and pickled is object.__reduce_ex__:
+        own = any(
+            getattr(type(value), name) is not getattr(object, name)
+            for name in ("__reduce__", "__reduce_ex__")
+        )
+        if hasattr(value, "__dict__") and not own:
             attributes = sorted(vars(value).items())
             return [
                 "object",

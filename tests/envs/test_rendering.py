@@ -1,0 +1,31 @@
+"""Pictures of a life in an environment: the body after the tick, with the action that led to it."""
+
+import numpy as np
+import pytest
+
+pytest.importorskip("gymnasium")
+
+from primordia.envs import LifeEnv
+from primordia.habitats.cartpole.picture import draw
+
+TASK = "CartPole-survival"
+
+
+def test_a_picture_has_the_present_body_and_the_latest_action() -> None:
+    env = LifeEnv(TASK, {"habitat": {"track_limit": 5.0}}, render_mode="rgb_array")
+    for seed in (1, 2):
+        pictures, actions = [(env.reset(seed=seed)[0], env.render())], [0, 1, 1]
+        pictures += [(env.step(action)[0], env.render()) for action in actions]
+        for (senses, picture), action in zip(pictures, [0, *actions], strict=True):
+            drawn = draw(senses, action, 5.0).convert("RGB")
+            np.testing.assert_array_equal(picture, np.asarray(drawn))
+
+
+def test_nothing_is_drawn_unless_it_is_asked_for_and_can_be() -> None:
+    env = LifeEnv(TASK)
+    env.reset(seed=1)
+    assert env.render() is None
+    meadow = {"habitat": {"name": "tests.toys:Meadow"}}
+    blind = LifeEnv(TASK, meadow, render_mode="rgb_array")
+    blind.reset(seed=1)
+    assert blind.render() is None
