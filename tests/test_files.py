@@ -93,8 +93,10 @@ def test_each_fault_of_a_sealed_file_is_named(tmp_path: Path) -> None:
     assert files.fault_in(file, sealed["bytes"], sealed["sha256"]) is None
     file.write_bytes(b"abd")
     assert "checksum" in str(files.fault_in(file, sealed["bytes"], sealed["sha256"]))
-    file.write_bytes(b"ab")
-    assert "2 bytes instead of 3" in str(files.fault_in(file, sealed["bytes"], sealed["sha256"]))
+    for content in (b"", b"ab", b"abcd"):
+        file.write_bytes(content)
+        says = f"{file} has {len(content)} bytes instead of 3"
+        assert files.fault_in(file, sealed["bytes"], sealed["sha256"]) == says
     file.unlink()
     assert "is missing" in str(files.fault_in(file, sealed["bytes"], sealed["sha256"]))
 

@@ -56,6 +56,20 @@ def test_a_job_of_this_machine_runs_while_its_process_lives(tmp_path: Path, ende
         assert state_of(tmp_path, state="running", **written) == state
 
 
+def test_a_process_of_another_user_is_alive(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The system refuses even the signal 0, which only asks whether the process exists."""
+
+    def refuse(process: int, number: int) -> None:
+        assert (process, number) == (7, 0)
+        raise PermissionError
+
+    monkeypatch.setattr(os, "kill", refuse)
+    written: dict[str, Any] = {"host": socket.gethostname(), "process": 7, "updated": 1.0}
+    assert state_of(tmp_path, state="running", **written) == "running"
+
+
 def test_a_job_of_another_machine_runs_until_it_is_silent_for_long(
     tmp_path: Path, ended: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -180,11 +194,14 @@ def test_counts_are_written_at_intervals(monkeypatch: pytest.MonkeyPatch) -> Non
     now, written = [100.0], list[float]()
     monkeypatch.setattr("primordia.experiments.job.time.perf_counter", lambda: now[0])
     monkeypatch.setattr("primordia.experiments.job.Census.of", MagicMock())
-    monkeypatch.setattr(jobs, "Speed", MagicMock())
-    ledger = MagicMock()
+    speed, ledger, entry, status = (MagicMock() for _ in range(4))
+    monkeypatch.setattr(jobs, "Speed", lambda: speed)
     ledger.write = lambda *_: written.append(now[0])
-    watch, status = jobs._Watch(ledger, JOB, MagicMock()), MagicMock()
+    watch = jobs._Watch(ledger, JOB, entry)
     for seconds in (0.0, 1.0, jobs.EVERY - 0.01, jobs.EVERY, 2.5, 2 * jobs.EVERY):
         now[0] = 100 + seconds
         watch(status)
     assert written == [100, 100 + jobs.EVERY, 100 + 2 * jobs.EVERY]
+    assert entry.rate is speed.organism_ticks_per_s.return_value
+    assert entry.left_s is speed.seconds_left.return_value
+    speed.seconds_left.assert_called_with(status.limits)

@@ -1,6 +1,7 @@
 """Jobs in processes of this machine or in tasks of a cluster: their options, and how they end."""
 
 import socket
+import sys
 from concurrent.futures import Future
 from pathlib import Path
 from types import SimpleNamespace
@@ -120,6 +121,49 @@ def test_only_tasks_that_have_not_ended_are_stopped(
     ray.shutdown.assert_called_once_with()
 
 
+@pytest.mark.parametrize(
+    ("one", "last", "says"),
+    [
+        (True, True, ""),
+        (True, False, "node 10.0.0.3 does not see OUT; choose an --out in a folder"),
+        (False, True, "node 10.0.0.1 does not see OUT; choose"),
+        (True, ValueError("lost\nin space"),
+         r"10.0.0.3 gave no answer \(ValueError: lost\) when asked whether it sees OUT; choose"),
+    ],
+    ids=["both", "one", "the other", "no answer"],
+)  # fmt: skip
+def test_each_node_that_is_alive_is_asked_whether_it_sees_the_folder(
+    one: Any, last: Any, says: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The node looks for a file in the folder, which is removed in any case."""
+    answers, ray = {"1": one, "3": last}, MagicMock()
+    ray.nodes.return_value = [
+        {"NodeID": each, "Alive": each != "2", "NodeManagerAddress": f"10.0.0.{each}"}
+        for each in "123"
+    ]
+
+    def get(answer: Any, timeout: float) -> bool:
+        if isinstance(answer, Exception):
+            raise answer
+        return bool(answer)
+
+    def options(num_cpus: int, scheduling_strategy: str) -> Any:
+        node = scheduling_strategy
+        return SimpleNamespace(remote=lambda path: on_ray._sees(path) and answers.pop(node))
+
+    ray.get, ray.remote.return_value.options, ray.exceptions.RayError = get, options, ValueError
+    strategies = SimpleNamespace(NodeAffinitySchedulingStrategy=lambda node, soft: node)
+    monkeypatch.setitem(sys.modules, "ray.util.scheduling_strategies", strategies)
+    if says:
+        with pytest.raises(InputError, match=says.replace("OUT", str(tmp_path))):
+            on_ray._check_folder(ray, tmp_path)
+    else:
+        on_ray._check_folder(ray, tmp_path)
+        assert not answers
+    assert ray.shutdown.called == bool(says)
+    assert not list(tmp_path.iterdir())
+
+
 def test_an_address_with_a_port_is_tried_before_ray_tries_it() -> None:
     """`auto` and no address are left to Ray."""
     with socket.create_server(("127.0.0.1", 0)) as server:
@@ -132,16 +176,17 @@ def test_an_address_with_a_port_is_tried_before_ray_tries_it() -> None:
 
 
 @pytest.mark.parametrize(
-    ("held", "state", "seconds"), [(2, "done", 2), (200, "elsewhere", on_ray.RELEASE + 1)]
+    ("held", "state", "seconds"),
+    [(2, "done", 2), (2, "failed", 2), (200, "elsewhere", on_ray.RELEASE + 1)],
 )
 def test_a_task_waits_for_the_lock_of_a_dead_node_for_a_while(
-    held: int, state: str, seconds: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    held: int, state: Any, seconds: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     now, tries = [0.0], list[Any]()
 
     def ending_of(plan: Any, job: Job, *words: Any) -> Ending:
         tries.append(words)
-        return Ending(job.number, "elsewhere" if len(tries) <= held else "done")
+        return Ending(job.number, "elsewhere" if len(tries) <= held else state)
 
     def sleep(length: float) -> None:
         now[0] += length

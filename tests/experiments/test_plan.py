@@ -212,9 +212,10 @@ def test_a_fork_has_the_jobs_and_settings_of_its_source(tmp_path: Path) -> None:
     fork = {"of": "one/harsh", "at": 150}
     other = {"question": "And then?", "arms": [{"name": "same"}, {"name": "safe", "hazard": 0.0}]}
     names = ("task", "seed", "seeds", "replication", "saturation_ticks", "hazard", "brain", "jobs")
-    file = write(tmp_path, "two", fork=fork, **other, **dict.fromkeys(names))
-    plan = read(file, tmp_path / "runs" / "two")
+    longer = {**dict.fromkeys(names), "stop": {"ticks": 400}}
+    plan = read(write(tmp_path, "two", fork=fork, **other, **longer), tmp_path / "runs" / "two")
     assert [arm.config.hazard for arm in plan.arms] == [0.05, 0.0]
+    assert [arm.config.stop.ticks for arm in plan.arms] == [400, 400], "of the fork's file"
     assert [(job.folder, job.source) for job in plan.jobs()][::2] == [
         ("same/0-1", "../one/harsh/0-1"),
         ("same/2", "../one/harsh/2"),
@@ -225,6 +226,31 @@ def test_a_fork_has_the_jobs_and_settings_of_its_source(tmp_path: Path) -> None:
             file = write(tmp_path, "two", fork=fork, **{**dict.fromkeys(names), **place})
             with pytest.raises(InputError, match="takes task, seeds and cells from one/harsh"):
                 read(file, tmp_path / "runs" / "two")
+
+
+@pytest.mark.parametrize(
+    ("first", "then", "says"),
+    [
+        ("fork", "later", "fork.at is 150 there, and 160 here"),
+        ("fork", "none", "fork.at is 150 there, and missing here"),
+        ("none", "fork", "fork.at is missing there, and 150 here"),
+    ],
+)
+def test_a_fork_may_not_change_or_come_or_go(
+    first: str, then: str, says: str, tmp_path: Path
+) -> None:
+    """All settings and the numbers of worlds are equal with and without the fork."""
+    write(tmp_path, "one")
+    own = dict.fromkeys(("task", "seeds"))
+    kinds: dict[str, dict[str, Any]] = {
+        "fork": {"fork": {"of": "one/mild", "at": 150}, **own},
+        "later": {"fork": {"of": "one/mild", "at": 160}, **own},
+        "none": {},
+    }
+    out = tmp_path / "runs" / "two"
+    begin(write(tmp_path, "two", **kinds[first]), out)
+    with pytest.raises(InputError, match=f"holds another experiment: {says}"):
+        begin(write(tmp_path, "two", **kinds[then]), out)
 
 
 @pytest.mark.parametrize("names", [["one"], ["one", "two"], ["one", "two", "three"]])

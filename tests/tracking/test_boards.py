@@ -1,11 +1,13 @@
 """What is written for each dashboard: axes, times, and nothing about the machine."""
 
+import errno
 from pathlib import Path
 from types import SimpleNamespace
+from unittest.mock import patch
 
 import pytest
 
-from primordia.errors import InputError
+from primordia.errors import InputError, Trouble
 from primordia.tracking import tensorboard
 from primordia.tracking.reader import World
 from primordia.tracking.tensorboard import TensorBoard
@@ -51,6 +53,27 @@ def test_events_have_the_time_at_which_they_were_written(
     board.close()
     found = [(event.wall_time, event.step) for event in events(tmp_path / "seed-1")]
     assert found == [(1234.5, 10), (1234.5, 20), (2345.5, 30)]
+
+
+@pytest.mark.parametrize(
+    ("fault", "says"),
+    [
+        (OSError(errno.ENOSPC, "No space left on device"), "No space left on device"),
+        (OSError("it is closed"), "it is closed"),
+    ],
+)
+def test_events_that_cannot_be_written_are_one_line_with_the_folder_of_the_world(
+    fault: OSError, says: str, tmp_path: Path
+) -> None:
+    board, worlds = TensorBoard(tmp_path), [World(f"a/seed-{n}", f"{n}", "g", {}) for n in (1, 2)]
+    board.add(worlds[0], [{"tick": 10, "living": 3.0}])
+    with (
+        patch.object(board, "_begun", side_effect=fault),
+        pytest.raises(Trouble, match=f"^{tmp_path}/a/seed-2 cannot be written: {says}$"),
+    ):
+        board.add(worlds[1], [{"tick": 10, "living": 4.0}])
+    board.close()
+    assert [event.step for event in events(tmp_path / "a" / "seed-1")] == [10]
 
 
 @pytest.mark.parametrize("name", ["events.out.tfevents.1", "notes.primordia-{0}", "z"])

@@ -9,6 +9,7 @@ import pyarrow as pa
 import pytest
 
 from primordia.brains.genomes import FOUNDERS
+from primordia.errors import Trouble
 from primordia.runs import checkpoint
 from primordia.tracking import reader
 from primordia.tracking.reader import Reader
@@ -98,3 +99,26 @@ def test_each_row_of_each_world_and_arm_is_read_once(
     assert [*later] == ["two/seed-3", "two/seed-4"]
     assert [row["tick"] for rows in later.values() for row in rows] == [50, 60] * 2
     assert not list(watched.new(arms, patient=False))
+
+
+@pytest.mark.parametrize("error", [Trouble("damaged"), FileNotFoundError("removed")])
+def test_a_run_that_cannot_be_read_now_is_read_later_and_stops_no_other(
+    error: Exception, runs: dict[str, Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Both runs of the first arm have a world of seed 4, whose rows are equal and come once."""
+    arms = {"one": [runs["run"], runs["alone"]], "two": [runs["harsh"]]}
+    broken = [runs["run"]]
+
+    def opened(path: Path) -> Opened:
+        if path in broken:
+            raise error
+        return Opened(path)
+
+    monkeypatch.setattr(reader, "Archive", opened)
+    watched = Reader("all")
+    found = [world.name for world, _ in watched.new(arms, patient=True)]
+    assert found == ["one/seed-4", "two/seed-3", "two/seed-4"]
+    with pytest.raises(type(error)):
+        list(watched.new(arms, patient=False))
+    broken.clear()
+    assert [world.name for world, _ in watched.new(arms, patient=True)] == ["one/seed-3"]
