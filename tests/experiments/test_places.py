@@ -1,6 +1,7 @@
 """Jobs in processes of this machine or in tasks of a cluster: their options, and how they end."""
 
 import socket
+import subprocess
 import sys
 from concurrent.futures import Future
 from pathlib import Path
@@ -20,7 +21,7 @@ from primordia.experiments import plan as plans
 from primordia.experiments.campaign import Campaign, begin
 from primordia.experiments.dispatch import live_all
 from primordia.experiments.ending import Ending
-from primordia.experiments.here import Here
+from primordia.experiments.here import PATIENCE, Here
 from primordia.experiments.plan import Job
 from tests.commands import here
 from tests.experiments.meadows import write
@@ -86,6 +87,23 @@ def test_a_process_gets_the_interval_of_checkpoints_and_the_device(
     assert words[-3:] == [str(tmp_path), "7.5", "gpu"]
     assert options["env"]["PRIMORDIA_CORES"] == "1"
     assert (tmp_path / "workers.log").read_text() == "before\n"
+
+
+def test_each_process_is_stopped_and_those_that_take_too_long_are_killed(tmp_path: Path) -> None:
+    """A process may have ended before. No process starts after the stop."""
+    place = Here(tmp_path, 2, 7.0)
+    gone, slow, _ = processes = [MagicMock() for _ in range(3)]
+    gone.terminate.side_effect = ProcessLookupError
+    slow.wait.side_effect = subprocess.TimeoutExpired("a job", PATIENCE)
+    place._workers += processes
+    place.stop()
+    for each in processes:
+        each.terminate.assert_called_once_with()
+        each.wait.assert_called_once_with(PATIENCE)
+        each.stdin.close.assert_called_once_with()
+    assert [each.kill.called for each in processes] == [False, True, False]
+    assert place._live(JOB) == Ending(3, "stopped")
+    assert place._workers == processes
 
 
 @pytest.mark.parametrize(("device", "gpus"), [("cpu", 0), ("gpu", 1)])

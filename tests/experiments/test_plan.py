@@ -192,7 +192,7 @@ def test_a_fork_of_runs_has_all_their_worlds_and_their_own_ancestors(
 ) -> None:
     """A run keeps its ancestors in its directory; the runs have different numbers of worlds."""
     worlds = {tmp_path / "a": (5, 2), tmp_path / "b": (7, 3)}
-    ancestors = {"ancestors": ("ancestors.safetensors",)}
+    ancestors = {"ancestors": ("a.safetensors", "b.safetensors")}
     configs = {
         path: config(MEADOW, seed=seed, seeds=seeds).model_copy(update=ancestors)
         for path, (seed, seeds) in worlds.items()
@@ -202,7 +202,7 @@ def test_a_fork_of_runs_has_all_their_worlds_and_their_own_ancestors(
     monkeypatch.setattr("primordia.experiments.file.read_config", configs.get)
     settings, runs = _of_runs(tmp_path)
     assert (settings["seed"], settings["seeds"]) == (5, 5)
-    assert settings["ancestors"] == [str(tmp_path / "a" / "ancestors.safetensors")]
+    assert settings["ancestors"] == [str(tmp_path / "a" / f"{name}.safetensors") for name in "ab"]
     assert runs == [(tmp_path / "a", 2), (tmp_path / "b", 3)]
 
 

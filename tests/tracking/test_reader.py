@@ -122,3 +122,13 @@ def test_a_run_that_cannot_be_read_now_is_read_later_and_stops_no_other(
         list(watched.new(arms, patient=False))
     broken.clear()
     assert [world.name for world, _ in watched.new(arms, patient=True)] == ["one/seed-3"]
+
+
+def test_a_run_without_a_checkpoint_is_opened_only_if_nothing_can_follow(
+    runs: dict[str, Path],
+) -> None:
+    (runs["run"] / checkpoint.FOLDER / "000001").rmdir()
+    arms, watched = {"begun": [runs["run"]], "other": [runs["harsh"]]}, Reader("all")
+    for patient, arm in ((True, "other"), (True, None), (False, "begun")):
+        found = [world.name for world, _ in watched.new(arms, patient)]
+        assert found == ([f"{arm}/seed-3", f"{arm}/seed-4"] if arm else [])
