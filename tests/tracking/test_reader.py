@@ -36,12 +36,13 @@ class Opened:
 
 @pytest.fixture
 def runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Path]:
-    """Return runs. Each of the others differs from the first one in one setting, or in none."""
+    """Return runs. Most differ from the first one in one setting, or in none."""
     several = {
         "run": {"seed": 3, "seeds": 2, "stop": {"ticks": 100}},
         "again": {"seed": 3, "seeds": 2, "stop": {"ticks": 100}},
         "alone": {"seed": 4, "seeds": 1, "stop": {"ticks": 100}},
         "longer": {"seed": 3, "seeds": 2, "stop": {"ticks": 200}},
+        "zero": {"seed": 0, "stop": {"ticks": 100}},
         "harsh": {"seed": 3, "seeds": 2, "stop": {"ticks": 100}, "hazard": 0.1},
     }
     folders = {name: tmp_path / name for name in several}
@@ -128,7 +129,10 @@ def test_a_run_without_a_checkpoint_is_opened_only_if_nothing_can_follow(
     runs: dict[str, Path],
 ) -> None:
     (runs["run"] / checkpoint.FOLDER / "000001").rmdir()
-    arms, watched = {"begun": [runs["run"]], "other": [runs["harsh"]]}, Reader("all")
-    for patient, arm in ((True, "other"), (True, None), (False, "begun")):
-        found = [world.name for world, _ in watched.new(arms, patient)]
-        assert found == ([f"{arm}/seed-3", f"{arm}/seed-4"] if arm else [])
+    arms, watched = {"late": [runs["run"]], "other": [runs["zero"]]}, Reader("all")
+    for patient, names in (
+        (True, ["other/seed-0"]),
+        (True, []),
+        (False, ["late/seed-3", "late/seed-4"]),
+    ):
+        assert [world.name for world, _ in watched.new(arms, patient)] == names
