@@ -25,7 +25,11 @@ def test_only_regular_files_up_to_a_size_are_read(
     monkeypatch.setattr(files, "READABLE", 3)
     assert files.read(file) == b"123"
     monkeypatch.setattr(files, "READABLE", 2)
-    for path, code in ((pipe, errno.EINVAL), (file, errno.EFBIG), (tmp_path / "no", errno.ENOENT)):
+    for path, code in (
+        *((other, errno.EINVAL) for other in (pipe, tmp_path, Path(os.devnull))),
+        (file, errno.EFBIG),
+        (tmp_path / "no", errno.ENOENT),
+    ):
         with pytest.raises(OSError, match=r"\w") as raised:
             files.read(path)
         assert raised.value.errno == code

@@ -33,11 +33,12 @@ class Place:
     """A place in which job K ends in state K of a list."""
 
     def __init__(self, *states: Any) -> None:
-        self._states = states
+        self._states, self.submitted = states, list[int]()
 
     def submit(self, job: Job) -> Future[Ending]:
         future: Future[Ending] = Future()
         state = self._states[job.number]
+        self.submitted.append(job.number)
         future.set_result(Ending(job.number, state, error=f"reason {job.number}", again=False))
         return future
 
@@ -234,6 +235,7 @@ def test_jobs_of_other_processes_are_neither_done_nor_failed(tmp_path: Path) -> 
     result = live_all(chosen.jobs, place, lambda: looks.append(1), lambda *_: None)
     assert (result.done, result.elsewhere, result.stopped) == (1, 2, False)
     assert [ending.job for ending in result.failed] == [3]
+    assert place.submitted == [0, 1, 2, 3], "in their order, each once"
     assert len(looks) == 2, "also after the last job has ended"
 
 

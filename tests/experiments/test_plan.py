@@ -89,6 +89,8 @@ def test_the_largest_number_of_jobs_is_allowed(
 
 
 def test_a_plan_is_read_as_it_was_written(tmp_path: Path) -> None:
+    """An empty folder may become that of an experiment."""
+    (tmp_path / "out").mkdir()
     plan = begin(write(tmp_path), tmp_path / "out").plan
     assert plans.recorded(tmp_path / "out") == plan
     assert begin(tmp_path / "out").plan == plan
@@ -99,6 +101,8 @@ def test_words_of_a_question_may_change_and_settings_may_not(tmp_path: Path) -> 
     begin(write(tmp_path), out)
     begin(write(tmp_path, question="Another one?", jobs=None), out)
     begin(write(tmp_path, about="a meadow, in other words"), out)
+    kept = plans.recorded(out)
+    assert (kept.question, kept.arms[0].settings["about"]) == ("Is it mild?", ""), "the first ones"
     other: list[dict[str, Any]] = [{"name": "mild"}, {"name": "harsh", "hazard": 0.5}]
     for changes, words in [
         ({"arms": other}, "arms.harsh.hazard is 0.05 there, and 0.5 here"),
@@ -207,19 +211,27 @@ def test_a_fork_of_runs_has_all_their_worlds_and_their_own_ancestors(
 
 
 def test_a_fork_has_the_jobs_and_settings_of_its_source(tmp_path: Path) -> None:
-    """Also before its source has begun."""
-    write(tmp_path, "one")
+    """Before its source has begun, they are those of the file, and later those of the plan."""
+    source = write(tmp_path, "one")
     fork = {"of": "one/harsh", "at": 150}
     other = {"question": "And then?", "arms": [{"name": "same"}, {"name": "safe", "hazard": 0.0}]}
     names = ("task", "seed", "seeds", "replication", "saturation_ticks", "hazard", "brain", "jobs")
     longer = {**dict.fromkeys(names), "stop": {"ticks": 400}}
-    plan = read(write(tmp_path, "two", fork=fork, **other, **longer), tmp_path / "runs" / "two")
+    file = write(tmp_path, "two", fork=fork, **other, **longer)
+    plan = read(file, tmp_path / "runs" / "two")
     assert [arm.config.hazard for arm in plan.arms] == [0.05, 0.0]
     assert [arm.config.stop.ticks for arm in plan.arms] == [400, 400], "of the fork's file"
     assert [(job.folder, job.source) for job in plan.jobs()][::2] == [
         ("same/0-1", "../one/harsh/0-1"),
         ("same/2", "../one/harsh/2"),
     ]
+    begin(source, tmp_path / "runs" / "one")
+    arms = [{"name": "harsh"}, {"name": "harsher", "hazard": 0.5}]
+    write(tmp_path, "one", hazard=0.25, jobs={"worlds": 1}, arms=arms)
+    assert read(file, tmp_path / "runs" / "two") == plan
+    changed = read(file, tmp_path / "elsewhere" / "two")
+    assert changed.arms[0].config.hazard == 0.25
+    assert [job.source for job in changed.jobs()][::2] == [f"../one/harsh/{n}" for n in range(3)]
     for name, value in {"task": "meadow.toml", "seeds": 3, "cells": 16}.items():
         arm = {"arms": [{"name": "same"}, {"name": "safe", name: value}]}
         for place in ({**other, name: value}, arm):

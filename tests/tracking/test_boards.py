@@ -3,7 +3,7 @@
 import errno
 from pathlib import Path
 from types import SimpleNamespace
-from unittest.mock import patch
+from unittest.mock import MagicMock, patch
 
 import pytest
 
@@ -74,6 +74,31 @@ def test_events_that_cannot_be_written_are_one_line_with_the_folder_of_the_world
         board.add(worlds[1], [{"tick": 10, "living": 4.0}])
     board.close()
     assert [event.step for event in events(tmp_path / "a" / "seed-1")] == [10]
+
+
+def test_an_error_of_wandb_is_one_line(tmp_path: Path) -> None:
+    board = WeightsAndBiases(tmp_path)
+    with (
+        patch.object(board, "_begun", side_effect=board._wandb.Error(" it is lost\nfor ever")),
+        pytest.raises(Trouble, match=f"^{tmp_path} cannot be written by wandb: it is lost$"),
+    ):
+        board.add(World("seed-1", "3" * 16, "g", {}), [{"tick": 10, "living": 3}])
+
+
+@pytest.mark.parametrize("alone", [True, False])
+def test_the_files_of_all_worlds_are_finished(alone: bool, tmp_path: Path) -> None:
+    """A program that has used wandb's service before goes on using the service."""
+    ours, theirs = TensorBoard(tmp_path), WeightsAndBiases(tmp_path)
+    worlds = {str(number): MagicMock() for number in range(3)}
+    worlds["2"].close.side_effect = OSError  # all rows are in the file before
+    ours._open, theirs._open = dict(worlds), dict(worlds)
+    theirs._wandb, theirs._alone = MagicMock(), alone
+    ours.close()
+    theirs.close()
+    for each in worlds.values():
+        each.close.assert_called_once_with()
+        each.finish.assert_called_once_with()
+    assert theirs._wandb.teardown.called == alone
 
 
 @pytest.mark.parametrize("name", ["events.out.tfevents.1", "notes.primordia-{0}", "z"])

@@ -77,6 +77,23 @@ def test_the_identity_of_a_world_depends_on_its_settings_and_founders_but_not_on
     assert len({*known.values()}.union(*(each.values() for each in others))) == 12
 
 
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"cells": 9}, {"replication": 0.5}, {"genesis": "fill"}, {"sample_every": 20},
+        {"saturation_ticks": 9}, {"inheritance": "founder"}, {"placement": {"rule": "replacing"}},
+    ],
+    ids=lambda change: next(iter(change)),
+)  # fmt: skip
+def test_any_setting_but_limits_gives_worlds_another_identity(
+    change: dict[str, Any], runs: dict[str, Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    settings, last = RECORDS[runs["again"]]
+    monkeypatch.setitem(RECORDS, runs["again"], ({**settings, **change}, last))
+    one, other = identities(runs["run"]), identities(runs["again"])
+    assert not {*one.values()} & {*other.values()}
+
+
 def test_each_row_of_each_world_and_arm_is_read_once(
     runs: dict[str, Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:
