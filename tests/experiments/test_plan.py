@@ -33,6 +33,16 @@ def test_arms_are_cut_into_jobs_which_take_turns(tmp_path: Path) -> None:
     ]
 
 
+def test_all_arms_have_the_name_of_the_task_in_its_file_or_of_the_built_in_task(
+    tmp_path: Path,
+) -> None:
+    for task, name in (("meadow.toml", MEADOW["task"]), ("CartPole-survival",) * 2):
+        changes = {"brain": None, "task": task}
+        for arms in (ARMS, [{**arm, "task": task} for arm in ARMS]):
+            plan = read(write(tmp_path, **changes, arms=arms), tmp_path / "out")
+            assert [arm.config.task for arm in plan.arms] == [name] * 2
+
+
 @pytest.mark.parametrize(("seeds", "worlds"), [(1, 1), (7, 3), (12, 4), (101, 10), (5, 100)])
 def test_each_world_of_an_arm_is_in_one_job(tmp_path: Path, seeds: int, worlds: int) -> None:
     plan = read(write(tmp_path, seeds=seeds, jobs={"worlds": worlds}), tmp_path / "out")

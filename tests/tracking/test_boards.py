@@ -109,9 +109,11 @@ def test_only_files_of_the_same_world_are_replaced(name: str, tmp_path: Path) ->
         board = TensorBoard(tmp_path)
         board.add(world, [row])
         board.close()
-    (own,) = (tmp_path / "seed-1").iterdir()
+        (own,) = (tmp_path / "seed-1").iterdir()
+        own.with_name(f"events.out.tfevents.1.host.primordia-{world.identity}").touch()
+    earlier = {*(tmp_path / "seed-1").iterdir()}
     other = tmp_path / "seed-1" / name.format(world.identity)
     other.touch()
     with pytest.raises(InputError, match=f"{other.name} belongs to another world"):
         TensorBoard(tmp_path).add(world, [row])
-    assert {*(tmp_path / "seed-1").iterdir()} == {own, other}
+    assert {*(tmp_path / "seed-1").iterdir()} == {*earlier, other}
