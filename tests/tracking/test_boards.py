@@ -12,7 +12,7 @@ from primordia.tracking import tensorboard
 from primordia.tracking.reader import World
 from primordia.tracking.tensorboard import TensorBoard
 from primordia.tracking.weights_and_biases import WeightsAndBiases
-from tests.dashboards import events, offline_records
+from tests.dashboards import event_rows, events, offline_records
 
 
 def test_a_run_of_wandb_has_ticks_as_its_axis_and_nothing_of_the_machine(tmp_path: Path) -> None:
@@ -49,10 +49,11 @@ def test_events_have_the_time_at_which_they_were_written(
     monkeypatch.setattr(tensorboard, "time", SimpleNamespace(time=lambda: next(now)))
     board, world = TensorBoard(tmp_path), World("seed-1", "0" * 16, "g", {})
     board.add(world, [{"tick": 10, "living": 3.0}, {"tick": 20, "living": 4.0}])
-    board.add(world, [{"tick": 30, "living": 5.0}])
+    board.add(world, [{"tick": 30, "living": 0.0}])
     board.close()
     found = [(event.wall_time, event.step) for event in events(tmp_path / "seed-1")]
     assert found == [(1234.5, 10), (1234.5, 20), (2345.5, 30)]
+    assert [row["living"] for row in event_rows(tmp_path / "seed-1")] == [3, 4, 0]
 
 
 @pytest.mark.parametrize(
