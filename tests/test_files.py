@@ -90,6 +90,21 @@ def test_a_folder_is_made_with_its_parents_or_a_line_says_why_not(tmp_path: Path
         files.make_folder(tmp_path / (longest + "e"))
 
 
+def test_each_new_folder_is_waited_for_in_its_parent(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """After a power cut a folder is there only if its name in the folder around it was synced."""
+    synced: list[tuple[Path, bool]] = []
+    folders = [tmp_path / "a", tmp_path / "a" / "b", tmp_path / "a" / "b" / "c"]
+    monkeypatch.setattr(files, "sync", lambda path: synced.append((path, last(path).is_dir())))
+
+    def last(parent: Path) -> Path:
+        return next(each for each in folders if each.parent == parent)
+
+    files.make_folder(folders[-1])
+    assert {*synced} == {(each.parent, True) for each in folders}
+
+
 def test_each_fault_of_a_sealed_file_is_named(tmp_path: Path) -> None:
     file = tmp_path / "file"
     file.write_bytes(b"abc")

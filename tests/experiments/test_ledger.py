@@ -172,6 +172,7 @@ def test_a_running_job_writes_the_counts_of_each_of_its_worlds(
     assert done.worlds == expected
     assert last.worlds == expected
     assert last.left_s == 0
+    assert (done.rate, done.left_s) == (None, None), "a job that is done has no speed"
 
 
 def test_each_world_is_counted_by_itself() -> None:
@@ -186,6 +187,20 @@ def test_each_world_is_counted_by_itself() -> None:
     assert [jobs._counts(census, world, seed) for world, seed in ((0, 8), (1, 9))] == [
         WorldCounts(seed=8, ticks=10, births=30, deaths=3, organism_ticks=50, saturated=None),
         WorldCounts(seed=9, ticks=20, births=40, deaths=11, organism_ticks=60, saturated=7),
+    ]
+
+
+def test_the_counts_of_a_job_that_is_done_are_those_of_its_run(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    names = "seed", "ticks", "births", "deaths", "organism_ticks"
+    counts = [dict(zip(names, range(first, first + 5), strict=True)) for first in (10, 20)]
+    ends: list[Any] = [None, {"tick": 7, "births": 8}]
+    worlds = [{**each, "saturation": end} for each, end in zip(counts, ends, strict=True)]
+    archive: Any = "the run"
+    monkeypatch.setattr(jobs, "info", lambda run: {"worlds": worlds} if run is archive else None)
+    assert jobs._worlds(archive) == [
+        WorldCounts(**each, saturated=tick) for each, tick in zip(counts, (None, 7), strict=True)
     ]
 
 
