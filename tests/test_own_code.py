@@ -88,7 +88,7 @@ def test_parts_of_installed_packages_are_recorded_by_version(
     assert own_code.packages(["tests.toys", "primordia.brains"]) == {}
 
 
-@pytest.mark.parametrize("name", ["evil-x", "folder.evil-x", "", "a..b", "this"])
+@pytest.mark.parametrize("name", ["evil-x", "folder.evil-x", "", "a..b", "this", "json.decoder"])
 def test_only_names_of_modules_that_can_be_trusted_are_loaded(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -194,6 +194,15 @@ def test_an_address_with_a_port_is_tried_before_ray_tries_it() -> None:
             on_ray._check_address(address)
 
 
+def test_the_brackets_of_an_address_are_no_part_of_its_host(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    connected = MagicMock()
+    monkeypatch.setattr("primordia.experiments.on_ray.socket.create_connection", connected)
+    on_ray._check_address("ray://[2001:db8::1]:10001")
+    connected.assert_called_once_with(("2001:db8::1", 10001), on_ray.CONNECT)
+
+
 @pytest.mark.parametrize(
     ("held", "state", "seconds"),
     [(2, "done", 2), (2, "failed", 2), (200, "elsewhere", on_ray.RELEASE + 1)],

@@ -111,7 +111,8 @@ def test_only_files_of_the_same_world_are_replaced(name: str, tmp_path: Path) ->
         board.add(world, [row])
         board.close()
         (own,) = (tmp_path / "seed-1").iterdir()
-        own.with_name(f"events.out.tfevents.1.host.primordia-{world.identity}").touch()
+        for time in (1, 2):
+            own.with_name(f"events.out.tfevents.{time}.host.primordia-{world.identity}").touch()
     earlier = {*(tmp_path / "seed-1").iterdir()}
     other = tmp_path / "seed-1" / name.format(world.identity)
     other.touch()

@@ -1,5 +1,6 @@
 """The reader of metrics: the identity of each world, and each row once."""
 
+import os
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -117,6 +118,10 @@ def test_each_row_of_each_world_and_arm_is_read_once(
     assert [*later] == ["two/seed-3", "two/seed-4"]
     assert [row["tick"] for rows in later.values() for row in rows] == [50, 60] * 2
     assert not list(watched.new(arms, patient=False))
+    monkeypatch.setitem(RECORDS, runs["again"], (settings, 70))
+    os.utime(runs["again"] / checkpoint.FOLDER / "000002", (1, 1))  # written again after a crash
+    last = [row["tick"] for _, rows in watched.new(arms, patient=True) for row in rows]
+    assert last == [70, 70]
 
 
 @pytest.mark.parametrize("error", [Trouble("damaged"), FileNotFoundError("removed")])
