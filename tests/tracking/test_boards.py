@@ -50,8 +50,8 @@ def test_events_have_the_time_at_which_they_were_written(
     board, world = TensorBoard(tmp_path), World("seed-1", "0" * 16, "g", {})
     board.add(world, [{"tick": 10, "living": 3.0}, {"tick": 20, "living": 4.0}])
     board.add(world, [{"tick": 30, "living": 0.0}])
-    board.close()
     found = [(event.wall_time, event.step) for event in events(tmp_path / "seed-1")]
+    board.close()  # the rows were there before
     assert found == [(1234.5, 10), (1234.5, 20), (2345.5, 30)]
     assert [row["living"] for row in event_rows(tmp_path / "seed-1")] == [3, 4, 0]
 
