@@ -1,5 +1,6 @@
 """Admitted code: the folders in which it is found, its import, and refusal of other modules."""
 
+import importlib
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -117,6 +118,24 @@ def test_another_module_of_the_same_name_is_refused_before_any_is_admitted(writt
         " name; use another process"
     )
     assert "pair" not in own_code._admitted.sources
+
+
+def test_a_module_that_python_imported_has_the_text_of_its_file(
+    written: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """If the file is gone, the text is unknown."""
+    code, lid = own_code.below(written, "alone"), written / "abox" / "lid.py"
+    monkeypatch.syspath_prepend(written)
+    importlib.import_module("alone")
+    assert own_code.is_loaded(code)
+    own_code.admit(code)
+    lid.write_text("SIZE = 4\n")
+    assert not own_code.is_loaded(code)
+    with pytest.raises(LookupError, match=f"^{lid} is imported already, and {lid} is another"):
+        own_code.admit(code)
+    lid.unlink()
+    assert not own_code.is_loaded(code)
+    own_code.admit(code)
 
 
 def test_the_code_for_another_process_is_all_that_the_modules_import(written: Path) -> None:

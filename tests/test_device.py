@@ -93,6 +93,16 @@ def test_a_run_is_limited_to_avx2_unless_the_user_chose_otherwise(
         (f"{ISA_FLAG}=AVX {ISA_FLAG}=SSE4_2", "SSE4_2"),
         (f"--xla_dump_to=/tmp {ISA_FLAG}=AVX2 --xla_cpu_use_fusion_emitters=false", "AVX2"),
         (
+            "--xla_dump_hlo_as_text --xla_force_host_platform_device_count=2"
+            " --xla_cpu_parallel_codegen_split_count=1 --xla_cpu_use_fusion_emitters=false"
+            " --xla_backend_extra_options=-fast-isel=false",
+            "native",
+        ),
+        (
+            "--xla_backend_extra_options=-x --xla_cpu",
+            "native --xla_backend_extra_options=-x --xla_cpu",
+        ),
+        (
             f"--xla_b=1 {ISA_FLAG}=AVX2  --xla_allow_excess_precision=false",
             "AVX2 --xla_allow_excess_precision=false --xla_b=1",
         ),

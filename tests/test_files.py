@@ -25,7 +25,11 @@ def test_only_regular_files_up_to_a_size_are_read(
     monkeypatch.setattr(files, "READABLE", 3)
     assert files.read(file) == b"123"
     monkeypatch.setattr(files, "READABLE", 2)
-    for path, code in ((pipe, errno.EINVAL), (file, errno.EFBIG), (tmp_path / "no", errno.ENOENT)):
+    for path, code in (
+        *((other, errno.EINVAL) for other in (pipe, tmp_path, Path(os.devnull))),
+        (file, errno.EFBIG),
+        (tmp_path / "no", errno.ENOENT),
+    ):
         with pytest.raises(OSError, match=r"\w") as raised:
             files.read(path)
         assert raised.value.errno == code
@@ -86,6 +90,21 @@ def test_a_folder_is_made_with_its_parents_or_a_line_says_why_not(tmp_path: Path
         files.make_folder(tmp_path / (longest + "e"))
 
 
+def test_each_new_folder_is_waited_for_in_its_parent(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """After a power cut a folder is there only if its name in the folder around it was synced."""
+    synced: list[tuple[Path, bool]] = []
+    folders = [tmp_path / "a", tmp_path / "a" / "b", tmp_path / "a" / "b" / "c"]
+    monkeypatch.setattr(files, "sync", lambda path: synced.append((path, last(path).is_dir())))
+
+    def last(parent: Path) -> Path:
+        return next(each for each in folders if each.parent == parent)
+
+    files.make_folder(folders[-1])
+    assert {*synced} == {(each.parent, True) for each in folders}
+
+
 def test_each_fault_of_a_sealed_file_is_named(tmp_path: Path) -> None:
     file = tmp_path / "file"
     file.write_bytes(b"abc")
@@ -93,8 +112,10 @@ def test_each_fault_of_a_sealed_file_is_named(tmp_path: Path) -> None:
     assert files.fault_in(file, sealed["bytes"], sealed["sha256"]) is None
     file.write_bytes(b"abd")
     assert "checksum" in str(files.fault_in(file, sealed["bytes"], sealed["sha256"]))
-    file.write_bytes(b"ab")
-    assert "2 bytes instead of 3" in str(files.fault_in(file, sealed["bytes"], sealed["sha256"]))
+    for content in (b"", b"ab", b"abcd"):
+        file.write_bytes(content)
+        says = f"{file} has {len(content)} bytes instead of 3"
+        assert files.fault_in(file, sealed["bytes"], sealed["sha256"]) == says
     file.unlink()
     assert "is missing" in str(files.fault_in(file, sealed["bytes"], sealed["sha256"]))
 

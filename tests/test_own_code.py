@@ -40,6 +40,25 @@ def test_sources_are_a_module_and_those_beside_it_that_it_imports(tmp_path: Path
         assert own_code.found(installed) == {}
 
 
+def test_a_package_has_precedence_and_its_parts_may_be_in_several_places(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Python does the same: a folder with `__init__.py` hides a file, and folders without it add up."""
+    for name in ("one/reeds/a.py", "two/reeds/b.py", "two/pond/__init__.py", "two/pond.py"):
+        (tmp_path / name).parent.mkdir(exist_ok=True, parents=True)
+        (tmp_path / name).touch()
+    monkeypatch.chdir(tmp_path)
+    for place in ("two", "one"):
+        monkeypatch.syspath_prepend(tmp_path / place)
+    for module, place, name in (
+        ("reeds.a", "one", "reeds/a.py"),
+        ("reeds.b", "two", "reeds/b.py"),
+        ("pond", "two", "pond/__init__.py"),
+    ):
+        found = {file: source.file for file, source in own_code.found(module).items()}
+        assert found == {name: tmp_path / place / name}
+
+
 @pytest.mark.parametrize("there", [b"x = 1", b"x = 2", None])
 def test_code_is_loaded_if_each_of_its_files_is(
     there: bytes | None, monkeypatch: pytest.MonkeyPatch
@@ -59,11 +78,17 @@ def test_parts_of_installed_packages_are_recorded_by_version(
     assert own_code.packages(["numpy.linalg", "primordia.brains", "no_such"]) == {
         "numpy": np.__version__
     }
+    with monkeypatch.context() as patched:
+        patched.setattr(own_code, "owners", lambda: {"numpy": ["pytest", "numpy"]})
+        assert own_code.packages(["numpy"]) == {
+            "pytest": pytest.__version__,
+            "numpy": np.__version__,
+        }, "several packages may share a folder"
     monkeypatch.setattr(own_code, "owners", lambda: pytest.fail("all packages were searched"))
     assert own_code.packages(["tests.toys", "primordia.brains"]) == {}
 
 
-@pytest.mark.parametrize("name", ["evil-x", "folder.evil-x", "", "a..b", "this"])
+@pytest.mark.parametrize("name", ["evil-x", "folder.evil-x", "", "a..b", "this", "json.decoder"])
 def test_only_names_of_modules_that_can_be_trusted_are_loaded(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

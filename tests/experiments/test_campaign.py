@@ -50,7 +50,12 @@ def test_jobs_that_are_left_are_those_not_done(chosen: Campaign) -> None:
     assert [job.number for job in chosen.left()] == [1, 2]
     assert [job.number for job in chosen.left(["mild"])] == [2]
     assert [job.number for job in chosen.left(["harsh", "mild"])] == [1, 2]
+    assert chosen.status(["mild"]).jobs == {"done": 1, "running": 0, "failed": 1, "waiting": 0}
+    assert chosen.status(["harsh", "mild"]) == chosen.status()
     assert [chosen.job(number).number for number in range(4)] == [0, 1, 2, 3]
+    for number in (-1, 4):
+        with pytest.raises(InputError, match=f"has no job {number}; the jobs are 0 to 3$"):
+            chosen.job(number)
 
 
 def test_info_has_for_each_arm_its_own_settings_and_worlds(chosen: Campaign) -> None:

@@ -56,6 +56,20 @@ def test_a_job_of_this_machine_runs_while_its_process_lives(tmp_path: Path, ende
         assert state_of(tmp_path, state="running", **written) == state
 
 
+def test_a_process_of_another_user_is_alive(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The system refuses even the signal 0, which only asks whether the process exists."""
+
+    def refuse(process: int, number: int) -> None:
+        assert (process, number) == (7, 0)
+        raise PermissionError
+
+    monkeypatch.setattr(os, "kill", refuse)
+    written: dict[str, Any] = {"host": socket.gethostname(), "process": 7, "updated": 1.0}
+    assert state_of(tmp_path, state="running", **written) == "running"
+
+
 def test_a_job_of_another_machine_runs_until_it_is_silent_for_long(
     tmp_path: Path, ended: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -158,6 +172,7 @@ def test_a_running_job_writes_the_counts_of_each_of_its_worlds(
     assert done.worlds == expected
     assert last.worlds == expected
     assert last.left_s == 0
+    assert (done.rate, done.left_s) == (None, None), "a job that is done has no speed"
 
 
 def test_each_world_is_counted_by_itself() -> None:
@@ -175,16 +190,33 @@ def test_each_world_is_counted_by_itself() -> None:
     ]
 
 
+def test_the_counts_of_a_job_that_is_done_are_those_of_its_run(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    names = "seed", "ticks", "births", "deaths", "organism_ticks"
+    counts = [dict(zip(names, range(first, first + 5), strict=True)) for first in (10, 20)]
+    ends: list[Any] = [None, {"tick": 7, "births": 8}]
+    worlds = [{**each, "saturation": end} for each, end in zip(counts, ends, strict=True)]
+    archive: Any = "the run"
+    monkeypatch.setattr(jobs, "info", lambda run: {"worlds": worlds} if run is archive else None)
+    assert jobs._worlds(archive) == [
+        WorldCounts(**each, saturated=tick) for each, tick in zip(counts, (None, 7), strict=True)
+    ]
+
+
 def test_counts_are_written_at_intervals(monkeypatch: pytest.MonkeyPatch) -> None:
     """The first counts are written at once, and the next when the interval has passed."""
     now, written = [100.0], list[float]()
     monkeypatch.setattr("primordia.experiments.job.time.perf_counter", lambda: now[0])
     monkeypatch.setattr("primordia.experiments.job.Census.of", MagicMock())
-    monkeypatch.setattr(jobs, "Speed", MagicMock())
-    ledger = MagicMock()
+    speed, ledger, entry, status = (MagicMock() for _ in range(4))
+    monkeypatch.setattr(jobs, "Speed", lambda: speed)
     ledger.write = lambda *_: written.append(now[0])
-    watch, status = jobs._Watch(ledger, JOB, MagicMock()), MagicMock()
+    watch = jobs._Watch(ledger, JOB, entry)
     for seconds in (0.0, 1.0, jobs.EVERY - 0.01, jobs.EVERY, 2.5, 2 * jobs.EVERY):
         now[0] = 100 + seconds
         watch(status)
     assert written == [100, 100 + jobs.EVERY, 100 + 2 * jobs.EVERY]
+    assert entry.rate is speed.organism_ticks_per_s.return_value
+    assert entry.left_s is speed.seconds_left.return_value
+    speed.seconds_left.assert_called_with(status.limits)

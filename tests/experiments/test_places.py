@@ -1,6 +1,8 @@
 """Jobs in processes of this machine or in tasks of a cluster: their options, and how they end."""
 
 import socket
+import subprocess
+import sys
 from concurrent.futures import Future
 from pathlib import Path
 from types import SimpleNamespace
@@ -19,7 +21,7 @@ from primordia.experiments import plan as plans
 from primordia.experiments.campaign import Campaign, begin
 from primordia.experiments.dispatch import live_all
 from primordia.experiments.ending import Ending
-from primordia.experiments.here import Here
+from primordia.experiments.here import PATIENCE, Here
 from primordia.experiments.plan import Job
 from tests.commands import here
 from tests.experiments.meadows import write
@@ -31,11 +33,12 @@ class Place:
     """A place in which job K ends in state K of a list."""
 
     def __init__(self, *states: Any) -> None:
-        self._states = states
+        self._states, self.submitted = states, list[int]()
 
     def submit(self, job: Job) -> Future[Ending]:
         future: Future[Ending] = Future()
         state = self._states[job.number]
+        self.submitted.append(job.number)
         future.set_result(Ending(job.number, state, error=f"reason {job.number}", again=False))
         return future
 
@@ -87,6 +90,23 @@ def test_a_process_gets_the_interval_of_checkpoints_and_the_device(
     assert (tmp_path / "workers.log").read_text() == "before\n"
 
 
+def test_each_process_is_stopped_and_those_that_take_too_long_are_killed(tmp_path: Path) -> None:
+    """A process may have ended before. No process starts after the stop."""
+    place = Here(tmp_path, 2, 7.0)
+    gone, slow, _ = processes = [MagicMock() for _ in range(3)]
+    gone.terminate.side_effect = ProcessLookupError
+    slow.wait.side_effect = subprocess.TimeoutExpired("a job", PATIENCE)
+    place._workers += processes
+    place.stop()
+    for each in processes:
+        each.terminate.assert_called_once_with()
+        each.wait.assert_called_once_with(PATIENCE)
+        each.stdin.close.assert_called_once_with()
+    assert [each.kill.called for each in processes] == [False, True, False]
+    assert place._live(JOB) == Ending(3, "stopped")
+    assert place._workers == processes
+
+
 @pytest.mark.parametrize(("device", "gpus"), [("cpu", 0), ("gpu", 1)])
 def test_a_task_of_a_cluster_has_one_core_and_a_gpu_if_asked(
     device: str, gpus: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -120,6 +140,49 @@ def test_only_tasks_that_have_not_ended_are_stopped(
     ray.shutdown.assert_called_once_with()
 
 
+@pytest.mark.parametrize(
+    ("one", "last", "says"),
+    [
+        (True, True, ""),
+        (True, False, "node 10.0.0.3 does not see OUT; choose an --out in a folder"),
+        (False, True, "node 10.0.0.1 does not see OUT; choose"),
+        (True, ValueError("lost\nin space"),
+         r"10.0.0.3 gave no answer \(ValueError: lost\) when asked whether it sees OUT; choose"),
+    ],
+    ids=["both", "one", "the other", "no answer"],
+)  # fmt: skip
+def test_each_node_that_is_alive_is_asked_whether_it_sees_the_folder(
+    one: Any, last: Any, says: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The node looks for a file in the folder, which is removed in any case."""
+    answers, ray = {"1": one, "3": last}, MagicMock()
+    ray.nodes.return_value = [
+        {"NodeID": each, "Alive": each != "2", "NodeManagerAddress": f"10.0.0.{each}"}
+        for each in "123"
+    ]
+
+    def get(answer: Any, timeout: float) -> bool:
+        if isinstance(answer, Exception):
+            raise answer
+        return bool(answer)
+
+    def options(num_cpus: int, scheduling_strategy: str) -> Any:
+        node = scheduling_strategy
+        return SimpleNamespace(remote=lambda path: on_ray._sees(path) and answers.pop(node))
+
+    ray.get, ray.remote.return_value.options, ray.exceptions.RayError = get, options, ValueError
+    strategies = SimpleNamespace(NodeAffinitySchedulingStrategy=lambda node, soft: node)
+    monkeypatch.setitem(sys.modules, "ray.util.scheduling_strategies", strategies)
+    if says:
+        with pytest.raises(InputError, match=says.replace("OUT", str(tmp_path))):
+            on_ray._check_folder(ray, tmp_path)
+    else:
+        on_ray._check_folder(ray, tmp_path)
+        assert not answers
+    assert ray.shutdown.called == bool(says)
+    assert not list(tmp_path.iterdir())
+
+
 def test_an_address_with_a_port_is_tried_before_ray_tries_it() -> None:
     """`auto` and no address are left to Ray."""
     with socket.create_server(("127.0.0.1", 0)) as server:
@@ -131,17 +194,27 @@ def test_an_address_with_a_port_is_tried_before_ray_tries_it() -> None:
             on_ray._check_address(address)
 
 
+def test_the_brackets_of_an_address_are_no_part_of_its_host(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    connected = MagicMock()
+    monkeypatch.setattr("primordia.experiments.on_ray.socket.create_connection", connected)
+    on_ray._check_address("ray://[2001:db8::1]:10001")
+    connected.assert_called_once_with(("2001:db8::1", 10001), on_ray.CONNECT)
+
+
 @pytest.mark.parametrize(
-    ("held", "state", "seconds"), [(2, "done", 2), (200, "elsewhere", on_ray.RELEASE + 1)]
+    ("held", "state", "seconds"),
+    [(2, "done", 2), (2, "failed", 2), (200, "elsewhere", on_ray.RELEASE + 1)],
 )
 def test_a_task_waits_for_the_lock_of_a_dead_node_for_a_while(
-    held: int, state: str, seconds: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    held: int, state: Any, seconds: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     now, tries = [0.0], list[Any]()
 
     def ending_of(plan: Any, job: Job, *words: Any) -> Ending:
         tries.append(words)
-        return Ending(job.number, "elsewhere" if len(tries) <= held else "done")
+        return Ending(job.number, "elsewhere" if len(tries) <= held else state)
 
     def sleep(length: float) -> None:
         now[0] += length
@@ -171,6 +244,7 @@ def test_jobs_of_other_processes_are_neither_done_nor_failed(tmp_path: Path) -> 
     result = live_all(chosen.jobs, place, lambda: looks.append(1), lambda *_: None)
     assert (result.done, result.elsewhere, result.stopped) == (1, 2, False)
     assert [ending.job for ending in result.failed] == [3]
+    assert place.submitted == [0, 1, 2, 3], "in their order, each once"
     assert len(looks) == 2, "also after the last job has ended"
 
 

@@ -33,6 +33,16 @@ def test_arms_are_cut_into_jobs_which_take_turns(tmp_path: Path) -> None:
     ]
 
 
+def test_all_arms_have_the_name_of_the_task_in_its_file_or_of_the_built_in_task(
+    tmp_path: Path,
+) -> None:
+    for task, name in (("meadow.toml", MEADOW["task"]), ("CartPole-survival",) * 2):
+        changes = {"brain": None, "task": task}
+        for arms in (ARMS, [{**arm, "task": task} for arm in ARMS]):
+            plan = read(write(tmp_path, **changes, arms=arms), tmp_path / "out")
+            assert [arm.config.task for arm in plan.arms] == [name] * 2
+
+
 @pytest.mark.parametrize(("seeds", "worlds"), [(1, 1), (7, 3), (12, 4), (101, 10), (5, 100)])
 def test_each_world_of_an_arm_is_in_one_job(tmp_path: Path, seeds: int, worlds: int) -> None:
     plan = read(write(tmp_path, seeds=seeds, jobs={"worlds": worlds}), tmp_path / "out")
@@ -89,6 +99,8 @@ def test_the_largest_number_of_jobs_is_allowed(
 
 
 def test_a_plan_is_read_as_it_was_written(tmp_path: Path) -> None:
+    """An empty folder may become that of an experiment."""
+    (tmp_path / "out").mkdir()
     plan = begin(write(tmp_path), tmp_path / "out").plan
     assert plans.recorded(tmp_path / "out") == plan
     assert begin(tmp_path / "out").plan == plan
@@ -99,6 +111,8 @@ def test_words_of_a_question_may_change_and_settings_may_not(tmp_path: Path) -> 
     begin(write(tmp_path), out)
     begin(write(tmp_path, question="Another one?", jobs=None), out)
     begin(write(tmp_path, about="a meadow, in other words"), out)
+    kept = plans.recorded(out)
+    assert (kept.question, kept.arms[0].settings["about"]) == ("Is it mild?", ""), "the first ones"
     other: list[dict[str, Any]] = [{"name": "mild"}, {"name": "harsh", "hazard": 0.5}]
     for changes, words in [
         ({"arms": other}, "arms.harsh.hazard is 0.05 there, and 0.5 here"),
@@ -192,7 +206,7 @@ def test_a_fork_of_runs_has_all_their_worlds_and_their_own_ancestors(
 ) -> None:
     """A run keeps its ancestors in its directory; the runs have different numbers of worlds."""
     worlds = {tmp_path / "a": (5, 2), tmp_path / "b": (7, 3)}
-    ancestors = {"ancestors": ("ancestors.safetensors",)}
+    ancestors = {"ancestors": ("a.safetensors", "b.safetensors")}
     configs = {
         path: config(MEADOW, seed=seed, seeds=seeds).model_copy(update=ancestors)
         for path, (seed, seeds) in worlds.items()
@@ -202,29 +216,63 @@ def test_a_fork_of_runs_has_all_their_worlds_and_their_own_ancestors(
     monkeypatch.setattr("primordia.experiments.file.read_config", configs.get)
     settings, runs = _of_runs(tmp_path)
     assert (settings["seed"], settings["seeds"]) == (5, 5)
-    assert settings["ancestors"] == [str(tmp_path / "a" / "ancestors.safetensors")]
+    assert settings["ancestors"] == [str(tmp_path / "a" / f"{name}.safetensors") for name in "ab"]
     assert runs == [(tmp_path / "a", 2), (tmp_path / "b", 3)]
 
 
 def test_a_fork_has_the_jobs_and_settings_of_its_source(tmp_path: Path) -> None:
-    """Also before its source has begun."""
-    write(tmp_path, "one")
+    """Before its source has begun, they are those of the file, and later those of the plan."""
+    source = write(tmp_path, "one")
     fork = {"of": "one/harsh", "at": 150}
     other = {"question": "And then?", "arms": [{"name": "same"}, {"name": "safe", "hazard": 0.0}]}
     names = ("task", "seed", "seeds", "replication", "saturation_ticks", "hazard", "brain", "jobs")
-    file = write(tmp_path, "two", fork=fork, **other, **dict.fromkeys(names))
+    longer = {**dict.fromkeys(names), "stop": {"ticks": 400}}
+    file = write(tmp_path, "two", fork=fork, **other, **longer)
     plan = read(file, tmp_path / "runs" / "two")
     assert [arm.config.hazard for arm in plan.arms] == [0.05, 0.0]
+    assert [arm.config.stop.ticks for arm in plan.arms] == [400, 400], "of the fork's file"
     assert [(job.folder, job.source) for job in plan.jobs()][::2] == [
         ("same/0-1", "../one/harsh/0-1"),
         ("same/2", "../one/harsh/2"),
     ]
+    begin(source, tmp_path / "runs" / "one")
+    arms = [{"name": "harsh"}, {"name": "harsher", "hazard": 0.5}]
+    write(tmp_path, "one", hazard=0.25, jobs={"worlds": 1}, arms=arms)
+    assert read(file, tmp_path / "runs" / "two") == plan
+    changed = read(file, tmp_path / "elsewhere" / "two")
+    assert changed.arms[0].config.hazard == 0.25
+    assert [job.source for job in changed.jobs()][::2] == [f"../one/harsh/{n}" for n in range(3)]
     for name, value in {"task": "meadow.toml", "seeds": 3, "cells": 16}.items():
         arm = {"arms": [{"name": "same"}, {"name": "safe", name: value}]}
         for place in ({**other, name: value}, arm):
             file = write(tmp_path, "two", fork=fork, **{**dict.fromkeys(names), **place})
             with pytest.raises(InputError, match="takes task, seeds and cells from one/harsh"):
                 read(file, tmp_path / "runs" / "two")
+
+
+@pytest.mark.parametrize(
+    ("first", "then", "says"),
+    [
+        ("fork", "later", "fork.at is 150 there, and 160 here"),
+        ("fork", "none", "fork.at is 150 there, and missing here"),
+        ("none", "fork", "fork.at is missing there, and 150 here"),
+    ],
+)
+def test_a_fork_may_not_change_or_come_or_go(
+    first: str, then: str, says: str, tmp_path: Path
+) -> None:
+    """All settings and the numbers of worlds are equal with and without the fork."""
+    write(tmp_path, "one")
+    own = dict.fromkeys(("task", "seeds"))
+    kinds: dict[str, dict[str, Any]] = {
+        "fork": {"fork": {"of": "one/mild", "at": 150}, **own},
+        "later": {"fork": {"of": "one/mild", "at": 160}, **own},
+        "none": {},
+    }
+    out = tmp_path / "runs" / "two"
+    begin(write(tmp_path, "two", **kinds[first]), out)
+    with pytest.raises(InputError, match=f"holds another experiment: {says}"):
+        begin(write(tmp_path, "two", **kinds[then]), out)
 
 
 @pytest.mark.parametrize("names", [["one"], ["one", "two"], ["one", "two", "three"]])

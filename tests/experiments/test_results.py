@@ -139,6 +139,14 @@ def test_the_csv_has_a_row_for_each_world_and_an_empty_cell_for_the_unknown() ->
         ["one", "4", "9", "", "80"],
         ["two", "5", "0", "0.33", "12345678"],
     ]
+    ends = [
+        [{"late_deaths": 0.0, "late_lifespan": nan}, {"late_deaths": 2.0, "late_lifespan": 0.5}],
+        [{"late_deaths": nan, "late_lifespan": 3.0}],
+    ]
+    text = results.world_rows(side_by_side(one, two), counted, ends)
+    assert [row[-2:] for row in csv.reader(text.splitlines())] == [
+        ["late_deaths", "late_lifespan"], ["0.0", ""], ["2.0", "0.5"], ["", "3.0"]
+    ]  # fmt: skip
 
 
 @pytest.mark.parametrize("saturate", [True, False])
@@ -184,13 +192,13 @@ def test_the_parts_of_the_page_are_in_order_and_have_each_arm(
 
 
 def begun(folder: Path, name: str, day: int, version: str, **limits: int | None) -> Any:
-    """Return what `made` reads of an arm of two runs; the second run began a day later."""
+    """Return what `made` reads of an arm of two runs; the second run began a day earlier."""
     paths = []
     for number in range(2):
         file = folder / f"{name}-{number}" / VERSIONS
         file.parent.mkdir()
         file.touch()
-        os.utime(file, (NOON + (day + number) * DAY,) * 2)
+        os.utime(file, (NOON + (day - number) * DAY,) * 2)
         paths.append(file.parent)
     progress = SimpleNamespace(limits=list(limits.items()))
     return SimpleNamespace(paths=paths, versions={"jax": version}, progress=progress)
@@ -201,7 +209,7 @@ def test_the_last_line_gives_what_all_arms_share_once(tmp_path: Path) -> None:
         begun(tmp_path, "a", 3, "1", ticks=500, births=None, until=40),
         begun(tmp_path, "b", 1, "1", ticks=500, births=None, until=40),
     ]
-    line = "Run on 2023-11-16 with jax 1. Each world stopped at: ticks 500 or until 40."
+    line = "Run on 2023-11-15 with jax 1. Each world stopped at: ticks 500 or until 40."
     assert results.made("ab", arms) == line
 
 
@@ -212,6 +220,6 @@ def test_the_last_line_names_the_arms_where_they_differ(tmp_path: Path) -> None:
         begun(tmp_path, "c", 0, "1", ticks=500),
     ]
     assert results.made("abc", arms) == (
-        "Run on 2023-11-15 with jax 1 (a, c); jax 1, 2 (b)."
+        "Run on 2023-11-14 with jax 1 (a, c); jax 1, 2 (b)."
         " Each world stopped at: ticks 500 (a, c); ticks 900 (b)."
     )

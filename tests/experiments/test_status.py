@@ -73,11 +73,14 @@ def test_each_arm_has_the_worlds_of_its_own_jobs() -> None:
 ARM = {"name": "a", "settings": {"seeds": 2}}
 DAMAGED: dict[str, list[dict[str, Any]]] = {
     "two arms have one name": [ARM, ARM],
+    "two arms have one": [ARM, {**ARM, "name": "b"}, {**ARM, "name": "A"}],
     "a name that no arm can have": [{**ARM, "name": "jobs"}],
+    "has a name that no arm can have": [ARM, {**ARM, "name": "Results.csv"}],
     "seeds of arm a must be a whole number": [{**ARM, "settings": {}}],
     "from 1 to 65536": [{**ARM, "settings": {"seeds": 2**16 + 1}}],
     "must be a whole number from 1 to": [{**ARM, "settings": {"seeds": 0}}],
     "a whole number from 1": [{**ARM, "settings": {"seeds": "two"}}],
+    "seeds of arm b must be a whole number": [ARM, {"name": "b", "settings": {"seeds": True}}],
     "more than 100,000 jobs": [{"name": name, "settings": {"seeds": 2**16}} for name in ("a", "b")],
 }
 
@@ -94,9 +97,13 @@ def test_a_fork_has_a_job_for_each_run_and_all_their_worlds(tmp_path: Path) -> N
     file = tmp_path / "experiment.toml"
     file.write_text(tomli_w.dumps(forked(60_000, *[10_000] * 6)))
     assert len(recorded(tmp_path).jobs()) == 12
-    file.write_text(tomli_w.dumps(forked(7, 3, 5)))
-    with pytest.raises(InputError, match="arm a has 7 worlds, and the runs that it forks have 8"):
-        recorded(tmp_path)
+    for arm, seeds in (("a", 7), ("a", 9), ("b", 9)):
+        plan = forked(8 if arm == "b" else seeds, 3, 5)
+        plan["arms"][-1]["settings"] = {"seeds": seeds}
+        file.write_text(tomli_w.dumps(plan))
+        says = f"arm {arm} has {seeds} worlds, and the runs that it forks have 8"
+        with pytest.raises(InputError, match=says):
+            recorded(tmp_path)
 
 
 def test_an_arm_may_have_65536_worlds(tmp_path: Path) -> None:

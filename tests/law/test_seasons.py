@@ -300,12 +300,14 @@ def test_values_of_seasons_are_accepted_up_to_their_bounds(
         ("mutation.founder_scale", ""),
         ("mutation.blocks.hidden.scale", "mutation.blocks.input.scale"),
         ("metabolism.gian", "metabolism.gain"),
+        ("mutation.scael", "'mutation.scale'"),
     ],
 )
 def test_a_season_of_what_seasons_cannot_change_is_refused(setting: str, nearest: str) -> None:
-    season = ratchet(setting, "mean_age", 1.0, 0.5, 10)
+    """Also if it is not the first season."""
+    good, season = (ratchet(name, "mean_age", 1.0, 0.5, 10) for name in ("hazard", setting))
     with pytest.raises(InputError, match="not a setting that seasons can change") as error:
-        config(MILL, seasons=[season])
+        config(MILL, seasons=[good, season])
     assert nearest in str(error.value)
 
 

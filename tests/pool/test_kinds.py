@@ -139,9 +139,11 @@ def admitted(tmp_path: Path) -> Iterator[str]:
     del own_code._admitted.sources["own_simulator"]
 
 
-def test_a_run_in_this_process_loads_its_own_copy_of_a_users_simulator(admitted: str) -> None:
-    pool = open_pool(f"{admitted}:Own", {}, {"mark": ("int64", ())}, 2, 0)
-    assert pool.arrays["mark"].tolist() == [6, 6]
+@pytest.mark.parametrize("workers", [0, 1])
+def test_a_run_loads_its_own_copy_of_a_users_simulator(workers: int, admitted: str) -> None:
+    fields = {"mark": ("int64", ())}
+    with closing(open_pool(f"{admitted}:Own", {}, fields, 2, workers, [admitted])) as pool:
+        assert pool.arrays["mark"].tolist() == [6, 6]
 
 
 @pytest.mark.parametrize(

@@ -7,8 +7,10 @@ import sys
 import textwrap
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -82,6 +84,17 @@ def test_a_worker_that_hangs_is_noticed_after_a_time_limit(monkeypatch: pytest.M
         pool.arrays["add"][3] = -3
         with pytest.raises(Trouble, match="has not answered for"):
             pool.step(ALL)
+
+
+@pytest.mark.parametrize("answer", [b"...", b"x..", b"..x", b".x."])
+def test_each_of_several_answers_must_be_that_of_the_protocol(
+    answer: bytes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    worker: Any = SimpleNamespace(pid=7)
+    monkeypatch.setattr(pools, "_receive", lambda *_: answer)
+    says = "worker process 7 gave an answer that is not part of the protocol"
+    with nullcontext() if answer == b"..." else pytest.raises(Trouble, match=says):
+        pools._await_ready(worker, 3)
 
 
 def test_states_are_restored_without_a_time_limit(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -14,6 +14,7 @@ from primordia.settings import doors, parts
         ("gymnax:Catch-bsuite", "gymnax:Catch-bsuite", True),
         ("CartPole-v1", "gym:CartPole-v1", False),
         ("my.ponds:Pond-v0", "gym:my.ponds:Pond-v0", False),
+        ("gymnastics:Pole-v0", "gym:gymnastics:Pole-v0", False),
         ("gym", "gym:gym", False),
         ("gym:", "gym:", True),
     ],

@@ -57,11 +57,12 @@ def message_of(
             "size: input should be greater than or equal to 1, not 0 (and 1 more)",
         ),
         ({"size": 1, "slope": 0.25}, "slope: is too steep"),
+        ({"size": 1, "slope": 0.25, "siez": 1}, "slope: is too steep (and 1 more)"),
         ({"size": 1, "siez": 1}, "there is no setting 'siez'; did you mean 'size'?"),
         ({"size": 1, "depht": 1}, "there is no setting 'depht'; did you mean 'inner.depth'?"),
         ({"size": 1, "qqqq": 1, "zzzz": 2}, "there is no setting 'qqqq' (and 1 more)"),
     ],
-    ids=range(10),
+    ids=range(11),
 )
 def test_a_message_has_the_first_fault_and_the_number_of_the_others(
     values: dict[str, Any], says: str
@@ -107,7 +108,7 @@ def test_fields_have_dotted_names_and_some_are_rates() -> None:
     ]
     assert setting_fields(int) == {}
     assert rates_of(Pool(size=1, slope=0.125), "a.") == {"a.slope": 0.125}
-    assert rates_of(Inner(depth=9.0)) == {"depth": 9.0}
+    assert rates_of(Inner(depth=0.0)) == {"depth": 0.0}
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,7 @@
 
 import tomllib
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import pytest
 import tomli_w
@@ -10,7 +10,8 @@ import tomli_w
 from primordia.brains.contract import KNOWN, find
 from primordia.config import load, parsed, validated
 from primordia.errors import InputError
-from primordia.settings.tables import merged
+from primordia.settings.making import make
+from primordia.settings.tables import PARTS, merged
 from tests.commands import complains, here
 from tests.worlds import MEADOW, MILL, config
 
@@ -23,6 +24,38 @@ def test_a_brain_has_its_own_settings_with_defaults_filled_in() -> None:
     other = config(MEADOW, brain={"kind": "tests.toys:Sliding", "width": 1})
     assert other.brain == {"kind": "tests.toys:Sliding", "width": 1, "channels": 3}
     assert tomllib.loads(other.to_toml())["brain"] == other.brain
+
+
+@pytest.mark.parametrize("error", [LookupError("no"), TypeError("no"), ValueError("no")])
+def test_an_error_of_a_part_is_one_line_with_the_name_of_its_table(error: Exception) -> None:
+    """If there is no such part, the line has the name of the setting, too."""
+
+    def fail(*_: Any, **own: Any) -> Any:
+        assert own in ({}, {"depth": 0})
+        raise error
+
+    table, part = {"name": "pond", "depth": 0}, cast("Any", fail)
+    with pytest.raises(InputError, match=r"^habitat: no$"):
+        make("habitat", table, lambda _: part)
+    if isinstance(error, LookupError):
+        with pytest.raises(InputError, match=r"^habitat\.name: no$"):
+            make("habitat", table, part)
+    assert table == {"name": "pond", "depth": 0}
+
+
+@pytest.mark.parametrize(
+    ("what", "kind"), [("habitat", ""), ("brain", "recurrent"), ("mutation", "gaussian")]
+)
+def test_a_table_without_a_name_describes_the_default_part(what: str, kind: str) -> None:
+    asked: list[object] = []
+
+    def find_part(name: object) -> Any:
+        asked.append(name)
+        return dict
+
+    assert make(what, {"depth": 0}, find_part) == {"depth": 0}
+    assert make(what, {PARTS[what]: "own", "depth": 0}, find_part) == {"depth": 0}
+    assert asked == [kind, "own"]
 
 
 def test_settings_of_an_older_version_are_read() -> None:

@@ -61,6 +61,7 @@ def test_the_code_of_a_part_is_in_its_name_kind_env_food_and_imports() -> None:
     }
     assert code_of(table, "name") == ["pond.deep:Pond", "lake:Lake-v0", "hills", "a.b"]
     assert modules_of(table, "name") == ["pond.deep", "lake", "hills", "a.b"]
+    assert code_of({"imports": ("hills", "mud")}, "name") == ["hills", "mud"], "as in Python"
     assert code_of({"kind": "weeds:", "food": "soup:eat"}, "kind") == ["weeds:", "soup:eat"]
     assert code_of({"name": "no-name:Pond", "imports": "hills"}, "name") == []
     assert code_of({"name": "cartpole"}, "name") == []
@@ -85,7 +86,7 @@ def test_paths_in_a_file_begin_at_its_folder(tmp_path: Path) -> None:
     (folder / "course.png").write_bytes(b"")
     values = {
         "ancestors": ["a.safetensors", "/b.safetensors"],
-        "habitat": {"file": "course.png", "other": "course.png", "inner": {"file": "course.png"},
+        "habitat": {"file": "course.png", "profile": "course.png", "inner": {"file": "course.png"},
                     "env": {"file": "missing.png"}},
         "brain": {"file": "course.png"},
     }  # fmt: skip
@@ -94,7 +95,7 @@ def test_paths_in_a_file_begin_at_its_folder(tmp_path: Path) -> None:
     assert found["ancestors"] == [str(folder / "a.safetensors"), "/b.safetensors"]
     assert found["habitat"] == {
         "file": full,
-        "other": "course.png",
+        "profile": "course.png",
         "inner": {"file": full},
         "env": {"file": "missing.png"},
     }
@@ -120,6 +121,11 @@ def test_paths_in_changed_settings_begin_at_the_current_folder(
 def test_a_file_of_any_name_is_a_task_and_the_tasks_are_in_order(tmp_path: Path) -> None:
     (file := tmp_path / "task").write_text("task = 'own'\nhabitat = {name = 'cartpole'}\n")
     assert values_of(str(file)) == {"task": "own", "habitat": {"name": "cartpole"}}
+    file.write_text("task = 'CartPole-survivl'\nhabitat = {name = 'cartpole'}\n")
+    assert values_of(str(file))["task"] == "CartPole-survivl", "a complete task may have any name"
+    file.write_text("task = 'CartPole-survivl'\n")
+    with pytest.raises(InputError, match=f"^{file}: there is no task 'CartPole-survivl'; did you"):
+        values_of(str(file))
     names = [*tasks()]
     assert names == sorted(names)
     for near, says in (

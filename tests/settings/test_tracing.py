@@ -46,6 +46,26 @@ def test_the_line_of_a_fault_is_the_last_one_in_the_file_of_the_part(pond: Any) 
     assert str(error.value).endswith("base 10: 'x'"), "no line of the part is involved"
 
 
+@pytest.mark.parametrize(
+    ("error", "says"),
+    [
+        (ValueError("first\nsecond"), "ValueError: first"),
+        (ValueError(), "ValueError"),
+        (SystemExit(3), "SystemExit: 3"),
+    ],
+    ids=["lines", "none", "exit"],
+)
+def test_a_fault_has_the_first_line_of_a_message(
+    error: BaseException, says: str, pond: Any
+) -> None:
+    def fail() -> None:
+        raise error
+
+    with pytest.raises(InputError) as raised:
+        Tracing("brain", pond).called("think", fail)
+    assert str(raised.value) == f"brain: Pond fails in think: {says}"
+
+
 def test_an_error_for_the_user_is_passed_on_and_results_are_returned(pond: Any) -> None:
     def refuse() -> None:
         raise InputError("said already")

@@ -1,5 +1,6 @@
 """The reader of metrics: the identity of each world, and each row once."""
 
+import os
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -9,6 +10,7 @@ import pyarrow as pa
 import pytest
 
 from primordia.brains.genomes import FOUNDERS
+from primordia.errors import Trouble
 from primordia.runs import checkpoint
 from primordia.tracking import reader
 from primordia.tracking.reader import Reader
@@ -35,12 +37,13 @@ class Opened:
 
 @pytest.fixture
 def runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Path]:
-    """Return runs. Each of the others differs from the first one in one setting, or in none."""
+    """Return runs. Most differ from the first one in one setting, or in none."""
     several = {
         "run": {"seed": 3, "seeds": 2, "stop": {"ticks": 100}},
         "again": {"seed": 3, "seeds": 2, "stop": {"ticks": 100}},
         "alone": {"seed": 4, "seeds": 1, "stop": {"ticks": 100}},
         "longer": {"seed": 3, "seeds": 2, "stop": {"ticks": 200}},
+        "zero": {"seed": 0, "stop": {"ticks": 100}},
         "harsh": {"seed": 3, "seeds": 2, "stop": {"ticks": 100}, "hazard": 0.1},
     }
     folders = {name: tmp_path / name for name in several}
@@ -75,6 +78,23 @@ def test_the_identity_of_a_world_depends_on_its_settings_and_founders_but_not_on
     assert len({*known.values()}.union(*(each.values() for each in others))) == 12
 
 
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"cells": 9}, {"replication": 0.5}, {"genesis": "fill"}, {"sample_every": 20},
+        {"saturation_ticks": 9}, {"inheritance": "founder"}, {"placement": {"rule": "replacing"}},
+    ],
+    ids=lambda change: next(iter(change)),
+)  # fmt: skip
+def test_any_setting_but_limits_gives_worlds_another_identity(
+    change: dict[str, Any], runs: dict[str, Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    settings, last = RECORDS[runs["again"]]
+    monkeypatch.setitem(RECORDS, runs["again"], ({**settings, **change}, last))
+    one, other = identities(runs["run"]), identities(runs["again"])
+    assert not {*one.values()} & {*other.values()}
+
+
 def test_each_row_of_each_world_and_arm_is_read_once(
     runs: dict[str, Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -98,3 +118,43 @@ def test_each_row_of_each_world_and_arm_is_read_once(
     assert [*later] == ["two/seed-3", "two/seed-4"]
     assert [row["tick"] for rows in later.values() for row in rows] == [50, 60] * 2
     assert not list(watched.new(arms, patient=False))
+    monkeypatch.setitem(RECORDS, runs["again"], (settings, 70))
+    os.utime(runs["again"] / checkpoint.FOLDER / "000002", (1, 1))  # written again after a crash
+    last = [row["tick"] for _, rows in watched.new(arms, patient=True) for row in rows]
+    assert last == [70, 70]
+
+
+@pytest.mark.parametrize("error", [Trouble("damaged"), FileNotFoundError("removed")])
+def test_a_run_that_cannot_be_read_now_is_read_later_and_stops_no_other(
+    error: Exception, runs: dict[str, Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Both runs of the first arm have a world of seed 4, whose rows are equal and come once."""
+    arms = {"one": [runs["run"], runs["alone"]], "two": [runs["harsh"]]}
+    broken = [runs["run"]]
+
+    def opened(path: Path) -> Opened:
+        if path in broken:
+            raise error
+        return Opened(path)
+
+    monkeypatch.setattr(reader, "Archive", opened)
+    watched = Reader("all")
+    found = [world.name for world, _ in watched.new(arms, patient=True)]
+    assert found == ["one/seed-4", "two/seed-3", "two/seed-4"]
+    with pytest.raises(type(error)):
+        list(watched.new(arms, patient=False))
+    broken.clear()
+    assert [world.name for world, _ in watched.new(arms, patient=True)] == ["one/seed-3"]
+
+
+def test_a_run_without_a_checkpoint_is_opened_only_if_nothing_can_follow(
+    runs: dict[str, Path],
+) -> None:
+    (runs["run"] / checkpoint.FOLDER / "000001").rmdir()
+    arms, watched = {"late": [runs["run"]], "other": [runs["zero"]]}, Reader("all")
+    for patient, names in (
+        (True, ["other/seed-0"]),
+        (True, []),
+        (False, ["late/seed-3", "late/seed-4"]),
+    ):
+        assert [world.name for world, _ in watched.new(arms, patient)] == names

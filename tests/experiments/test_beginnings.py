@@ -1,0 +1,122 @@
+"""The run of a job is begun, forked or resumed, with the settings and options of the experiment."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+from unittest.mock import MagicMock
+
+import pytest
+
+from primordia.config import Config
+from primordia.experiments import job as jobs
+from primordia.experiments.campaign import Campaign, begin
+from primordia.experiments.ledger import Ledger
+from tests.experiments.meadows import write
+
+WATCH: Any = "the listener"
+CLEAR = "primordia.experiments.job.directory.clear_unbegun"
+HELD = {"a 1", "b 2"}
+"""Marks of the code that a run holds."""
+
+
+@pytest.fixture
+def calls(monkeypatch: pytest.MonkeyPatch) -> MagicMock:
+    """Return a log of the calls that begin, fork or resume a run. Nothing lives."""
+    log = MagicMock()
+    for name in ("loop.start", "loop.resume", "fork", "Archive", "code.trust", "code.found"):
+        monkeypatch.setattr(f"primordia.experiments.job.{name}", getattr(log, name.split(".")[-1]))
+    monkeypatch.setattr(jobs, "Code", lambda files: SimpleNamespace(marks=HELD))
+    log.found.return_value.marks = HELD
+    return log
+
+
+@pytest.fixture
+def chosen(tmp_path: Path) -> Campaign:
+    return begin(write(tmp_path), tmp_path / "runs" / "meadows")
+
+
+@pytest.fixture
+def forked(chosen: Campaign, tmp_path: Path) -> Campaign:
+    fork = {"fork": {"of": "meadows/mild", "at": 150}, "task": None, "seeds": None}
+    return begin(write(tmp_path, "two", **fork), tmp_path / "runs" / "two")
+
+
+def live(campaign: Campaign, number: int) -> tuple[Path, Config]:
+    """Live a job -> its directory and its configuration."""
+    job = campaign.jobs[number]
+    jobs._live(campaign.plan, job, campaign.path, 7.0, WATCH)
+    return campaign.path / job.folder, jobs.configuration(campaign.plan, job)
+
+
+def test_a_new_run_begins_with_the_settings_of_its_arm(chosen: Campaign, calls: MagicMock) -> None:
+    run, config = live(chosen, 3)
+    assert (config.seed, config.seeds, config.hazard) == (5, 1, 0.05)
+    calls.start.assert_called_once_with(config, run, checkpoint_every=7.0, listen=WATCH)
+    assert not calls.resume.called
+
+
+@pytest.mark.parametrize("begun", [True, False])
+def test_a_fork_is_made_once_and_goes_on(
+    begun: bool, forked: Campaign, calls: MagicMock, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(CLEAR, lambda run: not begun)
+    run, config = live(forked, 1)
+    assert not calls.start.called
+    limits = config.stop.model_dump()
+    calls.resume.assert_called_once_with(run, limits, checkpoint_every=7.0, listen=WATCH)
+    assert limits["ticks"] == 300
+    if begun:
+        assert not calls.fork.called
+        return
+    source, tick, made, changes, watch = calls.fork.call_args[0]
+    assert (source, tick, made, watch) == (calls.Archive(), 150, run, WATCH)
+    assert calls.Archive.call_args_list[0][0] == (forked.path.parent / "meadows" / "mild" / "0-1",)
+    own = {"task", "about", "fork", "seeds", "ancestors"}
+    assert {*changes} == {*Config.model_fields} - own
+    assert (changes["seed"], changes["hazard"]) == (config.seed, config.hazard) == (3, 0.05)
+
+
+@pytest.mark.parametrize(
+    ("here", "trusted"),
+    [({"a 1", "b 2"}, True), ({"a 1", "b 2", "c 3"}, True), ({"a 1"}, False),
+     ({"a 1", "b 3"}, False), (set[str](), False)],
+)  # fmt: skip
+def test_only_code_that_the_user_has_here_is_trusted(
+    here: set[str], trusted: bool, chosen: Campaign, calls: MagicMock,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    """Each file that the run holds must be here, with the same content."""
+    monkeypatch.setattr(CLEAR, lambda run: False)
+    calls.found.return_value.marks = here
+    run, config = live(chosen, 0)
+    assert calls.trust.called == trusted
+    calls.resume.assert_called_once_with(
+        run, config.stop.model_dump(), checkpoint_every=7.0, listen=WATCH
+    )
+
+
+def test_a_job_is_lived_on_the_device_that_is_given(
+    chosen: Campaign, calls: MagicMock, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    selected: list[str] = []
+
+    @contextmanager
+    def select(name: str) -> Iterator[None]:
+        selected.append(name)
+        yield
+        selected.append("none")
+
+    def lived(plan: Any, job: Any, out: Path, every: float, watch: Any) -> None:
+        assert (plan, job, out, every) == (chosen.plan, chosen.jobs[2], chosen.path, 7.0)
+        assert Ledger(out, [job]).entry(job).state == "running"
+        selected.append("lived")
+        (out / job.folder).mkdir(parents=True)
+
+    monkeypatch.setattr("primordia.experiments.job.devices.selected", select)
+    monkeypatch.setattr(jobs, "_live", lived)
+    monkeypatch.setattr(jobs, "info", lambda run: {"worlds": []})
+    jobs.live(chosen.plan, chosen.jobs[2], chosen.path, 7.0, "gpu")
+    assert selected == ["gpu", "lived", "none"]
+    assert chosen.status().jobs["done"] == 1
