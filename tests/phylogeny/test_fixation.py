@@ -54,19 +54,6 @@ def test_a_long_line_is_looked_at_in_parts(size: int) -> None:
         assert fixed[place] == expected
 
 
-@given(history=HISTORY, marks=st.sets(st.integers(0, 30), min_size=1))
-def test_the_nearest_marked_ancestor_is_that_of_a_walk(
-    history: list[Event], marks: set[int]
-) -> None:
-    lives = walked(history)
-    marked = sorted({each % len(lives) for each in marks})
-    expected = [
-        next((each for each in line_to(lives, row) if each in marked), -1)
-        for row in range(len(lives))
-    ]
-    assert nearest(lives.parent_row, np.array(marked)).tolist() == expected
-
-
 def test_the_nearest_marked_ancestor_is_found_across_parts() -> None:
     parent = np.arange(-1, 10_000)
     parent[7000] = 2

@@ -72,6 +72,19 @@ def test_a_run_until_its_fork_and_the_fork_are_the_whole_life(
     ]
 
 
+def test_worlds_with_large_numbers_keep_their_order(monkeypatch: pytest.MonkeyPatch) -> None:
+    births = np.zeros(257, int)
+    births[[0, 256]] = [((WHOLE.world == world) & (WHOLE.born <= 4)).sum() for world in (0, 1)]
+    fork = forked(4, monkeypatch)
+    monkeypatch.setattr(forks, "read_count", lambda *_: births)
+    whole = replace(WHOLE, world=WHOLE.world * 256)
+    earlier, later = whole.recorded_until(4), whole.recorded_since(4)
+    found = forks._joined(with_facts(earlier, 0.25), with_facts(later, 0.75), fork)
+    assert found is not None
+    for each in fields(Lives):
+        np.testing.assert_array_equal(getattr(found.lives, each.name), getattr(whole, each.name))
+
+
 def test_a_run_is_not_cut_at_a_tick_that_a_world_has_not_reached(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
