@@ -144,11 +144,13 @@ def test_a_run_without_any_saturated_world_is_marked_beside_one_that_saturated()
 def test_the_axis_of_saturation_begins_at_one_or_three_times_a_power_of_ten(
     values: list[int], first: float, last: float, halves: bool
 ) -> None:
-    """The axis ends a fifth after the last value. A short axis also has marks at 3, 30, ..."""
-    one, two = arm("one", 1), arm("two", 2)
-    for each, some in ((one, values), (two, [values[1]] * 3)):
+    """The axis ends a fifth after the last value of any run. A short axis also has marks at 3, 30, ..."""
+    arms = [arm(name, seed) for seed, name in enumerate(("one", "two", "three"))]
+    least, middle, most = values
+    of_arms = [middle] * 3, [least, middle, middle], [middle, middle, most]
+    for each, some in zip(arms, of_arms, strict=True):
         each.measured["births"] = Measured(np.array(some, float), np.full(3, True))
-    axes = drawn(one, two).axes[1]
+    axes = drawn(*arms).axes[1]
     assert axes.get_xlim() == pytest.approx((first, last))
     places = axes.xaxis.get_major_locator().tick_values(1, 1000)
     assert (30 in np.round(places)) == halves

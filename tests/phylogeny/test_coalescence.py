@@ -137,6 +137,13 @@ def test_an_era_begins_with_the_last_founders(history: list[Event], founders: in
     assert era.id.tolist() == list(range(first, len(lives)))
 
 
+def test_all_organisms_of_a_fork_are_of_its_era() -> None:
+    """In the first fork the founder is alive, but a dead organism has living children."""
+    for fork in (walked(GROWN).recorded_since(3), moran(7, 70, name=3).recorded_since(60)):
+        assert ((fork.parent >= 0) & (fork.parent_row < 0)).any()
+        assert last_era(fork).id.tolist() == fork.id.tolist()
+
+
 def test_the_trunk_follows_the_most_living_descendants() -> None:
     """It follows the larger of two trees. The largest branch is neither the first nor the last."""
     #                 0   1  2  3  4  5  6  7  8  9

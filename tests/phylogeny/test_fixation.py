@@ -37,6 +37,14 @@ def test_shares_of_the_living_are_those_of_a_count(
             assert tick == (above.index(True) if any(above) else UNKNOWN)
 
 
+def test_nothing_is_fixed_by_the_death_of_all() -> None:
+    """The lines of two siblings end in the same tick, so neither was ever alone."""
+    lives = lives_of([-1, 0, 0], [0, 2, 3], [5, 9, 9], [True] * 3)
+    line = np.array([0, 1])
+    found = first_ticks(Turnover.of(lives), branches(lives.parent_row, line), 2, (1, 0.5))
+    assert [each.tolist() for each in found] == [[0, UNKNOWN], [0, UNKNOWN]]
+
+
 @pytest.mark.parametrize("size", [2, 40])
 def test_a_long_line_is_looked_at_in_parts(size: int) -> None:
     """The parts are shorter than the pedigree, and there are more ancestors than fit into one."""
