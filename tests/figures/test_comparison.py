@@ -91,9 +91,10 @@ def test_where_few_worlds_saturate_a_comparison_draws_ticks_for_each_death() -> 
     assert dying.get_xlim() == food.get_xlim() == (0, UNTIL)
     assert (dying.get_yscale(), food.get_yscale()) == ("log", "linear")
     assert legend(figure) == ["one"], "saturation is not drawn, and has no mark"
-    assert rows_and_columns(figure) == (1, 3)
+    assert (rows_and_columns(figure), widths(figure)) == ((1, 3), [1, 1, 1])
     one.measured["food"] = one.measured["births"]
-    assert rows_and_columns(drawn(one)) == (1, 2)
+    two = drawn(one)
+    assert (rows_and_columns(two), widths(two)) == ((1, 2), [1, 1.6])
 
 
 def legend(figure: Figure) -> list[str]:
@@ -103,6 +104,10 @@ def legend(figure: Figure) -> list[str]:
 def rows_and_columns(figure: Figure) -> tuple[int, int]:
     grid = figure.axes[0].get_gridspec()
     return grid.nrows, grid.ncols
+
+
+def widths(figure: Figure) -> list[float]:
+    return list(figure.axes[0].get_gridspec().get_width_ratios())
 
 
 @pytest.mark.parametrize(
