@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.text import Text
+from matplotlib.text import Annotation, Text
 
 from primordia.figures import ages, population, style, survival, threshold
 from primordia.history.foraging import Foraging
@@ -95,7 +95,8 @@ def test_the_age_at_the_end_of_the_axis_has_its_numbers_at_risk(longest: int) ->
     lives = world_of([(0, longest - 1, True), (1, 4, True)] * 4, until=longest + 9)
     (alive, *_) = axes_of(survival.draw, run_of(lives), 0)
     assert alive.get_xlim() == (1, longest)
-    written = {x: [t.get_text() for t in alive.texts if t.xy[0] == x] for x in (1, longest)}
+    notes = [each for each in alive.texts if isinstance(each, Annotation)]
+    written = {x: [each.get_text() for each in notes if each.xy[0] == x] for x in (1, longest)}
     assert written == {1: ["2"] * 4, longest: ["2", "2", "0", "0"]}
 
 
