@@ -254,6 +254,35 @@ def test_the_mutation_of_a_run_has_the_present_rates_of_each_organism(subjects: 
     assert other.notes.shape == (2, 0)
 
 
+def test_children_are_made_until_enough_are_mutants(
+    subjects: Subjects, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The first mutants are kept. The last brood may complete them; otherwise the mutation is refused."""
+    monkeypatch.setattr(making, "MOST_CHILDREN", 3)
+    length = subjects.players.genomes.shape[1]
+    families: list[Any] = []
+    mutated = [[True, False, False, False], [False] * 4, [True] * 4]
+
+    def breed(family: Any, moments: Remembered | None) -> tuple[np.ndarray, np.ndarray]:
+        brood = len(families) % 3
+        families.append(family)
+        return np.repeat(10 * brood + np.arange(4.0)[:, None], length, 1), np.array(mutated[brood])
+
+    monkeypatch.setattr(making, "shared", lambda *_: breed)
+    rates, notes = {"probability": np.array([0.25, 0.5])}, np.array([[3], [5]])
+    own = own_operator(subjects)._replace(rates=rates, notes=notes)
+    made = mutants(subjects, own, 4, None)
+    assert made[..., 0].tolist() == [[0, 20, 21, 22]] * 2
+    for number, family in enumerate(families):
+        parent = number // 3
+        np.testing.assert_array_equal(family.parents, [subjects.players.genomes[parent]] * 4)
+        assert family.notes.tolist() == [[(3, 5)[parent]]] * 4
+        assert family.rates["probability"].tolist() == [(0.25, 0.5)[parent]] * 4
+    mutated[2] = [True, False, True, False]
+    with pytest.raises(InputError, match="makes no mutants"):
+        mutants(subjects, own, 4, None)
+
+
 def test_each_moment_holds_what_was_sensed_and_remembered_at_its_tick(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
