@@ -143,6 +143,7 @@ def test_a_run_without_any_saturated_world_is_marked_beside_one_that_saturated()
         ([29, 90, 999], 10, 1198.8, False),
         ([30, 90, 100], 30, 120, True),
         ([31, 90, 2600], 30, 3120, False),
+        ([4, 90, 200], 3, 240, True),
         ([0, 3, 5], 1, 6, True),
         ([0, 0, 0], 1, 1.2, True),
     ],
