@@ -131,6 +131,9 @@ def test_the_legend_explains_the_mark_of_worlds_that_stopped_unsaturated(
 def test_a_run_without_any_saturated_world_is_marked_beside_one_that_saturated() -> None:
     figure = drawn(arm("one", 1), unsaturated(arm("two", 2)))
     assert legend(figure) == ["one", "two", "stopped unsaturated"]
+    figure.draw_without_rendering()
+    words = figure.legends[0].get_texts()
+    assert len({round(each.get_window_extent().y0) for each in words}) == 1, "all are in one row"
     colour = to_hex(comparison.line_styles(2)[1]["color"])
     (_, share), (stopped, marks) = lines(figure.axes[1], colour)
     assert (set(share.tolist()), stopped.tolist(), marks.tolist()) == ({0}, [1], [0])
