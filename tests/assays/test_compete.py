@@ -17,6 +17,7 @@ from primordia.assays.subjects import Subjects, of_run
 from primordia.errors import InputError
 from primordia.law.world import BirthCause
 from primordia.runs.lives import Lives
+from primordia.settings.limits import ForkedFrom, Stop
 from tests.assays.lives import COPY, FOUNDER
 from tests.assays.lives import lives as lives_of
 from tests.commands import here
@@ -76,9 +77,11 @@ def test_children_are_exact_copies(sides: tuple[Subjects, Subjects], tmp_path: P
 
 
 def test_one_organism_competes_on_a_side(poles: primordia.Run) -> None:
-    both = of_run(poles.opened())
-    with pytest.raises(InputError, match="name one organism to compete, not 2"):
-        compete(both, both)
+    both = of_run(poles.opened())._replace(source="several")
+    one = of_run(poles.opened(), [(0, 0)])
+    for sides in ((both, one), (one, both)):
+        with pytest.raises(InputError, match="several: name one organism to compete, not 2"):
+            compete(*sides)
 
 
 def test_worlds_without_life_count_for_none() -> None:
@@ -151,20 +154,23 @@ def test_the_middle_of_an_odd_number_of_ticks_is_late() -> None:
 def test_only_what_the_competition_needs_is_changed_in_the_settings(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The genomes do not change: no mutation, no second parent, no season of the mutation."""
+    """The genomes do not change: no mutation, no second parent, no season of the mutation. A world has
+    no limit but its ticks, and no past."""
     scale = {"kind": "schedule", "setting": "mutation.scale", "at": 9, "value": 0.05}
     hazard = {"kind": "schedule", "setting": "hazard", "at": 9, "value": 0.05}
     before = config(
         seed=40, cells=24, hazard=0.01, inheritance="founder", seasons=[scale, hazard],
-        recombination={"probability": 0.5}, stop={"ticks": 5}, seeds=3,
+        recombination={"probability": 0.5}, stop={"ticks": 5, "births": 50}, seeds=3,
     )  # fmt: skip
+    before = before.model_copy(update={"fork": ForkedFrom(run="older", tick=9)})
     monkeypatch.setattr(module, "checked", lambda settings, source: settings)
     after = module._settings(before, Path("both"), 7, 900)
     assert (after.ancestors, after.genesis, after.inheritance) == (("both",), "fill", "parent")
     assert after.mutation == {"kind": "gaussian", "probability": 0.0}
     assert after.recombination is None
     assert [each.setting for each in after.seasons] == ["hazard"]
-    assert (after.seed, after.seeds, after.stop.ticks) == (40, 7, 900)
+    assert (after.seed, after.seeds, after.stop, after.fork) == (40, 7, Stop(ticks=900), None)
+    assert module._settings(before, Path("both"), 2, 900).seeds == 2
     assert (after.cells, after.hazard, after.habitat) == (24, 0.01, before.habitat)
 
 

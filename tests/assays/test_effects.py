@@ -14,7 +14,7 @@ from primordia.assays import effects as module
 from primordia.assays import mutants as making
 from primordia.assays.effects import Effect, effects, founder_deviations
 from primordia.assays.mutants import Operator, moments_of, mutants, own_operator
-from primordia.assays.subjects import Subjects, of_run
+from primordia.assays.subjects import Subjects, founders, of_run
 from primordia.errors import InputError
 from primordia.law.moments import change_in
 from primordia.law.world import Remembered
@@ -71,6 +71,9 @@ def test_the_founders_deviation_is_that_of_their_settings(subjects: Subjects) ->
     scales = dict(zip(layout.names, mutation.per_block("founder_scale", layout), strict=True))
     for name, deviation in founder_deviations(subjects).items():
         assert deviation == pytest.approx(scales[name], rel=0.1)
+    made = layout.split(founders(subjects.config, 512))
+    measured = {name: float(np.std(np.ravel(weights))) for name, weights in made.items()}
+    assert founder_deviations(subjects) == pytest.approx(measured, rel=1e-6)
 
 
 def test_calibrated_mutants_act_otherwise_in_no_more_moments(subjects: Subjects) -> None:
@@ -176,6 +179,7 @@ def test_plain_values_of_an_effect_are_shares_of_its_mutants() -> None:
         "median": 30,
         "longest": 100,
     }
+    assert replace(found, lifespan=200.0).to_dict()["longest"] == 100, "of the mutants"
 
 
 def test_effects_are_means_of_games_of_each_organisms_own_mutants(
@@ -187,24 +191,29 @@ def test_effects_are_means_of_games_of_each_organisms_own_mutants(
         asked.append((len(players.genomes), games, ticks))
         return np.add.outer(players.genomes[:, 0] * 100, np.array([0, 0, 6]))
 
+    remembered = []
+
     def made(parents: Subjects, operator: Operator, count: int, moments: Any) -> np.ndarray:
-        assert moments is None
+        remembered.append(moments)
         genomes = np.zeros((2, count, parents.players.genomes.shape[1]))
         genomes[..., 0] = [[1, 2, 3, 4], [5, 6, 7, 8]]
         return genomes
 
     monkeypatch.setattr(module, "lifespans_in_games", lived)
     monkeypatch.setattr(module, "mutants", made)
+    monkeypatch.setattr(module, "moments_of", lambda players, rule, ticks: (rule, ticks))
     players = subjects.players
     genomes = np.zeros_like(players.genomes)
     genomes[:, 0] = 10, 20
     parents = subjects._replace(players=players._replace(genomes=genomes))
-    found = effects(parents, (0.5, 0.25), count=4, games=3, ticks=99)
-    assert asked == [(2, 3, 99), *[(8, 3, 99)] * 3]
+    found = effects(parents, (0.5, 0.25), (0.1, 0.05), count=4, games=3, ticks=99)
+    assert asked == [(2, 3, 99), *[(8, 3, 99)] * 5]
+    assert remembered == [None] * 3 + [(Calibrated().moments, 99)] * 2
     names = [each.mutation for each in found]
-    assert names == ["as set"] * 2 + ["scale 0.5"] * 2 + ["scale 0.25"] * 2
+    mutations = "as set", "scale 0.5", "scale 0.25", "differs 0.1", "differs 0.05"
+    assert names == [name for name in mutations for _ in "12"]
     for each, organism, world, own, first in zip(
-        found, [*subjects.organism] * 3, (0, 1) * 3, (1002, 2002) * 3, (1, 5) * 3, strict=True
+        found, [*subjects.organism] * 5, (0, 1) * 5, (1002, 2002) * 5, (1, 5) * 5, strict=True
     ):
         assert (each.organism, each.world, each.lifespan) == (organism, world, own)
         assert each.mutants.tolist() == [100 * (first + k) + 2 for k in range(4)]
@@ -219,7 +228,7 @@ def test_mutations_are_scaled_by_the_founders_deviation_of_each_block(subjects: 
     assert (noise.name, noise.mutation.probability) == ("scale 0.25", 1)
     scales = noise.mutation.per_block("scale", layout)
     assert list(scales) == pytest.approx([each / 4 for each in deviations.values()])
-    (measured,) = module._calibrated(subjects, (0.05,))
+    _, measured = module._calibrated(subjects, (0.1, 0.05))
     assert isinstance(measured.mutation, Calibrated)
     mutation = measured.mutation
     assert (measured.name, mutation.probability, mutation.differs) == ("differs 0.05", 1, 0.05)
@@ -243,6 +252,35 @@ def test_the_mutation_of_a_run_has_the_present_rates_of_each_organism(subjects: 
     chances = [values.tolist() for name, values in other.rates.items() if "probability" in name]
     assert chances == [[0.125, 0.125]] * len(chances) != []
     assert other.notes.shape == (2, 0)
+
+
+def test_children_are_made_until_enough_are_mutants(
+    subjects: Subjects, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The first mutants are kept. The last brood may complete them; otherwise the mutation is refused."""
+    monkeypatch.setattr(making, "MOST_CHILDREN", 3)
+    length = subjects.players.genomes.shape[1]
+    families: list[Any] = []
+    mutated = [[True, False, False, False], [False] * 4, [True] * 4]
+
+    def breed(family: Any, moments: Remembered | None) -> tuple[np.ndarray, np.ndarray]:
+        brood = len(families) % 3
+        families.append(family)
+        return np.repeat(10 * brood + np.arange(4.0)[:, None], length, 1), np.array(mutated[brood])
+
+    monkeypatch.setattr(making, "shared", lambda *_: breed)
+    rates, notes = {"probability": np.array([0.25, 0.5])}, np.array([[3], [5]])
+    own = own_operator(subjects)._replace(rates=rates, notes=notes)
+    made = mutants(subjects, own, 4, None)
+    assert made[..., 0].tolist() == [[0, 20, 21, 22]] * 2
+    for number, family in enumerate(families):
+        parent = number // 3
+        np.testing.assert_array_equal(family.parents, [subjects.players.genomes[parent]] * 4)
+        assert family.notes.tolist() == [[(3, 5)[parent]]] * 4
+        assert family.rates["probability"].tolist() == [(0.25, 0.5)[parent]] * 4
+    mutated[2] = [True, False, True, False]
+    with pytest.raises(InputError, match="makes no mutants"):
+        mutants(subjects, own, 4, None)
 
 
 def test_each_moment_holds_what_was_sensed_and_remembered_at_its_tick(

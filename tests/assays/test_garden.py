@@ -8,6 +8,7 @@ from primordia.assays import garden as module
 from primordia.assays.garden import Bed, _oldest, _spaced, garden
 from primordia.errors import InputError
 from primordia.organism.games import Players
+from primordia.runs.lives import Lives
 
 
 def test_each_world_has_a_bed_of_each_group(poles: primordia.Run) -> None:
@@ -83,6 +84,8 @@ def test_a_bed_keeps_the_ratio_of_its_means() -> None:
         "reborn": [8, 10],
         "kept": 0.75,
     }
+    half = Bed("oldest", 1, np.array([4, 9]), np.array([0, 20]), np.array([8.0, 10.0]))
+    assert half.kept == 0.9, "one of both lived for no tick"
     unlived = Bed("oldest", 0, np.arange(2), np.zeros(2, int), np.ones(2))
     assert (unlived.kept, unlived.to_dict()["recorded"]) == (None, [0, 0])
 
@@ -108,3 +111,18 @@ def test_births_after_the_given_share_are_late(
         np.testing.assert_array_equal(bed.reborn, 10 * number + 1.5)
     for bed in found[4:]:
         assert bed.organism.tolist() == list(range(7))
+
+
+def test_a_world_without_late_births_has_no_bed(
+    poles: primordia.Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In a fork, all organisms of a world may have been born before the fork."""
+    late = Lives.late
+    monkeypatch.setattr(Lives, "late", lambda lives, after: late(lives, after) & (lives.world == 1))
+    monkeypatch.setattr(
+        module, "lifespans_in_games", lambda players, *_: np.ones((len(players.genomes), 1))
+    )
+    found = garden(poles.opened(), each=2)
+    assert [(bed.group, bed.world, len(bed.organism)) for bed in found] == [
+        ("oldest", 1, 2), ("late-born", 1, 2), ("founders", 1, 2)
+    ]  # fmt: skip

@@ -1,5 +1,6 @@
 """The genomes of a line of descent, born again."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -75,7 +76,8 @@ def test_a_long_line_is_sampled_from_end_to_end(poles: primordia.Run, champion: 
 def test_each_genome_plays_the_games_of_the_last_organism(
     poles: primordia.Run, champion: Organism, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Each step has its own generation, tick of birth and life, which is the mean of its games."""
+    """Each step has its own generation, tick of birth and life, which is the mean of its games. The
+    recorded life is whole also where its beginning is not on record."""
     asked: list[tuple[Players, int, int]] = []
 
     def lived(players: Players, games: int, ticks: int) -> np.ndarray:
@@ -83,10 +85,15 @@ def test_each_genome_plays_the_games_of_the_last_organism(
         return np.add.outer(10 * np.arange(len(players.genomes)), np.arange(games))
 
     monkeypatch.setattr(module, "lifespans_in_games", lived)
-    found = line(poles.opened(), champion.id, 1, games=4, ticks=88)
+    run = poles.opened()
+    seen = np.minimum(run.lives.born + 2, run.lives.ended)
+    monkeypatch.setitem(vars(run), "lives", replace(run.lives, seen=seen))
+    found = line(run, champion.id, 1, games=4, ticks=88, habitat={"angle_limit": 5.0})
     ((players, games, ticks),) = asked
     assert (games, ticks) == (4, 88)
     own = of_run(poles.opened(), [(champion.id, 1)]).players
+    heavy = of_run(poles.opened(), [(champion.id, 1)], {"angle_limit": 5.0}).players
+    assert players.habitat == heavy.habitat != own.habitat
     assert (to_host(players.keys) == to_host(own.keys)).all()
     generation = {each: n for n, each in enumerate(champion.descent())}
     assert (found.organism, found.world, found.steps[-1].reborn) == (
@@ -98,6 +105,9 @@ def test_each_genome_plays_the_games_of_the_last_organism(
         assert (step.recorded, step.birth_cause) == (organism.age, organism.birth_cause)
         assert step.reborn == 10 * k + 1.5
         np.testing.assert_array_equal(genome, organism.genome())
+    monkeypatch.setattr(Players, "deterministic", True)
+    line(run, champion.id, 1, games=4, ticks=88)
+    assert [games for _, games, _ in asked] == [4, 1], "a game without chance is played once"
 
 
 def test_copies_of_one_parent_have_no_new_genome() -> None:

@@ -119,6 +119,8 @@ def test_founders_of_a_task_are_those_that_they_always_were() -> None:
     first = [[0.00957343, -0.0262672, -0.00436687], [-0.01828807, -0.01208586, -0.01472166]]
     made = founders(load("CartPole-survival"), 5)
     np.testing.assert_allclose(made[:2, :3], first, rtol=1e-6)
+    other = founders(load("CartPole-survival", {"seed": 5}), 5)
+    assert (other != made).any(axis=1).all(), "the seed is the task's"
 
 
 def test_organisms_of_a_run_keep_their_order_worlds_and_present_climate(
@@ -187,9 +189,25 @@ def test_a_named_founder_plays_the_games_of_its_own_number() -> None:
     assert some.players.habitat == some.config.build_habitat() != alone.players.habitat
 
 
+def test_a_task_of_your_own_gives_its_seed_to_the_games(
+    poles: primordia.Run, tmp_path: Path
+) -> None:
+    """A task that is named counts, and not the task that the file names."""
+    mine, file = tmp_path / "mine.toml", tmp_path / "two.safetensors"
+    mine.write_text('task = "CartPole-survival"\nseed = 5\ncells = 12')
+    poles.export(file, 0, 5)
+    for own, usual in (
+        (of_file(file, task=str(mine)), of_file(file)),
+        (of_task(str(mine), (0, 1)), of_task("CartPole-survival", (0, 1))),
+    ):
+        assert (own.config.cells, own.config.seed) == (12, 5)
+        assert (to_host(own.players.keys) != to_host(usual.players.keys)).all()
+    assert of_task(str(mine), (0,)).organism.tolist() == [0]
+
+
 @pytest.mark.parametrize(("same", "games"), [(True, 1), (False, 6)])
 def test_a_game_that_is_always_the_same_is_played_once(same: bool, games: int) -> None:
     players: Any = SimpleNamespace(deterministic=same)
     empty: Any = None
     found = subjects.Subjects("", empty, players, empty, empty, empty, empty)
-    assert found.games(6) == games
+    assert (found.games(6), found.games(2)) == (games, min(games, 2))

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import AxLine
 
 from primordia.assays.ablate import Ablation
@@ -15,6 +16,7 @@ from primordia.assays.heredity import Inherited, Pairs
 from primordia.assays.line import Line, Step
 from primordia.figures import style
 from primordia.figures.assays import ablate, compete, effects, garden, heredity, line, threshold
+from primordia.figures.assays.strips import strips
 from primordia.history.threshold import Threshold
 from tests.figures.reading import axes_of, edges_at, key, labels, lines, points, ticks
 
@@ -65,17 +67,17 @@ def test_ablations_are_drawn_in_order_with_the_median_of_the_organisms() -> None
 def test_the_share_of_one_genome_is_drawn_in_each_world() -> None:
     tick = np.array([0, 30, 60, 90])
     share = np.array([[0.5, 0.6, 0.9, np.nan], [0.5, 0.4, 0.8, 1.0], [0.5, 0.1, 0.0, 0.2]])
-    pairs = Competition("a", "b", tick, share), Competition("c", "d", tick, share[:1])
+    pairs = Competition("a", "b", tick, share), Competition("c", "d", 2 * tick, share[:1])
     several, single = axes_of(compete.draw, [*pairs])
     *worlds, (x, median) = lines(several, style.BLUE)
     np.testing.assert_array_equal([y for _, y in worlds], share)
     assert (x.tolist(), median.tolist()) == (tick.tolist(), [0.5, 0.4, 0.8, pytest.approx(0.6)])
-    assert points(single, style.BLUE)[:3] == [(0, 0.5), (30, 0.6), (60, 0.9)]
+    assert points(single, style.BLUE)[:3] == [(0, 0.5), (60, 0.6), (120, 0.9)]
     assert key(several) == {"median and quartiles of 3 worlds": style.BLUE}
     assert key(single) == {}
-    for axes, name in ((several, "a"), (single, "c")):
+    for axes, name, last in ((several, "a", 90), (single, "c", 180)):
         assert labels(axes) == (f"Descendants of {name}", "time (ticks)", "share of the living")
-        assert axes.get_xlim() == (0, 90)
+        assert axes.get_xlim() == (0, last)
         assert levels(axes) == [0.5]
 
 
@@ -143,6 +145,12 @@ def test_the_garden_is_drawn_as_pairs_of_lives_and_as_survival_of_each_group() -
     assert labels(again)[1:] == ("life when born again (ticks)", "share that live at least as long")
     assert key(again) == colours
     assert key(pairs) == {name: colours[name] for name in ("oldest", "late-born")}
+
+
+def test_a_strip_without_known_values_is_left_out_and_zeros_are_known() -> None:
+    axes = Figure().subplots()
+    strips(axes, {"none": [None, np.nan], "zero": [0.0, None, 0.0], "one": [0.5]})
+    check_strips(axes, {"none": [], "zero": [0.0, 0.0], "one": [0.5]})
 
 
 def test_heredity_is_drawn_as_strips_of_the_worlds() -> None:

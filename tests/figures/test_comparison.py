@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
@@ -91,9 +92,10 @@ def test_where_few_worlds_saturate_a_comparison_draws_ticks_for_each_death() -> 
     assert dying.get_xlim() == food.get_xlim() == (0, UNTIL)
     assert (dying.get_yscale(), food.get_yscale()) == ("log", "linear")
     assert legend(figure) == ["one"], "saturation is not drawn, and has no mark"
-    assert rows_and_columns(figure) == (1, 3)
+    assert (rows_and_columns(figure), widths(figure)) == ((1, 3), [1, 1, 1])
     one.measured["food"] = one.measured["births"]
-    assert rows_and_columns(drawn(one)) == (1, 2)
+    two = drawn(one)
+    assert (rows_and_columns(two), widths(two)) == ((1, 2), [1, 1.6])
 
 
 def legend(figure: Figure) -> list[str]:
@@ -103,6 +105,10 @@ def legend(figure: Figure) -> list[str]:
 def rows_and_columns(figure: Figure) -> tuple[int, int]:
     grid = figure.axes[0].get_gridspec()
     return grid.nrows, grid.ncols
+
+
+def widths(figure: Figure) -> list[float]:
+    return list(figure.axes[0].get_gridspec().get_width_ratios())
 
 
 @pytest.mark.parametrize(
@@ -125,6 +131,9 @@ def test_the_legend_explains_the_mark_of_worlds_that_stopped_unsaturated(
 def test_a_run_without_any_saturated_world_is_marked_beside_one_that_saturated() -> None:
     figure = drawn(arm("one", 1), unsaturated(arm("two", 2)))
     assert legend(figure) == ["one", "two", "stopped unsaturated"]
+    figure.draw_without_rendering()
+    words = figure.legends[0].get_texts()
+    assert len({round(each.get_window_extent().y0) for each in words}) == 1, "all are in one row"
     colour = to_hex(comparison.line_styles(2)[1]["color"])
     (_, share), (stopped, marks) = lines(figure.axes[1], colour)
     assert (set(share.tolist()), stopped.tolist(), marks.tolist()) == ({0}, [1], [0])
@@ -137,6 +146,7 @@ def test_a_run_without_any_saturated_world_is_marked_beside_one_that_saturated()
         ([29, 90, 999], 10, 1198.8, False),
         ([30, 90, 100], 30, 120, True),
         ([31, 90, 2600], 30, 3120, False),
+        ([4, 90, 200], 3, 240, True),
         ([0, 3, 5], 1, 6, True),
         ([0, 0, 0], 1, 1.2, True),
     ],
@@ -144,11 +154,13 @@ def test_a_run_without_any_saturated_world_is_marked_beside_one_that_saturated()
 def test_the_axis_of_saturation_begins_at_one_or_three_times_a_power_of_ten(
     values: list[int], first: float, last: float, halves: bool
 ) -> None:
-    """The axis ends a fifth after the last value. A short axis also has marks at 3, 30, ..."""
-    one, two = arm("one", 1), arm("two", 2)
-    for each, some in ((one, values), (two, [values[1]] * 3)):
+    """The axis ends a fifth after the last value of any run. A short axis also has marks at 3, 30, ..."""
+    arms = [arm(name, seed) for seed, name in enumerate(("one", "two", "three"))]
+    least, middle, most = values
+    of_arms = [middle] * 3, [least, middle, middle], [middle, middle, most]
+    for each, some in zip(arms, of_arms, strict=True):
         each.measured["births"] = Measured(np.array(some, float), np.full(3, True))
-    axes = drawn(one, two).axes[1]
+    axes = drawn(*arms).axes[1]
     assert axes.get_xlim() == pytest.approx((first, last))
     places = axes.xaxis.get_major_locator().tick_values(1, 1000)
     assert (30 in np.round(places)) == halves
@@ -194,6 +206,10 @@ def test_few_runs_go_from_dark_to_light_and_many_have_distinct_colours() -> None
         assert (reference["color"], len(others)) == (style.INK, arms - 1)
         shades = [light(look) for look in others]
         assert shades == sorted(shades)
+        ends = [to_hex(colormaps["plasma"](share)) for share in (0.25, 0.88)][: len(others)]
+        assert [others[k]["color"] for k in (0, -1)[: len(others)]] == ends, (
+            "as far apart as can be"
+        )
         assert all("linestyle" not in look for look in others)
     colours = [style.INK, *style.PALETTE, style.SOFT]
     looks = [(look["color"], look["linestyle"]) for look in comparison.line_styles(28)]

@@ -89,12 +89,15 @@ def test_the_shares_of_the_largest_lines_are_drawn_in_order(
 
 def test_a_world_with_few_lines_and_without_pairs_is_drawn() -> None:
     none = SimpleNamespace(back=np.zeros(0, int), share=np.zeros(0))
-    found = an_evolution(2, sweeps=[], pairs=none)
-    axes, _, diversity, pairs = axes_of(descents.draw, found)
+    lost = SimpleNamespace(largest=np.ones((9, 5)), effective=np.array([[2, 2, 2, 1, 0.0]] * 9))
+    found = an_evolution(2, sweeps=[], pairs=none, drift=lost)
+    axes, effective, diversity, pairs = axes_of(descents.draw, found)
     for colour, place in zip(style.PALETTE, found.ranked, strict=False):
         ((_, share),) = lines(axes, colour)
         np.testing.assert_array_equal(share, found.shares[:, place])
     assert len(key(axes)) == 3
+    band = [edges_at(effective.collections[0], at) for at in (10, 100, 250)]
+    assert band == [(2, 2), (1, 1), (1, 1)], "no line is left in the last tick"
     assert key(diversity) == {}
     assert REMARK in {each.get_text() for each in pairs.findobj(Text)}
     assert points(pairs, style.BLUE) == [(0, 0)]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.text import Text
+from matplotlib.text import Annotation, Text
 
 from primordia.figures import ages, population, style, survival, threshold
 from primordia.history.foraging import Foraging
@@ -24,6 +24,7 @@ KINDS = {
     "fork": (worlds_of(ONE, ONE, until=700).recorded_since(6), "time since the fork (ticks)", 694),
 }
 KINDS["two"][0].cause[:2] = Cause.STARVED, Cause.REPLACED
+KINDS["two"][0].ended[3] = 600  # the first world stopped earlier
 SPREAD = {"median and quartiles of 2 worlds": style.BLUE}
 POOLED = {"2 worlds together": style.SOFT}
 
@@ -85,6 +86,18 @@ def test_labels_and_limits_of_survival(kind: str) -> None:
         assert key(axes) == (POOLED if kind != "one" else {})
         assert "no deaths yet" not in {each.get_text() for each in axes.findobj(Text)}
     assert "at risk, born in the" in {each.get_text() for each in alive.texts}
+    curves = [len(lines(alive, colour)) for colour in survival.COHORTS.values()]
+    assert curves == [1] * 4, "also of a quarter with one organism"
+
+
+@pytest.mark.parametrize("longest", [10, 100, 1000])
+def test_the_age_at_the_end_of_the_axis_has_its_numbers_at_risk(longest: int) -> None:
+    lives = world_of([(0, longest - 1, True), (1, 4, True)] * 4, until=longest + 9)
+    (alive, *_) = axes_of(survival.draw, run_of(lives), 0)
+    assert alive.get_xlim() == (1, longest)
+    notes = [each for each in alive.texts if isinstance(each, Annotation)]
+    written = {x: [each.get_text() for each in notes if each.xy[0] == x] for x in (1, longest)}
+    assert written == {1: ["2"] * 4, longest: ["2", "2", "0", "0"]}
 
 
 @pytest.mark.parametrize(("last", "end"), [(3, 10), (10, 10), (11, 11)])
@@ -125,20 +138,21 @@ def test_the_panel_of_food_says_if_there_are_no_samples_yet() -> None:
 
 @pytest.mark.parametrize("worlds", [1, 2])
 def test_labels_and_curves_of_the_threshold(worlds: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Unknown values are gaps in the curve."""
-    lives = worlds_of(*([(0, 3, True)] * count for count in (500, 380)[:worlds]), until=9)
-    measured = SimpleNamespace(mutated=0.5, as_good=None, held=2.0)
+    """Unknown values are gaps in the curve. They may be known in the last and largest world alone."""
+    lives = worlds_of(*([(0, 3, True)] * count for count in (380, 500)[-worlds:]), until=9)
+    measured = SimpleNamespace(mutated=0.0, as_good=None, held=2.0)
     unknown = SimpleNamespace(mutated=None, as_good=None, held=None)
-    monkeypatch.setattr(threshold, "over_births", lambda *_: [measured, unknown])
+    found = [[unknown, unknown], [measured, unknown]][-worlds:]
+    monkeypatch.setattr(threshold, "over_births", lambda world, *_: found[world])
     axes = axes_of(threshold.draw, run_of(lives), 0)
     titles = "p: children that mutate", "v: mutants as good", "Does a good line persist?"
     spread = SPREAD if worlds == 2 else {}
-    for each, title, value in zip(axes, titles, (0.5, np.nan, 2.0), strict=True):
+    for each, title, value in zip(axes, titles, (0.0, np.nan, 2.0), strict=True):
         last = title == titles[2]
         assert labels(each) == (title, "organisms born so far", "s (1 - p (1 - v))" * last)
         assert each.get_xlim() == (0, 500)
         assert key(each) == {**spread, **({"threshold": style.VERMILION} if last else {})}
-        x, y = lines(each, style.BLUE)[0]
+        x, y = lines(each, style.BLUE)[worlds - 1]
         np.testing.assert_array_equal((x, y), ([125, 375], [value, np.nan]))
         assert [y.tolist() for _, y in lines(each, style.VERMILION)] == [[1, 1]] * last
     assert axes[2].get_yscale() == "log"

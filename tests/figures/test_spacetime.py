@@ -160,6 +160,8 @@ def test_round_ticks_stand_at_the_number_of_births_by_then() -> None:
     written = [right.yaxis.get_major_formatter()(place, 0) for place in places]
     assert written == ["10", "20", "100", "200", "500", "1k"]
     assert right.get_ylabel() == "time (ticks)"
+    halves = drawn(world_of([(0, 1, True)] * 50 + [(15, 1, True)] * 50, until=90), cells=300)
+    assert [*halves.child_axes[0].yaxis.get_major_locator().tick_values(0, 1)] == [50]
 
 
 def test_the_first_renewal_and_eight_takeovers_are_marked() -> None:

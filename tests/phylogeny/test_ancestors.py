@@ -40,9 +40,9 @@ def followed(lives: Lives, organism: int, monkeypatch: pytest.MonkeyPatch) -> An
     """Follow a line in world 5 of an arm, which is the only world of its run."""
 
     def sizes(run: Any, number: int, world: int) -> np.ndarray:
-        """Return sizes of two blocks that depend on the organism."""
+        """Return sizes of two blocks that depend on the organism; organism 1 is a copy."""
         line = lineage.descent(run.lives, number, world)
-        found = np.stack([3.0 * line, 4.0 * line], axis=1)
+        found = np.outer(line - 1, (3.0, 4.0))
         found[0] = np.nan
         return found
 
@@ -88,7 +88,7 @@ def test_plain_values_of_a_line_are_those_of_a_walk(
         line, steps = line_to(lives, organism)[::-1], []
         for place, row in enumerate(line):
             of = int(lives.parent[row])
-            changed = {"hidden": 3.0 * row, "output": 4.0 * row}
+            changed = {"hidden": 3.0 * (row - 1), "output": 4.0 * (row - 1)}
             steps.append(
                 {
                     "generation": place,
@@ -116,7 +116,7 @@ def test_plain_values_of_a_line_are_those_of_a_walk(
             "line": steps,
         }
         assert found.size is not None
-        assert found.size[1:].tolist() == [5.0 * row for row in line[1:]]
+        assert found.size[1:].tolist() == [5.0 * (row - 1) for row in line[1:]]
 
 
 @pytest.mark.parametrize("name", PEDIGREES)

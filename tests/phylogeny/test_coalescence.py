@@ -1,13 +1,17 @@
 """Common ancestors, coalescence times and the tree of the living, beside walks up every line."""
 
 from collections import Counter
+from dataclasses import replace
 from itertools import combinations
+from unittest.mock import patch
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from primordia.law.world import Cause
+from primordia.phylogeny import diversity
 from primordia.phylogeny.coalescence import Genealogy, neutral, observed
 from primordia.phylogeny.diversity import hill_numbers, phylogenetic_diversity
 from primordia.phylogeny.living import Turnover, last_era
@@ -69,13 +73,15 @@ def tree_length(lives: Lives, tick: int) -> int:
     return length
 
 
-@given(history=HISTORY, founders=st.integers(1, 3))
+@given(history=HISTORY, founders=st.integers(1, 3), rows=st.integers(1, 9))
 def test_the_tree_of_the_living_is_as_long_as_their_lines(
-    history: list[Event], founders: int
+    history: list[Event], founders: int, rows: int
 ) -> None:
+    """The records are read in parts, of which a long pedigree has many."""
     lives = walked(history, founders)
     ticks = np.arange(0, len(history) + 1, 3)
-    found = phylogenetic_diversity(lives, ticks)
+    with patch.object(diversity, "ROWS", rows):
+        found = phylogenetic_diversity(lives, ticks)
     assert found.tolist() == [tree_length(lives, tick) for tick in ticks.tolist()]
 
 
@@ -131,6 +137,13 @@ def test_an_era_begins_with_the_last_founders(history: list[Event], founders: in
     assert era.id.tolist() == list(range(first, len(lives)))
 
 
+def test_all_organisms_of_a_fork_are_of_its_era() -> None:
+    """In the first fork the founder is alive, but a dead organism has living children."""
+    for fork in (walked(GROWN).recorded_since(3), moran(7, 70, name=3).recorded_since(60)):
+        assert ((fork.parent >= 0) & (fork.parent_row < 0)).any()
+        assert last_era(fork).id.tolist() == fork.id.tolist()
+
+
 def test_the_trunk_follows_the_most_living_descendants() -> None:
     """It follows the larger of two trees. The largest branch is neither the first nor the last."""
     #                 0   1  2  3  4  5  6  7  8  9
@@ -175,6 +188,25 @@ def test_times_by_drift_alone_follow_from_births_and_population_since_the_foundi
         assert found == pytest.approx(expected)
         reached = [back for back, share in expected.items() if share >= 0.5]
         assert times.median == reached[0]
+
+
+def test_times_in_a_world_without_life_count_back_from_its_last_tick() -> None:
+    """All have died by tick 8, two ticks after the last birth."""
+    lives = walked([*GROWN, ([], []), ([], [])])
+    dead = replace(lives, cause=np.full(len(lives), Cause.FATAL, np.int8))
+    times = neutral(dead, Turnover.of(dead))
+    assert times.back.tolist() == neutral(lives, Turnover.of(lives)).back.tolist()
+    assert times.back[0] == 2
+    assert len(observed(Genealogy.of(dead)).back) == 0
+
+
+def test_founders_have_no_times_by_drift_alone() -> None:
+    """Founders that are born one after another have no common ancestor."""
+    lives = lives_of([-1] * 3, [0, 4, 6], [9] * 3, [False] * 3)
+    times = neutral(lives, Turnover.of(lives))
+    assert (times.share.tolist(), times.mean, times.median) == ([0, 0], None, None)
+    observed_times = observed(Genealogy.of(lives))
+    assert (observed_times.mean, observed_times.median) == (None, None)
 
 
 def test_times_by_drift_alone_in_a_fork_follow_from_births_after_it() -> None:

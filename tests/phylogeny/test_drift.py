@@ -41,6 +41,15 @@ def test_a_single_line_is_always_all_of_the_living() -> None:
     assert (found.effective == 1).all()
 
 
+def test_founders_that_are_born_later_are_in_no_line() -> None:
+    """The only line is all of the living until three founders are born beside its one organism."""
+    lives = lives_of([-1] * 4, [0, 5, 5, 6], [9] * 4, [False] * 4)
+    found = dealt(lives, [0, 3, 5, 9], 1)
+    assert (found.largest == [1, 1, 1 / 3, 1 / 4]).all()
+    assert (found.final == 1 / 4).all()
+    assert (found.effective == 1).all()
+
+
 def test_draws_depend_on_the_seed_the_first_tick_and_their_purpose() -> None:
     lives = moran(5, 40)
 

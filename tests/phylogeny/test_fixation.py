@@ -37,6 +37,14 @@ def test_shares_of_the_living_are_those_of_a_count(
             assert tick == (above.index(True) if any(above) else UNKNOWN)
 
 
+def test_nothing_is_fixed_by_the_death_of_all() -> None:
+    """The lines of two siblings end in the same tick, so neither was ever alone."""
+    lives = lives_of([-1, 0, 0], [0, 2, 3], [5, 9, 9], [True] * 3)
+    line = np.array([0, 1])
+    found = first_ticks(Turnover.of(lives), branches(lives.parent_row, line), 2, (1, 0.5))
+    assert [each.tolist() for each in found] == [[0, UNKNOWN], [0, UNKNOWN]]
+
+
 @pytest.mark.parametrize("size", [2, 40])
 def test_a_long_line_is_looked_at_in_parts(size: int) -> None:
     """The parts are shorter than the pedigree, and there are more ancestors than fit into one."""
@@ -52,19 +60,6 @@ def test_a_long_line_is_looked_at_in_parts(size: int) -> None:
         reached = np.flatnonzero(lowest[lives.born[line[place]] :] >= place)
         expected = lives.born[line[place]] + reached[0] if len(reached) else UNKNOWN
         assert fixed[place] == expected
-
-
-@given(history=HISTORY, marks=st.sets(st.integers(0, 30), min_size=1))
-def test_the_nearest_marked_ancestor_is_that_of_a_walk(
-    history: list[Event], marks: set[int]
-) -> None:
-    lives = walked(history)
-    marked = sorted({each % len(lives) for each in marks})
-    expected = [
-        next((each for each in line_to(lives, row) if each in marked), -1)
-        for row in range(len(lives))
-    ]
-    assert nearest(lives.parent_row, np.array(marked)).tolist() == expected
 
 
 def test_the_nearest_marked_ancestor_is_found_across_parts() -> None:

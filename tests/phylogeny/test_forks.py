@@ -72,6 +72,53 @@ def test_a_run_until_its_fork_and_the_fork_are_the_whole_life(
     ]
 
 
+def test_the_past_ends_with_the_first_run_that_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each fork is joined with its own source, at its own tick."""
+    ticks = {"d": ("c", 9), "c": ("b", 6), "b": ("a", 3)}
+    runs: dict[str, Any] = {
+        name: SimpleNamespace(
+            path=Path(name), config=SimpleNamespace(fork=SimpleNamespace(run=of, tick=tick))
+        )
+        for name, (of, tick) in ticks.items()
+    }
+    cut: list[Any] = []
+    joined_at: list[Any] = []
+
+    def opened(place: Path) -> Any:
+        if place.name not in runs:
+            raise InputError(f"{place} is no run")
+        return runs[place.name]
+
+    def longer(earlier: Phylogeny, later: Phylogeny, fork: Any) -> Phylogeny:
+        joined_at.append(fork.path.name)
+        return later
+
+    monkeypatch.setattr(forks, "recorded", lambda _: with_facts(WHOLE, 0))
+    monkeypatch.setattr(forks, "archive", opened)
+    monkeypatch.setattr(forks, "_until", lambda run, tick: cut.append((run.path.name, tick)))
+    monkeypatch.setattr(forks, "_joined", longer)
+    said: list[str] = []
+    past = forks.whole_past(runs["d"], said.append)
+    assert [run.path.name for run in past.runs] == ["d", "c", "b"]
+    assert (cut, joined_at) == ([("c", 9), ("b", 6)], ["d", "c"])
+    (line,) = said
+    assert "b was forked from a, which is missing or was replaced by another run" in line
+    assert line.endswith("the organisms alive at tick 3 are roots")
+
+
+def test_worlds_with_large_numbers_keep_their_order(monkeypatch: pytest.MonkeyPatch) -> None:
+    births = np.zeros(257, int)
+    births[[0, 256]] = [((WHOLE.world == world) & (WHOLE.born <= 4)).sum() for world in (0, 1)]
+    fork = forked(4, monkeypatch)
+    monkeypatch.setattr(forks, "read_count", lambda *_: births)
+    whole = replace(WHOLE, world=WHOLE.world * 256)
+    earlier, later = whole.recorded_until(4), whole.recorded_since(4)
+    found = forks._joined(with_facts(earlier, 0.25), with_facts(later, 0.75), fork)
+    assert found is not None
+    for each in fields(Lives):
+        np.testing.assert_array_equal(getattr(found.lives, each.name), getattr(whole, each.name))
+
+
 def test_a_run_is_not_cut_at_a_tick_that_a_world_has_not_reached(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -178,6 +178,21 @@ def test_without_a_death_slopes_have_no_lifespan_as_their_unit() -> None:
     assert [line["slope"] for line in plain["lines"]] == [None, 0.004, -0.01]
 
 
+def test_measures_of_zero_are_known() -> None:
+    """A slope may be zero, and the lines of all pairs may part in the last tick."""
+    at_once = Times(np.array([0]), np.array([1.0]))
+    found = replace(invented(), slopes=np.array([0.0, nan, -0.01]), pairs=at_once).to_dict()
+    slopes = [(line["slope"], line["slope_per_lifespan"]) for line in found["lines"]]
+    assert slopes[:2] == [(None, None), (0, 0)]
+    assert found["coalescence"] == {"mean": 0, "median": 0, "ticks_back": [0], "share": [1]}
+
+
+def test_of_lines_that_were_equally_large_the_older_founder_comes_first() -> None:
+    counts = np.array([[3, 4, 3], [6, 4, 6], [2, 8, 1], [6, 6, 6]])
+    found = replace(invented(), counts=counts, living=np.full(4, 20))
+    assert found.ranked.tolist() == [1, 0, 2]
+
+
 def test_each_world_is_measured_with_its_own_lives_and_seed(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

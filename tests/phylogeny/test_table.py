@@ -2,6 +2,8 @@
 
 from io import StringIO
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import dendropy
 import numpy as np
@@ -14,7 +16,7 @@ from hypothesis import given
 from primordia.errors import InputError, Trouble
 from primordia.phylogeny import formats
 from primordia.phylogeny.newick import newick
-from primordia.phylogeny.phylogeny import Phylogeny, stacked
+from primordia.phylogeny.phylogeny import Phylogeny, recorded, stacked
 from primordia.phylogeny.reduce import chosen
 from primordia.phylogeny.table import table
 from tests.phylogeny.forests import (
@@ -241,6 +243,48 @@ def test_only_a_child_whose_first_parent_is_on_record_has_a_mate_there() -> None
 def test_a_mate_that_is_not_older_is_damage(mate: int) -> None:
     with pytest.raises(Trouble, match="the mate of organism 6 is not older"):
         parted([None, None, mate, 5]).rooted()
+
+
+def test_mates_are_of_the_same_world_and_parents_too(tmp_path: Path) -> None:
+    """Trees leave mates out and say so. Lists of two parents are quoted where commas part values."""
+    few = [(0, 0, False), (0, 0, False), (2, 1, True), (1, 1, True)]
+    mates = pa.array([None, None, 1, None] * 2, pa.int64())
+    whole = Phylogeny(forest(few, few).lives, {"mate": mates}, {})
+    world = 10**12
+    lists = ["[NONE]", "[NONE]", f"[{world},{world + 1}]", f"[{world + 2}]"]
+    assert table(whole)["ancestor_list"].to_pylist()[4:] == lists
+    line = [world, world + 1, world + 2, world + 3]
+    assert table(chosen(whole, 3, 1))["id"].to_pylist() == line
+    assert table(chosen(whole, world=1, extant=True))["id"].to_pylist() == line
+    for name in ("a.parquet", "a.csv", "a.tsv", "a.nwk", "a.newick"):
+        said: list[str] = []
+        formats.save(whole, tmp_path / name, said.append)
+        left_out = f"{tmp_path / name}: a tree has one parent for each child, so mates are left out"
+        assert said == [left_out] * (name in ("a.nwk", "a.newick"))
+    assert pd.read_csv(tmp_path / "a.csv")["ancestor_list"].tolist()[4:] == lists
+
+
+def test_facts_on_record_are_those_of_each_organism() -> None:
+    """Zeros are facts. The living have no facts of a death."""
+    lives = forest([(0, 0, False), (0, 0, True), (1, 1, False)], [(0, 0, False)]).lives
+    rows = [
+        {"world": [1, 0], "id": [0, 2], "energy": [4.0, 5.0], "food": [0.0, 7.0], "hits": [3, 0]}
+    ]
+    rows.append({"world": [0], "id": [0], "energy": [-1.0], "food": [2.0], "hits": [9]})
+    run: Any = SimpleNamespace(
+        lives=lives,
+        schema=SimpleNamespace(mates=True, notes=("size", "rate"), tallies=("hits",)),
+        mates_of=lambda _: np.array([-1, -1, 0, -1]),
+        notes_of=lambda _: np.array([[1, 5], [2, 6], [0, 7], [4, 0]], np.int32),
+        segments=lambda *_: [{name: pa.array(each) for name, each in r.items()} for r in rows],
+    )
+    found = recorded(run)
+    assert {name: each.to_pylist() for name, each in found.of_births.items()} == {
+        "mate": [None, None, 0, None], "size": [1, 2, 0, 4], "rate": [5, 6, 7, 0]
+    }  # fmt: skip
+    assert {name: each.to_pylist() for name, each in found.of_deaths.items()} == {
+        "energy": [-1, None, 5, 4], "food": [2, None, 7, 0], "hits": [9, None, 0, 3]
+    }  # fmt: skip
 
 
 def test_facts_of_a_run_and_its_fork_follow_one_another() -> None:

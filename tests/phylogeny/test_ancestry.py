@@ -1,0 +1,43 @@
+"""Ancestors of many organisms at once, beside a walk up each line, also where the records have parts."""
+
+from unittest.mock import patch
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from primordia.phylogeny import ancestry
+from primordia.phylogeny.ancestry import FEW, nearest, with_ancestors
+from tests.pedigrees import HISTORY, Event, line_to, walked
+from tests.phylogeny.forests import ancestry as walk
+
+
+@given(history=HISTORY, marks=st.sets(st.integers(0, 30), min_size=1), rows=st.integers(1, 9))
+def test_the_nearest_marked_ancestor_is_that_of_a_walk(
+    history: list[Event], marks: set[int], rows: int
+) -> None:
+    """The last part of the records may be a single organism."""
+    lives = walked(history)
+    marked = sorted({each % len(lives) for each in marks})
+    expected = [
+        next((each for each in line_to(lives, row) if each in marked), -1)
+        for row in range(len(lives))
+    ]
+    with patch.object(ancestry, "ROWS", rows):
+        assert nearest(lives.parent_row, np.array(marked)).tolist() == expected
+
+
+@pytest.mark.parametrize("count", [1, 2, FEW, FEW + 1, 40])
+def test_ancestors_are_those_of_both_parents(count: int) -> None:
+    """A few lines are followed one by one, and many lines together."""
+    draw = np.random.default_rng(count)
+    older = np.arange(60)
+    first, second = (np.where(older < 3, -1, draw.integers(-1, np.maximum(older, 1))) for _ in "12")
+    rows = draw.choice(np.arange(20, 60), count, replace=False)
+    parents = {
+        row: [int(each[row]) for each in (first, second) if each[row] >= 0] for row in range(60)
+    }
+    alone = {row: [each for each in (int(first[row]),) if each >= 0] for row in range(60)}
+    assert with_ancestors(rows, first, second).tolist() == sorted(walk(parents, {*rows.tolist()}))
+    assert with_ancestors(rows, first).tolist() == sorted(walk(alone, {*rows.tolist()}))
