@@ -63,6 +63,8 @@ def test_quartiles_of_worlds_follow_the_median() -> None:
         assert tables.spread_text(worlds) == text
     assert tables.spread_text([9, 1, float("nan"), 3, 6]) == "4.5 (2.5 to 6.75)"
     assert tables.spread_text([3.0, 3.0]) == "3"
+    assert tables.spread_text([0.0, 4.0, 0.0]) == "0 (0 to 2)"
+    assert tables.spread_text([0.0]) == "0"
     assert tables.spread_text([float("nan")]) == tables.spread_text([]) == "-"
 
 
@@ -93,6 +95,7 @@ def test_the_share_of_pairs_is_given_in_whole_percent(pairs: int) -> None:
 def test_pairs_and_needed_worlds_are_given_if_there_are_any() -> None:
     pairs = Paired(8, 6, 2)
     assert tables.paired_text(effect(paired=pairs)) == "+0.50"
+    assert tables.paired_text(effect(paired=Paired(8, 3, 3))) == "+0.00"
     assert tables.paired_text(effect()) == ""
     assert tables.needed_text(effect(delta=0.02)) == f"{effect(delta=0.02).needed:,} worlds an arm"
     assert tables.needed_text(effect(delta=0.0)) == tables.needed_text(effect(worlds=4)) == ""
@@ -160,3 +163,14 @@ def test_each_table_has_the_effects_of_its_own_outcome() -> None:
     assert [cells(lines[k])[0] for k in heads] == list(compared.outcomes.values())
     deltas = [cells(lines[k + 3])[2].split()[0] for k in heads]
     assert deltas == [f"{(2 * larger - 5) / 5:+.2f}" for larger in shares.values()]
+
+
+def test_an_outcome_is_shown_if_it_is_known_in_any_world_of_any_run() -> None:
+    one, two = arm("one", [1, 2, 3]), arm("two", [4, 5], seed=50)
+    for known in ([0, 0, 0, 0, 0], [0, 1, 0, 0, 0], [0, 0, 0, 0, 1]):
+        for each, of in ((one, known[:3]), (two, known[3:])):
+            each.measured["first"] = Measured(np.ones(len(of)), np.array(of, bool))
+        compared = side_by_side(one, two)
+        assert ("first" in compared.outcomes) == any(known)
+        text = tables.comparison_tables(compared)
+        assert ("births to first long life" in text) == any(known)

@@ -87,6 +87,7 @@ def test_the_text_of_crashes_has_the_number_of_worlds_that_crashed() -> None:
 
     assert text(0, 0) == "0"
     assert text(0, 1, 0) == "1 in 1 world"
+    assert text(0, 1200) == "1,200 in 1 world"
     assert text(0, 2, 3, 1) == "6 in 3 worlds"
     assert text(*[1] * 1200) == "1,200 in 1,200 worlds"
 

@@ -163,6 +163,32 @@ def test_a_long_run_has_60_intervals(monkeypatch: pytest.MonkeyPatch) -> None:
     np.testing.assert_allclose(foraging(run).middle, np.arange(50, 6_000, 100))
 
 
+@pytest.mark.parametrize("order", [(0, 1, 2), (2, 0, 1), (1, 2, 0)])
+def test_the_intervals_are_those_of_the_longest_world_in_any_order(
+    order: tuple[int, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """World 0 lives to tick 60 and has 3 samples; the others are shorter and have more samples.
+
+    Organisms without drain need no food, and those without gain cannot live on any.
+    """
+    every = [np.arange(0.0, end + 1, step) for end, step in ((60, 20), (40, 10), (30, 5))]
+    rates = np.array([[1.0, 2.0], [0.0, 4.0], [3.0, 0.0]], np.float32)
+    monkeypatch.setattr(
+        module, "harvests", lambda run, worlds: [Harvest(*[every[k]] * 3) for k in order]
+    )
+    names, start = ("metabolism.drain", "metabolism.gain"), rates[list(order)].T
+    climate = {f"world.worlds.climate.{k}": v for k, v in zip(names, start, strict=True)}
+    run: Any = SimpleNamespace(
+        config=SimpleNamespace(seeds=3, seasons=[]),
+        description=SimpleNamespace(beginning=dict.fromkeys(names)),
+        origin=climate,
+    )
+    found = foraging(run)
+    np.testing.assert_allclose(found.middle, np.arange(5, 60, 10))
+    expected = np.array([0.5, 0.0, np.inf])[list(order)]
+    np.testing.assert_array_equal(found.break_even, np.repeat(expected[:, None], 6, axis=1))
+
+
 def test_food_of_intervals_shorter_than_a_tick_is_that_of_the_tick() -> None:
     """A comparison of a run of six ticks has intervals of half a tick."""
     harvest = Harvest(*np.array([[0.0, 1, 2], [0, 0.25, 0.75], [0, 1, 2]]))

@@ -130,3 +130,23 @@ def test_numbers_of_an_empty_world_are_unknown() -> None:
     assert [found[name] for name in unknown] == [None] * 3
     assert found["alive"] == 0
     assert not {"tallies", "break_even", "climate"} & found.keys()
+
+
+def test_numbers_of_zero_are_known() -> None:
+    """Counts may be below zero; without drain no food is needed."""
+    run = stored()
+    run.state["bodies.tally"][:3] = 0
+    run.state["bodies.tally"][3:] = [[-5, -4], [99, 99], [-8, -1]]
+    run.state["world.worlds.climate.metabolism.drain"][1] = 0
+    first, second = (_world(run, world, 0, {}) for world in (0, 1))
+    none, below = {"median": 0, "best": 0}, {"median": -6.5, "best": -5}
+    assert first["tallies"] == {"score": none, "kills": none}
+    assert second["tallies"] == {"score": below, "kills": {"median": -2.5, "best": -1}}
+    assert second["break_even"] == {"food_per_tick": 0, "food_per_second": 0}
+    run.state["world.worlds.climate.metabolism.gain"][1] = 0
+    run.description.rate = None
+    assert _world(run, 0, 0, {})["break_even"] == {"food_per_tick": 0.5, "food_per_second": None}
+    unknown = {"food_per_tick": None, "food_per_second": None}
+    assert _world(run, 1, 0, {})["break_even"] == unknown
+    run.config.metabolism = None
+    assert _world(run, 0, 0, {})["climate"] == first["climate"]

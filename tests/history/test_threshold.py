@@ -155,3 +155,11 @@ def test_organisms_alive_at_a_fork_are_parents_but_no_births() -> None:
     of_all = (15 * 100 + 105) / 120
     assert found.advantage == pytest.approx(100 / of_all)
     assert over_births(0, world, np.array([0, len(rows)])) == [Threshold(0, None, None, None)]
+
+
+def test_a_child_that_inherits_nothing_has_no_family() -> None:
+    """With `inheritance = "founder"` the record names a parent, but the child is a founder."""
+    found = families(lives((-1, FOUNDER, 9), (0, FOUNDER, 5), (0, COPY, 5), (1, MUTANT, 5)), 0.0)
+    assert found.born.tolist() == [0, 1, 2, 3]
+    assert (found.child.tolist(), found.parent.tolist()) == ([2, 3], [0, 1])
+    assert found.mutant.tolist() == [False, True]
