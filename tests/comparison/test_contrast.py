@@ -202,10 +202,10 @@ def test_figures_that_are_not_positive_have_no_ratio(values: tuple[int, int]) ->
 
 def test_an_interval_of_several_contrasts_has_resamples_of_its_own_number() -> None:
     """Of four contrasts each misses 1.25 % of 1,600 resamples: 10 below and 10 above."""
-    values = np.random.default_rng(4).lognormal(0, 1, (2, 9))
-    run, reference = (Measured(each, np.ones(9, bool)) for each in values)
+    values = np.random.default_rng(4).lognormal(0, 1, (2, 41))
+    run, reference = (Measured(each, np.ones(41, bool)) for each in values)
     medians = [
-        np.median(each[np.concatenate([*resamples(9, stream, 1600)])], axis=1)
+        np.median(each[np.concatenate([*resamples(41, stream, 1600)])], axis=1)
         for stream, each in enumerate(values)
     ]
     ratios = np.sort(medians[0] / medians[1])
