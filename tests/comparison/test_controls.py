@@ -190,6 +190,8 @@ def test_champions_and_the_living_are_those_of_worlds_with_births(invented: Any)
     champion, alive = evolved(invented, 2)
     assert (champion.numbers, champion.chosen_from) == ([(3, 2)], 4)
     assert alive.numbers == [(0, 2), (4, 2)]
+    best, some = unevolved(invented, 3, 2)
+    assert (best.chosen_from, {world for _, world in best.numbers + some.numbers}) == (3, {2})
     invented.lives.cause[:] = 0
     assert [group.name for group in evolved(invented)] == ["champion"]
 

@@ -41,8 +41,11 @@ def test_numbers_have_three_digits_or_more(value: float, text: str) -> None:
 
 @pytest.mark.parametrize(
     ("bounds", "text"),
-    [((2, 2), "2"), ((2, 3.5), "2..3.5"), ((1200, INF), ">= 1,200"), ((0, INF), "unknown")],
-)
+    [
+        ((2, 2), "2"), ((2, 3.5), "2..3.5"), ((1200, INF), ">= 1,200"), ((0, INF), "unknown"),
+        ((0, 0), "0"), ((0, 3.5), "0..3.5"),
+    ],
+)  # fmt: skip
 def test_bounds_are_given_as_far_as_they_are_known(bounds: tuple[float, float], text: str) -> None:
     assert tables.bounds_text(bounds) == text
     assert tables.ratio_text(effect(ratio=bounds, interval=None)) == text

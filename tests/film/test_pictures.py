@@ -104,6 +104,8 @@ def test_large_worlds_are_drawn_in_part() -> None:
     assert (np.diff(torus.cells[:100]) == 3).all()
     ring = shape(Placement(), 5_000)
     assert len(ring.cells) <= Ring.MOST
+    for cells, step in ((1_024, 1), (1_025, 2), (2_048, 2), (2_049, 3)):
+        assert shape(Placement(), cells).cells.tolist() == list(range(0, cells, step))
 
 
 def test_the_longer_side_of_a_torus_decides_which_cells_are_drawn() -> None:

@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 import primordia
-from primordia.history.info import _world
+from primordia.history import info as module
+from primordia.history.info import _world, info
+from primordia.history.threshold import Threshold
 from primordia.law.world import Cause
 from primordia.runs import loop
 from primordia.runs.arrays import NEVER
@@ -150,3 +152,55 @@ def test_numbers_of_zero_are_known() -> None:
     assert _world(run, 1, 0, {})["break_even"] == unknown
     run.config.metabolism = None
     assert _world(run, 0, 0, {})["climate"] == first["climate"]
+
+
+@pytest.mark.parametrize("seeds", [(2, 2), (1, 2), (1,)])
+def test_the_numbers_of_runs_are_those_of_all_their_worlds(
+    seeds: tuple[int, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nothing has been born in the last world of the last run. Its error threshold is unknown."""
+    parts = []
+    for number, worlds in enumerate(seeds):
+        part, last = stored(), number == len(seeds) - 1
+        part.config.seeds, part.lives = worlds, SimpleNamespace(worlds=worlds - last)
+        part.row_digests, part.crashed = f"run {number}", 10 * number + np.arange(worlds)
+        parts.append(part)
+
+    def threshold(part: Any) -> list[Threshold]:
+        return [Threshold(world, 0.5, 0.0, 4.0 + world) for world in range(part.lives.worlds)]
+
+    def digests(rows: str, state: Any, count: int) -> list[str]:
+        assert any(state is part.state for part in parts)
+        return [f"{rows}, world {world}" for world in range(count)]
+
+    monkeypatch.setattr(
+        module, "extinctions_of", lambda part: SimpleNamespace(crashes=part.crashed)
+    )
+    monkeypatch.setattr(module, "threshold", threshold)
+    monkeypatch.setattr(module, "digests", digests)
+    total = sum(seeds)
+    progress = {"wall_s": 12.5, "exact": False, "restarts": 3}
+    of_all = {"inheritance": "founder", "cells": 3, "seeds": total, "task": "pond"}
+    run: Any = SimpleNamespace(
+        config=SimpleNamespace(**of_all),
+        progress=SimpleNamespace(
+            **progress, limits=SimpleNamespace(model_dump=lambda: {"ticks": 9})
+        ),
+        damaged=["one", "other"],
+        versions={"jax": "1"},
+        parts=lambda: iter(parts),
+    )
+    found = info(run)
+    rest = {"damaged": ["one", "other"], "versions": {"jax": "1"}, "limits": {"ticks": 9}}
+    assert {**of_all, **progress, **rest}.items() <= found.items()
+    places = [(number, world) for number, count in enumerate(seeds) for world in range(count)]
+    assert [each["digest"] for each in found["worlds"]] == [
+        f"run {number}, world {world}" for number, world in places
+    ]
+    assert [each["crashes"] for each in found["worlds"]] == [10 * n + world for n, world in places]
+    assert [each["births"] for each in found["worlds"]] == [(60, 90)[world] for _, world in places]
+    held = [2.0 + world / 2 for _, world in places[:-1]]
+    assert [each["threshold"]["held"] for each in found["worlds"]] == [*held, None]
+    assert all("world" not in each["threshold"] for each in found["worlds"])
+    single = {"seed": 7, "births": 60, "digest": "run 0, world 0"} if total == 1 else {}
+    assert {name: found[name] for name in ("seed", "births", "digest") if name in found} == single
