@@ -221,7 +221,7 @@ def test_an_organism_is_born_again_with_keys_of_its_world_and_birth_number(
         return "genomes"
 
     monkeypatch.setattr(module, "PastClimate", lambda _: past)
-    monkeypatch.setattr(module.pedigree, "genomes", genomes)
+    monkeypatch.setattr("primordia.history.pedigree.genomes", genomes)
     monkeypatch.setattr(module, "lifespans", lambda players, cut: (players, cut))
     run: Any = SimpleNamespace(
         lives=lives,
