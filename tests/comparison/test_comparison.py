@@ -187,6 +187,9 @@ def test_births_and_ticks_to_saturation_count_from_the_fork() -> None:
     assert found["births"].value.tolist() == [0, 36 - before[1], 40 - before[2]]
     assert found["ticks"].value.tolist() == [0, 20, UNTIL - 50]
     assert [each.known.tolist() for each in found.values()] == [[True, True, False]] * 2
+    found = saturation(run("a", lives, moments), lives.recorded_since(95), 95, None, None)
+    assert found["births"].value.tolist() == [0, 0, 0], "nothing is born after tick 89"
+    assert found["ticks"].value.tolist() == [0, 0, UNTIL - 95]
 
 
 def test_runs_are_named_by_their_folders_or_whole_paths() -> None:

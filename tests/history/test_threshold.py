@@ -68,7 +68,10 @@ def test_ticks_of_the_living_count_in_the_ticks_lived_per_death() -> None:
 
 def test_a_world_in_which_nothing_is_known_says_so() -> None:
     assert measured(lives((-1, FOUNDER, 5))) == Threshold(0, None, None, None)
-    assert Threshold(0, 0.5, None, 2.0).held is None
+    for numbers in ((None, 0.5, 2.0), (0.5, None, 2.0), (0.5, 0.5, None)):
+        assert Threshold(0, *numbers).held is None
+    assert Threshold(0, 0.0, 0.5, 2.0).held == 2
+    assert Threshold(0, 1.0, 0.0, 2.0).held == 0
     alive: list = [(-1, FOUNDER, 9, "alive"), (0, COPY, 5, "alive")]
     found = measured(lives(*alive))
     assert (found.as_good, found.advantage) == (None, None)
