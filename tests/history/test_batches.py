@@ -35,13 +35,9 @@ def climate_of(births: Any, ticks: np.ndarray) -> dict[str, np.ndarray]:
 
 def a_run(mates: np.ndarray | None = None) -> Any:
     """Return a stand-in for a run; the note of each birth is ten times its number."""
-    where = {
-        (int(w), int(n)): k for k, (w, n) in enumerate(zip(LIVES.world, LIVES.id, strict=True))
-    }
 
-    def of(column: np.ndarray, some: Any) -> np.ndarray:
-        rows = [where[int(w), int(n)] for w, n in zip(some.world, some.id, strict=True)]
-        return column[rows]
+    def of(column: Any, some: Any) -> np.ndarray:
+        return column[LIVES.rows_of(some.world, some.id)]
 
     return SimpleNamespace(
         lives=LIVES,
@@ -69,10 +65,10 @@ def at_once(monkeypatch: pytest.MonkeyPatch) -> int:
 def test_each_birth_of_a_pedigree_has_its_own_parents_and_notes(
     redrawn: bool, at_once: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A genome is the number of the newborn, of its parent and its mate, and its founder's note.
+    """A genome is the number of the newborn, of its parent and of its mate, and its note.
 
-    Redrawn notes are one more than those of the parent. A newborn without a parent or a mate has the
-    genome 0 in its place, and no note of its own if notes are redrawn.
+    A founder has 0 in place of a parent, and an organism without a mate has -1. A redrawn note is one
+    more than that of the parent.
     """
     births: list[int] = []
 
