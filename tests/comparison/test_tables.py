@@ -1,5 +1,6 @@
 """A comparison as text: each number and word of the tables."""
 
+import tomllib
 from typing import Any
 
 import numpy as np
@@ -102,6 +103,20 @@ def test_pairs_and_needed_worlds_are_given_if_there_are_any() -> None:
     assert tables.paired_text(effect()) == ""
     assert tables.needed_text(effect(delta=0.02)) == f"{effect(delta=0.02).needed:,} worlds an arm"
     assert tables.needed_text(effect(delta=0.0)) == tables.needed_text(effect(worlds=4)) == ""
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (None, "none"), (True, "true"), (False, "false"), (0, "0"), (2**64 - 1, f"{2**64 - 1}"),
+        (0.5, "0.5"), (1e-05, "1e-05"), ("blind", "blind"), ([1, 0.5], "[1, 0.5]"),
+        (["a", "b"], '["a", "b"]'), ([], "[]"),
+    ],
+)  # fmt: skip
+def test_settings_are_given_as_flags_take_them(value: Any, text: str) -> None:
+    assert tables.setting_text(value) == text
+    if isinstance(value, bool | list):
+        assert tomllib.loads(f"value = {text}") == {"value": value}
 
 
 def test_the_first_table_has_settings_saturations_and_extinctions() -> None:
