@@ -179,7 +179,7 @@ def test_the_numbers_of_runs_are_those_of_all_their_worlds(
     monkeypatch.setattr(module, "threshold", threshold)
     monkeypatch.setattr(module, "digests", digests)
     total = sum(seeds)
-    progress = {"wall_s": 12.5, "exact": False, "restarts": 3}
+    progress = {"wall_s": 12.5, "exact": False, "restarts": total - 1}
     of_all = {"inheritance": "founder", "cells": 3, "seeds": total, "task": "pond"}
     run: Any = SimpleNamespace(
         config=SimpleNamespace(**of_all),
