@@ -123,6 +123,8 @@ def test_the_first_table_has_settings_saturations_and_extinctions() -> None:
     one = arm("one", [1, 2, 3], [True, False, True], total=[5, 0, 4], crashes=[2, 0, 1])
     two = arm("two", [4, 5], seed=50, total=[1, 0], settings={"seed": 50, "a.b": None})
     one.settings.update({"seed": 0, "a.b": 0.5})
+    plain = side_by_side(one, two).to_dict()["runs"]
+    assert [(each["extinctions"], each["crashes"]) for each in plain] == [(9, 3), (1, 0)]
     head, _, *rows = tables.comparison_tables(side_by_side(one, two)).splitlines()[:4]
     assert cells(head) == ["meadow", "seed", "a.b", "worlds", "saturated", "extinctions", "crashes"]
     assert [cells(row) for row in rows] == [
