@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from primordia.comparison import comparison as module
-from primordia.comparison.comparison import compare
+from primordia.comparison.comparison import compare, differing
 from primordia.comparison.gathering import Gathering
 from primordia.comparison.measured import Measured
 from primordia.comparison.moments import saturation
@@ -187,6 +187,9 @@ def test_births_and_ticks_to_saturation_count_from_the_fork() -> None:
     assert found["births"].value.tolist() == [0, 36 - before[1], 40 - before[2]]
     assert found["ticks"].value.tolist() == [0, 20, UNTIL - 50]
     assert [each.known.tolist() for each in found.values()] == [[True, True, False]] * 2
+    found = saturation(run("a", lives, moments), lives.recorded_since(95), 95, None, None)
+    assert found["births"].value.tolist() == [0, 0, 0], "nothing is born after tick 89"
+    assert found["ticks"].value.tolist() == [0, 0, UNTIL - 95]
 
 
 def test_runs_are_named_by_their_folders_or_whole_paths() -> None:
@@ -194,6 +197,8 @@ def test_runs_are_named_by_their_folders_or_whole_paths() -> None:
     paths = (Path("x/a"), Path("y/a"), Path("y/b"))
     compared = compare([run("", lives, path=path) for path in paths])
     assert [arm.name for arm in compared.arms] == ["x/a", "y/a", "b"]
+    turned = compare([run("", lives, path=path) for path in paths[::-1]])
+    assert [arm.name for arm in turned.arms] == ["b", "y/a", "x/a"]
     assert compared.contrasts == 2
 
 
@@ -254,11 +259,16 @@ def test_food_is_compared_in_the_unit_of_its_title(
 def test_the_run_that_cannot_be_compared_is_named() -> None:
     lives = lived(1, 1)
     first, second, third = (run(name, lives) for name in "abc")
-    words = "runs/a is a run of meadow, runs/d one of pond; only"
-    with pytest.raises(InputError, match=words):
-        compare([first, second, run("d", lives, task="pond")])
+    words, other = "runs/a is a run of meadow, runs/d one of pond", run("d", lives, task="pond")
+    for runs in ([first, second, other], [first, other, second]):
+        with pytest.raises(InputError, match=words):
+            compare(runs)
     with pytest.raises(InputError, match=r"runs/c is given twice"):
         compare([first, third, second, third])
+    arm = run("e", lives)
+    arm.paths = (Path("runs/e/1"), Path("runs/b"))
+    with pytest.raises(InputError, match=r"runs/b is given twice"):
+        compare([first, second, arm])
     named = [run("a", lives), run("b", lives), run("b", lives)]
     named[2].paths = (Path("elsewhere"),)
     with pytest.raises(InputError, match="two runs are named runs/b; name"):
@@ -282,3 +292,20 @@ def test_a_fork_and_a_run_that_ended_have_no_ticks_in_common(end: int, common: b
     words = "runs/late was forked at tick 50, runs/early ends at 50: they have no ticks in common"
     with pytest.raises(InputError, match=words):
         compare([other, late, early])
+
+
+def test_a_setting_that_only_some_runs_have_differs() -> None:
+    """A run without metabolism has none of its settings. Texts and names of folders do not count."""
+    forked = [{"run": name, "tick": tick} for name, tick in (("runs/a", 50), ("runs/b", 70))]
+    changed: list[dict[str, Any]] = [
+        {"metabolism": None, "fork": forked[0], "about": "one"},
+        {"metabolism": {"store": 5.0, "gain": 0.0}, "fork": forked[1], "about": "two"},
+    ]
+    for order in ((0, 1), (1, 0)):
+        found = differing([config(MEADOW, **changed[place]) for place in order])
+        bare, fed = found[order.index(0)], found[order.index(1)]
+        assert (bare["fork.tick"], fed["fork.tick"]) == (50, 70)
+        assert (bare["metabolism.store"], fed["metabolism.store"]) == (None, 5)
+        assert (bare["metabolism.gain"], fed["metabolism.gain"]) == (None, 0)
+        assert bare.keys() == fed.keys()
+        assert not {"about", "fork.run"} & bare.keys()

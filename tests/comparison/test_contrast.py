@@ -185,6 +185,9 @@ def test_plain_values_of_a_contrast_are_its_own() -> None:
     alone = contrast(run, reference).to_dict()
     assert (alone["same_seeds"], alone["coverage"]) == (None, 0.95)
     assert alone["needed"] == needed.of_each_run(effect.delta, 0.05)
+    for contrasts in (2, 5):
+        of_several = contrast(run, reference, contrasts=contrasts)
+        assert of_several.needed == needed.of_each_run(effect.delta, 0.05 / contrasts)
     few = contrast(run.take(rows[0][:4]), reference)
     assert (few.worlds, few.to_dict()["interval"], few.needed) == (4, None, None)
 
@@ -195,3 +198,22 @@ def test_figures_that_are_not_positive_have_no_ratio(values: tuple[int, int]) ->
     effect = contrast(run, reference)
     assert effect.ratio == effect.interval == (0, np.inf)
     assert effect.delta == np.sign(values[0] - values[1])
+
+
+def test_an_interval_of_several_contrasts_has_resamples_of_its_own_number() -> None:
+    """Of four contrasts each misses 1.25 % of 1,600 resamples: 10 below and 10 above."""
+    values = np.random.default_rng(4).lognormal(0, 1, (2, 41))
+    run, reference = (Measured(each, np.ones(41, bool)) for each in values)
+    medians = [
+        np.median(each[np.concatenate([*resamples(41, stream, 1600)])], axis=1)
+        for stream, each in enumerate(values)
+    ]
+    ratios = np.sort(medians[0] / medians[1])
+    assert contrast(run, reference, contrasts=4).interval == (ratios[10], ratios[-1 - 10])
+
+
+def test_the_world_that_stopped_before_a_horizon_is_named() -> None:
+    """World 0 is not saturated either, but it has passed the horizon. World 1 saturated in time."""
+    worlds = figures([(50, False), (30, True), (40, False), (20, False)])
+    with pytest.raises(InputError, match=r"world 2 stopped at 40 before .* saturated at 45"):
+        worlds.before(45)

@@ -190,6 +190,8 @@ def test_champions_and_the_living_are_those_of_worlds_with_births(invented: Any)
     champion, alive = evolved(invented, 2)
     assert (champion.numbers, champion.chosen_from) == ([(3, 2)], 4)
     assert alive.numbers == [(0, 2), (4, 2)]
+    best, some = unevolved(invented, 3, 2)
+    assert (best.chosen_from, {world for _, world in best.numbers + some.numbers}) == (3, {2})
     invented.lives.cause[:] = 0
     assert [group.name for group in evolved(invented)] == ["champion"]
 
@@ -293,3 +295,17 @@ def test_results_of_worlds_are_medians_over_their_organisms() -> None:
     alone = results((3, 7.0, None)).to_dict()
     assert alone["lifespan"] == {"median": 7, "q1": 7, "q3": 7}
     assert not {"score", "length"} & alone.keys()
+
+
+def test_a_score_of_zero_is_a_result() -> None:
+    found = results((3, 7.0, 0.0), (5, 0.0, 0.0))
+    assert found.by_world("score") == {3: 0, 5: 0}
+    assert found.by_world("lifespan") == {3: 7, 5: 0}
+    assert found.to_dict()["score"] == {"median": 0, "q1": 0, "q3": 0}
+
+
+def test_the_number_of_candidates_is_the_largest_of_all_worlds(invented: Any) -> None:
+    """The world with most births is between two others."""
+    invented.lives = worlds_of(*([(k, 1, True) for k in range(n)] for n in (4, 9, 6)), until=50)
+    assert evolved(invented)[0].chosen_from == 9
+    assert [unevolved(invented, most)[0].chosen_from for most in (None, 8, 5, 3)] == [9, 8, 5, 3]

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pyarrow as pa
+import pytest
 
 from primordia.comparison.gathering import gathering
 from primordia.law.metabolism import ONE
@@ -51,3 +52,12 @@ def test_metrics_are_not_read_if_no_world_gathered_food() -> None:
     assert (found.late.value.tolist(), found.late.known.tolist()) == ([0, 0], [False, False])
     assert np.isnan(found.curve).all()
     assert found.curve.shape == (2, 12)
+
+
+@pytest.mark.parametrize(("begin", "known"), [(0, True), (50, True), (60, False)])
+def test_food_of_an_earlier_time_is_known_and_late_food_is_none(begin: int, known: bool) -> None:
+    """All food is gathered by tick 60. It is unknown only if none was gathered in the compared time."""
+    tick = np.arange(0, 181, 10)
+    food = np.outer([2, 0], np.minimum(tick, 60))
+    found = gathering(run(tick, food, np.outer([5, 5], tick)), 2, begin, 180, 10)
+    assert (found.late.value.tolist(), found.late.known.tolist()) == ([0, 0], [known] * 2)

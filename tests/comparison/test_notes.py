@@ -61,11 +61,22 @@ def test_evidence_is_explained_where_there_is_some() -> None:
     assert of(some("a", 5), some("b", 5, 50), some("c", 5)) == ["Within seeds", "Needs"]
 
 
+def test_evidence_of_one_run_is_explained_where_another_has_too_few_worlds() -> None:
+    """Only one of two runs has intervals and needed worlds."""
+    for second, third in ((6, 4), (4, 6)):
+        compared = side_by_side(some("a", 6), some("b", second, 50), some("c", third, 90))
+        together, needs = evidence_notes(compared)
+        assert together.startswith("All intervals of an outcome hold simultaneously in 95 %")
+        assert needs.startswith("Needs: ")
+        assert "ratio of medians (95 % for all)" in comparison_tables(compared)
+
+
 def test_crashes_forks_and_late_numbers_are_explained_where_there_are_any() -> None:
     plain = some("a", 5), some("b", 5)
     assert "A long life: 12,000 ticks. Mean lifespan:" in notes(*plain)
     assert "A long life: 50 ticks. Mean lifespan:" in notes(*plain, age=50)
     assert "Crashes:" not in notes(*plain)
+    assert "Crashes:" not in notes(plain[0], some("b", 5, total=[0, 3, 0, 0, 1]))
     assert "Crashes:" in notes(plain[0], some("b", 5, crashes=[0, 0, 0, 0, 1]))
     assert "count from" not in notes(*plain)
     assert "Births, ticks and lives count from tick 1,500, the tick" in notes(*plain, begin=1500)

@@ -36,6 +36,7 @@ def test_every_tick_and_every_death_counts_once(
     late = measured.lived[:, -LATE:].sum(1), measured.deaths[:, -LATE:].sum(1)
     assert (measured.late.known == (late[1] > 0)).all()
     assert (measured.late.value == late[0] / np.maximum(late[1], 1)).all()
+    assert (measured.curve == measured.lived / np.maximum(measured.deaths, 1)).all()
 
 
 def test_worlds_that_never_saturate_are_compared_by_ticks_for_each_death(tmp_path: Path) -> None:

@@ -86,6 +86,22 @@ def test_the_first_long_life_is_known_when_no_earlier_one_can_become_long(
         assert measured.known[number] == (first < len(world) and long[first])
 
 
+def test_births_to_the_first_long_life_of_a_fork_are_those_since_the_fork() -> None:
+    """Two organisms alive at the fork in tick 10 live long; so does the third birth after it."""
+    lived = [
+        (0, 60, True),
+        (2, 50, True),
+        (10, 3, True),
+        (12, 3, True),
+        (14, 4, True),
+        (15, 40, True),
+    ]
+    world = world_of(lived, until=UNTIL).recorded_since(10)
+    assert world.inherited.tolist() == [True] * 3 + [False] * 3
+    found = first_long([world, world.recorded_until(30), world.take(np.arange(3))], 20)
+    assert (found.value.tolist(), found.known.tolist()) == ([3, 3, 1], [True, False, False])
+
+
 @pytest.mark.parametrize("worlds", [1, 2, 3, 4, 7, 8])
 def test_worlds_saturate_often_if_at_least_half_of_them_do(worlds: int) -> None:
     for by_births in range(worlds + 1):

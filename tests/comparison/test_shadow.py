@@ -18,6 +18,9 @@ from primordia.comparison.resample import resamples
 from primordia.comparison.shadow import Shadow, _lifespans, _sample, shadow
 from primordia.errors import InputError
 from primordia.history.climate import Climates, PastClimate
+from primordia.law.metabolism import Rates
+from primordia.random.keys import Purpose, stream
+from primordia.random.wide import wide
 from primordia.runs import loop
 from primordia.runs.lives import Lives
 from tests.commands import complains, here
@@ -199,3 +202,37 @@ def test_organisms_are_spread_over_all_births(poles: dict[str, primordia.Run]) -
     lives = run.lives()
     assert len(run.shadow(10**6, 1).world) == len(lives) - 6  # the last of each world is left out
     assert np.bincount(run.shadow(3, 1).world).tolist() == [3] * 6
+
+
+@pytest.mark.parametrize("redrawn", [False, True])
+def test_an_organism_is_born_again_with_keys_of_its_world_and_birth_number(
+    redrawn: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Birth numbers of a fork have gaps. An original and its shadow have the same keys."""
+    lives = worlds_of([(k, 0, True) for k in range(4)], [(3, 1, True)] * 3, until=50)
+    lives.id[:] = [3, 5, 8, 9, 3, 4, 7]
+    rows, seeds = np.array([1, 3, 4, 6]), np.array([40, 2**63], np.uint64)
+    climate = {f"metabolism.{name}": np.arange(4.0) for name in Rates._fields}
+    past = SimpleNamespace(of_lives=lambda *_: climate)
+    asked: list[Any] = []
+
+    def genomes(*given: Any) -> str:
+        asked.append(given[1:])
+        return "genomes"
+
+    monkeypatch.setattr(module, "PastClimate", lambda _: past)
+    monkeypatch.setattr("primordia.history.pedigree.genomes", genomes)
+    monkeypatch.setattr(module, "lifespans", lambda players, cut: (players, cut))
+    run: Any = SimpleNamespace(
+        lives=lives,
+        world_seeds=seeds,
+        law="law",
+        config=SimpleNamespace(saturation_ticks=77, build_habitat=lambda: "habitat"),
+    )
+    found: Any = _lifespans(run, rows, redrawn, 9)
+    (law, habitat, made, keys, rates), cut = found
+    assert (law, habitat, made, cut, asked) == ("law", "habitat", "genomes", 9, [(rows, redrawn)])
+    expected = stream(wide(seeds[[0, 0, 1, 1]]), Purpose.REBIRTH, wide(np.array([5, 9, 3, 7])))
+    for half in ("hi", "lo"):
+        np.testing.assert_array_equal(getattr(keys, half), getattr(expected, half))
+    assert rates.drain.tolist() == [0, 1, 2, 3]

@@ -1,5 +1,6 @@
 """A comparison as text: each number and word of the tables."""
 
+import tomllib
 from typing import Any
 
 import numpy as np
@@ -41,8 +42,11 @@ def test_numbers_have_three_digits_or_more(value: float, text: str) -> None:
 
 @pytest.mark.parametrize(
     ("bounds", "text"),
-    [((2, 2), "2"), ((2, 3.5), "2..3.5"), ((1200, INF), ">= 1,200"), ((0, INF), "unknown")],
-)
+    [
+        ((2, 2), "2"), ((2, 3.5), "2..3.5"), ((1200, INF), ">= 1,200"), ((0, INF), "unknown"),
+        ((0, 0), "0"), ((0, 3.5), "0..3.5"),
+    ],
+)  # fmt: skip
 def test_bounds_are_given_as_far_as_they_are_known(bounds: tuple[float, float], text: str) -> None:
     assert tables.bounds_text(bounds) == text
     assert tables.ratio_text(effect(ratio=bounds, interval=None)) == text
@@ -63,6 +67,8 @@ def test_quartiles_of_worlds_follow_the_median() -> None:
         assert tables.spread_text(worlds) == text
     assert tables.spread_text([9, 1, float("nan"), 3, 6]) == "4.5 (2.5 to 6.75)"
     assert tables.spread_text([3.0, 3.0]) == "3"
+    assert tables.spread_text([0.0, 4.0, 0.0]) == "0 (0 to 2)"
+    assert tables.spread_text([0.0]) == "0"
     assert tables.spread_text([float("nan")]) == tables.spread_text([]) == "-"
 
 
@@ -93,15 +99,32 @@ def test_the_share_of_pairs_is_given_in_whole_percent(pairs: int) -> None:
 def test_pairs_and_needed_worlds_are_given_if_there_are_any() -> None:
     pairs = Paired(8, 6, 2)
     assert tables.paired_text(effect(paired=pairs)) == "+0.50"
+    assert tables.paired_text(effect(paired=Paired(8, 3, 3))) == "+0.00"
     assert tables.paired_text(effect()) == ""
     assert tables.needed_text(effect(delta=0.02)) == f"{effect(delta=0.02).needed:,} worlds an arm"
     assert tables.needed_text(effect(delta=0.0)) == tables.needed_text(effect(worlds=4)) == ""
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (None, "none"), (True, "true"), (False, "false"), (0, "0"), (2**64 - 1, f"{2**64 - 1}"),
+        (0.5, "0.5"), (1e-05, "1e-05"), ("blind", "blind"), ([1, 0.5], "[1, 0.5]"),
+        (["a", "b"], '["a", "b"]'), ([], "[]"),
+    ],
+)  # fmt: skip
+def test_settings_are_given_as_flags_take_them(value: Any, text: str) -> None:
+    assert tables.setting_text(value) == text
+    if isinstance(value, bool | list):
+        assert tomllib.loads(f"value = {text}") == {"value": value}
 
 
 def test_the_first_table_has_settings_saturations_and_extinctions() -> None:
     one = arm("one", [1, 2, 3], [True, False, True], total=[5, 0, 4], crashes=[2, 0, 1])
     two = arm("two", [4, 5], seed=50, total=[1, 0], settings={"seed": 50, "a.b": None})
     one.settings.update({"seed": 0, "a.b": 0.5})
+    plain = side_by_side(one, two).to_dict()["runs"]
+    assert [(each["extinctions"], each["crashes"]) for each in plain] == [(9, 3), (1, 0)]
     head, _, *rows = tables.comparison_tables(side_by_side(one, two)).splitlines()[:4]
     assert cells(head) == ["meadow", "seed", "a.b", "worlds", "saturated", "extinctions", "crashes"]
     assert [cells(row) for row in rows] == [
@@ -160,3 +183,14 @@ def test_each_table_has_the_effects_of_its_own_outcome() -> None:
     assert [cells(lines[k])[0] for k in heads] == list(compared.outcomes.values())
     deltas = [cells(lines[k + 3])[2].split()[0] for k in heads]
     assert deltas == [f"{(2 * larger - 5) / 5:+.2f}" for larger in shares.values()]
+
+
+def test_an_outcome_is_shown_if_it_is_known_in_any_world_of_any_run() -> None:
+    one, two = arm("one", [1, 2, 3]), arm("two", [4, 5], seed=50)
+    for known in ([0, 0, 0, 0, 0], [0, 1, 0, 0, 0], [0, 0, 0, 0, 1]):
+        for each, of in ((one, known[:3]), (two, known[3:])):
+            each.measured["first"] = Measured(np.ones(len(of)), np.array(of, bool))
+        compared = side_by_side(one, two)
+        assert ("first" in compared.outcomes) == any(known)
+        text = tables.comparison_tables(compared)
+        assert ("births to first long life" in text) == any(known)

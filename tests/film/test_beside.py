@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from primordia.errors import InputError
 from primordia.film import beside
 from primordia.film import film as films
 from primordia.film.beside import Beside
@@ -41,19 +42,20 @@ def film(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Any]:
     """
 
     def made(run: Any, **options: Any) -> Any:
-        found = SimpleNamespace(title=None, pictures=[])
+        found = SimpleNamespace(title=None, pictures=[], rate=None, path=None)
 
         def frames(*given: Any) -> Any:
             found.title = given
             return SimpleNamespace(draw=lambda world, *given: given)
 
+        def write(path: Path, shown: Iterator[Any], rate: float, sample: Any) -> None:
+            found.pictures.extend(shown)
+            found.rate, found.written, found.sample = rate, path, sample
+
         monkeypatch.setattr(films, "Frames", frames)
         monkeypatch.setattr(films, "with_colours", lambda first: first)
-        monkeypatch.setattr(
-            "primordia.organism.video.write",
-            lambda _, shown, *__: found.pictures.extend(shown),
-        )
-        films.film(run, tmp_path / "film.mp4", **options)
+        monkeypatch.setattr("primordia.organism.video.write", write)
+        found.path = films.film(run, **{"out": tmp_path / "film.mp4", **options})
         return found
 
     return made
@@ -88,6 +90,7 @@ def test_the_title_names_the_world_if_there_are_several(
     monkeypatch.setattr(beside, "oldest", lambda _, __, ticks: map(life, range(len(ticks))))
     several, single = a_run(TWO_WORLDS, lacks), a_run(TWO_WORLDS.of_world(0), lacks)
     assert film(several, world=1, ticks=(0, 60)).title == ("meadow, world 1", lacks)
+    assert film(several, world=0, ticks=(0, 60)).title == ("meadow, world 0", lacks)
     assert film(single, ticks=(0, 60)).title == ("meadow", lacks)
 
 
@@ -184,3 +187,34 @@ def test_a_life_is_shown_from_its_birth_to_its_end_at_thirty_pictures_a_second(
     ages = [age for age in ages if age <= 10]
     pictures: list[Any] = list(islice(beside.pictures_of(a_run(world_of(LIVED)), 0, 0), 30))
     assert pictures == ages + [10] * (30 - len(ages))
+
+
+def test_a_film_is_in_the_folder_of_its_run_under_the_number_of_its_world(
+    film: Callable[..., Any], tmp_path: Path
+) -> None:
+    """It has 30 pictures in a second, and the colours of its first picture."""
+    run = a_run(TWO_WORLDS, lacks=True)
+    run.path = tmp_path
+    for world in (1, 0):
+        found = film(run, world=world, out=None, ticks=(0, 90))
+        assert found.path == found.written == tmp_path / "videos" / f"world{world}.mp4"
+        assert (found.rate, found.sample) == (30, found.pictures[0])
+    other = tmp_path / "other.gif"
+    assert film(run, out=other, ticks=(0, 90)).path == other
+
+
+@pytest.mark.parametrize("world", [-1, 2])
+def test_a_world_beyond_the_last_is_an_error(world: int, film: Callable[..., Any]) -> None:
+    with pytest.raises(InputError, match=f"run has no world {world}; the worlds are 0 to 1"):
+        film(a_run(TWO_WORLDS), world=world)
+
+
+def test_the_film_of_a_fork_begins_at_the_fork(film: Callable[..., Any]) -> None:
+    lives = world_of(LIVED, 1800).recorded_since(900)
+    run = a_run(lives, lacks=True)
+    run.config = config(MEADOW, cells=60, fork={"run": "source", "tick": 900})
+    pictures = film(run, by="ticks", ticks=(None, 905)).pictures
+    shown = [counts.split("   ")[0] for counts, *_ in pictures]
+    assert shown[:6] == [f"tick {tick}" for tick in range(900, 906)]
+    with pytest.raises(InputError, match="from tick 900 to 1800, not from 0 to 1800"):
+        film(run, ticks=(0, None))

@@ -41,3 +41,14 @@ def test_each_life_is_shown_for_a_while_and_then_the_oldest_of_that_moment(
     for now in range(len(seen)):
         since = max(at for at in begins if at <= now)
         assert seen[now] == holders[now] or now - since < least
+
+
+def test_of_two_hundred_lives_the_first_of_equals_is_shown() -> None:
+    """Each life is lived twice. Of equal ages, the living come first, then those that died first."""
+    spans = np.random.default_rng(2).integers(100, 400, 100)
+    world = world_of([(born, int(span), True) for born, span in enumerate(spans)] * 2, until=999)
+    ticks = np.arange(0, 520)
+    for tick, row in zip(ticks, oldest_so_far(world, ticks), strict=True):
+        ages = np.where(world.born <= tick, np.minimum(world.ended, tick) - world.born, -1)
+        dead = np.where(world.ended <= tick, world.ended, 0)
+        assert row == np.lexsort((dead, -ages))[0]

@@ -104,6 +104,8 @@ def test_large_worlds_are_drawn_in_part() -> None:
     assert (np.diff(torus.cells[:100]) == 3).all()
     ring = shape(Placement(), 5_000)
     assert len(ring.cells) <= Ring.MOST
+    for cells, step in ((1_024, 1), (1_025, 2), (2_048, 2), (2_049, 3)):
+        assert shape(Placement(), cells).cells.tolist() == list(range(0, cells, step))
 
 
 def test_the_longer_side_of_a_torus_decides_which_cells_are_drawn() -> None:
@@ -112,6 +114,8 @@ def test_the_longer_side_of_a_torus_decides_which_cells_are_drawn() -> None:
     assert long.cells.tolist() == [6 * row for row in range(334)]
     flat = shape(Placement(topology="torus4", rows=2), 8)
     assert flat.cells.tolist() == list(range(8))
+    wide = shape(Placement(topology="torus4", rows=2), 2000)
+    assert wide.cells.tolist() == [3 * column for column in range(334)]
     picture = flat.draw(np.full((8, 3), 200, np.uint8))
     assert (picture == 200).all(axis=2).any(axis=1).sum() == 2 * (SIDE // 4 - 1)
 
@@ -134,6 +138,36 @@ def test_a_ring_has_the_present_outside_and_its_past_within() -> None:
     assert (seen[outer - 23] == GROUND.astype(np.uint8)).all()
 
 
+def test_the_innermost_ring_is_the_earliest_moment_that_has_room(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """In a picture of 48 pixels, the past has a width of 15.4 pixels, so 16 moments are seen."""
+    monkeypatch.setattr(shapes, "SIDE", 48)
+    ring, moments_seen = shape(Placement(), 4), 16
+    first, then = np.full((4, 3), (200, 0, 0), np.uint8), np.full((4, 3), (0, 200, 0), np.uint8)
+    pictures = [ring.draw(colour) for colour in [first] + [then] * moments_seen]
+    left = [int((picture == first[0]).all(axis=2).sum()) for picture in pictures]
+    assert left[-2] > 0
+    assert left[-1] == 0
+
+
+@pytest.mark.parametrize(("side", "edge"), [(120, 1), (160, 0)])
+def test_cells_of_four_pixels_have_an_edge_and_smaller_ones_have_none(side: int, edge: int) -> None:
+    form = shape(Placement(topology="torus4", rows=side), side**2)
+    picture = form.draw(np.full((side**2, 3), 200, np.uint8))
+    pixels = SIDE // side - edge
+    assert (picture == 200).all(axis=2).sum() == (side * pixels) ** 2
+
+
+def test_a_film_by_births_has_900_moments_of_birth_at_most() -> None:
+    lived = [(born, 5, True) for born in range(1, 2_000)] + [(2_000, 0, False)]
+    world = world_of(lived, until=2_100)
+    shown = moments(world, 0, "births", (None, None))
+    assert len(shown) == RATE * SECONDS + 2
+    assert shown[[0, 1, -2, -1]].tolist() == [0, 1, 2_000, 2_100]
+    assert set(np.diff(shown[1:-1])) == {2, 3}
+
+
 def test_moments_pass_by_births_or_by_ticks() -> None:
     world = world_of([(born**2, 5, born > 0) for born in range(40)], until=2_000)
     by_births = moments(world, 0, "births", (None, None))
@@ -147,9 +181,11 @@ def test_moments_pass_by_births_or_by_ticks() -> None:
     with pytest.raises(InputError, match="nothing was born from tick 1521 to 1600"):
         moments(world, 0, "births", (39**2, 1_600))
     assert moments(world, 100, "ticks", (None, None))[[0, -1]].tolist() == [100, 2_000]
-    for ticks in ((-1, None), (None, 2_001), (50, 50)):
+    for ticks in ((-1, None), (None, 2_001), (50, 50), (None, 0)):
         with pytest.raises(InputError, match="can be shown from tick 0 to 2000"):
             moments(world, 0, "ticks", ticks)
+    with pytest.raises(InputError, match="from tick 100 to 2000, not from 0 to 2000"):
+        moments(world, 100, "ticks", (0, None))
     with pytest.raises(InputError, match="nothing was born from tick 1700 to 1800"):
         moments(world, 0, "births", (1_700, 1_800))
 
@@ -165,8 +201,20 @@ def test_a_picture_has_the_world_the_life_and_the_share_that_has_passed() -> Non
     assert np.argmax(red.any(axis=0)) > SIDE
     bar = (picture[-1] != PAPER).any(axis=1)
     assert bar.sum() == pytest.approx(WIDTH / 4, abs=1)
+    below = (picture[-10:, : WIDTH // 4] != PAPER).any(axis=2)
+    assert below.all(axis=1).tolist() == [False] * 7 + [True] * 3
+    assert not below[:7].any()
     assert fitted(life, (90, 100)).size == (90, 30)
     assert fitted(life, (900, 20)).size == (60, 20)
+
+
+def test_a_picture_has_nothing_of_the_one_before_it() -> None:
+    worlds = [np.full((SIDE, SIDE, 3), light, np.uint8) for light in (90, 140)]
+    life, frames = Image.new("RGB", (40, 10), "red"), Frames("a task", alone=False)
+    frames.draw(worlds[0], "tick 1,000   births 90", 1.0, life, "organism 1,000")
+    then = frames.draw(worlds[1], "tick 2", 0.25, None, "")
+    fresh = Frames("a task", alone=False).draw(worlds[1], "tick 2", 0.25, None, "")
+    np.testing.assert_array_equal(np.asarray(then), np.asarray(fresh))
 
 
 def test_a_picture_has_its_words_and_the_life_in_their_places() -> None:
@@ -190,6 +238,7 @@ def test_a_picture_has_its_words_and_the_life_in_their_places() -> None:
     red = np.argwhere((empty == (255, 0, 0)).all(axis=2))
     assert red[:, 0].mean() == pytest.approx(48 + SIDE / 2, abs=1), "in the middle of its height"
     assert red[:, 1].min() == 2 * 20 + SIDE
+    assert red[:, 1].max() == WIDTH - 20 - 1
     grey = np.argwhere((empty == 90).all(axis=2))
     assert grey.min(axis=0).tolist() == [48, 20]
     alone = np.argwhere((drawn("", "", "", alone=True) == 90).all(axis=2))

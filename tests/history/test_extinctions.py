@@ -18,6 +18,7 @@ from primordia.runs import loop
 from primordia.runs.archive import Archive
 from primordia.runs.lives import ALIVE, Lives, joined
 from tests.commands import here
+from tests.synthetic import world_of
 from tests.worlds import CLOCKWORK, MEADOW, config
 
 CELLS = 8
@@ -81,12 +82,19 @@ def test_a_record_that_begins_later_holds_the_extinctions_since(
     assert later.crashes[0] <= extinctions([world], CELLS).crashes[0]
 
 
+def test_a_fork_whose_founders_are_dead_counts_the_extinction_of_their_children() -> None:
+    world = world_of([(0, 3, True), (1, 18, True), (20, 9, False)], until=60)
+    world.parent[1] = 0
+    assert extinctions([world.recorded_since(10), world], CELLS).total.tolist() == [1, 1]
+
+
 def test_the_text_of_crashes_has_the_number_of_worlds_that_crashed() -> None:
     def text(*crashes: int) -> str:
         return Extinctions(np.full(len(crashes), 3000), np.array(crashes)).text
 
     assert text(0, 0) == "0"
     assert text(0, 1, 0) == "1 in 1 world"
+    assert text(0, 1200) == "1,200 in 1 world"
     assert text(0, 2, 3, 1) == "6 in 3 worlds"
     assert text(*[1] * 1200) == "1,200 in 1,200 worlds"
 

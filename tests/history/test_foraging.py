@@ -163,6 +163,33 @@ def test_a_long_run_has_60_intervals(monkeypatch: pytest.MonkeyPatch) -> None:
     np.testing.assert_allclose(foraging(run).middle, np.arange(50, 6_000, 100))
 
 
+class Seasons:
+    """A past in which the drain is the tick, and the gain is 2. World 1 has no drain, world 2 no gain."""
+
+    def __init__(self, run: Any) -> None: ...
+
+    def of_worlds(self, worlds: np.ndarray, ticks: np.ndarray) -> dict[str, np.ndarray]:
+        drain, gain = np.where(worlds == 1, 0, ticks), np.where(worlds == 2, 0.0, 2.0)
+        return {"metabolism.drain": drain, "metabolism.gain": gain}
+
+
+@pytest.mark.parametrize("order", [(0, 1, 2), (2, 0, 1), (1, 2, 0)])
+def test_the_intervals_are_those_of_the_longest_world_in_any_order(
+    order: tuple[int, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The longest world has the fewest samples. Each break-even is that of the interval's middle."""
+    every = [np.arange(0.0, end + 1, step) for end, step in ((60, 20), (40, 10), (30, 5))]
+    monkeypatch.setattr(
+        module, "harvests", lambda run, worlds: [Harvest(*[every[k]] * 3) for k in order]
+    )
+    monkeypatch.setattr(module, "PastClimate", Seasons)
+    found = foraging(SimpleNamespace(config=SimpleNamespace(seeds=3)))
+    middle = np.arange(5.0, 60, 10)
+    np.testing.assert_allclose(found.middle, middle)
+    expected = [middle / 2, np.zeros(6), np.full(6, np.inf)]
+    np.testing.assert_array_equal(found.break_even, expected)
+
+
 def test_food_of_intervals_shorter_than_a_tick_is_that_of_the_tick() -> None:
     """A comparison of a run of six ticks has intervals of half a tick."""
     harvest = Harvest(*np.array([[0.0, 1, 2], [0, 0.25, 0.75], [0, 1, 2]]))

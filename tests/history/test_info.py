@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 import primordia
-from primordia.history.info import _world
+from primordia.history import info as module
+from primordia.history.info import _world, info
+from primordia.history.threshold import Threshold
 from primordia.law.world import Cause
 from primordia.runs import loop
 from primordia.runs.arrays import NEVER
@@ -130,3 +132,75 @@ def test_numbers_of_an_empty_world_are_unknown() -> None:
     assert [found[name] for name in unknown] == [None] * 3
     assert found["alive"] == 0
     assert not {"tallies", "break_even", "climate"} & found.keys()
+
+
+def test_numbers_of_zero_are_known() -> None:
+    """Counts may be below zero; without drain no food is needed."""
+    run = stored()
+    run.state["bodies.tally"][:3] = 0
+    run.state["bodies.tally"][3:] = [[-5, -4], [99, 99], [-8, -1]]
+    run.state["world.worlds.climate.metabolism.drain"][1] = 0
+    first, second = (_world(run, world, 0, {}) for world in (0, 1))
+    none, below = {"median": 0, "best": 0}, {"median": -6.5, "best": -5}
+    assert first["tallies"] == {"score": none, "kills": none}
+    assert second["tallies"] == {"score": below, "kills": {"median": -2.5, "best": -1}}
+    assert second["break_even"] == {"food_per_tick": 0, "food_per_second": 0}
+    run.state["world.worlds.climate.metabolism.gain"][1] = 0
+    run.description.rate = None
+    assert _world(run, 0, 0, {})["break_even"] == {"food_per_tick": 0.5, "food_per_second": None}
+    unknown = {"food_per_tick": None, "food_per_second": None}
+    assert _world(run, 1, 0, {})["break_even"] == unknown
+    run.config.metabolism = None
+    assert _world(run, 0, 0, {})["climate"] == first["climate"]
+
+
+@pytest.mark.parametrize("seeds", [(2, 2), (1, 2), (1,)])
+def test_the_numbers_of_runs_are_those_of_all_their_worlds(
+    seeds: tuple[int, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nothing has been born in the last world of the last run. Its error threshold is unknown."""
+    parts = []
+    for number, worlds in enumerate(seeds):
+        part, last = stored(), number == len(seeds) - 1
+        part.config.seeds, part.lives = worlds, SimpleNamespace(worlds=worlds - last)
+        part.row_digests, part.crashed = f"run {number}", 10 * number + np.arange(worlds)
+        parts.append(part)
+
+    def threshold(part: Any) -> list[Threshold]:
+        return [Threshold(world, 0.5, 0.0, 4.0 + world) for world in range(part.lives.worlds)]
+
+    def digests(rows: str, state: Any, count: int) -> list[str]:
+        assert any(state is part.state for part in parts)
+        return [f"{rows}, world {world}" for world in range(count)]
+
+    monkeypatch.setattr(
+        module, "extinctions_of", lambda part: SimpleNamespace(crashes=part.crashed)
+    )
+    monkeypatch.setattr(module, "threshold", threshold)
+    monkeypatch.setattr(module, "digests", digests)
+    total = sum(seeds)
+    progress = {"wall_s": 12.5, "exact": False, "restarts": total - 1}
+    of_all = {"inheritance": "founder", "cells": 3, "seeds": total, "task": "pond"}
+    run: Any = SimpleNamespace(
+        config=SimpleNamespace(**of_all),
+        progress=SimpleNamespace(
+            **progress, limits=SimpleNamespace(model_dump=lambda: {"ticks": 9})
+        ),
+        damaged=["one", "other"],
+        versions={"jax": "1"},
+        parts=lambda: iter(parts),
+    )
+    found = info(run)
+    rest = {"damaged": ["one", "other"], "versions": {"jax": "1"}, "limits": {"ticks": 9}}
+    assert {**of_all, **progress, **rest}.items() <= found.items()
+    places = [(number, world) for number, count in enumerate(seeds) for world in range(count)]
+    assert [each["digest"] for each in found["worlds"]] == [
+        f"run {number}, world {world}" for number, world in places
+    ]
+    assert [each["crashes"] for each in found["worlds"]] == [10 * n + world for n, world in places]
+    assert [each["births"] for each in found["worlds"]] == [(60, 90)[world] for _, world in places]
+    held = [2.0 + world / 2 for _, world in places[:-1]]
+    assert [each["threshold"]["held"] for each in found["worlds"]] == [*held, None]
+    assert all("world" not in each["threshold"] for each in found["worlds"])
+    single = {"seed": 7, "births": 60, "digest": "run 0, world 0"} if total == 1 else {}
+    assert {name: found[name] for name in ("seed", "births", "digest") if name in found} == single

@@ -58,6 +58,10 @@ def test_the_summary_says_whether_good_lines_persist() -> None:
     assert "good lines" not in summarised([world()])
     some = [world(threshold=held(value)) for value in (0.5, 0.9, 2.0)] + [world()] * 3
     assert f"    good lines persist in 1 of 3 worlds; medians {numbers} 0.9" in summarised(some)
+    lost = world(threshold=held(0.0))
+    assert f"    good lines are lost: {numbers} 0\n" in summarised([lost])
+    words = f"    good lines persist in 0 of 1 worlds; medians {numbers} 0"
+    assert words in summarised([lost] + [world()] * 4).splitlines()
 
 
 def test_the_summary_says_what_food_keeps_an_organism_alive() -> None:
@@ -71,6 +75,10 @@ def test_the_summary_says_what_food_keeps_an_organism_alive() -> None:
     assert line(fed(0.5, None)) == "  break-even: food of 0.5 a tick"
     ratchets = line(fed(0.025, 0.5), fed(0.275, 5.5))
     assert ratchets == "  break-even: food of 0.025 to 0.275 a tick, or 0.5 to 5.5 a second"
+    assert line(*[fed(0.5, 2.0)] * 2) == "  break-even: food of 0.5 a tick, or 2 a second"
+    assert line(fed(0.0, 0.0), fed(0.0, 1.5)) == (
+        "  break-even: food of 0 a tick, or 0 to 1.5 a second"
+    )
     assert "break-even" not in summarised([fed(None, None)])
     assert "break-even" not in summarised([world()])
 
@@ -83,6 +91,7 @@ def test_the_summary_says_why_worlds_die_out() -> None:
     assert line.startswith("  an organism tries to copy itself 0.2 times in its life; raise")
     thriving = world(births=100, extinctions=1, tries_per_life=1.8)
     assert "copy itself 0.6 times" in summarised([dying, thriving])
+    assert "copy itself 0.2 times" in summarised([world(births=0, tries_per_life=None), dying])
     for fine in (world(extinctions=7), world(tries_per_life=0.2), world(births=0, extinctions=1)):
         assert "raise" not in summarised([fine])
 

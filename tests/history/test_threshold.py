@@ -68,7 +68,10 @@ def test_ticks_of_the_living_count_in_the_ticks_lived_per_death() -> None:
 
 def test_a_world_in_which_nothing_is_known_says_so() -> None:
     assert measured(lives((-1, FOUNDER, 5))) == Threshold(0, None, None, None)
-    assert Threshold(0, 0.5, None, 2.0).held is None
+    for numbers in ((None, 0.5, 2.0), (0.5, None, 2.0), (0.5, 0.5, None)):
+        assert Threshold(0, *numbers).held is None
+    assert Threshold(0, 0.0, 0.5, 2.0).held == 2
+    assert Threshold(0, 1.0, 0.0, 2.0).held == 0
     alive: list = [(-1, FOUNDER, 9, "alive"), (0, COPY, 5, "alive")]
     found = measured(lives(*alive))
     assert (found.as_good, found.advantage) == (None, None)
@@ -155,3 +158,11 @@ def test_organisms_alive_at_a_fork_are_parents_but_no_births() -> None:
     of_all = (15 * 100 + 105) / 120
     assert found.advantage == pytest.approx(100 / of_all)
     assert over_births(0, world, np.array([0, len(rows)])) == [Threshold(0, None, None, None)]
+
+
+def test_a_child_that_inherits_nothing_has_no_family() -> None:
+    """With `inheritance = "founder"` the record names a parent, but the child is a founder."""
+    found = families(lives((-1, FOUNDER, 9), (0, FOUNDER, 5), (0, COPY, 5), (1, MUTANT, 5)), 0.0)
+    assert found.born.tolist() == [0, 1, 2, 3]
+    assert (found.child.tolist(), found.parent.tolist()) == ([2, 3], [0, 1])
+    assert found.mutant.tolist() == [False, True]

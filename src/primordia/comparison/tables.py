@@ -1,5 +1,6 @@
 """A comparison as text: tables, and notes that explain them."""
 
+import json
 import math
 from collections.abc import Iterable
 from typing import Any
@@ -98,7 +99,9 @@ def bounds_text(bounds: Bounds) -> str:
 
 def setting_text(value: Any) -> str:
     """Return the text of a setting, as in TOML and flags."""
-    return "none" if value is None else str(value)
+    if value is None:
+        return "none"
+    return value if isinstance(value, str) else json.dumps(value)
 
 
 def number_text(value: float) -> str:

@@ -1,0 +1,135 @@
+"""Births repeated batch by batch, with an invented heredity: a genome tells from whom it is made."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from primordia.errors import Trouble
+from primordia.history import lineage as lines
+from primordia.history import pedigree
+from primordia.history.lineage import changes, rebuild_all
+from primordia.history.pedigree import genomes
+from primordia.random.wide import to_host
+from primordia.runs.lives import joined
+from tests.assays.lives import COPY, FOUNDER, MUTANT, lives
+
+FIRST = lives(
+    *[(-1, FOUNDER, 9)] * 2,
+    *[(0, COPY, 9), (1, MUTANT, 9), (0, MUTANT, 9), (2, COPY, 9), (1, COPY, 9), (5, MUTANT, 9)],
+    *[(7, COPY, 9), (-1, FOUNDER, 9), (9, MUTANT, 9), (8, MUTANT, 9), (3, COPY, 9)],
+)
+SECOND = lives((-1, FOUNDER, 9), *[(number, MUTANT, 9) for number in range(9)])
+"""A line of ten organisms."""
+LIVES = joined([FIRST, SECOND], np.array([0, 1]))
+SEEDS = np.array([40, 2**63], np.uint64)
+MATES = np.array([-1, -1, 1, 0, 3, 0, -1, 6, 0, -1, 0, 10, 11, *[-1] * 10])
+"""The mate of each organism. Some mates are in a later generation than the parent."""
+
+
+def climate_of(births: Any, ticks: np.ndarray) -> dict[str, np.ndarray]:
+    assert ticks.tolist() == births.born.tolist()
+    return {"any": 100 * births.world + births.id}
+
+
+def a_run(mates: np.ndarray | None = None) -> Any:
+    """Return a stand-in for a run; the note of each birth is ten times its number."""
+
+    def of(column: Any, some: Any) -> np.ndarray:
+        return column[LIVES.rows_of(some.world, some.id)]
+
+    return SimpleNamespace(
+        lives=LIVES,
+        schema=SimpleNamespace(mates=mates is not None),
+        config=SimpleNamespace(fork=None),
+        layout=SimpleNamespace(length=4, names=("all",)),
+        heredity=SimpleNamespace(mutation=SimpleNamespace(moments=None, notes_from="parent")),
+        world_seeds=SEEDS,
+        origin=None,
+        notes_of=lambda some: of(10 * LIVES.id[:, None], some),
+        mates_of=lambda some: of(mates, some),
+    )
+
+
+@pytest.fixture(autouse=True)
+def at_once(monkeypatch: pytest.MonkeyPatch) -> int:
+    """Repeat three births in one call: generations have up to six, and lines up to ten."""
+    for module, name in ((pedigree, "AT_ONCE"), (lines, "STEPS_AT_A_TIME")):
+        monkeypatch.setattr(module, name, 3)
+        monkeypatch.setattr(module, "PastClimate", lambda _: SimpleNamespace(of_lives=climate_of))
+    return 3
+
+
+@pytest.mark.parametrize("redrawn", [False, True])
+def test_each_birth_of_a_pedigree_has_its_own_parents_and_notes(
+    redrawn: bool, at_once: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A genome is the number of the newborn, of its parent and of its mate, and its note.
+
+    A founder has 0 in place of a parent, and an organism without a mate has -1. A redrawn note is one
+    more than that of the parent.
+    """
+    births: list[int] = []
+
+    def repeat(counts: tuple, marks: tuple, climate: dict, of: tuple, notes: np.ndarray) -> Any:
+        (seed, number, tick), (cell, founder) = counts, marks
+        number = to_host(number).astype(int)
+        assert len(number) == at_once
+        assert number.tolist() == to_host(tick).tolist() == cell.tolist()
+        world = climate["any"] // 100
+        assert (climate["any"] % 100).tolist() == number.tolist()
+        assert redrawn or (to_host(seed) == SEEDS[world]).all()
+        births.extend(set((100 * world + number).tolist()))
+        own = np.where(founder[:, None], 0, notes + 1) if redrawn else notes
+        genome = [number, of[0][:, 0], np.where(of[2], of[1][:, 0], -1), own[:, 0]]
+        return np.stack(genome, axis=1).astype(np.float32), own
+
+    monkeypatch.setattr(pedigree, "shared", lambda *_: repeat)
+    depth: list[int] = []
+    for row in range(len(LIVES)):
+        parent = LIVES.parent_row[row]
+        depth.append(0 if parent < 0 else depth[parent] + 1)
+    rows = np.array([22, 12, 4, 0, 8, 12, 11, 20])
+    expected = [
+        [LIVES.id[row], max(LIVES.parent[row], 0), MATES[row], depth[row] if redrawn else note]
+        for row, note in zip(rows, 10 * LIVES.id[rows], strict=True)
+    ]
+    assert genomes(a_run(MATES), rows, redrawn).tolist() == expected
+    assert len(births) == len(set(births)), "no birth is repeated twice"
+
+
+def test_each_line_of_descent_is_replayed_from_its_founder(
+    at_once: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A genome tells how many births were replayed, the last of them, its seed and its note."""
+
+    def replay(genome: np.ndarray, counts: tuple, marks: tuple, climate: dict, notes: Any) -> Any:
+        (seed, number, tick), (cell, founder, real) = counts, marks
+        number = to_host(number).astype(int)
+        assert len(number) == at_once
+        assert number.tolist() == to_host(tick).tolist() == cell.tolist()
+        world = climate["any"] // 100
+        assert (to_host(seed) == SEEDS[world]).all()
+        assert founder.tolist() == [bool(each == 0) for each in number]
+        for k in np.flatnonzero(real):
+            assert number[k] > genome[1] or genome[0] == 0
+            genome = np.array([genome[0] + 1, number[k], world[k], notes[k, 0]], np.float32)
+        return genome, number[:, None].astype(np.float32)
+
+    monkeypatch.setattr(lines, "shared", lambda *_: replay)
+    asked = [(9, 1), (11, 0), (0, 0), (3, 1), (4, 0)]
+    expected = [[10, 9, 1, 90], [6, 11, 0, 110], [1, 0, 0, 0], [4, 3, 1, 30], [2, 4, 0, 40]]
+    assert rebuild_all(a_run(), asked).tolist() == expected
+    for organism, world, line in ((9, 1, range(1, 10)), (11, 0, (2, 5, 7, 8, 11)), (0, 0, ())):
+        found = changes(a_run(), organism, world)
+        assert np.isnan(found[0, 0])
+        assert found[1:, 0].tolist() == list(line)
+
+
+@pytest.mark.parametrize(("organism", "mate"), [(4, 4), (4, 5), (12, 13), (1, 2**40), (3, 12)])
+def test_a_mate_that_was_not_born_before_its_child_is_damage(organism: int, mate: int) -> None:
+    mates = MATES.copy()
+    mates[organism] = mate
+    with pytest.raises(Trouble, match=f"the mate of organism {organism} was not born before it"):
+        genomes(a_run(mates), np.array([12]))
