@@ -19,6 +19,7 @@ def test_a_relived_life_is_shown_beside_its_record(begin: str, where: str) -> No
         Respect("cause of death", "fatal", "starved"),
         Respect("energy left", 1234.5, None),
         Respect("food", 1234567, 1234568.5),
+        Respect("lives", 0, 0.0),
     )
     notes, files = ("one thing", "another"), (Path("a.npz"), Path("b.gif"))
     found = Revival(5, 2, begin, 1000, 4321, respects, notes, files)
@@ -32,5 +33,6 @@ def test_a_relived_life_is_shown_beside_its_record(begin: str, where: str) -> No
         ("cause of death", "fatal", "starved", "NO"),
         ("energy left", "1,234.5", "-", "NO"),
         ("food", "1,234,567", "1,234,568.5", "NO"),
+        ("lives", "0", "0", "yes"),
     ]
     assert below == ["Note: one thing.", "Note: another.", "a.npz", "b.gif"]
