@@ -78,7 +78,7 @@ def test_effects_of_each_mutation_are_its_own() -> None:
     longer = {100: [110, 400, 500, 101], 200: [100, 100, 900, 800], 300: [330, 290, 600, 700]}
     found = [
         Effect(name, number, 0, parent, np.array(mutants, float))
-        for name, each in (("as set", lived), ("scale 1", longer))
+        for name, each in (("scale 1", lived), ("as set", longer))
         for number, (parent, mutants) in enumerate(each.items())
     ]
     table = tables.effects("run", found)
@@ -90,10 +90,10 @@ def test_effects_of_each_mutation_are_its_own() -> None:
         "a third shorter",
         "median life",
     ]
-    assert cells(table) == {
-        "as set": ["0.583", "0.250", "0.167", "0.167", "205 (142 to 252)"],
-        "scale 1": ["0.000", "0.750", "0.667", "0.167", "450 (352 to 458)"],
-    }
+    assert list(cells(table).items()) == [
+        ("scale 1", ["0.583", "0.250", "0.167", "0.167", "205 (142 to 252)"]),
+        ("as set", ["0.000", "0.750", "0.667", "0.167", "450 (352 to 458)"]),
+    ]
     assert "The organisms lived 200 (150 to 250) ticks." in table.notes[0]
     assert tables.effects("run", found[::3]).title.startswith("run: 1 organism; ")
 
@@ -102,16 +102,16 @@ def test_ablated_lives_are_compared_with_intact_lives() -> None:
     intact = [100 + more for more in OFFSETS]
     found = [
         Ablation(without, number, 0, each, each * kept)
-        for without, kept in (("memory", 0.5), ("sense 0", 2.0))
+        for without, kept in (("senses", 0.5), ("memory", 2.0))
         for number, each in enumerate(intact)
     ]
     table = tables.ablate("run", found)
     assert table.title == "run: 3 organisms, medians (quartiles)"
-    assert cells(table) == {
-        "nothing": [spread(100), "1"],
-        "memory": ["51 (50.5 to 52.5)", "0.5"],
-        "sense 0": ["204 (202 to 210)", "2"],
-    }
+    assert list(cells(table).items()) == [
+        ("nothing", [spread(100), "1"]),
+        ("senses", ["51 (50.5 to 52.5)", "0.5"]),
+        ("memory", ["204 (202 to 210)", "2"]),
+    ]
 
 
 def test_a_garden_has_means_of_beds_and_medians_of_worlds() -> None:
