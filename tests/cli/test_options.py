@@ -10,7 +10,7 @@ import pytest
 
 import primordia
 from primordia.cli.streams import report
-from tests.commands import here
+from tests.commands import complains, here
 
 RUN, OUT = Path("RUN"), Path("OUT")
 LIMITS: tuple[Any, ...] = ("--ticks", 90, "--births", "none", "--until", "saturation")
@@ -208,6 +208,56 @@ def test_assays_are_of_the_organisms_that_are_named(
         more = ("--mutants", 3, "--scale", 0.5, "--scale", 0.25, "--differs", 0.125)
         does("assay", "effects", RUN, *words, *more, *SHORT)
         effects.assert_called_once_with(subjects, (0.5, 0.25), (0.125,), 3, 2, 9)
+
+
+@pytest.mark.parametrize("asked", [False, True])
+def test_code_of_assays_is_trusted_only_if_asked(asked: bool, run: MagicMock) -> None:
+    run.opened.return_value.lives.oldest = lambda world: 0
+    run.opened.return_value.lives.id = run.opened.return_value.lives.world = np.arange(1)
+    places = {"garden": (RUN,), "line": RUN, "ablate": RUN}
+    with (
+        patch("primordia.assays.subjects.of_run") as of_run,
+        patch("primordia.assays.garden.garden", return_value=[]),
+        patch("primordia.assays.line.line") as line,
+        patch("primordia.assays.ablate.ablate", return_value=[]),
+    ):
+        line.return_value.to_dict.return_value, of_run.return_value.source = {}, "RUN"
+        for name, place in places.items():
+            does("assay", name, RUN, "--json", *(["--trust"] if asked else []))
+            assert run.loaded.call_args == call(place, asked)
+
+
+@pytest.mark.parametrize(
+    ("source", "task", "kind"),
+    [
+        ("a.safetensors", ("--task", "T"), "file"),
+        ("a.safetensors", (), "file"),
+        ("a.toml", (), "task"),
+        ("Pong-survival", (), "task"),
+        ("gym:Pond-v0", (), "task"),
+    ],
+)
+@pytest.mark.parametrize("organisms", [(), (0, 5)])
+def test_assays_are_of_the_genomes_of_a_file_or_of_founders_of_a_task(
+    source: str, task: tuple[str, ...], kind: str, organisms: tuple[int, ...]
+) -> None:
+    with (
+        patch(f"primordia.assays.subjects.of_{kind}") as of,
+        patch("primordia.assays.ablate.ablate", return_value=[]),
+    ):
+        of.return_value.source = source
+        does("assay", "ablate", source, *organisms, *task, "--sticky", 0.5, "--json")
+    given = (
+        (Path(source), organisms, *(task[1:] or [None])) if kind == "file" else (source, organisms)
+    )
+    of.assert_called_once_with(*given, {"sticky": 0.5})
+
+
+@pytest.mark.parametrize("source", ["Pong-survival", "gym:Pond-v0", "a.toml", "a.safetensors"])
+@pytest.mark.parametrize("world", [0, 2])
+def test_only_a_run_has_worlds(source: str, world: int) -> None:
+    says = f"{source} is not a run, so it has no worlds; leave out --world"
+    complains(here("assay", "ablate", source, "--world", world), 2, says)
 
 
 @pytest.mark.parametrize(
