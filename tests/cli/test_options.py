@@ -253,6 +253,11 @@ def test_assays_are_of_the_genomes_of_a_file_or_of_founders_of_a_task(
     of.assert_called_once_with(*given, {"sticky": 0.5})
 
 
+@pytest.mark.parametrize("words", [("a.safetensors",), (RUN, "--task", "T")], ids=str)
+def test_only_a_run_has_lines_of_descent(words: tuple[Any, ...]) -> None:
+    complains(here("assay", "line", *words), 2, "the assay `line` needs a run")
+
+
 @pytest.mark.parametrize("source", ["Pong-survival", "gym:Pond-v0", "a.toml", "a.safetensors"])
 @pytest.mark.parametrize("world", [0, 2])
 def test_only_a_run_has_worlds(source: str, world: int) -> None:
