@@ -72,3 +72,11 @@ def test_every_note_on_a_resumed_run_is_a_line(tmp_path: Path) -> None:
     done = resumed(tmp_path, lambda **_: ["one thing", "another"])
     assert (done.returncode, done.stdout) == (0, "")
     assert done.stderr == "primordia: one thing\nprimordia: another\n"
+
+
+def test_a_bundle_is_told_with_its_size(tmp_path: Path) -> None:
+    run, file = MagicMock(), tmp_path / "run.zip"
+    run.bundle.side_effect = lambda path: path.write_bytes(bytes(1234))
+    with patch("primordia.api.load", return_value=run):
+        done = here("bundle", "RUN", file)
+    assert (done.returncode, done.stdout) == (0, f"{file}: 1,234 bytes\n")
