@@ -128,5 +128,16 @@ def test_a_life_up_to_the_birth_of_a_child_in_its_cell_is_replaced() -> None:
     values = {"energy": 90.0, "food": 190.0, "score": 1090, "lives": 2090}
     lived = life(cause=Cause.REPLACED)
     assert found(lived, stretch(90, 50)) == {"cause": "replaced", "tick": 90, **values}
-    lived.run.lives.born[0] = 89
-    assert found(lived, stretch(90, 50))["cause"] == "alive"
+    for name, value in (("born", 89), ("cell", 3), ("world", 0)):
+        lived = life(cause=Cause.REPLACED)
+        getattr(lived.run.lives, name)[0] = value
+        assert found(lived, stretch(90, 50))["cause"] == "alive"
+
+
+@pytest.mark.parametrize("cause", [-1, int(Cause.FATAL), int(Cause.STARVED)])
+def test_an_organism_that_dies_by_itself_in_the_last_tick_is_not_replaced(cause: int) -> None:
+    lived = life(cause=Cause.REPLACED)
+    lived.instants = lambda: iter([(held(3), None), (held(4), stretch(90, 50, cause))])
+    course = Course(lived)
+    assert len(list(course.stretches())) == 1
+    assert course.replaced == (cause < 0)
