@@ -9,7 +9,7 @@ import pytest
 
 from primordia.errors import InputError
 from primordia.organism import evaluation
-from primordia.organism.evaluation import Evaluation, changed, judged
+from primordia.organism.evaluation import Evaluation, Spread, changed, judged
 from primordia.organism.games import Games, Players, _marks
 from primordia.organism.playing.seats import Stretch
 from tests.worlds import config
@@ -154,6 +154,12 @@ def test_games_repeat_if_several_are_the_same_or_nothing_is_random(
 ) -> None:
     games = played([[9] * len(course)], [course]).of_player(0)
     assert Evaluation(0, 0, "live", games, None, deterministic=fixed).repeats == repeats
+
+
+def test_quartiles_lie_between_values_if_no_value_is_a_quartile() -> None:
+    """Of four values, the lower quartile is three quarters of the way from the first to the second."""
+    assert Spread.of(np.array([10, 2, 0, 1])) == (0, 0.75, 1.5, 4, 10)
+    assert Spread.of(np.array([3])) == (3, 3, 3, 3, 3)
 
 
 def test_a_script_begins_again_when_its_game_has_ended() -> None:
