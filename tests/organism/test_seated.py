@@ -141,3 +141,26 @@ def test_courses_differ_if_senses_differ_in_any_tick_of_the_game(
             courses[tick, game] = after[game]
     lasting = [int(courses[tick, 0]) for tick in range(4)]  # the same change at other ticks
     assert len(set(lasting)) == 4
+
+
+@pytest.mark.parametrize(("kind", "sizes"), [("host", [2, 2, 1]), ("jax", [3, 2])])
+def test_lifespans_are_found_in_parts_of_which_each_has_its_own_frozen_inputs(
+    kind: str, sizes: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Five players have two games each; four games are played at once on the host, and six in JAX."""
+    asked: list[int] = []
+
+    def play_part(own: Players, count: int, ticks: int, *, frozen: Any, at_once: int) -> Any:
+        numbers = own.genomes[:, 0].astype(int)
+        asked.append(len(numbers))
+        assert (count, ticks) == (2, 70)
+        assert at_once >= 2 * len(numbers)
+        np.testing.assert_array_equal(frozen.senses, held.senses[numbers])
+        return SimpleNamespace(ticks=np.stack([numbers, 100 + numbers], axis=1))
+
+    held = frozen(5)
+    monkeypatch.setattr(games, "AT_ONCE", 4)
+    monkeypatch.setattr(games, "AT_ONCE_IN_JAX", 6)
+    monkeypatch.setattr(games, "play", play_part)
+    spans = games.lifespans_in_games(players(5, kind), 2, 70, held)
+    assert (asked, spans.tolist()) == (sizes, [[k, 100 + k] for k in range(5)])
