@@ -253,6 +253,20 @@ def test_assays_are_of_the_genomes_of_a_file_or_of_founders_of_a_task(
     of.assert_called_once_with(*given, {"sticky": 0.5})
 
 
+def test_a_run_may_have_the_name_of_a_task(
+    run: MagicMock, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("Pong-survival").mkdir()
+    with (
+        patch("primordia.assays.subjects.of_run") as of_run,
+        patch("primordia.assays.ablate.ablate", return_value=[]),
+    ):
+        of_run.return_value.source = "a run"
+        does("assay", "ablate", "Pong-survival", 5, "--world", 2, "--json")
+    of_run.assert_called_once_with(run.opened.return_value, [(5, 2)], {})
+
+
 @pytest.mark.parametrize("words", [("a.safetensors",), (RUN, "--task", "T")], ids=str)
 def test_only_a_run_has_lines_of_descent(words: tuple[Any, ...]) -> None:
     complains(here("assay", "line", *words), 2, "the assay `line` needs a run")
