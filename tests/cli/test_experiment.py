@@ -29,7 +29,9 @@ def chosen() -> Iterator[MagicMock]:
     """Let a file or directory stand for an experiment with 1,205 jobs left, of which 5 are asked for."""
     made = create_autospec(Campaign, instance=True)
     made.path, made.plan, made.job = OUT, "the plan", job
-    made.left.side_effect = lambda arms=(): [None] * (5 if arms else 1205)
+    made.left.side_effect = lambda arms=(): (
+        [None] * ((0 if made.live_all.called else 5) if arms else 1205)
+    )
     made.status.return_value.to_dict.return_value = {"jobs": {"done": 2}}
     with (
         patch("primordia.experiments.campaign.begin", return_value=made) as made.begin,
@@ -46,6 +48,7 @@ def test_the_options_reach_the_jobs(chosen: MagicMock) -> None:
     assert here("experiment", FILE, "--quiet").returncode == 0
     assert chosen.begin.call_args == call(FILE, None)
     assert chosen.place_for.call_args == call(OUT, 1205, None, None, **plain)
+    chosen.live_all.called = False
     ways = ("--jobs", 3, "--ray", "there", "--checkpoint-every", 7, "--device", "gpu")
     with patch.object(campaign_view, "watching") as watching:
         done = here("experiment", FILE, "--out", OUT, "--only", "a", "--only", "b", *ways)
