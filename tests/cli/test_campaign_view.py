@@ -1,5 +1,6 @@
 """The display of an experiment: each arm and each running job has its own counts."""
 
+import io
 from types import SimpleNamespace
 from typing import Any
 
@@ -15,6 +16,7 @@ ARMS = (
     ArmStatus("mild", 1200, 1100, 1000, 54321.4, (1234.6, 98765.4)),
     ArmStatus("none", 3, 0, 0, None, None),
     ArmStatus("few", 4, 2, 1, 7.0, None),
+    ArmStatus("brief", 2, 2, 0, 0.0, (0.0, 0.0)),
 )
 JOBS = {"done": 5, "running": 2, "failed": 1, "waiting": 1300}
 
@@ -58,6 +60,7 @@ def test_each_arm_and_each_running_job_is_a_row() -> None:
     jobs = (
         running(7, 200.0, 12_300_000.0, world(1000, 20), world(3000, 500), world(2000, 4000)),
         running(8, None, None),
+        running(9, 0.0, 0.0, world(1, 0)),
     )
     assert shown(CampaignStatus("Is it?", JOBS, ARMS, jobs, (failed(3),))) == [
         ["Is it?"],
@@ -65,9 +68,11 @@ def test_each_arm_and_each_running_job_is_a_row() -> None:
         ["mild", "1,100 of 1,200", "1,000", "54,321 (1,235 to 98,765)"],
         ["none", "0 of 3", "0", "-"],
         ["few", "2 of 4", "1", "7"],
+        ["brief", "2 of 2", "0", "0 (0 to 0)"],
         ["job", "arm", "worlds", "tick", "births", "organism-ticks/s", "left"],
         ["7", "mild", "3", "3,000", "4,520", "12.3 M", "3 min 20 s"],
         ["8", "mild", "0", "0", "-"],
+        ["9", "mild", "1", "1", "0", "0", "0 s"],
         ["job 3 (few) failed: reason 3"],
         ["5 of 1,308 jobs done, 2 under way, 1 failed, 1,300 waiting"],
     ]
@@ -103,6 +108,32 @@ def test_time_left_is_that_of_the_slowest_job_in_each_round_of_jobs(
     jobs_text = "3 of 10 jobs done, 2 under way, 0 failed, 5 waiting"
     assert line(status, clock) == f"12:00:00  {jobs_text}; {text}"
     assert shown(status, clock)[-1] == [f"{jobs_text}; {text}; 1 min 15 s so far"]
+
+
+@pytest.mark.parametrize("before", [0, 3])
+def test_time_left_has_the_pace_of_the_jobs_done_since_the_command_began(
+    before: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two jobs are done after 100 s, so six take 300 s more. Jobs done before do not count."""
+    now = at(monkeypatch, 50.0)
+    clock = Clock()
+    open_jobs = {"running": 2, "failed": 1, "waiting": 4}
+    under_way = running(0, 1000.0, None), running(1, None, None)
+    first, later = (
+        CampaignStatus("?", {"done": done, **open_jobs}, (), under_way, ())
+        for done in (before, before + 2)
+    )
+    for seconds, status, left in ((0, first, 3000), (60, first, 3000), (40, later, 300)):
+        now.seconds += seconds
+        assert clock.left(status) == left
+
+
+def test_the_speed_is_shown_even_if_the_time_left_is_unknown(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    at(monkeypatch, 50.0)
+    status = CampaignStatus("?", JOBS, (), (running(0, None, 2e6),), ())
+    assert line(status, Clock()).endswith("waiting; 2.0 M organism-ticks/s")
 
 
 def test_a_slow_reading_is_repeated_rarely(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -157,3 +188,31 @@ def test_without_a_terminal_a_line_is_printed_each_minute(
     assert moments_read == moments
     text = "12:00:00  5 of 1,308 jobs done, 2 under way, 1 failed, 1,300 waiting"
     assert capsys.readouterr().out == f"{text}\n" * len(moments)
+
+
+@pytest.mark.parametrize(("kind", "lines"), [("xterm", 0), ("dumb", 1)])
+def test_a_terminal_shows_a_table_that_ends_with_the_last_state(
+    kind: str, lines: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A terminal that cannot move its cursor gets lines."""
+    at(monkeypatch, 100.0)
+    monkeypatch.setenv("TERM", kind)
+    terminal = Terminal()
+    monkeypatch.setattr("sys.stdout", terminal)
+    monkeypatch.setattr("sys.__stdout__", terminal)
+    states = iter(
+        CampaignStatus("?", {**JOBS, "done": done}, ARMS, (), ()) for done in (1295, 1302)
+    )
+    with campaign_view.watching(False, lambda: next(states)) as look:
+        look()
+    words = terminal.getvalue()
+    assert words.count("12:00:00") == lines
+    assert ("worlds begun" in words) == (not lines)
+    assert ("1,302 of 2,605 jobs done" in words) == (not lines)
+
+
+class Terminal(io.StringIO):
+    """A text stream that takes itself for a terminal."""
+
+    def isatty(self) -> bool:
+        return True

@@ -1,25 +1,90 @@
-"""Errors that no command handles itself."""
+"""The list of the commands, and errors that no command handles itself."""
 
+import errno
+import re
+from pathlib import Path
+
+import click
 import pytest
 
+from primordia import own_code
 from primordia.cli import commands
+from primordia.errors import InputError, Trouble
 from tests.commands import complains, here
+
+LONG = "name" * 100
+
+
+def failing(error: BaseException, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let every command fail with an error."""
+
+    def fail(**_: object) -> None:
+        raise error
+
+    monkeypatch.setattr(commands, "commands", fail)
+
+
+@pytest.mark.parametrize(
+    ("error", "status", "says"),
+    [
+        (MemoryError(), 1, "there is not enough memory; ask for less"),
+        (MemoryError("Unable to allocate 7 GiB"), 1, "Unable to allocate 7 GiB; ask for less"),
+        (PermissionError(13, "Permission denied", "a/b"), 1, "a/b: Permission denied"),
+        (OSError("no number"), 1, "no number"),
+        (OSError(5, "Input/output error"), 1, "[Errno 5] Input/output error"),
+        (
+            OSError(errno.ENAMETOOLONG, "File name too long", LONG),
+            2,
+            f"the file name {LONG[:40]}... is too long; give a shorter one",
+        ),
+        (InputError("a wrong word"), 2, "a wrong word"),
+        (click.UsageError("a wrong flag"), 2, "a wrong flag"),
+        (Trouble("a damaged file"), 1, "a damaged file"),
+        *(
+            (SystemExit(code), 1, f"the run's code has ended the process: exit({code!r})")
+            for code in (0, None, 3, "bye")
+        ),
+    ],
+)
+def test_an_error_is_one_line_and_a_status(
+    error: BaseException, status: int, says: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Status 2 is for what a user can correct, status 1 for all other trouble."""
+    failing(error, monkeypatch)
+    done = here("info", "run")
+    complains(done, status)
+    assert done.stderr == f"primordia: {says}\n"
 
 
 @pytest.mark.parametrize(
     ("error", "says"),
     [
-        (MemoryError(), "there is not enough memory; ask for less"),
-        (MemoryError("Unable to allocate 7 GiB"), "Unable to allocate 7 GiB; ask for less"),
-        (PermissionError(13, "Permission denied", "a/b"), "a/b: Permission denied"),
-        (OSError("no number"), "no number"),
+        (ValueError("two\n  lines"), "ValueError: two lines"),
+        (KeyError(), "KeyError"),
+        (OSError(5, "deep"), "OSError: [Errno 5] deep"),
     ],
 )
-def test_an_error_of_the_system_is_one_line(
+def test_an_error_in_a_users_code_is_one_line_with_its_place(
     error: Exception, says: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def fail(**_: object) -> None:
-        raise error
+    failing(error, monkeypatch)
+    monkeypatch.setattr(own_code, "place_of", lambda _: f"{Path('a.py')}, line 3")
+    done = here("info", "run")
+    complains(done, 2)
+    assert done.stderr == f"primordia: a.py, line 3: {says}\n"
 
-    monkeypatch.setattr(commands, "commands", fail)
-    complains(here("info", "run"), 1, says)
+
+def test_a_pipe_whose_reader_has_gone_ends_a_command_silently(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    failing(SystemExit(1), monkeypatch)
+    done = here("info", "run")
+    assert (done.returncode, done.stdout, done.stderr) == (1, "", "")
+
+
+def test_commands_are_listed_in_the_order_of_work() -> None:
+    """A run is begun before it is drawn; the alphabet would tear such commands apart."""
+    listed = here("--help").stdout.partition("Commands:")[2]
+    names = re.findall(r"^  (\w+)", listed, re.MULTILINE)
+    assert names[:6] == ["run", "resume", "fork", "new", "check", "experiment"]
+    assert names.index("plot") < names.index("film") < names.index("bundle") < names.index("assay")

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
-from unittest.mock import patch
+from unittest.mock import MagicMock, patch
 
 import numpy as np
 import pytest
@@ -13,6 +13,7 @@ from primordia.cli import descent
 from primordia.phylogeny.coalescence import Times
 from primordia.phylogeny.descent import CommonAncestor
 from primordia.phylogeny.sweeps import Sweep
+from tests.commands import here
 
 RUN = Path("RUN")
 Shown = dict[str, Any]
@@ -125,7 +126,7 @@ def world(count: int, **other: Any) -> Any:
     values: dict[str, Any] = {
         "world": 3, "founders": np.arange(count), "ticks": np.array([1500, 1600, 9000]),
         "effective": np.array([[9.0, 8, 7], [6, 5, 4], [3, 2, 1.5]]), "sweeps": [],
-        "diversity": np.array([11111, 22222, 33333]), "to_dict": lambda: exported,
+        "diversity": np.array([11111, 44444, 33333]), "to_dict": lambda: exported,
         "pairs": Times(np.array([1000, 3000]), np.array([0.25, 0.5])),
         "neutral_pairs": Times(np.array([5000]), np.array([0.8])),
     }  # fmt: skip
@@ -133,15 +134,17 @@ def world(count: int, **other: Any) -> Any:
 
 
 def test_a_row_of_a_line_has_its_shares_slopes_and_p_values(shown: Shown) -> None:
-    found = world(2)
-    found.to_dict()["lines"][1] |= {"slope": None, "slope_per_lifespan": None, "p_of_slope": None}
+    found, slopes = world(3), ("slope", "slope_per_lifespan", "p_of_slope")
+    for place, value in ((1, None), (2, 0.0)):
+        found.to_dict()["lines"][place] |= dict.fromkeys(slopes, value)
     descent._show_lines(RUN, found)
-    assert shown["title"] == "RUN: world 3, 2 lines founded at tick 1,500, up to tick 9,000"
+    assert shown["title"] == "RUN: world 3, 3 lines founded at tick 1,500, up to tick 9,000"
     head = ["line of", "largest", "last share", "s per tick", "s per life", "p of s", "p of last"]
     assert shown["head"] == head
     assert shown["rows"] == [
         ["1,000", "0.100", "0.200", "0.3", "0.4", "0.5", "0.75"],
         ["1,001", "0.110", "0.210", "-", "-", "-", "0.75"],
+        ["1,002", "0.120", "0.220", "0", "0", "0", "0.75"],
     ]
 
 
@@ -158,6 +161,9 @@ def test_notes_are_about_the_last_tick(shown: Shown) -> None:
         "50% of the pairs of the living have a common ancestor on record, 2,000 ticks ago on average."
         " With drift alone, 80% would have one, 5,000 ticks ago."
     ) in notes
+    now = Times(np.array([0]), np.array([0.25]))
+    descent._show_lines(RUN, world(2, pairs=now, neutral_pairs=now))
+    assert "on record, 0 ticks ago on average. With drift alone, 25%" in shown["notes"][-1]
     none = Times(np.array([], int), np.array([]))
     for name in ("pairs", "neutral_pairs"):
         descent._show_lines(RUN, world(2, **{name: none}))
@@ -185,4 +191,46 @@ def test_only_a_sweep_past_half_of_the_living_is_under_way() -> None:
     assert descent._sweeps_text([done, early]) == f"{whole}."
     assert descent._sweeps_text([done]) == f"{whole}."
     assert descent._sweeps_text([]) == "Sweeps to all of the living: 0."
+    at_once = Sweep(9, "copy", 300, 300, 300, 1)
+    text = descent._sweeps_text([at_once, done, begun])
+    assert text.startswith("Sweeps to all of the living: 2; median duration: 650 ticks. Under way")
     assert descent._sweeps_text([begun]).startswith("Sweeps to all of the living: 0. Under way: ")
+
+
+@pytest.mark.parametrize("as_json", [(), ("--json",)])
+@pytest.mark.parametrize(
+    ("words", "figure", "names"),
+    [
+        (("ancestors",), "descent", ["ancestors"]),
+        (("lines", "--world", "all"), "lines", ["lines-3", "lines-12"]),
+    ],
+    ids=["ancestors", "lines"],
+)
+def test_each_figure_has_its_own_name_and_is_told_apart_from_json(
+    words: tuple[str, ...], figure: str, names: list[str], as_json: tuple[str, ...], tmp_path: Path
+) -> None:
+    """The output is then JSON alone, which other programs read."""
+    drawn: list[Path] = []
+
+    def save(_: object, path: Path) -> list[Path]:
+        drawn.append(path)
+        return [path.with_suffix(suffix) for suffix in (".png", ".svg")]
+
+    run = MagicMock()
+    run.ancestors.return_value.to_dict.return_value = {}
+    run.lines.return_value = [MagicMock(world=number) for number in (3, 12)]
+    for each in run.lines.return_value:
+        each.to_dict.return_value = {}
+    with (
+        patch("primordia.api.load", return_value=run),
+        patch(f"primordia.figures.{figure}.draw"),
+        patch("primordia.figures.style.save", save),
+        patch.object(descent, "_show_ancestors"),
+        patch.object(descent, "_show_lines"),
+    ):
+        done = here(*words, RUN, "--out", tmp_path / "new", *as_json)
+    assert done.returncode == 0
+    paths = [tmp_path / "new" / name for name in names]
+    assert drawn == paths
+    told = [f"Figure: {path}.png and {path}.svg" for path in paths]
+    assert (done.stderr if as_json else done.stdout).splitlines() == told

@@ -11,6 +11,8 @@ import pytest
 
 pytest.importorskip("gymnasium")
 
+from primordia import testing
+from primordia.settings import doors
 from tests import commands
 from tests.commands import complains, environment, here
 
@@ -157,3 +159,23 @@ def test_a_task_file_may_lie_in_a_new_folder(tmp_path: Path) -> None:
     assert tomllib.loads(file.read_text())["task"] == "Pond-v0"
     complains(here("new", tmp_path / "other" / "x.toml", "--env", "gym:No-v0"), 2, "No")
     assert not (tmp_path / "other").exists()
+
+
+@pytest.mark.parametrize("faults", [[], ["it forgets"]])
+@pytest.mark.parametrize("broken", [None, "its tallies are floats"])
+def test_check_names_faults_of_the_environment_and_breaches_of_the_contract(
+    faults: list[str], broken: str | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A habitat in JAX must also keep the contract of habitats."""
+
+    def check_habitat(_: object) -> None:
+        if broken:
+            raise testing.ContractError(broken)
+
+    monkeypatch.setattr(doors, "report", lambda env: (["a fact", "another"], list(faults)))
+    monkeypatch.setattr(testing, "check_habitat", check_habitat)
+    done = here("check", "gymnax:tests.walks:Choice")
+    found = [*faults, *([broken] if broken else [])]
+    assert done.returncode == (1 if found else 0)
+    told = ["a fact", "another", *(f"Found: {fault}." for fault in found)]
+    assert done.stdout.splitlines() == told

@@ -10,6 +10,7 @@ from primordia.cli.evaluate import evaluation_text
 from primordia.comparison.controls import Standing
 from primordia.organism.evaluation import Evaluation
 from primordia.organism.games import Games
+from tests.commands import complains, here
 
 
 def games(ticks: list[int], over: list[bool] | None = None, food: list[int] | None = None) -> Games:
@@ -94,3 +95,41 @@ def test_notes_are_only_those_that_apply(worlds: int, same: tuple[bool, bool]) -
     text = " ".join(notes)
     assert ("Medians over worlds" in text) == (worlds > 1)
     assert ("All games of an organism are the same" in text) == all(same)
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        ((), "RUN: games cut at 100,000 ticks"),
+        (("--ticks", 1234, "--sticky", 0.5), "RUN: games cut at 1,234 ticks, sticky 0.5"),
+        (("--freeze-senses",), "RUN: games cut at 100,000 ticks, senses frozen"),
+        (
+            ("--noops", 30, "--open-loop"),
+            "RUN: games cut at 100,000 ticks, noops 30, senses ignored: actions of a game in the run's"
+            " own task are repeated",
+        ),
+    ],
+    ids=str,
+)
+def test_the_title_tells_in_which_games_the_groups_played(
+    words: tuple[object, ...], says: str
+) -> None:
+    with patch("primordia.api.load") as load, patch.object(evaluate, "show_standings") as show:
+        done = here("evaluate", "RUN", *words)
+    assert (done.returncode, done.stderr) == (0, "")
+    show.assert_called_once_with(load.return_value.standings.return_value, says)
+
+
+@pytest.mark.parametrize("organism", [(), ("--organism", 0)])
+def test_senses_are_either_frozen_or_ignored(organism: tuple[object, ...]) -> None:
+    with patch("primordia.api.load") as load:
+        done = here("evaluate", "RUN", *organism, "--freeze-senses", "--open-loop")
+    complains(done, 2, "--freeze-senses and --open-loop exclude each other")
+    load.assert_not_called()
+
+
+def test_the_quartiles_may_be_equal_and_the_extremes_not() -> None:
+    lived = games([20, 100, 100, 100, 100])
+    found = Evaluation(7, 2, "live", lived, None, deterministic=False)
+    spread = "median 100 (quartiles 100, 100), minimum 20, maximum 100"
+    assert evaluation_text(found, {}).splitlines()[-1] == f"  lifespan  {spread}"

@@ -10,7 +10,7 @@ import pytest
 
 import primordia
 from primordia.cli.streams import report
-from tests.commands import here
+from tests.commands import complains, here
 
 RUN, OUT = Path("RUN"), Path("OUT")
 LIMITS: tuple[Any, ...] = ("--ticks", 90, "--births", "none", "--until", "saturation")
@@ -42,10 +42,14 @@ def does(*words: object) -> None:
 CALLS: dict[tuple[Any, ...], Any] = {
     ("film", RUN, "--world", 2, "--by", "ticks", "--from", 3, "--to", 9, "--organism", 5, "--out", OUT):
         call.film(ticks=(3, 9), world=2, by="ticks", organism=5, out=OUT),
+    ("film", RUN, "--from", 0, "--to", 0, "--organism", 0):
+        call.film(ticks=(0, 0), world=0, by="births", organism=0, out=None),
     ("film", RUN): call.film(ticks=(None, None), world=0, by="births", organism=None, out=None),
     ("evaluate", RUN, "--world", 2, "--games", 3, "--founders", 7, "--ticks", 9, "--sticky", 0.5,
      "--open-loop", "--json"):
         call.standings(7, 2, games=3, ticks=9, senses="ignored", habitat={"sticky": 0.5}),
+    ("evaluate", RUN, "--world", 0, "--json"):
+        call.standings(500, 0, games=30, ticks=100_000, senses="live", habitat={}),
     ("evaluate", RUN, "--json"):
         call.standings(500, None, games=30, ticks=100_000, senses="live", habitat={}),
     ("shadow", RUN, "--organisms", 3, "--ticks", 9, "--json"): call.shadow(3, 9),
@@ -59,11 +63,16 @@ CALLS: dict[tuple[Any, ...], Any] = {
     ("watch", RUN, "--port", 0): call.watch(0, ANY),
     ("lineage", RUN, 5, "--out", OUT, "--world", 2, "--extant"):
         call.lineage(5, out=OUT, say=report, world=2, extant=True, collapse=False),
+    ("lineage", RUN, 0, "--out", OUT, "--world", 0):
+        call.lineage(0, out=OUT, say=report, world=0, extant=False, collapse=False),
     ("lineage", RUN, "--out", OUT, "--collapse"):
         call.lineage(None, out=OUT, say=report, world=None, extant=False, collapse=True),
     ("ancestors", RUN, 5, "--world", 2, "--json"): call.ancestors(5, 2, report),
+    ("ancestors", RUN, 0, "--world", 0, "--json"): call.ancestors(0, 0, report),
+    ("ancestors", RUN, "--world", 0, "--json"): call.ancestors(None, 0, report),
     ("ancestors", RUN, "--json"): call.ancestors(None, None, report),
     ("lines", RUN, "--world", 2, "--at", 9, "--json"): call.lines(2, 9),
+    ("lines", RUN, "--world", 0, "--at", 0, "--json"): call.lines(0, 0),
     ("lines", RUN, "--json"): call.lines(0, None),
     ("lines", RUN, "--world", "all", "--json"): call.lines(None, None),
     ("resume", RUN, "--inexact", *LIMITS, *WAYS): call.resume(inexact=True, **ENDS, **WORLDS),
@@ -71,6 +80,8 @@ CALLS: dict[tuple[Any, ...], Any] = {
         call.resume(inexact=False, checkpoint_every=60.0, device="cpu", listen=None),
     ("fork", RUN, "--at", 9, "--out", OUT, "--seed", 3, "--mutation.scale", 0.5, *LIMITS, *WAYS):
         call.fork(9, OUT, {"seed": 3, "mutation": {"scale": 0.5}, "stop": ENDS}, **WORLDS),
+    ("fork", "of.b", "--at", 0, "--quiet"):
+        call.fork(0, Path("runs/of.b-at0"), {}, checkpoint_every=60.0, device="cpu", listen=None),
     ("fork", RUN, "--at", 9, "--quiet"):
         call.fork(9, Path("runs/RUN-at9"), {}, checkpoint_every=60.0, device="cpu", listen=None),
 }  # fmt: skip
@@ -126,14 +137,17 @@ def test_a_life_is_lived_again_with_the_given_options(run: MagicMock) -> None:
         does("revive", RUN, 5, "--world", 2, "--from", 3, *files, "--trust", "--json")
         opened = run.opened.return_value
         asked.assert_called_once_with(opened, 5, 2, since=3, save=OUT, film=Path("V"))
+        does("revive", RUN, 0, "--world", 0, "--from", 0, "--json")
+        assert asked.call_args == call(opened, 0, 0, since=0, save=None, film=None)
         does("revive", RUN, 5, "--json")
         assert asked.call_args == call(opened, 5, 0, since=None, save=None, film=None)
 
 
 def test_one_organism_is_evaluated_in_its_world(run: MagicMock) -> None:
-    for world, number in (((), 0), (("--world", 2), 2)):
-        does("evaluate", RUN, "--organism", 5, *world, "--freeze-senses", "--games", 3, "--json")
-        run.organism.assert_called_with(5, number)
+    for organism, world, number in ((5, (), 0), (5, ("--world", 2), 2), (0, ("--world", 0), 0)):
+        asked = ("--organism", organism, *world, "--freeze-senses", "--games", 3, "--json")
+        does("evaluate", RUN, *asked)
+        run.organism.assert_called_with(organism, number)
         options = {"games": 3, "ticks": 100_000, "senses": "frozen", "habitat": {}}
         run.organism.return_value.evaluate.assert_called_with(**options)
 
@@ -157,7 +171,7 @@ def test_the_options_of_assays_reach_their_functions(run: MagicMock) -> None:
         lives = opened.lives
         lives.oldest = lambda world: 3 if world is None else world
         lives.id, lives.world = np.arange(10, 20), np.arange(10)
-        for words, number in (((), 3), (("--world", 2), 2)):
+        for words, number in (((), 3), (("--world", 2), 2), (("--world", 0), 0)):
             does("assay", "line", RUN, *words, "--json")
             assert line.call_args == call(opened, 10 + number, number, **plain)
 
@@ -169,6 +183,8 @@ def test_the_options_of_assays_reach_their_functions(run: MagicMock) -> None:
         ((5, 6), [(5, 0), (6, 0)]),
         ((5, 6, "--world", 2), [(5, 2), (6, 2)]),
         (("--world", 2), [(12, 2)]),
+        (("--world", 0), [(10, 0)]),
+        ((0,), [(0, 0)]),
     ],
     ids=str,
 )
@@ -194,12 +210,83 @@ def test_assays_are_of_the_organisms_that_are_named(
         effects.assert_called_once_with(subjects, (0.5, 0.25), (0.125,), 3, 2, 9)
 
 
+@pytest.mark.parametrize("asked", [False, True])
+def test_code_of_assays_is_trusted_only_if_asked(asked: bool, run: MagicMock) -> None:
+    run.opened.return_value.lives.oldest = lambda world: 0
+    run.opened.return_value.lives.id = run.opened.return_value.lives.world = np.arange(1)
+    places = {"garden": (RUN,), "line": RUN, "ablate": RUN}
+    with (
+        patch("primordia.assays.subjects.of_run") as of_run,
+        patch("primordia.assays.garden.garden", return_value=[]),
+        patch("primordia.assays.line.line") as line,
+        patch("primordia.assays.ablate.ablate", return_value=[]),
+    ):
+        line.return_value.to_dict.return_value, of_run.return_value.source = {}, "RUN"
+        for name, place in places.items():
+            does("assay", name, RUN, "--json", *(["--trust"] if asked else []))
+            assert run.loaded.call_args == call(place, asked)
+
+
+@pytest.mark.parametrize(
+    ("source", "task", "kind"),
+    [
+        ("a.safetensors", ("--task", "T"), "file"),
+        ("a.safetensors", (), "file"),
+        ("a.toml", (), "task"),
+        ("Pong-survival", (), "task"),
+        ("gym:Pond-v0", (), "task"),
+    ],
+)
+@pytest.mark.parametrize("organisms", [(), (0, 5)])
+def test_assays_are_of_the_genomes_of_a_file_or_of_founders_of_a_task(
+    source: str, task: tuple[str, ...], kind: str, organisms: tuple[int, ...]
+) -> None:
+    with (
+        patch(f"primordia.assays.subjects.of_{kind}") as of,
+        patch("primordia.assays.ablate.ablate", return_value=[]),
+    ):
+        of.return_value.source = source
+        does("assay", "ablate", source, *organisms, *task, "--sticky", 0.5, "--json")
+    given = (
+        (Path(source), organisms, *(task[1:] or [None])) if kind == "file" else (source, organisms)
+    )
+    of.assert_called_once_with(*given, {"sticky": 0.5})
+
+
+def test_a_run_may_have_the_name_of_a_task(
+    run: MagicMock, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("Pong-survival").mkdir()
+    with (
+        patch("primordia.assays.subjects.of_run") as of_run,
+        patch("primordia.assays.ablate.ablate", return_value=[]),
+    ):
+        of_run.return_value.source = "a run"
+        does("assay", "ablate", "Pong-survival", 5, "--world", 2, "--json")
+    of_run.assert_called_once_with(run.opened.return_value, [(5, 2)], {})
+
+
+@pytest.mark.parametrize("words", [("a.safetensors",), (RUN, "--task", "T")], ids=str)
+def test_only_a_run_has_lines_of_descent(words: tuple[Any, ...]) -> None:
+    complains(here("assay", "line", *words), 2, "the assay `line` needs a run")
+
+
+@pytest.mark.parametrize("source", ["Pong-survival", "gym:Pond-v0", "a.toml", "a.safetensors"])
+@pytest.mark.parametrize("world", [0, 2])
+def test_only_a_run_has_worlds(source: str, world: int) -> None:
+    says = f"{source} is not a run, so it has no worlds; leave out --world"
+    complains(here("assay", "ablate", source, "--world", world), 2, says)
+
+
 @pytest.mark.parametrize(
     ("words", "side"),
     [
         ("runs/a", ("runs/a", (30,), 3, None)),
         ("runs/a:17", ("runs/a", (17,), None, None)),
         ("runs/a:17@2", ("runs/a", (17,), 2, None)),
+        ("runs/a:0@0", ("runs/a", (0,), 0, None)),
+        ("gym:Pond-v0:5", ("gym:Pond-v0", (5,), None, None)),
         ("b.safetensors", ("b.safetensors", (0,), None, "T")),
         ("b.safetensors:4", ("b.safetensors", (4,), None, "T")),
         ("Pong-survival:5", ("Pong-survival", (5,), None, None)),

@@ -1,5 +1,6 @@
 """The table of `revive`: a relived life beside its record."""
 
+import json
 from pathlib import Path
 from unittest.mock import patch
 
@@ -7,6 +8,7 @@ import pytest
 
 from primordia.cli import revive
 from primordia.organism.revival import Respect, Revival
+from tests.commands import complains, here
 
 
 @pytest.mark.parametrize(
@@ -19,6 +21,7 @@ def test_a_relived_life_is_shown_beside_its_record(begin: str, where: str) -> No
         Respect("cause of death", "fatal", "starved"),
         Respect("energy left", 1234.5, None),
         Respect("food", 1234567, 1234568.5),
+        Respect("lives", 0, 0.0),
     )
     notes, files = ("one thing", "another"), (Path("a.npz"), Path("b.gif"))
     found = Revival(5, 2, begin, 1000, 4321, respects, notes, files)
@@ -32,5 +35,27 @@ def test_a_relived_life_is_shown_beside_its_record(begin: str, where: str) -> No
         ("cause of death", "fatal", "starved", "NO"),
         ("energy left", "1,234.5", "-", "NO"),
         ("food", "1,234,567", "1,234,568.5", "NO"),
+        ("lives", "0", "0", "yes"),
     ]
     assert below == ["Note: one thing.", "Note: another.", "a.npz", "b.gif"]
+
+
+@pytest.mark.parametrize("as_json", [(), ("--json",)])
+def test_a_life_that_differs_from_its_record_has_status_1_and_all_differences_are_named(
+    as_json: tuple[str, ...],
+) -> None:
+    same = Respect("tick", 9, 9)
+    others = (Respect("energy", 1.5, None), same, Respect("food", 3, 0))
+    for respects in ((same,), others):
+        found = Revival(5, 2, "birth", 0, 9, respects, (), ())
+        with (
+            patch("primordia.api.load"),
+            patch("primordia.organism.revival.revive", return_value=found),
+        ):
+            done = here("revive", "RUN", 5, "--world", 2, *as_json)
+        if as_json:
+            assert json.loads(done.stdout) == found.to_dict()
+        if respects is not others:
+            assert (done.returncode, done.stderr) == (0, "")
+    says = "organism 5 of world 2, lived again, differs from its record in: energy, food\n"
+    complains(done, 1, says)

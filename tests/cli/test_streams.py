@@ -5,11 +5,13 @@ import io
 import os
 import sys
 from collections.abc import Iterator
+from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
-from primordia.cli.streams import LONGEST, Printable, prepare, report
+from primordia.cli.streams import LONGEST, Printable, flush, prepare, report
 
 
 class Full(io.RawIOBase):
@@ -46,6 +48,33 @@ def test_a_stream_that_cannot_be_written_is_named(file: Full, text: str, error: 
     with pytest.raises(OSError, match=os.strerror(error)) as caught:
         say(file, text)
     assert (caught.value.errno, caught.value.filename) == (error, "standard output")
+
+
+def test_a_stream_counts_the_characters_that_it_was_given(file: Full) -> None:
+    stream = Printable(io.BufferedWriter(file, 16), "utf-8")
+    assert [stream.write(text) for text in ("", "one", "\x1b[2J")] == [0, 3, 4]
+
+
+@pytest.mark.parametrize("stuck", [("stdout",), ("stderr",), ("stdout", "stderr")])
+def test_text_that_cannot_be_written_at_the_end_is_dropped(
+    stuck: tuple[str, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Otherwise Python would try again at exit, and fail. The other stream is left as it is."""
+
+    def fail() -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    names = ("stdout", "stderr")
+    opened = [open(tmp_path / name, "wb", buffering=0) for name in names]  # noqa: SIM115
+    for name, each in zip(names, opened, strict=True):
+        flushed = fail if name in stuck else each.flush
+        monkeypatch.setattr(sys, name, SimpleNamespace(flush=flushed, fileno=each.fileno))
+    flush()
+    for each in opened:
+        os.write(each.fileno(), b"more")
+        each.close()
+    written = {name for name in names if (tmp_path / name).read_bytes()}
+    assert written == {*names} - {*stuck}
 
 
 @pytest.mark.parametrize("more", [0, 1])

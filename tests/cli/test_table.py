@@ -41,4 +41,5 @@ def test_a_spread_is_the_median_with_both_quartiles_of_the_known_values() -> Non
     """Of 1, 2, 4, 8 and 100 the quartiles are 2 and 8, and the mean would be 23."""
     assert spread([100, None, 1, 8, 2, float("nan"), 4]) == "4 (2 to 8)"
     assert spread([None, 3.0]) == "3"
+    assert spread([0, None, 0.0, 4]) == "0 (0 to 2)"
     assert spread([None]) == spread([]) == "-"

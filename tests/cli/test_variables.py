@@ -4,6 +4,8 @@ import subprocess
 
 import pytest
 
+from primordia.cli.variables import check_variables
+from primordia.errors import InputError
 from tests.commands import COMMAND, complains, environment
 
 SMALL = ("run", "CartPole-survival", "--cells", "8", "--ticks", "5", "--quiet", "--out")
@@ -30,3 +32,30 @@ def test_a_wrong_variable_is_an_error(name: str, value: str, part: str, tmp_path
         timeout=120,
     )
     complains(done, 2, part)
+
+
+FORBIDDEN = [
+    ("JAX_NO_TRACING", ("1", "true", "TRUE")),
+    ("JAX_NUMPY_RANK_PROMOTION", ("raise", "Raise")),
+    ("JAX_TRANSFER_GUARD", ("disallow", "disallow_explicit", "Disallow_Explicit")),
+]
+ALLOWED = [
+    ("JAX_NO_TRACING", ("", "0", "false")),
+    ("JAX_NUMPY_RANK_PROMOTION", ("allow", "warn")),
+    ("JAX_TRANSFER_GUARD", ("allow", "log", "log_explicit")),
+]
+
+
+@pytest.mark.parametrize("works", [False, True])
+def test_only_values_with_which_no_run_works_are_refused(
+    works: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name, values in ALLOWED if works else FORBIDDEN:
+        with monkeypatch.context() as patched:
+            for value in values:
+                patched.setenv(name, value)
+                if works:
+                    check_variables()
+                    continue
+                with pytest.raises(InputError, match=f"^no run works with {name}={value}; unset"):
+                    check_variables()

@@ -9,7 +9,7 @@ import pytest
 
 from primordia.errors import InputError
 from primordia.organism import evaluation
-from primordia.organism.evaluation import Evaluation, changed, judged
+from primordia.organism.evaluation import Evaluation, Spread, changed, judged
 from primordia.organism.games import Games, Players, _marks
 from primordia.organism.playing.seats import Stretch
 from tests.worlds import config
@@ -156,6 +156,12 @@ def test_games_repeat_if_several_are_the_same_or_nothing_is_random(
     assert Evaluation(0, 0, "live", games, None, deterministic=fixed).repeats == repeats
 
 
+def test_quartiles_lie_between_values_if_no_value_is_a_quartile() -> None:
+    """Of four values, the lower quartile is three quarters of the way from the first to the second."""
+    assert Spread.of(np.array([10, 2, 0, 1])) == (0, 0.75, 1.5, 4, 10)
+    assert Spread.of(np.array([3])) == (3, 3, 3, 3, 3)
+
+
 def test_a_script_begins_again_when_its_game_has_ended() -> None:
     """Each player repeats the actions of its own game."""
     games = played([[3], [2]])._replace(actions=[np.array([1, 2, 3]), np.array([8, 9])])
@@ -182,6 +188,67 @@ def test_games_differ_in_course_if_senses_or_food_of_a_tick_differ() -> None:
         (3, 7, -1.0),
     )
     assert len({marked(*each) for each in different}) == len(different)
+
+
+def test_settings_are_given_in_a_table_or_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A name may be that of an argument, so there is a table too; what is named alone wins."""
+    asked: list[Any] = []
+    monkeypatch.setattr(evaluation, "players_of", lambda run, organisms: f"players {organisms}")
+    monkeypatch.setattr(evaluation, "judged", lambda *given, **named: asked.append((given, named)))
+    run: Any = SimpleNamespace(config="a config")
+    table = {"senses": [49], "sticky": 0.25}
+    evaluation.evaluate(run, [(9, 1)], games=3, senses="frozen", habitat=table, sticky=0.5, noops=0)
+    evaluation.evaluate(run, [(9, 1)])
+    plain = {"games": 30, "ticks": 100_000, "senses": "live", "habitat": {}}
+    wanted = {"senses": [49], "sticky": 0.5, "noops": 0}
+    players = ("a config", "players [(9, 1)]", [(9, 1)])
+    assert asked == [
+        (players, {**plain, "games": 3, "senses": "frozen", "habitat": wanted}),
+        (players, plain),
+    ]
+    assert evaluation.evaluate(run, []) == []
+    assert len(asked) == 2
+
+
+def bodied(senses: int = 4, actions: int = 2) -> Any:
+    return SimpleNamespace(senses_size=senses, action=SimpleNamespace(size=actions))
+
+
+def settled(monkeypatch: pytest.MonkeyPatch, known: list[str], after: Any) -> Any:
+    """Return settings of a habitat with these names; once they are changed, it is another habitat."""
+    monkeypatch.setattr(evaluation, "setting_fields", lambda kind: dict.fromkeys(known))
+    before = bodied()
+    if after.action.size == before.action.size:
+        after.action = before.action
+
+    def copy(update: Any) -> Any:
+        return SimpleNamespace(build_habitat=lambda: after, update=update)
+
+    values = {"walls": {"height": 1, "length": 5}}
+    return SimpleNamespace(habitat=values, build_habitat=lambda: before, model_copy=copy)
+
+
+def test_a_setting_in_a_group_is_changed_by_the_name_of_the_group(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A habitat without declared settings may have any."""
+    for known in (["walls.height", "walls.length", "speed"], []):
+        before = settled(monkeypatch, known, bodied())
+        found: Any = changed(before, {"walls": {"height": 0}, "speed": "none"})
+        assert found.update == {"habitat": {"walls": {"height": 0, "length": 5}, "speed": None}}
+    before = settled(monkeypatch, ["walls.height", "speed"], bodied())
+    with pytest.raises(InputError, match="habitat has no setting 'height'"):
+        changed(before, {"speed": 1, "height": 0})
+
+
+@pytest.mark.parametrize(("senses", "actions"), [(5, 2), (4, 3), (3, 1)])
+def test_a_habitat_of_other_senses_or_actions_is_refused(
+    senses: int, actions: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = settled(monkeypatch, [], bodied(senses, actions))
+    says = f"{senses} senses and {actions} actions; the brain is made for 4 senses and 2 actions$"
+    with pytest.raises(InputError, match=says):
+        changed(before, {"speed": 1})
 
 
 def test_only_the_settings_that_are_named_change() -> None:

@@ -1,11 +1,15 @@
 """An organism as users see it: its recorded values and its text."""
 
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
+from unittest.mock import call, patch
 
 import numpy as np
+import pytest
 
 from primordia.law.world import BirthCause, Cause
+from primordia.organism import organism
 from primordia.organism.organism import Organism
 from primordia.runs.lives import ALIVE, Lives
 
@@ -36,4 +40,46 @@ def test_an_organism_has_the_values_of_its_row() -> None:
         "<organism 0 of world 0: born 0, age 90, alive>",
         "<organism 11 of world 0: born 31, age 41, starved>",
         "<organism 12 of world 2: born 32, age 63, alive>",
+    ]
+
+
+@pytest.fixture
+def third() -> Organism:
+    """Return organism 12 of world 2, in row 1."""
+    lives = SimpleNamespace(id=np.array([5, 12]), world=np.array([0, 2]))
+    run: Any = SimpleNamespace(lives=lives, law="a law")
+    return Organism(run, 1)
+
+
+def test_what_is_derived_is_of_this_organism_in_its_world(third: Organism) -> None:
+    with (
+        patch.object(organism, "descent", return_value=np.array([0, 1])) as descent,
+        patch.object(organism, "rebuild", return_value="a genome") as rebuild,
+        patch.object(organism, "Policy") as policy,
+        patch.object(organism, "evaluate", return_value=["an evaluation"]) as evaluate,
+    ):
+        assert third.descent() == [5, 12]
+        assert third.genome() == "a genome"
+        assert third.policy() is policy.return_value
+        assert third.evaluate(games=3, sticky=0.5) == "an evaluation"
+    descent.assert_called_once_with(third.lives, 12, 2)
+    assert rebuild.call_args_list == [call(third.run, 12, 2)] * 2
+    policy.assert_called_once_with("a law", "a genome")
+    evaluate.assert_called_once_with(third.run, [(12, 2)], games=3, sticky=0.5)
+
+
+def test_videos_and_revivals_are_of_this_organism_with_the_given_options(third: Organism) -> None:
+    """Paths may be texts."""
+    with patch.object(organism, "replay") as replay, patch.object(organism, "revive") as revive:
+        third.replay("a.gif", (0, 9), (3, 4))
+        third.replay()
+        third.revive(0, "a.npz", Path("b.gif"))
+        third.revive()
+    assert replay.call_args_list == [
+        call(third.run, 12, 2, Path("a.gif"), (0, 9), beside=(3, 4)),
+        call(third.run, 12, 2, None, (None, None), beside=()),
+    ]
+    assert revive.call_args_list == [
+        call(third.run, 12, 2, since=0, save=Path("a.npz"), film=Path("b.gif")),
+        call(third.run, 12, 2, since=None, save=None, film=None),
     ]

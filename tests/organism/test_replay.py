@@ -10,10 +10,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
+from primordia import files
 from primordia.errors import InputError
 from primordia.law.metabolism import ONE
 from primordia.law.world import Cause
-from primordia.organism import replay, video
+from primordia.organism import diary, replay, video
+from primordia.organism.reliving.relived import RelivedLife
+from primordia.runs import bundle
 
 RATE = 50.0
 
@@ -57,7 +60,13 @@ def test_the_ages_shown_are_those_requested_within_the_life(
 
 @pytest.mark.parametrize(
     ("ages", "asked"),
-    [((931, None), "931 to 930"), ((None, 100), "101 to 100"), ((9, 8), "9 to 8")],
+    [
+        ((931, None), "931 to 930"),
+        ((None, 100), "101 to 100"),
+        ((9, 8), "9 to 8"),
+        ((0, 0), "0 to 0"),
+        ((None, 0), "101 to 0"),
+    ],
 )
 def test_if_no_age_is_left_to_show_the_error_says_which_ages_can_be_seen(
     monkeypatch: pytest.MonkeyPatch, ages: Any, asked: str
@@ -67,6 +76,69 @@ def test_if_no_age_is_left_to_show_the_error_says_which_ages_can_be_seen(
     says = f"^organism 4 can be seen from age 101 to 930, not from {asked}$"
     with pytest.raises(InputError, match=says):
         replay.parts_of(life, ages)
+
+
+@pytest.mark.parametrize("out", [None, Path("new.gif")])
+def test_a_video_is_of_the_lives_that_are_named_in_their_world(
+    out: Path | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Lives are in the order of birth, each once. Only without a name does the file lie in the run."""
+    made: list[Any] = []
+
+    def of(run: Any, organism: int, world: int = 0) -> tuple[int, int]:
+        return organism, world
+
+    def parts_of(*given: Any) -> str:
+        return f"parts of {given}"
+
+    monkeypatch.setattr(RelivedLife, "of", of)
+    monkeypatch.setattr(replay, "parts_of", parts_of)
+    monkeypatch.setattr(replay, "film", lambda *given: made.append(given))
+    monkeypatch.setattr(bundle, "refuse_changes", lambda path: made.append(("run", path)))
+    monkeypatch.setattr(files, "own_folder", lambda path: made.append(("own", path)))
+    run: Any = SimpleNamespace(path=Path("RUN"))
+    path = replay.replay(run, 5, 3, out, (4, 9), 2.5, beside=(12, 2, 5))
+    lives = [(2, 3), (5, 3), (12, 3)]
+    film = (path, *((life, f"parts of {(life, (4, 9), 2.5)}") for life in lives))
+    if out is None:
+        assert path == Path("RUN/videos/world3-organism2-5-12.mp4")
+        assert made == [("run", Path("RUN")), ("own", Path("RUN/videos")), film]
+    else:
+        assert (path, made) == (out, [film])
+
+
+@pytest.mark.parametrize(
+    ("check", "good", "bad"),
+    [
+        (video.check_name, (".mp4", ".gif"), (".MP4", ".Gif", ".npz", "")),
+        (diary.check_name, (".npz", ".parquet", ".csv"), (".NPZ", ".Csv", ".gif", "")),
+    ],
+)
+def test_only_a_suffix_that_is_written_is_accepted(
+    check: Any, good: tuple[str, ...], bad: tuple[str, ...]
+) -> None:
+    for suffix in good:
+        check(Path(f"a{suffix}"))
+    for suffix in bad:
+        with pytest.raises(InputError, match=f"^a{suffix}: the file of a .* must end with "):
+            check(Path(f"a{suffix}"))
+
+
+@pytest.mark.parametrize(
+    ("lacks", "rate", "named"),
+    [
+        (["picture"], None, "`picture` and no `rate`"),
+        ([], None, "`rate`"),
+        (["picture", "seen"], RATE, "`picture` and no `seen`"),
+    ],
+)
+def test_all_that_a_habitat_lacks_for_pictures_is_named(
+    lacks: list[str], rate: float | None, named: str
+) -> None:
+    habitat: Any = SimpleNamespace(lacks=lambda ability: lacks, rate=rate)
+    life: Any = SimpleNamespace(habitat=habitat, run=SimpleNamespace(path="RUN"))
+    with pytest.raises(InputError, match=f"^RUN: the habitat draws no .* it has no {named}$"):
+        replay.picture_rate(life)
 
 
 @pytest.mark.parametrize(

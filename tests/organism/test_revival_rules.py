@@ -1,15 +1,19 @@
 """Rules of revival: the state with which a life begins, the notes of a comparison, and the result."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
+from unittest.mock import MagicMock, call, patch
 
 import numpy as np
 import pytest
 
 from primordia.errors import InputError
-from primordia.organism import diary, revival
+from primordia.law.world import Cause
+from primordia.organism import diary, replay, revival
 from primordia.organism.reliving.course import OWN, recorded
+from primordia.organism.reliving.relived import RelivedLife
 from primordia.organism.revival import Respect, Revival
 from primordia.runs import checkpoint, directory
 
@@ -156,3 +160,76 @@ def test_a_revival_has_plain_values_for_json() -> None:
         "notes": ["a note"], "files": ["a.npz"],
     }  # fmt: skip
     assert Revival(3, 1, "birth", 0, 9, respects[:1], (), ()).agrees
+
+
+@pytest.fixture
+def again() -> Iterator[MagicMock]:
+    """Let organism 3 of an arm's world 7, which is world 1 of its run, be lived again to tick 90."""
+    made = MagicMock()
+    made.life = SimpleNamespace(stored=None, begins=60, cause=None)
+    made.course.found.return_value, made.course.tick = {"tick": 90, "food": 2}, 90
+    with (
+        patch.object(revival, "run_of", return_value=("a run", 1)),
+        patch.object(revival, "_stored", return_value=None) as made.stored,
+        patch.object(RelivedLife, "of", return_value=made.life) as made.of,
+        patch.object(revival, "recorded", return_value={"tick": 90, "food": 2}) as made.recorded,
+        patch.object(revival, "_lived", return_value=made.course) as made.lived,
+        patch.object(revival, "_notes", return_value=["a note"]),
+        patch.object(replay, "parts_of", return_value="the parts") as made.parts,
+        patch.object(replay, "film") as made.film,
+    ):
+        yield made
+
+
+@pytest.mark.parametrize(
+    ("stored", "since", "begin"),
+    [(None, None, "birth"), ({}, None, "fork"), ({}, 0, "checkpoint"), ({}, 60, "checkpoint")],
+)
+def test_a_life_begins_with_its_birth_a_fork_or_a_checkpoint(
+    stored: Any, since: int | None, begin: str, again: MagicMock
+) -> None:
+    again.life.stored = stored
+    found = revival.revive(MagicMock(), 3, 7, since=since)
+    assert (found.organism, found.world, found.begin, found.begins, found.ends) == (
+        3,
+        7,
+        begin,
+        60,
+        90,
+    )
+    assert again.stored.call_args == call("a run", 3, 1, since)
+    assert again.of.call_args == call("a run", 3, 1, again.stored.return_value)
+    assert again.lived.call_args == call(again.life, None)
+    assert (found.agrees, found.notes, found.files) == (True, ("a note",), ())
+    again.film.assert_not_called()
+
+
+@pytest.mark.parametrize("save", [None, Path("a.npz")])
+@pytest.mark.parametrize("recorded", [{"tick": 90, "food": 2}, {"tick": 90, "food": 3}, {"x": 0}])
+def test_only_a_life_that_agrees_in_all_respects_is_filmed(
+    recorded: dict[str, int], save: Path | None, again: MagicMock
+) -> None:
+    """A value that the relived life lacks differs too. The life is saved in any case."""
+    again.recorded.return_value = recorded
+    found = revival.revive(MagicMock(), 3, 7, save=save, film=Path("b.gif"))
+    assert again.lived.call_args == call(again.life, save)
+    saved = [] if save is None else [save]
+    if recorded == {"tick": 90, "food": 2}:
+        again.film.assert_called_once_with(Path("b.gif"), (again.life, "the parts"))
+        assert (found.notes, found.files) == (("a note",), (*saved, Path("b.gif")))
+    else:
+        again.film.assert_not_called()
+        not_made = "b.gif was not made, since the life differs from its record"
+        assert (found.notes, found.files) == (("a note", not_made), (*saved,))
+
+
+@pytest.mark.parametrize("cause", Cause)
+def test_only_a_life_that_lost_its_body_cannot_be_lived_again(
+    cause: Cause, again: MagicMock
+) -> None:
+    again.life.cause, again.life.record = cause, SimpleNamespace(id=[3])
+    if cause is not Cause.RESTART:
+        assert revival.revive(MagicMock(), 3, 7).agrees
+        return
+    with pytest.raises(InputError, match=r"^organism 3 ended when its run was resumed"):
+        revival.revive(MagicMock(), 3, 7)

@@ -164,6 +164,20 @@ def test_a_gif_has_the_colours_of_the_sample_or_of_its_first_picture(
     assert found == [[white, red], [green if sampled else red, red], [red, white]]
 
 
+@pytest.mark.parametrize("sampled", [True, False])
+def test_a_gif_has_more_colours_with_a_sample(sampled: bool, tmp_path: Path) -> None:
+    """A sample may have 256; of the first picture 64 are taken, which is enough for a drawing."""
+    number = np.arange(240).reshape(12, 20).repeat(2, axis=0).repeat(2, axis=1)
+    picture = Image.fromarray(
+        np.stack([37 * number, 91 * number, 151 * number], axis=2).astype("u1")
+    )
+    video.write(tmp_path / "a.gif", iter([picture]), 20.0, picture if sampled else None)
+    with Image.open(tmp_path / "a.gif") as gif:
+        found = gif.convert("RGB").getcolors(1000)
+    assert found is not None
+    assert (150 < len(found) <= 240) if sampled else (32 < len(found) <= 64)
+
+
 def test_a_picture_shows_where_the_cart_is_and_the_push() -> None:
     habitat = CartPole()
     middle, right = (

@@ -1,0 +1,154 @@
+"""Settings under --help: each has the value that it would have, and its possible values."""
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+from unittest.mock import call, patch
+
+import pytest
+
+from primordia.cli import help as helping
+from primordia.cli.evolve import run
+from primordia.cli.help import habitat_rows, run_rows, setting_rows
+from primordia.habitats.cartpole.habitat import CartPole
+from tests.commands import complains, here
+from tests.trouble import TASK
+from tests.worlds import MEADOW, config
+
+
+def values(rows: list[tuple[str, str]]) -> dict[str, str]:
+    """Return the value of each setting, which is in brackets at the end of its text."""
+    return {name: text[text.rindex(" [") + 2 : -1] for name, text in rows}
+
+
+def test_a_value_is_the_given_one_else_the_tasks_else_the_default() -> None:
+    given = {"replication": 0, "mutation": {"scale": 0.5}, "brain": {"biases": False}}
+    found = values(setting_rows(TASK, given))
+    assert found["--habitat.name"] == '"cartpole"'
+    assert found["--habitat.angle_limit"] == "12.0"
+    assert (found["--replication"], found["--mutation.scale"]) == ("0", "0.5")
+    assert found["--mutation.probability"] == "1.0"
+    assert (found["--brain.biases"], found["--hazard"]) == ("false", "0.0")
+    assert (found["--ancestors"], found["--mutation.blocks"]) == ("[]", "{}")
+    assert (found["--stop.ticks"], found["--stop.until"]) == ("none", '"saturation"')
+    unlimited = values(setting_rows(TASK, {"stop": {"until": "none"}, "habitat": {"spread": 0}}))
+    assert (unlimited["--stop.until"], unlimited["--habitat.spread"]) == ('"none"', "0")
+
+
+def test_the_settings_are_those_of_the_chosen_parts() -> None:
+    brains = {
+        kind: {name for name in dict(setting_rows(None, {"brain": given})) if "brain" in name}
+        for kind, given in {
+            "default": {},
+            "linear": {"kind": "linear"},
+            "hidden": {"kind": "feed-forward"},
+            "wrong": {"kind": "no such brain"},
+        }.items()
+    }
+    assert "--brain.hidden" in brains["hidden"]
+    assert "--brain.hidden" not in brains["linear"]
+    assert brains["wrong"] == {"--brain.kind"} < brains["default"]
+    assert "--brain.kind" in dict(setting_rows(None, {"brain": 3}))
+
+
+def test_names_that_are_no_choice_of_the_user_are_left_out() -> None:
+    names = dict(setting_rows(TASK, {}))
+    assert not {"--about", "--task", "--fork.run", "--fork.tick"} & {*names}
+    assert names["--stop.until"].endswith(' (saturation, none) ["saturation"]')
+    assert names["--brain.biases"].partition(" (")[2].startswith("false, true) ")
+
+
+def test_the_settings_of_a_run_are_its_own(tmp_path: Path) -> None:
+    (tmp_path / "config.toml").write_text(config(MEADOW, cells=13).to_toml())
+    archive = SimpleNamespace(
+        admit=lambda: None,
+        habitat=CartPole(),
+        config=SimpleNamespace(habitat={"angle_limit": 77.0, "spread": 0}),
+    )
+    with patch.object(helping, "Archive", return_value=archive) as opened:
+        assert values(run_rows(tmp_path, {}))["--cells"] == "13"
+        assert values(run_rows(tmp_path, {"cells": 7}))["--cells"] == "7"
+        found = values(habitat_rows(tmp_path))
+    assert opened.call_args == call(tmp_path)
+    assert (found["--angle_limit"], found["--spread"]) == ("77.0", "0")
+    assert (found["--track_limit"], "--cells" in found) == ("2.4", False)
+
+
+@pytest.mark.parametrize(
+    ("words", "asked", "title"),
+    [
+        (("run",), call.setting_rows(None), "run TASK|FILE.toml|gym:NAME --help` also"),
+        (("run", TASK), call.setting_rows(TASK), f"values of {TASK})"),
+        (("run", "a.toml"), call.setting_rows("a.toml"), "values of a.toml)"),
+        (("run", "gym:X-v0"), call.setting_rows("gym:X-v0"), "values of gym:X-v0)"),
+        (("run", "gymnax:a:B"), call.setting_rows("gymnax:a:B"), "values of gymnax:a:B)"),
+        (("fork", "RUN", "--at", 3), call.run_rows(Path("RUN")), "values of RUN)"),
+        (("fork", "other", "--at", 3), call.setting_rows(None), "fork RUN --help` also"),
+    ],
+    ids=str,
+)
+def test_help_is_about_the_task_the_file_or_the_run_that_is_named(
+    words: tuple[Any, ...], asked: Any, title: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Flags in front of --help already have their effect on the values."""
+    monkeypatch.chdir(tmp_path)
+    Path("RUN").mkdir()
+    Path("RUN", "config.toml").touch()
+    rows = [("--cells", "number of cells [7]")]
+    with patch.multiple(
+        helping, setting_rows=(one := patch_of(rows)), run_rows=(other := patch_of(rows))
+    ):
+        done = here(*words, "--cells", 7, "--help")
+    name, place, _ = asked
+    calls = {"setting_rows": one.calls, "run_rows": other.calls}
+    assert calls.pop(name) == [(*place, {"cells": 7})]
+    assert [*calls.values()] == [[]]
+    section = " ".join(done.stdout.split()).partition("Settings, as in TOML (")[2]
+    assert title in section
+    assert section.startswith("defaults; ") == (place == (None,))
+    assert "number of cells [7]" in done.stdout
+
+
+def patch_of(rows: list[tuple[str, str]]) -> Any:
+    """Return a function that returns rows and notes its arguments."""
+
+    def noted(*given: Any) -> list[tuple[str, str]]:
+        noted.calls.append(given)  # type: ignore[attr-defined]
+        return rows
+
+    noted.calls = []  # type: ignore[attr-defined]
+    return noted
+
+
+@pytest.mark.parametrize(
+    ("flags", "settings"),
+    [
+        (["--about=a=b"], {"about": "a=b"}),
+        (["--about", "a=b"], {"about": "a=b"}),
+        (["--hazard", "-1e-3"], {"hazard": -0.001}),
+        (["--about", "-x"], {"about": "-x"}),
+        (["--about", "1\ncells = 3"], {"about": "1\ncells = 3"}),
+        (["--about", ""], {"about": ""}),
+        (["--a-b.c=1", "--a-b.d", "[1, 2]"], {"a-b": {"c": 1, "d": [1, 2]}}),
+        (["--seed", "1", "--seed", "0"], {"seed": 0}),
+        (["--ticks", "9", "--cells", "3"], {"cells": 3}),
+    ],
+    ids=str,
+)
+def test_a_flag_is_a_setting_with_its_value(flags: list[str], settings: dict[str, Any]) -> None:
+    """The value is that of TOML; what TOML does not know is a text."""
+    assert run.make_context("run", [TASK, *flags]).obj == settings
+
+
+@pytest.mark.parametrize(
+    ("flags", "says"),
+    [
+        (("--stop", 3, "--stop.ticks", 4), "--stop.ticks: --stop already has a single value"),
+        (("--seed", 2**64), "seed: 18446744073709551616 does not fit into 64 bits"),
+        (("--hazard", "nan"), "hazard: nan is not a finite number"),
+        (("--cells", "--seed", 3), "--cells needs a value"),
+    ],
+    ids=str,
+)
+def test_a_flag_that_no_setting_can_have_is_refused(flags: tuple[Any, ...], says: str) -> None:
+    complains(here("fork", "no run", "--at", 3, *flags), 2, says)

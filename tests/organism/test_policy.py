@@ -1,0 +1,69 @@
+"""A brain as a function: its weights, its memory, and the number of its senses."""
+
+from pathlib import Path
+from unittest.mock import patch
+
+import numpy as np
+import pytest
+
+from primordia.errors import InputError
+from primordia.organism import onnx
+from primordia.organism.policy import Policy
+from tests.worlds import MILL, config
+
+
+@pytest.fixture(scope="module")
+def policy() -> Policy:
+    """Return a brain with 2 neurons, whose k-th weight is k."""
+    settings = config({**MILL, "brain": {"hidden": 2}})
+    law = settings.build_law(settings.build_habitat())
+    return Policy(law, np.arange(law.heredity.layout.length, dtype=np.float32))
+
+
+def test_weights_are_blocks_in_the_order_of_the_genome(policy: Policy) -> None:
+    blocks, first = policy._law.heredity.layout.blocks, 0
+    assert list(policy.weights) == [name for name, _ in blocks]
+    for name, shape in blocks:
+        size = int(np.prod(shape))
+        np.testing.assert_array_equal(
+            policy.weights[name], np.arange(first, first + size).reshape(shape)
+        )
+        first += size
+
+
+@pytest.mark.parametrize("more", [-1, 1, 5])
+def test_neither_fewer_nor_more_senses_are_accepted(more: int, policy: Policy) -> None:
+    right = policy._law.senses
+    says = f"^{right + more} senses are given; the brain has {right}$"
+    with pytest.raises(InputError, match=says):
+        policy(np.zeros(right + more, np.float32))
+
+
+def test_a_policy_remembers_until_it_is_reset(policy: Policy) -> None:
+    """A second call with the same senses begins with what the first one left."""
+    senses = np.full(policy._law.senses, 0.25, np.float32)
+    policy.reset()
+    assert policy.memory.tolist() == [0.0, 0.0]
+    policy(senses)
+    first = policy.memory
+    policy(senses)
+    assert (policy.memory != first).any()
+    policy.reset()
+    assert not policy.memory.any()
+    policy(senses)
+    np.testing.assert_array_equal(policy.memory, first)
+
+
+def test_a_model_is_written_with_the_weights_and_what_is_told_about_them(policy: Policy) -> None:
+    with patch.object(onnx, "write") as write:
+        policy.to_onnx("a.onnx", {"seed": "3"})
+        policy.to_onnx(Path("b.onnx"))
+    for given, expected in zip(
+        write.call_args_list, ((Path("a.onnx"), {"seed": "3"}), (Path("b.onnx"), {})), strict=True
+    ):
+        path, law, weights, about = given.args
+        assert (path, about) == expected
+        assert law is policy._law
+        assert {name: block.tolist() for name, block in weights.items()} == {
+            name: block.tolist() for name, block in policy.weights.items()
+        }

@@ -1,0 +1,166 @@
+"""Games played side by side: who sits where, in which parts they play, and what a game adds up to."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from primordia.organism import games
+from primordia.organism.games import Games, Players, play, stretches
+from primordia.organism.playing import in_jax, on_host
+from primordia.organism.playing.seats import Frozen, Manner, Stretch
+from primordia.random.wide import wide
+
+
+def players(count: int, kind: str = "host") -> Players:
+    """Return players; the genome of player k is (k, k) and its key 10 + k."""
+    genomes = np.repeat(np.arange(count, dtype=np.float32)[:, None], 2, axis=1)
+    none: Any = None
+    habitat: Any = SimpleNamespace(kind=kind)
+    return Players("a law", habitat, genomes, wide(np.arange(count) + 10), none)
+
+
+def script(count: int) -> Games:
+    """Return games; player k has the actions 10 k, 10 k + 1, ... of k + 1 ticks."""
+    none: Any = None
+    actions = [10 * k + np.arange(k + 1) for k in range(count)]
+    return Games(none, none, none, none, actions)
+
+
+def frozen(count: int) -> Frozen:
+    number = np.arange(count)[:, None]
+    return Frozen(number % 2 == 0, number % 3 == 0)
+
+
+@pytest.mark.parametrize("kind", ["host", "jax"])
+def test_the_games_of_a_player_are_adjacent_and_numbered(
+    kind: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name, module in (("host", on_host), ("jax", in_jax)):
+        monkeypatch.setattr(module, "stretches", lambda *given, name=name: (name, *given))
+    manner = Manner(70, frozen(3), watched=True)
+    found: Any = stretches(players(3, kind), 2, manner, script(3))
+    where, law, habitat, seated, given = found
+    assert (where, law, habitat.kind) == (kind, "a law", kind)
+    assert seated.genomes.tolist() == [[k, k] for k in (0, 0, 1, 1, 2, 2)]
+    assert seated.keys.lo.tolist() == [10, 10, 11, 11, 12, 12]
+    assert seated.cells.tolist() == [0, 1, 0, 1, 0, 1]
+    assert (given.ticks, given.watched) == (70, True)
+    assert given.frozen.senses[:, 0].tolist() == [True, True, False, False, True, True]
+    assert given.frozen.memory[:, 0].tolist() == [True, True, False, False, False, False]
+    assert [given.script(tick).tolist() for tick in (1, 2, 3)] == [
+        [0, 0, 10, 10, 20, 20], [0, 0, 11, 11, 21, 21], [0, 0, 10, 10, 22, 22],
+    ]  # fmt: skip
+    plain: Any = stretches(players(3, kind), 2, Manner(70))
+    assert (plain[-1].frozen, plain[-1].script) == (None, None)
+
+
+@pytest.mark.parametrize(
+    ("at_once", "parts"),
+    [(5, [[0, 1], [2, 3], [4]]), (1, [[0], [1], [2], [3], [4]]), (None, [[0, 1, 2, 3, 4]])],
+)
+def test_players_in_parts_keep_their_own_scripts_and_frozen_inputs(
+    at_once: int | None, parts: list[list[int]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The games of one player are never separated."""
+    asked: list[Any] = []
+
+    def play_at_once(own: Players, count: int, ticks: int, held: Any, repeated: Any) -> Games:
+        numbers = own.genomes[:, 0].astype(int)
+        asked.append(numbers.tolist())
+        assert (count, ticks) == (2, 70)
+        np.testing.assert_array_equal(held.senses, frozen(5).senses[numbers])
+        np.testing.assert_array_equal(held.memory, frozen(5).memory[numbers])
+        for actions, number in zip(repeated.actions, numbers, strict=True):
+            np.testing.assert_array_equal(actions, script(5).actions[number])
+        each = np.stack([numbers, 100 + numbers], axis=1)
+        return Games(each, each > 3, each / 2, each + 7, [np.array([k]) for k in numbers])
+
+    monkeypatch.setattr(games, "_play_at_once", play_at_once)
+    found = play(players(5), 2, 70, frozen=frozen(5), script=script(5), at_once=at_once)
+    assert asked == parts
+    assert found.ticks.tolist() == [[k, 100 + k] for k in range(5)]
+    assert found.over.tolist() == [[k > 3, True] for k in range(5)]
+    assert found.food.tolist() == [[k / 2, 50 + k / 2] for k in range(5)]
+    assert found.course.tolist() == [[k + 7, k + 107] for k in range(5)]
+    assert [each.tolist() for each in found.actions] == [[k] for k in range(5)]
+
+
+PLAYING = np.array([[1, 1, 1, 1], [1, 0, 1, 1], [1, 0, 0, 1], [1, 0, 0, 1]], bool)
+"""Whether each of four games, two of each player, goes on when each of four ticks begins."""
+
+
+def played(food: np.ndarray | None, marks: np.ndarray, monkeypatch: pytest.MonkeyPatch) -> Games:
+    """Return games of four ticks, which are played in stretches of three ticks and of one."""
+    tick = np.arange(1, 5)[:, None]
+    actions = tick + 10 * np.arange(4)
+    alive = np.array([True, False, False, False])
+
+    def given(*_: Any) -> Any:
+        for part, after in ((slice(0, 3), PLAYING[3]), (slice(3, 4), alive)):
+            eaten = None if food is None else food[part]
+            yield Stretch(PLAYING[part], actions[part], eaten, marks[part], after)
+
+    monkeypatch.setattr(games, "stretches", given)
+    return play(players(2), 2, 4)
+
+
+def marked(*changes: tuple[int, int]) -> np.ndarray:
+    """Return marks of senses (T, N, 2), of which those at some ticks and games are changed."""
+    marks = np.arange(32, dtype=np.uint32).reshape(4, 4, 2)
+    for tick, game in changes:
+        marks[tick, game] += np.uint32(1000)
+    return marks
+
+
+def test_a_game_counts_only_what_happens_while_it_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    food = np.array([[1, 2, 3, 4], [5, 6, 7, 8], [9, 10, 11, 12], [13, 14, 15, 16]], np.float32)
+    found = played(food, marked(), monkeypatch)
+    assert found.ticks.tolist() == [[4, 1], [2, 4]]
+    assert found.over.tolist() == [[False, True], [True, True]]
+    assert found.food.tolist() == [[1 + 5 + 9 + 13, 2], [3 + 7, 4 + 8 + 12 + 16]]
+    assert [each.tolist() for each in found.actions] == [[1, 2, 3, 4], [21, 22]]
+    without = played(None, marked(), monkeypatch)
+    assert not without.food.any()
+    later = np.where(PLAYING, food, 99).astype(np.float32)
+    np.testing.assert_array_equal(played(later, marked(), monkeypatch).course, found.course)
+    assert (played(food + 1, marked(), monkeypatch).course != found.course).all()
+
+
+def test_courses_differ_if_senses_differ_in_any_tick_of_the_game(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    before = played(None, marked(), monkeypatch).course.ravel()
+    courses = {}
+    for tick in range(4):
+        for game in range(4):
+            after = played(None, marked((tick, game)), monkeypatch).course.ravel()
+            expected = (np.arange(4) == game) & PLAYING[tick, game]
+            np.testing.assert_array_equal(after != before, expected)
+            courses[tick, game] = after[game]
+    lasting = [int(courses[tick, 0]) for tick in range(4)]  # the same change at other ticks
+    assert len(set(lasting)) == 4
+
+
+@pytest.mark.parametrize(("kind", "sizes"), [("host", [2, 2, 1]), ("jax", [3, 2])])
+def test_lifespans_are_found_in_parts_of_which_each_has_its_own_frozen_inputs(
+    kind: str, sizes: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Five players have two games each; four games are played at once on the host, and six in JAX."""
+    asked: list[int] = []
+
+    def play_part(own: Players, count: int, ticks: int, *, frozen: Any, at_once: int) -> Any:
+        numbers = own.genomes[:, 0].astype(int)
+        asked.append(len(numbers))
+        assert (count, ticks) == (2, 70)
+        assert at_once >= 2 * len(numbers)
+        np.testing.assert_array_equal(frozen.senses, held.senses[numbers])
+        return SimpleNamespace(ticks=np.stack([numbers, 100 + numbers], axis=1))
+
+    held = frozen(5)
+    monkeypatch.setattr(games, "AT_ONCE", 4)
+    monkeypatch.setattr(games, "AT_ONCE_IN_JAX", 6)
+    monkeypatch.setattr(games, "play", play_part)
+    spans = games.lifespans_in_games(players(5, kind), 2, 70, held)
+    assert (asked, spans.tolist()) == (sizes, [[k, 100 + k] for k in range(5)])
