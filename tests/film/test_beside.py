@@ -164,6 +164,16 @@ def test_the_oldest_so_far_begins_its_life_when_it_is_first_shown(
     ]
 
 
+def test_a_life_without_a_tick_has_no_picture(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is that of an organism that was born in the last tick of its run."""
+    record = SimpleNamespace(id=np.array([7]), born=np.array([100]))
+    life = SimpleNamespace(record=record, begins=100, ends=100)
+    monkeypatch.setattr("primordia.film.beside.RelivedLife.of", lambda *_: life)
+    monkeypatch.setattr("primordia.organism.replay.picture_rate", lambda _: 30.0)
+    with pytest.raises(InputError, match=r"^organism 7 has not lived a tick yet"):
+        next(beside.pictures_of(a_run(world_of(LIVED)), 7, 0))
+
+
 @pytest.mark.parametrize("rate", [50.0, 15.0, 30.0, 12.0, 20.0, 90.0, 75.0])
 def test_a_life_is_shown_from_its_birth_to_its_end_at_thirty_pictures_a_second(
     rate: float, monkeypatch: pytest.MonkeyPatch

@@ -78,6 +78,16 @@ def test_if_no_age_is_left_to_show_the_error_says_which_ages_can_be_seen(
         replay.parts_of(life, ages)
 
 
+@pytest.mark.parametrize("ages", [(None, None), (0, None), (0, 9)])
+def test_a_life_without_a_tick_cannot_be_shown(
+    monkeypatch: pytest.MonkeyPatch, ages: tuple[int | None, int | None]
+) -> None:
+    life: Any = SimpleNamespace(record=SimpleNamespace(id=[4], born=[70]), begins=170, ends=170)
+    monkeypatch.setattr(replay, "picture_rate", lambda life: RATE)
+    with pytest.raises(InputError, match=r"^organism 4 has not lived a tick yet"):
+        replay.parts_of(life, ages)
+
+
 @pytest.mark.parametrize("out", [None, Path("new.gif")])
 def test_a_video_is_of_the_lives_that_are_named_in_their_world(
     out: Path | None, monkeypatch: pytest.MonkeyPatch

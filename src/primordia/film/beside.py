@@ -57,12 +57,11 @@ def pictures_of(run: Records, organism: int, world: int) -> Iterator[Image.Image
     """Yield a life's pictures, RATE of them for each second lived; the last is repeated for ever.
 
     Raises:
-        InputError: the life cannot be lived again, or its habitat draws no pictures.
+        InputError: the life cannot be lived again or has no tick yet, or its habitat draws no pictures.
         Trouble: the life does not repeat as recorded.
     """
     life = RelivedLife.of(run, organism, world)
-    rate, born = replay.picture_rate(life), int(life.record.born[0])
-    whole = [range(life.begins + 1 - born, life.ends - born + 1)]
+    rate, whole = replay.picture_rate(life), replay.parts_of(life, (0, None))
     for tick, (_, stretch, i) in enumerate(replay.moments(life, whole, 1)):
         number = pictures_at(tick, rate)
         if number or stretch.tick[i] == life.ends:

@@ -111,6 +111,9 @@ def parts_of(
     seconds = PART if seconds is None else seconds
     rate, born = picture_rate(life), int(life.record.born[0])
     first, last = life.begins + 1 - born, life.ends - born
+    if first > last:
+        name = f"organism {life.record.id[0]}"
+        raise InputError(f"{name} has not lived a tick yet, so nothing can be shown")
     if ages == (None, None) and last - first > 2 * seconds * rate:
         part = int(seconds * rate)
         return [range(first, first + part), range(last - part + 1, last + 1)]
