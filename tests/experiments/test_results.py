@@ -124,10 +124,10 @@ def test_last_deaths_have_a_median_and_quartiles_over_the_worlds_of_each_arm() -
 
 
 def test_the_csv_has_a_row_for_each_world_and_an_empty_cell_for_the_unknown() -> None:
-    """The arms have different numbers of worlds. Values have two decimals."""
+    """The arms have different numbers of worlds. Values have two decimals, and four digits at least."""
     nan = float("nan")
-    one = arm("one", [10, 20], 1, lifespan=[4.006, nan], food=[70, 80])
-    two = arm("two", [30], 0, lifespan=[1 / 3], food=[12345678])
+    one = arm("one", [10, 20], 1, lifespan=[4.00649, nan], food=[70, 0.012345])
+    two = arm("two", [30], 0, lifespan=[1000 / 3], food=[12345678])
     counted = [
         {"seed": np.array([3, 4]), "saturated_tick": np.array([NEVER, 9], np.uint64)},
         {"seed": np.array([5]), "saturated_tick": np.array([0], np.uint64)},
@@ -135,9 +135,9 @@ def test_the_csv_has_a_row_for_each_world_and_an_empty_cell_for_the_unknown() ->
     text = results.world_rows(side_by_side(one, two), counted, [])
     assert list(csv.reader(text.splitlines())) == [
         ["arm", "seed", "saturated_tick", "mean_lifespan", "late_food"],
-        ["one", "3", "", "4.01", "70"],
-        ["one", "4", "9", "", "80"],
-        ["two", "5", "0", "0.33", "12345678"],
+        ["one", "3", "", "4.006", "70"],
+        ["one", "4", "9", "", "0.01234"],
+        ["two", "5", "0", "333.33", "12345678"],
     ]
     ends = [
         [{"late_deaths": 0.0, "late_lifespan": nan}, {"late_deaths": 2.0, "late_lifespan": 0.5}],

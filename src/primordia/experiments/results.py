@@ -213,4 +213,9 @@ def _known(value: float) -> float | str:
 
 def _cells(measured: Measured) -> list[str]:
     values = zip(measured.value.tolist(), measured.known.tolist(), strict=True)
-    return [f"{round(value, 2):.10g}" if known else "" for value, known in values]
+    return [_number(value) if known else "" for value, known in values]
+
+
+def _number(value: float) -> str:
+    """Return a number with two decimals, and one below 100 with four digits."""
+    return f"{value:.4g}" if abs(value) < 100 else f"{round(value, 2):.10g}"
