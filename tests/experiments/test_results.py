@@ -126,7 +126,7 @@ def test_last_deaths_have_a_median_and_quartiles_over_the_worlds_of_each_arm() -
 def test_the_csv_has_a_row_for_each_world_and_an_empty_cell_for_the_unknown() -> None:
     """The arms have different numbers of worlds. Values have two decimals, and four digits at least."""
     nan = float("nan")
-    one = arm("one", [10, 20], 1, lifespan=[4.00649, nan], food=[70, 0.012345])
+    one = arm("one", [10, 20], 1, lifespan=[4.00649, nan], food=[70, 0.0123456])
     two = arm("two", [30], 0, lifespan=[1000 / 3], food=[12345678])
     counted = [
         {"seed": np.array([3, 4]), "saturated_tick": np.array([NEVER, 9], np.uint64)},
@@ -136,7 +136,7 @@ def test_the_csv_has_a_row_for_each_world_and_an_empty_cell_for_the_unknown() ->
     assert list(csv.reader(text.splitlines())) == [
         ["arm", "seed", "saturated_tick", "mean_lifespan", "late_food"],
         ["one", "3", "", "4.006", "70"],
-        ["one", "4", "9", "", "0.01234"],
+        ["one", "4", "9", "", "0.01235"],
         ["two", "5", "0", "333.33", "12345678"],
     ]
     ends = [
