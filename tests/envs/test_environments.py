@@ -305,8 +305,14 @@ def test_a_life_begins_with_reset_and_ends_with_death() -> None:
     "options", [{"tik": 1}, {"tick": -1}, {"tick": 2**31}, {"cell": 1.5}, {"cell": "a"}]
 )
 def test_a_place_of_birth_must_exist(options: dict[str, Any]) -> None:
+    env, other = LifeEnv("CartPole-survival"), LifeEnv("CartPole-survival")
     with pytest.raises(ValueError, match="options: "):
-        LifeEnv("CartPole-survival").reset(options=options)
+        env.reset(options=options)
+    for each in (env, other):
+        each.reset(seed=4)
+    with pytest.raises(ValueError, match="options: "):
+        env.reset(seed=5, options=options)
+    assert (env.reset()[0] == other.reset()[0]).all(), "a refused reset begins no life"
 
 
 def test_wrong_arguments_of_environments_are_errors() -> None:

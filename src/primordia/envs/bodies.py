@@ -119,6 +119,13 @@ def _part_space(part: Discrete | Continuous) -> Space:
     return spaces.Box(np.array(low, np.float32), np.array(high, np.float32))
 
 
+def zeros(kind: Action) -> np.ndarray:
+    """Return the action of one body in which every number is 0, int32 (1,) or float32 (1, K)."""
+    if isinstance(kind, Discrete):
+        return np.zeros(1, np.int32)
+    return np.zeros((1, kind.columns if isinstance(kind, Compound) else kind.size), np.float32)
+
+
 def as_rows(actions: Any, kind: Action, count: int) -> np.ndarray:
     """Return the actions of bodies in the habitat's form: int32 (N,) or float32 (N, K).
 

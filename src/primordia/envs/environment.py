@@ -9,7 +9,15 @@ import numpy as np
 from gymnasium.error import ResetNeeded
 
 from primordia import config
-from primordia.envs.bodies import Births, Bodies, action_space, as_rows, label, observation_space
+from primordia.envs.bodies import (
+    Births,
+    Bodies,
+    action_space,
+    as_rows,
+    label,
+    observation_space,
+    zeros,
+)
 from primordia.habitats.contract import Ability, Compound
 
 FIRST = np.array([0])
@@ -68,19 +76,19 @@ class LifeEnv(gymnasium.Env):
         Raises:
             ValueError: an option is unknown, or not a whole number from 0 to 2^31 - 1.
         """
-        super().reset(seed=seed)
-        self._episode = 0 if seed is not None else self._episode + 1
         born = options or {}
         for name, value in born.items():
             whole = isinstance(value, int | np.integer) and 0 <= value < 2**31
             if name not in ("tick", "cell") or not whole:
                 says = "give whole numbers as tick and cell"
                 raise ValueError(f"options: {name} = {value!r}; {says}")
+        super().reset(seed=seed)
+        self._episode = 0 if seed is not None else self._episode + 1
         place = born.get("tick", self._episode), born.get("cell", 0)
         seeds = np.array([(self.np_random_seed or 0) % 2**64], np.uint64)
         self._bodies.begin(FIRST, Births(seeds, *(np.array([each]) for each in place)))
         self._alive[:] = True
-        self._action = np.zeros(1)
+        self._action = zeros(self._bodies.habitat.action)
         return self._bodies.senses[0].copy(), self._info(-1)
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
