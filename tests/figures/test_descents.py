@@ -35,7 +35,7 @@ def an_evolution(count: int = 65, **others: Any) -> Any:
             largest=draw.random((40, len(TICKS))), effective=draw.uniform(0, 9, (40, len(TICKS)))
         ),
         "diversity": np.array([900, 700, 800, 300, 100]),
-        "sweeps": [SimpleNamespace(fixed=tick) for tick in (None, 29, FOUNDED, 31, 140)],
+        "sweeps": [SimpleNamespace(born=25, fixed=tick) for tick in (None, 29, FOUNDED, 31, 140)],
         "pairs": SimpleNamespace(back=np.array([4, 20]), share=np.array([0.25, 0.5])),
         "neutral_pairs": SimpleNamespace(back=np.array([9, 30]), share=np.array([0.5, 0.75])),
     }
