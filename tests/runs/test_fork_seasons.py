@@ -119,3 +119,13 @@ def test_ratchets_begin_to_count_at_the_fork_if_any_season_has_changed(
     forked = forks._adapt(world, nothing, nothing, before, after, 10)
     assert forked.worlds.looks == looks
     assert forked.organisms == "organisms", "all keep their energy"
+
+
+def test_only_a_world_without_hunger_before_the_fork_gets_new_stores() -> None:
+    """Organisms whose store, drain or cap changes keep the energy that they have."""
+    nothing: Any = SimpleNamespace(law=SimpleNamespace(beginning=()))
+    before = config(meadow(1.0))
+    for changed in ({"store": 9.0}, {"store": 1000.0, "drain": 0.5}, {"store": 1000.0, "cap": 2e3}):
+        after = config(meadow(1.0, metabolism=changed))
+        world: Any = "organisms", worlds_at_fork()
+        assert forks._adapt(world, nothing, nothing, before, after, 10).organisms == "organisms"
