@@ -254,7 +254,8 @@ def test_the_mutation_of_a_run_has_the_present_rates_of_each_organism(subjects: 
 def test_children_are_made_until_enough_are_mutants(
     subjects: Subjects, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The first mutants are kept. The last brood may complete them; otherwise the mutation is refused."""
+    """The first mutants are kept. If too few children of three broods are mutants, the mutation is
+    refused."""
     monkeypatch.setattr(making, "MOST_CHILDREN", 3)
     length = subjects.players.genomes.shape[1]
     families: list[Any] = []

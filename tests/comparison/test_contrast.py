@@ -213,7 +213,7 @@ def test_the_number_of_resamples_grows_with_the_number_of_contrasts() -> None:
 
 
 def test_the_world_that_stopped_before_a_horizon_is_named() -> None:
-    """World 0 is not saturated either, but it has passed the horizon. World 1 saturated in time."""
+    """World 0 is unsaturated too, but has passed the horizon. World 1 saturated before it."""
     worlds = figures([(50, False), (30, True), (40, False), (20, False)])
     with pytest.raises(InputError, match=r"world 2 stopped at 40 before .* saturated at 45"):
         worlds.before(45)
