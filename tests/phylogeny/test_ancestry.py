@@ -29,15 +29,13 @@ def test_the_nearest_marked_ancestor_is_that_of_a_walk(
 
 
 @pytest.mark.parametrize("count", [1, 2, FEW, FEW + 1, 40])
-def test_ancestors_are_those_of_both_parents(count: int) -> None:
+def test_ancestors_are_those_of_a_walk_through_one_or_both_parents(count: int) -> None:
     """A few lines are followed one by one, and many lines together."""
     draw = np.random.default_rng(count)
     older = np.arange(60)
     first, second = np.where(older < 3, -1, draw.integers(-1, np.maximum(older, 1), (2, 60)))
     rows = draw.choice(np.arange(20, 60), count, replace=False)
-    parents = {
-        row: [int(each[row]) for each in (first, second) if each[row] >= 0] for row in range(60)
-    }
-    first_parents = {row: [each for each in (int(first[row]),) if each >= 0] for row in range(60)}
-    assert with_ancestors(rows, first, second).tolist() == sorted(walk(parents, set(rows.tolist())))
-    assert with_ancestors(rows, first).tolist() == sorted(walk(first_parents, set(rows.tolist())))
+    for parents in ((first, second), (first,)):
+        known = {row: [int(each[row]) for each in parents if each[row] >= 0] for row in range(60)}
+        expected = sorted(walk(known, set(rows.tolist())))
+        assert with_ancestors(rows, *parents).tolist() == expected
