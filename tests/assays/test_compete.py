@@ -154,8 +154,8 @@ def test_the_middle_of_an_odd_number_of_ticks_is_late() -> None:
 def test_only_what_the_competition_needs_is_changed_in_the_settings(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The genomes do not change: no mutation, no second parent, no season of the mutation. A world has
-    no limit but its ticks, and no past."""
+    """Genomes do not change: no mutation, no second parent, no season of the mutation. Ticks are the
+    only limit of a world. A world is no fork."""
     scale = {"kind": "schedule", "setting": "mutation.scale", "at": 9, "value": 0.05}
     hazard = {"kind": "schedule", "setting": "hazard", "at": 9, "value": 0.05}
     before = config(

@@ -14,7 +14,7 @@ from primordia.assays import effects as module
 from primordia.assays import mutants as making
 from primordia.assays.effects import Effect, effects, founder_deviations
 from primordia.assays.mutants import Operator, moments_of, mutants, own_operator
-from primordia.assays.subjects import Subjects, founders, of_run
+from primordia.assays.subjects import Subjects, of_run
 from primordia.errors import InputError
 from primordia.law.moments import change_in
 from primordia.law.world import Remembered
@@ -70,10 +70,7 @@ def test_the_founders_deviation_is_that_of_their_settings(subjects: Subjects) ->
     assert isinstance(mutation, Gaussian)
     scales = dict(zip(layout.names, mutation.per_block("founder_scale", layout), strict=True))
     for name, deviation in founder_deviations(subjects).items():
-        assert deviation == pytest.approx(scales[name], rel=0.1)
-    made = layout.split(founders(subjects.config, 512))
-    measured = {name: float(np.std(np.ravel(weights))) for name, weights in made.items()}
-    assert founder_deviations(subjects) == pytest.approx(measured, rel=1e-6)
+        assert deviation == pytest.approx(scales[name], rel=0.05)
 
 
 def test_calibrated_mutants_act_otherwise_in_no_more_moments(subjects: Subjects) -> None:
@@ -211,7 +208,7 @@ def test_effects_are_means_of_games_of_each_organisms_own_mutants(
     assert remembered == [None] * 3 + [(Calibrated().moments, 99)] * 2
     names = [each.mutation for each in found]
     mutations = "as set", "scale 0.5", "scale 0.25", "differs 0.1", "differs 0.05"
-    assert names == [name for name in mutations for _ in "12"]
+    assert names == [name for name in mutations for _ in range(2)]
     for each, organism, world, own, first in zip(
         found, [*subjects.organism] * 5, (0, 1) * 5, (1002, 2002) * 5, (1, 5) * 5, strict=True
     ):
@@ -257,7 +254,8 @@ def test_the_mutation_of_a_run_has_the_present_rates_of_each_organism(subjects: 
 def test_children_are_made_until_enough_are_mutants(
     subjects: Subjects, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The first mutants are kept. The last brood may complete them; otherwise the mutation is refused."""
+    """The first mutants are kept. If too few children of three broods are mutants, the mutation is
+    refused."""
     monkeypatch.setattr(making, "MOST_CHILDREN", 3)
     length = subjects.players.genomes.shape[1]
     families: list[Any] = []

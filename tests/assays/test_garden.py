@@ -85,7 +85,7 @@ def test_a_bed_keeps_the_ratio_of_its_means() -> None:
         "kept": 0.75,
     }
     half = Bed("oldest", 1, np.array([4, 9]), np.array([0, 20]), np.array([8.0, 10.0]))
-    assert half.kept == 0.9, "one of both lived for no tick"
+    assert half.kept == 0.9, "one of the two lived for no tick"
     unlived = Bed("oldest", 0, np.arange(2), np.zeros(2, int), np.ones(2))
     assert (unlived.kept, unlived.to_dict()["recorded"]) == (None, [0, 0])
 

@@ -76,8 +76,8 @@ def test_a_long_line_is_sampled_from_end_to_end(poles: primordia.Run, champion: 
 def test_each_genome_plays_the_games_of_the_last_organism(
     poles: primordia.Run, champion: Organism, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Each step has its own generation, tick of birth and life, which is the mean of its games. The
-    recorded life is whole also where its beginning is not on record."""
+    """Each step has its own generation, tick of birth and lifespan. The lifespan when born again is the
+    mean of its games. The recorded lifespan begins at birth, also if records begin later."""
     asked: list[tuple[Players, int, int]] = []
 
     def lived(players: Players, games: int, ticks: int) -> np.ndarray:
@@ -92,8 +92,8 @@ def test_each_genome_plays_the_games_of_the_last_organism(
     ((players, games, ticks),) = asked
     assert (games, ticks) == (4, 88)
     own = of_run(poles.opened(), [(champion.id, 1)]).players
-    heavy = of_run(poles.opened(), [(champion.id, 1)], {"angle_limit": 5.0}).players
-    assert players.habitat == heavy.habitat != own.habitat
+    stricter = of_run(poles.opened(), [(champion.id, 1)], {"angle_limit": 5.0}).players
+    assert players.habitat == stricter.habitat != own.habitat
     assert (to_host(players.keys) == to_host(own.keys)).all()
     generation = {each: n for n, each in enumerate(champion.descent())}
     assert (found.organism, found.world, found.steps[-1].reborn) == (

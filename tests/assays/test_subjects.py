@@ -120,7 +120,7 @@ def test_founders_of_a_task_are_those_that_they_always_were() -> None:
     made = founders(load("CartPole-survival"), 5)
     np.testing.assert_allclose(made[:2, :3], first, rtol=1e-6)
     other = founders(load("CartPole-survival", {"seed": 5}), 5)
-    assert (other != made).any(axis=1).all(), "the seed is the task's"
+    assert (other != made).any(axis=1).all(), "the seed of the task counts"
 
 
 def test_organisms_of_a_run_keep_their_order_worlds_and_present_climate(
@@ -192,7 +192,7 @@ def test_a_named_founder_plays_the_games_of_its_own_number() -> None:
 def test_a_task_of_your_own_gives_its_seed_to_the_games(
     poles: primordia.Run, tmp_path: Path
 ) -> None:
-    """A task that is named counts, and not the task that the file names."""
+    """The task that the user names replaces the task that is named in the file."""
     mine, file = tmp_path / "mine.toml", tmp_path / "two.safetensors"
     mine.write_text('task = "CartPole-survival"\nseed = 5\ncells = 12')
     poles.export(file, 0, 5)

@@ -200,8 +200,8 @@ def test_figures_that_are_not_positive_have_no_ratio(values: tuple[int, int]) ->
     assert effect.delta == np.sign(values[0] - values[1])
 
 
-def test_an_interval_of_several_contrasts_has_resamples_of_its_own_number() -> None:
-    """Of four contrasts each misses 1.25 % of 1,600 resamples: 10 below and 10 above."""
+def test_the_number_of_resamples_grows_with_the_number_of_contrasts() -> None:
+    """The interval of one of four contrasts leaves out 1.25 % of 1,600 resamples: 10 at each end."""
     values = np.random.default_rng(4).lognormal(0, 1, (2, 41))
     run, reference = (Measured(each, np.ones(41, bool)) for each in values)
     medians = [
@@ -213,7 +213,7 @@ def test_an_interval_of_several_contrasts_has_resamples_of_its_own_number() -> N
 
 
 def test_the_world_that_stopped_before_a_horizon_is_named() -> None:
-    """World 0 is not saturated either, but it has passed the horizon. World 1 saturated in time."""
+    """World 0 is unsaturated too, but has passed the horizon. World 1 saturated before it."""
     worlds = figures([(50, False), (30, True), (40, False), (20, False)])
     with pytest.raises(InputError, match=r"world 2 stopped at 40 before .* saturated at 45"):
         worlds.before(45)

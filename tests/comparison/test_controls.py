@@ -305,7 +305,7 @@ def test_a_score_of_zero_is_a_result() -> None:
 
 
 def test_the_number_of_candidates_is_the_largest_of_all_worlds(invented: Any) -> None:
-    """The world with most births is between two others."""
+    """The world with the most births is neither the first nor the last."""
     invented.lives = worlds_of(*([(k, 1, True) for k in range(n)] for n in (4, 9, 6)), until=50)
     assert evolved(invented)[0].chosen_from == 9
     assert [unevolved(invented, most)[0].chosen_from for most in (None, 8, 5, 3)] == [9, 8, 5, 3]

@@ -55,8 +55,8 @@ def test_metrics_are_not_read_if_no_world_gathered_food() -> None:
 
 
 @pytest.mark.parametrize(("begin", "known"), [(0, True), (50, True), (60, False)])
-def test_food_of_an_earlier_time_is_known_and_late_food_is_none(begin: int, known: bool) -> None:
-    """All food is gathered by tick 60. It is unknown only if none was gathered in the compared time."""
+def test_late_food_is_zero_if_the_compared_time_has_earlier_food(begin: int, known: bool) -> None:
+    """No food is gathered after tick 60. If the comparison begins there, late food is unknown."""
     tick = np.arange(0, 181, 10)
     food = np.outer([2, 0], np.minimum(tick, 60))
     found = gathering(run(tick, food, np.outer([5, 5], tick)), 2, begin, 180, 10)

@@ -87,15 +87,9 @@ def test_the_first_long_life_is_known_when_no_earlier_one_can_become_long(
 
 
 def test_births_to_the_first_long_life_of_a_fork_are_those_since_the_fork() -> None:
-    """Two organisms alive at the fork in tick 10 live long; so does the third birth after it."""
-    lived = [
-        (0, 60, True),
-        (2, 50, True),
-        (10, 3, True),
-        (12, 3, True),
-        (14, 4, True),
-        (15, 40, True),
-    ]
+    """Two of three organisms alive at the fork in tick 10 live long. So does the third born later."""
+    lived = [(0, 60, True), (2, 50, True), (10, 3, True)]
+    lived += [(12, 3, True), (14, 4, True), (15, 40, True)]
     world = world_of(lived, until=UNTIL).recorded_since(10)
     assert world.inherited.tolist() == [True] * 3 + [False] * 3
     found = first_long([world, world.recorded_until(30), world.take(np.arange(3))], 20)

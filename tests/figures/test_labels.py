@@ -138,7 +138,7 @@ def test_the_panel_of_food_says_if_there_are_no_samples_yet() -> None:
 
 @pytest.mark.parametrize("worlds", [1, 2])
 def test_labels_and_curves_of_the_threshold(worlds: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Unknown values are gaps in the curve. They may be known in the last and largest world alone."""
+    """Unknown values are gaps in the curve. Of two worlds, only the last and larger has known values."""
     lives = worlds_of(*([(0, 3, True)] * count for count in (380, 500)[-worlds:]), until=9)
     measured = SimpleNamespace(mutated=0.0, as_good=None, held=2.0)
     unknown = SimpleNamespace(mutated=None, as_good=None, held=None)

@@ -202,7 +202,7 @@ def test_a_life_is_shown_from_its_birth_to_its_end_at_thirty_pictures_a_second(
 def test_a_film_is_in_the_folder_of_its_run_under_the_number_of_its_world(
     film: Callable[..., Any], tmp_path: Path
 ) -> None:
-    """It has 30 pictures in a second, and the colours of its first picture."""
+    """The film shows 30 pictures a second. Its colours are those of its first picture."""
     run = a_run(TWO_WORLDS, lacks=True)
     run.path = tmp_path
     for world in (1, 0):
@@ -214,7 +214,7 @@ def test_a_film_is_in_the_folder_of_its_run_under_the_number_of_its_world(
 
 
 @pytest.mark.parametrize("world", [-1, 2])
-def test_a_world_beyond_the_last_is_an_error(world: int, film: Callable[..., Any]) -> None:
+def test_a_missing_world_is_an_error(world: int, film: Callable[..., Any]) -> None:
     with pytest.raises(InputError, match=f"run has no world {world}; the worlds are 0 to 1"):
         film(a_run(TWO_WORLDS), world=world)
 

@@ -43,8 +43,8 @@ def test_each_life_is_shown_for_a_while_and_then_the_oldest_of_that_moment(
         assert seen[now] == holders[now] or now - since < least
 
 
-def test_of_two_hundred_lives_the_first_of_equals_is_shown() -> None:
-    """Each life is lived twice. Of equal ages, the living come first, then those that died first."""
+def test_among_many_lives_the_first_of_equal_ages_is_the_oldest() -> None:
+    """Each of 100 lives occurs twice. Among equal ages, the living come first, then the first death."""
     spans = np.random.default_rng(2).integers(100, 400, 100)
     world = world_of([(born, int(span), True) for born, span in enumerate(spans)] * 2, until=999)
     ticks = np.arange(0, 520)

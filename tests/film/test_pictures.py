@@ -141,7 +141,7 @@ def test_a_ring_has_the_present_outside_and_its_past_within() -> None:
 def test_the_innermost_ring_is_the_earliest_moment_that_has_room(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """In a picture of 48 pixels, the past has a width of 15.4 pixels, so 16 moments are seen."""
+    """In a picture of 48 pixels, the past is 15.4 pixels wide, so 16 moments are seen."""
     monkeypatch.setattr(shapes, "SIDE", 48)
     ring, moments_seen = shape(Placement(), 4), 16
     first, then = np.full((4, 3), (200, 0, 0), np.uint8), np.full((4, 3), (0, 200, 0), np.uint8)

@@ -1,4 +1,4 @@
-"""Births repeated batch by batch, with an invented heredity: a genome tells from whom it is made."""
+"""Births repeated in batches, with an invented heredity: a genome holds the numbers of its parents."""
 
 from types import SimpleNamespace
 from typing import Any
@@ -67,8 +67,8 @@ def test_each_birth_of_a_pedigree_has_its_own_parents_and_notes(
 ) -> None:
     """A genome is the number of the newborn, of its parent and of its mate, and its note.
 
-    A founder has 0 in place of a parent, and an organism without a mate has -1. A redrawn note is one
-    more than that of the parent.
+    The number of a missing parent is 0, and that of a missing mate is -1. A redrawn note is one more
+    than that of the parent.
     """
     births: list[int] = []
 
@@ -102,7 +102,7 @@ def test_each_birth_of_a_pedigree_has_its_own_parents_and_notes(
 def test_each_line_of_descent_is_replayed_from_its_founder(
     at_once: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A genome tells how many births were replayed, the last of them, its seed and its note."""
+    """A genome is the number of replayed births, the number of the last one, its world and its note."""
 
     def replay(genome: np.ndarray, counts: tuple, marks: tuple, climate: dict, notes: Any) -> Any:
         (seed, number, tick), (cell, founder, real) = counts, marks

@@ -177,7 +177,7 @@ class Seasons:
 def test_the_intervals_are_those_of_the_longest_world_in_any_order(
     order: tuple[int, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The longest world has the fewest samples. Each break-even is that of the interval's middle."""
+    """The longest world has the fewest samples. The break-even is that of the middle of an interval."""
     every = [np.arange(0.0, end + 1, step) for end, step in ((60, 20), (40, 10), (30, 5))]
     monkeypatch.setattr(
         module, "harvests", lambda run, worlds: [Harvest(*[every[k]] * 3) for k in order]

@@ -168,10 +168,8 @@ def test_a_picture_fills_its_room_without_the_margin_for_captions(
 
 
 @pytest.mark.usefixtures("perceived")
-def test_a_picture_without_the_margin_is_whole_also_if_it_has_points_of_the_margins_colour() -> (
-    None
-):
-    """The picture is red, and 40 points wide and high. Half of its first rows are as pale as paper."""
+def test_a_picture_without_a_margin_is_drawn_completely() -> None:
+    """The picture is red, with 40 x 40 points. Its upper left part has the colour of a margin."""
     of, pixels = engine(), np.full((40, 40, 3), (255, 0, 0), np.uint8)
     pixels[:MARGIN, :20] = [int(PAPER[at : at + 2], 16) for at in (1, 3, 5)]
     of.habitat.picture = lambda *_: Image.fromarray(pixels)

@@ -85,8 +85,8 @@ def test_a_waiting_run_draws_a_state_that_is_not_drawn_yet(
 def test_a_key_and_a_new_size_cause_a_frame_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     presses = iter(["", "", "w?", ""])
     frames = Frames(0.05, monkeypatch, SimpleNamespace(pressed=lambda _: next(presses)))
-    frames.view._console.clear = lambda: cleared.append(len(frames.began))
     cleared: list[int] = []
+    frames.view._console.clear = lambda: cleared.append(len(frames.began))
     frames.view(status(3))
     assert len(frames.began) == 1
     frames.view._console.size = frames.view._console.size._replace(width=50)
@@ -127,11 +127,12 @@ def test_births_and_deaths_of_every_chunk_and_world_are_kept(
 
 
 def test_before_the_first_chunk_the_view_says_that_it_compiles() -> None:
+    """A view that ends before the first chunk removes these words."""
     shown = view()
     with shown:
         assert "Compiling, which takes some seconds" in shown._console.file.getvalue()
-        shown._live.update, cleared = MagicMock(), shown._live
-    cleared.update.assert_called_once_with("")
+        shown._live.update = update = MagicMock()
+    update.assert_called_once_with("")
 
 
 @pytest.mark.parametrize(
@@ -142,7 +143,7 @@ def test_before_the_first_chunk_the_view_says_that_it_compiles() -> None:
 def test_a_view_is_drawn_in_a_terminal_that_can_move_its_cursor(
     terminal: bool, dumb: bool, keys: bool, drawn: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Elsewhere there are plain lines. The view has keys if standard input is a terminal too."""
+    """Otherwise, plain lines are printed. The view has keys if standard input is a terminal too."""
     made, keyboard = MagicMock(), MagicMock(there=keys)
     keyboard.return_value.__enter__.return_value = keyboard
     console = SimpleNamespace(is_dumb_terminal=dumb)

@@ -73,6 +73,14 @@ def keyboard(terminal: Terminal, monkeypatch: pytest.MonkeyPatch) -> Iterator[ty
         yield Keyboard
 
 
+@pytest.fixture
+def waits(monkeypatch: pytest.MonkeyPatch) -> list[float]:
+    """Return a list that gets the seconds of each wait without a terminal; no time passes."""
+    seconds: list[float] = []
+    monkeypatch.setattr("primordia.live.terminal.time", SimpleNamespace(sleep=seconds.append))
+    return seconds
+
+
 def test_an_error_gives_the_terminal_back(terminal: Terminal, keyboard: type[Keyboard]) -> None:
     before = terminal.modes()
 
@@ -112,11 +120,12 @@ def test_a_command_in_the_background_leaves_the_terminal_alone(
 
 
 def test_a_command_that_goes_into_the_background_leaves_the_terminal_to_the_shell(
-    terminal: Terminal, keyboard: type[Keyboard], monkeypatch: pytest.MonkeyPatch
+    terminal: Terminal,
+    keyboard: type[Keyboard],
+    waits: list[float],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """It still waits, and ends without a change of modes that the shell has set."""
-    waits: list[float] = []
-    monkeypatch.setattr("primordia.live.terminal.time", SimpleNamespace(sleep=waits.append))
+    """The command still waits. It ends without a change of the terminal's modes."""
     with keyboard() as keys:
         taken = terminal.modes()
         monkeypatch.setattr(Keyboard, "_in_front", lambda _: False)
@@ -128,11 +137,9 @@ def test_a_command_that_goes_into_the_background_leaves_the_terminal_to_the_shel
 
 
 def test_a_terminal_that_is_gone_has_no_more_keys(
-    keyboard: type[Keyboard], monkeypatch: pytest.MonkeyPatch
+    keyboard: type[Keyboard], waits: list[float], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A read at the end of a file returns nothing at once, so that a wait for keys would not wait."""
-    waits: list[float] = []
-    monkeypatch.setattr("primordia.live.terminal.time", SimpleNamespace(sleep=waits.append))
+    """A read from such a terminal ends at once. So later waits for keys do not read from it."""
     monkeypatch.setattr("select.select", lambda *_: ([1], [], []))
     for gone in (MagicMock(return_value=b""), MagicMock(side_effect=OSError)):
         with keyboard() as keys:

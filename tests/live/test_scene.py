@@ -205,7 +205,7 @@ def test_worlds_that_do_not_fit_are_neither_drawn_nor_marked() -> None:
 
 
 def test_the_note_names_worlds_and_cells_that_do_not_fit() -> None:
-    """Two rows hold two worlds. Beside a drawing are four columns, so 16 of 20 columns are cells."""
+    """Two rows hold two worlds. A label takes four columns, so 16 of 20 columns are cells."""
     world = posed([[1] * 40] * 3, [[0] * 40] * 3, [10] * 3)
     scene = Stage().scene(law(40, 3), world, {}, None, letter_room(20, 2))
     assert scene.part == "shown: the first 2 of 3 worlds; shown: the first 16 of 40 cells"

@@ -68,7 +68,7 @@ def test_the_numbers_are_those_of_the_world_that_is_shown_and_the_speed_is_that_
 
 
 def test_the_time_left_is_that_until_the_limits_of_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
-    """In 2 s each world lives 200 ticks. The last of the three needs 702 more ticks up to 1,000."""
+    """In 2 s each world lives 200 ticks. The last of the three lacks 702 ticks at a limit of 1,000."""
     monkeypatch.setattr(views, "time", clock := Clock())
     none = [2**64 - 1] * 3
     limits = Limits(wide([1000] * 3), wide(none), jnp.bool_(False))

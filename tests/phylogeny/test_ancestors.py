@@ -40,7 +40,7 @@ def followed(lives: Lives, organism: int, monkeypatch: pytest.MonkeyPatch) -> An
     """Follow a line in world 5 of an arm, which is the only world of its run."""
 
     def sizes(run: Any, number: int, world: int) -> np.ndarray:
-        """Return sizes of two blocks that depend on the organism; organism 1 is a copy."""
+        """Return the changes of two blocks. Organism 1 is a copy, so its changes are zero."""
         line = lineage.descent(run.lives, number, world)
         found = np.outer(line - 1, (3.0, 4.0))
         found[0] = np.nan

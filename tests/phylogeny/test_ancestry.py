@@ -1,4 +1,4 @@
-"""Ancestors of many organisms at once, beside a walk up each line, also where the records have parts."""
+"""Ancestors of many organisms at once, compared with a walk up each line of descent."""
 
 from unittest.mock import patch
 
@@ -17,7 +17,7 @@ from tests.phylogeny.forests import ancestry as walk
 def test_the_nearest_marked_ancestor_is_that_of_a_walk(
     history: list[Event], marks: set[int], rows: int
 ) -> None:
-    """The last part of the records may be a single organism."""
+    """The records are read in parts. The last part may be a single organism."""
     lives = walked(history)
     marked = sorted({each % len(lives) for each in marks})
     expected = [
@@ -29,15 +29,13 @@ def test_the_nearest_marked_ancestor_is_that_of_a_walk(
 
 
 @pytest.mark.parametrize("count", [1, 2, FEW, FEW + 1, 40])
-def test_ancestors_are_those_of_both_parents(count: int) -> None:
+def test_ancestors_are_those_of_a_walk_through_one_or_both_parents(count: int) -> None:
     """A few lines are followed one by one, and many lines together."""
     draw = np.random.default_rng(count)
     older = np.arange(60)
-    first, second = (np.where(older < 3, -1, draw.integers(-1, np.maximum(older, 1))) for _ in "12")
+    first, second = np.where(older < 3, -1, draw.integers(-1, np.maximum(older, 1), (2, 60)))
     rows = draw.choice(np.arange(20, 60), count, replace=False)
-    parents = {
-        row: [int(each[row]) for each in (first, second) if each[row] >= 0] for row in range(60)
-    }
-    alone = {row: [each for each in (int(first[row]),) if each >= 0] for row in range(60)}
-    assert with_ancestors(rows, first, second).tolist() == sorted(walk(parents, {*rows.tolist()}))
-    assert with_ancestors(rows, first).tolist() == sorted(walk(alone, {*rows.tolist()}))
+    for parents in ((first, second), (first,)):
+        known = {row: [int(each[row]) for each in parents if each[row] >= 0] for row in range(60)}
+        expected = sorted(walk(known, set(rows.tolist())))
+        assert with_ancestors(rows, *parents).tolist() == expected

@@ -77,7 +77,7 @@ def tree_length(lives: Lives, tick: int) -> int:
 def test_the_tree_of_the_living_is_as_long_as_their_lines(
     history: list[Event], founders: int, rows: int
 ) -> None:
-    """The records are read in parts, of which a long pedigree has many."""
+    """The records are read in parts. A long pedigree has many parts."""
     lives = walked(history, founders)
     ticks = np.arange(0, len(history) + 1, 3)
     with patch.object(diversity, "ROWS", rows):
@@ -191,7 +191,7 @@ def test_times_by_drift_alone_follow_from_births_and_population_since_the_foundi
 
 
 def test_times_in_a_world_without_life_count_back_from_its_last_tick() -> None:
-    """All have died by tick 8, two ticks after the last birth."""
+    """The last organism dies at tick 8, two ticks after the last birth."""
     lives = walked([*GROWN, ([], []), ([], [])])
     dead = replace(lives, cause=np.full(len(lives), Cause.FATAL, np.int8))
     times = neutral(dead, Turnover.of(dead))

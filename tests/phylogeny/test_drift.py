@@ -42,7 +42,7 @@ def test_a_single_line_is_always_all_of_the_living() -> None:
 
 
 def test_founders_that_are_born_later_are_in_no_line() -> None:
-    """The only line is all of the living until three founders are born beside its one organism."""
+    """The only line has one organism, which is alone until three founders are born."""
     lives = lives_of([-1] * 4, [0, 5, 5, 6], [9] * 4, [False] * 4)
     found = dealt(lives, [0, 3, 5, 9], 1)
     assert (found.largest == [1, 1, 1 / 3, 1 / 4]).all()

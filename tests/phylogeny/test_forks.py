@@ -43,10 +43,19 @@ def source(monkeypatch: pytest.MonkeyPatch) -> Any:
     return SimpleNamespace(path=Path("run"), ends=np.array([END, END]))
 
 
+def births_by(tick: int) -> np.ndarray:
+    """Return the number of births of each world up to a tick."""
+    return np.bincount(WHOLE.world[WHOLE.born <= tick], minlength=2)
+
+
+def check_lives(found: Lives, expected: Lives) -> None:
+    for each in fields(Lives):
+        np.testing.assert_array_equal(getattr(found, each.name), getattr(expected, each.name))
+
+
 def forked(tick: int, monkeypatch: pytest.MonkeyPatch, more: int = 0) -> Any:
     """Return a fork with the births until its tick, and `more` births in the second world."""
-    births = [((WHOLE.world == world) & (WHOLE.born <= tick)).sum() for world in (0, 1)]
-    counted = np.array([births[0], births[1] + more])
+    counted = np.add(births_by(tick), [0, more])
     monkeypatch.setattr(forks, "read_count", lambda *_: counted)
     return SimpleNamespace(config=SimpleNamespace(fork=SimpleNamespace(tick=tick)), origin={})
 
@@ -60,8 +69,7 @@ def test_a_run_until_its_fork_and_the_fork_are_the_whole_life(
     later = with_facts(WHOLE.recorded_since(tick), 0.75)
     found = forks._joined(forks._until(run, tick), later, fork)
     assert found is not None
-    for each in fields(Lives):
-        np.testing.assert_array_equal(getattr(found.lives, each.name), getattr(WHOLE, each.name))
+    check_lives(found.lives, WHOLE)
     number = WHOLE.id + 1000.0 * WHOLE.world
     notes = np.where(WHOLE.born <= tick, number + 0.25, number + 0.75)
     assert found.of_births["note"].to_pylist() == notes.tolist()
@@ -74,49 +82,48 @@ def test_a_run_until_its_fork_and_the_fork_are_the_whole_life(
 
 def test_the_past_ends_with_the_first_run_that_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
     """Each fork is joined with its own source, at its own tick."""
-    ticks = {"d": ("c", 9), "c": ("b", 6), "b": ("a", 3)}
+    sources = {"d": ("c", 6), "c": ("b", 4), "b": ("a", 2)}
     runs: dict[str, Any] = {
         name: SimpleNamespace(
-            path=Path(name), config=SimpleNamespace(fork=SimpleNamespace(run=of, tick=tick))
+            path=Path(name),
+            config=SimpleNamespace(fork=SimpleNamespace(run=of, tick=tick)),
+            ends=np.array([END, END]),
+            origin=tick,
         )
-        for name, (of, tick) in ticks.items()
+        for name, (of, tick) in sources.items()
     }
-    cut: list[Any] = []
-    joined_at: list[Any] = []
+
+    def recorded(run: Any) -> Phylogeny:
+        return with_facts(WHOLE.recorded_since(run.origin), 0)
 
     def opened(place: Path) -> Any:
         if place.name not in runs:
             raise InputError(f"{place} is no run")
         return runs[place.name]
 
-    def longer(earlier: Phylogeny, later: Phylogeny, fork: Any) -> Phylogeny:
-        joined_at.append(fork.path.name)
-        return later
-
-    monkeypatch.setattr(forks, "recorded", lambda _: with_facts(WHOLE, 0))
+    monkeypatch.setattr(forks, "recorded", recorded)
     monkeypatch.setattr(forks, "archive", opened)
-    monkeypatch.setattr(forks, "_until", lambda run, tick: cut.append((run.path.name, tick)))
-    monkeypatch.setattr(forks, "_joined", longer)
+    monkeypatch.setattr(forks, "read_count", lambda tick, _: births_by(tick))
     said: list[str] = []
     past = forks.whole_past(runs["d"], said.append)
     assert [run.path.name for run in past.runs] == ["d", "c", "b"]
-    assert (cut, joined_at) == ([("c", 9), ("b", 6)], ["d", "c"])
+    check_lives(past.whole.lives, recorded(runs["b"]).rooted().lives)
     (line,) = said
     assert "b was forked from a, which is missing or was replaced by another run" in line
-    assert line.endswith("the organisms alive at tick 3 are roots")
+    assert line.endswith("the organisms alive at tick 2 are roots")
 
 
 def test_worlds_with_large_numbers_keep_their_order(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The numbers of the two worlds are 0 and 256, which have the same last eight bits."""
     births = np.zeros(257, int)
-    births[[0, 256]] = [((WHOLE.world == world) & (WHOLE.born <= 4)).sum() for world in (0, 1)]
+    births[[0, 256]] = births_by(4)
     fork = forked(4, monkeypatch)
     monkeypatch.setattr(forks, "read_count", lambda *_: births)
     whole = replace(WHOLE, world=WHOLE.world * 256)
     earlier, later = whole.recorded_until(4), whole.recorded_since(4)
     found = forks._joined(with_facts(earlier, 0.25), with_facts(later, 0.75), fork)
     assert found is not None
-    for each in fields(Lives):
-        np.testing.assert_array_equal(getattr(found.lives, each.name), getattr(whole, each.name))
+    check_lives(found.lives, whole)
 
 
 def test_a_run_is_not_cut_at_a_tick_that_a_world_has_not_reached(

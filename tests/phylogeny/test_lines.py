@@ -179,7 +179,7 @@ def test_without_a_death_slopes_have_no_lifespan_as_their_unit() -> None:
 
 
 def test_measures_of_zero_are_known() -> None:
-    """A slope may be zero, and the lines of all pairs may part in the last tick."""
+    """A slope is zero. All pairs have a common ancestor in the last tick."""
     at_once = Times(np.array([0]), np.array([1.0]))
     found = replace(invented(), slopes=np.array([0.0, nan, -0.01]), pairs=at_once).to_dict()
     slopes = [(line["slope"], line["slope_per_lifespan"]) for line in found["lines"]]

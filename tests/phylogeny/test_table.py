@@ -245,8 +245,8 @@ def test_a_mate_that_is_not_older_is_damage(mate: int) -> None:
         parted([None, None, mate, 5]).rooted()
 
 
-def test_mates_are_of_the_same_world_and_parents_too(tmp_path: Path) -> None:
-    """Trees leave mates out and say so. Lists of two parents are quoted where commas part values."""
+def test_mates_are_parents_in_tables_and_are_left_out_of_trees(tmp_path: Path) -> None:
+    """Both worlds have the same births. A line of text says that a tree leaves mates out."""
     few = [(0, 0, False), (0, 0, False), (2, 1, True), (1, 1, True)]
     mates = pa.array([None, None, 1, None] * 2, pa.int64())
     whole = Phylogeny(forest(few, few).lives, {"mate": mates}, {})
@@ -265,18 +265,18 @@ def test_mates_are_of_the_same_world_and_parents_too(tmp_path: Path) -> None:
 
 
 def test_facts_on_record_are_those_of_each_organism() -> None:
-    """Zeros are facts. The living have no facts of a death."""
+    """Zeros are facts. The living have no facts of deaths."""
     lives = forest([(0, 0, False), (0, 0, True), (1, 1, False)], [(0, 0, False)]).lives
-    rows = [
-        {"world": [1, 0], "id": [0, 2], "energy": [4.0, 5.0], "food": [0.0, 7.0], "hits": [3, 0]}
+    deaths = [
+        {"world": [1, 0], "id": [0, 2], "energy": [4.0, 5.0], "food": [0.0, 7.0], "hits": [3, 0]},
+        {"world": [0], "id": [0], "energy": [-1.0], "food": [2.0], "hits": [9]},
     ]
-    rows.append({"world": [0], "id": [0], "energy": [-1.0], "food": [2.0], "hits": [9]})
     run: Any = SimpleNamespace(
         lives=lives,
         schema=SimpleNamespace(mates=True, notes=("size", "rate"), tallies=("hits",)),
         mates_of=lambda _: np.array([-1, -1, 0, -1]),
         notes_of=lambda _: np.array([[1, 5], [2, 6], [0, 7], [4, 0]], np.int32),
-        segments=lambda *_: [{name: pa.array(each) for name, each in r.items()} for r in rows],
+        segments=lambda *_: [pa.table(each) for each in deaths],
     )
     found = recorded(run)
     assert {name: each.to_pylist() for name, each in found.of_births.items()} == {

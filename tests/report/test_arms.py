@@ -83,7 +83,7 @@ def test_survival_of_each_arm_has_its_name_and_colour(compared: Comparison) -> N
 
 
 def test_curves_over_time_are_medians_of_the_worlds_of_each_arm() -> None:
-    """The worlds of an arm end at different ticks, the last of them in the second arm. A median needs
+    """The worlds of an arm end at different ticks. The last one is in the second arm. A median needs
     values of half of the worlds. At tick 1 all ages are 0, which a logarithmic axis cannot show."""
     ends = [(150, 160, 170), (200, 130, 130, 201)]
     worlds = [
@@ -142,7 +142,7 @@ def test_curves_of_forks_begin_at_the_fork() -> None:
 def test_two_arms_have_tables_notes_and_curves(
     compared: Comparison, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The first note says what is in the tables. The others belong to this comparison."""
+    """The first note explains the tables. The others are those of the comparison."""
     lives = world_of(LIVED, until=200)
     runs: Any = [SimpleNamespace(path=Path(name), lives=lives) for name in ("mild", "harsh")]
     two = replace(compared, arms=compared.arms[:2])

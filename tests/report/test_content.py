@@ -21,6 +21,13 @@ from tests.report.unpacked import all_unpacked
 from tests.synthetic import worlds_of
 from tests.worlds import config
 
+NUMBERS: dict[str, Any] = {
+    "worlds": [{"seed": 5, "digest": "a"}, {"seed": 6, "digest": "b"}],
+    "exact": False,
+    "restarts": 3,
+}
+"""What `facts` uses of the numbers of a run."""
+
 
 @pytest.mark.parametrize(
     ("most", "left_out"),
@@ -47,8 +54,8 @@ def test_a_page_shows_its_first_worlds_and_counts_the_others(
 def test_each_world_in_a_page_gets_an_equal_part_of_the_page(
     torus: Path, cart: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Two of three worlds are shown, or the first worlds of two of three arms. A world is given
-    completely if its births are at most half of those that a page can hold."""
+    """A page shows two of three worlds of a run, or the first worlds of two of three arms. A world is
+    shown completely if it has at most half of the births that fit into a page."""
     monkeypatch.setattr(content, "WORLDS", 2)
     monkeypatch.setattr(content, "arms", lambda runs: None)
     other = Path(shutil.copytree(torus, tmp_path / "other"))
@@ -74,16 +81,15 @@ def test_each_world_in_a_page_gets_an_equal_part_of_the_page(
         assert len(made["facts"]) == 3
 
 
-def test_a_run_in_the_present_folder_has_the_name_of_the_folder(
+def test_a_run_in_the_current_folder_has_the_name_of_the_folder(
     torus: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(torus)
     run = Archive(Path())
     assert of_run(run, filmed=False)["subtitle"] == "torus, seeds 5 to 7"
     assert names([run]) == ["torus"]
-    assert facts(
-        invented(path=Path(), description=SimpleNamespace(code={"pond.py": "1"})), NUMBERS
-    )["commands"] == ["primordia verify torus"]
+    own_code = invented(path=Path(), description=SimpleNamespace(code={"pond.py": "1"}))
+    assert facts(own_code, NUMBERS)["commands"] == ["primordia verify torus"]
 
 
 def test_the_numbers_of_a_single_world_include_its_extinctions(cart: Path) -> None:
@@ -166,13 +172,6 @@ def invented(**changed: Any) -> Any:
         "description": SimpleNamespace(code={}),
     }
     return SimpleNamespace(**{**parts, **changed})
-
-
-NUMBERS: dict[str, Any] = {
-    "worlds": [{"seed": 5, "digest": "a"}, {"seed": 6, "digest": "b"}],
-    "exact": False,
-    "restarts": 3,
-}
 
 
 def test_a_film_of_a_life_names_its_organism(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -270,28 +270,22 @@ def test_a_count_of_the_habitat_has_its_mean_and_best_at_the_samples_of_each_wor
 def test_each_count_of_a_habitat_has_its_panel_with_a_limited_number_of_samples(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Of ten samples every third is shown, if four points are allowed."""
+    """Four points are allowed, so every third of ten samples is shown."""
     monkeypatch.setattr(curves, "POINTS", 4)
     at = np.arange(10)
-    columns = {f"{name}_{part}": at * size for name, part, size in SIZES}
+    sizes = {"score_mean": 1.0, "score_best": 2.0, "goals_mean": 3.0, "goals_best": 4.0}
+    columns = {name: at * size for name, size in sizes.items()}
     metrics = pa.table({"world": 0 * at, "tick": 50 * at, **columns})
     more: dict[str, Any] = {"description": SimpleNamespace(rate=None, tallies=("score", "goals"))}
     run = config(TORUS, seeds=1, metabolism=None)
     panels = named(unequal().of_world(0), metrics=metrics, config=run, **more)
-    for name, part, size in SIZES:
+    for column, size in sizes.items():
+        name, part = column.split("_")
         panel = panels[f"{name} of the living"]
         assert panel["y"] == name
         (table,) = (each for each in panel["tables"] if each["curves"][0]["name"] == part)
         assert table["x"] == [0, 150, 300, 450]
         assert table["curves"][0]["values"] == [0, 3 * size, 6 * size, 9 * size]
-
-
-SIZES = (
-    ("score", "mean", 1.0),
-    ("score", "best", 2.0),
-    ("goals", "mean", 3.0),
-    ("goals", "best", 4.0),
-)
 
 
 def test_numbers_of_a_page_have_five_digits_and_no_fraction_if_they_are_whole() -> None:

@@ -221,8 +221,8 @@ def test_the_nodes_of_a_phylogeny_have_their_organisms_and_times() -> None:
 
 
 def test_the_inks_of_a_phylogeny_are_those_of_the_lines_that_live_now() -> None:
-    """At tick 3, organisms 0, 2 and 3 are one line. At tick 5, when the last of the other line has died,
-    each of them begins a line."""
+    """At tick 3, organisms 0, 2 and 3 are one line. The other line ends at tick 5. Then each of the three
+    begins a line."""
     lives = lives_of([-1, -1, 0, 0], [0, 0, 2, 3], [9, 5, 9, 9], [False, True, False, False])
     picture = Ground(replace(lives, cell=np.arange(4, dtype=np.int32), seen=lives.born), 4)
     made = tree(picture)
@@ -266,8 +266,9 @@ def test_each_byte_of_a_film_is_the_ink_of_a_line_and_the_shade_of_an_age(torus:
             assert byte % 32 - 1 == shown.inks(codes)[0]
 
 
-def test_shades_of_a_film_reach_up_to_the_longest_life_also_if_it_goes_on() -> None:
-    """At tick 7, two organisms are 2 ticks old and one is newborn. At tick 30 the former are 25."""
+def test_shades_of_a_film_are_relative_to_the_longest_life_of_all_also_of_the_living() -> None:
+    """In the last picture, of tick 7, two organisms are 2 ticks old, and one is newborn. The two are 25
+    ticks old at tick 30."""
     lives = tiny()
     lives = replace(lives, ended=np.where(lives.died, lives.ended, 30))
     made = film.film(Ground(lives, 6), config(TORUS, cells=6))

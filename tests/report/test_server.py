@@ -11,7 +11,7 @@ from collections.abc import Generator, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
-from unittest.mock import MagicMock
+from unittest.mock import MagicMock, call
 from urllib.parse import urlsplit
 
 import pytest
@@ -20,9 +20,9 @@ import primordia
 from primordia.report import watched
 from primordia.report.content import of_run
 from primordia.report.page import embedded
-from primordia.report.server import HERE, Server
+from primordia.report.server import HERE, QUIET, Server
 from primordia.report.watched import Watched
-from primordia.runs import directory, loop
+from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests import commands
 from tests.commands import complains, here
@@ -36,9 +36,8 @@ def run(torus: Path, tmp_path: Path) -> Path:
 
 
 @contextmanager
-def served(run: Path) -> Iterator[Server]:
-    """Serve the page of a run, without looking whether it goes on."""
-    with Server(Watched(primordia.load(run).opened), 0) as server:
+def serving(content: Any) -> Iterator[Server]:
+    with Server(content, 0) as server:
         thread = threading.Thread(target=server.serve_forever, args=(0.01,))
         thread.start()
         try:
@@ -46,6 +45,13 @@ def served(run: Path) -> Iterator[Server]:
         finally:
             server.shutdown()
             thread.join()
+
+
+@contextmanager
+def served(run: Path) -> Iterator[Server]:
+    """Serve the page of a run, without looking whether it goes on."""
+    with serving(Watched(primordia.load(run).opened)) as server:
+        yield server
 
 
 @pytest.fixture(scope="module")
@@ -82,11 +88,13 @@ def test_the_page_and_its_content_are_those_of_the_run(server: Server, torus: Pa
         answer, nothing = asked(server, path, "HEAD")
         assert (answer.status, nothing) == (200, b"")
         assert int(answer.headers["Content-Length"]) == len(whole)
+    answer, nothing = asked(server, "/no", "HEAD")
+    assert (answer.status, nothing) == (404, b"")
 
 
 def test_no_answer_is_stored_or_shown_in_another_page(server: Server) -> None:
-    asks = ("GET", "/"), ("GET", "/data"), ("HEAD", "/events"), ("GET", "/no"), ("POST", "/")
-    for method, path in asks:
+    requests = ("GET", "/"), ("GET", "/data"), ("HEAD", "/events"), ("GET", "/no"), ("POST", "/")
+    for method, path in requests:
         headers = asked(server, path, method)[0].headers
         assert headers["Cache-Control"] == "no-store"
         assert headers["Content-Security-Policy"] == "frame-ancestors 'none'"
@@ -140,8 +148,6 @@ def test_the_page_can_only_be_read(server: Server, method: str) -> None:
     answer, body = asked(server, "/", method)
     assert (answer.status, answer.headers["Allow"]) == (405, "GET, HEAD")
     assert body == b"405 Method Not Allowed\n"
-    answer, body = asked(server, "/no", "HEAD")
-    assert (answer.status, body) == (404, b"")
 
 
 @pytest.mark.parametrize("method", ["TRACE", "CONNECT", "BREW"])
@@ -216,6 +222,24 @@ def test_more_pages_than_it_serves_are_refused(run: Path) -> None:
         told.close()
 
 
+def test_a_page_gets_each_new_state_once_and_an_empty_line_where_nothing_is_new() -> None:
+    """The connection is closed after the sixth line."""
+    states = ["a", "a", "b", "b", "b", "c"]
+    news = MagicMock(side_effect=[*states, ConnectionResetError])
+    with serving(MagicMock(news=news)) as server:
+        _, body = asked(server, "/events")
+    lines = body.decode().split("\n\n")
+    assert lines == ["data: a", ": ", "data: b", ": ", ": ", "data: c", ""]
+    assert news.call_args_list == [call(last, QUIET) for last in (None, *states)]
+
+
+def test_a_page_that_is_closed_makes_room_for_another() -> None:
+    with serving(MagicMock(news=MagicMock(side_effect=BrokenPipeError))) as server:
+        server.listeners = threading.BoundedSemaphore(1)
+        answers = [asked(server, "/events")[0] for _ in range(3)]
+    assert [answer.status for answer in answers] == [200] * 3
+
+
 def test_a_run_that_cannot_be_shown_is_one_line(run: Path, tmp_path: Path) -> None:
     complains(here("watch", tmp_path / "none"), 2, str(tmp_path / "none"), "is not a run")
     for folder in (run / "checkpoints").iterdir():
@@ -282,20 +306,6 @@ def test_a_page_follows_its_run(run: Path, monkeypatch: pytest.MonkeyPatch) -> N
         ended.set()
         thread.join()
     assert content.data() == embedded(of_run(Archive(run), filmed=False)).encode()
-
-
-def test_a_page_of_several_runs_goes_on_while_one_of_them_is_written(
-    run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    other, several = tmp_path / "other", MagicMock()
-    other.mkdir()
-    several.paths = [run, other]
-    monkeypatch.setattr(watched, "of_run", lambda *_, **__: {})
-    content = Watched(lambda: several)
-    assert not json.loads(content.news(None, 0.0))["going"]
-    with directory.locked(other):
-        content.look()
-        assert json.loads(content.news(None, 0.0))["going"]
 
 
 def test_a_connection_that_a_browser_closes_prints_nothing(
