@@ -41,7 +41,7 @@ def test_a_relived_life_is_shown_beside_its_record(begin: str, where: str) -> No
 
 
 @pytest.mark.parametrize("as_json", [(), ("--json",)])
-def test_a_life_that_differs_from_its_record_has_status_1_and_all_differences_are_named(
+def test_all_differences_of_a_life_from_its_record_are_named(
     as_json: tuple[str, ...],
 ) -> None:
     same = Respect("tick", 9, 9)
