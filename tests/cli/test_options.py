@@ -47,11 +47,12 @@ CALLS: dict[tuple[Any, ...], Any] = {
     ("film", RUN): call.film(ticks=(None, None), world=0, by="births", organism=None, out=None),
     ("evaluate", RUN, "--world", 2, "--games", 3, "--founders", 7, "--ticks", 9, "--sticky", 0.5,
      "--open-loop", "--json"):
-        call.standings(7, 2, games=3, ticks=9, senses="ignored", habitat={"sticky": 0.5}),
+        call.standings(world=2, games=3, ticks=9, senses="ignored", habitat={"sticky": 0.5},
+                       founders=7),
     ("evaluate", RUN, "--world", 0, "--json"):
-        call.standings(500, 0, games=30, ticks=100_000, senses="live", habitat={}),
+        call.standings(world=0, games=30, ticks=100_000, senses="live", habitat={}),
     ("evaluate", RUN, "--json"):
-        call.standings(500, None, games=30, ticks=100_000, senses="live", habitat={}),
+        call.standings(world=None, games=30, ticks=100_000, senses="live", habitat={}),
     ("shadow", RUN, "--organisms", 3, "--ticks", 9, "--json"): call.shadow(3, 9),
     ("shadow", RUN, "--json"): call.shadow(500, None),
     ("assay", "heredity", RUN, "--after", 0.25, "--json"): call.heredity(0.25),
