@@ -20,7 +20,7 @@ OPTIONS: dict[tuple[str, ...], tuple[Any, ...]] = {
 
 
 def arm(name: str) -> Any:
-    """Return an arm, each of whose measurements has the arm's name as its result."""
+    """Return an arm; the result of each of its measurements is the arm's name."""
     made = MagicMock(path=Path("OUT", name))
     result = MagicMock()
     result.to_dict.return_value = {"of": name}

@@ -1,6 +1,5 @@
 """What commands that write runs say at their end."""
 
-from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 from unittest.mock import MagicMock, patch
@@ -34,10 +33,7 @@ def resumed(path: Path, resume: Any) -> Any:
     """Return the finished command `resume`, in which a function takes the place of the run's own."""
     run = MagicMock()
     run.resume.side_effect = resume
-    with (
-        patch("primordia.api.load", return_value=run),
-        patch("primordia.live.watching.watching", return_value=nullcontext(None)),
-    ):
+    with patch("primordia.api.load", return_value=run):
         return here("resume", path, "--quiet")
 
 

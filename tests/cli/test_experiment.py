@@ -1,4 +1,4 @@
-"""What `experiment` asks of its jobs, what it says at their ends, and its exit status."""
+"""What `experiment` passes to its jobs, its messages at their ends, and its exit status."""
 
 import json
 from collections.abc import Iterator
@@ -26,7 +26,7 @@ def job(number: int) -> Any:
 
 @pytest.fixture
 def chosen() -> Iterator[MagicMock]:
-    """Let a file or directory stand for an experiment with 1,205 jobs left, of which 5 are asked for."""
+    """Let each file or directory hold an experiment with 1,205 jobs left, 5 of them in named arms."""
     made = create_autospec(Campaign, instance=True)
     made.path, made.plan, made.job = OUT, "the plan", job
     made.left.side_effect = lambda arms=(): (

@@ -59,7 +59,7 @@ def test_a_job_of_this_machine_runs_while_its_process_lives(tmp_path: Path, ende
 def test_a_process_of_another_user_is_alive(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The system refuses signal 0, which asks whether a process exists, if it is of another user."""
+    """Signal 0 asks whether a process exists; the system refuses it for another user's process."""
 
     def refuse(process: int, number: int) -> None:
         assert (process, number) == (7, 0)
