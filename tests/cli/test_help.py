@@ -1,4 +1,4 @@
-"""Settings as flags, and under --help: each has its value and its possible values."""
+"""Settings under --help: each has the value that it would have, and its possible values."""
 
 from pathlib import Path
 from types import SimpleNamespace
@@ -8,7 +8,6 @@ from unittest.mock import call, patch
 import pytest
 
 from primordia.cli import help as helping
-from primordia.cli.evolve import run
 from primordia.cli.help import habitat_rows, run_rows, setting_rows
 from primordia.habitats.cartpole.habitat import CartPole
 from tests.commands import here
@@ -111,23 +110,3 @@ def test_help_is_about_the_task_the_file_or_the_run_that_is_named(
     assert title in section
     assert section.startswith("defaults; ") == (place is None)
     assert "number of cells [7]" in done.stdout
-
-
-@pytest.mark.parametrize(
-    ("flags", "settings"),
-    [
-        (["--about=a=b"], {"about": "a=b"}),
-        (["--about", "a=b"], {"about": "a=b"}),
-        (["--hazard", "-1e-3"], {"hazard": -0.001}),
-        (["--about", "-x"], {"about": "-x"}),
-        (["--about", "1\ncells = 3"], {"about": "1\ncells = 3"}),
-        (["--about", ""], {"about": ""}),
-        (["--a-b.c=1", "--a-b.d", "[1, 2]"], {"a-b": {"c": 1, "d": [1, 2]}}),
-        (["--seed", "1", "--seed", "0"], {"seed": 0}),
-        (["--ticks", "9", "--cells", "3"], {"cells": 3}),
-    ],
-    ids=str,
-)
-def test_a_flag_is_a_setting_with_its_value(flags: list[str], settings: dict[str, Any]) -> None:
-    """The value is read as TOML; a value that is not TOML is a text."""
-    assert run.make_context("run", [TASK, *flags]).obj == settings

@@ -172,7 +172,7 @@ def test_a_running_job_writes_the_counts_of_each_of_its_worlds(
     assert done.worlds == expected
     assert last.worlds == expected
     assert last.left_s == 0
-    assert last.rate > 0
+    assert last.rate
     assert (done.rate, done.left_s) == (None, None), "a job that is done has no speed"
 
 
