@@ -229,28 +229,25 @@ def test_code_of_assays_is_trusted_only_if_asked(asked: bool, run: MagicMock) ->
 
 
 @pytest.mark.parametrize(
-    ("source", "task", "kind"),
+    ("words", "kind", "given"),
     [
-        ("a.safetensors", ("--task", "T"), "file"),
-        ("a.safetensors", (), "file"),
-        ("a.toml", (), "task"),
-        ("Pong-survival", (), "task"),
-        ("gym:Pond-v0", (), "task"),
+        (("a.safetensors", 0, 5, "--task", "T"), "file", (Path("a.safetensors"), (0, 5), "T")),
+        (("a.safetensors",), "file", (Path("a.safetensors"), (), None)),
+        (("a.toml", 0, 5), "task", ("a.toml", (0, 5))),
+        (("Pong-survival",), "task", ("Pong-survival", ())),
+        (("gym:Pond-v0", 0), "task", ("gym:Pond-v0", (0,))),
     ],
+    ids=str,
 )
-@pytest.mark.parametrize("organisms", [(), (0, 5)])
 def test_assays_are_of_the_genomes_of_a_file_or_of_founders_of_a_task(
-    source: str, task: tuple[str, ...], kind: str, organisms: tuple[int, ...]
+    words: tuple[Any, ...], kind: str, given: tuple[Any, ...]
 ) -> None:
     with (
         patch(f"primordia.assays.subjects.of_{kind}") as of,
         patch("primordia.assays.ablate.ablate", return_value=[]),
     ):
-        of.return_value.source = source
-        does("assay", "ablate", source, *organisms, *task, "--sticky", 0.5, "--json")
-    given = (
-        (Path(source), organisms, *(task[1:] or [None])) if kind == "file" else (source, organisms)
-    )
+        of.return_value.source = "its name"
+        does("assay", "ablate", *words, "--sticky", 0.5, "--json")
     of.assert_called_once_with(*given, {"sticky": 0.5})
 
 

@@ -33,13 +33,15 @@ def test_arms_are_cut_into_jobs_which_take_turns(tmp_path: Path) -> None:
     ]
 
 
-def test_all_arms_have_the_name_of_their_task(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("task", "name"),
+    [("meadow.toml", MEADOW["task"]), ("CartPole-survival", "CartPole-survival")],
+)
+def test_all_arms_have_the_name_of_their_task(task: str, name: str, tmp_path: Path) -> None:
     """A task in a file is named in this file."""
-    for task, name in (("meadow.toml", MEADOW["task"]), ("CartPole-survival",) * 2):
-        changes = {"brain": None, "task": task}
-        for arms in (ARMS, [{**arm, "task": task} for arm in ARMS]):
-            plan = read(write(tmp_path, **changes, arms=arms), tmp_path / "out")
-            assert [arm.config.task for arm in plan.arms] == [name] * 2
+    for arms in (ARMS, [{**arm, "task": task} for arm in ARMS]):
+        plan = read(write(tmp_path, brain=None, task=task, arms=arms), tmp_path / "out")
+        assert [arm.config.task for arm in plan.arms] == [name] * 2
 
 
 @pytest.mark.parametrize(("seeds", "worlds"), [(1, 1), (7, 3), (12, 4), (101, 10), (5, 100)])
