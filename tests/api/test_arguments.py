@@ -14,6 +14,7 @@ import primordia
 from primordia import api
 from primordia.api import runs
 from primordia.comparison import comparison
+from primordia.phylogeny import formats
 
 RUN, OUT = Path("RUN"), Path("OUT")
 
@@ -64,8 +65,7 @@ def test_the_champions_are_those_of_all_worlds(opened: MagicMock) -> None:
     assert [(each.run, each.row) for each in found] == [(opened, row) for row in (3, 104, 205)]
 
 
-def test_the_file_of_a_bundle_is_that_of_the_single_run(opened: MagicMock) -> None:
-    """A pattern may name the run."""
+def test_a_bundle_is_made_of_the_run_that_a_pattern_names(opened: MagicMock) -> None:
     opened.path = RUN
     with patch("primordia.api.runs.bundle.write") as write:
         assert primordia.Run(Path("R*")).bundle("OUT") == OUT
@@ -73,7 +73,7 @@ def test_the_file_of_a_bundle_is_that_of_the_single_run(opened: MagicMock) -> No
 
 
 def test_all_columns_of_a_table_are_arrays(opened: MagicMock) -> None:
-    """Booleans and missing values cannot be read without a copy."""
+    """Arrow reads booleans into an array only with a copy."""
     opened.table = {"births": pa.table({"id": [3, 4], "inherited": [True, False]})}.get
     found = primordia.Run(RUN).arrays("births")
     assert {name: values.tolist() for name, values in found.items()} == {
@@ -135,6 +135,48 @@ def test_a_picture_has_the_place_the_world_and_the_options_that_are_given(
     with patch(f"primordia.{behind}") as function:
         getattr(primordia.Run(RUN), name)(*words, **options)
     assert function.call_args == expected
+
+
+@pytest.mark.parametrize("out", [None, "OUT.csv"])
+def test_a_phylogeny_is_of_the_whole_past_and_of_the_part_that_is_chosen(
+    out: str | None, opened: MagicMock
+) -> None:
+    say = MagicMock()
+    with (
+        patch.object(runs, "whole_past") as past,
+        patch.object(runs, "chosen") as chosen,
+        patch.object(runs, "table") as table,
+        patch.object(formats, "save") as save,
+    ):
+        made = primordia.Run(RUN).lineage(0, out=out, say=say, world=2, extant=True)
+    past.assert_called_once_with(opened, say)
+    chosen.assert_called_once_with(past.return_value.whole, 0, world=2, extant=True)
+    if out is None:
+        assert made is table.return_value
+        table.assert_called_once_with(chosen.return_value)
+        save.assert_not_called()
+    else:
+        assert made is None
+        save.assert_called_once_with(chosen.return_value, Path(out), say)
+
+
+def test_a_run_is_verified_on_the_device_and_with_the_listener_that_are_given(
+    opened: MagicMock,
+) -> None:
+    with (
+        patch("primordia.api.runs.devices.selected") as selected,
+        patch.object(runs, "verify") as verify,
+    ):
+        assert primordia.Run(RUN).verify("gpu", print) is verify.return_value
+    verify.assert_called_once_with(opened, print)
+    selected.assert_called_once_with("gpu")
+
+
+def test_dashboards_get_the_folders_and_options_that_are_given() -> None:
+    run = primordia.Run(RUN / "one")
+    with patch.object(runs, "track") as track:
+        run.track("boards", OUT, follow=True, every=7.0)
+    track.assert_called_once_with(run.sources, "one", "boards", OUT, follow=True, every=7.0)
 
 
 def test_standings_are_those_of_both_groups_with_all_options(opened: MagicMock) -> None:

@@ -1,4 +1,4 @@
-"""Several runs, arms and experiments: each of them and each argument reaches the function behind it."""
+"""Several runs, arms and experiments: the functions behind them get all of them, and all arguments."""
 
 from pathlib import Path
 from types import SimpleNamespace
@@ -9,11 +9,8 @@ import pytest
 
 import primordia
 from primordia import api
-from primordia import device as devices
-from primordia.api import runs
 from primordia.comparison import comparison
 from primordia.errors import InputError
-from primordia.phylogeny import formats
 from primordia.runs import opening
 
 RUN, OUT, MORE = Path("RUN"), Path("OUT"), Path("MORE")
@@ -28,7 +25,7 @@ def test_all_runs_of_an_arm_are_opened_in_their_order() -> None:
 
 
 def test_a_comparison_has_all_runs_of_an_arm_and_all_arms_of_an_experiment() -> None:
-    """An experiment is given as such or by its directory."""
+    """An experiment is given as an object or by its directory."""
     arms = [MagicMock() for _ in range(4)]
     with (
         patch("primordia.api.is_experiment", lambda path: path == OUT),
@@ -41,7 +38,8 @@ def test_a_comparison_has_all_runs_of_an_arm_and_all_arms_of_an_experiment() -> 
 
 
 @pytest.mark.parametrize("trust", [False, True])
-def test_trust_is_for_the_code_in_all_directories_and_for_its_present_version(trust: bool) -> None:
+def test_the_code_in_all_directories_is_trusted_only_if_asked(trust: bool) -> None:
+    """Trust is for the copy of the code in the run, and for the present version of the code."""
     archives = MagicMock(side_effect=lambda path, edited=False: SimpleNamespace(
         code=lambda: (path, edited)
     ))  # fmt: skip
@@ -57,7 +55,7 @@ def test_trust_is_for_the_code_in_all_directories_and_for_its_present_version(tr
     assert trusted.call_args_list == (both if trust else [])
 
 
-def test_an_experiment_is_loaded_as_such_only_alone() -> None:
+def test_several_directories_are_runs_even_if_one_holds_an_experiment() -> None:
     with (
         patch("primordia.api.is_experiment", lambda path: path == OUT),
         patch.object(primordia.Run, "directories", lambda run: ()),
@@ -102,7 +100,7 @@ def test_dashboards_follow_an_arm_while_one_of_its_runs_is_written(written: Any)
 def test_dashboards_follow_an_experiment_while_jobs_run_or_wait(
     jobs: dict[str, int], go_on: bool, arms: list[str]
 ) -> None:
-    """An arm that is alone needs no name."""
+    """A single arm has no name on a dashboard."""
     paths = {name: (RUN / name / "a", RUN / name / "b") for name in arms}
     campaign = SimpleNamespace(status=lambda: SimpleNamespace(jobs=jobs), runs=lambda: paths)
     with patch("primordia.api.experiments.campaign.recorded", return_value=campaign):
@@ -113,48 +111,10 @@ def test_dashboards_follow_an_experiment_while_jobs_run_or_wait(
     assert directories == tuple(path for each in paths.values() for path in each)
 
 
-@pytest.mark.parametrize("out", [None, "OUT.csv"])
-def test_a_phylogeny_is_of_the_whole_past_and_of_the_part_that_is_chosen(out: str | None) -> None:
-    run, say = primordia.Run(RUN), MagicMock()
-    with (
-        patch.object(opening, "only") as only,
-        patch.object(runs, "whole_past") as past,
-        patch.object(runs, "chosen") as chosen,
-        patch.object(runs, "table") as table,
-        patch.object(formats, "save") as save,
-    ):
-        made = run.lineage(0, out=out, say=say, world=2, extant=True)
-    past.assert_called_once_with(only.return_value, say)
-    chosen.assert_called_once_with(past.return_value.whole, 0, world=2, extant=True)
-    if out is None:
-        assert made is table.return_value
-        table.assert_called_once_with(chosen.return_value)
-        save.assert_not_called()
-    else:
-        assert made is None
-        save.assert_called_once_with(chosen.return_value, Path(out), say)
-
-
-def test_a_repetition_has_its_device_and_its_listener() -> None:
-    with (
-        patch.object(opening, "only") as only,
-        patch.object(devices, "selected") as selected,
-        patch.object(runs, "verify") as verify,
-    ):
-        assert primordia.Run(RUN).verify("gpu", print) is verify.return_value
-    verify.assert_called_once_with(only.return_value, print)
-    selected.assert_called_once_with("gpu")
-
-
-def test_dashboards_get_the_folders_and_options_that_are_given() -> None:
-    run = primordia.Run(RUN / "one")
-    with patch.object(runs, "track") as track:
-        run.track("boards", OUT, follow=True, every=7.0)
-    track.assert_called_once_with(run.sources, "one", "boards", OUT, follow=True, every=7.0)
-
-
 @pytest.mark.parametrize(("out", "path"), [(None, None), ("OUT", OUT)])
-def test_the_page_of_an_experiment_has_its_place(out: str | None, path: Path | None) -> None:
+def test_the_page_of_an_experiment_is_written_to_the_given_place(
+    out: str | None, path: Path | None
+) -> None:
     with (
         patch("primordia.api.experiments.campaign.recorded") as recorded,
         patch("primordia.report.report.report") as report,
@@ -167,7 +127,7 @@ def test_the_page_of_an_experiment_has_its_place(out: str | None, path: Path | N
 def test_results_are_written_when_no_job_of_any_arm_is_left(
     left: list[int], gathered: bool
 ) -> None:
-    """All jobs of the named arm are done before."""
+    """All jobs of the named arm are done already."""
     campaign = MagicMock(path=OUT, left=lambda only=(): [] if only else left)
     with patch("primordia.api.campaigns.begin", return_value=campaign) as begin:
         made = primordia.experiment("file.toml", only=["mild"])
@@ -176,7 +136,8 @@ def test_results_are_written_when_no_job_of_any_arm_is_left(
     assert made == api.Experiment(OUT)
 
 
-def test_the_stop_of_an_experiment_is_that_of_the_program() -> None:
+def test_an_experiment_that_is_stopped_raises_a_keyboard_interrupt() -> None:
+    """The failure of a job does not matter then."""
     ending = SimpleNamespace(stopped=True, failed=[SimpleNamespace(job=3, error="full")])
     campaign = MagicMock(path=OUT, left=lambda only=(): [5])
     with (

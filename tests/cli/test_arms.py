@@ -16,11 +16,11 @@ OPTIONS: dict[tuple[str, ...], tuple[Any, ...]] = {
     ("assay", "threshold", "--after", "0.25"): (0.25,),
     ("shadow", "--organisms", "7", "--ticks", "9"): (7, 9),
 }
-"""Commands with options, and the arguments that these give to the function of an arm."""
+"""Commands with options, and the arguments with which they measure an arm."""
 
 
 def arm(name: str) -> Any:
-    """Return an arm, each of whose measurements has the arm's name as its result."""
+    """Return an arm; the result of each of its measurements is the arm's name."""
     made = MagicMock(path=Path("OUT", name))
     result = MagicMock()
     result.to_dict.return_value = {"of": name}
@@ -40,11 +40,11 @@ def test_every_arm_of_an_experiment_is_measured(words: tuple[str, ...]) -> None:
     name = words[0] if words[0] == "shadow" else words[1]
     for each in arms.values():
         assert getattr(each, name).call_args == call(*OPTIONS[words])
-    told = json.loads(done.stdout)
+    printed = json.loads(done.stdout)
     if name == "shadow":
-        assert told == {"arms": [{"of": each} for each in arms]}
+        assert printed == {"arms": [{"of": each} for each in arms]}
     else:
-        assert told == {str(Path("OUT", each)): [{"of": each}] for each in arms}
+        assert printed == {str(Path("OUT", each)): [{"of": each}] for each in arms}
 
 
 def test_shadows_of_several_arms_are_separate_texts(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -69,24 +69,25 @@ def test_without_a_home_folder_nothing_is_kept(monkeypatch: pytest.MonkeyPatch) 
     assert code._stored() == set()
 
 
+@pytest.mark.parametrize("given", [True, False])
 def test_the_users_own_settings_of_the_cache_stay(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    given: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Without such settings, code that took 0.2 s to compile is kept, up to 1 GiB."""
     folder = tmp_path / "primordia" / "compiled" / cache.processor()
-    own = {
+    defaults = {
         "JAX_COMPILATION_CACHE_DIR": str(folder),
         "JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS": "0.2",
         "JAX_COMPILATION_CACHE_MAX_SIZE": "1073741824",
     }
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    for given in (dict.fromkeys(own, "7"), {}):
-        for name in own:
-            monkeypatch.setenv(name, given.get(name, ""))
-            if name not in given:
-                monkeypatch.delenv(name)
-        cache.keep_compiled_code()
-        assert {name: os.environ[name] for name in own} == (given or own)
+    for name in defaults:
+        monkeypatch.setenv(name, "7")
+        if not given:
+            monkeypatch.delenv(name)
+    cache.keep_compiled_code()
+    expected = dict.fromkeys(defaults, "7") if given else defaults
+    assert {name: os.environ[name] for name in defaults} == expected
 
 
 def test_processors_of_other_features_have_other_folders(tmp_path: Path) -> None:

@@ -111,7 +111,7 @@ def test_time_left_is_that_of_the_slowest_job_in_each_round_of_jobs(
 
 
 @pytest.mark.parametrize("before", [0, 3])
-def test_time_left_has_the_pace_of_the_jobs_done_since_the_command_began(
+def test_time_left_depends_on_the_pace_of_jobs_since_the_command_began(
     before: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Two jobs are done after 100 s, so six take 300 s more. Jobs done before do not count."""
@@ -190,6 +190,13 @@ def test_without_a_terminal_a_line_is_printed_each_minute(
     assert capsys.readouterr().out == f"{text}\n" * len(moments)
 
 
+class Terminal(io.StringIO):
+    """A text stream that claims to be a terminal."""
+
+    def isatty(self) -> bool:
+        return True
+
+
 @pytest.mark.parametrize(("kind", "lines"), [("xterm", 0), ("dumb", 1)])
 def test_a_terminal_shows_a_table_that_ends_with_the_last_state(
     kind: str, lines: int, monkeypatch: pytest.MonkeyPatch
@@ -209,10 +216,3 @@ def test_a_terminal_shows_a_table_that_ends_with_the_last_state(
     assert words.count("12:00:00") == lines
     assert ("worlds begun" in words) == (not lines)
     assert ("1,302 of 2,605 jobs done" in words) == (not lines)
-
-
-class Terminal(io.StringIO):
-    """A text stream that takes itself for a terminal."""
-
-    def isatty(self) -> bool:
-        return True

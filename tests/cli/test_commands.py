@@ -49,7 +49,7 @@ def failing(error: BaseException, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_an_error_is_one_line_and_a_status(
     error: BaseException, status: int, says: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Status 2 is for what a user can correct, status 1 for all other trouble."""
+    """Status 2 is for errors that a user can correct, and status 1 for all others."""
     failing(error, monkeypatch)
     done = here("info", "run")
     complains(done, status)
@@ -74,16 +74,16 @@ def test_an_error_in_a_users_code_is_one_line_with_its_place(
     assert done.stderr == f"primordia: a.py, line 3: {says}\n"
 
 
-def test_a_pipe_whose_reader_has_gone_ends_a_command_silently(
+def test_a_command_whose_reader_has_gone_ends_silently(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    failing(SystemExit(1), monkeypatch)
+    failing(SystemExit(1), monkeypatch)  # as click does if the reader of a pipe has gone
     done = here("info", "run")
     assert (done.returncode, done.stdout, done.stderr) == (1, "", "")
 
 
 def test_commands_are_listed_in_the_order_of_work() -> None:
-    """A run is begun before it is drawn; the alphabet would tear such commands apart."""
+    """A run is begun before it is drawn, so `run` is before `plot`."""
     listed = here("--help").stdout.partition("Commands:")[2]
     names = re.findall(r"^  (\w+)", listed, re.MULTILINE)
     assert names[:6] == ["run", "resume", "fork", "new", "check", "experiment"]

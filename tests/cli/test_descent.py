@@ -1,5 +1,6 @@
 """Tables of ancestors and of lines: each column has its own numbers, and notes have those of the end."""
 
+import json
 from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
@@ -206,10 +207,10 @@ def test_only_a_sweep_past_half_of_the_living_is_under_way() -> None:
     ],
     ids=["ancestors", "lines"],
 )
-def test_each_figure_has_its_own_name_and_is_told_apart_from_json(
+def test_the_files_of_each_figure_are_printed_apart_from_json(
     words: tuple[str, ...], figure: str, names: list[str], as_json: tuple[str, ...], tmp_path: Path
 ) -> None:
-    """The output is then JSON alone, which other programs read."""
+    """With --json, other programs read standard output, so it has nothing but JSON."""
     drawn: list[Path] = []
 
     def save(_: object, path: Path) -> list[Path]:
@@ -232,5 +233,7 @@ def test_each_figure_has_its_own_name_and_is_told_apart_from_json(
     assert done.returncode == 0
     paths = [tmp_path / "new" / name for name in names]
     assert drawn == paths
-    told = [f"Figure: {path}.png and {path}.svg" for path in paths]
-    assert (done.stderr if as_json else done.stdout).splitlines() == told
+    lines = [f"Figure: {path}.png and {path}.svg" for path in paths]
+    assert (done.stderr if as_json else done.stdout).splitlines() == lines
+    if as_json:
+        json.loads(done.stdout)

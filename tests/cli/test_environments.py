@@ -177,5 +177,5 @@ def test_check_names_faults_of_the_environment_and_breaches_of_the_contract(
     done = here("check", "gymnax:tests.walks:Choice")
     found = [*faults, *([broken] if broken else [])]
     assert done.returncode == (1 if found else 0)
-    told = ["a fact", "another", *(f"Found: {fault}." for fault in found)]
-    assert done.stdout.splitlines() == told
+    lines = ["a fact", "another", *(f"Found: {fault}." for fault in found)]
+    assert done.stdout.splitlines() == lines

@@ -10,7 +10,7 @@ from primordia.cli.evaluate import evaluation_text
 from primordia.comparison.controls import Standing
 from primordia.organism.evaluation import Evaluation
 from primordia.organism.games import Games
-from tests.commands import complains, here
+from tests.commands import here
 
 
 def games(ticks: list[int], over: list[bool] | None = None, food: list[int] | None = None) -> Games:
@@ -45,7 +45,14 @@ def test_the_text_about_an_organism_has_its_spreads_and_counts() -> None:
     ]
 
 
-def test_games_that_happened_to_be_equal_were_random_all_the_same() -> None:
+def test_the_extremes_are_shown_even_if_the_quartiles_are_equal() -> None:
+    lived = games([20, 100, 100, 100, 100])
+    found = Evaluation(7, 2, "live", lived, None, deterministic=False)
+    spread = "median 100 (quartiles 100, 100), minimum 20, maximum 100"
+    assert evaluation_text(found, {}).splitlines()[-1] == f"  lifespan  {spread}"
+
+
+def test_random_games_may_happen_to_be_equal() -> None:
     equal = games([9, 9])._replace(course=np.zeros(2, np.uint64))
     found = Evaluation(7, 0, "live", equal, None, deterministic=False)
     assert evaluation_text(found, {}).splitlines()[1] == "  1 distinct game"
@@ -111,25 +118,10 @@ def test_notes_are_only_those_that_apply(worlds: int, same: tuple[bool, bool]) -
     ],
     ids=str,
 )
-def test_the_title_tells_in_which_games_the_groups_played(
+def test_the_title_names_the_changed_rules_of_the_games(
     words: tuple[object, ...], says: str
 ) -> None:
     with patch("primordia.api.load") as load, patch.object(evaluate, "show_standings") as show:
         done = here("evaluate", "RUN", *words)
     assert (done.returncode, done.stderr) == (0, "")
     show.assert_called_once_with(load.return_value.standings.return_value, says)
-
-
-@pytest.mark.parametrize("organism", [(), ("--organism", 0)])
-def test_senses_are_either_frozen_or_ignored(organism: tuple[object, ...]) -> None:
-    with patch("primordia.api.load") as load:
-        done = here("evaluate", "RUN", *organism, "--freeze-senses", "--open-loop")
-    complains(done, 2, "--freeze-senses and --open-loop exclude each other")
-    load.assert_not_called()
-
-
-def test_the_quartiles_may_be_equal_and_the_extremes_not() -> None:
-    lived = games([20, 100, 100, 100, 100])
-    found = Evaluation(7, 2, "live", lived, None, deterministic=False)
-    spread = "median 100 (quartiles 100, 100), minimum 20, maximum 100"
-    assert evaluation_text(found, {}).splitlines()[-1] == f"  lifespan  {spread}"

@@ -1,8 +1,5 @@
 """What commands that write runs say at their end."""
 
-import errno
-import os
-from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 from unittest.mock import MagicMock, patch
@@ -32,14 +29,11 @@ def test_a_replay_is_recommended_where_the_habitat_draws_pictures(
     assert (figures in lines, video in lines) == (True, True)
 
 
-def resumed(path: Path, resume: Any, listen: Any = None) -> Any:
-    """Resume a run whose function is given, with a listener; return the finished command."""
+def resumed(path: Path, resume: Any) -> Any:
+    """Return the finished command `resume`, in which a function takes the place of the run's own."""
     run = MagicMock()
     run.resume.side_effect = resume
-    with (
-        patch("primordia.api.load", return_value=run),
-        patch("primordia.live.watching.watching", return_value=nullcontext(listen)),
-    ):
+    with patch("primordia.api.load", return_value=run):
         return here("resume", path, "--quiet")
 
 
@@ -55,28 +49,7 @@ def test_a_command_that_is_stopped_says_how_to_go_on_if_there_is_a_run(
     assert done.stderr == (saved if begun else f"Stopped before {tmp_path} had begun\n")
 
 
-def test_a_run_whose_output_cannot_be_written_is_saved_and_says_why(tmp_path: Path) -> None:
-    def listen(_: object) -> None:
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-
-    def resume(listen: Any, **_: object) -> list[str]:
-        listen("a status")
-        return []
-
-    (tmp_path / "versions.json").touch()
-    says = "the output cannot be written: No space left on device. Stopped and saved. Go on with: "
-    complains(resumed(tmp_path, resume, listen), 1, f"{says}primordia resume {tmp_path}\n")
-
-
 def test_every_note_on_a_resumed_run_is_a_line(tmp_path: Path) -> None:
     done = resumed(tmp_path, lambda **_: ["one thing", "another"])
     assert (done.returncode, done.stdout) == (0, "")
     assert done.stderr == "primordia: one thing\nprimordia: another\n"
-
-
-def test_a_bundle_is_told_with_its_size(tmp_path: Path) -> None:
-    run, file = MagicMock(), tmp_path / "run.zip"
-    run.bundle.side_effect = lambda path: path.write_bytes(bytes(1234))
-    with patch("primordia.api.load", return_value=run):
-        done = here("bundle", "RUN", file)
-    assert (done.returncode, done.stdout) == (0, f"{file}: 1,234 bytes\n")

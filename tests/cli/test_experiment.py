@@ -1,4 +1,4 @@
-"""What `experiment` asks of its jobs, what it says at their ends, and its exit status."""
+"""What `experiment` passes to its jobs, its messages at their ends, and its exit status."""
 
 import json
 from collections.abc import Iterator
@@ -26,7 +26,7 @@ def job(number: int) -> Any:
 
 @pytest.fixture
 def chosen() -> Iterator[MagicMock]:
-    """Let a file or directory stand for an experiment with 1,205 jobs left, of which 5 are asked for."""
+    """Let each file or directory hold an experiment with 1,205 jobs left, 5 of them in named arms."""
     made = create_autospec(Campaign, instance=True)
     made.path, made.plan, made.job = OUT, "the plan", job
     made.left.side_effect = lambda arms=(): (
@@ -48,7 +48,7 @@ def test_the_options_reach_the_jobs(chosen: MagicMock) -> None:
     assert here("experiment", FILE, "--quiet").returncode == 0
     assert chosen.begin.call_args == call(FILE, None)
     assert chosen.place_for.call_args == call(OUT, 1205, None, None, **plain)
-    chosen.live_all.called = False
+    chosen.live_all.reset_mock()
     ways = ("--jobs", 3, "--ray", "there", "--checkpoint-every", 7, "--device", "gpu")
     with patch.object(campaign_view, "watching") as watching:
         done = here("experiment", FILE, "--out", OUT, "--only", "a", "--only", "b", *ways)
@@ -144,9 +144,7 @@ def test_a_job_alone_ends_with_its_own_status(state: Any, chosen: MagicMock) -> 
 @pytest.mark.parametrize(
     ("words", "says"),
     [
-        (("--json",), "--json needs --status"),
         (("--json", "--job", 0), "--json needs --status"),
-        (("--job", 0, "--ray"), "leave out --ray"),
         (("--job", 0, "--jobs", 2, "--only", "a", "--ray", "x"), "out --jobs and --only and --ray"),
     ],
     ids=str,

@@ -1,4 +1,4 @@
-"""Flags: no word on the command line is a traceback, and a word that is refused makes nothing."""
+"""Flags are settings. No word is a traceback, and a word that is refused makes nothing."""
 
 import inspect
 from collections.abc import Iterator
@@ -58,6 +58,26 @@ def accepted_or_refused(words: list[str], started: list[Config]) -> None:
     else:
         assert done.stderr == ""
         assert done.stdout.startswith("Usage") or len(started) == 1
+
+
+@pytest.mark.parametrize(
+    ("flags", "expected"),
+    [
+        (["--about=a=b"], {"about": "a=b"}),
+        (["--about", "a=b"], {"about": "a=b"}),
+        (["--hazard", "-1e-3"], {"hazard": -0.001}),
+        (["--about", "-x"], {"about": "-x"}),
+        (["--about", "1\ncells = 3"], {"about": "1\ncells = 3"}),
+        (["--about", ""], {"about": ""}),
+        (["--a-b.c=1", "--a-b.d", "[1, 2]"], {"a-b": {"c": 1, "d": [1, 2]}}),
+        (["--seed", "1", "--seed", "0"], {"seed": 0}),
+        (["--ticks", "9", "--cells", "3"], {"cells": 3}),
+    ],
+    ids=str,
+)
+def test_a_flag_is_a_setting_with_its_value(flags: list[str], expected: dict[str, Any]) -> None:
+    """The value is read as TOML; a value that is not TOML is a text."""
+    assert run.make_context("run", [TASK, *flags]).obj == expected
 
 
 def test_a_name_that_is_too_long_is_no_file(started: list[Config]) -> None:

@@ -8,10 +8,9 @@ from unittest.mock import call, patch
 import pytest
 
 from primordia.cli import help as helping
-from primordia.cli.evolve import run
 from primordia.cli.help import habitat_rows, run_rows, setting_rows
 from primordia.habitats.cartpole.habitat import CartPole
-from tests.commands import complains, here
+from tests.commands import here
 from tests.trouble import TASK
 from tests.worlds import MEADOW, config
 
@@ -51,7 +50,7 @@ def test_the_settings_are_those_of_the_chosen_parts() -> None:
     assert "--brain.kind" in dict(setting_rows(None, {"brain": 3}))
 
 
-def test_names_that_are_no_choice_of_the_user_are_left_out() -> None:
+def test_settings_that_a_user_cannot_choose_are_left_out() -> None:
     names = dict(setting_rows(TASK, {}))
     assert not {"--about", "--task", "--fork.run", "--fork.tick"} & {*names}
     assert names["--stop.until"].endswith(' (saturation, none) ["saturation"]')
@@ -75,80 +74,39 @@ def test_the_settings_of_a_run_are_its_own(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "asked", "title"),
+    ("words", "place", "title"),
     [
-        (("run",), call.setting_rows(None), "run TASK|FILE.toml|gym:NAME --help` also"),
-        (("run", TASK), call.setting_rows(TASK), f"values of {TASK})"),
-        (("run", "a.toml"), call.setting_rows("a.toml"), "values of a.toml)"),
-        (("run", "gym:X-v0"), call.setting_rows("gym:X-v0"), "values of gym:X-v0)"),
-        (("run", "gymnax:a:B"), call.setting_rows("gymnax:a:B"), "values of gymnax:a:B)"),
-        (("fork", "RUN", "--at", 3), call.run_rows(Path("RUN")), "values of RUN)"),
-        (("fork", "other", "--at", 3), call.setting_rows(None), "fork RUN --help` also"),
+        (("run",), None, "run TASK|FILE.toml|gym:NAME --help` also"),
+        (("run", TASK), TASK, f"values of {TASK})"),
+        (("run", "a.toml"), "a.toml", "values of a.toml)"),
+        (("run", "gym:X-v0"), "gym:X-v0", "values of gym:X-v0)"),
+        (("run", "gymnax:a:B"), "gymnax:a:B", "values of gymnax:a:B)"),
+        (("fork", "RUN", "--at", 3), Path("RUN"), "values of RUN)"),
+        (("fork", "other", "--at", 3), None, "fork RUN --help` also"),
     ],
     ids=str,
 )
 def test_help_is_about_the_task_the_file_or_the_run_that_is_named(
-    words: tuple[Any, ...], asked: Any, title: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    words: tuple[Any, ...],
+    place: str | Path | None,
+    title: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Flags in front of --help already have their effect on the values."""
+    """The values that are shown depend on the flags in front of --help."""
     monkeypatch.chdir(tmp_path)
     Path("RUN").mkdir()
     Path("RUN", "config.toml").touch()
     rows = [("--cells", "number of cells [7]")]
-    with patch.multiple(
-        helping, setting_rows=(one := patch_of(rows)), run_rows=(other := patch_of(rows))
+    with (
+        patch.object(helping, "setting_rows", return_value=rows) as of_task,
+        patch.object(helping, "run_rows", return_value=rows) as of_run,
     ):
         done = here(*words, "--cells", 7, "--help")
-    name, place, _ = asked
-    calls = {"setting_rows": one.calls, "run_rows": other.calls}
-    assert calls.pop(name) == [(*place, {"cells": 7})]
-    assert [*calls.values()] == [[]]
+    asked, other = (of_run, of_task) if isinstance(place, Path) else (of_task, of_run)
+    asked.assert_called_once_with(place, {"cells": 7})
+    other.assert_not_called()
     section = " ".join(done.stdout.split()).partition("Settings, as in TOML (")[2]
     assert title in section
-    assert section.startswith("defaults; ") == (place == (None,))
+    assert section.startswith("defaults; ") == (place is None)
     assert "number of cells [7]" in done.stdout
-
-
-def patch_of(rows: list[tuple[str, str]]) -> Any:
-    """Return a function that returns rows and notes its arguments."""
-
-    def noted(*given: Any) -> list[tuple[str, str]]:
-        noted.calls.append(given)  # type: ignore[attr-defined]
-        return rows
-
-    noted.calls = []  # type: ignore[attr-defined]
-    return noted
-
-
-@pytest.mark.parametrize(
-    ("flags", "settings"),
-    [
-        (["--about=a=b"], {"about": "a=b"}),
-        (["--about", "a=b"], {"about": "a=b"}),
-        (["--hazard", "-1e-3"], {"hazard": -0.001}),
-        (["--about", "-x"], {"about": "-x"}),
-        (["--about", "1\ncells = 3"], {"about": "1\ncells = 3"}),
-        (["--about", ""], {"about": ""}),
-        (["--a-b.c=1", "--a-b.d", "[1, 2]"], {"a-b": {"c": 1, "d": [1, 2]}}),
-        (["--seed", "1", "--seed", "0"], {"seed": 0}),
-        (["--ticks", "9", "--cells", "3"], {"cells": 3}),
-    ],
-    ids=str,
-)
-def test_a_flag_is_a_setting_with_its_value(flags: list[str], settings: dict[str, Any]) -> None:
-    """The value is that of TOML; what TOML does not know is a text."""
-    assert run.make_context("run", [TASK, *flags]).obj == settings
-
-
-@pytest.mark.parametrize(
-    ("flags", "says"),
-    [
-        (("--stop", 3, "--stop.ticks", 4), "--stop.ticks: --stop already has a single value"),
-        (("--seed", 2**64), "seed: 18446744073709551616 does not fit into 64 bits"),
-        (("--hazard", "nan"), "hazard: nan is not a finite number"),
-        (("--cells", "--seed", 3), "--cells needs a value"),
-    ],
-    ids=str,
-)
-def test_a_flag_that_no_setting_can_have_is_refused(flags: tuple[Any, ...], says: str) -> None:
-    complains(here("fork", "no run", "--at", 3, *flags), 2, says)

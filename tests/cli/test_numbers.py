@@ -57,7 +57,9 @@ BOUNDS: list[tuple[str, tuple[float, ...], tuple[float, ...]]] = [
 """Options, numbers that each accepts, and numbers that it refuses."""
 
 
-@pytest.mark.parametrize(("words", "accepted", "refused"), BOUNDS, ids=lambda each: str(each)[:30])
+@pytest.mark.parametrize(
+    ("words", "accepted", "refused"), BOUNDS, ids=[words for words, *_ in BOUNDS]
+)
 def test_an_option_accepts_numbers_up_to_its_bounds(
     words: str, accepted: tuple[float, ...], refused: tuple[float, ...]
 ) -> None:

@@ -47,11 +47,12 @@ CALLS: dict[tuple[Any, ...], Any] = {
     ("film", RUN): call.film(ticks=(None, None), world=0, by="births", organism=None, out=None),
     ("evaluate", RUN, "--world", 2, "--games", 3, "--founders", 7, "--ticks", 9, "--sticky", 0.5,
      "--open-loop", "--json"):
-        call.standings(7, 2, games=3, ticks=9, senses="ignored", habitat={"sticky": 0.5}),
+        call.standings(world=2, games=3, ticks=9, senses="ignored", habitat={"sticky": 0.5},
+                       founders=7),
     ("evaluate", RUN, "--world", 0, "--json"):
-        call.standings(500, 0, games=30, ticks=100_000, senses="live", habitat={}),
+        call.standings(world=0, games=30, ticks=100_000, senses="live", habitat={}),
     ("evaluate", RUN, "--json"):
-        call.standings(500, None, games=30, ticks=100_000, senses="live", habitat={}),
+        call.standings(world=None, games=30, ticks=100_000, senses="live", habitat={}),
     ("shadow", RUN, "--organisms", 3, "--ticks", 9, "--json"): call.shadow(3, 9),
     ("shadow", RUN, "--json"): call.shadow(500, None),
     ("assay", "heredity", RUN, "--after", 0.25, "--json"): call.heredity(0.25),
@@ -228,28 +229,25 @@ def test_code_of_assays_is_trusted_only_if_asked(asked: bool, run: MagicMock) ->
 
 
 @pytest.mark.parametrize(
-    ("source", "task", "kind"),
+    ("words", "kind", "given"),
     [
-        ("a.safetensors", ("--task", "T"), "file"),
-        ("a.safetensors", (), "file"),
-        ("a.toml", (), "task"),
-        ("Pong-survival", (), "task"),
-        ("gym:Pond-v0", (), "task"),
+        (("a.safetensors", 0, 5, "--task", "T"), "file", (Path("a.safetensors"), (0, 5), "T")),
+        (("a.safetensors",), "file", (Path("a.safetensors"), (), None)),
+        (("a.toml", 0, 5), "task", ("a.toml", (0, 5))),
+        (("Pong-survival",), "task", ("Pong-survival", ())),
+        (("gym:Pond-v0", 0), "task", ("gym:Pond-v0", (0,))),
     ],
+    ids=str,
 )
-@pytest.mark.parametrize("organisms", [(), (0, 5)])
 def test_assays_are_of_the_genomes_of_a_file_or_of_founders_of_a_task(
-    source: str, task: tuple[str, ...], kind: str, organisms: tuple[int, ...]
+    words: tuple[Any, ...], kind: str, given: tuple[Any, ...]
 ) -> None:
     with (
         patch(f"primordia.assays.subjects.of_{kind}") as of,
         patch("primordia.assays.ablate.ablate", return_value=[]),
     ):
-        of.return_value.source = source
-        does("assay", "ablate", source, *organisms, *task, "--sticky", 0.5, "--json")
-    given = (
-        (Path(source), organisms, *(task[1:] or [None])) if kind == "file" else (source, organisms)
-    )
+        of.return_value.source = "its name"
+        does("assay", "ablate", *words, "--sticky", 0.5, "--json")
     of.assert_called_once_with(*given, {"sticky": 0.5})
 
 

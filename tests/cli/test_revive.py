@@ -8,7 +8,7 @@ import pytest
 
 from primordia.cli import revive
 from primordia.organism.revival import Respect, Revival
-from tests.commands import complains, here
+from tests.commands import here
 
 
 @pytest.mark.parametrize(
@@ -40,22 +40,26 @@ def test_a_relived_life_is_shown_beside_its_record(begin: str, where: str) -> No
     assert below == ["Note: one thing.", "Note: another.", "a.npz", "b.gif"]
 
 
+SAME = Respect("tick", 9, 9)
+OTHERS = (Respect("energy", 1.5, None), SAME, Respect("food", 3, 0))
+DIFFERS = "organism 5 of world 2, lived again, differs from its record in: energy, food"
+
+
 @pytest.mark.parametrize("as_json", [(), ("--json",)])
-def test_a_life_that_differs_from_its_record_has_status_1_and_all_differences_are_named(
-    as_json: tuple[str, ...],
+@pytest.mark.parametrize(
+    ("respects", "status", "says"),
+    [((SAME,), 0, ""), (OTHERS, 1, f"primordia: {DIFFERS}\n")],
+    ids=["same", "other"],
+)
+def test_all_differences_of_a_life_from_its_record_are_named(
+    respects: tuple[Respect, ...], status: int, says: str, as_json: tuple[str, ...]
 ) -> None:
-    same = Respect("tick", 9, 9)
-    others = (Respect("energy", 1.5, None), same, Respect("food", 3, 0))
-    for respects in ((same,), others):
-        found = Revival(5, 2, "birth", 0, 9, respects, (), ())
-        with (
-            patch("primordia.api.load"),
-            patch("primordia.organism.revival.revive", return_value=found),
-        ):
-            done = here("revive", "RUN", 5, "--world", 2, *as_json)
-        if as_json:
-            assert json.loads(done.stdout) == found.to_dict()
-        if respects is not others:
-            assert (done.returncode, done.stderr) == (0, "")
-    says = "organism 5 of world 2, lived again, differs from its record in: energy, food\n"
-    complains(done, 1, says)
+    found = Revival(5, 2, "birth", 0, 9, respects, (), ())
+    with (
+        patch("primordia.api.load"),
+        patch("primordia.organism.revival.revive", return_value=found),
+    ):
+        done = here("revive", "RUN", 5, "--world", 2, *as_json)
+    assert (done.returncode, done.stderr) == (status, says)
+    if as_json:
+        assert json.loads(done.stdout) == found.to_dict()

@@ -59,7 +59,7 @@ def test_a_stream_counts_the_characters_that_it_was_given(file: Full) -> None:
 def test_text_that_cannot_be_written_at_the_end_is_dropped(
     stuck: tuple[str, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Otherwise Python would try again at exit, and fail. The other stream is left as it is."""
+    """Otherwise Python would try again at exit, and fail. The other stream is unchanged."""
 
     def fail() -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))

@@ -19,18 +19,18 @@ WAYS = {
 
 @pytest.mark.parametrize("words", WAYS, ids=" ".join)
 @pytest.mark.parametrize("rows", [(), (0, 0), (0, 5, 7), (5,)])
-def test_how_to_look_is_told_once_as_soon_as_there_is_something_to_see(
+def test_the_way_to_look_at_metrics_is_printed_once_if_there_are_any(
     words: tuple[str, ...], rows: tuple[int, ...]
 ) -> None:
     run = MagicMock()
     run.track.side_effect = lambda *_, seen, **__: [seen(count) for count in rows]
     with patch("primordia.api.load", return_value=run):
         done = here("track", "RUN", *words)
-    told = [f"Look at the metrics with: {way}" for way in WAYS[words]]
-    assert done.stdout.splitlines() == (told if any(rows) else [])
+    lines = [f"Look at the metrics with: {way}" for way in WAYS[words]]
+    assert done.stdout.splitlines() == (lines if any(rows) else [])
 
 
-def test_a_track_that_is_stopped_says_that_nothing_is_lost() -> None:
+def test_a_command_that_is_stopped_says_that_nothing_is_lost() -> None:
     run = MagicMock()
     run.track.side_effect = KeyboardInterrupt
     with patch("primordia.api.load", return_value=run):

@@ -59,7 +59,7 @@ def test_a_job_of_this_machine_runs_while_its_process_lives(tmp_path: Path, ende
 def test_a_process_of_another_user_is_alive(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The system refuses even the signal 0, which only asks whether the process exists."""
+    """Signal 0 asks whether a process exists; the system refuses it for another user's process."""
 
     def refuse(process: int, number: int) -> None:
         assert (process, number) == (7, 0)
@@ -172,6 +172,7 @@ def test_a_running_job_writes_the_counts_of_each_of_its_worlds(
     assert done.worlds == expected
     assert last.worlds == expected
     assert last.left_s == 0
+    assert last.rate
     assert (done.rate, done.left_s) == (None, None), "a job that is done has no speed"
 
 
@@ -209,14 +210,11 @@ def test_counts_are_written_at_intervals(monkeypatch: pytest.MonkeyPatch) -> Non
     now, written = [100.0], list[float]()
     monkeypatch.setattr("primordia.experiments.job.time.perf_counter", lambda: now[0])
     monkeypatch.setattr("primordia.experiments.job.Census.of", MagicMock())
-    speed, ledger, entry, status = (MagicMock() for _ in range(4))
-    monkeypatch.setattr(jobs, "Speed", lambda: speed)
+    monkeypatch.setattr(jobs, "Speed", MagicMock())
+    ledger = MagicMock()
     ledger.write = lambda *_: written.append(now[0])
-    watch = jobs._Watch(ledger, JOB, entry)
+    watch, status = jobs._Watch(ledger, JOB, MagicMock()), MagicMock()
     for seconds in (0.0, 1.0, jobs.EVERY - 0.01, jobs.EVERY, 2.5, 2 * jobs.EVERY):
         now[0] = 100 + seconds
         watch(status)
     assert written == [100, 100 + jobs.EVERY, 100 + 2 * jobs.EVERY]
-    assert entry.rate is speed.organism_ticks_per_s.return_value
-    assert entry.left_s is speed.seconds_left.return_value
-    speed.seconds_left.assert_called_with(status.limits)

@@ -91,7 +91,7 @@ def test_a_process_gets_the_interval_of_checkpoints_and_the_device(
 
 
 def test_each_process_is_stopped_and_those_that_take_too_long_are_killed(tmp_path: Path) -> None:
-    """A process may have ended before. No process starts after the stop."""
+    """A process may have ended already. No process starts after the stop."""
     place = Here(tmp_path, 2, 7.0)
     gone, slow, _ = processes = [MagicMock() for _ in range(3)]
     gone.terminate.side_effect = ProcessLookupError
@@ -154,7 +154,7 @@ def test_only_tasks_that_have_not_ended_are_stopped(
 def test_each_node_that_is_alive_is_asked_whether_it_sees_the_folder(
     one: Any, last: Any, says: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The node looks for a file in the folder, which is removed in any case."""
+    """The node looks for a file in the folder, and this file is removed in any case."""
     answers, ray = {"1": one, "3": last}, MagicMock()
     ray.nodes.return_value = [
         {"NodeID": each, "Alive": each != "2", "NodeManagerAddress": f"10.0.0.{each}"}
@@ -194,7 +194,7 @@ def test_an_address_with_a_port_is_tried_before_ray_tries_it() -> None:
             on_ray._check_address(address)
 
 
-def test_the_brackets_of_an_address_are_no_part_of_its_host(
+def test_the_brackets_of_an_address_are_not_part_of_the_host(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     connected = MagicMock()
@@ -244,7 +244,7 @@ def test_jobs_of_other_processes_are_neither_done_nor_failed(tmp_path: Path) -> 
     result = live_all(chosen.jobs, place, lambda: looks.append(1), lambda *_: None)
     assert (result.done, result.elsewhere, result.stopped) == (1, 2, False)
     assert [ending.job for ending in result.failed] == [3]
-    assert place.submitted == [0, 1, 2, 3], "in their order, each once"
+    assert place.submitted == [0, 1, 2, 3], "each once, in order"
     assert len(looks) == 2, "also after the last job has ended"
 
 

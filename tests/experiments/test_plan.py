@@ -33,14 +33,15 @@ def test_arms_are_cut_into_jobs_which_take_turns(tmp_path: Path) -> None:
     ]
 
 
-def test_all_arms_have_the_name_of_the_task_in_its_file_or_of_the_built_in_task(
-    tmp_path: Path,
-) -> None:
-    for task, name in (("meadow.toml", MEADOW["task"]), ("CartPole-survival",) * 2):
-        changes = {"brain": None, "task": task}
-        for arms in (ARMS, [{**arm, "task": task} for arm in ARMS]):
-            plan = read(write(tmp_path, **changes, arms=arms), tmp_path / "out")
-            assert [arm.config.task for arm in plan.arms] == [name] * 2
+@pytest.mark.parametrize(
+    ("task", "name"),
+    [("meadow.toml", MEADOW["task"]), ("CartPole-survival", "CartPole-survival")],
+)
+def test_all_arms_have_the_name_of_their_task(task: str, name: str, tmp_path: Path) -> None:
+    """A task in a file is named in this file."""
+    for arms in (ARMS, [{**arm, "task": task} for arm in ARMS]):
+        plan = read(write(tmp_path, brain=None, task=task, arms=arms), tmp_path / "out")
+        assert [arm.config.task for arm in plan.arms] == [name] * 2
 
 
 @pytest.mark.parametrize(("seeds", "worlds"), [(1, 1), (7, 3), (12, 4), (101, 10), (5, 100)])
@@ -221,7 +222,7 @@ def test_a_fork_of_runs_has_all_their_worlds_and_their_own_ancestors(
 
 
 def test_a_fork_has_the_jobs_and_settings_of_its_source(tmp_path: Path) -> None:
-    """Before its source has begun, they are those of the file, and later those of the plan."""
+    """The source has its settings from its file, or, once it has begun, from its plan."""
     source = write(tmp_path, "one")
     fork = {"of": "one/harsh", "at": 150}
     other = {"question": "And then?", "arms": [{"name": "same"}, {"name": "safe", "hazard": 0.0}]}
@@ -258,7 +259,7 @@ def test_a_fork_has_the_jobs_and_settings_of_its_source(tmp_path: Path) -> None:
         ("none", "fork", "fork.at is missing there, and 150 here"),
     ],
 )
-def test_a_fork_may_not_change_or_come_or_go(
+def test_a_fork_may_not_be_changed_added_or_removed(
     first: str, then: str, says: str, tmp_path: Path
 ) -> None:
     """All settings and the numbers of worlds are equal with and without the fork."""

@@ -87,7 +87,7 @@ def test_a_worker_that_hangs_is_noticed_after_a_time_limit(monkeypatch: pytest.M
 
 
 @pytest.mark.parametrize("answer", [b"...", b"x..", b"..x", b".x."])
-def test_each_of_several_answers_must_be_that_of_the_protocol(
+def test_every_answer_of_a_worker_must_follow_the_protocol(
     answer: bytes, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     worker: Any = SimpleNamespace(pid=7)

@@ -28,7 +28,7 @@ def test_a_brain_has_its_own_settings_with_defaults_filled_in() -> None:
 
 @pytest.mark.parametrize("error", [LookupError("no"), TypeError("no"), ValueError("no")])
 def test_an_error_of_a_part_is_one_line_with_the_name_of_its_table(error: Exception) -> None:
-    """If there is no such part, the line has the name of the setting, too."""
+    """If there is no such part, the line also has the setting that names the part."""
 
     def fail(*_: Any, **own: Any) -> Any:
         assert own in ({}, {"depth": 0})

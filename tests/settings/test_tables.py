@@ -123,9 +123,6 @@ def test_a_file_of_any_name_is_a_task_and_the_tasks_are_in_order(tmp_path: Path)
     assert values_of(str(file)) == {"task": "own", "habitat": {"name": "cartpole"}}
     file.write_text("task = 'CartPole-survivl'\nhabitat = {name = 'cartpole'}\n")
     assert values_of(str(file))["task"] == "CartPole-survivl", "a complete task may have any name"
-    file.write_text("task = 'CartPole-survivl'\n")
-    with pytest.raises(InputError, match=f"^{file}: there is no task 'CartPole-survivl'; did you"):
-        values_of(str(file))
     names = [*tasks()]
     assert names == sorted(names)
     for near, says in (

@@ -53,9 +53,9 @@ def test_the_line_of_a_fault_is_the_last_one_in_the_file_of_the_part(pond: Any) 
         (ValueError(), "ValueError"),
         (SystemExit(3), "SystemExit: 3"),
     ],
-    ids=["lines", "none", "exit"],
+    ids=["two lines", "no message", "exit"],
 )
-def test_a_fault_has_the_first_line_of_a_message(
+def test_a_fault_is_reported_with_the_first_line_of_its_message(
     error: BaseException, says: str, pond: Any
 ) -> None:
     def fail() -> None:

@@ -11,7 +11,7 @@ from primordia.errors import InputError, Trouble
 from primordia.tracking import tensorboard
 from primordia.tracking.reader import World
 from primordia.tracking.tensorboard import TensorBoard
-from primordia.tracking.weights_and_biases import WeightsAndBiases
+from primordia.tracking.weights_and_biases import SERVICE, WeightsAndBiases
 from tests.dashboards import event_rows, events, offline_records
 
 
@@ -51,7 +51,7 @@ def test_events_have_the_time_at_which_they_were_written(
     board.add(world, [{"tick": 10, "living": 3.0}, {"tick": 20, "living": 4.0}])
     board.add(world, [{"tick": 30, "living": 0.0}])
     found = [(event.wall_time, event.step) for event in events(tmp_path / "seed-1")]
-    board.close()  # the rows were there before
+    board.close()  # all rows were in the file already
     assert found == [(1234.5, 10), (1234.5, 20), (2345.5, 30)]
     assert [row["living"] for row in event_rows(tmp_path / "seed-1")] == [3, 4, 0]
 
@@ -87,13 +87,18 @@ def test_an_error_of_wandb_is_one_line(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("alone", [True, False])
-def test_the_files_of_all_worlds_are_finished(alone: bool, tmp_path: Path) -> None:
-    """A program that has used wandb's service before goes on using the service."""
+def test_the_files_of_all_worlds_are_closed(
+    alone: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The service of wandb ends with the runs, unless the program used it before."""
+    monkeypatch.setenv(SERVICE, "a service")
+    if alone:
+        monkeypatch.delenv(SERVICE)
     ours, theirs = TensorBoard(tmp_path), WeightsAndBiases(tmp_path)
     worlds = {str(number): MagicMock() for number in range(3)}
-    worlds["2"].close.side_effect = OSError  # all rows are in the file before
+    worlds["2"].close.side_effect = OSError  # all rows are in the file already
     ours._open, theirs._open = dict(worlds), dict(worlds)
-    theirs._wandb, theirs._alone = MagicMock(), alone
+    theirs._wandb = MagicMock()
     ours.close()
     theirs.close()
     for each in worlds.values():

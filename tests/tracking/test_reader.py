@@ -86,7 +86,7 @@ def test_the_identity_of_a_world_depends_on_its_settings_and_founders_but_not_on
     ],
     ids=lambda change: next(iter(change)),
 )  # fmt: skip
-def test_any_setting_but_limits_gives_worlds_another_identity(
+def test_worlds_with_other_settings_than_limits_have_other_identities(
     change: dict[str, Any], runs: dict[str, Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     settings, last = RECORDS[runs["again"]]
@@ -125,10 +125,10 @@ def test_each_row_of_each_world_and_arm_is_read_once(
 
 
 @pytest.mark.parametrize("error", [Trouble("damaged"), FileNotFoundError("removed")])
-def test_a_run_that_cannot_be_read_now_is_read_later_and_stops_no_other(
+def test_a_run_that_cannot_be_read_is_read_later_and_delays_no_other(
     error: Exception, runs: dict[str, Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Both runs of the first arm have a world of seed 4, whose rows are equal and come once."""
+    """Both runs of the first arm have a world of seed 4. Its rows are equal, and are given once."""
     arms = {"one": [runs["run"], runs["alone"]], "two": [runs["harsh"]]}
     broken = [runs["run"]]
 

@@ -1,11 +1,11 @@
-"""The run of a job is begun, forked or resumed, with the settings and options of the experiment."""
+"""A job begins, forks or resumes a run, with the settings and options of the experiment."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
-from unittest.mock import MagicMock
+from unittest.mock import ANY, MagicMock
 
 import pytest
 
@@ -15,19 +15,19 @@ from primordia.experiments.campaign import Campaign, begin
 from primordia.experiments.ledger import Ledger
 from tests.experiments.meadows import write
 
-WATCH: Any = "the listener"
 CLEAR = "primordia.experiments.job.directory.clear_unbegun"
 HELD = {"a 1", "b 2"}
-"""Marks of the code that a run holds."""
+"""Files of code that a run holds, each with a mark of its content."""
 
 
 @pytest.fixture
 def calls(monkeypatch: pytest.MonkeyPatch) -> MagicMock:
-    """Return a log of the calls that begin, fork or resume a run. Nothing lives."""
+    """Let jobs run nothing; return a log of their calls that begin, fork or resume a run."""
     log = MagicMock()
     for name in ("loop.start", "loop.resume", "fork", "Archive", "code.trust", "code.found"):
         monkeypatch.setattr(f"primordia.experiments.job.{name}", getattr(log, name.split(".")[-1]))
     monkeypatch.setattr(jobs, "Code", lambda files: SimpleNamespace(marks=HELD))
+    monkeypatch.setattr(jobs, "info", lambda run: {"worlds": []})
     log.found.return_value.marks = HELD
     return log
 
@@ -44,16 +44,16 @@ def forked(chosen: Campaign, tmp_path: Path) -> Campaign:
 
 
 def live(campaign: Campaign, number: int) -> tuple[Path, Config]:
-    """Live a job -> its directory and its configuration."""
+    """Run a job -> its directory and its configuration."""
     job = campaign.jobs[number]
-    jobs._live(campaign.plan, job, campaign.path, 7.0, WATCH)
+    jobs.live(campaign.plan, job, campaign.path, 7.0)
     return campaign.path / job.folder, jobs.configuration(campaign.plan, job)
 
 
 def test_a_new_run_begins_with_the_settings_of_its_arm(chosen: Campaign, calls: MagicMock) -> None:
     run, config = live(chosen, 3)
     assert (config.seed, config.seeds, config.hazard) == (5, 1, 0.05)
-    calls.start.assert_called_once_with(config, run, checkpoint_every=7.0, listen=WATCH)
+    calls.start.assert_called_once_with(config, run, checkpoint_every=7.0, listen=ANY)
     assert not calls.resume.called
 
 
@@ -65,13 +65,13 @@ def test_a_fork_is_made_once_and_goes_on(
     run, config = live(forked, 1)
     assert not calls.start.called
     limits = config.stop.model_dump()
-    calls.resume.assert_called_once_with(run, limits, checkpoint_every=7.0, listen=WATCH)
+    calls.resume.assert_called_once_with(run, limits, checkpoint_every=7.0, listen=ANY)
     assert limits["ticks"] == 300
     if begun:
         assert not calls.fork.called
         return
-    source, tick, made, changes, watch = calls.fork.call_args[0]
-    assert (source, tick, made, watch) == (calls.Archive(), 150, run, WATCH)
+    source, tick, made, changes, _ = calls.fork.call_args[0]
+    assert (source, tick, made) == (calls.Archive(), 150, run)
     assert calls.Archive.call_args_list[0][0] == (forked.path.parent / "meadows" / "mild" / "0-1",)
     own = {"task", "about", "fork", "seeds", "ancestors"}
     assert {*changes} == {*Config.model_fields} - own
@@ -93,11 +93,11 @@ def test_only_code_that_the_user_has_here_is_trusted(
     run, config = live(chosen, 0)
     assert calls.trust.called == trusted
     calls.resume.assert_called_once_with(
-        run, config.stop.model_dump(), checkpoint_every=7.0, listen=WATCH
+        run, config.stop.model_dump(), checkpoint_every=7.0, listen=ANY
     )
 
 
-def test_a_job_is_lived_on_the_device_that_is_given(
+def test_a_job_runs_on_the_device_that_is_given(
     chosen: Campaign, calls: MagicMock, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     selected: list[str] = []
@@ -108,15 +108,13 @@ def test_a_job_is_lived_on_the_device_that_is_given(
         yield
         selected.append("none")
 
-    def lived(plan: Any, job: Any, out: Path, every: float, watch: Any) -> None:
-        assert (plan, job, out, every) == (chosen.plan, chosen.jobs[2], chosen.path, 7.0)
-        assert Ledger(out, [job]).entry(job).state == "running"
-        selected.append("lived")
-        (out / job.folder).mkdir(parents=True)
+    def start(*_: Any, **options: Any) -> None:
+        assert Ledger(chosen.path, [job]).entry(job).state == "running"
+        selected.append("started")
+        (chosen.path / job.folder).mkdir(parents=True)
 
+    job, calls.start.side_effect = chosen.jobs[2], start
     monkeypatch.setattr("primordia.experiments.job.devices.selected", select)
-    monkeypatch.setattr(jobs, "_live", lived)
-    monkeypatch.setattr(jobs, "info", lambda run: {"worlds": []})
-    jobs.live(chosen.plan, chosen.jobs[2], chosen.path, 7.0, "gpu")
-    assert selected == ["gpu", "lived", "none"]
+    jobs.live(chosen.plan, job, chosen.path, 7.0, "gpu")
+    assert selected == ["gpu", "started", "none"]
     assert chosen.status().jobs["done"] == 1
