@@ -40,11 +40,10 @@ def test_a_lock_is_seen_while_it_is_held(tmp_path: Path) -> None:
 
 
 STARTED = (
-    "versions.json",
-    ".writing-config.toml",
-    *("births/a", "deaths/a", "metrics/a", "checkpoints/000000", "code/a.py", "origin/a"),
-    *("config.toml", "description.json", "founders.safetensors", ".writing-checkpoints"),
-)
+    "versions.json", ".writing-config.toml", "births/a", "deaths/a", "metrics/a", "checkpoints/000000",
+    "code/a.py", "origin/a", "config.toml", "description.json", "founders.safetensors",
+    ".writing-checkpoints",
+)  # fmt: skip
 
 
 def test_files_of_a_start_that_was_killed_are_removed_and_others_stay(tmp_path: Path) -> None:
@@ -70,10 +69,10 @@ def test_files_of_a_start_that_was_killed_are_removed_and_others_stay(tmp_path: 
 @pytest.mark.parametrize("origin", [False, True])
 @pytest.mark.parametrize("versions", [False, True])
 @pytest.mark.parametrize("replaced", [False, True])
-def test_only_a_run_that_can_go_on_outlives_an_error_at_its_start(
+def test_only_a_run_that_can_go_on_stays_after_an_error_at_its_start(
     versions: bool, origin: bool, replaced: bool, tmp_path: Path
 ) -> None:
-    """It has versions and a checkpoint. A folder that another process has put there is left alone."""
+    """Such a run has versions and a checkpoint. A folder of another process stays unchanged."""
     (tmp_path / "config.toml").touch()
     if versions:
         (tmp_path / "versions.json").touch()
@@ -166,7 +165,7 @@ def test_a_run_with_settings_that_are_not_given_does_not_go_on(
 def test_begin_or_resume_passes_on_all_its_arguments(
     limits: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A limit that is no longer given is removed."""
+    """A limit that is not given again is removed."""
     calls = list[tuple[Any, ...]]()
     settings = config(MEADOW).model_copy(update={"stop": Stop(**limits)})
 

@@ -9,7 +9,7 @@ import pytest
 
 import primordia
 from primordia.errors import InputError
-from primordia.law.world import Worlds
+from primordia.law.world import World, Worlds
 from primordia.random.wide import to_host, wide
 from primordia.runs import fork as forks
 from primordia.runs import loop
@@ -19,7 +19,7 @@ AT = 40
 
 
 def ratchet(above: float) -> dict[str, Any]:
-    """Return a season that multiplies the hazard by 2 if organisms gather more food than `above`."""
+    """Return a season that multiplies the drain by 2 if organisms gather more food than `above`."""
     return {"kind": "ratchet", "setting": "metabolism.drain", "when": "food", "above": above,
             "factor": 2.0, "every": 10}  # fmt: skip
 
@@ -78,20 +78,23 @@ COUNTS = {"food": [100, 2**40], "organism_ticks": [300, 2**50]}
 """Counts of two worlds at a fork."""
 
 
-def worlds_at_fork() -> Worlds:
+def forked(at: int, old: list[dict[str, Any]], new: list[dict[str, Any]]) -> World:
+    """Return the two worlds of a fork, whose seasons are the new ones; `looks` were "old" before it."""
+    before, after = (config(meadow(1.0, seasons=seasons)) for seasons in (old, new))
+    engine: Any = SimpleNamespace(law=SimpleNamespace(beginning=(), seasons=after.seasons))
     worlds: Any = Worlds(*[wide([1, 2])] * len(Worlds._fields))
     counts = {name: wide(values) for name, values in COUNTS.items()}
     calm = jnp.array([7, 8])
-    return worlds._replace(**counts, calm=calm, sample_wait=calm, looks="old", climate={})
+    worlds = worlds._replace(**counts, calm=calm, sample_wait=calm, looks="old", climate={})
+    organisms: Any = "organisms"
+    return forks._adapt(World(organisms, worlds), engine, engine, before, after, at)
 
 
 @pytest.mark.parametrize("at", [1, 20, 33, 70])
 def test_each_new_ratchet_looks_at_multiples_of_its_period_and_counts_from_the_fork(
     at: int,
 ) -> None:
-    made = config(meadow(1.0, seasons=[ratchet(0.4), {**ratchet(0.4), "every": 7}]))
-    after: Any = SimpleNamespace(law=SimpleNamespace(seasons=made.seasons))
-    looks = forks._looks(worlds_at_fork(), after, at)
+    looks = forked(at, [], [ratchet(0.4), {**ratchet(0.4), "every": 7}]).worlds.looks
     assert looks.wait.tolist() == [[10 - at % 10, 7 - at % 7]] * 2
     assert to_host(looks.food).tolist() == [[each] * 2 for each in COUNTS["food"]]
     assert to_host(looks.organism_ticks).tolist() == [
@@ -100,22 +103,21 @@ def test_each_new_ratchet_looks_at_multiples_of_its_period_and_counts_from_the_f
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "looks"),
+    ("old", "new", "changed"),
     [
-        ([ratchet(0.4)], [ratchet(0.4)], "old"),
-        ([ratchet(0.4)], [ratchet(0.5)], "new"),
-        ([ratchet(0.4)], [], "new"),
-        ([], [ratchet(0.4)], "new"),
-        ([ratchet(0.4), ratchet(0.5)], [ratchet(0.5), ratchet(0.4)], "new"),
+        ([ratchet(0.4)], [ratchet(0.4)], False),
+        ([ratchet(0.4)], [ratchet(0.5)], True),
+        ([ratchet(0.4)], [], True),
+        ([], [ratchet(0.4)], True),
+        ([ratchet(0.4), ratchet(0.5)], [ratchet(0.5), ratchet(0.4)], True),
     ],
 )
 def test_ratchets_begin_to_count_at_the_fork_if_any_season_has_changed(
-    old: list[dict], new: list[dict], looks: str, monkeypatch: pytest.MonkeyPatch
+    old: list[dict[str, Any]], new: list[dict[str, Any]], changed: bool
 ) -> None:
-    monkeypatch.setattr(forks, "_looks", lambda *_: "new")
-    nothing: Any = SimpleNamespace(law=SimpleNamespace(beginning=()))
-    before, after = (config(meadow(1.0, seasons=seasons)) for seasons in (old, new))
-    world: Any = "organisms", worlds_at_fork()
-    forked = forks._adapt(world, nothing, nothing, before, after, 10)
-    assert forked.worlds.looks == looks
-    assert forked.organisms == "organisms", "all keep their energy"
+    organisms, worlds = forked(10, old, new)
+    assert organisms == "organisms", "organisms keep their energy"
+    if changed:
+        assert worlds.looks.wait.tolist() == [[10] * len(new)] * 2
+    else:
+        assert worlds.looks == "old"
