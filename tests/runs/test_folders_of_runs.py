@@ -73,20 +73,24 @@ def test_only_a_run_that_can_go_on_stays_after_an_error_at_its_start(
     versions: bool, origin: bool, replaced: bool, tmp_path: Path
 ) -> None:
     """Such a run has versions and a checkpoint. A folder of another process stays unchanged."""
-    (tmp_path / "config.toml").touch()
-    if versions:
-        (tmp_path / "versions.json").touch()
-    if origin:
-        (tmp_path / "origin").mkdir()
-    before = sorted(tmp_path.iterdir())
+    run = tmp_path / "run"
 
-    def check() -> None:
+    def fail() -> None:
         if replaced:
-            raise Trouble("it was replaced")
+            run.rename(tmp_path / "moved")
+            run.mkdir()
+            (run / "config.toml").touch()
+        if origin:
+            (run / "origin").mkdir()
+        raise Trouble("full")
 
-    directory._remove_unbegun(tmp_path, check)
+    with (
+        pytest.raises(Trouble, match="full"),
+        directory.create(run, config(MEADOW), None if versions else fail),
+    ):
+        fail()
     stays = (versions and origin) or replaced
-    assert sorted(tmp_path.iterdir()) == (before if stays else [])
+    assert (run / "config.toml").exists() == run.exists() == stays
 
 
 @pytest.mark.parametrize("error", [Trouble("full"), KeyboardInterrupt(), MemoryError()])

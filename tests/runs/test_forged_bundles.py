@@ -183,12 +183,12 @@ def test_a_hostile_bundle_is_refused_in_one_line(file: Path, tmp_path: Path, kin
     change, words = HOSTILE[kind]
     parts = entries(file)
     change(parts)
-    forged = zipped(parts, tmp_path / "forged.zip")
-    before = os.listdir(tempfile.gettempdir()), os.listdir(tmp_path.parent)
-    for command in (["info"], ["revive", "1"], ["unbundle", str(tmp_path / "new")]):
+    (folder := tmp_path / "folder").mkdir()
+    forged, before = zipped(parts, folder / "forged.zip"), os.listdir(tempfile.gettempdir())
+    for command in (["info"], ["revive", "1"], ["unbundle", str(folder / "new")]):
         complains(here(command[0], forged, *command[1:]), 2, words)
-    assert (os.listdir(tempfile.gettempdir()), os.listdir(tmp_path.parent)) == before
-    assert os.listdir(tmp_path) == ["forged.zip"]
+    assert os.listdir(tempfile.gettempdir()) == before
+    assert (os.listdir(tmp_path), os.listdir(folder)) == (["folder"], ["forged.zip"])
 
 
 MANIFEST = "checkpoints/000001/manifest.json"
