@@ -1,4 +1,4 @@
-"""Births of one tick in two crowded worlds: each child has the draws of its own cell, round and world.
+"""Births of one tick in two crowded worlds: the draws of a child depend on its cell, round and world.
 
 The five births are written in batches of two, and the last batch is padded.
 """
@@ -123,7 +123,7 @@ def test_children_mutate_with_the_chances_of_their_world(after: Turned) -> None:
     assert after.births["cause"].tolist() == causes
 
 
-def test_a_child_is_of_the_branch_of_its_parent_even_if_the_low_word_of_that_is_0(
+def test_a_child_is_of_its_parents_branch_even_if_the_low_word_of_the_branch_is_0(
     after: Turned,
 ) -> None:
     """Only founders have the branch 0. A world of one branch has come to fixation."""

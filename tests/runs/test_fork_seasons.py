@@ -1,18 +1,15 @@
 """Seasons of a fork: its ratchets look back as far as the fork, and no further."""
 
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
-import jax.numpy as jnp
 import pytest
 
 import primordia
 from primordia.errors import InputError
-from primordia.law.world import World, Worlds
-from primordia.random.wide import to_host, wide
-from primordia.runs import fork as forks
+from primordia.random.wide import to_host
 from primordia.runs import loop
+from tests.runs.forking import COUNTS, adapted
 from tests.worlds import MEADOW, config
 
 AT = 40
@@ -74,27 +71,17 @@ def test_a_season_of_a_metabolism_that_there_is_not_is_refused(
             primordia.load(tmp_path / "run").fork(3, tmp_path / "fork", seasons=[season])
 
 
-COUNTS = {"food": [100, 2**40], "organism_ticks": [300, 2**50]}
-"""Counts of two worlds at a fork."""
-
-
-def forked(at: int, old: list[dict[str, Any]], new: list[dict[str, Any]]) -> World:
-    """Return the two worlds of a fork, whose seasons are the new ones; `looks` were "old" before it."""
+def looks_of(at: int, old: list[dict[str, Any]], new: list[dict[str, Any]]) -> Any:
+    """Return the looks of a fork that has other seasons than before."""
     before, after = (config(meadow(1.0, seasons=seasons)) for seasons in (old, new))
-    engine: Any = SimpleNamespace(law=SimpleNamespace(beginning=(), seasons=after.seasons))
-    worlds: Any = Worlds(*[wide([1, 2])] * len(Worlds._fields))
-    counts = {name: wide(values) for name, values in COUNTS.items()}
-    calm = jnp.array([7, 8])
-    worlds = worlds._replace(**counts, calm=calm, sample_wait=calm, looks="old", climate={})
-    organisms: Any = "organisms"
-    return forks._adapt(World(organisms, worlds), engine, engine, before, after, at)
+    return adapted(at, before, after).looks
 
 
 @pytest.mark.parametrize("at", [1, 20, 33, 70])
 def test_each_new_ratchet_looks_at_multiples_of_its_period_and_counts_from_the_fork(
     at: int,
 ) -> None:
-    looks = forked(at, [], [ratchet(0.4), {**ratchet(0.4), "every": 7}]).worlds.looks
+    looks = looks_of(at, [], [ratchet(0.4), {**ratchet(0.4), "every": 7}])
     assert looks.wait.tolist() == [[10 - at % 10, 7 - at % 7]] * 2
     assert to_host(looks.food).tolist() == [[each] * 2 for each in COUNTS["food"]]
     assert to_host(looks.organism_ticks).tolist() == [
@@ -115,9 +102,8 @@ def test_each_new_ratchet_looks_at_multiples_of_its_period_and_counts_from_the_f
 def test_ratchets_begin_to_count_at_the_fork_if_any_season_has_changed(
     old: list[dict[str, Any]], new: list[dict[str, Any]], changed: bool
 ) -> None:
-    organisms, worlds = forked(10, old, new)
-    assert organisms == "organisms", "organisms keep their energy"
+    looks = looks_of(10, old, new)
     if changed:
-        assert worlds.looks.wait.tolist() == [[10] * len(new)] * 2
+        assert looks.wait.tolist() == [[10] * len(new)] * 2
     else:
-        assert worlds.looks == "old"
+        assert looks == "looks", "they are unchanged"

@@ -13,9 +13,10 @@ import pytest
 from primordia.errors import InputError, Trouble
 from primordia.law.events import birth_columns
 from primordia.law.world import Worlds
-from primordia.random.wide import to_host, wide
+from primordia.random.wide import to_host
 from primordia.runs import checkpoint, fork
 from primordia.runs.arrays import NEVER, world_ticks
+from tests.runs.forking import adapted
 from tests.synthetic import worlds_of
 from tests.worlds import MEADOW, config
 
@@ -74,20 +75,10 @@ def test_the_living_at_a_tick_are_on_record_and_in_the_world(at: int) -> None:
         living(alive, number + np.arange(2 * CELLS, dtype=np.uint32) // CELLS)
 
 
-def adapted(at: int, changes: dict[str, Any], climate: dict[str, float] | None = None) -> Worlds:
+def with_changes(at: int, changes: dict[str, Any]) -> Worlds:
     """Return the worlds of a fork of a meadow with two worlds at a tick, with some changed settings."""
-    old = config(MEADOW, seeds=2, sample_every=10, seed=3)
-    new = config(MEADOW, **{"seeds": 2, "sample_every": 10, "seed": 3, **changes})
-    count = wide(np.array([100, 200]))
-    worlds: Any = Worlds(*[count] * len(Worlds._fields))
-    worlds = worlds._replace(
-        calm=jnp.array([7, 8]), sample_wait=jnp.array([1, 1]), looks="looks", climate={}
-    )
-    nothing: Any = SimpleNamespace(law=SimpleNamespace(beginning=()))
-    organisms: Any = "organisms"
-    world = fork._adapt((organisms, worlds), nothing, nothing, old, new, at)
-    assert world.organisms == organisms
-    return world.worlds
+    own = {"seeds": 2, "sample_every": 10, "seed": 3}
+    return adapted(at, config(MEADOW, **own), config(MEADOW, **{**own, **changes}))
 
 
 @pytest.mark.parametrize(
@@ -95,7 +86,7 @@ def adapted(at: int, changes: dict[str, Any], climate: dict[str, float] | None =
     [(3, 10, 7), (10, 10, 10), (19, 10, 1), (19, 4, 1), (20, 4, 4), (3, 9, 6)],
 )
 def test_a_fork_is_sampled_at_multiples_of_its_own_interval(at: int, every: int, wait: int) -> None:
-    assert adapted(at, {"sample_every": every}).sample_wait.tolist() == [wait, wait]
+    assert with_changes(at, {"sample_every": every}).sample_wait.tolist() == [wait, wait]
 
 
 @pytest.mark.parametrize(
@@ -113,7 +104,7 @@ def test_a_fork_is_sampled_at_multiples_of_its_own_interval(at: int, every: int,
 def test_a_fork_must_saturate_again_only_if_its_lives_can_differ(
     changes: dict[str, Any], again: bool
 ) -> None:
-    worlds, seed = adapted(20, changes), changes.get("seed", 3)
+    worlds, seed = with_changes(20, changes), changes.get("seed", 3)
     assert worlds.calm.tolist() == ([0, 0] if again else [7, 8])
     for moment in (worlds.saturated, worlds.saturated_births):
         assert to_host(moment).tolist() == ([NEVER, NEVER] if again else [100, 200])
