@@ -72,7 +72,7 @@ def test_a_fault_of_a_brain_is_named(replaced: dict[str, Any], says: str) -> Non
         check_brain(plain(**replaced), SENSES, OUTPUTS)
 
 
-def test_a_brain_is_asked_and_called_with_the_counts_of_its_task() -> None:
+def test_a_brain_is_checked_with_the_counts_of_senses_and_outputs_of_its_task() -> None:
     """The shapes of blocks, memory and output may depend on both counts, each in its own way."""
     asked: list[tuple[int, ...]] = []
 

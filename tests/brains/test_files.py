@@ -123,7 +123,7 @@ NEEDS = "input 2x3, output 3x1"
 def test_the_first_block_of_a_state_that_does_not_fit_is_named_with_its_shape(
     change: dict[str, tuple[int, ...] | None], says: str, tmp_path: Path
 ) -> None:
-    """The block is to be transposed only if its shape is the right one in reverse."""
+    """The message says "transpose" only if the shape is the right one in reverse."""
     shapes = {**dict(LAYOUT.blocks), **change}
     save_file(
         {name: np.zeros(shape) for name, shape in shapes.items() if shape is not None},
@@ -133,7 +133,7 @@ def test_the_first_block_of_a_state_that_does_not_fit_is_named_with_its_shape(
         genomes.of_state(tmp_path / "x", LAYOUT)
 
 
-def test_shapes_of_another_brain_are_named_beside_those_of_this_one(tmp_path: Path) -> None:
+def test_blocks_of_another_brain_are_named_beside_the_needed_ones(tmp_path: Path) -> None:
     other = Layout((("input", (3, 2)), ("output", (3, 1))))
     genomes.write(tmp_path / "x", other, numbered(2), {})
     says = f"holds genomes of another brain: input 3x2, output 3x1; this task's brain is {NEEDS}$"

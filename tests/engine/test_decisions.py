@@ -1,4 +1,7 @@
-"""Decisions after a settled tick of several worlds, of which some have stopped; nothing is compiled."""
+"""Decisions after a settled tick: which worlds go on, and which organisms died or were born.
+
+There are three worlds. Functions of the law are replaced, so nothing is compiled.
+"""
 
 from types import SimpleNamespace
 from typing import Any
@@ -13,19 +16,21 @@ from primordia.engine.held import Bulk
 from primordia.law import events
 
 CELLS = 2
-"""Cells of each of three worlds."""
+"""Cells of each world."""
 
 
 def cells(*numbers: int) -> Any:
+    """Return a mask of the cells of all worlds."""
     return jnp.asarray(np.isin(np.arange(3 * CELLS), numbers))
 
 
 def worlds(*numbers: int) -> Any:
+    """Return a mask of the worlds."""
     return jnp.asarray(np.isin(np.arange(3), numbers))
 
 
 def steps() -> _Steps:
-    """Return the steps of a law, whose form of worlds is the worlds themselves."""
+    """Return the steps of a law whose worlds are not packed."""
     law: Any = SimpleNamespace(worlds=3, per_cell=lambda each: jnp.repeat(each, CELLS))
     form: Any = SimpleNamespace(release=lambda world, bulk: world, hold=lambda world: world)
     return _Steps(law, form, 5)
@@ -33,7 +38,7 @@ def steps() -> _Steps:
 
 @pytest.fixture
 def patched(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
-    """Give the law's functions these results; `asked` are the arguments of some of them."""
+    """Replace functions of the law. Return their results, and under "asked" the arguments they got."""
     given: dict[str, Any] = {"live": worlds(0, 2), "due": worlds(), "room": True, "asked": {}}
 
     def due(law: Any, now: str, ran: Any) -> Any:
@@ -60,14 +65,21 @@ def world_with(alive: Any) -> Any:
     return SimpleNamespace(organisms=SimpleNamespace(alive=alive), worlds="now")
 
 
-@pytest.mark.parametrize("live", [(), (1,), (0, 2), (0, 1, 2)])
-@pytest.mark.parametrize("due", [(), (2,), (0, 1, 2)])
-@pytest.mark.parametrize("newborn", [(), (3,), range(6)])
 @pytest.mark.parametrize("room", [True, False])
-def test_a_run_goes_on_while_any_world_does_and_the_lists_have_room(
+@pytest.mark.parametrize(
+    ("live", "due", "newborn"),
+    [
+        ((), (), ()),
+        ((), (2,), (3,)),
+        ((1,), (), (3,)),
+        ((0, 2), (2,), ()),
+        ((0, 1, 2), (0, 1, 2), range(6)),
+    ],
+)
+def test_a_run_goes_on_while_a_world_runs_and_the_lists_have_room(
     live: tuple, due: tuple, newborn: Any, room: bool, patched: dict[str, Any]
 ) -> None:
-    """One newborn needs random words, and one world in which a moment is due needs memory."""
+    """One newborn is enough to draw random words. One world is enough to remember a moment."""
     patched.update(live=worlds(*live), due=worlds(*due), room=room)
     alive = [0, 3, 4, 5]
     ran = worlds(0, 1)

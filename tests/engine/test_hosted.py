@@ -1,7 +1,7 @@
 """Bodies on the host: they are stored and restored, or reset if the habitat cannot store them."""
 
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, NamedTuple
 
 import jax
 import numpy as np
@@ -9,12 +9,13 @@ import pytest
 
 from primordia.engine.held import Packing
 from primordia.engine.hosted import HostedChunks
-from primordia.engine.state import State
+from primordia.engine.state import State, named_leaves
 from primordia.errors import InputError, Trouble
 from primordia.habitats.contract import Ability
 from primordia.law.genesis import body_words
+from primordia.law.world import World
 from primordia.random.keys import Purpose, stream
-from primordia.random.wide import wide
+from primordia.random.wide import Wide, wide
 
 CELLS, WORDS = 3, 2
 """Cells of each of two worlds, and random words of a body."""
@@ -59,10 +60,24 @@ def chunks(habitat: Notebook) -> Any:
     return made
 
 
+class Few(NamedTuple):
+    """Those columns of organisms that a reset of bodies needs."""
+
+    alive: np.ndarray
+    born: Wide
+
+
+class Seeds(NamedTuple):
+    """The seeds of worlds."""
+
+    seed: Wide
+
+
 def state(*alive: int) -> Any:
     """Return a state of two worlds with organisms in some cells."""
-    organisms = SimpleNamespace(alive=np.isin(np.arange(6), alive), born=wide(np.arange(6) * 2**31))
-    return SimpleNamespace(organisms=organisms, worlds=SimpleNamespace(seed=wide([11, 12])))
+    organisms: Any = Few(np.isin(np.arange(6), alive), wide(np.arange(6) * 2**31))
+    worlds: Any = Seeds(wide([11, 12]))
+    return World(organisms, worlds)
 
 
 def test_a_stored_state_has_the_worlds_arrays_the_bodies_and_the_senses() -> None:
@@ -97,7 +112,7 @@ def test_a_habitat_is_restored_from_what_it_stored_and_from_nothing_else() -> No
 
 
 @pytest.mark.parametrize("error", [IndexError("no"), KeyError("no"), ValueError("no")])
-def test_whatever_a_habitat_says_about_stored_bodies_is_trouble(error: Exception) -> None:
+def test_bodies_that_a_habitat_refuses_to_load_are_trouble(error: Exception) -> None:
     habitat, template = Notebook(), State({"a": np.zeros(2, np.float32)}, np.zeros_like(SENSES))
     habitat.error = error
     arrays = {"world.a": np.ones(2, np.float32), "bodies.senses": SENSES, "bodies.body": np.ones(6)}
@@ -105,13 +120,15 @@ def test_whatever_a_habitat_says_about_stored_bodies_is_trouble(error: Exception
         chunks(habitat).load(template, arrays)
 
 
-def test_a_habitat_that_cannot_save_goes_on_with_the_senses_of_new_bodies() -> None:
-    made, reset = chunks(Notebook(saves=False)), SENSES + 100
-    made._reset_to_birth = lambda world, senses: reset
-    template = State({"a": np.zeros(2, np.float32)}, np.zeros_like(SENSES))
-    loaded = made.load(template, {"world.a": np.ones(2, np.float32), "bodies.senses": SENSES})
-    assert loaded.world["a"].tolist() == [1, 1]
-    assert loaded.bodies is reset
+def test_a_habitat_that_cannot_save_goes_on_with_new_bodies_and_their_senses() -> None:
+    """The template has no organism, so the cells of the living are read from the stored arrays."""
+    habitat = Notebook(saves=False)
+    arrays = {f"world.{name}": np.asarray(leaf) for name, leaf in named_leaves(state(1, 3))}
+    template = State(state(), np.zeros_like(SENSES))
+    loaded = chunks(habitat).load(template, arrays | {"bodies.senses": SENSES})
+    assert [cells for cells, _ in habitat.begun] == [[1, 3]]
+    assert habitat.loaded == {}
+    assert loaded.bodies[:, 0].tolist() == [0, 51, 4, 53, 8, 10]
 
 
 def test_bodies_of_the_living_are_reset_with_the_random_words_of_their_births() -> None:

@@ -114,7 +114,7 @@ def test_deaths_are_noted_before_a_reset_and_samples_after_it() -> None:
 
 
 def test_the_newborn_remember_the_senses_of_their_own_bodies() -> None:
-    """A moment may be due in the tick of a single birth, in those worlds that ran."""
+    """Organisms remember in the worlds that ran, after the newborn have their senses."""
     ran, yes = np.array([True, False]), np.bool_(True)
     born = decided(50, newborn=mask(2), remembered=yes, go_on=np.bool_(False), ran=ran)
     scripted = Scripted(decided(4), (4, born))

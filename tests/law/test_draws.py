@@ -1,23 +1,19 @@
-"""Births of one tick in two crowded worlds: each child has the draws of its own cell, round and world.
+"""Births of one tick in two crowded worlds: the draws of a child depend on its cell, round and world.
 
-The worlds have so many cells that births are written two at a time, and the last batch is padded.
+The five births are written in batches of two, and the last batch is padded.
 """
 
-from typing import Any
-
-import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from primordia.law import events as log
 from primordia.law.genesis import begin
 from primordia.law.law import Law
-from primordia.law.turnover import birth_keys, turnover
 from primordia.law.world import BirthCause, World
 from primordia.random.keys import Purpose, bits, stream
 from primordia.random.wide import to_host, wide
 from tests.law.test_placement import one_after_another
+from tests.law.turning import Turned, numbered, turned
 from tests.worlds import MEADOW, law_of
 
 W, N, TICK = 2, 256, 30
@@ -30,12 +26,13 @@ BRANCHES = [2**32, 3 * 2**32]
 
 
 def word(purpose: Purpose, world: int, cell: int, index: int = 0) -> int:
+    """Return the high word of a draw of a cell."""
     key = stream(wide(SEEDS[world]), purpose, wide(TICK))
     return int(bits(key, jnp.uint32(cell), index).hi)
 
 
 def posed() -> tuple[Law, World]:
-    """Return worlds whose organisms have their number as each weight. All of world 1 are to mutate."""
+    """Return worlds in which each weight of an organism is its number. All children of world 1 mutate."""
     law = law_of(
         MEADOW, cells=N, seeds=W, brain={"kind": "linear", "biases": True}, metabolism={"store": 9.0},
         placement={"topology": "well-mixed", "rule": "empty-only"}, recombination={"unit": "row"},
@@ -46,43 +43,32 @@ def posed() -> tuple[Law, World]:
     for world, cells in enumerate(EMPTY):
         alive[world, cells] = False
     numbers = np.arange(W * N)
-    genome = {
-        name: jnp.broadcast_to(
-            jnp.asarray(numbers, jnp.float32).reshape(-1, *[1] * (block.ndim - 1)), block.shape
-        )
-        for name, block in organisms.genome.items()
-    }
     organisms = organisms._replace(
         alive=jnp.asarray(alive.ravel()),
         number=wide(numbers),
         branch=wide(np.repeat(BRANCHES, N)),
-        genome=genome,
+        genome=numbered(organisms.genome, numbers),
     )
-    of_worlds = {
+    chances = {
         name: jnp.array([0, 1], jnp.float32)
         for name in worlds.climate
         if name.startswith("mutation.") and name.endswith(".probability")
     }
-    return law, World(organisms, worlds._replace(climate=worlds.climate | of_worlds))
+    return law, World(organisms, worlds._replace(climate=worlds.climate | chances))
 
 
 @pytest.fixture(scope="module")
-def born() -> tuple[Law, World, World, dict[str, np.ndarray]]:
-    """Return the law, the worlds before and after the tick, and the births."""
+def after() -> Turned:
+    """Return the worlds after the tick."""
     law, world = posed()
     wants = np.zeros((W, N), bool)
     for each, cells in enumerate(PARENTS):
         wants[each, cells] = True
-    after, lists, _ = jax.jit(turnover, static_argnums=0)(
-        law, world, log.empty(law), jnp.ones(W, bool), jnp.asarray(wants.ravel()),
-        jnp.full(W * N, -1, jnp.int32), birth_keys(law, world.worlds),
-    )  # fmt: skip
-    rows = np.asarray(lists.births.rows)[: int(lists.births.filled)]
-    return law, world, after, log.births_of(law.heredity).unpacked(rows)
+    return turned(law, world, wants, np.full((W, N), -1))
 
 
 def parents_of(world: int) -> dict[int, int]:
-    """Return cell of child -> cell of parent, with words of their own in each round."""
+    """Return cell of child -> cell of parent. Each round of placement has its own words."""
     words = np.array(
         [
             [to_host(bits(stream(wide(SEEDS[world]), Purpose.PLACE, wide(TICK)), np.arange(N), round_))
@@ -96,29 +82,28 @@ def parents_of(world: int) -> dict[int, int]:
     return {cell: int(parent[cell]) for cell in np.flatnonzero(parent >= 0).tolist()}
 
 
-def test_children_are_placed_by_the_words_of_each_round(born: Any) -> None:
-    _, _, _, births = born
+def test_children_are_placed_by_the_words_of_each_round(after: Turned) -> None:
     expected = [
         (world * N + cell, world * N + parent)
         for world in range(W)
         for cell, parent in parents_of(world).items()
     ]
     assert len(expected) == 5
-    assert list(zip(births["cell"], births["parent"], strict=True)) == expected
+    found = zip(after.births["cell"], after.births["parent"], strict=True)
+    assert list(found) == expected
 
 
 def mate_of(world: int, cell: int, parent: int) -> int:
+    """Return the cell of the mate of a child's parent."""
     living = [c for c in range(N) if c not in EMPTY[world] and c != parent]
     return living[word(Purpose.MATE, world, cell) * len(living) >> 32]
 
 
-def test_mates_and_their_weights_are_drawn_for_each_child(born: Any) -> None:
+def test_mates_and_their_weights_are_drawn_for_each_child(after: Turned) -> None:
     """Row r of both blocks is the mate's if the highest bit of the child's word r is set."""
-    law, _, after, births = born
     mates, mixed = set(), 0
-    for child, parent, mate in zip(
-        *(births[name] for name in ("cell", "parent", "mate")), strict=True
-    ):
+    columns = (after.births[name] for name in ("cell", "parent", "mate"))
+    for child, parent, mate in zip(*columns, strict=True):
         world, cell = divmod(int(child), N)
         assert mate == world * N + mate_of(world, cell, int(parent) % N)
         mates.add(int(mate) % N)
@@ -129,27 +114,28 @@ def test_mates_and_their_weights_are_drawn_for_each_child(born: Any) -> None:
                 assert set(weights.tolist()) == {float(mate if of_mate else parent)}
                 mixed += of_mate
     assert len(mates) == 5
-    assert 0 < mixed < 5 * sum(shape[0] for _, shape in law.heredity.layout.blocks)
+    assert 0 < mixed < 5 * sum(block.shape[1] for block in after.organisms.genome.values())
 
 
-def test_children_mutate_with_the_chances_of_their_world(born: Any) -> None:
-    births = born[3]
-    causes = [BirthCause.MUTANT if cell >= N else BirthCause.COPY for cell in births["cell"]]
-    assert births["cause"].tolist() == causes
+def test_children_mutate_with_the_chances_of_their_world(after: Turned) -> None:
+    cells = after.births["cell"]
+    causes = [BirthCause.MUTANT if cell >= N else BirthCause.COPY for cell in cells]
+    assert after.births["cause"].tolist() == causes
 
 
-def test_a_child_is_of_the_branch_of_its_parent_unless_that_is_a_founder(born: Any) -> None:
-    """A branch whose low word is 0 is a branch. Its world has come to fixation."""
-    _, _, after, births = born
-    branch = to_host(after.organisms.branch)
-    assert branch[births["cell"]].tolist() == [BRANCHES[cell // N] for cell in births["cell"]]
+def test_a_child_is_of_its_parents_branch_even_if_the_low_word_of_the_branch_is_0(
+    after: Turned,
+) -> None:
+    """Only founders have the branch 0. A world of one branch has come to fixation."""
+    branch, cells = to_host(after.organisms.branch), after.births["cell"]
+    assert branch[cells].tolist() == [BRANCHES[cell // N] for cell in cells]
     assert to_host(after.worlds.fixed).tolist() == [TICK] * W
     assert to_host(after.worlds.fixed_births).tolist() == [3, 2], "births of the tick are counted"
 
 
-def test_organisms_that_are_not_born_keep_their_weights(born: Any) -> None:
+def test_organisms_that_are_not_born_keep_their_weights(after: Turned) -> None:
     """The padding of the last batch is no birth."""
-    _, before, after, births = born
-    old = np.setdiff1d(np.arange(W * N), births["cell"])
-    for name, block in after.organisms.genome.items():
-        np.testing.assert_array_equal(block[old], before.organisms.genome[name][old])
+    old = np.setdiff1d(np.arange(W * N), after.births["cell"])
+    for block in after.organisms.genome.values():
+        weights = np.asarray(block)[old].reshape(len(old), -1)
+        assert (weights == old[:, None]).all()

@@ -33,7 +33,7 @@ def heredity_of(**values: Any) -> Heredity:
 
 
 class Noted(Gaussian):
-    """A mutation with two notes. Founders have 3 and -1, and children add 10 to those of a parent."""
+    """A mutation with two notes: 3 and -1 in founders, and 10 more than the parent's in children."""
 
     notes: ClassVar = ("plus", "minus")
 
@@ -108,12 +108,15 @@ def test_without_inheritance_all_newborn_have_genomes_of_ancestors() -> None:
 
 @pytest.mark.parametrize("founder", [SOME, SOME | True, SOME & False])
 def test_founders_have_the_mutations_notes_for_founders(founder: np.ndarray) -> None:
-    """In a world that begins, each empty cell has these notes too, for children that take its notes."""
     heredity = heredity_of(mutation=Noted())
     notes = jnp.arange(2 * K, dtype=jnp.int32).reshape(K, 2)
     newborn = heredity.make_newborn(births(heredity, founder), jnp.asarray(PARENTS), notes, None)
     expected = [[3, -1] if founder[row] else [2 * row + 10, 2 * row + 11] for row in range(K)]
     assert newborn.notes.tolist() == expected
+
+
+def test_empty_cells_of_a_new_world_have_the_notes_of_founders() -> None:
+    """A child may take the notes of its cell."""
     law = law_of(MEADOW, cells=3, seeds=2)
     law = replace(law, heredity=replace(law.heredity, mutation=Noted()))
     assert begin(law, np.arange(2, dtype=np.uint64)).organisms.notes.tolist() == [[3, -1]] * 6

@@ -100,7 +100,10 @@ def test_food_is_counted_with_a_metabolism_and_without() -> None:
         assert after.energy.tolist() == [energy * ONE for energy in energies]
 
 
-def thought(motor: Motor, outputs: np.ndarray, action: Action = Continuous(3)) -> Thought:  # noqa: B008
+NUMBERS = Continuous(3)
+
+
+def thought(motor: Motor, outputs: np.ndarray, action: Action = NUMBERS) -> Thought:
     """Return the thoughts of brains that give these outputs and remember their senses."""
 
     def brain(genome: Any, memory: Any, senses: Any) -> tuple[Any, Any]:

@@ -1,4 +1,4 @@
-"""Mates in several worlds: who they are, and that mutation begins with the genome of both parents."""
+"""Mates in several worlds: which organisms they are, and mutation of genomes with two parents."""
 
 from typing import Any
 
@@ -7,11 +7,10 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from primordia.law import events as log
 from primordia.law.genesis import begin
-from primordia.law.turnover import birth_keys, turnover
 from primordia.law.world import BirthCause, Cause, World
 from primordia.random.wide import wide
+from tests.law.turning import numbered, turned
 from tests.worlds import MEADOW, law_of
 
 W, N = 5, 5
@@ -50,26 +49,18 @@ def test_a_mate_is_a_neighbour_in_the_childs_world_that_survives_the_tick(
     for w in (0, 1, 2, 4):
         alive[w, EMPTY[w]], wants[w, PARENT[w]] = False, True
     cause[2, 3] = Cause.HAZARD
-    numbers = jnp.arange(W * N, dtype=jnp.float32) + 1
+    numbers = np.arange(W * N, dtype=np.int32) + 1
     organisms = world.organisms._replace(
         alive=jnp.asarray(alive.ravel()),
-        number=wide(np.arange(W * N) + 1),
-        genome={
-            name: jnp.broadcast_to(numbers.reshape(-1, *[1] * (block.ndim - 1)), block.shape)
-            for name, block in world.organisms.genome.items()
-        },
-        notes=jnp.broadcast_to(-numbers.astype(jnp.int32)[:, None], world.organisms.notes.shape),
+        number=wide(numbers),
+        genome=numbered(world.organisms.genome, numbers),
+        notes=jnp.broadcast_to(-numbers[:, None], world.organisms.notes.shape),
     )
     world = world._replace(
         organisms=organisms, worlds=world.worlds._replace(births=wide([1000] * W))
     )
-    after, lists, _ = turnover(
-        law, world, log.empty(law), jnp.ones(W, bool), jnp.asarray(wants.ravel()),
-        jnp.asarray(cause.ravel(), jnp.int32), birth_keys(law, world.worlds),
-    )  # fmt: skip
-    rows = np.asarray(lists.births.rows)[: int(lists.births.filled)]
-    births = log.births_of(law.heredity).unpacked(rows)
-    assert len(rows) == W
+    organisms, _, _, births, _ = turned(law, world, wants, cause)
+    assert len(births["cell"]) == W
     for w in range(W):
         cell = births["cell"][w]
         if EMPTY[w] < 0:
@@ -81,15 +72,15 @@ def test_a_mate_is_a_neighbour_in_the_childs_world_that_survives_the_tick(
         mated = bool(probability) and w != 2
         assert births["parent"][w] == parent
         assert births["mate"][w] == (other if mated else NONE)
-        weights = np.concatenate([np.ravel(b[cell]) for b in after.organisms.genome.values()])
+        weights = np.concatenate([np.ravel(b[cell]) for b in organisms.genome.values()])
         assert set(weights.tolist()) == ({parent, other} if mated else {parent})
         if law.heredity.mutation.notes:
             note = -(cell.astype(int) + 1) if "belongs" in mutation else -parent
-            assert births["quarters"][w].view(np.int32) == after.organisms.notes[cell, 0] == note
+            assert births["quarters"][w].view(np.int32) == organisms.notes[cell, 0] == note
 
 
-def test_a_calibrated_mutation_is_measured_against_the_genome_of_both_parents() -> None:
-    """A child with the mate's weights acts unlike its parent before it mutates, and keeps acting so.
+def test_a_calibrated_mutation_is_measured_against_the_recombined_genome() -> None:
+    """A child with weights of its mate acts unlike its parent. This difference is no effect of mutation.
 
     Mutations are much smaller than the weights. So the largest of them, q = 0, changes no choice.
     Children know the moments of their parents. The last world is empty, and its founder knows none.
@@ -105,23 +96,21 @@ def test_a_calibrated_mutation_is_measured_against_the_genome_of_both_parents() 
     genome = np.tile([of_parent, np.zeros((2, 2), np.float32), of_mate], (worlds, 1, 1))
     known = jax.tree.map(jnp.ones_like, organisms.moments)
     empty = np.arange(3 * worlds) >= 3 * (worlds - 1)
-    alive = jnp.asarray((np.arange(3 * worlds) % 3 != 1) & ~empty)
+    alive = (np.arange(3 * worlds) % 3 != 1) & ~empty
     organisms = organisms._replace(
-        alive=alive, genome={"output": jnp.asarray(genome)}, moments=known
+        alive=jnp.asarray(alive), genome={"output": jnp.asarray(genome)}, moments=known
     )
-    after, lists, newborn = jax.jit(turnover, static_argnums=0)(
-        law, World(organisms, counts), log.empty(law), jnp.ones(worlds, bool),
-        alive & (jnp.arange(3 * worlds) % 3 == 0), jnp.full(3 * worlds, -1, jnp.int32),
-        birth_keys(law, counts),
-    )  # fmt: skip
+    wants = alive & (np.arange(3 * worlds) % 3 == 0)
+    after, _, newborn, births, _ = turned(
+        law, World(organisms, counts), wants, np.full(3 * worlds, -1)
+    )
     assert newborn.tolist()[:-3] == [False, True, False] * (worlds - 1)
-    assert after.organisms.moments is not None
-    knows = np.asarray(after.organisms.moments.known)[np.asarray(newborn)]
+    assert after.moments is not None
+    knows = np.asarray(after.moments.known)[newborn]
     assert knows.tolist() == [[True, True]] * (worlds - 1) + [[False, False]]
-    rows = np.asarray(lists.births.rows)[: int(lists.births.filled)]
-    assert not log.births_of(law.heredity).unpacked(rows)["quarters"].any()
-    children = np.asarray(after.organisms.genome["output"])[1:-3:3]
+    assert not births["quarters"].any()
+    children = np.asarray(after.genome["output"])[1:-3:3]
     mated = [abs(child - of_mate).max() < 0.1 for child in children]
     alone = [abs(child - of_parent).max() < 0.1 for child in children]
-    assert [one != other for one, other in zip(mated, alone, strict=True)] == [True] * 7
-    assert 0 < sum(mated) < 7
+    assert [one != other for one, other in zip(mated, alone, strict=True)] == [True] * (worlds - 1)
+    assert 0 < sum(mated) < worlds - 1

@@ -157,6 +157,5 @@ def test_rates_at_the_ends_of_their_range_are_accepted() -> None:
 def test_break_even_is_the_food_that_pays_for_the_drain(
     drain: float, gain: float, food: float | None
 ) -> None:
-    """Without a drain it is 0, which is a number. Without a gain there is none."""
+    """It is 0 without a drain, and None without a gain."""
     assert break_even(drain, gain) == food
-    assert (break_even(drain, gain) is None) == (food is None)

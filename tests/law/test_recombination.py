@@ -67,7 +67,7 @@ def test_every_candidate_is_as_likely_to_be_the_mate() -> None:
 
 
 def test_a_mate_is_chosen_by_the_high_word_and_refused_by_the_low_one() -> None:
-    """The n-th of the candidates is taken, and a share `probability` of low words brings a mate."""
+    """The high word picks one of the candidates. A low word below the probability brings a mate."""
     random = np.random.default_rng(6)
     candidates = random.random((200, 7)) < 0.5
     high, low = random.integers(0, 2**32, (2, 200), np.uint32)
@@ -82,7 +82,7 @@ def test_a_mate_is_chosen_by_the_high_word_and_refused_by_the_low_one() -> None:
             assert mate == (cells[int(high[row]) * len(cells) >> 32] if wanted else -1)
 
 
-def test_heights_of_several_kinds_have_units_of_their_own() -> None:
+def test_rows_of_blocks_of_equal_height_share_units_and_other_rows_have_their_own() -> None:
     layout = Layout((("a", (3, 2)), ("b", (1, 5)), ("c", (2, 2, 2)), ("d", (3,)), ("e", (4, 1))))
     rows = [0, 0, 1, 1, 2, 2, *[3] * 5, *[4] * 4, *[5] * 4, 0, 1, 2, 6, 7, 8, 9]
     assert Recombination(unit="row").units(layout).tolist() == rows

@@ -304,7 +304,7 @@ def test_values_of_seasons_are_accepted_up_to_their_bounds(
     ],
 )
 def test_a_season_of_what_seasons_cannot_change_is_refused(setting: str, nearest: str) -> None:
-    """Also if it is not the first season."""
+    """The faulty season is the second one."""
     good, season = (ratchet(name, "mean_age", 1.0, 0.5, 10) for name in ("hazard", setting))
     with pytest.raises(InputError, match="not a setting that seasons can change") as error:
         config(MILL, seasons=[good, season])

@@ -6,14 +6,13 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from primordia.law import events as log
 from primordia.law.genesis import begin
 from primordia.law.law import Law
 from primordia.law.metabolism import ONE
-from primordia.law.turnover import birth_keys, turnover
 from primordia.law.world import BirthCause, Cause, World
 from primordia.random.keys import Purpose, bits, stream
 from primordia.random.wide import to_host, wide
+from tests.law.turning import turned
 from tests.worlds import MEADOW, law_of
 
 DYING, FIRST, STOPPED, LOSING, QUIET, BEARING = range(6)
@@ -68,23 +67,7 @@ def after() -> dict[str, Any]:
     law, world = posed()
     wants = np.zeros((W, N), bool)
     wants[BEARING, 2] = True
-    running = np.arange(W) != STOPPED
-    (organisms, worlds), lists, newborn = turnover(
-        law,
-        world,
-        log.empty(law),
-        jnp.asarray(running),
-        jnp.asarray(wants.ravel()),
-        jnp.asarray(CAUSES.ravel(), jnp.int32),
-        birth_keys(law, world.worlds),
-    )
-    births, deaths = (
-        columns.unpacked(np.asarray(list_.rows)[: int(list_.filled)])
-        for columns, list_ in (
-            (log.births_of(law.heredity), lists.births),
-            (log.DEATHS, lists.deaths),
-        )
-    )
+    organisms, worlds, newborn, births, deaths = turned(law, world, wants, CAUSES, stopped=STOPPED)
     cells = {"alive": organisms.alive, "energy": organisms.energy, "eaten": organisms.eaten,
              "newborn": newborn, "memory": organisms.memory.sum(axis=1)}  # fmt: skip
     wides = {name: to_host(getattr(organisms, name)) for name in ("number", "branch", "born")}

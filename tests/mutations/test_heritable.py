@@ -39,7 +39,7 @@ def test_the_exponent_of_a_mutant_takes_any_step_up_to_the_stride(stride: int) -
 
 
 def test_the_step_of_a_mutant_is_drawn_by_its_second_word() -> None:
-    """Draw 0 of a birth decides whether it is a mutant, and draw 1 by how much q changes."""
+    """Draw 0 of a birth decides whether the child is a mutant. Draw 1 gives the change of q."""
     mutation = Heritable(stride=3, probability=0.5)
     of = family(mutation, 5)
     first, second = (

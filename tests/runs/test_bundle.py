@@ -170,7 +170,7 @@ def test_a_bundle_that_is_written_again_is_read_again(
 def test_a_bundle_is_unpacked_again_only_if_it_is_another_file(
     change: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Any one of its length, its time and its inode tells."""
+    """A file is another one if its length, its time or its inode differs."""
     unpacked: list[bytes] = []
     monkeypatch.setattr(bundle, "_extract", lambda file, _: unpacked.append(file.read_bytes()))
     (file := tmp_path / "a.zip").write_bytes(b"first")

@@ -50,10 +50,10 @@ def test_the_newest_two_are_kept_and_numbers_begin_at_0(run: Path) -> None:
     assert [number_in(each) for each in checkpoint.whole_checkpoints(run)] == [3, 2]
 
 
-def test_all_that_are_older_than_the_newest_two_are_removed(
+def test_all_checkpoints_older_than_the_newest_two_are_removed(
     run: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A run may hold more of them, such as one that another program has copied together."""
+    """A run may hold more than two checkpoints, such as a run that another program copied."""
     monkeypatch.setattr(checkpoint, "KEPT", 4)
     for number in range(4):
         save(run, number)

@@ -12,15 +12,15 @@ from primordia.runs.manifest import Progress
 from primordia.settings.limits import Stop
 
 CHUNK_S, EARLIER_S = 0.5, 20.0
-"""Seconds of a chunk, and those that the run had taken before it was resumed."""
+"""Seconds that a chunk takes, and seconds that the run took before it was resumed."""
 Step = tuple[Any, ...]
 
 
 class Invented:
-    """An engine of some chunks, which are numbered from 1, and a recorder: both note their calls."""
+    """An engine and a recorder that log their calls; chunks are numbered from 1."""
 
     def __init__(self, chunks: int, press: int | None = None) -> None:
-        """Press Ctrl-C in a chunk; number 0 is the time before the first chunk."""
+        """Run for some chunks, or press Ctrl-C in chunk `press`; 0 is before the first chunk."""
         self.log, self.done, self.chunks, self.press = list[Step](), 0, chunks, press
 
     def limits(self, stop: dict[str, Any]) -> dict[str, Any]:
@@ -87,7 +87,7 @@ def chunk(number: int) -> list[Step]:
     return [(f"events {number}",), (f"faults {number}",), ("listen", CHUNK_S * number)]
 
 
-def test_each_chunk_is_recorded_and_told_before_it_is_saved(patched: Any) -> None:
+def test_each_chunk_is_recorded_and_reported_before_it_is_saved(patched: Any) -> None:
     """The first checkpoint is due 1 s after the first chunk, and the second one 4 s later."""
     run = Invented(12)
     first, second = ("save", "state 3", 1.5), ("save", "state 11", 5.5)

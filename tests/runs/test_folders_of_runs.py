@@ -40,11 +40,10 @@ def test_a_lock_is_seen_while_it_is_held(tmp_path: Path) -> None:
 
 
 STARTED = (
-    "versions.json",
-    ".writing-config.toml",
-    *("births/a", "deaths/a", "metrics/a", "checkpoints/000000", "code/a.py", "origin/a"),
-    *("config.toml", "description.json", "founders.safetensors", ".writing-checkpoints"),
-)
+    "versions.json", ".writing-config.toml", "births/a", "deaths/a", "metrics/a", "checkpoints/000000",
+    "code/a.py", "origin/a", "config.toml", "description.json", "founders.safetensors",
+    ".writing-checkpoints",
+)  # fmt: skip
 
 
 def test_files_of_a_start_that_was_killed_are_removed_and_others_stay(tmp_path: Path) -> None:
@@ -70,24 +69,28 @@ def test_files_of_a_start_that_was_killed_are_removed_and_others_stay(tmp_path: 
 @pytest.mark.parametrize("origin", [False, True])
 @pytest.mark.parametrize("versions", [False, True])
 @pytest.mark.parametrize("replaced", [False, True])
-def test_only_a_run_that_can_go_on_outlives_an_error_at_its_start(
+def test_only_a_run_that_can_go_on_stays_after_an_error_at_its_start(
     versions: bool, origin: bool, replaced: bool, tmp_path: Path
 ) -> None:
-    """It has versions and a checkpoint. A folder that another process has put there is left alone."""
-    (tmp_path / "config.toml").touch()
-    if versions:
-        (tmp_path / "versions.json").touch()
-    if origin:
-        (tmp_path / "origin").mkdir()
-    before = sorted(tmp_path.iterdir())
+    """Such a run has versions and a checkpoint. A folder of another process stays unchanged."""
+    run = tmp_path / "run"
 
-    def check() -> None:
+    def fail() -> None:
         if replaced:
-            raise Trouble("it was replaced")
+            run.rename(tmp_path / "moved")
+            run.mkdir()
+            (run / "config.toml").touch()
+        if origin:
+            (run / "origin").mkdir()
+        raise Trouble("full")
 
-    directory._remove_unbegun(tmp_path, check)
+    with (
+        pytest.raises(Trouble, match="full"),
+        directory.create(run, config(MEADOW), None if versions else fail),
+    ):
+        fail()
     stays = (versions and origin) or replaced
-    assert sorted(tmp_path.iterdir()) == (before if stays else [])
+    assert (run / "config.toml").exists() == run.exists() == stays
 
 
 @pytest.mark.parametrize("error", [Trouble("full"), KeyboardInterrupt(), MemoryError()])
@@ -166,7 +169,7 @@ def test_a_run_with_settings_that_are_not_given_does_not_go_on(
 def test_begin_or_resume_passes_on_all_its_arguments(
     limits: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A limit that is no longer given is removed."""
+    """A limit that is not given again is removed."""
     calls = list[tuple[Any, ...]]()
     settings = config(MEADOW).model_copy(update={"stop": Stop(**limits)})
 

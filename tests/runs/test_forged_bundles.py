@@ -9,7 +9,6 @@ import warnings
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -184,12 +183,12 @@ def test_a_hostile_bundle_is_refused_in_one_line(file: Path, tmp_path: Path, kin
     change, words = HOSTILE[kind]
     parts = entries(file)
     change(parts)
-    forged = zipped(parts, tmp_path / "forged.zip")
-    before = os.listdir(tempfile.gettempdir()), os.listdir(tmp_path.parent)
-    for command in (["info"], ["revive", "1"], ["unbundle", str(tmp_path / "new")]):
+    (folder := tmp_path / "folder").mkdir()
+    forged, before = zipped(parts, folder / "forged.zip"), os.listdir(tempfile.gettempdir())
+    for command in (["info"], ["revive", "1"], ["unbundle", str(folder / "new")]):
         complains(here(command[0], forged, *command[1:]), 2, words)
-    assert (os.listdir(tempfile.gettempdir()), os.listdir(tmp_path.parent)) == before
-    assert os.listdir(tmp_path) == ["forged.zip"]
+    assert os.listdir(tempfile.gettempdir()) == before
+    assert (os.listdir(tmp_path), os.listdir(folder)) == (["folder"], ["forged.zip"])
 
 
 MANIFEST = "checkpoints/000001/manifest.json"
@@ -216,7 +215,7 @@ def huge(content: bytearray) -> None:
 
 
 def shorter(content: bytearray) -> None:
-    """The last file is said to become smaller than what is stored."""
+    """Give the last file a size that is smaller than that of the stored bytes."""
     marked(content, CENTRAL, 24, struct.pack("<I", 1))
 
 
@@ -273,10 +272,10 @@ def test_an_odd_zip_is_refused_in_one_line(
     complains(here("info", tmp_path / "text.zip"), 2, "is neither a run of primordia nor a bundle")
 
 
-def test_files_are_together_no_larger_than_their_bundle(
+def test_files_that_together_are_larger_than_their_bundle_are_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Entries of a zip may overlap, so that one content is written many times."""
+    """Entries of a zip may overlap, so that the same bytes are unpacked many times."""
     file = zipped([(plain("run/a"), b"x" * 100)], tmp_path / "a.zip")
     held = {name: plain(f"run/{name}") for name in "ab"}
     for each in held.values():
@@ -287,26 +286,25 @@ def test_files_are_together_no_larger_than_their_bundle(
 
 
 @pytest.mark.parametrize("name", ["versions.json", "origin/manifest.json", MANIFEST])
-def test_files_that_are_read_at_once_are_small(
+def test_a_large_file_of_those_that_are_read_whole_is_refused(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(files, "READABLE", 3)
     names = {"versions.json", "origin/manifest.json", MANIFEST}
     parts = [(plain(f"run/{each}"), bytes(4 if each == name else 3)) for each in names]
-    held = zipfile.ZipFile(zipped(parts, tmp_path / "a.zip"))
-    with held, pytest.raises(ValueError, match=f"^{name} is too large$"):
-        bundle._seals(held, bundle._entries(held))
+    forged = zipped(parts, tmp_path / "a.zip")
+    with pytest.raises(InputError, match=f"^{forged} is not a valid bundle: {name} is too large$"):
+        bundle.unbundle(forged, tmp_path / "run")
 
 
 @pytest.mark.parametrize("part", ["", ".", "..", *'\\:*?"<>|', "\n", "\x1b", "\u202e"])
-def test_the_name_of_a_file_is_one_on_every_system(part: str) -> None:
-    entry = plain("run/code/x.py", 0)  # some programs store no mode
-    held: Any = SimpleNamespace(infolist=lambda: [entry])
-    assert [*bundle._entries(held)] == ["code/x.py"]
-    for inner in (part, f"a{part}b") if part.strip(".") else (part,):
-        entry.orig_filename = f"run/code/{inner}/x.py"
-        with pytest.raises(ValueError, match="is not the path of a file in a run"):
-            bundle._entries(held)
+def test_a_name_that_some_system_does_not_allow_is_refused(part: str, tmp_path: Path) -> None:
+    """Some programs store no mode of a file, and such a file is accepted."""
+    names = (part, f"a{part}b") if part.strip(".") else (part,)
+    for name, says in (("x", "has no checkpoints"), *((each, "not the path") for each in names)):
+        forged = zipped([(plain(f"run/code/{name}/x.py", 0), b"")], tmp_path / "a.zip")
+        with pytest.raises(InputError, match=says):
+            bundle.unbundle(forged, tmp_path / "run")
 
 
 CHANGES = st.lists(

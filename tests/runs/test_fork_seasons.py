@@ -1,25 +1,22 @@
 """Seasons of a fork: its ratchets look back as far as the fork, and no further."""
 
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
-import jax.numpy as jnp
 import pytest
 
 import primordia
 from primordia.errors import InputError
-from primordia.law.world import Worlds
-from primordia.random.wide import to_host, wide
-from primordia.runs import fork as forks
+from primordia.random.wide import to_host
 from primordia.runs import loop
+from tests.runs.forking import COUNTS, adapted
 from tests.worlds import MEADOW, config
 
 AT = 40
 
 
 def ratchet(above: float) -> dict[str, Any]:
-    """Return a season that multiplies the hazard by 2 if organisms gather more food than `above`."""
+    """Return a season that multiplies the drain by 2 if organisms gather more food than `above`."""
     return {"kind": "ratchet", "setting": "metabolism.drain", "when": "food", "above": above,
             "factor": 2.0, "every": 10}  # fmt: skip
 
@@ -74,24 +71,17 @@ def test_a_season_of_a_metabolism_that_there_is_not_is_refused(
             primordia.load(tmp_path / "run").fork(3, tmp_path / "fork", seasons=[season])
 
 
-COUNTS = {"food": [100, 2**40], "organism_ticks": [300, 2**50]}
-"""Counts of two worlds at a fork."""
-
-
-def worlds_at_fork() -> Worlds:
-    worlds: Any = Worlds(*[wide([1, 2])] * len(Worlds._fields))
-    counts = {name: wide(values) for name, values in COUNTS.items()}
-    calm = jnp.array([7, 8])
-    return worlds._replace(**counts, calm=calm, sample_wait=calm, looks="old", climate={})
+def looks_of(at: int, old: list[dict[str, Any]], new: list[dict[str, Any]]) -> Any:
+    """Return the looks of a fork that has other seasons than before."""
+    before, after = (config(meadow(1.0, seasons=seasons)) for seasons in (old, new))
+    return adapted(at, before, after).looks
 
 
 @pytest.mark.parametrize("at", [1, 20, 33, 70])
 def test_each_new_ratchet_looks_at_multiples_of_its_period_and_counts_from_the_fork(
     at: int,
 ) -> None:
-    made = config(meadow(1.0, seasons=[ratchet(0.4), {**ratchet(0.4), "every": 7}]))
-    after: Any = SimpleNamespace(law=SimpleNamespace(seasons=made.seasons))
-    looks = forks._looks(worlds_at_fork(), after, at)
+    looks = looks_of(at, [], [ratchet(0.4), {**ratchet(0.4), "every": 7}])
     assert looks.wait.tolist() == [[10 - at % 10, 7 - at % 7]] * 2
     assert to_host(looks.food).tolist() == [[each] * 2 for each in COUNTS["food"]]
     assert to_host(looks.organism_ticks).tolist() == [
@@ -100,32 +90,28 @@ def test_each_new_ratchet_looks_at_multiples_of_its_period_and_counts_from_the_f
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "looks"),
+    ("old", "new", "changed"),
     [
-        ([ratchet(0.4)], [ratchet(0.4)], "old"),
-        ([ratchet(0.4)], [ratchet(0.5)], "new"),
-        ([ratchet(0.4)], [], "new"),
-        ([], [ratchet(0.4)], "new"),
-        ([ratchet(0.4), ratchet(0.5)], [ratchet(0.5), ratchet(0.4)], "new"),
+        ([ratchet(0.4)], [ratchet(0.4)], False),
+        ([ratchet(0.4)], [ratchet(0.5)], True),
+        ([ratchet(0.4)], [], True),
+        ([], [ratchet(0.4)], True),
+        ([ratchet(0.4), ratchet(0.5)], [ratchet(0.5), ratchet(0.4)], True),
     ],
 )
 def test_ratchets_begin_to_count_at_the_fork_if_any_season_has_changed(
-    old: list[dict], new: list[dict], looks: str, monkeypatch: pytest.MonkeyPatch
+    old: list[dict[str, Any]], new: list[dict[str, Any]], changed: bool
 ) -> None:
-    monkeypatch.setattr(forks, "_looks", lambda *_: "new")
-    nothing: Any = SimpleNamespace(law=SimpleNamespace(beginning=()))
-    before, after = (config(meadow(1.0, seasons=seasons)) for seasons in (old, new))
-    world: Any = "organisms", worlds_at_fork()
-    forked = forks._adapt(world, nothing, nothing, before, after, 10)
-    assert forked.worlds.looks == looks
-    assert forked.organisms == "organisms", "all keep their energy"
+    looks = looks_of(10, old, new)
+    if changed:
+        assert looks.wait.tolist() == [[10] * len(new)] * 2
+    else:
+        assert looks == "looks", "they are unchanged"
 
 
-def test_only_a_world_without_hunger_before_the_fork_gets_new_stores() -> None:
-    """Organisms whose store, drain or cap changes keep the energy that they have."""
-    nothing: Any = SimpleNamespace(law=SimpleNamespace(beginning=()))
-    before = config(meadow(1.0))
-    for changed in ({"store": 9.0}, {"store": 1000.0, "drain": 0.5}, {"store": 1000.0, "cap": 2e3}):
-        after = config(meadow(1.0, metabolism=changed))
-        world: Any = "organisms", worlds_at_fork()
-        assert forks._adapt(world, nothing, nothing, before, after, 10).organisms == "organisms"
+@pytest.mark.parametrize(
+    "changed", [{"store": 9.0}, {"store": 1000.0, "drain": 0.5}, {"store": 1000.0, "cap": 2e3}]
+)
+def test_a_changed_metabolism_fills_no_store(changed: dict[str, float]) -> None:
+    """All organisms keep their energy, as `adapted` asserts of every fork."""
+    adapted(10, config(meadow(1.0)), config(meadow(1.0, metabolism=changed)))

@@ -22,12 +22,12 @@ RATES = [*rates_of(config(MEADOW)), *rates_of(Metabolism(), "metabolism.")]
 
 
 def part(name: str, run: Any) -> Any:
-    """Return a part of an archive, built from an invented run."""
+    """Return a property of an archive, computed from an invented run."""
     return getattr(Archive, name).func(run)
 
 
 @pytest.mark.parametrize("lacking", [None, *RATES])
-def test_a_description_has_every_setting_that_seasons_may_change(
+def test_a_description_without_a_setting_that_seasons_may_change_is_refused(
     lacking: str | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     about = SimpleNamespace(beginning={name: 1.0 for name in RATES if name != lacking})
@@ -50,7 +50,7 @@ def test_a_description_has_every_setting_that_seasons_may_change(
         (("step", "way"), ["a", "b"], False),
     ],
 )
-def test_a_mutation_has_the_notes_and_all_the_rates_of_the_description(
+def test_a_mutation_without_the_notes_and_rates_of_the_description_is_refused(
     notes: tuple[str, ...], beginning: list[str], fits: bool
 ) -> None:
     mutation = SimpleNamespace(notes=("step", "way"), rates=lambda layout: [*layout])
@@ -71,7 +71,7 @@ def test_a_mutation_has_the_notes_and_all_the_rates_of_the_description(
 def test_each_version_that_is_not_the_recorded_one_is_named(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """A package that was not used then is another version too; one that is not used now is not."""
+    """A package that only this process uses is named. A package that only the run used is not."""
     here = {"jax": "2", "numpy": "3", "device": "cpu", "new": "1"}
     monkeypatch.setattr(directory, "versions_here", lambda *_: here)
     run = SimpleNamespace(
@@ -85,7 +85,7 @@ def test_each_version_that_is_not_the_recorded_one_is_named(
 
 
 @pytest.mark.parametrize(("births", "deaths", "fits"), [(2, 2, True), (2, 3, False), (1, 2, False)])
-def test_each_table_of_a_checkpoint_has_a_digest_of_every_world(
+def test_a_checkpoint_without_a_digest_of_each_world_in_each_table_is_refused(
     births: int, deaths: int, fits: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     expected = SimpleNamespace(fault_of=None, fault=lambda _: None)
@@ -123,6 +123,6 @@ def test_a_description_has_what_readers_need(kept: int | None, mates: bool) -> N
     assert about.code == {"a.py": "1"}
 
 
-def test_verify_tells_of_all_damage() -> None:
+def test_verify_returns_each_fault_of_a_damaged_run() -> None:
     run: Any = SimpleNamespace(config=None, newest=("last", ["a is missing", "b is damaged"]))
     assert verify(run) == ["a is missing", "b is damaged"]

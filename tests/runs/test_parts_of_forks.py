@@ -1,5 +1,6 @@
 """Forks of invented worlds: possible ticks, organisms alive at the tick, and changes of the state."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -12,11 +13,12 @@ import pytest
 from primordia.errors import InputError, Trouble
 from primordia.law.events import birth_columns
 from primordia.law.world import Worlds
-from primordia.random.wide import to_host, wide
+from primordia.random.wide import to_host
 from primordia.runs import checkpoint, fork
 from primordia.runs.arrays import NEVER, world_ticks
+from tests.runs.forking import adapted
 from tests.synthetic import worlds_of
-from tests.worlds import MEADOW, config, merged
+from tests.worlds import MEADOW, config
 
 FIRST = [(0, 9, True), (0, 19, True), (5, 14, True), (10, 30, False)]
 SECOND = [(0, 9, True), (10, 0, False), (11, 0, False)]
@@ -73,20 +75,10 @@ def test_the_living_at_a_tick_are_on_record_and_in_the_world(at: int) -> None:
         living(alive, number + np.arange(2 * CELLS, dtype=np.uint32) // CELLS)
 
 
-def adapted(at: int, changes: dict[str, Any], climate: dict[str, float] | None = None) -> Worlds:
+def with_changes(at: int, changes: dict[str, Any]) -> Worlds:
     """Return the worlds of a fork of a meadow with two worlds at a tick, with some changed settings."""
-    old = config(MEADOW, seeds=2, sample_every=10, seed=3)
-    new = config(MEADOW, **{"seeds": 2, "sample_every": 10, "seed": 3, **changes})
-    count = wide(np.array([100, 200]))
-    worlds: Any = Worlds(*[count] * len(Worlds._fields))
-    worlds = worlds._replace(
-        calm=jnp.array([7, 8]), sample_wait=jnp.array([1, 1]), looks="looks", climate={}
-    )
-    nothing: Any = SimpleNamespace(law=SimpleNamespace(beginning=()))
-    organisms: Any = "organisms"
-    world = fork._adapt((organisms, worlds), nothing, nothing, old, new, at)
-    assert world.organisms == organisms
-    return world.worlds
+    own = {"seeds": 2, "sample_every": 10, "seed": 3}
+    return adapted(at, config(MEADOW, **own), config(MEADOW, **{**own, **changes}))
 
 
 @pytest.mark.parametrize(
@@ -94,7 +86,7 @@ def adapted(at: int, changes: dict[str, Any], climate: dict[str, float] | None =
     [(3, 10, 7), (10, 10, 10), (19, 10, 1), (19, 4, 1), (20, 4, 4), (3, 9, 6)],
 )
 def test_a_fork_is_sampled_at_multiples_of_its_own_interval(at: int, every: int, wait: int) -> None:
-    assert adapted(at, {"sample_every": every}).sample_wait.tolist() == [wait, wait]
+    assert with_changes(at, {"sample_every": every}).sample_wait.tolist() == [wait, wait]
 
 
 @pytest.mark.parametrize(
@@ -112,7 +104,7 @@ def test_a_fork_is_sampled_at_multiples_of_its_own_interval(at: int, every: int,
 def test_a_fork_must_saturate_again_only_if_its_lives_can_differ(
     changes: dict[str, Any], again: bool
 ) -> None:
-    worlds, seed = adapted(20, changes), changes.get("seed", 3)
+    worlds, seed = with_changes(20, changes), changes.get("seed", 3)
     assert worlds.calm.tolist() == ([0, 0] if again else [7, 8])
     for moment in (worlds.saturated, worlds.saturated_births):
         assert to_host(moment).tolist() == ([NEVER, NEVER] if again else [100, 200])
@@ -145,7 +137,7 @@ def test_the_length_of_saved_states_is_no_part_of_the_form_of_an_array() -> None
 
 @pytest.mark.parametrize("mates", [False, True])
 def test_births_of_the_living_are_in_order_of_events_and_have_their_own_notes(mates: bool) -> None:
-    """They are in order of ticks, and within a tick in order of worlds and cells, as in every run.
+    """Births are in order of ticks, and those of one tick are in order of worlds and cells.
 
     Their mates are left out, since the living are the roots of later lines.
     """
@@ -173,29 +165,29 @@ def test_births_of_the_living_are_in_order_of_events_and_have_their_own_notes(ma
 
 
 @pytest.mark.parametrize(
-    ("settings", "changed"),
+    ("changes", "expected"),
     [
         ({}, {}),
         ({"hazard": 0.0}, {"hazard": 0.0}),
-        ({"mutation": {"scale": 0.5}}, {"mutation": {"scale": 0.5}}),
+        ({"mutation": {"scale": 0.5}}, {"mutation": {"probability": 0.5, "scale": 0.5}}),
         ({"sample_every": 7, "seed": 0}, {"sample_every": 7, "seed": 0}),
         ({"seasons": []}, {"seasons": []}),
     ],
 )
 def test_a_fork_has_all_other_settings_of_its_source(
-    settings: dict[str, Any], changed: dict[str, Any], tmp_path: Path
+    changes: dict[str, Any], expected: dict[str, Any], tmp_path: Path
 ) -> None:
-    """A setting may be changed to 0, or to nothing."""
+    """A setting may be changed to 0, or to an empty list."""
     own = {"seed": 3, "hazard": 0.25, "mutation": {"probability": 0.5, "scale": 0.125}}
     own["seasons"] = [{"kind": "schedule", "setting": "hazard", "at": 9, "value": 0.5}]
     (tmp_path / "config.toml").write_text(config(MEADOW, **own).to_toml())
-    forked = fork._fork_config(tmp_path, settings, 6)
-    values = config(MEADOW, **merged(own, changed)).model_dump()
+    forked = fork._fork_config(tmp_path, changes, 6)
+    values = config(MEADOW, **{**own, **expected}).model_dump()
     assert forked.model_dump() == values | {"fork": {"run": str(tmp_path), "tick": 6}}
 
 
 class Past:
-    """An engine of two worlds that notes what is loaded, and advances all worlds by 2 ticks at most."""
+    """An engine of two worlds that logs the loaded arrays. A call of `advance` lives 2 ticks or fewer."""
 
     def __init__(self, exact: bool = True) -> None:
         self.ticks, self.loaded = np.array([0, 0]), list[dict]()
@@ -216,6 +208,7 @@ class Past:
 
 
 def stored(*ticks: int) -> dict[str, np.ndarray]:
+    """Return the arrays of a checkpoint in which worlds have these ticks."""
     low = np.array(ticks, np.uint32)
     return {"world.worlds.tick.lo": low, "world.worlds.tick.hi": np.zeros_like(low)}
 
@@ -224,26 +217,38 @@ KEPT = [stored(9, 12), stored(8, 10), stored(8, 8), stored(3, 3)]
 """Checkpoints, newest first. In some of them one world is ahead of the other."""
 
 
+@pytest.fixture
+def relived(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Past]:
+    """Return a function that returns an engine at a tick of a run that has the checkpoints KEPT."""
+
+    def engine_at(
+        at: int, versions: Sequence[str] = (), exact: bool = True, listen: Any = None
+    ) -> Past:
+        monkeypatch.setattr(fork, "Engine", lambda _: Past(exact))
+        monkeypatch.setattr(checkpoint, "whole_checkpoints", lambda *_: iter(KEPT))
+        source: Any = SimpleNamespace(
+            config=None, path=Path("run"), fault_in=None, other_versions=versions,
+            arrays_of=lambda each: each,
+        )  # fmt: skip
+        engine: Any = fork._engine_at(source, at, listen)
+        return engine
+
+    return engine_at
+
+
 @pytest.mark.parametrize(
-    ("at", "loaded", "heard"),
+    ("at", "loaded", "reported"),
     [(12, 0, [11, 12]), (11, 1, [10, 11]), (9, 2, [9]), (8, 2, []), (5, 3, [5]), (2, None, [2])],
 )
-def test_the_past_is_lived_again_from_the_newest_state_in_which_no_world_is_later(
-    at: int, loaded: int | None, heard: list[int], monkeypatch: pytest.MonkeyPatch
+def test_the_past_is_lived_again_from_the_newest_checkpoint_in_which_no_world_is_later(
+    at: int, loaded: int | None, reported: list[int], relived: Callable[..., Past]
 ) -> None:
-    monkeypatch.setattr(fork, "Engine", lambda _: Past())
-    monkeypatch.setattr(checkpoint, "whole_checkpoints", lambda *_: iter(KEPT))
-    source: Any = SimpleNamespace(config=None, path=Path("run"), fault_in=None, other_versions=[],
-                                  arrays_of=lambda each: each)  # fmt: skip
-    told: list[int] = []
-
-    def listen(now: Any) -> None:
-        told.append(int(now.engine.ticks.min()))
-
-    engine: Any = fork._engine_at(source, at, listen)
+    """The listener is called with the engine after each advance."""
+    ticks: list[int] = []
+    engine = relived(at, listen=lambda now: ticks.append(int(now.engine.ticks.min())))
     assert engine.loaded == ([] if loaded is None else [KEPT[loaded]])
     assert engine.ticks.tolist() == [at, at]
-    assert told == heard
+    assert ticks == reported
 
 
 @pytest.mark.parametrize(
@@ -255,15 +260,10 @@ def test_the_past_is_lived_again_from_the_newest_state_in_which_no_world_is_late
     ],
 )
 def test_a_past_that_does_not_repeat_is_not_lived_again(
-    versions: list[str], exact: bool, says: str, monkeypatch: pytest.MonkeyPatch
+    versions: list[str], exact: bool, says: str, relived: Callable[..., Past]
 ) -> None:
-    """A fork at the tick of a stored state needs no repetition."""
-    monkeypatch.setattr(fork, "Engine", lambda _: Past(exact))
-    monkeypatch.setattr(checkpoint, "whole_checkpoints", lambda *_: iter(KEPT))
-    source: Any = SimpleNamespace(config=None, path=Path("run"), fault_in=None,
-                                  other_versions=versions, arrays_of=lambda each: each)  # fmt: skip
+    """At the tick of a checkpoint, nothing must be lived again."""
     with pytest.raises(InputError) as raised:
-        fork._engine_at(source, 9, None)
+        relived(9, versions, exact)
     assert str(raised.value) == says
-    stays: Any = fork._engine_at(source, 8, None)
-    assert stays.ticks.tolist() == [8, 8]
+    assert relived(8, versions, exact).ticks.tolist() == [8, 8]

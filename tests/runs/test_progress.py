@@ -1,4 +1,4 @@
-"""A resume of an invented run: its limits, its exactness, its restarts, and notes for the user."""
+"""Progress of a resumed, invented run: limits, exactness and restarts, and notes for the user."""
 
 from contextlib import nullcontext
 from pathlib import Path
@@ -13,7 +13,7 @@ from primordia.settings.limits import Stop
 from tests.worlds import MEADOW, config
 
 STOP, LATER = Stop(ticks=5), Stop(ticks=9, births=7)
-"""The limits in the settings of the run, and those that an earlier resume has given."""
+"""The limits in the settings of the run, and the limits of an earlier resume."""
 
 
 def resumed(
@@ -27,7 +27,7 @@ def resumed(
     done: bool = False,
     limits: dict[str, Any] | None = None,
 ) -> tuple[list[str], Progress]:
-    """Resume a run and return the notes, and the progress with which it is driven on."""
+    """Resume a run. Return the notes, and the progress with which the run goes on."""
     progress = Progress(limits=LATER, wall_s=20.0, exact=was_exact, restarts=2)
     last = SimpleNamespace(manifest=SimpleNamespace(progress=progress)) if kept else None
     settings = config(MEADOW).model_copy(update={"stop": STOP})
@@ -68,10 +68,10 @@ def test_every_damaged_checkpoint_is_named(monkeypatch: pytest.MonkeyPatch) -> N
 @pytest.mark.parametrize("was_exact", [True, False])
 @pytest.mark.parametrize("exact", [True, False])
 @pytest.mark.parametrize("differ", [(), ("jax 1 then, 2 now",)])
-def test_a_run_is_exact_if_it_was_and_its_habitat_and_versions_are(
+def test_a_run_stays_exact_if_its_habitat_is_exact_and_its_versions_are_the_same(
     was_exact: bool, exact: bool, differ: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Bodies of a habitat that cannot save them begin again, and that is counted."""
+    """Bodies of a habitat that cannot save them begin again. Such restarts are counted."""
     given: dict[str, Any] = {"exact": exact, "was_exact": was_exact, "differ": differ}
     _, progress = resumed(monkeypatch, [], **given)
     assert progress.exact == (was_exact and exact and not differ)
@@ -90,7 +90,7 @@ def test_a_run_is_exact_if_it_was_and_its_habitat_and_versions_are(
         ({"until": "saturation"}, Stop(ticks=9, births=7, until="saturation")),
     ],
 )
-def test_limits_stay_until_another_is_given(
+def test_each_limit_stays_until_it_is_given_again(
     given: dict[str, Any] | None, limits: Stop, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert resumed(monkeypatch, [], limits=given)[1].limits == limits
