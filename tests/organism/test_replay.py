@@ -78,6 +78,15 @@ def test_if_no_age_is_left_to_show_the_error_says_which_ages_can_be_seen(
         replay.parts_of(life, ages)
 
 
+@pytest.mark.parametrize(("rate", "seconds"), [(1 / 60, None), (50.0, 0.001)])
+def test_each_end_of_a_long_life_has_a_tick_at_least(
+    rate: float, seconds: float | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    life: Any = SimpleNamespace(record=SimpleNamespace(born=[70]), begins=70, ends=80)
+    monkeypatch.setattr(replay, "picture_rate", lambda life: rate)
+    assert replay.parts_of(life, (None, None), seconds) == [range(1, 2), range(10, 11)]
+
+
 @pytest.mark.parametrize("ages", [(None, None), (0, None), (0, 9)])
 def test_a_life_without_a_tick_cannot_be_shown(
     monkeypatch: pytest.MonkeyPatch, ages: tuple[int | None, int | None]

@@ -115,7 +115,7 @@ def parts_of(
         name = f"organism {life.record.id[0]}"
         raise InputError(f"{name} has not lived a tick yet, so nothing can be shown")
     if ages == (None, None) and last - first > 2 * seconds * rate:
-        part = int(seconds * rate)
+        part = max(int(seconds * rate), 1)
         return [range(first, first + part), range(last - part + 1, last + 1)]
     begin, end = ages
     shown = range(max(first, begin or 0), min(last, last if end is None else end) + 1)
