@@ -194,6 +194,20 @@ def test_an_address_with_a_port_is_tried_before_ray_tries_it() -> None:
             on_ray._check_address(address)
 
 
+@pytest.mark.parametrize(
+    ("address", "what"),
+    [("auto", "no cluster can be reached at auto"), (None, "Ray cannot start")],
+)
+def test_a_ray_that_does_not_answer_or_start_is_one_line(
+    address: str | None, what: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ray = MagicMock()
+    ray.init.side_effect = ConnectionError("\nno reason\nmore")
+    monkeypatch.setitem(sys.modules, "ray", ray)
+    with pytest.raises(InputError, match=f"^--ray: {what}: no reason$"):
+        on_ray._connected(address)
+
+
 def test_the_brackets_of_an_address_are_not_part_of_the_host(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -93,7 +93,8 @@ def _connected(address: str | None) -> Any:
         )
     except (ConnectionError, RuntimeError, ValueError, TimeoutError) as error:
         first = str(error).strip().partition("\n")[0]
-        raise InputError(f"--ray: no cluster can be reached at {address}: {first}") from None
+        what = "Ray cannot start" if address is None else f"no cluster can be reached at {address}"
+        raise InputError(f"--ray: {what}: {first}") from None
     return ray
 
 

@@ -26,7 +26,8 @@ def note(run: Path, lines: list[str]) -> None:
         flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT | os.O_NOFOLLOW | os.O_NONBLOCK
         file = os.open(run / FILE, flags, 0o666)
         try:
-            os.write(file, text)
+            while text:
+                text = text[os.write(file, text) :]
         finally:
             os.close(file)
     except OSError as error:
