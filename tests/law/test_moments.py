@@ -11,8 +11,9 @@ import pytest
 from primordia.habitats import Compound, Continuous, Discrete
 from primordia.law.genesis import begin
 from primordia.law.moments import change_in, remember
-from primordia.law.world import Remembered, World
+from primordia.law.world import BirthCause, Cause, Remembered, World
 from primordia.random.wide import wide
+from tests.law.turning import turned
 from tests.toys import Mill
 from tests.worlds import MEADOW, MILL, Lived, config, law_of
 
@@ -55,6 +56,23 @@ def test_a_world_remembers_what_it_senses_at_its_ticks() -> None:
             inherited += assert_of_parents(lived, tick, before, now, places)
         before = now
     assert inherited > 20
+
+
+def test_only_children_have_moments_of_those_before_them() -> None:
+    """World 0 dies out and is founded again; in world 1 an organism has a child."""
+    law = law_of(MEADOW, seeds=2, cells=3, brain={"kind": "linear"}, mutation=MUTATION)
+    world = begin(law, np.array([5, 6], np.uint64))
+    organisms = world.organisms
+    assert organisms.moments is not None
+    moments = organisms.moments._replace(known=jnp.ones((6, KEPT), bool))
+    alive = np.array([[True] * 3, [True, False, False]])
+    organisms = organisms._replace(alive=jnp.asarray(alive.ravel()), moments=moments)
+    cause = np.where([[True], [False]], Cause.FATAL, np.full((2, 3), -1))
+    after = turned(law, world._replace(organisms=organisms), alive & (cause < 0), cause)
+    np.testing.assert_array_equal(after.births["cause"] == BirthCause.FOUNDER, [True, False])
+    assert after.organisms.moments is not None
+    known = np.asarray(after.organisms.moments.known)[after.newborn]
+    np.testing.assert_array_equal(known, [[False] * KEPT, [True] * KEPT])
 
 
 def assert_of_parents(lived: Lived, tick: int, before: Any, now: Any, places: list[int]) -> int:
