@@ -1,4 +1,4 @@
-"""Pictures of a life in an environment: the body after the tick, with the action that led to it."""
+"""Pictures of a life in an environment show the body after a tick, and the action of the tick."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from primordia.habitats.cartpole.picture import draw
 TASK = "CartPole-survival"
 
 
-def test_a_picture_has_the_present_body_and_the_latest_action() -> None:
+def test_a_picture_shows_the_present_body_and_the_latest_action() -> None:
     env = LifeEnv(TASK, {"habitat": {"track_limit": 5.0}}, render_mode="rgb_array")
     for seed in (1, 2):
         pictures, actions = [(env.reset(seed=seed)[0], env.render())], [0, 1, 1]
@@ -21,7 +21,7 @@ def test_a_picture_has_the_present_body_and_the_latest_action() -> None:
             np.testing.assert_array_equal(picture, np.asarray(drawn))
 
 
-def test_nothing_is_drawn_unless_it_is_asked_for_and_can_be() -> None:
+def test_nothing_is_drawn_without_a_render_mode_or_without_pictures_of_the_habitat() -> None:
     env = LifeEnv(TASK)
     env.reset(seed=1)
     assert env.render() is None
